@@ -1,0 +1,229 @@
+#pragma once
+
+#include "hooke/id.h"
+#include "hooke/math.h"
+#include "hooke/shape.h"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Descriptions of everything a World can hold. Plain aggregates with defaults; name what differs:
+///
+///     world.add_rope({.hook_point = {0, 3, 0}, .total_mass = 0.4f, .masses = 32, .length_at_rest = 2})
+///
+/// Units are SI: meters, kilograms, seconds, newtons, radians. +Y is up. A stiffness may be `kRigid`.
+/// Bounds are checked when a description is added; what is wrong comes back as an Error that names the field.
+
+namespace hooke {
+
+/// Stiffness of what does not stretch.
+inline constexpr Real kRigid = std::numeric_limits<Real>::infinity();
+
+/// Wind, a function of time and place and never of the step:
+/// W = |velocity| [ (1 + gust r1(t, x)) e_main + side_gust r2(t, x) e_side ], r1 and r2 independent in [-1,
+/// 1], smooth over `correlation_time` and `correlation_length`. e_side is horizontal and across e_main.
+struct WindDesc {
+  /// How the wind varies. kPaper draws one factor per step, as the paper's eq. 9 does: it depends on the
+  /// step.
+  enum class Gusts : std::uint8_t { kSmooth, kPaper };
+
+  Vec3 velocity = {};                 ///< Mean wind [m/s].
+  Real gust = Real(0);                ///< Relative size of the gusts along the wind. [0, 10]
+  Real side_gust = Real(0);           ///< Relative size of the gusts across it. [0, 10]
+  Real correlation_time = Real(0.5);  ///< [s], positive.
+  Real correlation_length = Real(2);  ///< [m], positive.
+  std::uint32_t seed = 1;
+  Gusts gusts = Gusts::kSmooth;
+  Real air_density = Real(1.225);  ///< [kg/m^3]; 0 switches aerodynamic drag and lift off.
+
+  friend bool operator==(const WindDesc&, const WindDesc&) = default;
+};
+
+struct WorldDesc {
+  Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
+  int substeps = 8;                                ///< Solver passes per step; more is stiffer. [1, 64]
+  int particle_substeps = 1;                       ///< Passes over deformables in each substep. [1, 64]
+  int workers = 1;  ///< Threads used by step(). The result does not depend on it. [1, 64]
+  WindDesc wind = {};
+};
+
+/// A displacement as a function of time; zero at time zero.
+struct MotionDesc {
+  enum class Kind : std::uint8_t { kStill, kConstantVelocity, kSine, kKeyframes };
+  struct Keyframe {
+    double time = 0;   ///< [s], increasing.
+    Vec3 offset = {};  ///< [m] from the start; straight lines between keyframes, still before the first and
+                       ///< after the last.
+
+    friend bool operator==(const Keyframe&, const Keyframe&) = default;
+  };
+
+  Kind kind = Kind::kStill;
+  Vec3 velocity = {};                    ///< kConstantVelocity [m/s].
+  Vec3 amplitude = {};                   ///< kSine [m]: amplitude (sin(2 pi f t + phase) - sin(phase)).
+  Real frequency_hz = Real(1);           ///< kSine.
+  Real phase = Real(0);                  ///< kSine [rad].
+  std::vector<Keyframe> keyframes = {};  ///< kKeyframes, at least one.
+
+  friend bool operator==(const MotionDesc&, const MotionDesc&) = default;
+};
+
+/// A point that is held: still, or moved by a given motion.
+struct PinDesc {
+  std::uint32_t point = 0;
+  MotionDesc motion = {};
+};
+
+/// Mass added to one point.
+struct LoadDesc {
+  std::uint32_t point = 0;
+  Real mass = Real(1);  ///< [kg], not negative.
+};
+
+/// How a surface or a point answers a contact.
+struct ContactDesc {
+  Real friction = Real(0.5);  ///< Coulomb coefficient; a contact uses sqrt(a b) of the two. [0, 100]
+};
+
+/// A shape in the world. It stands still and is not moved by what touches it.
+struct BodyDesc {
+  Shape shape = {};
+  DVec3 position = {};  ///< Origin of the shape's frame [m].
+  Quat rotation = {};   ///< Normalized on entry.
+  ContactDesc contact = {};
+  bool collides = true;  ///< False: only drawn.
+};
+
+/// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on
+/// it. The paper's builder: `masses` points laid from `hook_point` along `direction`.
+struct RopeDesc {
+  enum class StiffnessOf : std::uint8_t {
+    kRope,  ///< Of the whole rope, whatever the number of points: each of the n segments is n times as stiff.
+    kSegment,  ///< Of each segment, as in the paper: more points make a softer rope.
+  };
+
+  DVec3 hook_point = {};                          ///< Position of the first point [m].
+  Vec3 direction = {Real(-1), Real(0), Real(0)};  ///< Any length but zero.
+  Real total_mass = Real(1);                      ///< [kg], positive. Half a segment's share on each end.
+  int masses = 16;                                ///< Number of points. [2, 65536]
+  Real length_at_rest = Real(1);                  ///< [m], positive.
+  Real stiffness = kRigid;                        ///< [N/m], positive or kRigid.
+  Real inner_friction = Real(0);                  ///< [N s/m], not negative.
+  Real air_friction = Real(0);  ///< Viscous drag of the whole rope [N s/m], shared out by length.
+  Real extension_max = kRigid;  ///< Largest relative extension of a segment, e.g. 0.05. Positive.
+  StiffnessOf stiffness_of = StiffnessOf::kRope;
+  std::optional<Real> axial_stiffness = {};  ///< EA [N]: replaces `stiffness` by EA / length_at_rest.
+  std::vector<DVec3> points =
+      {};  ///< Replaces hook_point, direction, masses, length_at_rest; taken as at rest.
+  std::vector<PinDesc> pins = {{}};  ///< The first point by default; `{}` for none.
+  std::vector<LoadDesc> loads = {};
+  Real radius = Real(0.005);          ///< Of the strand [m]: for contact, wind and drawing. Positive.
+  Real drag_coefficient = Real(1.1);  ///< Of a cylinder across the flow. Not negative.
+  Real charge = Real(0);              ///< [C], shared out by mass.
+  Vec3 velocity = {};                 ///< Of all points at the start [m/s].
+  ContactDesc contact = {};
+};
+
+/// A surface of point masses: a grid of `columns` x `rows` points, or the triangles of a mesh.
+struct ClothDesc {
+  enum class Bend : std::uint8_t {
+    kAngle,   ///< By the dihedral angle at each inner edge; `bend_stiffness` in N m.
+    kSpring,  ///< The paper's springs to the second neighbor; `bend_stiffness` in N/m.
+    kNone,
+  };
+
+  int columns = 2;    ///< Points along `column_direction`. [2, 4096]
+  int rows = 2;       ///< Points along `row_direction`. [2, 4096]
+  DVec3 corner = {};  ///< Position of point 0 [m]. Point (column, row) is row * columns + column.
+  Vec3 column_direction = {Real(1), Real(0), Real(0)};
+  Vec3 row_direction = {Real(0), Real(-1), Real(0)};
+  Real width = Real(1);   ///< Between the first and last column [m].
+  Real height = Real(1);  ///< Between the first and last row [m].
+  MeshId mesh = {};       ///< Replaces the grid: point i is vertex i.
+  DVec3 position = {};    ///< Of the mesh's frame [m].
+  Quat rotation = {};     ///< Of the mesh's frame.
+
+  Real areal_density = Real(0.2);       ///< [kg/m^2], positive; mass goes to points by their share of area.
+  std::optional<Real> total_mass = {};  ///< [kg]: replaces areal_density.
+  Real thickness = Real(0.004);         ///< [m]: points keep half of it from what they touch. Positive.
+  Real stretch_stiffness = Real(1e4);   ///< Of each spring along an edge [N/m], or kRigid.
+  Real shear_stiffness = Real(2e3);     ///< Of each spring across a cell or a pair of triangles [N/m].
+  Real bend_stiffness = Real(1e-4);     ///< See Bend.
+  Real damping = Real(0);               ///< Of each stretch and shear spring [N s/m].
+  Real bend_damping = Real(0);          ///< Of each bend row, in units of bend_stiffness times s.
+  Bend bend = Bend::kAngle;
+  Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
+  bool tethers = false;  ///< Hold every point within its rest distance of the pins: inextensible cloth.
+  Real drag_coefficient = Real(1.2);  ///< Of a triangle across the flow.
+  Real lift_coefficient = Real(0.6);
+  Real air_friction = Real(0);  ///< Viscous drag of the whole cloth [N s/m], shared out by area.
+  std::vector<PinDesc> pins = {};
+  std::vector<LoadDesc> loads = {};
+  Real charge = Real(0);  ///< [C], shared out by mass.
+  Vec3 velocity = {};     ///< Of all points at the start [m/s].
+  ContactDesc contact = {};
+};
+
+/// A damped Hooke spring between two points of one object. On the first: F = -[k (|x| - L) + c v.u] u, x =
+/// x_a - x_b.
+struct SpringDesc {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  Real stiffness = Real(100);            ///< k [N/m], not negative, or kRigid.
+  Real damping = Real(0);                ///< c [N s/m], not negative.
+  std::optional<Real> rest_length = {};  ///< L [m]; the distance at the start by default.
+};
+
+struct ParticleDesc {
+  DVec3 position = {};       ///< [m]
+  Vec3 velocity = {};        ///< [m/s]
+  Real mass = Real(1);       ///< [kg], positive.
+  Real charge = Real(0);     ///< [C]
+  Real radius = Real(0.01);  ///< [m], positive.
+};
+
+/// Loose point masses and the springs between them.
+struct ParticlesDesc {
+  /// Where a spring's direction is taken: at the start of the substep (keeps energy), or where the points are
+  /// about to be (quieter on very stiff lattices).
+  enum class Direction : std::uint8_t { kExplicit, kPredicted };
+  enum class Damping : std::uint8_t {
+    kCentral,    ///< Along the spring: keeps angular momentum.
+    kIsotropic,  ///< On the whole relative velocity, as in the paper: brakes rotation.
+  };
+
+  std::vector<ParticleDesc> particles = {};  ///< At least one.
+  std::vector<SpringDesc> springs = {};
+  Direction direction = Direction::kExplicit;
+  Damping damping = Damping::kCentral;
+  Real air_friction = Real(0);      ///< Viscous drag of each particle [N s/m].
+  Real drag_coefficient = Real(0);  ///< Quadratic drag of each particle as a sphere of its radius.
+  std::vector<PinDesc> pins = {};
+  ContactDesc contact = {};
+};
+
+/// A force on every particle of the world.
+struct FieldDesc {
+  enum class Kind : std::uint8_t {
+    kUniform,        ///< Acceleration `vector` [m/s^2].
+    kInverseSquare,  ///< Acceleration -strength (x - center) / |x - center|^3; none at the center itself.
+    kMagnetic,       ///< Force q v x `vector` [T] on charged particles.
+  };
+
+  Kind kind = Kind::kUniform;
+  Vec3 vector = {};
+  DVec3 center = {};      ///< kInverseSquare [m].
+  double strength = 0.0;  ///< kInverseSquare [m^3/s^2]; positive attracts.
+};
+
+/// One object's particles as a force law sees them, in the order the maker gave them.
+class ForceView;
+
+/// Called once per particle substep for each object, in order of creation, on the thread that called step().
+using ForceLaw = std::function<void(ForceView&)>;
+
+}  // namespace hooke

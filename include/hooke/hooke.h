@@ -1,0 +1,11 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/id.h"
+#include "hooke/math.h"
+#include "hooke/result.h"
+#include "hooke/shape.h"
+#include "hooke/world.h"
+
+/// \file
+/// The whole public API of the core.

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+/// \file
+/// Handles. A handle is a value: copy it, compare it, store it in a file. It is never a pointer, so it can be
+/// stale but it cannot dangle. A default-constructed handle refers to nothing.
+
+namespace hooke {
+
+template <class Tag>
+struct Id {
+  std::uint32_t slot = 0;        ///< Row of the slot table plus one; 0 means "none".
+  std::uint32_t generation = 0;  ///< Grows each time the slot is reused.
+
+  friend constexpr bool operator==(Id, Id) = default;
+  explicit constexpr operator bool() const { return slot != 0; }
+};
+
+using MeshId = Id<struct MeshTag>;            ///< Triangles shared by bodies and cloths.
+using BodyId = Id<struct BodyTag>;            ///< A shape with a pose.
+using RopeId = Id<struct RopeTag>;            ///< A chain of point masses.
+using ClothId = Id<struct ClothTag>;          ///< A surface of point masses.
+using ParticlesId = Id<struct ParticlesTag>;  ///< Loose point masses and their springs.
+using FieldId = Id<struct FieldTag>;          ///< Gravity-like, radial or magnetic.
+using ForceLawId = Id<struct ForceLawTag>;    ///< The user's own force.
+
+/// One point of a deformable object, in the order its maker gave the points.
+struct PointRef {
+  enum class Kind : std::uint8_t { kNone, kParticles, kRope, kCloth };
+
+  Kind kind = Kind::kNone;
+  std::uint32_t slot = 0;
+  std::uint32_t generation = 0;
+  std::uint32_t index = 0;
+};
+
+constexpr PointRef point(ParticlesId id, std::uint32_t index) {
+  return {PointRef::Kind::kParticles, id.slot, id.generation, index};
+}
+constexpr PointRef point(RopeId id, std::uint32_t index) {
+  return {PointRef::Kind::kRope, id.slot, id.generation, index};
+}
+constexpr PointRef point(ClothId id, std::uint32_t index) {
+  return {PointRef::Kind::kCloth, id.slot, id.generation, index};
+}
+
+}  // namespace hooke

@@ -1,0 +1,215 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/id.h"
+#include "hooke/math.h"
+#include "hooke/result.h"
+#include "hooke/shape.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+/// \file
+/// The simulation. Start reading here, then open src/world/step.cpp.
+///
+/// Units are SI. +Y is up. A name says so when it departs from this: `_hz`, `_ms`, `_deg`.
+
+namespace hooke {
+
+struct WorldData;     // every table of the simulation; src/world/world_data.h
+struct SnapshotData;  // a copy of the tables
+
+/// Columns of one object's points in the order its maker gave them. Reads the engine's own memory, without a
+/// copy. Valid until the next call on the World that is not const. Indices beyond size() give zeros.
+class PointView {
+ public:
+  PointView() = default;
+  PointView(DVec3 origin, const std::byte* first, std::size_t count, std::size_t stride,
+            const std::uint32_t* row_of)
+      : origin_(origin), first_(first), count_(count), stride_(stride), row_of_(row_of) {}
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+  /// Point `i` in the world: origin plus offset. For velocities the origin is zero.
+  [[nodiscard]] DVec3 operator[](std::size_t i) const { return origin_ + vector_cast<double>(offset(i)); }
+  /// Point `i` relative to origin(), as the engine stores it.
+  [[nodiscard]] Vec3 offset(std::size_t i) const;
+  [[nodiscard]] DVec3 origin() const { return origin_; }
+
+ private:
+  DVec3 origin_;
+  const std::byte* first_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t stride_ = 0;                 ///< [bytes]
+  const std::uint32_t* row_of_ = nullptr;  ///< From the maker's order to rows; null where they are the same.
+};
+
+/// Position and rotation of a body's frame.
+struct Pose {
+  DVec3 position = {};
+  Quat rotation = {};
+};
+
+/// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
+struct StepReport {
+  bool moved =
+      false;  ///< False: `dt` was not a positive finite number, or the step was called from a force law.
+  std::uint32_t contacts = 0;            ///< Points that touched something in the last substep.
+  std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
+  std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.
+  std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
+  double detect_ms = 0;
+  double prepare_ms = 0;
+  double substep_ms = 0;
+  double finish_ms = 0;
+
+  [[nodiscard]] bool healthy() const { return moved && rows_quarantined == 0; }
+};
+
+struct Energy {
+  double kinetic = 0;    ///< [J]
+  double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
+  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness.
+
+  [[nodiscard]] double total() const { return kinetic + potential + elastic; }
+};
+
+/// Figures over the whole world, summed in a fixed order.
+struct Measurement {
+  Energy energy = {};
+  DVec3 momentum = {};          ///< [kg m/s]
+  DVec3 angular_momentum = {};  ///< [kg m^2/s] about the world's origin.
+  double largest_stretch = 0;  ///< Largest |length / rest length - 1| over rope segments and stretch springs.
+  double mean_stretch = 0;     ///< Mean of the same.
+  double largest_penetration = 0;  ///< Deepest overlap of a particle's sphere with a shape [m].
+};
+
+/// Everything that changes with time, and everything that was added, as it was. Copying is cheap; see
+/// World::restore.
+class Snapshot {
+ public:
+  Snapshot() = default;
+
+ private:
+  friend class World;
+  explicit Snapshot(std::shared_ptr<const SnapshotData> data) : data_(std::move(data)) {}
+  std::shared_ptr<const SnapshotData> data_;
+};
+
+/// What a force law sees of one object. Valid during the call only.
+class ForceView {
+ public:
+  [[nodiscard]] std::size_t size() const { return positions_.size(); }
+  [[nodiscard]] double time() const { return time_; }                                 ///< [s]
+  [[nodiscard]] DVec3 position(std::size_t i) const { return positions_[i]; }         ///< [m]
+  [[nodiscard]] Vec3 velocity(std::size_t i) const { return velocities_.offset(i); }  ///< [m/s]
+  [[nodiscard]] Real mass(std::size_t i) const;  ///< [kg]; 0 for a pinned point.
+  [[nodiscard]] PointRef::Kind kind() const { return kind_; }
+  [[nodiscard]] std::uint32_t slot() const { return slot_; }  ///< Equals the id's slot.
+  /// Adds a force [N] for this substep. An index beyond size() is ignored.
+  void add_force(std::size_t i, Vec3 force);
+
+ private:
+  friend struct ForceViewAccess;
+  PointView positions_;
+  PointView velocities_;
+  const std::byte* lines_ = nullptr;
+  Vec3* forces_ = nullptr;
+  const std::uint32_t* row_of_ = nullptr;
+  PointRef::Kind kind_ = PointRef::Kind::kNone;
+  std::uint32_t slot_ = 0;
+  double time_ = 0;
+};
+
+/// Owns every object and advances them in time.
+///
+/// Total: every function accepts every argument. What is out of range comes back as an Error that names it,
+/// and the world is then unchanged. Not thread-safe: one thread uses a World at a time. Two Worlds are
+/// independent. Two Worlds built by the same calls hold bit-identical state after the same steps, whatever
+/// the number of workers.
+class World {
+ public:
+  [[nodiscard]] static Result<World> create(const WorldDesc& desc = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // Objects. An id stays valid until its object is removed; it is never reused.
+  [[nodiscard]] Result<MeshId> add_mesh(const MeshDesc& desc);
+  [[nodiscard]] Result<BodyId> add_body(const BodyDesc& desc);
+  [[nodiscard]] Result<RopeId> add_rope(const RopeDesc& desc);
+  [[nodiscard]] Result<ClothId> add_cloth(const ClothDesc& desc);
+  [[nodiscard]] Result<ParticlesId> add_particles(const ParticlesDesc& desc);
+  [[nodiscard]] Result<FieldId> add_field(const FieldDesc& desc);
+  [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
+
+  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it.
+  bool remove(MeshId id);
+  bool remove(BodyId id);
+  bool remove(RopeId id);
+  bool remove(ClothId id);
+  bool remove(ParticlesId id);
+  bool remove(FieldId id);
+  bool remove(ForceLawId id);
+
+  // Reading. A stale or null id gives an empty view, an identity pose, an empty list.
+  [[nodiscard]] PointView positions(RopeId id) const;
+  [[nodiscard]] PointView positions(ClothId id) const;
+  [[nodiscard]] PointView positions(ParticlesId id) const;
+  [[nodiscard]] PointView velocities(RopeId id) const;
+  [[nodiscard]] PointView velocities(ClothId id) const;
+  [[nodiscard]] PointView velocities(ParticlesId id) const;
+  [[nodiscard]] Pose pose(BodyId id) const;
+  /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
+  [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
+  /// The triangles of a cloth as indices into its points.
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
+
+  // Pushing. Values must be finite.
+  Result<void> apply_force(PointRef point, Vec3 force);       ///< [N], during the next step.
+  Result<void> apply_impulse(PointRef point, Vec3 impulse);   ///< [N s], now.
+  Result<void> set_velocity(PointRef point, Vec3 velocity);   ///< [m/s], now; a pinned point keeps its own.
+  Result<void> set_position(PointRef point, DVec3 position);  ///< [m], now.
+  Result<void> pin(PointRef point,
+                   const MotionDesc& motion = {});  ///< Holds the point; its motion starts now.
+  Result<void> unpin(PointRef point);
+  Result<void> set_gravity(Vec3 gravity);
+  Result<void> set_wind(const WindDesc& wind);
+  Result<void> set_workers(int workers);
+
+  /// Advances time by `dt` [s], usually 1/60. Anything that is not a positive finite number moves nothing.
+  StepReport step(Real dt);
+
+  [[nodiscard]] double time() const;               ///< Sum of all dt [s].
+  [[nodiscard]] std::uint64_t step_count() const;  ///< Steps that moved.
+  [[nodiscard]] const WorldDesc& desc() const;
+  [[nodiscard]] Measurement measure() const;
+
+  /// The wind at a place and time [m/s].
+  [[nodiscard]] Vec3 wind_at(DVec3 place, double time) const;
+
+  /// Hash of the full dynamic state. Equal hashes mean bit-identical state.
+  [[nodiscard]] std::uint64_t state_hash() const;
+
+  /// A copy of everything but the workers.
+  [[nodiscard]] Snapshot snapshot() const;
+  /// Puts the world back as it was. Ids made since then are stale. Errors: an empty snapshot.
+  Result<void> restore(const Snapshot& snapshot);
+
+  /// Bytes held for particles and for springs, for reports.
+  struct Memory {
+    std::size_t particles = 0;
+    std::size_t springs = 0;
+    std::size_t particle_bytes = 0;
+    std::size_t spring_bytes = 0;
+  };
+  [[nodiscard]] Memory memory() const;
+
+ private:
+  explicit World(std::unique_ptr<WorldData> data);
+  std::unique_ptr<WorldData> data_;
+};
+
+}  // namespace hooke
