@@ -15,7 +15,8 @@ namespace hooke::solver {
 
 inline constexpr int kLanes = 16;
 
-/// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row fill it.
+/// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
+/// fill it.
 struct SpringBlock {
   std::uint32_t line_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
   std::uint32_t line_b[kLanes];

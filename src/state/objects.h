@@ -5,6 +5,8 @@
 #include "hooke/math.h"
 #include "hooke/shape.h"
 
+#include "state/mesh.h"
+
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -40,6 +42,7 @@ struct Deformable {
 
 /// A point that is held, and how it moves.
 struct Pin {
+  std::uint32_t object = 0;  ///< Row of the deformable.
   std::uint32_t particle = 0;
   DVec3 start = {};         ///< Where it was when the motion began [m].
   double start_time = 0.0;  ///< [s]
@@ -60,7 +63,7 @@ struct ForceLawEntry {
 struct Body {
   std::uint32_t slot = 0;
   Shape shape = {};
-  std::uint32_t mesh = 0;  ///< Row of the mesh table, for a mesh shape.
+  std::shared_ptr<const Mesh> mesh;  ///< For a mesh shape.
   DVec3 position = {};
   Quat rotation = {};
   Real friction = Real(0);

@@ -24,14 +24,12 @@ void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
   solve_springs_scalar(run, material, position, velocity);
 }
 
-void accelerate_here(Vec3 acceleration, float h, const state::PositionLine* position, std::size_t count,
-                     state::VelocityLine* velocity) {
-  accelerate_scalar(acceleration, h, {position, count}, velocity);
+void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Particles& particles) {
+  accelerate_scalar(acceleration, h, rows, particles);
 }
 
-void move_here(float h, state::PositionLine* position, std::size_t count,
-               const state::VelocityLine* velocity) {
-  move_scalar(h, {position, count}, velocity);
+void move_here(float h, parallel::Range rows, state::Particles& particles) {
+  move_scalar(h, rows, particles);
 }
 
 #else
@@ -153,30 +151,43 @@ HWY_INLINE void apply_impulses(const Rows& rows, const SpringBlock& block, int f
                 velocity, block.line_b + first);
 }
 
-/// Two vectors in three stages, not one after the other: the processor works on one while it waits for the
-/// roots and quotients of the other. Every load of the rows of a vector comes before its first store, so the
-/// copies of the last row that fill a partial block store what that row stores.
+/// A vector of rows: the lanes of a block from `first` on.
+struct Place {
+  const SpringBlock* block;
+  int first;
+};
+
+/// Solves `kCount` vectors in three stages, not one after the other: the processor works on one while it
+/// waits for the roots and quotients of the other. All loads come before the first store, so the copies of
+/// the last row that fill a partial block store what that row stores.
+template <int kCount, bool kOneSided, bool kAnchored>
+HWY_INLINE void solve_vectors(const Place (&at)[kCount], Vector bias, Vector gamma, const float* position,
+                              float* velocity) {
+  Rows rows, more;
+  load_rows(*at[0].block, at[0].first, position, velocity, rows);
+  if constexpr (kCount > 1) load_rows(*at[1].block, at[1].first, position, velocity, more);
+  compute_impulses<kOneSided>(rows, hn::LoadU(kTag, at[0].block->rest_length + at[0].first), bias, gamma);
+  if constexpr (kCount > 1) {
+    compute_impulses<kOneSided>(more, hn::LoadU(kTag, at[1].block->rest_length + at[1].first), bias, gamma);
+  }
+  apply_impulses<kAnchored>(rows, *at[0].block, at[0].first, velocity);
+  if constexpr (kCount > 1) apply_impulses<kAnchored>(more, *at[1].block, at[1].first, velocity);
+}
+
 template <bool kOneSided, bool kAnchored>
-void solve_blocks(const SpringRun& run, const SpringMaterial& material, const float* position,
-                  float* velocity) {
-  constexpr int kStride = kWidth == kLanes ? kLanes : 2 * kWidth;
+void solve_run(const SpringRun& run, const SpringMaterial& material, const float* position, float* velocity) {
   const Vector bias = hn::Set(kTag, material.bias);
   const Vector gamma = hn::Set(kTag, material.gamma);
-  for (const SpringBlock& block : run.blocks) {
-    const int count = &block == &run.blocks.back() ? run.last_count : kLanes;
-    for (int first = 0; first < count; first += kStride) {
-      const int second = first + kWidth;
-      Rows rows, more;
-      load_rows(block, first, position, velocity, rows);
-      if constexpr (kStride > kWidth) load_rows(block, second, position, velocity, more);
-      compute_impulses<kOneSided>(rows, hn::LoadU(kTag, block.rest_length + first), bias, gamma);
-      if constexpr (kStride > kWidth) {
-        compute_impulses<kOneSided>(more, hn::LoadU(kTag, block.rest_length + second), bias, gamma);
-      }
-      apply_impulses<kAnchored>(rows, block, first, velocity);
-      if constexpr (kStride > kWidth) apply_impulses<kAnchored>(more, block, second, velocity);
-    }
+  const auto place = [&](int vector) {
+    return Place{&run.blocks[vector * kWidth / kLanes], vector * kWidth % kLanes};
+  };
+  const int rows = kLanes * (static_cast<int>(run.blocks.size()) - 1) + run.last_count;
+  const int vectors = (rows + kWidth - 1) / kWidth;
+  int i = 0;
+  for (; i + 1 < vectors; i += 2) {
+    solve_vectors<2, kOneSided, kAnchored>({place(i), place(i + 1)}, bias, gamma, position, velocity);
   }
+  if (i < vectors) solve_vectors<1, kOneSided, kAnchored>({place(i)}, bias, gamma, position, velocity);
 }
 
 void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
@@ -184,11 +195,11 @@ void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
   const auto* position = reinterpret_cast<const float*>(positions);
   auto* velocity = reinterpret_cast<float*>(velocities);
   if (material.anchored) {
-    solve_blocks<true, true>(run, material, position, velocity);
+    solve_run<true, true>(run, material, position, velocity);
   } else if (material.one_sided) {
-    solve_blocks<true, false>(run, material, position, velocity);
+    solve_run<true, false>(run, material, position, velocity);
   } else {
-    solve_blocks<false, false>(run, material, position, velocity);
+    solve_run<false, false>(run, material, position, velocity);
   }
 }
 
@@ -199,30 +210,29 @@ HWY_INLINE void accelerate_lines(D tag, const float* change, const float* positi
   hn::StoreU(hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::Set(tag, 1e-20f)), v), tag, velocity);
 }
 
-void accelerate_here(Vec3 acceleration, float h, const state::PositionLine* positions, std::size_t count,
-                     state::VelocityLine* velocities) {
+void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Particles& particles) {
   const Vec3 step = h * acceleration;
   alignas(16) const float change[4] = {step.x, step.y, step.z, 0.0f};
-  const auto* position = reinterpret_cast<const float*>(positions);
-  auto* velocity = reinterpret_cast<float*>(velocities);
-  std::size_t i = 0;
-  for (; i + kLineCount <= count; i += kLineCount)
+  const auto* position = reinterpret_cast<const float*>(particles.position.data());
+  auto* velocity = reinterpret_cast<float*>(particles.velocity.data());
+  int i = rows.begin;
+  for (; i + kLineCount <= rows.end; i += kLineCount) {
     accelerate_lines(kTag, change, position + 4 * i, velocity + 4 * i);
-  for (; i < count; ++i) accelerate_lines(Line(), change, position + 4 * i, velocity + 4 * i);
+  }
+  for (; i < rows.end; ++i) accelerate_lines(Line(), change, position + 4 * i, velocity + 4 * i);
 }
 
-void move_here(float h, state::PositionLine* positions, std::size_t count,
-               const state::VelocityLine* velocities) {
+void move_here(float h, parallel::Range rows, state::Particles& particles) {
   alignas(16) const float step[4] = {h, h, h, 0.0f};
-  auto* position = reinterpret_cast<float*>(positions);
-  const auto* velocity = reinterpret_cast<const float*>(velocities);
-  const auto advance = [&](auto tag, std::size_t i) HWY_ATTR {
+  auto* position = reinterpret_cast<float*>(particles.position.data());
+  const auto* velocity = reinterpret_cast<const float*>(particles.velocity.data());
+  const auto advance = [&](auto tag, int i) HWY_ATTR {
     const auto change = hn::Mul(hn::LoadDup128(tag, step), hn::LoadU(tag, velocity + 4 * i));
     hn::StoreU(hn::Add(hn::LoadU(tag, position + 4 * i), change), tag, position + 4 * i);
   };
-  std::size_t i = 0;
-  for (; i + kLineCount <= count; i += kLineCount) advance(kTag, i);
-  for (; i < count; ++i) advance(Line(), i);
+  int i = rows.begin;
+  for (; i + kLineCount <= rows.end; i += kLineCount) advance(kTag, i);
+  for (; i < rows.end; ++i) advance(Line(), i);
 }
 
 #endif  // HWY_TARGET == HWY_SCALAR
@@ -259,15 +269,14 @@ void solve_springs(const SpringRun& run, const SpringMaterial& material, const s
   HWY_DYNAMIC_DISPATCH(solve_springs_here)(run, material, position, velocity);
 }
 
-void accelerate(Vec3 acceleration, Real h, std::span<const state::PositionLine> position,
-                state::VelocityLine* velocity) {
-  if (scalar_only) return accelerate_scalar(acceleration, h, position, velocity);
-  HWY_DYNAMIC_DISPATCH(accelerate_here)(acceleration, h, position.data(), position.size(), velocity);
+void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
+  if (scalar_only) return accelerate_scalar(acceleration, h, rows, particles);
+  HWY_DYNAMIC_DISPATCH(accelerate_here)(acceleration, h, rows, particles);
 }
 
-void move(Real h, std::span<state::PositionLine> position, const state::VelocityLine* velocity) {
-  if (scalar_only) return move_scalar(h, position, velocity);
-  HWY_DYNAMIC_DISPATCH(move_here)(h, position.data(), position.size(), velocity);
+void move(Real h, parallel::Range rows, state::Particles& particles) {
+  if (scalar_only) return move_scalar(h, rows, particles);
+  HWY_DYNAMIC_DISPATCH(move_here)(h, rows, particles);
 }
 
 std::vector<std::string> targets() {
@@ -308,13 +317,12 @@ void solve_springs(const SpringRun& run, const SpringMaterial& material, const s
   solve_springs_scalar(run, material, position, velocity);
 }
 
-void accelerate(Vec3 acceleration, Real h, std::span<const state::PositionLine> position,
-                state::VelocityLine* velocity) {
-  accelerate_scalar(acceleration, h, position, velocity);
+void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
+  accelerate_scalar(acceleration, h, rows, particles);
 }
 
-void move(Real h, std::span<state::PositionLine> position, const state::VelocityLine* velocity) {
-  move_scalar(h, position, velocity);
+void move(Real h, parallel::Range rows, state::Particles& particles) {
+  move_scalar(h, rows, particles);
 }
 
 std::vector<std::string> targets() {

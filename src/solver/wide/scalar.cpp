@@ -37,18 +37,18 @@ void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
   }
 }
 
-void accelerate_scalar(Vec3 acceleration, Real h, std::span<const state::PositionLine> position,
-                       state::VelocityLine* velocity) {
+void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
   const Vec3 change = h * acceleration;
   const auto settled = [](Real v) { return std::abs(v) < Real(1e-20) ? Real(0) : v; };
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 v = velocity[i].v + (position[i].inverse_mass > Real(0) ? change : Vec3{});
-    velocity[i].v = {settled(v.x), settled(v.y), settled(v.z)};
+  for (int i = rows.begin; i < rows.end; ++i) {
+    const bool moves = particles.position[i].inverse_mass > Real(0);
+    const Vec3 v = particles.velocity[i].v + (moves ? change : Vec3{});
+    particles.velocity[i].v = {settled(v.x), settled(v.y), settled(v.z)};
   }
 }
 
-void move_scalar(Real h, std::span<state::PositionLine> position, const state::VelocityLine* velocity) {
-  for (std::size_t i = 0; i < position.size(); ++i) position[i].x += h * velocity[i].v;
+void move_scalar(Real h, parallel::Range rows, state::Particles& particles) {
+  for (int i = rows.begin; i < rows.end; ++i) particles.position[i].x += h * particles.velocity[i].v;
 }
 
 }  // namespace hooke::solver::wide

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "parallel/range.h"
 #include "solver/spring_blocks.h"
 #include "state/particles.h"
 
@@ -27,18 +28,16 @@ void solve_springs(const SpringRun& run, const SpringMaterial& material, const s
 
 /// v += h a for particles that can move; components below 1e-20 m/s become zero, so that nothing decays into
 /// denormals.
-void accelerate(Vec3 acceleration, Real h, std::span<const state::PositionLine> position,
-                state::VelocityLine* velocity);
+void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
 
 /// x += h v.
-void move(Real h, std::span<state::PositionLine> position, const state::VelocityLine* velocity);
+void move(Real h, parallel::Range rows, state::Particles& particles);
 
 // The scalar twins: the same bits, one row at a time.
 void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
                           const state::PositionLine* position, state::VelocityLine* velocity);
-void accelerate_scalar(Vec3 acceleration, Real h, std::span<const state::PositionLine> position,
-                       state::VelocityLine* velocity);
-void move_scalar(Real h, std::span<state::PositionLine> position, const state::VelocityLine* velocity);
+void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
+void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
 
 /// Instruction sets of this machine, "scalar" first, the widest last.
 [[nodiscard]] std::vector<std::string> targets();
