@@ -26,11 +26,9 @@ void list_triangles_by_vertex(std::size_t vertex_count, std::span<const Triangle
                               MeshTopology& topology) {
   std::vector<std::uint32_t>& begin = topology.vertex_triangle_begin;
   begin.assign(vertex_count + 1, 0);
-  for (const Triangle& triangle : triangles) {
-    for (const std::uint32_t vertex : triangle) {
-      HOOKE_ASSERT(vertex < vertex_count);
-      ++begin[vertex + 1];
-    }
+  for (const Triangle& t : triangles) {
+    HOOKE_ASSERT(std::max({t[0], t[1], t[2]}) < vertex_count);
+    for (const std::uint32_t vertex : t) ++begin[vertex + 1];
   }
   for (std::size_t v = 0; v < vertex_count; ++v) begin[v + 1] += begin[v];
   topology.vertex_triangles.resize(3 * triangles.size());
@@ -75,6 +73,19 @@ EdgeSides make_edge_sides(std::span<const Side> sides, std::span<const Triangle>
   }
   edge.has_same_winding = sides.size() < 2 || sides[0].is_forward != sides[1].is_forward;
   return edge;
+}
+
+/// Appends the edges whose sides these are; the sides of one edge are next to each other.
+void append_edges(std::uint32_t vertex, std::span<const Side> sides, std::span<const Triangle> triangles,
+                  MeshTopology& topology) {
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    const auto edge = static_cast<std::uint32_t>(topology.edges.size());
+    for (end = begin; end < sides.size() && sides[end].other == sides[begin].other; ++end) {
+      topology.triangle_edges[sides[end].triangle][sides[end].number] = edge;
+    }
+    topology.edges.push_back({vertex, sides[begin].other});
+    topology.edge_sides.push_back(make_edge_sides(sides.subspan(begin, end - begin), triangles));
+  }
 }
 
 void count_kinds_of_edges(MeshTopology& topology) {
@@ -132,14 +143,7 @@ MeshTopology compute_topology(std::size_t vertex_count, std::span<const Triangle
   std::vector<Side> sides;
   for (std::uint32_t vertex = 0; vertex < vertex_count; ++vertex) {
     collect_sides(vertex, triangles, topology, sides);
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-      const auto edge = static_cast<std::uint32_t>(topology.edges.size());
-      for (end = begin; end < sides.size() && sides[end].other == sides[begin].other; ++end) {
-        topology.triangle_edges[sides[end].triangle][sides[end].number] = edge;
-      }
-      topology.edges.push_back({vertex, sides[begin].other});
-      topology.edge_sides.push_back(make_edge_sides(std::span(sides).subspan(begin, end - begin), triangles));
-    }
+    append_edges(vertex, sides, triangles, topology);
   }
   count_kinds_of_edges(topology);
   return topology;

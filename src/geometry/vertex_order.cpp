@@ -8,6 +8,9 @@ namespace hooke::geometry {
 
 namespace {
 
+// Two searches find the rim, each from the farthest vertex of the one before; the third gives the order.
+constexpr std::uint32_t kPasses = 3;
+
 /// Neighbors of vertex v: list[begin[v] .. begin[v + 1]).
 struct Neighbors {
   std::vector<std::uint32_t> begin = {};
@@ -66,26 +69,29 @@ std::size_t append_breadth_first(const Neighbors& neighbors, std::uint32_t start
   return level_begin;
 }
 
+/// Appends the part of the graph that `start` belongs to.
+void append_part(const Neighbors& neighbors, std::uint32_t start, std::vector<std::uint32_t>& visited,
+                 std::vector<std::uint32_t>& order) {
+  const std::size_t part_begin = order.size();
+  for (std::uint32_t pass = 1; pass <= kPasses; ++pass) {
+    order.resize(part_begin);
+    const std::size_t last_level = append_breadth_first(neighbors, start, pass, visited, order);
+    start = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last_level), order.end(),
+                              [&](std::uint32_t a, std::uint32_t b) { return neighbors.has_fewer(a, b); });
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> compute_cuthill_mckee_order(std::size_t vertex_count,
                                                        std::span<const std::array<std::uint32_t, 2>> edges) {
-  // Two searches find the rim, each from the farthest vertex of the one before; the third gives the order.
-  constexpr std::uint32_t kPasses = 3;
   const Neighbors neighbors = collect_neighbors(vertex_count, edges);
   std::vector<std::uint32_t> visited(vertex_count, 0);
   std::vector<std::uint32_t> order;
   order.reserve(vertex_count);
   for (std::uint32_t first = 0; first < vertex_count; ++first) {
     if (visited[first] == kPasses) continue;
-    const std::size_t part_begin = order.size();
-    std::uint32_t start = first;
-    for (std::uint32_t pass = 1; pass <= kPasses; ++pass) {
-      order.resize(part_begin);
-      const std::size_t last_level = append_breadth_first(neighbors, start, pass, visited, order);
-      start = *std::min_element(order.begin() + static_cast<std::ptrdiff_t>(last_level), order.end(),
-                                [&](std::uint32_t a, std::uint32_t b) { return neighbors.has_fewer(a, b); });
-    }
+    append_part(neighbors, first, visited, order);
   }
   return order;
 }
