@@ -18,6 +18,8 @@ namespace hooke::importer {
 namespace {
 
 using io::ImporterExit;
+constexpr unsigned kMaxCorners = 4096;  // of a polygon: triangulating takes the square of it, or the cube
+
 using DMat4 = Matrix4<double>;
 using DMat3 = Matrix3<double>;
 
@@ -47,6 +49,12 @@ float linear_of_srgb(float value) {
 
 float fraction(float value, float fallback) {
   return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : fallback;
+}
+
+/// The Blinn-Phong exponent whose highlight has this roughness: 2 / roughness^4 - 2 (Karis, 2013).
+float shininess_of(float roughness) {
+  const float squared = std::max(roughness * roughness, 0.04f);
+  return std::clamp(2.0f / (squared * squared) - 2.0f, 1.0f, 1000.0f);
 }
 
 std::string bare_name(const std::string& path) {
@@ -80,6 +88,10 @@ ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
   if (material.Get(AI_MATKEY_SHININESS, shininess) == aiReturn_SUCCESS && shininess > 0.0f) {
     result.shininess = std::min(shininess, 1000.0f);
   }
+  float roughness = 0.0f;
+  if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS) {
+    result.shininess = shininess_of(fraction(roughness, 1.0f));
+  }
   result.texture = texture_of(material);
   return result;
 }
@@ -87,8 +99,8 @@ ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
 /// Adds the meshes of a scene, node by node.
 class Builder {
  public:
-  Builder(const aiScene& scene, const Frame& frame) : scene_(scene) {
-    for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+  Builder(const aiScene& scene, const Frame& frame) : scene_(scene), has_normals_(frame.has_normals) {
+    for (unsigned i = 0; frame.has_materials && i < scene.mNumMaterials; ++i) {
       soup_.materials.push_back(material_of(*scene.mMaterials[i], frame));
     }
     if (soup_.materials.empty()) soup_.materials.emplace_back();
@@ -121,7 +133,8 @@ class Builder {
  private:
   void add_vertex(const aiMesh& mesh, unsigned i, const DMat4& transform, const DMat3& cofactors) {
     soup_.positions.push_back(transform_point(transform, vector_of(mesh.mVertices[i])));
-    const DVec3 normal = mesh.HasNormals() ? normalize(cofactors * vector_of(mesh.mNormals[i])) : DVec3{};
+    const DVec3 normal =
+        has_normals_ && mesh.HasNormals() ? normalize(cofactors * vector_of(mesh.mNormals[i])) : DVec3{};
     soup_.normals.push_back(is_finite(normal) ? normal : DVec3{});
     std::array<float, 2> uv = {};
     if (mesh.HasTextureCoords(0)) uv = {mesh.mTextureCoords[0][i].x, mesh.mTextureCoords[0][i].y};
@@ -130,23 +143,35 @@ class Builder {
   }
 
   void add_face(const aiFace& face, const aiMesh& mesh, std::uint32_t base, bool is_mirrored) {
-    if (face.mNumIndices != 3) return;  // points and lines: nothing to collide with
-    io::Triangle triangle = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
-    for (std::uint32_t& i : triangle) {
-      if (i >= mesh.mNumVertices) throw Refusal(ImporterExit::kBadSyntax, "a face past the last vertex");
-      i += base;
-      if (!is_finite(soup_.positions[i])) {
+    if (face.mNumIndices < 3) return;  // points and lines: nothing to collide with
+    if (face.mNumIndices > kMaxCorners) {
+      throw Refusal(ImporterExit::kLimitExceeded, "a polygon of more than 4096 corners");
+    }
+    corners_.clear();
+    for (unsigned i = 0; i < face.mNumIndices; ++i) {
+      if (face.mIndices[i] >= mesh.mNumVertices) {
+        throw Refusal(ImporterExit::kBadSyntax, "a face past the last vertex");
+      }
+      corners_.push_back(soup_.positions[base + face.mIndices[i]]);
+      if (!is_finite(corners_.back())) {
         throw Refusal(ImporterExit::kOutOfRange, "a vertex whose position is not finite");
       }
     }
-    if (is_mirrored) std::swap(triangle[1], triangle[2]);
-    soup_.triangles.push_back(triangle);
-    soup_.material_of.push_back(
-        std::min(mesh.mMaterialIndex, static_cast<unsigned>(soup_.materials.size() - 1)));
+    const unsigned last_material = static_cast<unsigned>(soup_.materials.size() - 1);
+    for (const io::Triangle& local : io::triangulate(corners_)) {
+      io::Triangle triangle = {};
+      std::transform(local.begin(), local.end(), triangle.begin(),
+                     [&](std::uint32_t i) { return base + face.mIndices[i]; });
+      if (is_mirrored) std::swap(triangle[1], triangle[2]);
+      soup_.triangles.push_back(triangle);
+      soup_.material_of.push_back(std::min(mesh.mMaterialIndex, last_material));
+    }
   }
 
   const aiScene& scene_;
+  bool has_normals_;
   io::Soup soup_;
+  std::vector<DVec3> corners_;  ///< Scratch of add_face.
 };
 
 void add_nodes(Builder& builder, const aiNode& root) {

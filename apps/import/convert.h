@@ -12,6 +12,8 @@ namespace hooke::importer {
 struct Frame {
   bool stands_upright = false;  ///< The importer has put a rotation from z up to y up on the root.
   bool stores_srgb = false;     ///< Colors are as on screen, not linear.
+  bool has_materials = true;    ///< Else all is of the default one.
+  bool has_normals = true;      ///< Else they are no more than the faces'.
   UpAxis up = UpAxis::kY;       ///< Of the file; not kFormat.
   double scale = 1.0;
   double fit = 0.0;  ///< If positive, replaces `scale`.

@@ -16,7 +16,6 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <cctype>
 #include <cerrno>
@@ -42,18 +41,23 @@ constexpr double kCrease = 0.7;  // [rad], 40 degrees: as in model_of
 struct Format {
   std::string_view ending;
   std::string_view importer;
-  UpAxis up;
-  bool stores_srgb;
-  void (*scan)(std::span<const std::byte> bytes);
+  Frame frame;
+  void (*scan)(std::span<const std::byte> bytes) = nullptr;
 };
 
 constexpr std::array<Format, 6> kFormats = {{
-    {"3ds", "Discreet 3DS Importer", UpAxis::kZ, true, scan_3ds},
-    {"obj", "Wavefront Object Importer", UpAxis::kY, true, nullptr},
-    {"stl", "Stereolithography (STL) Importer", UpAxis::kZ, true, nullptr},
-    {"ply", "Stanford Polygon Library (PLY) Importer", UpAxis::kY, true, nullptr},
-    {"gltf", "glTF2 Importer", UpAxis::kY, false, scan_gltf},
-    {"glb", "glTF2 Importer", UpAxis::kY, false, scan_glb},
+    {"3ds",
+     "Discreet 3DS Importer",
+     {.stands_upright = true, .stores_srgb = true, .up = UpAxis::kZ},
+     scan_3ds},
+    {"obj", "Wavefront Object Importer", {.stores_srgb = true}, scan_obj},
+    {"stl",
+     "Stereolithography (STL) Importer",
+     {.has_materials = false, .has_normals = false, .up = UpAxis::kZ},
+     nullptr},
+    {"ply", "Stanford Polygon Library (PLY) Importer", {.has_materials = false}, nullptr},
+    {"gltf", "glTF2 Importer", {}, scan_gltf},
+    {"glb", "glTF2 Importer", {}, scan_glb},
 }};
 
 struct Arguments {
@@ -119,16 +123,15 @@ Model read_model(const Arguments& arguments) {
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   importer.SetIOHandler(std::make_unique<ModelFolder>(arguments.path, bytes).release());  // it takes over
-  const aiScene* scene = importer.ReadFile(arguments.path, aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(arguments.path, 0);
   if (scene == nullptr) {
     throw Refusal(ImporterExit::kBadSyntax,
                   "not readable as ." + std::string(format.ending) + ": " + importer.GetErrorString());
   }
-  const Frame frame = {.stands_upright = format.ending == "3ds",
-                       .stores_srgb = format.stores_srgb,
-                       .up = arguments.up == UpAxis::kFormat ? format.up : arguments.up,
-                       .scale = arguments.scale,
-                       .fit = arguments.fit};
+  Frame frame = format.frame;
+  if (arguments.up != UpAxis::kFormat) frame.up = arguments.up;
+  frame.scale = arguments.scale;
+  frame.fit = arguments.fit;
   const io::Soup soup = convert_scene(*scene, frame);
   return io::assemble_model(soup, kCrease);
 }

@@ -18,4 +18,7 @@ void scan_gltf(std::span<const std::byte> bytes);
 /// The same for the first chunk of a .glb.
 void scan_glb(std::span<const std::byte> bytes);
 
+/// The faces of an .obj: each has corners.
+void scan_obj(std::span<const std::byte> bytes);
+
 }  // namespace hooke::importer

@@ -11,7 +11,7 @@
 /// \file
 /// What turns a soup of triangles into a model: welding, which side is outside, normals, drawn vertices.
 /// Pure functions; the same input gives the same output everywhere.
-/// Read in this order: weld, is_degenerate, find_turned, crease_normals, assemble_model.
+/// Read in this order: triangulate, weld, is_degenerate, find_turned, crease_normals, assemble_model.
 
 namespace hooke::io {
 
@@ -31,6 +31,11 @@ struct Weld {
 /// Whether two corners coincide or the height over the longest side is at most `distance`: such a triangle
 /// has no direction.
 [[nodiscard]] bool is_degenerate(std::span<const DVec3> points, const Triangle& triangle, double distance);
+
+/// Triangles between the corners of a polygon, which may be concave, a little warped, have corners in the
+/// middle of a straight side, and holes cut in by pairs of corners at one place. Sides that cross give some
+/// triangles, too. Takes up to the cube of the corners in time: bound them.
+[[nodiscard]] std::vector<Triangle> triangulate(std::span<const DVec3> corners);
 
 /// Which triangles must be turned over to face outward, a flag for each. A surface without border is made
 /// consistent and gets a positive volume; one inside another such surface turns with the outermost around it,
@@ -54,7 +59,8 @@ struct Soup {
 };
 
 /// The drawn model: degenerate triangles dropped, outward faces, normals kept where they agree with the faces
-/// and made with `crease` [rad] where not, one part for each material used. No triangles gives no parts.
+/// and made with `crease` [rad] where not, one part for each material used, in the order of
+/// the soup's. No triangles gives no parts and a material all the same.
 [[nodiscard]] Model assemble_model(const Soup& soup, double crease);
 
 /// Fills `mesh` and `welded_of` from the drawn half.

@@ -181,13 +181,14 @@ Model assemble_model(const Soup& soup, double crease) {
   });
 
   Model model;
-  model.materials = soup.materials;
-  if (model.materials.empty()) model.materials.emplace_back();
   VertexTable table;
-  for (const std::uint32_t t : order) {
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint32_t t = order[k];
     const std::uint32_t material = faces.material_of[t];
-    if (model.parts.empty() || model.parts.back().material != material) {
-      model.parts.push_back({static_cast<std::uint32_t>(model.indices.size()), 0, material});
+    if (k == 0 || faces.material_of[order[k - 1]] != material) {
+      model.parts.push_back({static_cast<std::uint32_t>(model.indices.size()), 0,
+                             static_cast<std::uint32_t>(model.materials.size())});
+      model.materials.push_back(soup.materials[material]);
     }
     model.parts.back().count += 3;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -199,6 +200,7 @@ Model assemble_model(const Soup& soup, double crease) {
                                          .uv = soup.uvs[given]}));
     }
   }
+  if (model.materials.empty()) model.materials.emplace_back();
   model.vertices = table.take();
   return model;
 }
