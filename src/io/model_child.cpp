@@ -30,7 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kWallTime = std::chrono::seconds(15);
 constexpr std::size_t kMaxReason = 400;  // bytes of a refusal that are shown
 constexpr std::string_view kProgram = "hooke-import";
 
@@ -248,8 +247,9 @@ Error ending_error(const std::string& path, int status, const std::vector<std::b
 
 }  // namespace
 
-Result<std::vector<std::byte>> run_importer(const std::string& path, const ImportOptions& options) {
-  const auto deadline = Clock::now() + kWallTime;
+Result<std::vector<std::byte>> run_importer(const std::string& path, const ImportOptions& options,
+                                            std::chrono::milliseconds wall_time) {
+  const auto deadline = Clock::now() + wall_time;
   const std::string program = find_program();
   if (program.empty()) {
     return Error{ErrorCode::kUnsupported, path,
@@ -274,7 +274,7 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
     return Error{ErrorCode::kLimitExceeded, path, "the importer gave more bytes than any model has"};
   }
   const std::optional<int> status = in_time ? child.wait(deadline) : std::nullopt;
-  if (!status) return Error{ErrorCode::kLimitExceeded, path, "reading it took longer than 15 s"};
+  if (!status) return Error{ErrorCode::kLimitExceeded, path, "reading it took too long"};
   if (*status != 0) return ending_error(path, *status, reason_stream.bytes);
   return std::move(model_stream.bytes);
 }

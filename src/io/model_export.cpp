@@ -18,9 +18,10 @@ namespace hooke {
 
 namespace io {
 
-std::string bare_name(std::string_view path) {
-  const auto separator = path.find_last_of("/\\");
-  return std::string(separator == std::string_view::npos ? path : path.substr(separator + 1));
+std::string image_name(const ModelMaterial& material) {
+  const auto separator = material.texture.find_last_of("/\\");
+  const std::string name = material.texture.substr(separator == std::string::npos ? 0 : separator + 1);
+  return is_bare_file_name(name) ? name : std::string();
 }
 
 std::vector<std::string> plain_material_names(const Model& model, std::size_t size) {

@@ -31,8 +31,8 @@ inline void put_text(Bytes& bytes, std::string_view text) {
   bytes.insert(bytes.end(), first, first + text.size());
 }
 
-/// Without its folders.
-[[nodiscard]] std::string bare_name(std::string_view path);
+/// The image's name without its folders; empty for none, and for a name that no format can hold.
+[[nodiscard]] std::string image_name(const ModelMaterial& material);
 
 /// Printable ASCII of at most `size` bytes for each material, no two the same even when case is ignored.
 [[nodiscard]] std::vector<std::string> plain_material_names(const Model& model, std::size_t size);

@@ -68,16 +68,18 @@ void put_material(Bytes& bytes, const ModelMaterial& material, const std::string
     const Chunk name_chunk(bytes, 0xA000);
     put_name(bytes, name);
   }
-  put_color(bytes, 0xA010, material.color);                        // ambient
-  put_color(bytes, 0xA020, material.color);                        // diffuse
-  put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});                 // specular
-  put_percent(bytes, 0xA040, material.shininess);                  // read back as the exponent
+  put_color(bytes, 0xA010, material.color);         // ambient
+  put_color(bytes, 0xA020, material.color);         // diffuse
+  put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});  // specular
+  put_percent(bytes, 0xA040, material.shininess);   // read back as the exponent
+  put_percent(bytes, 0xA041, 50.0f);                // strength; without it the exponent is not read
   put_percent(bytes, 0xA050, 100.0f * (1.0f - material.opacity));  // transparency
-  if (material.texture.empty()) return;
+  const std::string image = image_name(material);
+  if (image.empty()) return;
   const Chunk texture(bytes, 0xA200);
   put_chunk(bytes, 0x0030, std::uint16_t{100});
   const Chunk file(bytes, 0xA300);
-  put_name(bytes, bare_name(material.texture));
+  put_name(bytes, image);
 }
 
 /// Triangles around each welded point, and for each triangle the patch of smooth surface it is part of.

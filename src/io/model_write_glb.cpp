@@ -45,10 +45,10 @@ void put_materials(Json& document, const Model& model) {
         {"baseColorFactor", {material.color[0], material.color[1], material.color[2], material.opacity}},
         {"metallicFactor", 0.0f},
         {"roughnessFactor", roughness_of(material.shininess)}};
-    if (!material.texture.empty()) {
+    if (const std::string image = image_name(material); !image.empty()) {
       surface["baseColorTexture"] = {{"index", document["textures"].size()}};
       document["textures"].push_back({{"source", document["images"].size()}});
-      document["images"].push_back({{"uri", percent_encoded(bare_name(material.texture))}});
+      document["images"].push_back({{"uri", percent_encoded(image)}});
     }
     Json entry = {{"name", material.name}, {"pbrMetallicRoughness", surface}};
     if (material.opacity < 1.0f) entry["alphaMode"] = "BLEND";

@@ -50,7 +50,7 @@ std::string write_mtl(const Model& model, const std::vector<std::string>& names)
     text += "\nd";
     append(text, material.opacity);
     text += '\n';
-    if (!material.texture.empty()) text += "map_Kd " + bare_name(material.texture) + "\n";
+    if (const std::string image = image_name(material); !image.empty()) text += "map_Kd " + image + "\n";
     text += '\n';
   }
   return text;
