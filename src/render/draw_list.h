@@ -44,7 +44,7 @@ struct Sun {
 struct Sky {
   Color zenith = {0.42F, 0.60F, 0.82F};
   Color horizon = {0.85F, 0.90F, 0.94F};
-  float ambient = 0.5F;  ///< How much the sky lights, relative to its own brightness.
+  float ambient = 0.6F;  ///< How much the sky lights, relative to its own brightness.
 };
 
 /// An endless plane with a square grid, seen from above only.

@@ -10,7 +10,7 @@ namespace {
 
 // A white surface facing the sun comes out a little below the brightest value, one in the shadow at about a
 // quarter of that.
-constexpr float kSunStrength = 2.1F;
+constexpr float kSunStrength = 1.8F;
 constexpr float kAmbientStrength = 1.0F;
 // The fog hides the ground's end but nothing of the scene: 0.7 % at the farthest object.
 constexpr float kFogReach = 12;

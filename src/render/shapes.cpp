@@ -127,7 +127,8 @@ MeshGeometry make_capsule(float radius, float half_height) {
     for (int i = 0; i <= kRings; ++i) {
       // Zero at the upper pole, pi at the lower one.
       const float angle = 0.5F * kPi * (static_cast<float>(i) / kRings + static_cast<float>(end));
-      const float s = std::sin(angle);
+      // Exactly zero at both poles, or the triangles there would have an area, and it could face inward.
+      const float s = std::max(std::sin(angle), 0.0F);
       const float c = std::cos(angle);
       profile.push_back({radius * s, shift + radius * c, s, c, 0});
     }

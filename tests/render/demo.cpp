@@ -1,11 +1,14 @@
 #include "render/renderer.h"
 #include "render/scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
-/// Writes the scene as a picture: `render_demo FILE.png`. It also prints the driver and the time of a frame.
+/// Writes the scene as a picture: `render_demo FILE.png FRAMES`. It also prints the driver and the time of a
+/// frame.
 int main(int argument_count, char** arguments) {
   using Clock = std::chrono::steady_clock;
   const std::string path = argument_count > 1 ? arguments[1] : "render_demo.png";
@@ -17,16 +20,16 @@ int main(int argument_count, char** arguments) {
   if (!context) return fail(context.error());
   auto renderer = hooke::render::Renderer::create(context.value());
   if (!renderer) return fail(renderer.error());
-  constexpr int kFrames = 5;
+  const int frames = argument_count > 2 ? std::max(std::atoi(arguments[2]), 1) : 2;
   const auto start = Clock::now();
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < frames; ++i) {
     const auto drawn = renderer.value().draw(hooke::render_test::make_scene(0.02F * static_cast<float>(i)));
     if (!drawn) return fail(drawn.error());
     const auto image = renderer.value().read_image();
     if (!image) return fail(image.error());
   }
   const std::chrono::duration<double, std::milli> spent = Clock::now() - start;
-  std::printf("%s, %.1f ms a frame\n", context.value().driver().c_str(), spent.count() / kFrames);
+  std::printf("%s, %.1f ms a frame\n", context.value().driver().c_str(), spent.count() / frames);
   const auto image = renderer.value().read_image();
   if (!image) return fail(image.error());
   const auto written = hooke::render::write_png(image.value(), path);

@@ -149,7 +149,7 @@ std::shared_ptr<const Image> make_checkers(int squares, render::Color a, render:
 render::DrawList make_scene(float time) {
   DrawList list;
   list.camera = {{1.6F, 2.0F, 5.6F}, {0.25F, 0.85F, 0}, {0, 1, 0}, 40};
-  list.sun.direction = {0.5F, 0.85F, 0.55F};
+  list.sun.direction = {0.75F, 0.8F, 0.35F};
   add_solids(list);
   add_flag(list, time);
   add_ropes(list);
