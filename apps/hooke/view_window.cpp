@@ -14,6 +14,8 @@
 #include <deque>
 #include <exception>
 #include <imgui.h>
+#include <utility>
+#include <vector>
 
 namespace hooke::app {
 
@@ -63,6 +65,7 @@ struct Session {
   render::OrbitCamera camera;
   bool has_camera = false;
   render::DrawList list;
+  std::vector<int> keys;  ///< Pressed since the last picture.
 };
 
 /// The user interface's library, from its start to its end.
@@ -137,12 +140,23 @@ void play(Session& session, double elapsed_seconds) {
   }
 }
 
+/// Keeps every stroke for the next picture. The interface's own key states forget a key that is pressed and
+/// released between two pictures, which at three pictures a second is most of them.
+void keep_key(GLFWwindow* window, int key, int /*scancode*/, int action, int /*modifiers*/) {
+  auto* session = static_cast<Session*>(glfwGetWindowUserPointer(window));
+  const bool repeats = key == GLFW_KEY_S || key == GLFW_KEY_RIGHT;
+  if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats)) session->keys.push_back(key);
+}
+
 void handle_keys(Session& session, GLFWwindow* window) {
+  const std::vector<int> keys = std::exchange(session.keys, {});
   if (ImGui::GetIO().WantTextInput) return;
-  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) session.playing = !session.playing;
-  if (ImGui::IsKeyPressed(GLFW_KEY_S) || ImGui::IsKeyPressed(GLFW_KEY_RIGHT)) single_step(session);
-  if (ImGui::IsKeyPressed(GLFW_KEY_R, false)) reset(session);
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) glfwSetWindowShouldClose(window, GLFW_TRUE);
+  for (const int key : keys) {
+    if (key == GLFW_KEY_SPACE) session.playing = !session.playing;
+    if (key == GLFW_KEY_S || key == GLFW_KEY_RIGHT) single_step(session);
+    if (key == GLFW_KEY_R) reset(session);
+    if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(window, GLFW_TRUE);
+  }
 }
 
 void handle_mouse(Session& session) {
@@ -267,11 +281,14 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
       render::Renderer::create(context.value(), {options.width, options.height, options.samples, 2048});
   if (!renderer) return renderer.error();
   GLFWwindow* window = context.value().window();
+  Session session{model, !options.start_paused, 0, 0, 0, {}, {}, {}, false, {}, {}};
+  // Before the interface starts: it passes on to the callbacks it finds.
+  glfwSetWindowUserPointer(window, &session);
+  glfwSetKeyCallback(window, keep_key);
   const UserInterface interface(window);
   if (!interface.ready())
     return Error{ErrorCode::kUnsupported, "window", "the user interface does not start"};
 
-  Session session{model, !options.start_paused, 0, 0, 0, {}, {}, {}, false, {}};
   record(session);
   fill_list(session);
   auto last = Clock::now();
