@@ -277,8 +277,9 @@ Result<void> draw_picture(Session& session, render::Renderer& renderer, GLFWwind
 Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
   const auto context = render::Context::create_window(options.title, options.width, options.height);
   if (!context) return context.error();
-  auto renderer =
-      render::Renderer::create(context.value(), {options.width, options.height, options.samples, 2048});
+  const int automatic = context.value().driver().find("llvmpipe") == std::string::npos ? 4 : 1;
+  const int samples = options.samples > 0 ? options.samples : automatic;
+  auto renderer = render::Renderer::create(context.value(), {options.width, options.height, samples, 2048});
   if (!renderer) return renderer.error();
   GLFWwindow* window = context.value().window();
   Session session{model, !options.start_paused, 0, 0, 0, {}, {}, {}, false, {}, {}};

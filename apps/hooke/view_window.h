@@ -31,7 +31,7 @@ struct ViewOptions {
   std::string title = "Hooke";
   int width = 1280;
   int height = 720;
-  int samples = 4;  ///< Per pixel; 1 is about twice as fast without a graphics card.
+  int samples = 0;  ///< Per pixel; 0 is 4, or 1 if a software driver draws, which takes half the time.
   bool start_paused = false;
   int max_frames = 0;  ///< Closes after so many pictures; 0 never does.
 };

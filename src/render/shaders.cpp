@@ -41,40 +41,34 @@ vec3 with_fog(vec3 color, float distance_to_eye) {
 const std::string kLighting = R"(
 uniform sampler2DShadow shadow_map;
 
-// A 5 x 5 tent from nine bilinear taps (Castano, "Shadow mapping summary", 2013).
-float shadow_tent(vec3 place) {
+// How much of the sun reaches a point: a 3 x 3 tent from four bilinear taps (Castano, "Shadow mapping summary",
+// 2013). The point is moved along the normal by what the filter reaches over, more at grazing light, so that a
+// surface does not shadow itself.
+float sun_visibility(vec3 point, vec3 normal, float n_dot_l) {
+  float slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+  vec3 moved = point + normal * shadow_info.x * (0.5 + 1.6 * slope);
+  vec3 place = (shadow_matrix * vec4(moved, 1.0)).xyz;
+  bool inside = all(greaterThan(place.xy, vec2(0.0))) && all(lessThan(place.xy, vec2(1.0)));
+
   float size = shadow_info.y;
   vec2 texel = place.xy * size;
   vec2 base = floor(texel + 0.5);
   vec2 part = texel + 0.5 - base;
   base -= 0.5;
-  vec2 w0 = 4.0 - 3.0 * part;
-  vec2 w2 = 1.0 + 3.0 * part;
-  vec2 p0 = (3.0 - 2.0 * part) / w0 - 2.0;
-  vec2 p1 = (3.0 + part) / 7.0;
-  vec2 p2 = part / w2 + 2.0;
-  vec3 wx = vec3(w0.x, 7.0, w2.x);
-  vec3 wy = vec3(w0.y, 7.0, w2.y);
-  vec3 px = (base.x + vec3(p0.x, p1.x, p2.x)) / size;
-  vec3 py = (base.y + vec3(p0.y, p1.y, p2.y)) / size;
+  vec2 w0 = 3.0 - 2.0 * part;
+  vec2 w1 = 1.0 + 2.0 * part;
+  vec2 p0 = (base + (2.0 - part) / w0 - 1.0) / size;
+  vec2 p1 = (base + part / w1 + 1.0) / size;
+  float depth = min(place.z, 1.0);
+  // A loop that may run zero times: software drivers compute both sides of an if, but leave a loop.
   float sum = 0.0;
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      sum += wx[i] * wy[j] * texture(shadow_map, vec3(px[i], py[j], place.z));
-    }
+  int rows = n_dot_l > 0.0 && inside && shadow_info.z > 0.5 ? 2 : 0;
+  for (int row = 0; row < rows; ++row) {
+    float y = row == 0 ? p0.y : p1.y;
+    sum += (row == 0 ? w0.y : w1.y) * (w0.x * texture(shadow_map, vec3(p0.x, y, depth)) +
+                                       w1.x * texture(shadow_map, vec3(p1.x, y, depth)));
   }
-  return sum / 144.0;
-}
-
-// How much of the sun reaches a point. The point is moved along the normal by what the filter reaches over,
-// more at grazing light, so that a surface does not shadow itself.
-float sun_visibility(vec3 point, vec3 normal, float n_dot_l) {
-  if (shadow_info.z < 0.5) return 1.0;
-  float slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
-  vec3 moved = point + normal * shadow_info.x * (0.6 + 2.2 * slope);
-  vec3 place = (shadow_matrix * vec4(moved, 1.0)).xyz;
-  if (any(lessThan(place.xy, vec2(0.0))) || any(greaterThan(place.xy, vec2(1.0)))) return 1.0;
-  return shadow_tent(vec3(place.xy, min(place.z, 1.0)));
+  return rows > 0 ? sum / 16.0 : 1.0;
 }
 
 vec3 lit(vec3 albedo, vec3 normal, vec3 point, vec2 gloss) {
@@ -82,11 +76,11 @@ vec3 lit(vec3 albedo, vec3 normal, vec3 point, vec2 gloss) {
   float n_dot_l = dot(normal, sun_direction.xyz);
   vec3 light = mix(ground_light.rgb, sky_light.rgb, 0.5 + 0.5 * normal.y);
   vec3 color = albedo * light;
-  if (n_dot_l > 0.0) {
-    vec3 sun = sun_color.rgb * sun_visibility(point, normal, n_dot_l);
-    float n_dot_h = max(dot(normal, normalize(sun_direction.xyz + to_eye)), 0.0);
-    color += sun * (albedo * n_dot_l + gloss.y * pow(n_dot_h, gloss.x));
-  }
+  // Towards the light the highlight starts softly, so that it has no edge where the light ends.
+  float facing = clamp(n_dot_l, 0.0, 1.0);
+  vec3 sun = sun_color.rgb * sun_visibility(point, normal, n_dot_l);
+  float n_dot_h = max(dot(normal, normalize(sun_direction.xyz + to_eye)), 0.0);
+  color += sun * (albedo * facing + gloss.y * min(8.0 * facing, 1.0) * pow(n_dot_h, gloss.x));
   // At grazing angles every surface mirrors some sky.
   float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
   float squared = grazing * grazing;
