@@ -163,7 +163,8 @@ void TreeBuilder::report_repeated_keys(const JsonNode& object) {
                    [](const JsonNode* a, const JsonNode* b) { return a->key < b->key; });
   for (std::size_t i = 1; i < sorted.size() && errors_.size() < kMostErrors; ++i) {
     if (sorted[i]->key != sorted[i - 1]->key) continue;
-    fail(sorted[i]->key_offset, ErrorCode::kBadSyntax, "key " + in_quotes(sorted[i]->key) + " is given twice");
+    fail(sorted[i]->key_offset, ErrorCode::kBadSyntax,
+         "key " + in_quotes(sorted[i]->key) + " is given twice");
   }
 }
 

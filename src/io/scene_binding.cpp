@@ -55,14 +55,14 @@ std::string list_of_choices(const Kind& kind) {
 /// Required keys are there, and one of the choices, if the kind has any.
 bool check_presence(Reader& reader, const JsonNode& node, const Kind& kind) {
   bool good = true;
-  bool one_needed = false;
+  bool choosing = false;
   const JsonNode* choice = nullptr;
   for (const Field& field : kind.fields) {
     const JsonNode* child = node.find(field.key);
     if (field.use == Field::Use::kRequired && child == nullptr) {
       good = reader.fail(node, ErrorCode::kOutOfRange, "needs '" + std::string(field.key) + "'");
     }
-    one_needed = one_needed || field.use == Field::Use::kChoice;
+    choosing = choosing || field.is_choice();
     if (!field.is_choice() || child == nullptr) continue;
     if (choice != nullptr) {
       const bool later = child->offset > choice->offset;
@@ -72,7 +72,7 @@ bool check_presence(Reader& reader, const JsonNode& node, const Kind& kind) {
     }
     choice = child;
   }
-  if (one_needed && choice == nullptr) {
+  if (choosing && choice == nullptr) {
     good = reader.fail(node, ErrorCode::kOutOfRange, "needs one of " + list_of_choices(kind));
   }
   return good;
@@ -284,8 +284,9 @@ bool check_name(Reader& reader, const JsonNode& node, const std::string& name) {
   const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
     return static_cast<unsigned char>(c) < ' ' || c == 127 || c == '[' || c == ']' || c == '.';
   });
-  return plain || reader.fail(node, ErrorCode::kOutOfRange,
-                              in_quotes(name) + " has a character that a name must not have ([ ] . or control)");
+  return plain ||
+         reader.fail(node, ErrorCode::kOutOfRange,
+                     in_quotes(name) + " has a character that a name must not have ([ ] . or control)");
 }
 
 namespace {

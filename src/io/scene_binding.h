@@ -87,7 +87,6 @@ struct Field {
     kOptional,
     kRequired,
     kChoice,  ///< Exactly one of the choices of an object must be there.
-    kMaybe,   ///< At most one of the choices of an object may be there.
   };
 
   const char* key = "";
@@ -104,7 +103,7 @@ struct Field {
   bool (*chosen)(const void* object) = nullptr;
   const Kind& (*group)() = nullptr;  ///< The value is an object that describes members of the same struct.
 
-  [[nodiscard]] bool is_choice() const { return use == Use::kChoice || use == Use::kMaybe; }
+  [[nodiscard]] bool is_choice() const { return use == Use::kChoice; }
 };
 
 /// One kind of JSON object: the table of its keys.
@@ -475,9 +474,9 @@ inline Field group(const char* key, const Kind& (*table)(), const char* help) {
 
 /// A row that is there when the enumerator at the path `Members...` has the value `Choice`.
 template <auto Choice, auto... Members>
-Field choice(Field row, Field::Use use = Field::Use::kChoice) {
+Field choice(Field row) {
   using P = Path<Members...>;
-  row.use = use;
+  row.use = Field::Use::kChoice;
   row.choose = [](void* object) { P::in(object) = Choice; };
   row.chosen = [](const void* object) { return P::in(object) == Choice; };
   return row;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace hooke::io {
 
@@ -33,9 +34,10 @@ class Checker {
 
  private:
   void fail(const std::string& path, ErrorCode code, std::string reason) {
-    if (errors_.size() >= kMostErrors) return;
+    if (full()) return;
     errors_.push_back({document_.find_closest(path).offset, {code, path, std::move(reason)}});
   }
+  [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
   void add_name(const std::string& name, NamedObject object);
   void collect(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
@@ -56,6 +58,8 @@ class Checker {
   const JsonDocument& document_;
   std::vector<JsonError>& errors_;
   std::unordered_map<std::string, NamedObject> objects_;
+  std::unordered_set<std::string> materials_;
+  std::unordered_set<std::string> meshes_;
   std::size_t total_ = 0;
 };
 
@@ -110,6 +114,8 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
 }
 
 void Checker::collect_names() {
+  for (const SceneMaterial& material : scene_.materials) materials_.insert(material.name);
+  for (const SceneMesh& mesh : scene_.meshes) meshes_.insert(mesh.name);
   collect(scene_.objects, "");
   for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
     collect(scene_.timeline[i].add, indexed("timeline", i) + ".add.");
@@ -117,21 +123,15 @@ void Checker::collect_names() {
 }
 
 void Checker::check_tag(const SceneTag& tag, const std::string& path) {
-  const auto& list = scene_.materials;
-  const bool known = tag.material.empty() || std::any_of(list.begin(), list.end(), [&](const auto& material) {
-                       return material.name == tag.material;
-                     });
-  if (known) return;
+  if (tag.material.empty() || materials_.contains(tag.material) || full()) return;
   fail(path + ".material", ErrorCode::kOutOfRange,
-       "there is no material " + in_quotes(tag.material) + closest_name(list, tag.material));
+       "there is no material " + in_quotes(tag.material) + closest_name(scene_.materials, tag.material));
 }
 
 void Checker::check_mesh_name(const std::string& name, const std::string& path) {
-  const auto& list = scene_.meshes;
-  const bool known = name.empty() || std::any_of(list.begin(), list.end(),
-                                                 [&](const auto& mesh) { return mesh.name == name; });
-  if (known) return;
-  fail(path, ErrorCode::kOutOfRange, "there is no mesh " + in_quotes(name) + closest_name(list, name));
+  if (name.empty() || meshes_.contains(name) || full()) return;
+  fail(path, ErrorCode::kOutOfRange,
+       "there is no mesh " + in_quotes(name) + closest_name(scene_.meshes, name));
 }
 
 void Checker::check_references(const SceneObjects& objects, const std::string& prefix) {
@@ -154,6 +154,7 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
 }
 
 const NamedObject* Checker::find_object(const std::string& name, const std::string& path) {
+  if (full()) return nullptr;
   std::string base = name;
   std::optional<std::size_t> instance;
   auto found = objects_.find(base);
@@ -178,8 +179,9 @@ const NamedObject* Checker::find_object(const std::string& name, const std::stri
   const NamedObject& object = found->second;
   if (object.is_array != instance.has_value()) {
     fail(path, ErrorCode::kOutOfRange,
-         in_quotes(base) + (object.is_array ? " is an array, name one of its objects as " + in_quotes(base + "[0]")
-                                         : " is not an array"));
+         in_quotes(base) + (object.is_array
+                                ? " is an array, name one of its objects as " + in_quotes(base + "[0]")
+                                : " is not an array"));
     return nullptr;
   }
   if (instance.has_value() && *instance >= object.instances) {
@@ -431,7 +433,8 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
   const bool strange = std::any_of(file.begin(), file.end(),
                                    [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\\'; });
   if (strange)
-    return Error{ErrorCode::kOutOfRange, file, in_quotes(file) + " has a character that a path must not have"};
+    return Error{ErrorCode::kOutOfRange, file,
+                 in_quotes(file) + " has a character that a path must not have"};
   const fs::path relative = fs::path(file).lexically_normal();
   if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return outside;
   const fs::path folder = fs::path(scene_path).parent_path();
