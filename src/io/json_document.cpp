@@ -9,6 +9,8 @@ namespace {
 
 /// In longer lines columns are counted in bytes, so that a hostile file cannot make its errors slow.
 constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
+/// Of a key in a message [bytes].
+constexpr std::size_t kLongestKey = 64;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Builds the tree from the parser's events. The parser reports no positions, so a cursor follows it through
@@ -57,10 +59,11 @@ class TreeBuilder {
                    const nlohmann::detail::exception& exception);
 
  private:
-  bool fail(std::size_t offset, ErrorCode code, std::string message) {
-    errors_.push_back({static_cast<std::uint32_t>(offset), {code, "", std::move(message)}});
+  bool fail(std::size_t offset, ErrorCode code, std::string message, std::string path = "") {
+    errors_.push_back({static_cast<std::uint32_t>(offset), {code, std::move(path), std::move(message)}});
     return false;
   }
+  [[nodiscard]] std::string open_path() const;
   std::size_t next_token();
   [[nodiscard]] std::size_t string_end(std::size_t start) const;
   bool add_node(JsonNode::Kind kind, std::size_t start);
@@ -155,6 +158,19 @@ bool TreeBuilder::close() {
   return true;
 }
 
+std::string TreeBuilder::open_path() const {
+  std::string path;
+  for (std::size_t i = 1; i < open_.size(); ++i) {
+    const JsonNode& parent = *open_[i - 1];
+    if (parent.kind == JsonNode::Kind::kArray) {
+      path += "[" + std::to_string(parent.children.size() - 1) + "]";
+    } else {
+      path += (path.empty() ? "" : ".") + open_[i]->key;
+    }
+  }
+  return path;
+}
+
 void TreeBuilder::report_repeated_keys(const JsonNode& object) {
   std::vector<const JsonNode*> sorted;
   sorted.reserve(object.children.size());
@@ -163,8 +179,9 @@ void TreeBuilder::report_repeated_keys(const JsonNode& object) {
                    [](const JsonNode* a, const JsonNode* b) { return a->key < b->key; });
   for (std::size_t i = 1; i < sorted.size() && errors_.size() < kMostErrors; ++i) {
     if (sorted[i]->key != sorted[i - 1]->key) continue;
-    fail(sorted[i]->key_offset, ErrorCode::kBadSyntax,
-         "key " + in_quotes(sorted[i]->key) + " is given twice");
+    const std::string path = open_path();
+    fail(sorted[i]->key_offset, ErrorCode::kUnknownKey, "this key is given twice",
+         path + (path.empty() ? "" : ".") + sorted[i]->key.substr(0, kLongestKey));
   }
 }
 

@@ -92,7 +92,9 @@ std::string Reader::path() const {
     if (step.key.data() == nullptr) {
       text += "[" + std::to_string(step.index) + "]";
     } else {
-      text += (text.empty() ? "" : ".") + std::string(step.key);
+      // A key may be as long as the file.
+      constexpr std::size_t kLongestKey = 64;
+      text += (text.empty() ? "" : ".") + std::string(step.key.substr(0, kLongestKey));
     }
   }
   return text;
@@ -107,7 +109,7 @@ bool Reader::fail_type(const JsonNode& node, const char* wanted) {
   std::string reason = std::string("is ") + name_of(node.kind);
   if (node.kind == JsonNode::Kind::kString) reason = in_quotes(node.text) + " is a string";
   reason += std::string(", must be ") + wanted;
-  const bool number = std::string_view(wanted) == "a number";
+  const bool number = std::string_view(wanted).starts_with("a number");
   if (number && node.kind == JsonNode::Kind::kString && *unit_ != '\0') {
     reason += " (in " + std::string(unit_) + ", without a unit)";
   }
@@ -124,11 +126,8 @@ bool Reader::check(const JsonNode& node, double value, const Rule& rule) {
 void Reader::fail_key(const JsonNode& child, std::string reason) {
   if (full()) return;
   enter(child.key);
-  const std::string where = path();
+  errors_.push_back({child.key_offset, {ErrorCode::kUnknownKey, path(), std::move(reason)}});
   leave();
-  // The key is the user's own: it goes into the path only as far as it is readable.
-  const std::string shown = child.key.size() > 40 ? in_quotes(child.key) : where;
-  errors_.push_back({child.key_offset, {ErrorCode::kUnknownKey, shown, std::move(reason)}});
 }
 
 bool read_object(Reader& reader, const JsonNode& node, const Kind& kind, void* object) {
@@ -272,7 +271,8 @@ bool expect_list(Reader& reader, const JsonNode& node, std::size_t fewest, std::
   const std::size_t size = node.children.size();
   if (size >= fewest && size <= most) return true;
   const std::string wanted = (fewest == most ? "must have " : "must have at least ") + std::to_string(fewest);
-  return reader.fail(node, ErrorCode::kOutOfRange, "has " + std::to_string(size) + " elements, " + wanted);
+  return reader.fail(node, ErrorCode::kOutOfRange,
+                     "has " + std::to_string(size) + (size == 1 ? " element, " : " elements, ") + wanted);
 }
 
 bool check_name(Reader& reader, const JsonNode& node, const std::string& name) {

@@ -173,6 +173,8 @@ struct Codec<T> {
       value = std::numeric_limits<T>::infinity();
       return true;
     }
+    if (rule.rigid && node.kind != JsonNode::Kind::kNumber)
+      return reader.fail_type(node, "a number or \"rigid\"");
     if (!read_number(reader, node, rule, number)) return false;
     if (std::abs(number) > static_cast<double>(std::numeric_limits<T>::max())) {
       return reader.fail(node, ErrorCode::kOutOfRange, "is too large for a number of this precision");

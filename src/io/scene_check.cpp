@@ -24,7 +24,7 @@ struct NamedObject {
 class Checker {
  public:
   Checker(const Scene& scene, const JsonDocument& document, std::vector<JsonError>& errors)
-      : scene_(scene), document_(document), errors_(errors) {}
+      : scene_(scene), document_(document), errors_(errors), found_before_(errors.size()) {}
 
   void collect_names();
   void check_references();
@@ -38,6 +38,11 @@ class Checker {
     errors_.push_back({document_.find_closest(path).offset, {code, path, std::move(reason)}});
   }
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
+  /// The reader found something wrong here: members may be defaults, and more errors would mislead.
+  [[nodiscard]] bool is_damaged(const std::string& path) const {
+    return std::any_of(errors_.begin(), errors_.begin() + static_cast<std::ptrdiff_t>(found_before_),
+                       [&](const JsonError& one) { return one.error.where.starts_with(path); });
+  }
   void add_name(const std::string& name, NamedObject object);
   void collect(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
@@ -57,10 +62,12 @@ class Checker {
   const Scene& scene_;
   const JsonDocument& document_;
   std::vector<JsonError>& errors_;
+  std::size_t found_before_;
   std::unordered_map<std::string, NamedObject> objects_;
   std::unordered_set<std::string> materials_;
   std::unordered_set<std::string> meshes_;
   std::size_t total_ = 0;
+  bool names_damaged_ = false;  ///< A name was not read: what refers to it would seem to refer to nothing.
 };
 
 std::size_t saturated_product(std::size_t a, std::size_t b) {
@@ -89,6 +96,7 @@ void Checker::add_name(const std::string& name, NamedObject object) {
 void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
   const auto add = [&](const SceneTag& tag, const std::string& path, SceneObject::Kind kind,
                        std::size_t points) {
+    if (is_damaged(path)) points = 0;
     add_name(tag.name, {path, kind, tag.array.kind != SceneArray::Kind::kSingle, tag.array.count(), points});
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
@@ -116,6 +124,8 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
 void Checker::collect_names() {
   for (const SceneMaterial& material : scene_.materials) materials_.insert(material.name);
   for (const SceneMesh& mesh : scene_.meshes) meshes_.insert(mesh.name);
+  names_damaged_ = std::any_of(errors_.begin(), errors_.end(),
+                               [](const JsonError& one) { return one.error.where.ends_with(".name"); });
   collect(scene_.objects, "");
   for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
     collect(scene_.timeline[i].add, indexed("timeline", i) + ".add.");
@@ -154,7 +164,7 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
 }
 
 const NamedObject* Checker::find_object(const std::string& name, const std::string& path) {
-  if (full()) return nullptr;
+  if (full() || names_damaged_) return nullptr;
   std::string base = name;
   std::optional<std::size_t> instance;
   auto found = objects_.find(base);
@@ -214,12 +224,13 @@ const char* key_of(SceneEvent::Kind kind) {
 }
 
 void Checker::check_event(const SceneEvent& event, const std::string& path) {
+  if (is_damaged(path)) return;
   if (event.kind == SceneEvent::Kind::kRemove) {
     find_object(event.object, path + ".remove");
     return;
   }
   const std::string inner = path + key_of(event.kind);
-  if (inner == path || event.object.empty()) return;
+  if (inner == path) return;
   const NamedObject* object = find_object(event.object, inner + ".object");
   if (object == nullptr) return;
   if (object->kind == SceneObject::Kind::kBody || object->kind == SceneObject::Kind::kField) {
@@ -253,6 +264,7 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
 }
 
 void Checker::check_expectation(const SceneExpectation& expectation, const std::string& path) {
+  if (is_damaged(path)) return;
   const Subject subject = subject_of(expectation.quantity);
   if (subject == Subject::kWorld) {
     if (!expectation.of.empty()) {
@@ -353,21 +365,24 @@ void Checker::check_points(const SceneObjects& objects, const std::string& prefi
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     const SceneRope& rope = objects.ropes[i];
     const std::string path = indexed(prefix + "ropes", i);
+    if (is_damaged(path)) continue;
     check_pins(rope.pins, point_count(rope), nullptr, path);
     check_loads(rope.loads, point_count(rope), path);
     if (rope.desc.points.size() == 1) {
-      fail(path + ".points", ErrorCode::kOutOfRange, "has 1 elements, must have at least 2");
+      fail(path + ".points", ErrorCode::kOutOfRange, "has 1 element, must have at least 2");
     }
   }
   for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
     const SceneCloth& cloth = objects.cloths[i];
     const std::string path = indexed(prefix + "cloths", i);
+    if (is_damaged(path)) continue;
     check_pins(cloth.pins, point_count(cloth), cloth.mesh.empty() ? &cloth.desc : nullptr, path);
     check_loads(cloth.loads, point_count(cloth), path);
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     const SceneParticles& particles = objects.particles[i];
     const std::string path = indexed(prefix + "particles", i);
+    if (is_damaged(path)) continue;
     check_pins(particles.pins, point_count(particles), nullptr, path);
     check_springs(particles.desc, path);
   }
@@ -441,9 +456,9 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
   const fs::path joined = folder.empty() ? relative : folder / relative;
   // A link inside the folder may still point out of it.
   std::error_code failure;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, failure);
+  const fs::path root = fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), failure);
   if (failure) return joined.string();
-  const fs::path real = fs::weakly_canonical(joined, failure);
+  const fs::path real = fs::weakly_canonical(fs::absolute(joined), failure);
   if (failure) return joined.string();
   const auto [end, unused] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
   static_cast<void>(unused);
@@ -457,11 +472,9 @@ void check_scene(const Scene& scene, const JsonDocument& document, bool look_for
   Checker checker(scene, document, errors);
   checker.collect_names();
   checker.check_files(look_for_files);
-  // After an error the values that points are counted from may be defaults: more errors would mislead.
-  if (!clean) return;
   checker.check_references();
   checker.check_points();
-  checker.check_total();
+  if (clean) checker.check_total();
 }
 
 }  // namespace hooke::io

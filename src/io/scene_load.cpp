@@ -35,7 +35,12 @@ std::vector<Error> finish(const JsonDocument& document, std::vector<JsonError> f
   errors.reserve(found.size());
   for (JsonError& one : found) {
     const std::string place = document.place(one.offset);
-    one.error.where = one.error.where.empty() ? place : place + ": " + one.error.where;
+    std::string& where = one.error.where;
+    // Keys are the user's: an error stays one readable line whatever they are.
+    constexpr std::size_t kLongestPath = 300;
+    if (where.size() > kLongestPath) where.resize(kLongestPath);
+    for (char& c : where) c = static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c;
+    where = where.empty() ? place : place + ": " + where;
     errors.push_back(std::move(one.error));
   }
   return errors;
@@ -58,8 +63,9 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files
   auto source = std::make_shared<SceneSource>();
   JsonDocument& document = source->document;
   std::vector<JsonError> errors = parse_json(std::move(text), name, document);
-  const bool parsed = std::none_of(errors.begin(), errors.end(), [](const JsonError& one) {
-    return one.error.code != ErrorCode::kBadSyntax || !one.error.message.starts_with("key ");
+  // Repeated keys leave a whole tree, everything else a torn one.
+  const bool parsed = std::all_of(errors.begin(), errors.end(), [](const JsonError& one) {
+    return one.error.code == ErrorCode::kUnknownKey;
   });
   Scene scene;
   scene.path = std::move(name);
