@@ -44,6 +44,9 @@ struct JsonNode {
 /// that are not UTF-8 are replaced.
 [[nodiscard]] std::string to_text(const JsonNode& root);
 
+/// The same on one line of any length, without a line feed.
+[[nodiscard]] std::string to_flat_text(const JsonNode& root);
+
 /// User text for a message of one line: in single quotes, at most 40 bytes, no control characters.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 

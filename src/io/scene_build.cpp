@@ -262,6 +262,13 @@ void Builder::build(const SceneField& field, const std::string& path) {
   keep(object, &SceneObject::field, data_.world.add_field(field.desc));
 }
 
+Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
+  if (mesh.file.empty()) return model_of(mesh.mesh);
+  const Result<std::string> file = locate_file(scene.path, mesh.file);
+  if (!file) return file.error();
+  return import_model(file.value(), mesh.import);
+}
+
 template <class T>
 void build_list(Builder& builder, const std::vector<T>& list, const std::string& name) {
   for (std::size_t i = 0; i < list.size(); ++i) builder.build(list[i], indexed(name, i));
@@ -272,24 +279,16 @@ void build_list(Builder& builder, const std::vector<T>& list, const std::string&
 void build_meshes(SimulationData& data, std::vector<Error>& errors) {
   for (const SceneMesh& mesh : data.scene.meshes) {
     const std::string path = "meshes." + mesh.name;
-    const auto fail = [&](const std::string& where, const Error& error) {
-      errors.push_back(error_at(data.scene.source.get(), where, error.code, error.message));
-    };
-    auto model = std::make_shared<Model>();
-    if (mesh.file.empty()) {
-      *model = model_of(mesh.mesh);
-    } else {
-      const Result<std::string> file = locate_file(data.scene.path, mesh.file);
-      Result<Model> imported = file ? import_model(file.value(), mesh.import) : Result<Model>(file.error());
-      if (!imported) {
-        fail(path + ".file", imported.error());
-        continue;
-      }
-      *model = std::move(imported).value();
+    Result<Model> read = read_model(data.scene, mesh);
+    if (!read) {
+      errors.push_back(
+          error_at(data.scene.source.get(), path + ".file", read.error().code, read.error().message));
+      continue;
     }
+    auto model = std::make_shared<Model>(std::move(read).value());
     const Result<MeshId> added = data.world.add_mesh(model->mesh);
     if (!added) {
-      fail(path, added.error());
+      errors.push_back(scene_error(data.scene, path, added.error()));
       continue;
     }
     data.models[mesh.name] = {.id = added.value(), .model = std::move(model)};

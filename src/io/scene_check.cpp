@@ -43,7 +43,7 @@ class Checker {
     return std::any_of(errors_.begin(), errors_.begin() + static_cast<std::ptrdiff_t>(found_before_),
                        [&](const JsonError& one) { return one.error.where.starts_with(path); });
   }
-  void add_name(const std::string& name, NamedObject object);
+  void add_name(const std::string& name, const NamedObject& object);
   void collect(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
   void check_mesh_name(const std::string& name, const std::string& path);
@@ -71,9 +71,9 @@ class Checker {
 };
 
 std::size_t saturated_product(std::size_t a, std::size_t b) {
-  constexpr std::size_t kFar = std::size_t{1} << 40U;
+  constexpr std::size_t far = std::size_t{1} << 40U;
   if (a == 0 || b == 0) return 0;
-  return a > kFar / b ? kFar : a * b;
+  return a > far / b ? far : a * b;
 }
 
 template <class T>
@@ -84,9 +84,9 @@ std::string closest_name(const std::vector<T>& list, const std::string& name) {
   return "";
 }
 
-void Checker::add_name(const std::string& name, NamedObject object) {
-  const std::string path = object.path;
-  const auto [place, added] = objects_.try_emplace(name.empty() ? path : name, std::move(object));
+void Checker::add_name(const std::string& name, const NamedObject& object) {
+  const std::string& path = object.path;
+  const auto [place, added] = objects_.try_emplace(name.empty() ? path : name, object);
   if (!added) {
     fail(path + ".name", ErrorCode::kOutOfRange,
          in_quotes(name) + " is already the name of " + place->second.path);
@@ -328,18 +328,19 @@ void Checker::check_pins(const std::vector<ScenePin>& pins, std::size_t count, c
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const ScenePin& pin = pins[i];
     const std::string where = indexed(path + ".pins", i);
-    const bool short_form = document_.find_closest(where).kind != JsonNode::Kind::kObject;
     if (pin.pick == ScenePin::Pick::kPoint) {
+      const bool short_form = document_.find_closest(where).kind != JsonNode::Kind::kObject;
       check_point(pin.point, count, short_form ? where : where + ".point");
-    } else if (pin.pick != ScenePin::Pick::kTopmost) {
-      const bool column = pin.pick == ScenePin::Pick::kColumn;
-      const std::string key = where + (column ? ".column" : ".row");
-      if (grid == nullptr) {
-        fail(key, ErrorCode::kOutOfRange, "is for the grid of a cloth only");
-      } else {
-        check_point(pin.point, static_cast<std::size_t>(column ? grid->columns : grid->rows), key);
-      }
+      continue;
     }
+    if (pin.pick == ScenePin::Pick::kTopmost) continue;
+    const bool column = pin.pick == ScenePin::Pick::kColumn;
+    const std::string key = where + (column ? ".column" : ".row");
+    if (grid == nullptr) {
+      fail(key, ErrorCode::kOutOfRange, "is for the grid of a cloth only");
+      continue;
+    }
+    check_point(pin.point, static_cast<std::size_t>(column ? grid->columns : grid->rows), key);
   }
 }
 
@@ -447,9 +448,10 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
   const Error outside = {ErrorCode::kOutOfRange, file, in_quotes(file) + " is outside of the scene's folder"};
   const bool strange = std::any_of(file.begin(), file.end(),
                                    [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\\'; });
-  if (strange)
+  if (strange) {
     return Error{ErrorCode::kOutOfRange, file,
                  in_quotes(file) + " has a character that a path must not have"};
+  }
   const fs::path relative = fs::path(file).lexically_normal();
   if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return outside;
   const fs::path folder = fs::path(scene_path).parent_path();

@@ -74,10 +74,7 @@ std::string default_text(const Kind& kind, const Field& field) {
   if (field.use == Field::Use::kChoice) return "one of";
   const JsonNode value = default_of(kind, field);
   if (value.kind == JsonNode::Kind::kNull) return "";
-  std::string text = to_text(value);
-  text.pop_back();
-  // A list that is longer than a line does not belong into a table.
-  return text.find('\n') == std::string::npos ? "`" + text + "`" : "";
+  return "`" + to_flat_text(value) + "`";
 }
 
 std::string kind_table(const Kind& kind) {

@@ -1,5 +1,7 @@
 #include "io/scene_table.h"
 
+#include <algorithm>
+
 namespace hooke::io {
 
 namespace {
@@ -77,19 +79,19 @@ Field schema_row() {
 }
 
 std::vector<Field> scene_rows() {
-  constexpr Rule kStep = {.least = 0, .most = 1, .above_least = true};
+  constexpr Rule step_range = {.least = 0, .most = 1, .above_least = true};
   std::vector<Field> rows = {
       schema_row(),
       required(field<&Scene::version>("version", "", between(1, kSceneVersion), "Of the format.")),
       field<&Scene::title>("title", "", kAny, "One line."),
       field<&Scene::description>("description", "", kAny, "What there is to see."),
       field<&Scene::world>("world", "", kAny, "Gravity, wind, accuracy."),
-      field<&Scene::dt>("dt", "s", kStep, "Length of a step."),
+      field<&Scene::dt>("dt", "s", step_range, "Length of a step."),
       field<&Scene::seconds>("seconds", "s", between(0, 1e6), "How long the scene runs."),
       field<&Scene::meshes>("meshes", "", kAny, "Triangles, by name."),
       field<&Scene::materials>("materials", "", kAny, "Looks and friction, by name."),
   };
-  for (Field& row : object_rows<&Scene::objects>()) rows.push_back(std::move(row));
+  for (const Field& row : object_rows<&Scene::objects>()) rows.push_back(row);
   rows.push_back(field<&Scene::timeline>("timeline", "", kAny, "What happens on the way."));
   rows.push_back(field<&Scene::camera>("camera", "", kAny, "Where a viewer stands."));
   rows.push_back(field<&Scene::expect>("expect", "", kAny, "Figures that the scene promises."));
@@ -107,16 +109,16 @@ const Kind& kind_of<Scene>() {
 
 template <>
 const Kind& kind_of<WorldDesc>() {
-  constexpr Rule kPasses = between(1, 64);
+  constexpr Rule passes = between(1, 64);
   static const Kind kind = {
       .name = "world",
       .help = "What holds everywhere.",
       .fields =
           {field<&WorldDesc::gravity>("gravity", "m/s^2", kAny, "Acceleration of everything."),
-           field<&WorldDesc::substeps>("substeps", "", kPasses, "Solver passes per step; more is stiffer."),
-           field<&WorldDesc::particle_substeps>("particle_substeps", "", kPasses,
+           field<&WorldDesc::substeps>("substeps", "", passes, "Solver passes per step; more is stiffer."),
+           field<&WorldDesc::particle_substeps>("particle_substeps", "", passes,
                                                 "Passes over ropes, cloths, particles in each substep."),
-           field<&WorldDesc::workers>("workers", "", kPasses, "Threads. The result does not depend on it."),
+           field<&WorldDesc::workers>("workers", "", passes, "Threads. The result does not depend on it."),
            field<&WorldDesc::wind>("wind", "", kAny, "Moving air.")},
       .defaults = defaults_of<WorldDesc>};
   return kind;
@@ -147,20 +149,22 @@ const Kind& kind_of<WindDesc>() {
 
 namespace {
 
+bool check_triangles(Reader& reader, const JsonNode& node, const MeshDesc& mesh) {
+  const std::size_t count = mesh.positions.size();
+  for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    const std::uint32_t corner = std::max({triangle[0], triangle[1], triangle[2]});
+    if (corner < count) continue;
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "a triangle has the corner " + std::to_string(corner) + ", there are " +
+                           std::to_string(count) + " vertices");
+  }
+  return true;
+}
+
 bool check_mesh(Reader& reader, const JsonNode& node, const void* object) {
   const auto& mesh = *static_cast<const SceneMesh*>(object);
-  const bool inline_mesh = !mesh.mesh.positions.empty() || !mesh.mesh.triangles.empty();
-  if (mesh.file.empty() == inline_mesh) {
-    for (const auto& triangle : mesh.mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        if (corner < mesh.mesh.positions.size()) continue;
-        return reader.fail(node, ErrorCode::kOutOfRange,
-                           "a triangle has the corner " + std::to_string(corner) + ", there are " +
-                               std::to_string(mesh.mesh.positions.size()) + " vertices");
-      }
-    }
-    return true;
-  }
+  const bool in_place = !mesh.mesh.positions.empty() || !mesh.mesh.triangles.empty();
+  if (mesh.file.empty() == in_place) return check_triangles(reader, node, mesh.mesh);
   return reader.fail(node, ErrorCode::kOutOfRange, "needs either 'file' or 'vertices' and 'triangles'");
 }
 
@@ -320,52 +324,52 @@ std::span<const Kind* const> all_kinds() {
 
 template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>() {
-  static constexpr EnumName kNames[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
-                                        {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
+                                       {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<UpAxis>() {
-  static constexpr EnumName kNames[] = {{"format", static_cast<int>(UpAxis::kFormat)},
-                                        {"x", static_cast<int>(UpAxis::kX)},
-                                        {"y", static_cast<int>(UpAxis::kY)},
-                                        {"z", static_cast<int>(UpAxis::kZ)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"format", static_cast<int>(UpAxis::kFormat)},
+                                       {"x", static_cast<int>(UpAxis::kX)},
+                                       {"y", static_cast<int>(UpAxis::kY)},
+                                       {"z", static_cast<int>(UpAxis::kZ)}};
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<SceneExpectation::Op>() {
   using Op = SceneExpectation::Op;
-  static constexpr EnumName kNames[] = {
+  static constexpr EnumName names[] = {
       {"<", static_cast<int>(Op::kLess)},    {"<=", static_cast<int>(Op::kLessOrEqual)},
       {">", static_cast<int>(Op::kGreater)}, {">=", static_cast<int>(Op::kGreaterOrEqual)},
       {"==", static_cast<int>(Op::kEqual)},  {"within", static_cast<int>(Op::kWithin)}};
-  return kNames;
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
   using Quantity = SceneExpectation::Quantity;
-  static constexpr EnumName kNames[] = {{"x", static_cast<int>(Quantity::kX)},
-                                        {"y", static_cast<int>(Quantity::kY)},
-                                        {"z", static_cast<int>(Quantity::kZ)},
-                                        {"height", static_cast<int>(Quantity::kHeight)},
-                                        {"speed", static_cast<int>(Quantity::kSpeed)},
-                                        {"extension", static_cast<int>(Quantity::kExtension)},
-                                        {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
-                                        {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
-                                        {"tension", static_cast<int>(Quantity::kTension)},
-                                        {"lowest", static_cast<int>(Quantity::kLowest)},
-                                        {"highest", static_cast<int>(Quantity::kHighest)},
-                                        {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},
-                                        {"kinetic_energy", static_cast<int>(Quantity::kKineticEnergy)},
-                                        {"potential_energy", static_cast<int>(Quantity::kPotentialEnergy)},
-                                        {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
-                                        {"momentum", static_cast<int>(Quantity::kMomentum)},
-                                        {"penetration", static_cast<int>(Quantity::kPenetration)},
-                                        {"contacts", static_cast<int>(Quantity::kContacts)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"x", static_cast<int>(Quantity::kX)},
+                                       {"y", static_cast<int>(Quantity::kY)},
+                                       {"z", static_cast<int>(Quantity::kZ)},
+                                       {"height", static_cast<int>(Quantity::kHeight)},
+                                       {"speed", static_cast<int>(Quantity::kSpeed)},
+                                       {"extension", static_cast<int>(Quantity::kExtension)},
+                                       {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
+                                       {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
+                                       {"tension", static_cast<int>(Quantity::kTension)},
+                                       {"lowest", static_cast<int>(Quantity::kLowest)},
+                                       {"highest", static_cast<int>(Quantity::kHighest)},
+                                       {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},
+                                       {"kinetic_energy", static_cast<int>(Quantity::kKineticEnergy)},
+                                       {"potential_energy", static_cast<int>(Quantity::kPotentialEnergy)},
+                                       {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
+                                       {"momentum", static_cast<int>(Quantity::kMomentum)},
+                                       {"penetration", static_cast<int>(Quantity::kPenetration)},
+                                       {"contacts", static_cast<int>(Quantity::kContacts)}};
+  return names;
 }
 
 }  // namespace hooke::io

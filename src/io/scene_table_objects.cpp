@@ -21,10 +21,11 @@ bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
 /// The rows of SceneTag, which every object but a field has.
 template <class T>
 void add_tag_rows(std::vector<Field>& rows) {
-  rows.insert(rows.begin(),
-              {field<&T::tag, &SceneTag::name>("name", "", kNotEmpty,
-                                               "Unique. Without it the object is called `ropes[0]`."),
-               field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
+  rows.insert(
+      rows.begin(),
+      {field<&T::tag, &SceneTag::name>(
+           "name", "", kNotEmpty, "Unique. Without it the object is called by its place, as `ropes[0]`."),
+       field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
   rows.push_back(field<&T::tag, &SceneTag::friction>(
       "friction", "", between(0, 100), "Coulomb coefficient, instead of the material's or of 0.5."));
   rows.push_back(
@@ -99,7 +100,6 @@ bool check_motion(Reader& reader, const JsonNode& node, const void* object) {
 
 template <>
 const Kind& kind_of<MotionDesc>() {
-  constexpr Rule kSome = kNotEmpty;
   static const Kind kind = {
       .name = "motion",
       .help = "A displacement as a function of time, zero at the start. One of the keys.",
@@ -107,7 +107,7 @@ const Kind& kind_of<MotionDesc>() {
                      field<&MotionDesc::velocity>("velocity", "m/s", kAny, "Constant.")),
                  choice<MotionDesc::Kind::kSine, &MotionDesc::kind>(group("sine", sine_kind, "To and fro.")),
                  choice<MotionDesc::Kind::kKeyframes, &MotionDesc::kind>(field<&MotionDesc::keyframes>(
-                     "keyframes", "", kSome, "Straight lines between given offsets; times increase."))},
+                     "keyframes", "", kNotEmpty, "Straight lines between given offsets; times increase."))},
       .defaults = defaults_of<MotionDesc>,
       .check = check_motion};
   return kind;
@@ -176,17 +176,17 @@ bool check_array(Reader& reader, const JsonNode& node, const void* object) {
 
 template <>
 const Kind& kind_of<SceneArray>() {
-  constexpr Rule kCopies = between(1, 1e6);
+  constexpr Rule copies = between(1, 1e6);
   static const Kind kind = {
       .name = "array",
       .help = "Copies of an object. One of `grid`, `pyramid`, `random`.",
       .fields = {choice<SceneArray::Kind::kGrid, &SceneArray::kind>(field<&SceneArray::grid>(
-                     "grid", "", kCopies, "Copies along x, y and z; x counts fastest.")),
+                     "grid", "", copies, "Copies along x, y and z; x counts fastest.")),
                  choice<SceneArray::Kind::kPyramid, &SceneArray::kind>(field<&SceneArray::pyramid>(
                      "pyramid", "", between(1, 1000),
                      "Copies in the lowest row along x; one less in each row above.")),
                  choice<SceneArray::Kind::kRandom, &SceneArray::kind>(field<&SceneArray::random>(
-                     "random", "", kCopies, "Copies, evenly spread in `box`, the same on every machine.")),
+                     "random", "", copies, "Copies, evenly spread in `box`, the same on every machine.")),
                  field<&SceneArray::spacing>("spacing", "m", kAny, "Of a grid or pyramid."),
                  field<&SceneArray::seed>("seed", "", kAny, "Of a random array."),
                  field<&SceneArray::box>("box", "m", kAny,
@@ -219,116 +219,111 @@ namespace {
 
 /// A rope's keys under the names of the paper's builder, then the others.
 std::vector<Field> rope_rows() {
-  constexpr auto kDesc = &SceneRope::desc;
+  constexpr auto desc = &SceneRope::desc;
   return {
-      field<kDesc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
-      field<kDesc, &RopeDesc::direction>("direction", "", kAny,
-                                         "From the first point on; any length but zero."),
-      field<kDesc, &RopeDesc::total_mass>("total_mass", "kg", kPositive,
-                                          "Of the rope; half a segment's share on each end."),
-      field<kDesc, &RopeDesc::masses>("masses", "", between(2, 65536), "Number of points."),
-      field<kDesc, &RopeDesc::length_at_rest>("length_at_rest", "m", kPositive, "From end to end."),
-      field<kDesc, &RopeDesc::stiffness>("stiffness", "N/m", kPositiveOrRigid, "k; see `stiffness_of`."),
-      field<kDesc, &RopeDesc::inner_friction>("inner_friction", "N s/m", kNotNegative,
-                                              "Damping along each segment."),
-      field<kDesc, &RopeDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                            "Viscous drag of the whole rope, shared out by length."),
-      field<kDesc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
-                                             "Largest relative extension of a segment, such as 0.05."),
-      field<kDesc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
-                                            "Of the rope, whatever the number of points; or of each segment, "
-                                            "as in the paper: more points make a "
-                                            "softer rope."),
-      field<kDesc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
-                                               "EA; replaces `stiffness` by EA / `length_at_rest`."),
-      field<kDesc, &RopeDesc::points>(
+      field<desc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
+      field<desc, &RopeDesc::direction>("direction", "", kAny,
+                                        "From the first point on; any length but zero."),
+      field<desc, &RopeDesc::total_mass>("total_mass", "kg", kPositive,
+                                         "Of the rope; half a segment's share on each end."),
+      field<desc, &RopeDesc::masses>("masses", "", between(2, 65536), "Number of points."),
+      field<desc, &RopeDesc::length_at_rest>("length_at_rest", "m", kPositive, "From end to end."),
+      field<desc, &RopeDesc::stiffness>("stiffness", "N/m", kPositiveOrRigid, "k; see `stiffness_of`."),
+      field<desc, &RopeDesc::inner_friction>("inner_friction", "N s/m", kNotNegative,
+                                             "Damping along each segment."),
+      field<desc, &RopeDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                           "Viscous drag of the whole rope, shared out by length."),
+      field<desc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                            "Largest relative extension of a segment, such as 0.05."),
+      field<desc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
+                                           "Of the rope, whatever the number of points; or of each segment, "
+                                           "as in the paper: more points make a "
+                                           "softer rope."),
+      field<desc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
+                                              "EA; replaces `stiffness` by EA / `length_at_rest`."),
+      field<desc, &RopeDesc::points>(
           "points", "m", kAny,
           "Replaces `hook_point`, `direction`, `masses`, `length_at_rest`: the points, taken as at rest."),
       field<&SceneRope::pins>("pins", "", kAny,
                               "Points that are held; the first one by default, `[]` for none."),
       field<&SceneRope::loads>("loads", "", kAny, "Masses added to points."),
-      field<kDesc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
-      field<kDesc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                "Of a cylinder across the flow."),
-      field<kDesc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<kDesc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<desc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
+      field<desc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                               "Of a cylinder across the flow."),
+      field<desc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<desc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
 }
 
 std::vector<Field> cloth_rows() {
-  constexpr auto kDesc = &SceneCloth::desc;
+  constexpr auto desc = &SceneCloth::desc;
   return {
-      field<kDesc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
-      field<kDesc, &ClothDesc::rows>("rows", "", between(2, 4096), "Points along `row_direction`."),
-      field<kDesc, &ClothDesc::corner>("corner", "m", kAny,
-                                       "Position of point 0; point (column, row) is row x columns + column."),
-      field<kDesc, &ClothDesc::column_direction>("column_direction", "", kAny, "Any length but zero."),
-      field<kDesc, &ClothDesc::row_direction>("row_direction", "", kAny, "Any length but zero."),
-      field<kDesc, &ClothDesc::width>("width", "m", kPositive, "Between the first and last column."),
-      field<kDesc, &ClothDesc::height>("height", "m", kPositive, "Between the first and last row."),
+      field<desc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
+      field<desc, &ClothDesc::rows>("rows", "", between(2, 4096), "Points along `row_direction`."),
+      field<desc, &ClothDesc::corner>("corner", "m", kAny,
+                                      "Position of point 0; point (column, row) is row x columns + column."),
+      field<desc, &ClothDesc::column_direction>("column_direction", "", kAny, "Any length but zero."),
+      field<desc, &ClothDesc::row_direction>("row_direction", "", kAny, "Any length but zero."),
+      field<desc, &ClothDesc::width>("width", "m", kPositive, "Between the first and last column."),
+      field<desc, &ClothDesc::height>("height", "m", kPositive, "Between the first and last row."),
       field<&SceneCloth::mesh>("mesh", "", kNotEmpty, "Replaces the grid: a name in `meshes`."),
-      field<kDesc, &ClothDesc::position>("position", "m", kAny, "Of the mesh's frame."),
-      field<kDesc, &ClothDesc::rotation>("rotation", "", kAny, "Of the mesh's frame."),
-      field<kDesc, &ClothDesc::areal_density>("areal_density", "kg/m^2", kPositive,
-                                              "Mass of a square meter."),
-      field<kDesc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
-      field<kDesc, &ClothDesc::thickness>("thickness", "m", kPositive,
-                                          "Points keep half of it from what they touch."),
-      field<kDesc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
-                                                  "Of each spring along an edge."),
-      field<kDesc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
-                                                "Of each spring across a cell."),
-      field<kDesc, &ClothDesc::bend_stiffness>("bend_stiffness", "N m or N/m", kNotNegative, "See `bend`."),
-      field<kDesc, &ClothDesc::damping>("damping", "N s/m", kNotNegative,
-                                        "Of each stretch and shear spring."),
-      field<kDesc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
-                                             "Of each bend row, in units of `bend_stiffness`."),
-      field<kDesc, &ClothDesc::bend>(
+      field<desc, &ClothDesc::position>("position", "m", kAny, "Of the mesh's frame."),
+      field<desc, &ClothDesc::rotation>("rotation", "", kAny, "Of the mesh's frame."),
+      field<desc, &ClothDesc::areal_density>("areal_density", "kg/m^2", kPositive, "Mass of a square meter."),
+      field<desc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
+      field<desc, &ClothDesc::thickness>("thickness", "m", kPositive,
+                                         "Points keep half of it from what they touch."),
+      field<desc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
+                                                 "Of each spring along an edge."),
+      field<desc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
+                                               "Of each spring across a cell."),
+      field<desc, &ClothDesc::bend_stiffness>("bend_stiffness", "N m or N/m", kNotNegative, "See `bend`."),
+      field<desc, &ClothDesc::damping>("damping", "N s/m", kNotNegative, "Of each stretch and shear spring."),
+      field<desc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
+                                            "Of each bend row, in units of `bend_stiffness`."),
+      field<desc, &ClothDesc::bend>(
           "bend", "", kAny,
           "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
-      field<kDesc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
-                                              "Largest relative extension of a stretch spring."),
-      field<kDesc, &ClothDesc::tethers>("tethers", "", kAny,
-                                        "Hold every point within its rest distance of the pins."),
-      field<kDesc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                 "Of a triangle across the flow."),
-      field<kDesc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
-                                                 "Of a slanted triangle."),
-      field<kDesc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                             "Viscous drag of the whole cloth, shared out by area."),
+      field<desc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                             "Largest relative extension of a stretch spring."),
+      field<desc, &ClothDesc::tethers>("tethers", "", kAny,
+                                       "Hold every point within its rest distance of the pins."),
+      field<desc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                "Of a triangle across the flow."),
+      field<desc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
+                                                "Of a slanted triangle."),
+      field<desc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                            "Viscous drag of the whole cloth, shared out by area."),
       field<&SceneCloth::pins>("pins", "", kAny, "Points that are held."),
       field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
-      field<kDesc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<kDesc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<desc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<desc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
 }
 
 std::vector<Field> particles_rows() {
-  constexpr auto kDesc = &SceneParticles::desc;
+  constexpr auto desc = &SceneParticles::desc;
   return {
-      required(field<kDesc, &ParticlesDesc::particles>("particles", "", kNotEmpty, "The point masses.")),
-      field<kDesc, &ParticlesDesc::springs>("springs", "", kAny, "Between two of them each."),
-      field<kDesc, &ParticlesDesc::direction>("direction", "", kAny,
-                                              "Where a spring's direction is taken: at the start of a "
-                                              "substep (keeps energy), or where the points are "
-                                              "about to be (quieter on stiff lattices)."),
-      field<kDesc, &ParticlesDesc::damping>(
+      required(field<desc, &ParticlesDesc::particles>("particles", "", kNotEmpty, "The point masses.")),
+      field<desc, &ParticlesDesc::springs>("springs", "", kAny, "Between two of them each."),
+      field<desc, &ParticlesDesc::direction>("direction", "", kAny,
+                                             "Where a spring's direction is taken: at the start of a "
+                                             "substep (keeps energy), or where the points are "
+                                             "about to be (quieter on stiff lattices)."),
+      field<desc, &ParticlesDesc::damping>(
           "damping", "", kAny, "Along the spring, or of the whole relative velocity as in the paper."),
-      field<kDesc, &ParticlesDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                                 "Viscous drag of each particle."),
-      field<kDesc, &ParticlesDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                     "Of each particle as a sphere of its radius."),
+      field<desc, &ParticlesDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                                "Viscous drag of each particle."),
+      field<desc, &ParticlesDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                    "Of each particle as a sphere of its radius."),
       field<&SceneParticles::pins>("pins", "", kAny, "Particles that are held."),
   };
 }
 
 template <class T>
-Kind make_object_kind(const char* name, const char* help, std::vector<Field> rows) {
-  Kind made = {.name = name,
-               .help = help,
-               .fields = std::move(rows),
-               .defaults = defaults_of<T>,
-               .check = check_tagged<T>};
+Kind make_object_kind(const char* name, const char* help, const std::vector<Field>& rows) {
+  Kind made = {
+      .name = name, .help = help, .fields = rows, .defaults = defaults_of<T>, .check = check_tagged<T>};
   add_tag_rows<T>(made.fields);
   return made;
 }
@@ -424,16 +419,16 @@ bool check_field(Reader& reader, const JsonNode& node, const void* object) {
 
 template <>
 const Kind& kind_of<SceneField>() {
-  constexpr auto kDesc = &SceneField::desc;
+  constexpr auto desc = &SceneField::desc;
   static const Kind kind = {
       .name = "field",
       .help = "A force on every particle of the world. One of `uniform`, `inverse_square`, `magnetic`.",
       .fields = {field<&SceneField::name>("name", "", kNotEmpty, "Unique."),
-                 choice<FieldDesc::Kind::kUniform, kDesc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kUniform, desc, &FieldDesc::kind>(
                      group("uniform", uniform_kind, "Like gravity.")),
-                 choice<FieldDesc::Kind::kInverseSquare, kDesc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kInverseSquare, desc, &FieldDesc::kind>(
                      group("inverse_square", inverse_square_kind, "Like a planet's.")),
-                 choice<FieldDesc::Kind::kMagnetic, kDesc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kMagnetic, desc, &FieldDesc::kind>(
                      group("magnetic", magnetic_kind, "A magnet's."))},
       .defaults = defaults_of<SceneField>,
       .check = check_field};
@@ -521,32 +516,31 @@ JsonNode Codec<ScenePin>::schema(const Rule& rule) {
 
 template <>
 std::span<const EnumName> names_of<RopeDesc::StiffnessOf>() {
-  static constexpr EnumName kNames[] = {{"rope", static_cast<int>(RopeDesc::StiffnessOf::kRope)},
-                                        {"segment", static_cast<int>(RopeDesc::StiffnessOf::kSegment)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"rope", static_cast<int>(RopeDesc::StiffnessOf::kRope)},
+                                       {"segment", static_cast<int>(RopeDesc::StiffnessOf::kSegment)}};
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<ClothDesc::Bend>() {
-  static constexpr EnumName kNames[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
-                                        {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
-                                        {"none", static_cast<int>(ClothDesc::Bend::kNone)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
+                                       {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
+                                       {"none", static_cast<int>(ClothDesc::Bend::kNone)}};
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<ParticlesDesc::Direction>() {
-  static constexpr EnumName kNames[] = {
-      {"explicit", static_cast<int>(ParticlesDesc::Direction::kExplicit)},
-      {"predicted", static_cast<int>(ParticlesDesc::Direction::kPredicted)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"explicit", static_cast<int>(ParticlesDesc::Direction::kExplicit)},
+                                       {"predicted", static_cast<int>(ParticlesDesc::Direction::kPredicted)}};
+  return names;
 }
 
 template <>
 std::span<const EnumName> names_of<ParticlesDesc::Damping>() {
-  static constexpr EnumName kNames[] = {{"central", static_cast<int>(ParticlesDesc::Damping::kCentral)},
-                                        {"isotropic", static_cast<int>(ParticlesDesc::Damping::kIsotropic)}};
-  return kNames;
+  static constexpr EnumName names[] = {{"central", static_cast<int>(ParticlesDesc::Damping::kCentral)},
+                                       {"isotropic", static_cast<int>(ParticlesDesc::Damping::kIsotropic)}};
+  return names;
 }
 
 }  // namespace hooke::io

@@ -51,7 +51,8 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "ropes": [{"stiffness": 0}]})",
      {R"(1:40: ropes[0].stiffness: 0 is out of range, must be greater than 0 or "rigid")"}},
     {R"({"version": 1, "ropes": [{"stiffness": "stiff"}]})",
-     {R"(1:40: ropes[0].stiffness: 'stiff' is a string, must be a number or "rigid" (in N/m, without a unit))"}},
+     {R"(1:40: ropes[0].stiffness: 'stiff' is a string, must be a number or "rigid" (in N/m,)"
+      R"( without a unit))"}},
     {R"({"version": 1, "ropes": [{"pins": [16]}]})",
      {"1:36: ropes[0].pins[0]: 16 is out of range, must be 0 to 15"}},
     {R"({"version": 1, "ropes": [{"pins": [{"row": 0}]}]})",
@@ -90,7 +91,8 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "particles": [{}]})", {"1:30: particles[0]: needs 'particles'"}},
     {R"({"version": 1, "particles": [{"particles": []}]})",
      {"1:44: particles[0].particles: has 0 elements, must have at least 1"}},
-    {R"({"version": 1, "particles": [{"particles": [{"position": [0, 0, 0]}], "springs": [{"a": 0, "b": 1}]}]})",
+    {R"({"version": 1, "particles": [{"particles": [{"position": [0, 0, 0]}],)"
+     R"( "springs": [{"a": 0, "b": 1}]}]})",
      {"1:97: particles[0].springs[0].b: 1 is out of range, must be 0 to 0"}},
     {R"({"version": 1, "meshes": {"m": {}}})",
      {"1:32: meshes.m: needs either 'file' or 'vertices' and 'triangles'"}},
@@ -99,7 +101,7 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "meshes": {"m": {"file": "/etc/passwd"}}})",
      {"1:41: meshes.m.file: '/etc/passwd' is outside of the scene's folder"}},
     {R"({"version": 1, "meshes": {"m": {"vertices": [[0, 0, 0]], "triangles": [[0, 1, 2]]}}})",
-     {"1:32: meshes.m: a triangle has the corner 1, there are 1 vertices"}},
+     {"1:32: meshes.m: a triangle has the corner 2, there are 1 vertices"}},
     {R"({"version": 1, "materials": {"m": {"color": [2, 0, 0]}}})",
      {"1:46: materials.m.color[0]: 2 is out of range, must be 0 to 1"}},
     {R"({"version": 1, "timeline": [{"at_step": -1, "remove": "x"}]})",
@@ -109,11 +111,14 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "timeline": [{"at_step": 1}]})",
      {"1:29: timeline[0]: needs one of 'add', 'remove', 'motion', 'unpin', 'force', 'impulse', 'wind', "
       "'gravity'"}},
-    {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}, {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
+    {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]},)"
+     R"( {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
      {"1:26: camera: the times of the path must increase; keyframe 1 does not"}},
-    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]", "op": "<", "value": 1}]})",
+    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]",)"
+     R"( "op": "<", "value": 1}]})",
      {"1:42: expect[0]: this quantity needs 'point'"}},
-    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]", "point": 16, "op": "<", "value": 1}]})",
+    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]",)"
+     R"( "point": 16, "op": "<", "value": 1}]})",
      {"1:92: expect[0].point: 16 is out of range, must be 0 to 15"}},
     {R"({"version": 1, "expect": [{"quantity": "tension", "op": "<", "value": 1}]})",
      {"1:27: expect[0]: this quantity needs 'of', the name of an object"}},
