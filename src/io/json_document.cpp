@@ -285,6 +285,15 @@ std::vector<JsonError> parse_json(std::string source, std::string name, JsonDocu
     return errors;
   }
   document.source = std::move(source);
+  const auto breaks = std::count_if(document.source.begin(), document.source.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < ' '; });
+  if (static_cast<std::size_t>(breaks) > kMostJsonBreaks) {
+    errors.push_back({0,
+                      {ErrorCode::kLimitExceeded, "",
+                       "more than " + std::to_string(kMostJsonBreaks) + " line ends and tabs in one file"}});
+    document.source.clear();
+    return errors;
+  }
   find_lines(document);
   TreeBuilder builder(document, errors);
   try {

@@ -14,6 +14,8 @@ namespace hooke::io {
 inline constexpr std::size_t kLargestJson = std::size_t{64} << 20U;
 inline constexpr std::size_t kDeepestJson = 64;
 inline constexpr std::size_t kMostJsonValues = 2'000'000;
+/// Line ends and tabs. The parser spells out those before a mistake one by one, which takes time.
+inline constexpr std::size_t kMostJsonBreaks = 8'000'000;
 /// Errors of one file that are reported.
 inline constexpr std::size_t kMostErrors = 100;
 

@@ -472,11 +472,13 @@ void check_scene(const Scene& scene, const JsonDocument& document, bool look_for
                  std::vector<JsonError>& errors) {
   const bool clean = errors.empty();
   Checker checker(scene, document, errors);
+  // Too many objects are not looked at one by one.
+  if (clean) checker.check_total();
+  if (clean && !errors.empty()) return;
   checker.collect_names();
   checker.check_files(look_for_files);
   checker.check_references();
   checker.check_points();
-  if (clean) checker.check_total();
 }
 
 }  // namespace hooke::io

@@ -131,6 +131,11 @@ TEST_SUITE("io/scene_hostile") {
           "demo.json:1:4000000: more than 2000000 values in one file");
   }
 
+  TEST_CASE("a file of too many empty lines is not parsed") {
+    CHECK(first_line(hooke::parse_scene(std::string(9'000'000, '\n'), "demo.json")) ==
+          "demo.json:1:1: more than 8000000 line ends and tabs in one file");
+  }
+
   TEST_CASE("a file that is too large is not parsed") {
     CHECK(first_line(hooke::parse_scene(std::string((std::size_t{64} << 20U) + 1, ' '), "demo.json")) ==
           "demo.json:1:1: the file is larger than 64 MiB");
