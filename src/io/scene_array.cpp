@@ -1,0 +1,77 @@
+#include "hooke/scene_io.h"
+
+#include <algorithm>
+
+namespace hooke {
+
+namespace {
+
+/// splitmix64 (Steele et al. 2014): the same numbers on every machine.
+std::uint64_t mixed(std::uint64_t word) {
+  word += 0x9E3779B97F4A7C15ULL;
+  word = (word ^ (word >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  word = (word ^ (word >> 27U)) * 0x94D049BB133111EBULL;
+  return word ^ (word >> 31U);
+}
+
+/// Uniform in [low, high): the upper 53 bits are exact in a double.
+double uniform(std::uint64_t word, double low, double high) {
+  constexpr double unit = 1.0 / 9007199254740992.0;  // 2^-53
+  return low + (high - low) * (static_cast<double>(mixed(word) >> 11U) * unit);
+}
+
+std::size_t positive(std::int32_t n) {
+  return static_cast<std::size_t>(std::max(n, 0));
+}
+
+DVec3 scaled(DVec3 spacing, double x, double y, double z) {
+  return {x * spacing.x, y * spacing.y, z * spacing.z};
+}
+
+}  // namespace
+
+std::size_t SceneArray::count() const {
+  constexpr std::size_t far = std::size_t{1} << 40U;
+  switch (kind) {
+    case Kind::kSingle:
+      return 1;
+    case Kind::kGrid: {
+      const std::size_t area = positive(grid[0]) * positive(grid[1]);
+      const std::size_t layers = positive(grid[2]);
+      return layers > 0 && area > far / layers ? far : area * layers;
+    }
+    case Kind::kPyramid:
+      return positive(pyramid) * (positive(pyramid) + 1) / 2;
+    case Kind::kRandom:
+      return positive(random);
+  }
+  return 0;
+}
+
+DVec3 SceneArray::offset(std::size_t i) const {
+  if (i >= count()) return {};
+  if (kind == Kind::kGrid) {
+    const std::size_t columns = positive(grid[0]);
+    const std::size_t area = columns * positive(grid[1]);
+    const std::size_t row = i % area / columns;
+    const std::size_t layer = i / area;
+    return scaled(spacing, static_cast<double>(i % columns), static_cast<double>(row),
+                  static_cast<double>(layer));
+  }
+  if (kind == Kind::kPyramid) {
+    std::size_t row = 0;
+    std::size_t length = positive(pyramid);
+    for (; i >= length; --length, ++row) i -= length;
+    // Each row is centered on the one below.
+    return scaled(spacing, static_cast<double>(i) + 0.5 * static_cast<double>(row), static_cast<double>(row),
+                  0);
+  }
+  if (kind == Kind::kRandom) {
+    const std::uint64_t first = mixed(seed) + 3 * static_cast<std::uint64_t>(i);
+    return {uniform(first, box[0].x, box[1].x), uniform(first + 1, box[0].y, box[1].y),
+            uniform(first + 2, box[0].z, box[1].z)};
+  }
+  return {};
+}
+
+}  // namespace hooke

@@ -1,0 +1,338 @@
+#include "io/scene_check.h"
+#include "io/scene_data.h"
+#include "io/scene_source.h"
+
+#include <algorithm>
+
+namespace hooke::io {
+
+namespace {
+
+/// Builds the objects of one list after another, instance by instance.
+class Builder {
+ public:
+  Builder(SimulationData& data, std::vector<Error>& errors) : data_(data), errors_(errors) {}
+
+  void build(const SceneBody& body, const std::string& path);
+  void build(const SceneRope& rope, const std::string& path);
+  void build(const SceneCloth& cloth, const std::string& path);
+  void build(const SceneParticles& particles, const std::string& path);
+  void build(const SceneField& field, const std::string& path);
+
+ private:
+  [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
+  void fail(const std::string& path, ErrorCode code, std::string reason) {
+    if (!full()) errors_.push_back(error_at(data_.scene.source.get(), path, code, std::move(reason)));
+  }
+  bool reserve(std::size_t points, const std::string& path);
+  [[nodiscard]] const SceneMaterial* find_material(const std::string& name) const;
+  [[nodiscard]] Real friction_of(const SceneTag& tag) const;
+  [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
+                                        std::size_t instance) const;
+  template <class IdType>
+  bool keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added);
+  /// Points of one instance that a pin holds.
+  std::vector<std::uint32_t> pick(const ScenePin& pin, const std::vector<DVec3>& points, std::size_t columns);
+  std::vector<PinDesc> pins_of(const std::vector<ScenePin>& pins, const std::vector<DVec3>& points,
+                               std::size_t columns, const std::string& path);
+
+  SimulationData& data_;
+  std::vector<Error>& errors_;
+};
+
+bool Builder::reserve(std::size_t points, const std::string& path) {
+  data_.points += points;
+  if (data_.points <= kMostScenePoints) return true;
+  fail(path, ErrorCode::kLimitExceeded,
+       "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
+  return false;
+}
+
+const SceneMaterial* Builder::find_material(const std::string& name) const {
+  const auto found = data_.material_of.find(name);
+  return found == data_.material_of.end() ? nullptr : &data_.scene.materials[found->second];
+}
+
+Real Builder::friction_of(const SceneTag& tag) const {
+  if (tag.friction.has_value()) return *tag.friction;
+  const SceneMaterial* material = find_material(tag.material);
+  return material != nullptr ? material->friction : ContactDesc{}.friction;
+}
+
+SceneObject Builder::make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
+                                 std::size_t instance) const {
+  SceneObject object;
+  object.name = tag.name.empty() ? path : tag.name;
+  if (tag.array.kind != SceneArray::Kind::kSingle) object.name = indexed(object.name, instance);
+  object.kind = kind;
+  object.path = path;
+  object.material = tag.material;
+  const SceneMaterial* material = find_material(tag.material);
+  if (material != nullptr) object.look = *material;
+  return object;
+}
+
+template <class IdType>
+bool Builder::keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added) {
+  if (!added) {
+    if (!full()) errors_.push_back(scene_error(data_.scene, object.path, added.error()));
+    return false;
+  }
+  object.*member = added.value();
+  data_.row_of[object.name] = data_.objects.size();
+  data_.objects.push_back(std::move(object));
+  return true;
+}
+
+std::vector<std::uint32_t> Builder::pick(const ScenePin& pin, const std::vector<DVec3>& points,
+                                         std::size_t columns) {
+  const std::size_t rows = columns > 0 ? points.size() / columns : 0;
+  const std::size_t lines = pin.pick == ScenePin::Pick::kPoint    ? points.size()
+                            : pin.pick == ScenePin::Pick::kColumn ? columns
+                                                                  : rows;
+  const std::size_t line = pin.point.last && lines > 0 ? lines - 1 : pin.point.index;
+  const auto highest = std::max_element(points.begin(), points.end(),
+                                        [](const DVec3& a, const DVec3& b) { return a.y < b.y; });
+  const auto picked = [&](std::size_t i) {
+    switch (pin.pick) {
+      case ScenePin::Pick::kPoint:
+        return i == line;
+      case ScenePin::Pick::kColumn:
+        return columns > 0 && i % columns == line;
+      case ScenePin::Pick::kRow:
+        return columns > 0 && i / columns == line;
+      case ScenePin::Pick::kTopmost:
+        return points[i].y >= highest->y - static_cast<double>(pin.within);
+    }
+    return false;
+  };
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (picked(i)) result.push_back(static_cast<std::uint32_t>(i));
+  }
+  return result;
+}
+
+std::vector<PinDesc> Builder::pins_of(const std::vector<ScenePin>& pins, const std::vector<DVec3>& points,
+                                      std::size_t columns, const std::string& path) {
+  std::vector<PinDesc> result;
+  std::vector<bool> held(points.size(), false);
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    const std::vector<std::uint32_t> picked = pick(pins[i], points, columns);
+    if (picked.empty()) fail(indexed(path + ".pins", i), ErrorCode::kOutOfRange, "there is no such point");
+    for (const std::uint32_t point : picked) {
+      // The first pin of a point counts: a corner belongs to a row and to a column.
+      if (!held[point]) result.push_back({.point = point, .motion = pins[i].motion});
+      held[point] = true;
+    }
+  }
+  return result;
+}
+
+std::vector<LoadDesc> loads_of(const std::vector<SceneLoad>& loads, std::size_t count) {
+  std::vector<LoadDesc> result;
+  for (const SceneLoad& load : loads) {
+    const std::size_t index = load.point.last && count > 0 ? count - 1 : load.point.index;
+    result.push_back({.point = static_cast<std::uint32_t>(index), .mass = load.mass});
+  }
+  return result;
+}
+
+std::vector<DVec3> points_of(const RopeDesc& rope) {
+  if (!rope.points.empty()) return rope.points;
+  const auto segments = static_cast<double>(std::max(rope.masses - 1, 1));
+  const DVec3 step =
+      (static_cast<double>(rope.length_at_rest) / segments) * normalize(vector_cast<double>(rope.direction));
+  std::vector<DVec3> points(static_cast<std::size_t>(std::max(rope.masses, 0)));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = rope.hook_point + static_cast<double>(i) * step;
+  }
+  return points;
+}
+
+std::vector<DVec3> points_of(const ClothDesc& cloth, const Model* model) {
+  std::vector<DVec3> points;
+  if (model != nullptr) {
+    const Quaternion<double> turn = {cloth.rotation.x, cloth.rotation.y, cloth.rotation.z, cloth.rotation.w};
+    for (const Vec3& vertex : model->mesh.positions) {
+      points.push_back(cloth.position + rotate(normalize(turn), vector_cast<double>(vertex)));
+    }
+    return points;
+  }
+  const DVec3 right = (static_cast<double>(cloth.width) / std::max(cloth.columns - 1, 1)) *
+                      normalize(vector_cast<double>(cloth.column_direction));
+  const DVec3 down = (static_cast<double>(cloth.height) / std::max(cloth.rows - 1, 1)) *
+                     normalize(vector_cast<double>(cloth.row_direction));
+  for (int row = 0; row < cloth.rows; ++row) {
+    for (int column = 0; column < cloth.columns; ++column) {
+      points.push_back(cloth.corner + static_cast<double>(column) * right + static_cast<double>(row) * down);
+    }
+  }
+  return points;
+}
+
+double length_of(const std::vector<DVec3>& points) {
+  double sum = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += length(points[i] - points[i - 1]);
+  return sum;
+}
+
+void Builder::build(const SceneBody& body, const std::string& path) {
+  BodyDesc desc = body.desc;
+  desc.contact.friction = friction_of(body.tag);
+  SceneModel model;
+  if (desc.shape.kind == ShapeKind::kMesh) {
+    model = data_.models[body.mesh];
+    desc.shape.mesh = model.id;
+  }
+  for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
+    if (!reserve(1, path)) return;
+    desc.position = body.desc.position + body.tag.array.offset(i);
+    SceneObject object = make_object(body.tag, SceneObject::Kind::kBody, path, i);
+    object.shape = desc.shape;
+    object.model = model.model;
+    if (!keep(object, &SceneObject::body, data_.world.add_body(desc))) return;
+  }
+}
+
+void Builder::build(const SceneRope& rope, const std::string& path) {
+  RopeDesc desc = rope.desc;
+  const std::vector<DVec3> points = points_of(desc);
+  desc.contact.friction = friction_of(rope.tag);
+  desc.pins = pins_of(rope.pins, points, 0, path);
+  desc.loads = loads_of(rope.loads, points.size());
+  for (std::size_t i = 0; i < rope.tag.array.count() && !full(); ++i) {
+    if (!reserve(points.size(), path)) return;
+    const DVec3 offset = rope.tag.array.offset(i);
+    desc.hook_point = rope.desc.hook_point + offset;
+    for (std::size_t k = 0; k < desc.points.size(); ++k) desc.points[k] = rope.desc.points[k] + offset;
+    SceneObject object = make_object(rope.tag, SceneObject::Kind::kRope, path, i);
+    object.radius = desc.radius;
+    object.rest_length = desc.points.empty() ? static_cast<double>(desc.length_at_rest) : length_of(points);
+    if (!keep(object, &SceneObject::rope, data_.world.add_rope(desc))) return;
+  }
+}
+
+void Builder::build(const SceneCloth& cloth, const std::string& path) {
+  ClothDesc desc = cloth.desc;
+  SceneModel model;
+  if (!cloth.mesh.empty()) {
+    model = data_.models[cloth.mesh];
+    desc.mesh = model.id;
+  }
+  const std::vector<DVec3> points = points_of(desc, model.model.get());
+  const std::size_t columns = model.model == nullptr ? static_cast<std::size_t>(desc.columns) : 0;
+  desc.contact.friction = friction_of(cloth.tag);
+  desc.pins = pins_of(cloth.pins, points, columns, path);
+  desc.loads = loads_of(cloth.loads, points.size());
+  for (std::size_t i = 0; i < cloth.tag.array.count() && !full(); ++i) {
+    if (!reserve(points.size(), path)) return;
+    desc.corner = cloth.desc.corner + cloth.tag.array.offset(i);
+    desc.position = cloth.desc.position + cloth.tag.array.offset(i);
+    SceneObject object = make_object(cloth.tag, SceneObject::Kind::kCloth, path, i);
+    object.radius = Real(0.5) * desc.thickness;
+    object.columns = static_cast<std::uint32_t>(columns);
+    object.rows = columns > 0 ? static_cast<std::uint32_t>(desc.rows) : 0;
+    object.model = model.model;
+    if (!keep(object, &SceneObject::cloth, data_.world.add_cloth(desc))) return;
+  }
+}
+
+void Builder::build(const SceneParticles& particles, const std::string& path) {
+  ParticlesDesc desc = particles.desc;
+  std::vector<DVec3> points;
+  for (const ParticleDesc& particle : desc.particles) points.push_back(particle.position);
+  desc.contact.friction = friction_of(particles.tag);
+  desc.pins = pins_of(particles.pins, points, 0, path);
+  for (std::size_t i = 0; i < particles.tag.array.count() && !full(); ++i) {
+    if (!reserve(points.size(), path)) return;
+    const DVec3 offset = particles.tag.array.offset(i);
+    for (std::size_t k = 0; k < points.size(); ++k) desc.particles[k].position = points[k] + offset;
+    SceneObject object = make_object(particles.tag, SceneObject::Kind::kParticles, path, i);
+    object.radius = desc.particles.front().radius;
+    if (!keep(object, &SceneObject::particles, data_.world.add_particles(desc))) return;
+  }
+}
+
+void Builder::build(const SceneField& field, const std::string& path) {
+  SceneObject object;
+  object.name = field.name.empty() ? path : field.name;
+  object.kind = SceneObject::Kind::kField;
+  object.path = path;
+  keep(object, &SceneObject::field, data_.world.add_field(field.desc));
+}
+
+Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
+  if (mesh.file.empty()) return model_of(mesh.mesh);
+  const Result<std::string> file = locate_file(scene.path, mesh.file);
+  if (!file) return file.error();
+  return import_model(file.value(), mesh.import);
+}
+
+template <class T>
+void build_list(Builder& builder, const std::vector<T>& list, const std::string& name) {
+  for (std::size_t i = 0; i < list.size(); ++i) builder.build(list[i], indexed(name, i));
+}
+
+}  // namespace
+
+void build_meshes(SimulationData& data, std::vector<Error>& errors) {
+  for (const SceneMesh& mesh : data.scene.meshes) {
+    const std::string path = "meshes." + mesh.name;
+    Result<Model> read = read_model(data.scene, mesh);
+    if (!read) {
+      errors.push_back(
+          error_at(data.scene.source.get(), path + ".file", read.error().code, read.error().message));
+      continue;
+    }
+    auto model = std::make_shared<Model>(std::move(read).value());
+    const Result<MeshId> added = data.world.add_mesh(model->mesh);
+    if (!added) {
+      errors.push_back(scene_error(data.scene, path, added.error()));
+      continue;
+    }
+    data.models[mesh.name] = {.id = added.value(), .model = std::move(model)};
+  }
+}
+
+void build_objects(const SceneObjects& objects, const std::string& prefix, SimulationData& data,
+                   std::vector<Error>& errors) {
+  Builder builder(data, errors);
+  build_list(builder, objects.bodies, prefix + "bodies");
+  build_list(builder, objects.ropes, prefix + "ropes");
+  build_list(builder, objects.cloths, prefix + "cloths");
+  build_list(builder, objects.particles, prefix + "particles");
+  build_list(builder, objects.fields, prefix + "fields");
+}
+
+void index_objects(SimulationData& data) {
+  data.row_of.clear();
+  for (std::size_t i = 0; i < data.objects.size(); ++i) data.row_of[data.objects[i].name] = i;
+}
+
+PointRef point_of(const World& world, const SceneObject& object, ScenePoint wanted) {
+  const auto index = [&](std::size_t count) {
+    return wanted.last && count > 0 ? static_cast<std::uint32_t>(count - 1) : wanted.index;
+  };
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return point(object.rope, index(world.positions(object.rope).size()));
+    case SceneObject::Kind::kCloth:
+      return point(object.cloth, index(world.positions(object.cloth).size()));
+    case SceneObject::Kind::kParticles:
+      return point(object.particles, index(world.positions(object.particles).size()));
+    default:
+      return {};
+  }
+}
+
+Error scene_error(const Scene& scene, const std::string& path, const Error& error) {
+  const std::size_t dot = error.where.find('.');
+  std::string rest = dot == std::string::npos ? "" : error.where.substr(dot);
+  // The world knows the members by their place in the description, where the scene has them in another.
+  if (rest.starts_with(".contact.")) rest.erase(0, std::string_view(".contact").size());
+  if (rest.starts_with(".pins[")) rest = ".pins";
+  return error_at(scene.source.get(), path + rest, error.code, error.message);
+}
+
+}  // namespace hooke::io

@@ -1,0 +1,484 @@
+#include "io/scene_check.h"
+
+#include "io/scene_source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace hooke::io {
+
+namespace {
+
+/// What a name stands for.
+struct NamedObject {
+  std::string path = {};
+  SceneObject::Kind kind = SceneObject::Kind::kBody;
+  bool is_array = false;
+  std::size_t instances = 1;
+  std::size_t points = 0;  ///< Of each instance; 0 if not known.
+};
+
+class Checker {
+ public:
+  Checker(const Scene& scene, const JsonDocument& document, std::vector<JsonError>& errors)
+      : scene_(scene), document_(document), errors_(errors), found_before_(errors.size()) {}
+
+  void collect_names();
+  void check_references();
+  void check_files(bool look);
+  void check_points();
+  void check_total();
+
+ private:
+  void fail(const std::string& path, ErrorCode code, std::string reason) {
+    if (full()) return;
+    errors_.push_back({document_.find_closest(path).offset, {code, path, std::move(reason)}});
+  }
+  [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
+  /// The reader found something wrong here: members may be defaults, and more errors would mislead.
+  [[nodiscard]] bool is_damaged(const std::string& path) const {
+    return std::any_of(errors_.begin(), errors_.begin() + static_cast<std::ptrdiff_t>(found_before_),
+                       [&](const JsonError& one) { return one.error.where.starts_with(path); });
+  }
+  void add_name(const std::string& name, const NamedObject& object);
+  void collect(const SceneObjects& objects, const std::string& prefix);
+  void check_tag(const SceneTag& tag, const std::string& path);
+  void check_mesh_name(const std::string& name, const std::string& path);
+  void check_references(const SceneObjects& objects, const std::string& prefix);
+  void check_event(const SceneEvent& event, const std::string& path);
+  void check_expectation(const SceneExpectation& expectation, const std::string& path);
+  const NamedObject* find_object(const std::string& name, const std::string& path);
+  void check_point(ScenePoint point, std::size_t count, const std::string& path);
+  void check_pins(const std::vector<ScenePin>& pins, std::size_t count, const ClothDesc* grid,
+                  const std::string& path);
+  void check_loads(const std::vector<SceneLoad>& loads, std::size_t count, const std::string& path);
+  void check_points(const SceneObjects& objects, const std::string& prefix);
+  void check_springs(const ParticlesDesc& particles, const std::string& path);
+  void count_points(const SceneObjects& objects, const std::string& prefix);
+
+  const Scene& scene_;
+  const JsonDocument& document_;
+  std::vector<JsonError>& errors_;
+  std::size_t found_before_;
+  std::unordered_map<std::string, NamedObject> objects_;
+  std::unordered_set<std::string> materials_;
+  std::unordered_set<std::string> meshes_;
+  std::size_t total_ = 0;
+  bool names_damaged_ = false;  ///< A name was not read: what refers to it would seem to refer to nothing.
+};
+
+std::size_t saturated_product(std::size_t a, std::size_t b) {
+  constexpr std::size_t far = std::size_t{1} << 40U;
+  if (a == 0 || b == 0) return 0;
+  return a > far / b ? far : a * b;
+}
+
+template <class T>
+std::string closest_name(const std::vector<T>& list, const std::string& name) {
+  for (const T& one : list) {
+    if (edit_distance_up_to_2(one.name, name) <= 2) return ", did you mean " + in_quotes(one.name) + "?";
+  }
+  return "";
+}
+
+void Checker::add_name(const std::string& name, const NamedObject& object) {
+  const std::string& path = object.path;
+  const auto [place, added] = objects_.try_emplace(name.empty() ? path : name, object);
+  if (!added) {
+    fail(path + ".name", ErrorCode::kOutOfRange,
+         in_quotes(name) + " is already the name of " + place->second.path);
+  }
+}
+
+void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
+  const auto add = [&](const SceneTag& tag, const std::string& path, SceneObject::Kind kind,
+                       std::size_t points) {
+    if (is_damaged(path)) points = 0;
+    add_name(tag.name, {path, kind, tag.array.kind != SceneArray::Kind::kSingle, tag.array.count(), points});
+  };
+  for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
+    add(objects.bodies[i].tag, indexed(prefix + "bodies", i), SceneObject::Kind::kBody, 0);
+  }
+  for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
+    const SceneRope& rope = objects.ropes[i];
+    add(rope.tag, indexed(prefix + "ropes", i), SceneObject::Kind::kRope, point_count(rope));
+  }
+  for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
+    const SceneCloth& cloth = objects.cloths[i];
+    add(cloth.tag, indexed(prefix + "cloths", i), SceneObject::Kind::kCloth, point_count(cloth));
+  }
+  for (std::size_t i = 0; i < objects.particles.size(); ++i) {
+    const SceneParticles& particles = objects.particles[i];
+    add(particles.tag, indexed(prefix + "particles", i), SceneObject::Kind::kParticles,
+        point_count(particles));
+  }
+  for (std::size_t i = 0; i < objects.fields.size(); ++i) {
+    add_name(objects.fields[i].name,
+             {.path = indexed(prefix + "fields", i), .kind = SceneObject::Kind::kField});
+  }
+}
+
+void Checker::collect_names() {
+  for (const SceneMaterial& material : scene_.materials) materials_.insert(material.name);
+  for (const SceneMesh& mesh : scene_.meshes) meshes_.insert(mesh.name);
+  names_damaged_ = std::any_of(errors_.begin(), errors_.end(),
+                               [](const JsonError& one) { return one.error.where.ends_with(".name"); });
+  collect(scene_.objects, "");
+  for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
+    collect(scene_.timeline[i].add, indexed("timeline", i) + ".add.");
+  }
+}
+
+void Checker::check_tag(const SceneTag& tag, const std::string& path) {
+  if (tag.material.empty() || materials_.contains(tag.material) || full()) return;
+  fail(path + ".material", ErrorCode::kOutOfRange,
+       "there is no material " + in_quotes(tag.material) + closest_name(scene_.materials, tag.material));
+}
+
+void Checker::check_mesh_name(const std::string& name, const std::string& path) {
+  if (name.empty() || meshes_.contains(name) || full()) return;
+  fail(path, ErrorCode::kOutOfRange,
+       "there is no mesh " + in_quotes(name) + closest_name(scene_.meshes, name));
+}
+
+void Checker::check_references(const SceneObjects& objects, const std::string& prefix) {
+  for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
+    const std::string path = indexed(prefix + "bodies", i);
+    check_tag(objects.bodies[i].tag, path);
+    check_mesh_name(objects.bodies[i].mesh, path + ".shape.mesh");
+  }
+  for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
+    check_tag(objects.ropes[i].tag, indexed(prefix + "ropes", i));
+  }
+  for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
+    const std::string path = indexed(prefix + "cloths", i);
+    check_tag(objects.cloths[i].tag, path);
+    check_mesh_name(objects.cloths[i].mesh, path + ".mesh");
+  }
+  for (std::size_t i = 0; i < objects.particles.size(); ++i) {
+    check_tag(objects.particles[i].tag, indexed(prefix + "particles", i));
+  }
+}
+
+const NamedObject* Checker::find_object(const std::string& name, const std::string& path) {
+  if (full() || names_damaged_) return nullptr;
+  std::string base = name;
+  std::optional<std::size_t> instance;
+  auto found = objects_.find(base);
+  const std::size_t bracket = name.rfind('[');
+  if (found == objects_.end() && bracket != std::string::npos && name.ends_with(']')) {
+    std::size_t index = 0;
+    const char* end = name.data() + name.size() - 1;
+    const auto parsed = std::from_chars(name.data() + bracket + 1, end, index);
+    if (parsed.ec == std::errc() && parsed.ptr == end) instance = index;
+    found = objects_.find(base = name.substr(0, bracket));
+  }
+  if (found == objects_.end()) {
+    std::string hint;
+    for (const auto& [known, object] : objects_) {
+      const bool better = hint.empty() || known < hint;
+      if (better && edit_distance_up_to_2(known, base) <= 2) hint = known;
+    }
+    hint = hint.empty() ? "" : ", did you mean " + in_quotes(hint) + "?";
+    fail(path, ErrorCode::kOutOfRange, "there is no object " + in_quotes(name) + hint);
+    return nullptr;
+  }
+  const NamedObject& object = found->second;
+  if (object.is_array != instance.has_value()) {
+    fail(path, ErrorCode::kOutOfRange,
+         in_quotes(base) + (object.is_array
+                                ? " is an array, name one of its objects as " + in_quotes(base + "[0]")
+                                : " is not an array"));
+    return nullptr;
+  }
+  if (instance.has_value() && *instance >= object.instances) {
+    fail(path, ErrorCode::kOutOfRange,
+         in_quotes(base) + " has " + std::to_string(object.instances) + " objects");
+    return nullptr;
+  }
+  return &object;
+}
+
+void Checker::check_point(ScenePoint point, std::size_t count, const std::string& path) {
+  if (point.last || count == 0 || point.index < count) return;
+  fail(path, ErrorCode::kOutOfRange,
+       std::to_string(point.index) + " is out of range, must be 0 to " + std::to_string(count - 1));
+}
+
+const char* key_of(SceneEvent::Kind kind) {
+  switch (kind) {
+    case SceneEvent::Kind::kMotion:
+      return ".motion";
+    case SceneEvent::Kind::kUnpin:
+      return ".unpin";
+    case SceneEvent::Kind::kForce:
+      return ".force";
+    case SceneEvent::Kind::kImpulse:
+      return ".impulse";
+    default:
+      return "";
+  }
+}
+
+void Checker::check_event(const SceneEvent& event, const std::string& path) {
+  if (is_damaged(path)) return;
+  if (event.kind == SceneEvent::Kind::kRemove) {
+    find_object(event.object, path + ".remove");
+    return;
+  }
+  const std::string inner = path + key_of(event.kind);
+  if (inner == path) return;
+  const NamedObject* object = find_object(event.object, inner + ".object");
+  if (object == nullptr) return;
+  if (object->kind == SceneObject::Kind::kBody || object->kind == SceneObject::Kind::kField) {
+    fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
+    return;
+  }
+  check_point(event.point, object->points, inner + ".point");
+}
+
+/// What a quantity is measured on.
+enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope };
+
+Subject subject_of(SceneExpectation::Quantity quantity) {
+  using Quantity = SceneExpectation::Quantity;
+  switch (quantity) {
+    case Quantity::kX:
+    case Quantity::kY:
+    case Quantity::kZ:
+    case Quantity::kHeight:
+    case Quantity::kSpeed:
+      return Subject::kPoint;
+    case Quantity::kLowest:
+    case Quantity::kHighest:
+      return Subject::kObject;
+    case Quantity::kExtension:
+    case Quantity::kTension:
+      return Subject::kRope;
+    default:
+      return Subject::kWorld;
+  }
+}
+
+void Checker::check_expectation(const SceneExpectation& expectation, const std::string& path) {
+  if (is_damaged(path)) return;
+  const Subject subject = subject_of(expectation.quantity);
+  if (subject == Subject::kWorld) {
+    if (!expectation.of.empty()) {
+      fail(path + ".of", ErrorCode::kOutOfRange,
+           "this quantity is measured on the whole world, without 'of'");
+    }
+    return;
+  }
+  if (expectation.of.empty()) {
+    fail(path, ErrorCode::kOutOfRange, "this quantity needs 'of', the name of an object");
+    return;
+  }
+  const NamedObject* object = find_object(expectation.of, path + ".of");
+  if (object == nullptr) return;
+  const bool body = object->kind == SceneObject::Kind::kBody;
+  if (object->kind == SceneObject::Kind::kField || (body && subject != Subject::kPoint)) {
+    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " has no points");
+  } else if (subject == Subject::kRope && object->kind != SceneObject::Kind::kRope) {
+    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " is not a rope");
+  } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
+    fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
+  } else if (expectation.point.has_value() && object->points > 0) {
+    const bool segment = expectation.quantity == SceneExpectation::Quantity::kTension;
+    check_point(*expectation.point, object->points - (segment ? 1 : 0), path + ".point");
+  }
+}
+
+void Checker::check_references() {
+  check_references(scene_.objects, "");
+  for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
+    const std::string path = indexed("timeline", i);
+    check_references(scene_.timeline[i].add, path + ".add.");
+    check_event(scene_.timeline[i], path);
+  }
+  for (std::size_t i = 0; i < scene_.expect.size(); ++i) {
+    check_expectation(scene_.expect[i], indexed("expect", i));
+  }
+}
+
+void Checker::check_files(bool look) {
+  const auto check = [&](const std::string& file, const std::string& path) {
+    if (file.empty()) return;
+    const Result<std::string> found = locate_file(scene_.path, file);
+    if (!found) {
+      fail(path, found.error().code, found.error().message);
+      return;
+    }
+    std::error_code failure;
+    if (look && !std::filesystem::is_regular_file(found.value(), failure)) {
+      fail(path, ErrorCode::kFileNotReadable, "no such file " + in_quotes(file));
+    }
+  };
+  for (const SceneMesh& mesh : scene_.meshes) check(mesh.file, "meshes." + mesh.name + ".file");
+  for (const SceneMaterial& material : scene_.materials) {
+    check(material.texture, "materials." + material.name + ".texture");
+  }
+}
+
+void Checker::check_pins(const std::vector<ScenePin>& pins, std::size_t count, const ClothDesc* grid,
+                         const std::string& path) {
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    const ScenePin& pin = pins[i];
+    const std::string where = indexed(path + ".pins", i);
+    if (pin.pick == ScenePin::Pick::kPoint) {
+      const bool short_form = document_.find_closest(where).kind != JsonNode::Kind::kObject;
+      check_point(pin.point, count, short_form ? where : where + ".point");
+      continue;
+    }
+    if (pin.pick == ScenePin::Pick::kTopmost) continue;
+    const bool column = pin.pick == ScenePin::Pick::kColumn;
+    const std::string key = where + (column ? ".column" : ".row");
+    if (grid == nullptr) {
+      fail(key, ErrorCode::kOutOfRange, "is for the grid of a cloth only");
+      continue;
+    }
+    check_point(pin.point, static_cast<std::size_t>(column ? grid->columns : grid->rows), key);
+  }
+}
+
+void Checker::check_loads(const std::vector<SceneLoad>& loads, std::size_t count, const std::string& path) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    check_point(loads[i].point, count, indexed(path + ".loads", i) + ".point");
+  }
+}
+
+void Checker::check_springs(const ParticlesDesc& particles, const std::string& path) {
+  for (std::size_t i = 0; i < particles.springs.size(); ++i) {
+    const SpringDesc& spring = particles.springs[i];
+    const std::size_t count = particles.particles.size();
+    if (spring.a < count && spring.b < count && spring.a != spring.b) continue;
+    const std::string where = indexed(path + ".springs", i);
+    check_point({.index = spring.a}, count, where + ".a");
+    check_point({.index = spring.b}, count, where + ".b");
+    if (spring.a == spring.b) fail(where, ErrorCode::kOutOfRange, "joins a particle with itself");
+  }
+}
+
+void Checker::check_points(const SceneObjects& objects, const std::string& prefix) {
+  for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
+    const SceneRope& rope = objects.ropes[i];
+    const std::string path = indexed(prefix + "ropes", i);
+    if (is_damaged(path)) continue;
+    check_pins(rope.pins, point_count(rope), nullptr, path);
+    check_loads(rope.loads, point_count(rope), path);
+    if (rope.desc.points.size() == 1) {
+      fail(path + ".points", ErrorCode::kOutOfRange, "has 1 element, must have at least 2");
+    }
+  }
+  for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
+    const SceneCloth& cloth = objects.cloths[i];
+    const std::string path = indexed(prefix + "cloths", i);
+    if (is_damaged(path)) continue;
+    check_pins(cloth.pins, point_count(cloth), cloth.mesh.empty() ? &cloth.desc : nullptr, path);
+    check_loads(cloth.loads, point_count(cloth), path);
+  }
+  for (std::size_t i = 0; i < objects.particles.size(); ++i) {
+    const SceneParticles& particles = objects.particles[i];
+    const std::string path = indexed(prefix + "particles", i);
+    if (is_damaged(path)) continue;
+    check_pins(particles.pins, point_count(particles), nullptr, path);
+    check_springs(particles.desc, path);
+  }
+}
+
+void Checker::check_points() {
+  check_points(scene_.objects, "");
+  for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
+    check_points(scene_.timeline[i].add, indexed("timeline", i) + ".add.");
+  }
+}
+
+void Checker::count_points(const SceneObjects& objects, const std::string& prefix) {
+  const auto count = [&](const SceneTag& tag, std::size_t points, const std::string& path) {
+    if (total_ > kMostScenePoints) return;
+    total_ += saturated_product(tag.array.count(), std::max<std::size_t>(points, 1));
+    if (total_ <= kMostScenePoints) return;
+    fail(path, ErrorCode::kLimitExceeded,
+         "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
+  };
+  for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
+    count(objects.bodies[i].tag, 1, indexed(prefix + "bodies", i));
+  }
+  for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
+    count(objects.ropes[i].tag, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));
+  }
+  for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
+    count(objects.cloths[i].tag, point_count(objects.cloths[i]), indexed(prefix + "cloths", i));
+  }
+  for (std::size_t i = 0; i < objects.particles.size(); ++i) {
+    const SceneParticles& particles = objects.particles[i];
+    count(particles.tag, point_count(particles), indexed(prefix + "particles", i));
+  }
+}
+
+void Checker::check_total() {
+  count_points(scene_.objects, "");
+  for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
+    count_points(scene_.timeline[i].add, indexed("timeline", i) + ".add.");
+  }
+}
+
+}  // namespace
+
+std::size_t point_count(const SceneRope& rope) {
+  return rope.desc.points.empty() ? static_cast<std::size_t>(std::max(rope.desc.masses, 0))
+                                  : rope.desc.points.size();
+}
+
+std::size_t point_count(const SceneCloth& cloth) {
+  if (!cloth.mesh.empty()) return 0;
+  return static_cast<std::size_t>(std::max(cloth.desc.columns, 0)) *
+         static_cast<std::size_t>(std::max(cloth.desc.rows, 0));
+}
+
+std::size_t point_count(const SceneParticles& particles) {
+  return particles.desc.particles.size();
+}
+
+Result<std::string> locate_file(const std::string& scene_path, const std::string& file) {
+  namespace fs = std::filesystem;
+  const Error outside = {ErrorCode::kOutOfRange, file, in_quotes(file) + " is outside of the scene's folder"};
+  const bool strange = std::any_of(file.begin(), file.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\\'; });
+  if (strange) {
+    return Error{ErrorCode::kOutOfRange, file,
+                 in_quotes(file) + " has a character that a path must not have"};
+  }
+  const fs::path relative = fs::path(file).lexically_normal();
+  if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return outside;
+  const fs::path folder = fs::path(scene_path).parent_path();
+  const fs::path joined = folder.empty() ? relative : folder / relative;
+  // A link inside the folder may still point out of it.
+  std::error_code failure;
+  const fs::path root = fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), failure);
+  if (failure) return joined.string();
+  const fs::path real = fs::weakly_canonical(fs::absolute(joined), failure);
+  if (failure) return joined.string();
+  const auto [end, unused] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
+  static_cast<void>(unused);
+  if (end != root.end() && !end->empty()) return outside;
+  return joined.string();
+}
+
+void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
+                 std::vector<JsonError>& errors) {
+  const bool clean = errors.empty();
+  Checker checker(scene, document, errors);
+  // Too many objects are not looked at one by one.
+  if (clean) checker.check_total();
+  if (clean && !errors.empty()) return;
+  checker.collect_names();
+  checker.check_files(look_for_files);
+  checker.check_references();
+  checker.check_points();
+}
+
+}  // namespace hooke::io

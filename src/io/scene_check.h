@@ -1,0 +1,22 @@
+#pragma once
+
+#include "hooke/scene_io.h"
+
+#include "io/json_document.h"
+
+namespace hooke::io {
+
+/// What only the whole scene can tell: names that refer to nothing or to two things, points that do not
+/// exist, too many points, files outside of the scene's folder. `look_for_files`: they must also be there.
+void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
+                 std::vector<JsonError>& errors);
+
+/// Number of points of one instance; 0 for the cloth of a mesh, which is known once the mesh is read.
+[[nodiscard]] std::size_t point_count(const SceneRope& rope);
+[[nodiscard]] std::size_t point_count(const SceneCloth& cloth);
+[[nodiscard]] std::size_t point_count(const SceneParticles& particles);
+
+/// A file named in a scene, from the folder of the scene. An Error if it is outside of that folder.
+[[nodiscard]] Result<std::string> locate_file(const std::string& scene_path, const std::string& file);
+
+}  // namespace hooke::io

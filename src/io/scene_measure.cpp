@@ -1,0 +1,195 @@
+#include "io/scene_data.h"
+#include "io/scene_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace hooke::io {
+
+namespace {
+
+using Quantity = SceneExpectation::Quantity;
+using Op = SceneExpectation::Op;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+PointView positions_of(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return world.positions(object.rope);
+    case SceneObject::Kind::kCloth:
+      return world.positions(object.cloth);
+    case SceneObject::Kind::kParticles:
+      return world.positions(object.particles);
+    default:
+      return {};
+  }
+}
+
+PointView velocities_of(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return world.velocities(object.rope);
+    case SceneObject::Kind::kCloth:
+      return world.velocities(object.cloth);
+    case SceneObject::Kind::kParticles:
+      return world.velocities(object.particles);
+    default:
+      return {};
+  }
+}
+
+double coordinate(DVec3 position, Quantity quantity) {
+  if (quantity == Quantity::kX) return position.x;
+  return quantity == Quantity::kZ ? position.z : position.y;
+}
+
+double point_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+  const bool speed = wanted.quantity == Quantity::kSpeed;
+  if (object.kind == SceneObject::Kind::kBody) {
+    return speed ? 0.0 : coordinate(world.pose(object.body).position, wanted.quantity);
+  }
+  const PointView view = speed ? velocities_of(world, object) : positions_of(world, object);
+  if (view.empty() || !wanted.point.has_value()) return kNothing;
+  const std::size_t index = wanted.point->last ? view.size() - 1 : wanted.point->index;
+  if (index >= view.size()) return kNothing;
+  if (!speed) return coordinate(view[index], wanted.quantity);
+  return length(vector_cast<double>(view.offset(index)));
+}
+
+double rope_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+  if (wanted.quantity == Quantity::kTension) {
+    const std::vector<Real> tensions = world.tensions(object.rope);
+    if (tensions.empty()) return kNothing;
+    if (!wanted.point.has_value())
+      return static_cast<double>(*std::max_element(tensions.begin(), tensions.end()));
+    const std::size_t index = wanted.point->last ? tensions.size() - 1 : wanted.point->index;
+    return index < tensions.size() ? static_cast<double>(tensions[index]) : kNothing;
+  }
+  const PointView view = world.positions(object.rope);
+  if (view.empty()) return kNothing;
+  double sum = 0;
+  for (std::size_t i = 1; i < view.size(); ++i) sum += length(view[i] - view[i - 1]);
+  return sum - object.rest_length;
+}
+
+double extreme_height(const World& world, const SceneObject& object, bool highest) {
+  const PointView view = positions_of(world, object);
+  double extreme = kNothing;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const double y = view[i].y;
+    if (i == 0 || (highest ? y > extreme : y < extreme)) extreme = y;
+  }
+  return extreme;
+}
+
+double object_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+  switch (wanted.quantity) {
+    case Quantity::kLowest:
+    case Quantity::kHighest:
+      return extreme_height(world, object, wanted.quantity == Quantity::kHighest);
+    case Quantity::kExtension:
+    case Quantity::kTension:
+      return rope_figure(world, object, wanted);
+    default:
+      return point_figure(world, object, wanted);
+  }
+}
+
+double world_figure(const SimulationData& data, Quantity quantity) {
+  const Measurement measured = data.world.measure();
+  switch (quantity) {
+    case Quantity::kLargestStretch:
+      return measured.largest_stretch;
+    case Quantity::kMeanStretch:
+      return measured.mean_stretch;
+    case Quantity::kTotalEnergy:
+      return measured.energy.total();
+    case Quantity::kKineticEnergy:
+      return measured.energy.kinetic;
+    case Quantity::kPotentialEnergy:
+      return measured.energy.potential;
+    case Quantity::kElasticEnergy:
+      return measured.energy.elastic;
+    case Quantity::kMomentum:
+      return length(measured.momentum);
+    case Quantity::kPenetration:
+      return measured.largest_penetration;
+    case Quantity::kContacts:
+      return static_cast<double>(data.contacts);
+    default:
+      return kNothing;
+  }
+}
+
+bool holds(const SceneExpectation& wanted, double achieved) {
+  const double distance = std::abs(achieved - wanted.value);
+  switch (wanted.op) {
+    case Op::kLess:
+      return achieved < wanted.value;
+    case Op::kLessOrEqual:
+      return achieved <= wanted.value;
+    case Op::kGreater:
+      return achieved > wanted.value;
+    case Op::kGreaterOrEqual:
+      return achieved >= wanted.value;
+    case Op::kEqual:
+      return distance <= wanted.tolerance;
+    case Op::kWithin:
+      return distance <= wanted.tolerance * std::abs(wanted.value);
+  }
+  return false;
+}
+
+std::string digits(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::general, 6);
+  return {text, end.ptr};
+}
+
+/// The word of the scene file, with spaces.
+template <class E>
+std::string word_of(E value) {
+  std::string word = Codec<E>::write(value).text;
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
+std::string sentence(const SceneExpectation& wanted, double achieved) {
+  std::string text = word_of(wanted.quantity);
+  if (!wanted.of.empty()) text += " of " + in_quotes(wanted.of);
+  if (wanted.point.has_value()) {
+    const bool segment = wanted.quantity == Quantity::kTension;
+    text += segment ? " segment " : " point ";
+    text += wanted.point->last ? "last" : std::to_string(wanted.point->index);
+  }
+  text += " = " + digits(achieved) + ", expected ";
+  if (wanted.op == Op::kWithin) {
+    return text + digits(wanted.value) + " within " + digits(100 * wanted.tolerance) + " %";
+  }
+  if (wanted.op == Op::kEqual) return text + digits(wanted.value) + " +- " + digits(wanted.tolerance);
+  return text + word_of(wanted.op) + " " + digits(wanted.value);
+}
+
+}  // namespace
+
+SceneVerdict measure_expectation(const SimulationData& data, std::size_t index) {
+  const SceneExpectation& wanted = data.scene.expect[index];
+  SceneVerdict verdict = {.index = index, .achieved = kNothing, .step = data.world.step_count()};
+  if (wanted.of.empty()) {
+    verdict.achieved = world_figure(data, wanted.quantity);
+  } else if (const auto found = data.row_of.find(wanted.of); found != data.row_of.end()) {
+    verdict.achieved = object_figure(data.world, data.objects[found->second], wanted);
+  }
+  verdict.passed = holds(wanted, verdict.achieved);
+  verdict.text = sentence(wanted, verdict.achieved);
+  return verdict;
+}
+
+std::uint32_t due_step(const Scene& scene, const SceneExpectation& expectation) {
+  return expectation.at_step.value_or(scene.step_count());
+}
+
+}  // namespace hooke::io

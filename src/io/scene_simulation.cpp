@@ -1,0 +1,207 @@
+#include "hooke/scene_io.h"
+
+#include "io/scene_data.h"
+#include "io/scene_source.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hooke {
+
+namespace {
+
+void evaluate_due(SimulationData& data) {
+  for (std::size_t i = 0; i < data.scene.expect.size(); ++i) {
+    if (io::due_step(data.scene, data.scene.expect[i]) != data.world.step_count()) continue;
+    data.verdicts.push_back(io::measure_expectation(data, i));
+  }
+}
+
+void record(SimulationData& data, std::size_t event, const Result<void>& done) {
+  if (done || data.errors.size() >= io::kMostErrors) return;
+  data.errors.push_back(io::scene_error(data.scene, io::indexed("timeline", event), done.error()));
+}
+
+Result<void> remove_object(SimulationData& data, const std::string& name) {
+  const auto found = data.row_of.find(name);
+  if (found == data.row_of.end()) {
+    return Error{ErrorCode::kStaleId, "", "there is no object " + io::in_quotes(name) + " any more"};
+  }
+  const SceneObject& object = data.objects[found->second];
+  // Ids of other kinds are null, and removing nothing does nothing.
+  data.world.remove(object.body);
+  data.world.remove(object.rope);
+  data.world.remove(object.cloth);
+  data.world.remove(object.particles);
+  data.world.remove(object.field);
+  data.objects.erase(data.objects.begin() + static_cast<std::ptrdiff_t>(found->second));
+  io::index_objects(data);
+  std::erase_if(data.forces,
+                [&](const ActiveForce& force) { return data.scene.timeline[force.event].object == name; });
+  return {};
+}
+
+Result<void> act_on_point(SimulationData& data, const SceneEvent& event) {
+  const auto found = data.row_of.find(event.object);
+  if (found == data.row_of.end()) {
+    return Error{ErrorCode::kStaleId, "",
+                 "there is no object " + io::in_quotes(event.object) + " at this step"};
+  }
+  const PointRef point = io::point_of(data.world, data.objects[found->second], event.point);
+  switch (event.kind) {
+    case SceneEvent::Kind::kMotion:
+      return data.world.pin(point, event.motion);
+    case SceneEvent::Kind::kUnpin:
+      return data.world.unpin(point);
+    case SceneEvent::Kind::kImpulse:
+      return data.world.apply_impulse(point, event.vector);
+    default:
+      return data.world.apply_force(point, event.vector);
+  }
+}
+
+Result<void> apply_event(SimulationData& data, std::size_t index) {
+  const SceneEvent& event = data.scene.timeline[index];
+  switch (event.kind) {
+    case SceneEvent::Kind::kNone:
+      return {};
+    case SceneEvent::Kind::kAdd:
+      io::build_objects(event.add, io::indexed("timeline", index) + ".add.", data, data.errors);
+      return {};
+    case SceneEvent::Kind::kRemove:
+      return remove_object(data, event.object);
+    case SceneEvent::Kind::kForce:
+      data.forces.push_back({.event = index, .steps_left = event.steps});
+      return {};
+    case SceneEvent::Kind::kWind:
+      return data.world.set_wind(event.wind);
+    case SceneEvent::Kind::kGravity:
+      return data.world.set_gravity(event.vector);
+    default:
+      return act_on_point(data, event);
+  }
+}
+
+void apply_due_events(SimulationData& data) {
+  const std::uint64_t step = data.world.step_count();
+  for (; data.next_event < data.events.size(); ++data.next_event) {
+    const std::size_t event = data.events[data.next_event];
+    if (data.scene.timeline[event].at_step > step) break;
+    record(data, event, apply_event(data, event));
+  }
+  for (ActiveForce& force : data.forces) {
+    record(data, force.event, act_on_point(data, data.scene.timeline[force.event]));
+    --force.steps_left;
+  }
+  std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
+}
+
+Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
+  Result<World> world = World::create(scene.world);
+  if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
+  auto data = std::make_unique<SimulationData>(
+      SimulationData{.scene = std::move(scene), .world = std::move(world).value()});
+  for (std::size_t i = 0; i < data->scene.materials.size(); ++i) {
+    data->material_of[data->scene.materials[i].name] = i;
+  }
+  std::vector<Error> errors;
+  io::build_meshes(*data, errors);
+  if (errors.empty()) io::build_objects(data->scene.objects, "", *data, errors);
+  if (!errors.empty()) return {.errors = std::move(errors)};
+  data->events.resize(data->scene.timeline.size());
+  std::iota(data->events.begin(), data->events.end(), std::size_t{0});
+  std::stable_sort(data->events.begin(), data->events.end(), [&](std::size_t a, std::size_t b) {
+    return data->scene.timeline[a].at_step < data->scene.timeline[b].at_step;
+  });
+  evaluate_due(*data);
+  return {.value = std::move(data)};
+}
+
+std::string verdict_line(const Scene& scene, const SceneVerdict& verdict) {
+  const std::string path = io::indexed("expect", verdict.index);
+  const Error error = io::error_at(scene.source.get(), path, ErrorCode::kOutOfRange, verdict.text);
+  return (verdict.passed ? "pass " : "FAIL ") + to_line(error) + "\n";
+}
+
+}  // namespace
+
+Simulation::Simulation(std::unique_ptr<SimulationData> data) : data_(std::move(data)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Loaded<Simulation> Simulation::create(Scene scene) {
+  try {
+    Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene));
+    Loaded<Simulation> loaded = {.errors = std::move(built.errors), .warnings = std::move(built.warnings)};
+    if (built) loaded.value = Simulation(std::move(*built.value));
+    return loaded;
+  } catch (const std::bad_alloc&) {
+    return {.errors = {{ErrorCode::kLimitExceeded, "", "not enough memory for this scene"}}};
+  }
+}
+
+StepReport Simulation::step() {
+  apply_due_events(*data_);
+  const StepReport report = data_->world.step(data_->scene.dt);
+  data_->contacts = report.contacts;
+  if (report.moved) evaluate_due(*data_);
+  return report;
+}
+
+StepReport Simulation::run() {
+  StepReport report;
+  while (data_->world.step_count() < data_->scene.step_count()) {
+    report = step();
+    if (!report.moved) break;
+  }
+  return report;
+}
+
+World& Simulation::world() {
+  return data_->world;
+}
+const World& Simulation::world() const {
+  return data_->world;
+}
+const Scene& Simulation::scene() const {
+  return data_->scene;
+}
+std::span<const SceneObject> Simulation::objects() const {
+  return data_->objects;
+}
+
+const SceneObject* Simulation::find(std::string_view name) const {
+  const auto found = data_->row_of.find(std::string(name));
+  return found == data_->row_of.end() ? nullptr : &data_->objects[found->second];
+}
+
+SceneVerdict Simulation::check(std::size_t expectation) const {
+  if (expectation >= data_->scene.expect.size()) return {.index = expectation};
+  return io::measure_expectation(*data_, expectation);
+}
+
+std::span<const SceneVerdict> Simulation::verdicts() const {
+  return data_->verdicts;
+}
+std::span<const Error> Simulation::errors() const {
+  return data_->errors;
+}
+
+bool Simulation::passed() const {
+  const bool all_due = data_->verdicts.size() == data_->scene.expect.size();
+  const bool all_good = std::all_of(data_->verdicts.begin(), data_->verdicts.end(),
+                                    [](const SceneVerdict& verdict) { return verdict.passed; });
+  return all_due && all_good && data_->errors.empty();
+}
+
+std::string Simulation::report() const {
+  std::string text;
+  for (const Error& error : data_->errors) text += "FAIL " + to_line(error) + "\n";
+  for (const SceneVerdict& verdict : data_->verdicts) text += verdict_line(data_->scene, verdict);
+  const std::size_t open = data_->scene.expect.size() - data_->verdicts.size();
+  if (open > 0) text += std::to_string(open) + " expectations are not due yet\n";
+  return text;
+}
+
+}  // namespace hooke

@@ -1,0 +1,375 @@
+#include "io/scene_table.h"
+
+#include <algorithm>
+
+namespace hooke::io {
+
+namespace {
+
+const Kind& motion_event_kind() {
+  static const Kind kind = {
+      .name = "motion_event",
+      .help = "Holds a point from now on and moves it.",
+      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
+                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
+                 field<&SceneEvent::motion>("motion", "", kAny,
+                                            "Starts now; without it the point stands still.")},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+const Kind& unpin_event_kind() {
+  static const Kind kind = {
+      .name = "unpin_event",
+      .help = "Lets a held point go.",
+      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
+                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object."))},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+const Kind& force_event_kind() {
+  static const Kind kind = {
+      .name = "force_event",
+      .help = "Pushes a point for some steps.",
+      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
+                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
+                 required(field<&SceneEvent::vector>("force", "N", kAny, "Constant.")),
+                 field<&SceneEvent::steps>("steps", "", between(1, 1e9), "For so many steps.")},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+const Kind& impulse_event_kind() {
+  static const Kind kind = {
+      .name = "impulse_event",
+      .help = "Hits a point.",
+      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
+                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
+                 required(
+                     field<&SceneEvent::vector>("impulse", "N s", kAny, "Mass times change of velocity."))},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+/// The lists of objects, at the path `Prefix...` of a struct.
+template <auto... Prefix>
+std::vector<Field> object_rows() {
+  return {
+      field<Prefix..., &SceneObjects::bodies>("bodies", "", kAny, "Shapes that others bounce off."),
+      field<Prefix..., &SceneObjects::ropes>("ropes", "", kAny, "Ropes, strings, hair."),
+      field<Prefix..., &SceneObjects::cloths>("cloths", "", kAny, "Cloths, flags, soft shells."),
+      field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
+      field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle."),
+  };
+}
+
+/// Editors use the key to find the schema; the scene does not keep it.
+Field schema_row() {
+  Field row;
+  row.key = "$schema";
+  row.help = "Where an editor finds the schema; not read.";
+  row.read = [](Reader& reader, const JsonNode& node, const Rule& rule, void* /*object*/) {
+    std::string ignored;
+    return Codec<std::string>::read(reader, node, rule, ignored);
+  };
+  row.schema = &Codec<std::string>::schema;
+  row.type = &Codec<std::string>::type;
+  return row;
+}
+
+std::vector<Field> scene_rows() {
+  constexpr Rule step_range = {.least = 0, .most = 1, .above_least = true};
+  std::vector<Field> rows = {
+      schema_row(),
+      required(field<&Scene::version>("version", "", between(1, kSceneVersion), "Of the format.")),
+      field<&Scene::title>("title", "", kAny, "One line."),
+      field<&Scene::description>("description", "", kAny, "What there is to see."),
+      field<&Scene::world>("world", "", kAny, "Gravity, wind, accuracy."),
+      field<&Scene::dt>("dt", "s", step_range, "Length of a step."),
+      field<&Scene::seconds>("seconds", "s", between(0, 1e6), "How long the scene runs."),
+      field<&Scene::meshes>("meshes", "", kAny, "Triangles, by name."),
+      field<&Scene::materials>("materials", "", kAny, "Looks and friction, by name."),
+  };
+  for (const Field& row : object_rows<&Scene::objects>()) rows.push_back(row);
+  rows.push_back(field<&Scene::timeline>("timeline", "", kAny, "What happens on the way."));
+  rows.push_back(field<&Scene::camera>("camera", "", kAny, "Where a viewer stands."));
+  rows.push_back(field<&Scene::expect>("expect", "", kAny, "Figures that the scene promises."));
+  return rows;
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<Scene>() {
+  static const Kind kind = {
+      .name = "scene", .help = "The file.", .fields = scene_rows(), .defaults = defaults_of<Scene>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<WorldDesc>() {
+  constexpr Rule passes = between(1, 64);
+  static const Kind kind = {
+      .name = "world",
+      .help = "What holds everywhere.",
+      .fields =
+          {field<&WorldDesc::gravity>("gravity", "m/s^2", kAny, "Acceleration of everything."),
+           field<&WorldDesc::substeps>("substeps", "", passes, "Solver passes per step; more is stiffer."),
+           field<&WorldDesc::particle_substeps>("particle_substeps", "", passes,
+                                                "Passes over ropes, cloths, particles in each substep."),
+           field<&WorldDesc::workers>("workers", "", passes, "Threads. The result does not depend on it."),
+           field<&WorldDesc::wind>("wind", "", kAny, "Moving air.")},
+      .defaults = defaults_of<WorldDesc>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<WindDesc>() {
+  static const Kind kind = {
+      .name = "wind",
+      .help =
+          "Moving air: |velocity| [(1 + gust r1) e_main + side_gust r2 e_side], r1 and r2 smooth random "
+          "numbers in [-1, 1], functions of time and place.",
+      .fields =
+          {field<&WindDesc::velocity>("velocity", "m/s", kAny, "Mean wind."),
+           field<&WindDesc::gust>("gust", "", between(0, 10), "Relative size of the gusts along the wind."),
+           field<&WindDesc::side_gust>("side_gust", "", between(0, 10),
+                                       "Relative size of the gusts across it."),
+           field<&WindDesc::correlation_time>("correlation_time", "s", kPositive, "How long a gust lasts."),
+           field<&WindDesc::correlation_length>("correlation_length", "m", kPositive, "How large a gust is."),
+           field<&WindDesc::seed>("seed", "", kAny, "Of the random numbers."),
+           field<&WindDesc::gusts>("gusts", "", kAny,
+                                   "Smooth, or one factor per step as in the paper's equation 9."),
+           field<&WindDesc::air_density>("air_density", "kg/m^3", kNotNegative,
+                                         "0 switches drag and lift off.")},
+      .defaults = defaults_of<WindDesc>};
+  return kind;
+}
+
+namespace {
+
+bool check_triangles(Reader& reader, const JsonNode& node, const MeshDesc& mesh) {
+  const std::size_t count = mesh.positions.size();
+  for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    const std::uint32_t corner = std::max({triangle[0], triangle[1], triangle[2]});
+    if (corner < count) continue;
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "a triangle has the corner " + std::to_string(corner) + ", there are " +
+                           std::to_string(count) + " vertices");
+  }
+  return true;
+}
+
+bool check_mesh(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& mesh = *static_cast<const SceneMesh*>(object);
+  const bool in_place = !mesh.mesh.positions.empty() || !mesh.mesh.triangles.empty();
+  if (mesh.file.empty() == in_place) return check_triangles(reader, node, mesh.mesh);
+  return reader.fail(node, ErrorCode::kOutOfRange, "needs either 'file' or 'vertices' and 'triangles'");
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneMesh>() {
+  static const Kind kind = {
+      .name = "mesh",
+      .help = "Triangles: a model file, or vertices and triangles in place.",
+      .fields = {field<&SceneMesh::file>(
+                     "file", "", kNotEmpty,
+                     "A model (.3ds .obj .stl .ply .gltf .glb), relative to the scene file."),
+                 field<&SceneMesh::import, &ImportOptions::up>(
+                     "up", "", kAny, "Axis that points up in the file; what its format says by default."),
+                 field<&SceneMesh::import, &ImportOptions::scale>("scale", "m", kPositive,
+                                                                  "Length of one unit of the file."),
+                 field<&SceneMesh::import, &ImportOptions::fit>(
+                     "fit", "m", kPositive, "Replaces `scale`: length of the longest side."),
+                 field<&SceneMesh::mesh, &MeshDesc::positions>("vertices", "m", kAny, "Instead of a file."),
+                 field<&SceneMesh::mesh, &MeshDesc::triangles>(
+                     "triangles", "", kAny, "Three indices each, counter-clockwise seen from outside.")},
+      .defaults = defaults_of<SceneMesh>,
+      .check = check_mesh};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneMaterial>() {
+  static const Kind kind = {
+      .name = "material",
+      .help = "How a surface looks and how it answers a contact.",
+      .fields = {field<&SceneMaterial::color>("color", "", between(0, 1), "Red, green, blue, linear."),
+                 field<&SceneMaterial::texture>("texture", "", kNotEmpty,
+                                                "An image, relative to the scene file."),
+                 field<&SceneMaterial::shininess>("shininess", "", between(1, 1000), "Blinn-Phong exponent."),
+                 field<&SceneMaterial::opacity>("opacity", "", between(0, 1), "1 hides what is behind."),
+                 field<&SceneMaterial::friction>(
+                     "friction", "", between(0, 100),
+                     "Coulomb coefficient; a contact uses sqrt(a b) of the two surfaces.")},
+      .defaults = defaults_of<SceneMaterial>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneObjects>() {
+  static const Kind kind = {.name = "objects",
+                            .help = "Objects that are added, as in the scene itself.",
+                            .fields = object_rows<>(),
+                            .defaults = defaults_of<SceneObjects>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneEvent>() {
+  using EventKind = SceneEvent::Kind;
+  static const Kind kind = {
+      .name = "event",
+      .help = "Something that happens just before a step. One of the keys besides `at_step`.",
+      .fields = {required(field<&SceneEvent::at_step>("at_step", "", kAny, "Number of steps done before.")),
+                 choice<EventKind::kAdd, &SceneEvent::kind>(
+                     field<&SceneEvent::add>("add", "", kAny, "New objects.")),
+                 choice<EventKind::kRemove, &SceneEvent::kind>(field<&SceneEvent::object>(
+                     "remove", "", kNotEmpty, "Name of an object that disappears.")),
+                 choice<EventKind::kMotion, &SceneEvent::kind>(
+                     group("motion", motion_event_kind, "Holds and moves a point.")),
+                 choice<EventKind::kUnpin, &SceneEvent::kind>(
+                     group("unpin", unpin_event_kind, "Lets a held point go.")),
+                 choice<EventKind::kForce, &SceneEvent::kind>(
+                     group("force", force_event_kind, "Pushes a point for some steps.")),
+                 choice<EventKind::kImpulse, &SceneEvent::kind>(
+                     group("impulse", impulse_event_kind, "Hits a point.")),
+                 choice<EventKind::kWind, &SceneEvent::kind>(
+                     field<&SceneEvent::wind>("wind", "", kAny, "Replaces the wind.")),
+                 choice<EventKind::kGravity, &SceneEvent::kind>(
+                     field<&SceneEvent::vector>("gravity", "m/s^2", kAny, "Replaces gravity."))},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+namespace {
+
+bool check_camera(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& path = static_cast<const SceneCamera*>(object)->path;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    if (path[i].time > path[i - 1].time) continue;
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "the times of the path must increase; keyframe " + std::to_string(i) + " does not");
+  }
+  return true;
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneCamera>() {
+  static const Kind kind = {
+      .name = "camera",
+      .help = "Where a viewer stands.",
+      .fields = {field<&SceneCamera::eye>("eye", "m", kAny, "Position."),
+                 field<&SceneCamera::target>("target", "m", kAny, "What it looks at."),
+                 field<&SceneCamera::fov_deg>("fov_deg", "degrees", between(1, 170),
+                                              "Vertical opening angle."),
+                 field<&SceneCamera::path>("path", "", kAny,
+                                           "Replaces `eye` and `target`; smooth between keyframes.")},
+      .defaults = defaults_of<SceneCamera>,
+      .check = check_camera};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneKeyframe>() {
+  static const Kind kind = {
+      .name = "camera_keyframe",
+      .help = "Where the camera is at a time.",
+      .fields = {required(field<&SceneKeyframe::time>("time", "s", kAny, "Increasing.")),
+                 required(field<&SceneKeyframe::eye>("eye", "m", kAny, "Position.")),
+                 required(field<&SceneKeyframe::target>("target", "m", kAny, "What it looks at."))},
+      .defaults = defaults_of<SceneKeyframe>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneExpectation>() {
+  static const Kind kind = {
+      .name = "expectation",
+      .help = "A figure that the scene promises: `hooke check` fails when it is missed.",
+      .fields =
+          {required(field<&SceneExpectation::quantity>("quantity", "", kAny, "What is measured.")),
+           field<&SceneExpectation::of>("of", "", kNotEmpty, "Name of an object; the world without it."),
+           field<&SceneExpectation::point>("point", "", kAny, "Of the object; of a tension, the segment."),
+           required(field<&SceneExpectation::op>(
+               "op", "", kAny,
+               "`==`: not further away than `tolerance`; `within`: not further than `tolerance` x |value|.")),
+           required(field<&SceneExpectation::value>("value", "unit of the quantity", kAny, "Promised.")),
+           field<&SceneExpectation::tolerance>("tolerance", "", kNotNegative, "For `==` and `within`."),
+           field<&SceneExpectation::at_step>("at_step", "", kAny,
+                                             "After so many steps; at the end without it.")},
+      .defaults = defaults_of<SceneExpectation>};
+  return kind;
+}
+
+std::span<const Kind* const> all_kinds() {
+  static const std::vector<const Kind*> kinds = [] {
+    std::vector<const Kind*> list = {&kind_of<Scene>(), &kind_of<WorldDesc>(), &kind_of<WindDesc>(),
+                                     &kind_of<SceneMesh>(), &kind_of<SceneMaterial>()};
+    list.insert(list.end(), object_kinds().begin(), object_kinds().end());
+    const std::initializer_list<const Kind*> last = {
+        &kind_of<SceneEvent>(),  &kind_of<SceneObjects>(),  &motion_event_kind(),
+        &unpin_event_kind(),     &force_event_kind(),       &impulse_event_kind(),
+        &kind_of<SceneCamera>(), &kind_of<SceneKeyframe>(), &kind_of<SceneExpectation>()};
+    list.insert(list.end(), last);
+    return list;
+  }();
+  return kinds;
+}
+
+template <>
+std::span<const EnumName> names_of<WindDesc::Gusts>() {
+  static constexpr EnumName names[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
+                                       {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<UpAxis>() {
+  static constexpr EnumName names[] = {{"format", static_cast<int>(UpAxis::kFormat)},
+                                       {"x", static_cast<int>(UpAxis::kX)},
+                                       {"y", static_cast<int>(UpAxis::kY)},
+                                       {"z", static_cast<int>(UpAxis::kZ)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<SceneExpectation::Op>() {
+  using Op = SceneExpectation::Op;
+  static constexpr EnumName names[] = {
+      {"<", static_cast<int>(Op::kLess)},    {"<=", static_cast<int>(Op::kLessOrEqual)},
+      {">", static_cast<int>(Op::kGreater)}, {">=", static_cast<int>(Op::kGreaterOrEqual)},
+      {"==", static_cast<int>(Op::kEqual)},  {"within", static_cast<int>(Op::kWithin)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
+  using Quantity = SceneExpectation::Quantity;
+  static constexpr EnumName names[] = {{"x", static_cast<int>(Quantity::kX)},
+                                       {"y", static_cast<int>(Quantity::kY)},
+                                       {"z", static_cast<int>(Quantity::kZ)},
+                                       {"height", static_cast<int>(Quantity::kHeight)},
+                                       {"speed", static_cast<int>(Quantity::kSpeed)},
+                                       {"extension", static_cast<int>(Quantity::kExtension)},
+                                       {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
+                                       {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
+                                       {"tension", static_cast<int>(Quantity::kTension)},
+                                       {"lowest", static_cast<int>(Quantity::kLowest)},
+                                       {"highest", static_cast<int>(Quantity::kHighest)},
+                                       {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},
+                                       {"kinetic_energy", static_cast<int>(Quantity::kKineticEnergy)},
+                                       {"potential_energy", static_cast<int>(Quantity::kPotentialEnergy)},
+                                       {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
+                                       {"momentum", static_cast<int>(Quantity::kMomentum)},
+                                       {"penetration", static_cast<int>(Quantity::kPenetration)},
+                                       {"contacts", static_cast<int>(Quantity::kContacts)}};
+  return names;
+}
+
+}  // namespace hooke::io

@@ -1,0 +1,546 @@
+#include "io/scene_table.h"
+
+namespace hooke::io {
+
+namespace {
+
+bool check_tag(Reader& reader, const JsonNode& node, const std::string& name) {
+  const JsonNode* child = node.find("name");
+  if (child == nullptr) return true;
+  reader.enter("name");
+  const bool good = check_name(reader, *child, name);
+  reader.leave();
+  return good;
+}
+
+template <class T>
+bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
+  return check_tag(reader, node, static_cast<const T*>(object)->tag.name);
+}
+
+/// The rows of SceneTag, which every object but a field has.
+template <class T>
+void add_tag_rows(std::vector<Field>& rows) {
+  rows.insert(
+      rows.begin(),
+      {field<&T::tag, &SceneTag::name>(
+           "name", "", kNotEmpty, "Unique. Without it the object is called by its place, as `ropes[0]`."),
+       field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
+  rows.push_back(field<&T::tag, &SceneTag::friction>(
+      "friction", "", between(0, 100), "Coulomb coefficient, instead of the material's or of 0.5."));
+  rows.push_back(
+      field<&T::tag, &SceneTag::array>("array", "", kAny, "Copies, named `name[0]`, `name[1]`, ..."));
+}
+
+const Kind& half_space_kind() {
+  static const Kind kind = {.name = "half_space",
+                            .help = "Solid below the plane y = 0 of the body's frame. Has no keys.",
+                            .fields = {},
+                            .defaults = defaults_of<SceneBody>};
+  return kind;
+}
+
+const Kind& sphere_kind() {
+  static const Kind kind = {.name = "sphere",
+                            .help = "A ball about the body's position.",
+                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::radius>(
+                                "radius", "m", kPositive, "Of the ball.")},
+                            .defaults = defaults_of<SceneBody>};
+  return kind;
+}
+
+const Kind& box_kind() {
+  static const Kind kind = {.name = "box",
+                            .help = "A box about the body's position.",
+                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::half_extents>(
+                                "half_extents", "m", kPositive, "Half the length of each side.")},
+                            .defaults = defaults_of<SceneBody>};
+  return kind;
+}
+
+const Kind& shape_kind() {
+  static const Kind kind = {
+      .name = "shape",
+      .help = "What a body is. One of the keys.",
+      .fields = {choice<ShapeKind::kHalfSpace, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
+                     group("half_space", half_space_kind, "Ground without end.")),
+                 choice<ShapeKind::kSphere, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
+                     group("sphere", sphere_kind, "A ball.")),
+                 choice<ShapeKind::kBox, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
+                     group("box", box_kind, "A box.")),
+                 choice<ShapeKind::kMesh, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
+                     field<&SceneBody::mesh>("mesh", "", kNotEmpty, "A name in `meshes`."))},
+      .defaults = defaults_of<SceneBody>};
+  return kind;
+}
+
+const Kind& sine_kind() {
+  static const Kind kind = {
+      .name = "sine",
+      .help = "Displacement amplitude (sin(2 pi f t + phase) - sin(phase)).",
+      .fields = {required(field<&MotionDesc::amplitude>("amplitude", "m", kAny, "Direction and size.")),
+                 field<&MotionDesc::frequency_hz>("frequency_hz", "Hz", kAny, "f."),
+                 field<&MotionDesc::phase>("phase", "rad", kAny, "Where in the cycle it starts.")},
+      .defaults = defaults_of<MotionDesc>};
+  return kind;
+}
+
+bool check_motion(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& frames = static_cast<const MotionDesc*>(object)->keyframes;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (frames[i].time > frames[i - 1].time) continue;
+    return reader.fail(
+        node, ErrorCode::kOutOfRange,
+        "the times of the keyframes must increase; keyframe " + std::to_string(i) + " does not");
+  }
+  return true;
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<MotionDesc>() {
+  static const Kind kind = {
+      .name = "motion",
+      .help = "A displacement as a function of time, zero at the start. One of the keys.",
+      .fields = {choice<MotionDesc::Kind::kConstantVelocity, &MotionDesc::kind>(
+                     field<&MotionDesc::velocity>("velocity", "m/s", kAny, "Constant.")),
+                 choice<MotionDesc::Kind::kSine, &MotionDesc::kind>(group("sine", sine_kind, "To and fro.")),
+                 choice<MotionDesc::Kind::kKeyframes, &MotionDesc::kind>(field<&MotionDesc::keyframes>(
+                     "keyframes", "", kNotEmpty, "Straight lines between given offsets; times increase."))},
+      .defaults = defaults_of<MotionDesc>,
+      .check = check_motion};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<MotionDesc::Keyframe>() {
+  static const Kind kind = {
+      .name = "motion_keyframe",
+      .help = "Where a moved point is at a time.",
+      .fields = {required(
+                     field<&MotionDesc::Keyframe::time>("time", "s", kAny, "From the start of the motion.")),
+                 required(field<&MotionDesc::Keyframe::offset>("offset", "m", kAny, "From the start."))},
+      .defaults = defaults_of<MotionDesc::Keyframe>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<ScenePin>() {
+  static const Kind kind = {
+      .name = "pin",
+      .help =
+          "Points that are held. One of `point`, `column`, `row`, `topmost`. A number or `\"last\"` alone "
+          "is short for `{\"point\": ...}`.",
+      .fields = {choice<ScenePin::Pick::kPoint, &ScenePin::pick>(
+                     field<&ScenePin::point>("point", "", kAny, "One point.")),
+                 choice<ScenePin::Pick::kColumn, &ScenePin::pick>(
+                     field<&ScenePin::point>("column", "", kAny, "A column of a cloth's grid.")),
+                 choice<ScenePin::Pick::kRow, &ScenePin::pick>(
+                     field<&ScenePin::point>("row", "", kAny, "A row of a cloth's grid.")),
+                 choice<ScenePin::Pick::kTopmost, &ScenePin::pick>(field<&ScenePin::within>(
+                     "topmost", "m", kNotNegative, "All points not further than this below the highest.")),
+                 field<&ScenePin::motion>("motion", "", kAny, "Moves them; they stand still by default.")},
+      .defaults = defaults_of<ScenePin>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneLoad>() {
+  static const Kind kind = {
+      .name = "load",
+      .help = "Mass added to a point.",
+      .fields = {required(field<&SceneLoad::point>("point", "", kAny, "Which one.")),
+                 required(field<&SceneLoad::mass>("mass", "kg", kNotNegative, "Added to the point's own."))},
+      .defaults = defaults_of<SceneLoad>};
+  return kind;
+}
+
+namespace {
+
+bool check_array(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& array = *static_cast<const SceneArray*>(object);
+  const bool random = array.kind == SceneArray::Kind::kRandom;
+  for (const JsonNode& child : node.children) {
+    const bool of_random = child.key == "seed" || child.key == "box";
+    if (of_random == random || (!of_random && child.key != "spacing")) continue;
+    reader.fail_key(child, random ? "has no effect on a random array" : "is for a random array only");
+    return false;
+  }
+  const DVec3 size = array.box[1] - array.box[0];
+  if (size.x >= 0 && size.y >= 0 && size.z >= 0) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "the box must be given as [[smallest], [largest]]");
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneArray>() {
+  constexpr Rule copies = between(1, 1e6);
+  static const Kind kind = {
+      .name = "array",
+      .help = "Copies of an object. One of `grid`, `pyramid`, `random`.",
+      .fields = {choice<SceneArray::Kind::kGrid, &SceneArray::kind>(field<&SceneArray::grid>(
+                     "grid", "", copies, "Copies along x, y and z; x counts fastest.")),
+                 choice<SceneArray::Kind::kPyramid, &SceneArray::kind>(field<&SceneArray::pyramid>(
+                     "pyramid", "", between(1, 1000),
+                     "Copies in the lowest row along x; one less in each row above.")),
+                 choice<SceneArray::Kind::kRandom, &SceneArray::kind>(field<&SceneArray::random>(
+                     "random", "", copies, "Copies, evenly spread in `box`, the same on every machine.")),
+                 field<&SceneArray::spacing>("spacing", "m", kAny, "Of a grid or pyramid."),
+                 field<&SceneArray::seed>("seed", "", kAny, "Of a random array."),
+                 field<&SceneArray::box>("box", "m", kAny,
+                                         "Of a random array: smallest and largest offset from the object.")},
+      .defaults = defaults_of<SceneArray>,
+      .check = check_array};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneBody>() {
+  static const Kind kind = [] {
+    Kind made = {
+        .name = "body",
+        .help = "A shape in the world. It stands still; others bounce off it.",
+        .fields = {required(group("shape", shape_kind, "What it is.")),
+                   field<&SceneBody::desc, &BodyDesc::position>("position", "m", kAny,
+                                                                "Origin of its frame."),
+                   field<&SceneBody::desc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
+                   field<&SceneBody::desc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn.")},
+        .defaults = defaults_of<SceneBody>,
+        .check = check_tagged<SceneBody>};
+    add_tag_rows<SceneBody>(made.fields);
+    return made;
+  }();
+  return kind;
+}
+
+namespace {
+
+/// A rope's keys under the names of the paper's builder, then the others.
+std::vector<Field> rope_rows() {
+  constexpr auto desc = &SceneRope::desc;
+  return {
+      field<desc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
+      field<desc, &RopeDesc::direction>("direction", "", kAny,
+                                        "From the first point on; any length but zero."),
+      field<desc, &RopeDesc::total_mass>("total_mass", "kg", kPositive,
+                                         "Of the rope; half a segment's share on each end."),
+      field<desc, &RopeDesc::masses>("masses", "", between(2, 65536), "Number of points."),
+      field<desc, &RopeDesc::length_at_rest>("length_at_rest", "m", kPositive, "From end to end."),
+      field<desc, &RopeDesc::stiffness>("stiffness", "N/m", kPositiveOrRigid, "k; see `stiffness_of`."),
+      field<desc, &RopeDesc::inner_friction>("inner_friction", "N s/m", kNotNegative,
+                                             "Damping along each segment."),
+      field<desc, &RopeDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                           "Viscous drag of the whole rope, shared out by length."),
+      field<desc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                            "Largest relative extension of a segment, such as 0.05."),
+      field<desc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
+                                           "Of the rope, whatever the number of points; or of each segment, "
+                                           "as in the paper: more points make a "
+                                           "softer rope."),
+      field<desc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
+                                              "EA; replaces `stiffness` by EA / `length_at_rest`."),
+      field<desc, &RopeDesc::points>(
+          "points", "m", kAny,
+          "Replaces `hook_point`, `direction`, `masses`, `length_at_rest`: the points, taken as at rest."),
+      field<&SceneRope::pins>("pins", "", kAny,
+                              "Points that are held; the first one by default, `[]` for none."),
+      field<&SceneRope::loads>("loads", "", kAny, "Masses added to points."),
+      field<desc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
+      field<desc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                               "Of a cylinder across the flow."),
+      field<desc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<desc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+  };
+}
+
+std::vector<Field> cloth_rows() {
+  constexpr auto desc = &SceneCloth::desc;
+  return {
+      field<desc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
+      field<desc, &ClothDesc::rows>("rows", "", between(2, 4096), "Points along `row_direction`."),
+      field<desc, &ClothDesc::corner>("corner", "m", kAny,
+                                      "Position of point 0; point (column, row) is row x columns + column."),
+      field<desc, &ClothDesc::column_direction>("column_direction", "", kAny, "Any length but zero."),
+      field<desc, &ClothDesc::row_direction>("row_direction", "", kAny, "Any length but zero."),
+      field<desc, &ClothDesc::width>("width", "m", kPositive, "Between the first and last column."),
+      field<desc, &ClothDesc::height>("height", "m", kPositive, "Between the first and last row."),
+      field<&SceneCloth::mesh>("mesh", "", kNotEmpty, "Replaces the grid: a name in `meshes`."),
+      field<desc, &ClothDesc::position>("position", "m", kAny, "Of the mesh's frame."),
+      field<desc, &ClothDesc::rotation>("rotation", "", kAny, "Of the mesh's frame."),
+      field<desc, &ClothDesc::areal_density>("areal_density", "kg/m^2", kPositive, "Mass of a square meter."),
+      field<desc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
+      field<desc, &ClothDesc::thickness>("thickness", "m", kPositive,
+                                         "Points keep half of it from what they touch."),
+      field<desc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
+                                                 "Of each spring along an edge."),
+      field<desc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
+                                               "Of each spring across a cell."),
+      field<desc, &ClothDesc::bend_stiffness>("bend_stiffness", "N m or N/m", kNotNegative, "See `bend`."),
+      field<desc, &ClothDesc::damping>("damping", "N s/m", kNotNegative, "Of each stretch and shear spring."),
+      field<desc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
+                                            "Of each bend row, in units of `bend_stiffness`."),
+      field<desc, &ClothDesc::bend>(
+          "bend", "", kAny,
+          "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
+      field<desc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                             "Largest relative extension of a stretch spring."),
+      field<desc, &ClothDesc::tethers>("tethers", "", kAny,
+                                       "Hold every point within its rest distance of the pins."),
+      field<desc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                "Of a triangle across the flow."),
+      field<desc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
+                                                "Of a slanted triangle."),
+      field<desc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                            "Viscous drag of the whole cloth, shared out by area."),
+      field<&SceneCloth::pins>("pins", "", kAny, "Points that are held."),
+      field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
+      field<desc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<desc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+  };
+}
+
+std::vector<Field> particles_rows() {
+  constexpr auto desc = &SceneParticles::desc;
+  return {
+      required(field<desc, &ParticlesDesc::particles>("particles", "", kNotEmpty, "The point masses.")),
+      field<desc, &ParticlesDesc::springs>("springs", "", kAny, "Between two of them each."),
+      field<desc, &ParticlesDesc::direction>("direction", "", kAny,
+                                             "Where a spring's direction is taken: at the start of a "
+                                             "substep (keeps energy), or where the points are "
+                                             "about to be (quieter on stiff lattices)."),
+      field<desc, &ParticlesDesc::damping>(
+          "damping", "", kAny, "Along the spring, or of the whole relative velocity as in the paper."),
+      field<desc, &ParticlesDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                                "Viscous drag of each particle."),
+      field<desc, &ParticlesDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                    "Of each particle as a sphere of its radius."),
+      field<&SceneParticles::pins>("pins", "", kAny, "Particles that are held."),
+  };
+}
+
+template <class T>
+Kind make_object_kind(const char* name, const char* help, const std::vector<Field>& rows) {
+  Kind made = {
+      .name = name, .help = help, .fields = rows, .defaults = defaults_of<T>, .check = check_tagged<T>};
+  add_tag_rows<T>(made.fields);
+  return made;
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneRope>() {
+  static const Kind kind = make_object_kind<SceneRope>(
+      "rope", "A chain of point masses that stretches no more than its stiffness says.", rope_rows());
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneCloth>() {
+  static const Kind kind = make_object_kind<SceneCloth>(
+      "cloth", "A surface of point masses: a grid, or the triangles of a mesh.", cloth_rows());
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneParticles>() {
+  static const Kind kind = make_object_kind<SceneParticles>(
+      "particles", "Loose point masses and the springs between them.", particles_rows());
+  return kind;
+}
+
+template <>
+const Kind& kind_of<ParticleDesc>() {
+  static const Kind kind = {
+      .name = "particle",
+      .help = "A point mass.",
+      .fields = {required(field<&ParticleDesc::position>("position", "m", kAny, "At the start.")),
+                 field<&ParticleDesc::velocity>("velocity", "m/s", kAny, "At the start."),
+                 field<&ParticleDesc::mass>("mass", "kg", kPositive, "Of the particle."),
+                 field<&ParticleDesc::charge>("charge", "C", kAny, "Of the particle."),
+                 field<&ParticleDesc::radius>("radius", "m", kPositive, "For contact and drawing.")},
+      .defaults = defaults_of<ParticleDesc>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SpringDesc>() {
+  static const Kind kind = {
+      .name = "spring",
+      .help = "A damped spring between two particles of the same object.",
+      .fields = {required(field<&SpringDesc::a>("a", "", kAny, "Index of a particle.")),
+                 required(field<&SpringDesc::b>("b", "", kAny, "Index of another.")),
+                 field<&SpringDesc::stiffness>("stiffness", "N/m", kNotNegativeOrRigid, "k."),
+                 field<&SpringDesc::damping>("damping", "N s/m", kNotNegative, "c."),
+                 field<&SpringDesc::rest_length>("rest_length", "m", kNotNegative,
+                                                 "The distance at the start by default.")},
+      .defaults = defaults_of<SpringDesc>};
+  return kind;
+}
+
+namespace {
+
+const Kind& uniform_kind() {
+  static const Kind kind = {.name = "uniform",
+                            .help = "The same acceleration everywhere.",
+                            .fields = {required(field<&SceneField::desc, &FieldDesc::vector>(
+                                "acceleration", "m/s^2", kAny, "Of every particle."))},
+                            .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+const Kind& inverse_square_kind() {
+  static const Kind kind = {
+      .name = "inverse_square",
+      .help = "Acceleration -strength (x - center) / |x - center|^3.",
+      .fields = {field<&SceneField::desc, &FieldDesc::center>("center", "m", kAny, "Where it points to."),
+                 required(field<&SceneField::desc, &FieldDesc::strength>("strength", "m^3/s^2", kAny,
+                                                                         "Positive attracts."))},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+const Kind& magnetic_kind() {
+  static const Kind kind = {
+      .name = "magnetic",
+      .help = "Force q v x B on charged particles.",
+      .fields = {required(field<&SceneField::desc, &FieldDesc::vector>("flux_density", "T", kAny, "B."))},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+bool check_field(Reader& reader, const JsonNode& node, const void* object) {
+  return check_tag(reader, node, static_cast<const SceneField*>(object)->name);
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<SceneField>() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "field",
+      .help = "A force on every particle of the world. One of `uniform`, `inverse_square`, `magnetic`.",
+      .fields = {field<&SceneField::name>("name", "", kNotEmpty, "Unique."),
+                 choice<FieldDesc::Kind::kUniform, desc, &FieldDesc::kind>(
+                     group("uniform", uniform_kind, "Like gravity.")),
+                 choice<FieldDesc::Kind::kInverseSquare, desc, &FieldDesc::kind>(
+                     group("inverse_square", inverse_square_kind, "Like a planet's.")),
+                 choice<FieldDesc::Kind::kMagnetic, desc, &FieldDesc::kind>(
+                     group("magnetic", magnetic_kind, "A magnet's."))},
+      .defaults = defaults_of<SceneField>,
+      .check = check_field};
+  return kind;
+}
+
+std::span<const Kind* const> object_kinds() {
+  static const std::array kinds = {&kind_of<SceneBody>(),
+                                   &shape_kind(),
+                                   &half_space_kind(),
+                                   &sphere_kind(),
+                                   &box_kind(),
+                                   &kind_of<SceneRope>(),
+                                   &kind_of<SceneCloth>(),
+                                   &kind_of<SceneParticles>(),
+                                   &kind_of<ParticleDesc>(),
+                                   &kind_of<SpringDesc>(),
+                                   &kind_of<SceneField>(),
+                                   &uniform_kind(),
+                                   &inverse_square_kind(),
+                                   &magnetic_kind(),
+                                   &kind_of<ScenePin>(),
+                                   &kind_of<SceneLoad>(),
+                                   &kind_of<MotionDesc>(),
+                                   &sine_kind(),
+                                   &kind_of<MotionDesc::Keyframe>(),
+                                   &kind_of<SceneArray>(),
+                                   &kind_of<Quat>()};
+  return kinds;
+}
+
+// -- Codecs.
+// --------------------------------------------------------------------------------------------------
+
+bool Codec<ScenePoint>::read(Reader& reader, const JsonNode& node, const Rule& rule, ScenePoint& value) {
+  if (node.kind == JsonNode::Kind::kString) {
+    if (node.text != "last") {
+      return reader.fail(node, ErrorCode::kOutOfRange, in_quotes(node.text) + " is not an index or \"last\"");
+    }
+    value = {.index = 0, .last = true};
+    return true;
+  }
+  value = {};
+  return Codec<std::uint32_t>::read(reader, node, rule, value.index);
+}
+
+JsonNode Codec<ScenePoint>::write(const ScenePoint& value) {
+  return value.last ? make_string("last") : make_integer(value.index);
+}
+
+JsonNode Codec<ScenePoint>::schema(const Rule& rule) {
+  JsonNode words = make_array();
+  words.add(make_string("last"));
+  JsonNode word = make_object();
+  word.add("enum", std::move(words));
+  JsonNode forms = make_array();
+  forms.add(Codec<std::uint32_t>::schema(rule));
+  forms.add(std::move(word));
+  JsonNode schema = make_object();
+  schema.add("anyOf", std::move(forms));
+  return schema;
+}
+
+bool Codec<ScenePin>::read(Reader& reader, const JsonNode& node, const Rule& rule, ScenePin& value) {
+  if (node.kind == JsonNode::Kind::kObject) return read_object(reader, node, kind_of<ScenePin>(), &value);
+  value = {};
+  return Codec<ScenePoint>::read(reader, node, rule, value.point);
+}
+
+JsonNode Codec<ScenePin>::write(const ScenePin& value) {
+  const bool still = value.motion == MotionDesc{};
+  if (value.pick == ScenePin::Pick::kPoint && still) return Codec<ScenePoint>::write(value.point);
+  return write_object(kind_of<ScenePin>(), &value);
+}
+
+bool Codec<ScenePin>::same(const ScenePin& a, const ScenePin& b) {
+  return same_object(kind_of<ScenePin>(), &a, &b);
+}
+
+JsonNode Codec<ScenePin>::schema(const Rule& rule) {
+  JsonNode schema = Codec<ScenePoint>::schema(rule);
+  schema.children.front().add(schema_reference(kind_of<ScenePin>()));
+  return schema;
+}
+
+template <>
+std::span<const EnumName> names_of<RopeDesc::StiffnessOf>() {
+  static constexpr EnumName names[] = {{"rope", static_cast<int>(RopeDesc::StiffnessOf::kRope)},
+                                       {"segment", static_cast<int>(RopeDesc::StiffnessOf::kSegment)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<ClothDesc::Bend>() {
+  static constexpr EnumName names[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
+                                       {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
+                                       {"none", static_cast<int>(ClothDesc::Bend::kNone)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<ParticlesDesc::Direction>() {
+  static constexpr EnumName names[] = {{"explicit", static_cast<int>(ParticlesDesc::Direction::kExplicit)},
+                                       {"predicted", static_cast<int>(ParticlesDesc::Direction::kPredicted)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<ParticlesDesc::Damping>() {
+  static constexpr EnumName names[] = {{"central", static_cast<int>(ParticlesDesc::Damping::kCentral)},
+                                       {"isotropic", static_cast<int>(ParticlesDesc::Damping::kIsotropic)}};
+  return names;
+}
+
+}  // namespace hooke::io

@@ -1,0 +1,179 @@
+#include "hooke/scene_io.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+struct BadScene {
+  const char* text;
+  std::vector<const char*> lines;  ///< Without the name of the file.
+};
+
+const BadScene kBadScenes[] = {
+    {R"()", {"1:1: not JSON: unexpected end of input; expected '[', '{', or a literal"}},
+    {R"({)", {"1:2: not JSON: unexpected end of input; expected string literal"}},
+    {R"({"version": 1,})", {"1:15: not JSON: unexpected '}'; expected string literal"}},
+    {R"([])", {"1:1: is a list, must be an object"}},
+    {R"(nul)", {"1:4: not JSON: invalid literal"}},
+    {R"({"version": NaN})", {"1:13: not JSON: invalid literal"}},
+    {R"({"version": 1e999})", {"1:13: '1e999' is too large for a number"}},
+    {R"({"version": 2})", {"1:13: version: 2 is newer than this program, which reads version 1"}},
+    {R"({})", {"1:1: needs 'version'"}},
+    {R"({"version": 1} x)", {"1:16: not JSON: invalid literal; expected end of input"}},
+    {"{\"version\": 1, \"title\": \"\xff\"}", {"1:26: not JSON: invalid string: ill-formed UTF-8 byte"}},
+    {R"({"version": 1, "title": "abc)", {"1:29: not JSON: invalid string: missing closing quote"}},
+    {R"({"version": 1 /* )", {"1:18: not JSON: invalid comment; missing closing '*/'; expected '}'"}},
+    {R"({"version": 1, "version": 1})", {"1:16: version: this key is given twice"}},
+    {R"({"version": 1, "dt": "1/60"})",
+     {"1:22: dt: '1/60' is a string, must be a number (in s, without a unit)"}},
+    {R"({"version": 1, "dt": 0})", {"1:22: dt: 0 is out of range, must be greater than 0 and at most 1"}},
+    {R"({"version": 1, "dt": -1e-3})",
+     {"1:22: dt: -1e-3 is out of range, must be greater than 0 and at most 1"}},
+    {R"({"version": 1, "dt": null})", {"1:22: dt: is null, must be a number"}},
+    {R"({"version": 1, "world": {"substeps": 2.5}})", {"1:38: world.substeps: must be a whole number"}},
+    {R"({"version": 1, "world": {"gravity": [0, -9.81]}})",
+     {"1:37: world.gravity: has 2 elements, must have 3"}},
+    {R"({"version": 1, "world": {"gravity": [0, "-9.81 m/s2", 0]}})",
+     {"1:41: world.gravity[1]: '-9.81 m/s2' is a string, must be a number (in m/s^2, without a unit)"}},
+    {R"({"version": 1, "world": {"gravity": [0, 1e39, 0]}})",
+     {"1:41: world.gravity[1]: is too large for a number of this precision"}},
+    {R"({"version": 1, "world": {"wind": {"gusts": "weak"}}})",
+     {"1:44: world.wind.gusts: 'weak' is not one of 'smooth', 'paper'"}},
+    {R"({"version": 1, "ropes": {}})", {"1:25: ropes: is an object, must be a list"}},
+    {R"({"version": 1, "ropes": [{"masses": 1}]})",
+     {"1:37: ropes[0].masses: 1 is out of range, must be 2 to 65536"}},
+    {R"({"version": 1, "ropes": [{"masses": 1000000000}]})",
+     {"1:37: ropes[0].masses: 1000000000 is out of range, must be 2 to 65536"}},
+    {R"({"version": 1, "ropes": [{"mases": 3}]})",
+     {"1:27: ropes[0].mases: unknown key, did you mean 'masses'?"}},
+    {R"({"version": 1, "ropes": [{"total_mass": "5 kg"}]})",
+     {"1:41: ropes[0].total_mass: '5 kg' is a string, must be a number (in kg, without a unit)"}},
+    {R"({"version": 1, "ropes": [{"stiffness": 0}]})",
+     {R"(1:40: ropes[0].stiffness: 0 is out of range, must be greater than 0 or "rigid")"}},
+    {R"({"version": 1, "ropes": [{"stiffness": "stiff"}]})",
+     {R"(1:40: ropes[0].stiffness: 'stiff' is a string, must be a number or "rigid" (in N/m,)"
+      R"( without a unit))"}},
+    {R"({"version": 1, "ropes": [{"pins": [16]}]})",
+     {"1:36: ropes[0].pins[0]: 16 is out of range, must be 0 to 15"}},
+    {R"({"version": 1, "ropes": [{"pins": [{"row": 0}]}]})",
+     {"1:44: ropes[0].pins[0].row: is for the grid of a cloth only"}},
+    {R"({"version": 1, "ropes": [{"pins": [{"point": 0, "topmost": 1}]}]})",
+     {"1:49: ropes[0].pins[0].topmost: cannot stand beside 'point'"}},
+    {R"({"version": 1, "ropes": [{"pins": [{"motion": {}}]}]})",
+     {"1:36: ropes[0].pins[0]: needs one of 'point', 'column', 'row', 'topmost'",
+      "1:47: ropes[0].pins[0].motion: needs one of 'velocity', 'sine', 'keyframes'"}},
+    {R"({"version": 1, "ropes": [{"pins": ["first"]}]})",
+     {R"(1:36: ropes[0].pins[0]: 'first' is not an index or "last")"}},
+    {R"({"version": 1, "ropes": [{"material": "sil"}], "materials": {"silk": {}}})",
+     {"1:39: ropes[0].material: there is no material 'sil', did you mean 'silk'?"}},
+    {R"({"version": 1, "ropes": [{"name": "a"}, {"name": "a"}]})",
+     {"1:50: ropes[1].name: 'a' is already the name of ropes[0]"}},
+    {R"({"version": 1, "ropes": [{"name": "a[0]"}]})",
+     {"1:35: ropes[0].name: 'a[0]' has a character that a name must not have ([ ] . or control)"}},
+    {R"({"version": 1, "cloths": [{"columns": 4096, "rows": 4096}]})",
+     {"1:27: cloths[0]: with this object the scene has more than 1000000 points"}},
+    {R"({"version": 1, "cloths": [{"mesh": "lantern"}]})",
+     {"1:36: cloths[0].mesh: there is no mesh 'lantern'"}},
+    {R"({"version": 1, "bodies": [{"name": "ball"}]})", {"1:27: bodies[0]: needs 'shape'"}},
+    {R"({"version": 1, "bodies": [{"shape": {"ball": {}}}]})",
+     {"1:37: bodies[0].shape: needs one of 'half_space', 'sphere', 'box', 'mesh'",
+      "1:38: bodies[0].shape.ball: unknown key"}},
+    {R"({"version": 1, "bodies": [{"shape": {"sphere": {"radius": -1}}}]})",
+     {"1:59: bodies[0].shape.sphere.radius: -1 is out of range, must be greater than 0"}},
+    {R"({"version": 1, "bodies": [{"shape": {"box": {}}, "rotation": [0, 0, 0, 0]}]})",
+     {"1:62: bodies[0].rotation: a quaternion must not be zero"}},
+    {R"({"version": 1, "bodies": [{"shape": {"box": {}}, "collides": 1}]})",
+     {"1:62: bodies[0].collides: is a number, must be true or false"}},
+    {R"({"version": 1, "bodies": [{"shape": {"box": {}}, "array": {"grid": [1000, 1000, 2]}}]})",
+     {"1:27: bodies[0]: with this object the scene has more than 1000000 points"}},
+    {R"({"version": 1, "bodies": [{"shape": {"box": {}}, "array": {"random": 2, "spacing": [1, 1, 1]}}]})",
+     {"1:73: bodies[0].array.spacing: has no effect on a random array"}},
+    {R"({"version": 1, "particles": [{}]})", {"1:30: particles[0]: needs 'particles'"}},
+    {R"({"version": 1, "particles": [{"particles": []}]})",
+     {"1:44: particles[0].particles: has 0 elements, must have at least 1"}},
+    {R"({"version": 1, "particles": [{"particles": [{"position": [0, 0, 0]}],)"
+     R"( "springs": [{"a": 0, "b": 1}]}]})",
+     {"1:97: particles[0].springs[0].b: 1 is out of range, must be 0 to 0"}},
+    {R"({"version": 1, "meshes": {"m": {}}})",
+     {"1:32: meshes.m: needs either 'file' or 'vertices' and 'triangles'"}},
+    {R"({"version": 1, "meshes": {"m": {"file": "../m.obj"}}})",
+     {"1:41: meshes.m.file: '../m.obj' is outside of the scene's folder"}},
+    {R"({"version": 1, "meshes": {"m": {"file": "/etc/passwd"}}})",
+     {"1:41: meshes.m.file: '/etc/passwd' is outside of the scene's folder"}},
+    {R"({"version": 1, "meshes": {"m": {"vertices": [[0, 0, 0]], "triangles": [[0, 1, 2]]}}})",
+     {"1:32: meshes.m: a triangle has the corner 2, there are 1 vertices"}},
+    {R"({"version": 1, "materials": {"m": {"color": [2, 0, 0]}}})",
+     {"1:46: materials.m.color[0]: 2 is out of range, must be 0 to 1"}},
+    {R"({"version": 1, "timeline": [{"at_step": -1, "remove": "x"}]})",
+     {"1:41: timeline[0].at_step: -1 is out of range, must be 0 to 4294967295"}},
+    {R"({"version": 1, "timeline": [{"at_step": 1, "remove": "x"}]})",
+     {"1:54: timeline[0].remove: there is no object 'x'"}},
+    {R"({"version": 1, "timeline": [{"at_step": 1}]})",
+     {"1:29: timeline[0]: needs one of 'add', 'remove', 'motion', 'unpin', 'force', 'impulse', 'wind', "
+      "'gravity'"}},
+    {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]},)"
+     R"( {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
+     {"1:26: camera: the times of the path must increase; keyframe 1 does not"}},
+    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]",)"
+     R"( "op": "<", "value": 1}]})",
+     {"1:42: expect[0]: this quantity needs 'point'"}},
+    {R"({"version": 1, "ropes": [{}], "expect": [{"quantity": "height", "of": "ropes[0]",)"
+     R"( "point": 16, "op": "<", "value": 1}]})",
+     {"1:92: expect[0].point: 16 is out of range, must be 0 to 15"}},
+    {R"({"version": 1, "expect": [{"quantity": "tension", "op": "<", "value": 1}]})",
+     {"1:27: expect[0]: this quantity needs 'of', the name of an object"}},
+    {R"({"version": 1, "expect": [{"quantity": "weight", "op": "<", "value": 1}]})",
+     {"1:40: expect[0].quantity: 'weight' is not one of 'x', 'y', 'z', 'height', 'speed', 'extension', "
+      "'largest_stretch', 'mean_stretch', 'tension', 'lowest', 'highest', 'total_energy', 'kinetic_energy', "
+      "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts'"}},
+    {"\xEF\xBB\xBF{\"version\": 1, \"title\": \"\xC3\xA9\xC3\xA9\", \"x\": 1}", {"1:31: x: unknown key"}},
+};
+
+}  // namespace
+
+TEST_SUITE("io/scene_errors") {
+  TEST_CASE("every mistake is reported with its place, its path and a reason") {
+    for (const BadScene& bad : kBadScenes) {
+      CAPTURE(std::string(bad.text));
+      const auto loaded = hooke::parse_scene(bad.text, "demo.json");
+      CHECK_FALSE(loaded);
+      REQUIRE(loaded.errors.size() == bad.lines.size());
+      for (std::size_t i = 0; i < bad.lines.size(); ++i) {
+        CHECK(hooke::to_line(loaded.errors[i]) == "demo.json:" + std::string(bad.lines[i]));
+      }
+    }
+  }
+
+  TEST_CASE("all mistakes of a file come at once, in its order") {
+    const auto loaded = hooke::parse_scene(R"({
+  "version": 1,
+  "gravity": [0, -9.81, 0],
+  "materials": {"silk": {"opacity": 2}},
+  "ropes": [
+    {"name": "rope", "material": "slik", "masses": 33.5},
+    {"total_mass": "1 kg", "array": {"grid": [2, 0, 2]}}
+  ],
+  "expect": [{"quantity": "speed", "of": "roep", "point": 3, "op": "<", "value": 1}]
+})",
+                                           "demo.json");
+    std::string lines;
+    for (const hooke::Error& error : loaded.errors) lines += hooke::to_line(error) + "\n";
+    CHECK(lines ==
+          R"(demo.json:3:3: gravity: unknown key
+demo.json:4:37: materials.silk.opacity: 2 is out of range, must be 0 to 1
+demo.json:6:34: ropes[0].material: there is no material 'slik', did you mean 'silk'?
+demo.json:6:52: ropes[0].masses: must be a whole number
+demo.json:7:20: ropes[1].total_mass: '1 kg' is a string, must be a number (in kg, without a unit)
+demo.json:7:50: ropes[1].array.grid[1]: 0 is out of range, must be 1 to 1000000
+demo.json:9:42: expect[0].of: there is no object 'roep', did you mean 'rope'?
+)");
+  }
+
+  TEST_CASE("a file of mistakes gives a hundred of them") {
+    std::string text = "{\"version\": 1, \"ropes\": [";
+    for (int i = 0; i < 5000; ++i) text += R"({"masses": 1},)";
+    text.back() = ']';
+    const auto loaded = hooke::parse_scene(text + "}", "demo.json");
+    CHECK(loaded.errors.size() == 100);
+  }
+}

@@ -1,0 +1,188 @@
+#include "hooke/scene_io.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <fstream>
+
+namespace {
+
+/// A folder that is gone after the test.
+struct Folder {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "hooke_scene_load_test";
+  Folder() {
+    std::filesystem::remove_all(path);
+    std::filesystem::create_directories(path / "scene" / "models");
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+    return (path / name).string();
+  }
+};
+
+std::string first_line(const hooke::Loaded<hooke::Scene>& loaded) {
+  return loaded.errors.empty() ? "" : hooke::to_line(loaded.errors.front());
+}
+
+}  // namespace
+
+TEST_SUITE("io/scene_load") {
+  TEST_CASE("every kind of object arrives in its descriptor") {
+    const auto loaded = hooke::parse_scene(R"({
+      "$schema": "schema.json",
+      "version": 1,  // a comment
+      "world": {"gravity": [0, -1.62, 0], "substeps": 4, "wind": {"velocity": [3, 0, 0], "gusts": "paper"}},
+      "dt": 0.01, "seconds": 2,
+      "bodies": [{"shape": {"sphere": {"radius": 0.25}}, "rotation": {"axis": [0, 0, 2], "angle_deg": 90}}],
+      "ropes": [{"masses": 32, "stiffness": 1e4, "stiffness_of": "segment", "extension_max": "rigid",
+                 "pins": [0, {"point": "last", "motion": {"sine": {"amplitude": [0, 0, 0.1]}}}]}],
+      "cloths": [{"columns": 5, "rows": 4, "bend": "spring", "total_mass": 0.5, "pins": [{"row": "last"}]}],
+      "particles": [{"particles": [{"position": [0, 0, 0], "mass": 2}, {"position": [1, 0, 0]}],
+                     "springs": [{"a": 0, "b": 1, "rest_length": 0.5}]}],
+      "fields": [{"inverse_square": {"strength": 4}}]
+    })",
+                                           "demo.json");
+    INFO(first_line(loaded));
+    REQUIRE(loaded);
+    const hooke::Scene& scene = *loaded.value;
+    CHECK(scene.world.gravity == hooke::Vec3{0, hooke::Real(-1.62), 0});
+    CHECK(scene.world.wind.gusts == hooke::WindDesc::Gusts::kPaper);
+    CHECK(scene.step_count() == 200);
+    const hooke::BodyDesc& body = scene.objects.bodies.at(0).desc;
+    CHECK(body.shape.kind == hooke::ShapeKind::kSphere);
+    CHECK(body.shape.radius == hooke::Real(0.25));
+    CHECK(static_cast<double>(body.rotation.z) == doctest::Approx(std::sqrt(0.5)));
+    const hooke::SceneRope& rope = scene.objects.ropes.at(0);
+    CHECK(rope.desc.masses == 32);
+    CHECK(rope.desc.stiffness_of == hooke::RopeDesc::StiffnessOf::kSegment);
+    CHECK(rope.desc.extension_max == hooke::kRigid);
+    CHECK(rope.pins.at(1).point.last);
+    CHECK(rope.pins.at(1).motion.kind == hooke::MotionDesc::Kind::kSine);
+    const hooke::SceneCloth& cloth = scene.objects.cloths.at(0);
+    CHECK(cloth.desc.total_mass == hooke::Real(0.5));
+    CHECK(cloth.pins.at(0).pick == hooke::ScenePin::Pick::kRow);
+    const hooke::ParticlesDesc& particles = scene.objects.particles.at(0).desc;
+    CHECK(particles.particles.at(0).mass == hooke::Real(2));
+    CHECK(particles.springs.at(0).rest_length == hooke::Real(0.5));
+    CHECK(scene.objects.fields.at(0).desc.kind == hooke::FieldDesc::Kind::kInverseSquare);
+  }
+
+  TEST_CASE("turns about the fixed axes come in the order x, y, z") {
+    const auto loaded = hooke::parse_scene(
+        R"({"version": 1, "bodies": [{"shape": {"box": {}}, "rotation": {"euler_deg": [90, 0, 90]}}]})",
+        "demo.json");
+    REQUIRE(loaded);
+    // About x the y axis goes to z, which the turn about z leaves alone.
+    const hooke::Vec3 turned =
+        hooke::rotate(loaded.value->objects.bodies[0].desc.rotation, hooke::Vec3{0, 1, 0});
+    CHECK(static_cast<double>(turned.z) == doctest::Approx(1.0));
+  }
+
+  TEST_CASE("a byte order mark is not part of the first line") {
+    CHECK(hooke::parse_scene("\xEF\xBB\xBF{\"version\": 1}", "demo.json"));
+  }
+
+  TEST_CASE("a file that is not there, or is a folder, is an error") {
+    CHECK(first_line(hooke::load_scene("/nowhere/demo.json")) == "/nowhere/demo.json: no such file");
+    CHECK(first_line(hooke::load_scene("/dev/zero")) == "/dev/zero: is not a file");
+    CHECK(first_line(hooke::load_scene("/tmp")) == "/tmp: is not a file");
+  }
+
+  TEST_CASE("files of a scene stay in its folder and are there") {
+    const Folder folder;
+    const std::string outside = folder.write("secret.obj", "v 0 0 0");
+    const std::string inside = folder.write("scene/models/a.obj", "v 0 0 0");
+    std::filesystem::create_symlink(outside, folder.path / "scene" / "link.obj");
+    const auto load = [&](const std::string& file) {
+      const std::string path =
+          folder.write("scene/demo.json", R"({"version": 1, "meshes": {"m": {"file": ")" + file + "\"}}}");
+      std::string line = first_line(hooke::load_scene(path));
+      return line.substr(std::min(line.find("meshes"), line.size()));
+    };
+    CHECK(load("models/a.obj").empty());
+    CHECK(load("models/../models/a.obj").empty());
+    CHECK(load("models/b.obj") == "meshes.m.file: no such file 'models/b.obj'");
+    CHECK(load("../secret.obj") == "meshes.m.file: '../secret.obj' is outside of the scene's folder");
+    CHECK(load("models/../../secret.obj") ==
+          "meshes.m.file: 'models/../../secret.obj' is outside of the scene's folder");
+    CHECK(load(inside).find("is outside of the scene's folder") != std::string::npos);
+    CHECK(load("link.obj") == "meshes.m.file: 'link.obj' is outside of the scene's folder");
+    CHECK(load("..\\\\secret.obj") ==
+          "meshes.m.file: '..\\secret.obj' has a character that a path must not have");
+  }
+}
+
+TEST_SUITE("io/scene_hostile") {
+  TEST_CASE("deep nesting ends at its limit") {
+    const std::string text = R"({"version": 1, "a": )" + std::string(100000, '[');
+    CHECK(first_line(hooke::parse_scene(text, "demo.json")) ==
+          "demo.json:1:84: nested deeper than 64 levels");
+  }
+
+  TEST_CASE("a file of too many values ends at its limit") {
+    std::string text = "[";
+    for (int i = 0; i < 2'500'000; ++i) text += "0,";
+    text.back() = ']';
+    CHECK(first_line(hooke::parse_scene(text, "demo.json")) ==
+          "demo.json:1:4000000: more than 2000000 values in one file");
+  }
+
+  TEST_CASE("a file of too many empty lines is not parsed") {
+    CHECK(first_line(hooke::parse_scene(std::string(9'000'000, '\n'), "demo.json")) ==
+          "demo.json:1:1: more than 8000000 line ends and tabs in one file");
+  }
+
+  TEST_CASE("a file that is too large is not parsed") {
+    CHECK(first_line(hooke::parse_scene(std::string((std::size_t{64} << 20U) + 1, ' '), "demo.json")) ==
+          "demo.json:1:1: the file is larger than 64 MiB");
+  }
+
+  TEST_CASE("an array that overflows every counter is refused before anything is allocated") {
+    const auto loaded = hooke::parse_scene(
+        R"({"version": 1, "ropes": [{"masses": 65536, "array": {"grid": [1000000, 1000000, 1000000]}}]})",
+        "demo.json");
+    CHECK(first_line(loaded) ==
+          "demo.json:1:26: ropes[0]: with this object the scene has more than 1000000 points");
+  }
+
+  TEST_CASE("many objects with many unknown names do not take the square of their number") {
+    std::string text = R"({"version": 1, "materials": {)";
+    for (int i = 0; i < 20000; ++i) text += "\"material" + std::to_string(i) + "\": {},";
+    text.back() = '}';
+    text += ", \"ropes\": [";
+    for (int i = 0; i < 50000; ++i) text += R"({"material": "material19999"},)";
+    text.back() = ']';
+    const auto loaded = hooke::parse_scene(text + "}", "demo.json");
+    INFO(first_line(loaded));
+    CHECK(loaded);
+  }
+
+  TEST_CASE("a text cut off anywhere is an error or nothing, never a crash") {
+    const std::string text = *hooke::starter_scene("flag");
+    std::size_t accepted = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      accepted += hooke::parse_scene(text.substr(0, i), "demo.json") ? 1 : 0;
+    }
+    // Only the closing line feed can be missing.
+    CHECK(accepted == 1);
+  }
+
+  TEST_CASE("no single damaged byte makes a message of two lines") {
+    const std::string text = *hooke::starter_scene("rope");
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      for (const char byte : {'\0', '\n', '"', '\x7F', '\xC3', '9', '['}) {
+        std::string damaged = text;
+        damaged[i] = byte;
+        for (const hooke::Error& error : hooke::parse_scene(damaged, "demo.json").errors) {
+          const std::string line = hooke::to_line(error);
+          CHECK(line.find('\n') == std::string::npos);
+          CHECK(line.size() < 1000);
+        }
+      }
+    }
+  }
+}

@@ -1,0 +1,244 @@
+#include "hooke/scene_io.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+namespace {
+
+const std::filesystem::path kScenes = HOOKE_SCENES;
+
+std::string read(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::vector<std::filesystem::path> scene_files() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    const bool scene = entry.path().extension() == ".json" && entry.path().filename() != "schema.json";
+    if (scene) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// What the schema says against a text; empty if nothing.
+std::string schema_complaint(const std::string& text) {
+  const nlohmann::json schema_json = nlohmann::json::parse(hooke::scene_schema());
+  const valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json);
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(schema_adapter, schema);
+  const nlohmann::json document = nlohmann::json::parse(text, nullptr, true, true);
+  const valijson::adapters::NlohmannJsonAdapter adapter(document);
+  valijson::ValidationResults results;
+  if (valijson::Validator().validate(schema, adapter, &results)) return "";
+  valijson::ValidationResults::Error error;
+  std::string complaint;
+  while (results.popError(error)) {
+    for (const std::string& step : error.context) complaint += step;
+    complaint += ": " + error.description + "; ";
+  }
+  return complaint.empty() ? "not valid" : complaint;
+}
+
+/// A scene that uses everything the format has, away from the defaults.
+constexpr const char* kEverything = R"({
+  "version": 1, "title": "All \"keys\"\nand \u00e9", "description": "d", "dt": 0.004, "seconds": 3,
+  "world": {"gravity": [1, -2, 3], "substeps": 2, "particle_substeps": 3, "workers": 2,
+    "wind": {"velocity": [1, 0, 0.1], "gust": 0.5, "side_gust": 0.25, "correlation_time": 0.7,
+             "correlation_length": 3, "seed": 7, "gusts": "paper", "air_density": 1.1}},
+  "meshes": {"file": {"file": "a/b.obj", "up": "x", "scale": 0.001},
+             "fit": {"file": "c.3ds", "fit": 0.4},
+             "inline": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}},
+  "materials": {"silk": {"color": [0.1, 0.2, 0.3], "texture": "t.png", "shininess": 3, "opacity": 0.5,
+                         "friction": 0.9}, "plain": {}},
+  "bodies": [
+    {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25},
+    {"shape": {"sphere": {"radius": 0.3}}, "position": [1, 2, 3], "rotation": [0, 0, 1, 0], "collides": false,
+     "array": {"grid": [2, 3, 4], "spacing": [1, 0.5, 0.25]}},
+    {"shape": {"box": {"half_extents": [1, 2, 3]}}, "array": {"pyramid": 4, "spacing": [1, 1, 1.5]}},
+    {"shape": {"box": {}}, "array": {"random": 5, "seed": 9, "box": [[-1, -1, -1], [1, 2, 3]]}},
+    {"shape": {"mesh": "inline"}}],
+  "ropes": [
+    {"name": "rope", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2, "masses": 9,
+     "length_at_rest": 2, "stiffness": 1000, "inner_friction": 0.1, "air_friction": 0.2, "extension_max": 0.05,
+     "stiffness_of": "segment", "axial_stiffness": 500, "radius": 0.01, "drag_coefficient": 1, "charge": 1e-6,
+     "velocity": [0, 0, 1], "loads": [{"point": 3, "mass": 0.5}, {"point": "last", "mass": 0}],
+     "pins": [0, {"point": "last", "motion": {"velocity": [0, 1, 0]}},
+              {"point": 2, "motion": {"sine": {"amplitude": [0, 1, 0], "frequency_hz": 2, "phase": 0.5}}},
+              {"topmost": 0.1, "motion": {"keyframes": [{"time": 0, "offset": [0, 0, 0]},
+                                                        {"time": 1, "offset": [0, 1, 0]}]}}]},
+    {"points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "pins": []}],
+  "cloths": [
+    {"name": "cloth", "columns": 4, "rows": 3, "corner": [0, 1, 0], "column_direction": [0, 0, 1],
+     "row_direction": [1, 0, 0], "width": 2, "height": 3, "areal_density": 0.3, "thickness": 0.01,
+     "stretch_stiffness": "rigid", "shear_stiffness": 100, "bend_stiffness": 0.5, "damping": 0.1,
+     "bend_damping": 0.2, "bend": "none", "extension_max": 0.1, "tethers": true, "drag_coefficient": 1,
+     "lift_coefficient": 0, "air_friction": 0.1, "pins": [{"column": "last"}, {"row": 1}, {"topmost": 0}],
+     "loads": [{"point": 1, "mass": 1}], "charge": 1, "velocity": [1, 0, 0]},
+    {"mesh": "inline", "position": [0, 1, 0], "rotation": [1, 0, 0, 0], "total_mass": 1}],
+  "particles": [{"name": "net", "particles": [
+      {"position": [0, 0, 0], "velocity": [1, 0, 0], "mass": 2, "charge": 1, "radius": 0.1},
+      {"position": [1, 0, 0]}], "springs": [{"a": 0, "b": 1, "stiffness": 5, "damping": 1, "rest_length": 2}],
+     "direction": "predicted", "damping": "isotropic", "air_friction": 0.1, "drag_coefficient": 0.4, "pins": [1]}],
+  "fields": [{"name": "up", "uniform": {"acceleration": [0, 1, 0]}},
+             {"inverse_square": {"center": [0, 1, 0], "strength": 2}}, {"magnetic": {"flux_density": [0, 0, 1]}}],
+  "timeline": [
+    {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},
+    {"at_step": 2, "remove": "late"},
+    {"at_step": 3, "motion": {"object": "rope", "point": "last", "motion": {"velocity": [1, 0, 0]}}},
+    {"at_step": 4, "unpin": {"object": "cloth", "point": 2}},
+    {"at_step": 5, "force": {"object": "net", "point": 0, "force": [1, 2, 3], "steps": 4}},
+    {"at_step": 6, "impulse": {"object": "rope", "point": 1, "impulse": [1, 2, 3]}},
+    {"at_step": 7, "wind": {"velocity": [2, 0, 0]}},
+    {"at_step": 8, "gravity": [0, -1, 0]}],
+  "camera": {"eye": [1, 2, 3], "target": [3, 2, 1], "fov_deg": 60,
+             "path": [{"time": 0, "eye": [0, 0, 0], "target": [1, 1, 1]},
+                      {"time": 2.5, "eye": [0, 1, 0], "target": [1, 1, 1]}]},
+  "expect": [
+    {"quantity": "height", "of": "rope", "point": "last", "op": "==", "value": 1.5, "tolerance": 0.01},
+    {"quantity": "tension", "of": "rope", "op": "within", "value": 10, "tolerance": 0.1, "at_step": 5},
+    {"quantity": "total_energy", "op": "<=", "value": 12}]
+})";
+
+}  // namespace
+
+TEST_SUITE("io/scene_write") {
+  TEST_CASE("a scene that uses everything comes back equal") {
+    const auto loaded = hooke::parse_scene(kEverything, "all.json");
+    INFO((loaded.errors.empty() ? "" : hooke::to_line(loaded.errors.front())));
+    REQUIRE(loaded);
+    const std::string text = hooke::write_scene(*loaded.value);
+    const auto again = hooke::parse_scene(text, "all.json");
+    INFO((again.errors.empty() ? "" : hooke::to_line(again.errors.front())));
+    REQUIRE(again);
+    CHECK(*again.value == *loaded.value);
+    CHECK(hooke::write_scene(*again.value) == text);
+    CHECK(schema_complaint(kEverything).empty());
+    CHECK(schema_complaint(text).empty());
+  }
+
+  TEST_CASE("a scene without defaults is written as it was read") {
+    const auto loaded = hooke::parse_scene(kEverything, "all.json");
+    REQUIRE(loaded);
+    const nlohmann::json written = nlohmann::json::parse(hooke::write_scene(*loaded.value));
+    CHECK(nlohmann::json::diff(nlohmann::json::parse(kEverything), written).dump() == "[]");
+  }
+
+  TEST_CASE("the scene that uses everything does use every key") {
+    const nlohmann::json schema = nlohmann::json::parse(hooke::scene_schema());
+    for (const auto& [kind, definition] : schema["definitions"].items()) {
+      if (kind == "rotation") continue;  // always written as a quaternion
+      for (const auto& [key, value] : definition["properties"].items()) {
+        CAPTURE(key);
+        const bool used = std::string_view(kEverything).find('"' + key + '"') != std::string_view::npos;
+        CHECK((used || key == "$schema"));
+      }
+    }
+  }
+
+  TEST_CASE("a change of any value makes scenes unequal") {
+    const auto loaded = hooke::parse_scene(kEverything, "all.json");
+    REQUIRE(loaded);
+    hooke::Scene other = *loaded.value;
+    CHECK(other == *loaded.value);
+    other.objects.ropes[0].pins[2].motion.phase += 1;
+    CHECK_FALSE(other == *loaded.value);
+  }
+
+  TEST_CASE("an empty scene is written as its version alone") {
+    CHECK(hooke::write_scene({}) == "{\n  \"version\": 1\n}\n");
+  }
+
+  TEST_CASE("the starter scenes are valid and come back equal") {
+    for (const char* kind : {"empty", "rope", "flag"}) {
+      CAPTURE(kind);
+      const std::string text = *hooke::starter_scene(kind);
+      const auto loaded = hooke::parse_scene(text, "new.json");
+      REQUIRE(loaded);
+      const auto again = hooke::parse_scene(hooke::write_scene(*loaded.value), "new.json");
+      REQUIRE(again);
+      CHECK(*again.value == *loaded.value);
+      CHECK(schema_complaint(text).empty());
+    }
+    CHECK_FALSE(hooke::starter_scene("car").has_value());
+  }
+
+  TEST_CASE("every scene of the collection is valid and comes back equal") {
+    REQUIRE(scene_files().size() >= 12);
+    for (const auto& file : scene_files()) {
+      CAPTURE(file);
+      const auto loaded = hooke::parse_scene(read(file), file.string());
+      INFO((loaded.errors.empty() ? "" : hooke::to_line(loaded.errors.front())));
+      REQUIRE(loaded);
+      CHECK_FALSE(loaded.value->expect.empty());
+      CHECK(loaded.value->camera.has_value());
+      const auto again = hooke::parse_scene(hooke::write_scene(*loaded.value), file.string());
+      REQUIRE(again);
+      CHECK(*again.value == *loaded.value);
+      CHECK(schema_complaint(read(file)).empty());
+    }
+  }
+
+  TEST_CASE("saving replaces the file as a whole or not at all") {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "hooke_scene_write_test";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::string path = (folder / "scene.json").string();
+    hooke::Scene scene;
+    scene.title = "saved";
+    REQUIRE(hooke::save_scene(scene, path));
+    CHECK(read(path) == hooke::write_scene(scene));
+    CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+    const auto failed = hooke::save_scene(scene, (folder / "nowhere" / "scene.json").string());
+    REQUIRE_FALSE(failed);
+    CHECK(failed.error().code == hooke::ErrorCode::kFileNotWritable);
+    std::filesystem::remove_all(folder);
+  }
+}
+
+TEST_SUITE("io/scene_reference") {
+  // After a change of the tables, HOOKE_UPDATE=1 in the environment writes both files anew.
+
+  TEST_CASE("the committed schema is the one that the tables give") {
+    const std::filesystem::path file = kScenes / "schema.json";
+    if (std::getenv("HOOKE_UPDATE") != nullptr) std::ofstream(file) << hooke::scene_schema();
+    CHECK(read(file) == hooke::scene_schema());
+  }
+
+  TEST_CASE("the documentation holds the tables as they are") {
+    const std::filesystem::path file = kScenes.parent_path() / "docs" / "scene_format.md";
+    constexpr std::string_view kMark = "<!-- Generated from here on. -->\n\n";
+    const std::string page = read(file);
+    const std::size_t start = page.find(kMark);
+    REQUIRE(start != std::string::npos);
+    const std::string text = page.substr(0, start + kMark.size());
+    if (std::getenv("HOOKE_UPDATE") != nullptr) std::ofstream(file) << text << hooke::scene_reference();
+    CHECK(read(file) == text + hooke::scene_reference());
+  }
+
+  TEST_CASE("the schema refuses what the loader refuses") {
+    for (const char* text :
+         {R"({})", R"({"version": 1, "dt": 0})", R"({"version": 1, "ropes": [{"masses": 1}]})",
+          R"({"version": 1, "ropes": [{"mases": 2}]})",
+          R"({"version": 1, "ropes": [{"stiffness": "stiff"}]})",
+          R"({"version": 1, "bodies": [{"shape": {}}]})",
+          R"({"version": 1, "bodies": [{"shape": {"box": {}, "sphere": {}}}]})",
+          R"({"version": 1, "world": {"gravity": [0, 1]}})"}) {
+      CAPTURE(text);
+      CHECK_FALSE(schema_complaint(text).empty());
+      CHECK_FALSE(hooke::parse_scene(text, "demo.json"));
+    }
+  }
+}
