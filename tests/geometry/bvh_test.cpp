@@ -246,6 +246,19 @@ TEST_SUITE("geometry/bvh") {
     CHECK(hooke::geometry::cast_ray(bvh, {0.6, 0.3, 1}, {0, 0, -1})->triangle == 0);
   }
 
+  TEST_CASE("above a vertex the smallest of the triangles around it answers") {
+    MeshDesc mesh = make_sheet();
+    std::reverse(mesh.triangles.begin(), mesh.triangles.end());  // not the order in which the tree meets them
+    const auto topology = hooke::geometry::compute_topology(mesh.positions.size(), mesh.triangles);
+    const Bvh bvh = bvh_of(mesh);
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3 above = mesh.positions[v] + Vec3{0, 0, Real(0.5)};
+      CHECK(hooke::geometry::find_closest(bvh, above)->triangle == topology.triangles_at(v)[0]);
+      const DVec3 from = hooke::vector_cast<double>(above);
+      CHECK(hooke::geometry::cast_ray(bvh, from, {0, 0, -1})->triangle == topology.triangles_at(v)[0]);
+    }
+  }
+
   TEST_CASE("triangles of exponentially growing distance do not make the tree too deep") {
     // Each is sixteen times as far as the one before: splits by surface take one or two off at a time.
     MeshDesc mesh;
