@@ -20,7 +20,8 @@ std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t p
   }
   std::vector<Vec3> offsets;
   for (const DVec3& p : surface.points) offsets.push_back(vector_cast<Real>(p - surface.points[pin]));
-  const auto field = geometry::compute_geodesic_field(offsets, surface.triangles, surface.topology, {&pin, 1});
+  const auto field =
+      geometry::compute_geodesic_field(offsets, surface.triangles, surface.topology, {&pin, 1});
   result.assign(field.distance.begin(), field.distance.end());
   return result;
 }

@@ -48,23 +48,25 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, Real frict
   contacts.friction_force.push_back({});
 }
 
+struct Finder {
+  state::Contacts contacts;
+  std::vector<std::uint32_t> triangles;  // of one query
+};
+
 /// Appends the rows of one particle against one body.
-void find_pair(const state::Tables& t, std::uint32_t object_row, std::uint32_t particle,
-               std::uint32_t body_row, Real way, state::Contacts& contacts) {
+void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real way, Finder& finder) {
   const state::Deformable& object = t.objects[object_row];
-  const state::Body& body = t.bodies[body_row];
-  const Frame frame = frame_of(body, object);
-  const Vec3 x = frame.to_body(t.particles.position[particle].x);
-  const Real reach = t.particles.velocity[particle].radius + way + kMargin;
+  const state::Body& body = t.bodies[pair.body];
+  const Vec3 x = frame_of(body, object).to_body(t.particles.position[pair.particle].x);
+  const Real reach = t.particles.velocity[pair.particle].radius + way + kMargin;
   const Real friction = std::sqrt(object.friction * body.friction);
   if (body.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(body.shape, x).distance > reach) return;
-    append(finder.contacts, {particle, body_row, 0}, object_row, friction);
+    if (gap_to_shape(body.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
   }
   find_triangles_near(*body.mesh, x, reach, finder.triangles);
   for (const std::uint32_t triangle : finder.triangles) {
-    append(finder.contacts, {particle, body_row, triangle}, object_row, friction);
+    append(finder.contacts, {pair.particle, pair.body, triangle}, object_row, friction);
   }
 }
 
@@ -86,11 +88,11 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
   contacts.separation[row] = gap.distance - radius;
 }
 
-/// Rows [first, end) are triangles of one mesh near one particle. The nearest triangle tells whether the particle is
-/// inside: then it alone pushes out. Outside, faces below the particle hold it; a rim does only where no face is, so
-/// that sliding over the edges between triangles of a flat mesh is not felt.
-void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t end, const Frame& frame, Vec3 x,
-                      Real radius) {
+/// Rows [first, end) are triangles of one mesh near one particle. The nearest triangle tells whether the
+/// particle is inside: then it alone pushes out. Outside, faces below the particle hold it; a rim does only
+/// where no face is, so that sliding over the edges between triangles of a flat mesh is not felt.
+void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t end, const Frame& frame,
+                      Vec3 x, Real radius) {
   const state::Mesh& mesh = *frame.body->mesh;
   const Vec3 place = frame.to_body(x);
   std::size_t nearest = first;
@@ -125,7 +127,7 @@ void find_contacts(state::Tables& t, double dt) {
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
       for (std::uint32_t b = 0; b < t.bodies.size(); ++b) {
-        if (t.bodies[b].collides) find_pair(t, o, p, b, way, finder);
+        if (t.bodies[b].collides) find_pair(t, {p, b, 0}, o, way, finder);
       }
     }
   }

@@ -17,10 +17,14 @@ Gap gap_of(const geometry::SurfacePoint<Real>& surface) {
 
 Gap gap_to_shape(const Shape& shape, Vec3 x) {
   switch (shape.kind) {
-    case ShapeKind::kHalfSpace: return gap_of(geometry::closest_on_half_space(x));
-    case ShapeKind::kSphere: return gap_of(geometry::closest_on_sphere(x, shape.radius));
-    case ShapeKind::kBox: return gap_of(geometry::closest_on_box(x, shape.half_extents));
-    case ShapeKind::kMesh: break;
+    case ShapeKind::kHalfSpace:
+      return gap_of(geometry::closest_on_half_space(x));
+    case ShapeKind::kSphere:
+      return gap_of(geometry::closest_on_sphere(x, shape.radius));
+    case ShapeKind::kBox:
+      return gap_of(geometry::closest_on_box(x, shape.half_extents));
+    case ShapeKind::kMesh:
+      break;
   }
   return {std::numeric_limits<Real>::infinity(), {Real(0), Real(1), Real(0)}};
 }

@@ -1,7 +1,6 @@
 #include "elements/dihedral.h"
 
 #include <doctest/doctest.h>
-
 #include <numbers>
 
 namespace hooke::elements {

@@ -1,7 +1,6 @@
 #include "parallel/thread_pool.h"
 
 #include <doctest/doctest.h>
-
 #include <vector>
 
 namespace hooke::parallel {

@@ -2,9 +2,8 @@
 
 #include "solver/wide/wide.h"
 
-#include <doctest/doctest.h>
-
 #include <cstring>
+#include <doctest/doctest.h>
 #include <limits>
 
 namespace hooke::solver {
@@ -60,9 +59,10 @@ Pair random_net(int particles, int springs, state::SpringClass kind) {
   }
   for (int i = 0; i < springs; ++i) {
     const auto a = static_cast<std::uint32_t>(4 + next() % static_cast<unsigned>(particles - 4));
-    const auto b = kind == state::SpringClass::kTether
-                       ? next() % 4
-                       : (a + 1 + next() % static_cast<unsigned>(particles - 1)) % static_cast<unsigned>(particles);
+    const auto b =
+        kind == state::SpringClass::kTether
+            ? next() % 4
+            : (a + 1 + next() % static_cast<unsigned>(particles - 1)) % static_cast<unsigned>(particles);
     net.springs.particle_a.push_back(a);
     net.springs.particle_b.push_back(b);
     net.springs.rest_length.push_back(Real(0.3) * real());
@@ -107,10 +107,10 @@ TEST_SUITE("solver/springs") {
 
   TEST_CASE("central damping leaves the transverse velocity alone and isotropic damping does not") {
     for (const bool isotropic : {false, true}) {
-      Pair pair = make_pair({.stiffness = Real(0),
-                             .damping = Real(24),
-                             .form = isotropic ? state::SpringForm::kExplicitIsotropic
-                                               : state::SpringForm::kExplicit});
+      Pair pair = make_pair(
+          {.stiffness = Real(0),
+           .damping = Real(24),
+           .form = isotropic ? state::SpringForm::kExplicitIsotropic : state::SpringForm::kExplicit});
       pair.particles.velocity[1].v = {Real(0), Real(1), Real(0)};
       solve(pair);
       const Real rate = pair.particles.velocity[1].v.y - pair.particles.velocity[0].v.y;
@@ -133,7 +133,8 @@ TEST_SUITE("solver/springs") {
   }
 
   TEST_CASE("a limit pulls when it is too long and does nothing when it is short") {
-    Pair slack = make_pair({.separation = Real(0.5), .stiffness = kStiff, .kind = state::SpringClass::kLimit});
+    Pair slack =
+        make_pair({.separation = Real(0.5), .stiffness = kStiff, .kind = state::SpringClass::kLimit});
     solve(slack);
     CHECK(slack.particles.velocity[0].v == Vec3{});
     Pair taut = make_pair({.separation = Real(1.5), .stiffness = kStiff, .kind = state::SpringClass::kLimit});

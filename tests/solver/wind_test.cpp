@@ -1,9 +1,8 @@
 #include "solver/wind.h"
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 
 namespace hooke::solver {
 namespace {
@@ -53,8 +52,10 @@ TEST_SUITE("solver/wind") {
       const double t = 0.01 * i;
       const double here = static_cast<double>(wind_at(wind, {1, 2, 3}, t, 0).x);
       // Steepest slope of the quintic is 1.875 over a correlation time of 0.5 s, from -1 to 1 at most.
-      CHECK(std::abs(static_cast<double>(wind_at(wind, {1, 2, 3}, t + 1e-4, 0).x) - here) <= 5.0 * 2 * 1.875 * 2e-4 + 1e-5);
-      CHECK(std::abs(static_cast<double>(wind_at(wind, {1 + 1e-4, 2, 3}, t, 0).x) - here) <= 5.0 * 2 * 1.875 * 5e-5 + 1e-5);
+      CHECK(std::abs(static_cast<double>(wind_at(wind, {1, 2, 3}, t + 1e-4, 0).x) - here) <=
+            5.0 * 2 * 1.875 * 2e-4 + 1e-5);
+      CHECK(std::abs(static_cast<double>(wind_at(wind, {1 + 1e-4, 2, 3}, t, 0).x) - here) <=
+            5.0 * 2 * 1.875 * 5e-5 + 1e-5);
     }
   }
 

@@ -60,8 +60,15 @@ TEST_SUITE("world/api") {
          {"rope.extension_max", [](RopeDesc& d, Real v) { d.extension_max = v; }, true},
          {"rope.radius", [](RopeDesc& d, Real v) { d.radius = v; }},
          {"rope.axial_stiffness", [](RopeDesc& d, Real v) { d.axial_stiffness = v; }, true},
-         {"rope.loads[0].mass", [](RopeDesc& d, Real v) { d.loads = {{3, v}}; }, false, true},
-         {"rope.direction", [](RopeDesc& d, Real v) { d.direction = {Real(0), Real(0), std::abs(v) < kInf ? Real(0) : v}; }}},
+         {"rope.loads[0].mass",
+          [](RopeDesc& d, Real v) {
+            d.loads = {{3, v}};
+          },
+          false, true},
+         {"rope.direction",
+          [](RopeDesc& d, Real v) {
+            d.direction = {Real(0), Real(0), std::abs(v) < kInf ? Real(0) : v};
+          }}},
         [](World& world, const RopeDesc& desc) { return world.add_rope(desc); });
   }
 
@@ -81,16 +88,20 @@ TEST_SUITE("world/api") {
   TEST_CASE("particles, fields, bodies, wind and the world refuse what they cannot use") {
     World world = make_world();
     CHECK_FALSE(world.add_particles({}).has_value());
-    CHECK(world.add_particles({.particles = {{.mass = Real(0)}}}).error().where == "particles.particles[0].mass");
-    CHECK(world.add_particles({.particles = {{}}, .springs = {{0, 1}}}).error().where == "particles.springs[0].b");
-    CHECK(world.add_particles({.particles = {{}, {}}, .springs = {{1, 1}}}).error().where == "particles.springs[0].b");
+    CHECK(world.add_particles({.particles = {{.mass = Real(0)}}}).error().where ==
+          "particles.particles[0].mass");
+    CHECK(world.add_particles({.particles = {{}}, .springs = {{0, 1}}}).error().where ==
+          "particles.springs[0].b");
+    CHECK(world.add_particles({.particles = {{}, {}}, .springs = {{1, 1}}}).error().where ==
+          "particles.springs[0].b");
     CHECK(world.add_field({.vector = {kNan, 0, 0}}).error().where == "field.vector");
     CHECK(world.add_body({.shape = Shape::sphere(Real(-1))}).error().where == "body.shape.radius");
     CHECK(world.add_body({.rotation = {0, 0, 0, 0}}).error().where == "body.rotation");
     CHECK(world.add_body({.shape = Shape::of_mesh({7, 1})}).error().code == ErrorCode::kStaleId);
     CHECK(world.add_body({.position = {2e9, 0, 0}}).error().where == "body.position");
     CHECK(world.add_mesh({}).has_value() == false);
-    CHECK(world.add_mesh({.positions = {{}, {}, {}}, .triangles = {{0, 1, 3}}}).error().where == "mesh.triangles[0]");
+    CHECK(world.add_mesh({.positions = {{}, {}, {}}, .triangles = {{0, 1, 3}}}).error().where ==
+          "mesh.triangles[0]");
     CHECK(world.add_force_law({}).error().where == "force_law");
     WindDesc wind;
     wind.correlation_time = Real(0);
@@ -148,7 +159,8 @@ TEST_SUITE("world/api") {
     CHECK_FALSE(world.apply_impulse(point(rope, 16), {}).has_value());
     CHECK_FALSE(world.apply_impulse(point(rope, 3), {kNan, 0, 0}).has_value());
     CHECK_FALSE(world.set_velocity(point(rope, 3), {0, kInf, 0}).has_value());
-    CHECK_FALSE(world.set_position(point(rope, 3), {0, std::numeric_limits<double>::infinity(), 0}).has_value());
+    CHECK_FALSE(
+        world.set_position(point(rope, 3), {0, std::numeric_limits<double>::infinity(), 0}).has_value());
     CHECK_FALSE(world.apply_force(point(rope, 3), {0, 0, -kInf}).has_value());
     CHECK(world.state_hash() == hash);
   }

@@ -1,5 +1,4 @@
 #include "world/make.h"
-
 #include "world/world_data.h"
 
 #include <cmath>
@@ -26,7 +25,8 @@ ClothDesc small_flag() {
 MeshDesc sheet(int side) {
   MeshDesc mesh;
   for (int z = 0; z <= side; ++z) {
-    for (int x = 0; x <= side; ++x) mesh.positions.push_back({static_cast<Real>(x), Real(0), static_cast<Real>(z)});
+    for (int x = 0; x <= side; ++x)
+      mesh.positions.push_back({static_cast<Real>(x), Real(0), static_cast<Real>(z)});
   }
   for (int z = 0; z < side; ++z) {
     for (int x = 0; x < side; ++x) {

@@ -3,7 +3,6 @@
 #include "hooke/hooke.h"
 
 #include <doctest/doctest.h>
-
 #include <utility>
 
 namespace hooke::test {

@@ -1,6 +1,5 @@
-#include "world/make.h"
-
 #include "solver/wide/wide.h"
+#include "world/make.h"
 
 #include <cmath>
 #include <limits>
@@ -23,7 +22,8 @@ struct Stage {
   BodyId ball;
 };
 
-/// A bit of everything: ropes, a flag in gusts with limits and tethers, springs of all forms, contacts, fields.
+/// A bit of everything: ropes, a flag in gusts with limits and tethers, springs of all forms, contacts,
+/// fields.
 Stage make_stage(int workers = 1) {
   WorldDesc desc;
   desc.workers = workers;
@@ -51,9 +51,13 @@ Stage make_stage(int workers = 1) {
   s.flag = take(s.world.add_cloth(flag));
   ParticlesDesc net;
   for (int i = 0; i < 40; ++i) {
-    net.particles.push_back({.position = {0.1 * (i % 8), 1 + 0.1 * static_cast<int>(i / 8), 2}, .charge = Real(0.1)});
-    if (i > 0) net.springs.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i), Real(500), Real(1)});
-    if (i > 7) net.springs.push_back({static_cast<std::uint32_t>(i - 8), static_cast<std::uint32_t>(i), Real(700)});
+    net.particles.push_back(
+        {.position = {0.1 * (i % 8), 1 + 0.1 * static_cast<int>(i / 8), 2}, .charge = Real(0.1)});
+    if (i > 0)
+      net.springs.push_back(
+          {static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i), Real(500), Real(1)});
+    if (i > 7)
+      net.springs.push_back({static_cast<std::uint32_t>(i - 8), static_cast<std::uint32_t>(i), Real(700)});
   }
   net.direction = ParticlesDesc::Direction::kPredicted;
   s.net = take(s.world.add_particles(net));
@@ -169,7 +173,8 @@ TEST_SUITE("world/state") {
 
   TEST_CASE("a force law sees every particle in order and its force acts") {
     World world = make_world(test::empty_space());
-    const ParticlesId id = take(world.add_particles({.particles = {{.mass = Real(2)}, {.position = {1, 0, 0}}}}));
+    const ParticlesId id =
+        take(world.add_particles({.particles = {{.mass = Real(2)}, {.position = {1, 0, 0}}}}));
     take(world.add_force_law([](ForceView& view) {
       for (std::size_t i = 0; i < view.size(); ++i) view.add_force(i, {0, view.mass(i) * Real(3), 0});
       view.add_force(99, {Real(1), 0, 0});
@@ -208,7 +213,8 @@ TEST_SUITE("world/state") {
   TEST_CASE("what flies far is followed by its origin without a jump") {
     World world = make_world(test::empty_space());
     ParticlesDesc desc;
-    desc.particles = {{.velocity = {Real(100), 0, 0}}, {.position = {0, 1, 0}, .velocity = {Real(100), 0, 0}}};
+    desc.particles = {{.velocity = {Real(100), 0, 0}},
+                      {.position = {0, 1, 0}, .velocity = {Real(100), 0, 0}}};
     desc.springs = {{0, 1, Real(1000)}};
     const ParticlesId id = take(world.add_particles(desc));
     run(world, 600);
