@@ -1,5 +1,6 @@
 #include "geometry/geodesic.h"
 
+#include "base/hash.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>
@@ -152,6 +153,15 @@ TEST_SUITE("geometry/geodesic") {
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
       CHECK(folded.distance[v] == doctest::Approx(flat.distance[v]).epsilon(1e-5));
     }
+  }
+
+  TEST_CASE("the distances have the recorded bits on every compiler" *
+            doctest::skip(sizeof(Real) != sizeof(float))) {
+    const auto field = field_of(hooke::test::make_sphere(4), {3, 17, 400});
+    hooke::base::StateHash hash;
+    hash.add(field.distance);
+    hash.add(field.source);
+    CHECK(hash.value() == 14480922335634353566ULL);
   }
 
   TEST_CASE("what no source can reach is infinitely far") {
