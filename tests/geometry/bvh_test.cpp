@@ -259,6 +259,15 @@ TEST_SUITE("geometry/bvh") {
     }
   }
 
+  TEST_CASE("the tree has the recorded bits on every compiler" *
+            doctest::skip(sizeof(Real) != sizeof(float))) {
+    const Bvh bvh = bvh_of(hooke::test::make_sphere(4));
+    hooke::base::StateHash hash;
+    hash.add(bvh.nodes);
+    hash.add(bvh.order);
+    CHECK(hash.value() == 7842095063405104180ULL);
+  }
+
   TEST_CASE("triangles of exponentially growing distance do not make the tree too deep") {
     // Each is sixteen times as far as the one before: splits by surface take one or two off at a time.
     MeshDesc mesh;
