@@ -55,9 +55,9 @@ constexpr std::array<Format, 6> kFormats = {{
      "Stereolithography (STL) Importer",
      {.has_materials = false, .has_normals = false, .up = UpAxis::kZ},
      nullptr},
-    {"ply", "Stanford Polygon Library (PLY) Importer", {.has_materials = false}, nullptr},
-    {"gltf", "glTF2 Importer", {}, scan_gltf},
-    {"glb", "glTF2 Importer", {}, scan_glb},
+    {"ply", "Stanford Polygon Library (PLY) Importer", {.has_materials = false}, scan_ply},
+    {"gltf", "glTF2 Importer", {.names_are_uris = true}, scan_gltf},
+    {"glb", "glTF2 Importer", {.names_are_uris = true}, scan_glb},
 }};
 
 struct Arguments {

@@ -71,8 +71,9 @@ void put_material(Bytes& bytes, const ModelMaterial& material, const std::string
   put_color(bytes, 0xA010, material.color);         // ambient
   put_color(bytes, 0xA020, material.color);         // diffuse
   put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});  // specular
+  put_chunk(bytes, 0xA100, std::uint16_t{3});       // Phong; a shading without highlights loses the exponent
   put_percent(bytes, 0xA040, material.shininess);   // read back as the exponent
-  put_percent(bytes, 0xA041, 50.0f);                // strength; without it the exponent is not read
+  put_percent(bytes, 0xA041, 50.0f);                // strength of the highlight
   put_percent(bytes, 0xA050, 100.0f * (1.0f - material.opacity));  // transparency
   const std::string image = image_name(material);
   if (image.empty()) return;
