@@ -223,22 +223,25 @@ void add_nodes(Builder& builder, const aiNode& root) {
 
 /// Drops the points no triangle uses: their coordinates may be anything.
 void compact(io::Soup& soup) {
-  std::vector<std::uint32_t> moved(soup.positions.size(), std::numeric_limits<std::uint32_t>::max());
-  io::Soup used;
-  for (io::Triangle& triangle : soup.triangles) {
-    for (std::uint32_t& i : triangle) {
-      if (moved[i] == std::numeric_limits<std::uint32_t>::max()) {
-        moved[i] = static_cast<std::uint32_t>(used.positions.size());
-        used.positions.push_back(soup.positions[i]);
-        used.normals.push_back(soup.normals[i]);
-        used.uvs.push_back(soup.uvs[i]);
-      }
-      i = moved[i];
-    }
+  constexpr auto unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> moved(soup.positions.size(), unused);
+  for (const io::Triangle& triangle : soup.triangles) {
+    for (const std::uint32_t i : triangle) moved[i] = 0;
   }
-  soup.positions = std::move(used.positions);
-  soup.normals = std::move(used.normals);
-  soup.uvs = std::move(used.uvs);
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < moved.size(); ++i) {
+    if (moved[i] == unused) continue;
+    moved[i] = count++;
+    soup.positions[moved[i]] = soup.positions[i];
+    soup.normals[moved[i]] = soup.normals[i];
+    soup.uvs[moved[i]] = soup.uvs[i];
+  }
+  soup.positions.resize(count);
+  soup.normals.resize(count);
+  soup.uvs.resize(count);
+  for (io::Triangle& triangle : soup.triangles) {
+    for (std::uint32_t& i : triangle) i = moved[i];
+  }
 }
 
 double longest_side(const std::vector<DVec3>& points) {

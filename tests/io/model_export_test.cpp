@@ -129,7 +129,7 @@ TEST_SUITE("io/model_export") {
   TEST_CASE("a .3ds of more than 65535 vertices becomes several objects and one model again") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
-    const Model large = model_of(sphere(1, 300, 300));
+    const Model large = model_of(sphere(1, 260, 256));
     REQUIRE(large.vertices.size() > 65535);
     check_same_shape(large, round_trip(large, folder / "large.3ds"));
   }
