@@ -108,24 +108,29 @@ std::vector<Neighbors> find_neighbors(std::span<const Side> sides, std::size_t t
   return neighbors;
 }
 
-/// Turns triangles so that neighbors agree, starting from the first of each surface. Edges with two sides
-/// carry the agreement; others carry nothing.
+/// Turns triangles so that neighbors agree with `start` and with each other, as far as edges with two sides
+/// lead.
+void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::vector<std::uint8_t>& is_seen,
+                std::vector<std::uint8_t>& turned) {
+  std::vector<std::uint32_t> open = {start};
+  while (!open.empty()) {
+    const std::uint32_t t = open.back();
+    open.pop_back();
+    for (std::size_t i = 0; i < neighbors[t].count; ++i) {
+      const Neighbors::Link link = neighbors[t].links[i];
+      if (std::exchange(is_seen[link.to], std::uint8_t{1}) != 0) continue;
+      turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
+      open.push_back(link.to);
+    }
+  }
+}
+
+/// Makes each surface agree with its first triangle.
 void make_consistent(std::span<const Side> sides, std::vector<std::uint8_t>& turned) {
   const std::vector<Neighbors> neighbors = find_neighbors(sides, turned.size());
   std::vector<std::uint8_t> is_seen(turned.size(), 0);
-  std::vector<std::uint32_t> open;
   for (std::uint32_t start = 0; start < turned.size(); ++start) {
-    if (is_seen[start] == 0) open.push_back(start);
-    is_seen[start] = 1;
-    while (!open.empty()) {
-      const std::uint32_t t = open.back();
-      open.pop_back();
-      for (const Neighbors::Link& link : std::span(neighbors[t].links).first(neighbors[t].count)) {
-        if (std::exchange(is_seen[link.to], std::uint8_t{1}) != 0) continue;
-        turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
-        open.push_back(link.to);
-      }
-    }
+    if (std::exchange(is_seen[start], std::uint8_t{1}) == 0) agree_from(start, neighbors, is_seen, turned);
   }
 }
 
