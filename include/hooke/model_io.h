@@ -24,13 +24,13 @@ struct ModelMaterial {
   std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear base color, each [0, 1].
   float opacity = 1.0f;                             ///< [0, 1]
   float shininess = 16.0f;                          ///< Blinn-Phong exponent.
-  std::string texture = {};                         ///< Path of an image beside the model; empty for none.
+  std::string texture = {};  ///< Path of an image, which the color multiplies; empty for none.
 };
 
 struct ModelVertex {
   std::array<float, 3> position = {};
   std::array<float, 3> normal = {};  ///< Unit length.
-  std::array<float, 2> uv = {};
+  std::array<float, 2> uv = {};  ///< u to the right, v up: v = 0 is the image's bottom row. May leave [0, 1].
 };
 
 /// Triangles of one material: `count` indices from `first` on.
@@ -45,7 +45,7 @@ struct ModelPart {
 struct Model {
   std::vector<ModelVertex> vertices;     ///< As drawn: seams and creases keep their own vertices.
   std::vector<std::uint32_t> indices;    ///< Three per triangle, into `vertices`.
-  std::vector<ModelPart> parts;          ///< Cover `indices`.
+  std::vector<ModelPart> parts;          ///< Cover `indices`, in order, without gaps.
   std::vector<ModelMaterial> materials;  ///< At least one.
   MeshDesc mesh;  ///< As simulated: vertices welded by position, degenerate triangles gone.
   std::vector<std::uint32_t> welded_of;  ///< For each drawn vertex, its vertex in `mesh`.
@@ -65,15 +65,33 @@ struct ImportOptions {
       {};  ///< Replaces `scale`: the longest side of the bounding box becomes this long [m].
 };
 
-/// Reads a model. Errors carry the path; nothing is left behind. Limits: 1 GiB and 10 s for the child, 256
-/// MiB for the file, 2^24 vertices, 2^25 triangles.
+/// Reads a model: all nodes of all meshes, moved to their places; keyframes, lights and cameras are left out.
+///
+/// - Polygons become triangles; points, lines and triangles without height are dropped.
+/// - A closed surface gets its outside outside, whatever way the file winds it; a cavity stays a cavity.
+/// - Normals are the file's (from smoothing groups in .3ds) where they agree with the faces; else they are
+///   made, flat where the surface turns more than 0.7 rad. .stl has none worth reading.
+/// - A texture is looked up by its bare name, upper and lower case being the same, in the model's own folder
+///   and nowhere else; one that is missing, or embedded in a .glb, is left out and the color stays. In .3ds
+///   and .obj the image stands for the color, which becomes white. Colors of vertices are not read.
+///
+/// Errors name the path, and the reason in one line; no process, file or descriptor is left behind. Limits:
+/// 1 GiB and 10 s for the child, 15 s in all, 256 MiB for the file and those it needs, which must be regular
+/// files beside it, 2^24 vertices, 2^25 triangles, nodes 64 deep. Any thread may call it, several at a time.
+/// The child is $HOOKE_IMPORT if that is set, else `hooke-import` beside the running program, else the
+/// installed one.
 [[nodiscard]] Result<Model> import_model(const std::string& path, const ImportOptions& options = {});
 
-/// Writes .obj, .stl, .glb or .3ds by the path's ending: to a temporary file first, renamed when it is
-/// complete.
+/// Writes the drawn half of a model in meters: .obj (and .mtl beside it), .glb (y up), .stl or .3ds (z up),
+/// by the path's ending. To a temporary file first, flushed and renamed when complete: an Error leaves the
+/// old file. Refuses a model without triangles, with indices or parts out of range, or with a coordinate that
+/// is not finite. Images are named, not copied. .3ds keeps creases as smoothing groups and 8 bits a color;
+/// .stl keeps the shape alone.
 [[nodiscard]] Result<void> export_model(const Model& model, const std::string& path);
 
 /// A model of one gray material from triangles, flat-shaded where the surface turns more than `crease` [rad].
+/// Wound and cleaned as by import_model; triangles with a bad index or a coordinate that is not finite are
+/// left out, so the model may be empty.
 [[nodiscard]] Model model_of(const MeshDesc& mesh, double crease = 0.7);
 
 }  // namespace hooke

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The engine's own invariants. Active in the `dev` and `checked` builds, absent in `release`: bad input never reaches
-/// an assertion, it comes back as an Error. The expression must have no side effects.
+/// The engine's own invariants. Active in the `dev` and `checked` builds, absent in `release`: bad input
+/// never reaches an assertion, it comes back as an Error. The expression must have no side effects.
 #ifdef HOOKE_CHECKS
 #define HOOKE_ASSERT(condition)                                                     \
   do {                                                                              \
@@ -15,7 +15,8 @@ namespace hooke::base {
 
 using AssertHandler = void (*)(const char* condition, const char* file, int line);
 
-/// Called for a broken invariant; the default writes one line to stderr and traps. Returns the handler it replaces.
+/// Called for a broken invariant; the default writes one line to stderr and traps. Returns the handler it
+/// replaces.
 AssertHandler set_assert_handler(AssertHandler handler);
 
 void assert_failed(const char* condition, const char* file, int line);

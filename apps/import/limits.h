@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+
+namespace hooke::importer {
+
+inline constexpr std::size_t kMaxFileSize = std::size_t{256} << 20;  ///< Bytes of all files of one model.
+inline constexpr std::size_t kMaxMemory = std::size_t{1} << 30;      ///< Bytes of address space.
+inline constexpr unsigned kMaxCpuSeconds = 10;
+inline constexpr std::size_t kMaxStack = std::size_t{8} << 20;
+inline constexpr int kMaxNodeDepth = 64;     ///< Nodes from the root to a leaf.
+inline constexpr int kMaxNodeCount = 16384;  ///< Nodes of one model.
+
+/// Gives up memory, time, core dumps, new processes and large files for good, before anything is read. False
+/// if the system refuses. Under a sanitizer the memory stays unlimited: its shadow needs terabytes of address
+/// space.
+[[nodiscard]] bool enter_limits();
+
+}  // namespace hooke::importer

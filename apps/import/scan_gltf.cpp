@@ -1,0 +1,118 @@
+#include "limits.h"
+#include "refusal.h"
+#include "scan.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+namespace hooke::importer {
+
+namespace {
+
+using io::ImporterExit;
+using nlohmann::json;
+
+constexpr int kMaxJsonDepth = 64;
+
+/// Counts open brackets outside strings: enough to bound any parser's recursion.
+void scan_depth(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxJsonDepth) {
+        throw Refusal(ImporterExit::kLimitExceeded, "JSON nested more than 64 deep");
+      }
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+}
+
+/// The nodes below each node, by number; numbers that name no node are left to the importer.
+std::vector<std::vector<std::size_t>> children_of(const json& nodes) {
+  std::vector<std::vector<std::size_t>> children(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto list = nodes[i].is_object() ? nodes[i].find("children") : nodes[i].end();
+    if (!nodes[i].is_object() || list == nodes[i].end() || !list->is_array()) continue;
+    for (const json& child : *list) {
+      if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size()) {
+        children[i].push_back(child.get<std::size_t>());
+      }
+    }
+  }
+  return children;
+}
+
+/// Level by level from the nodes without a parent; a node that is never reached is part of a circle.
+void scan_nodes(const json& nodes) {
+  if (nodes.size() > static_cast<std::size_t>(kMaxNodeCount)) {
+    throw Refusal(ImporterExit::kLimitExceeded, "more than 16384 nodes");
+  }
+  const auto children = children_of(nodes);
+  std::vector<int> parents(children.size(), 0);
+  for (const auto& list : children) {
+    for (const std::size_t child : list) ++parents[child];
+  }
+  if (std::any_of(parents.begin(), parents.end(), [](int count) { return count > 1; })) {
+    throw Refusal(ImporterExit::kBadSyntax, "a node with two parents");
+  }
+  std::vector<std::size_t> level;
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] == 0) level.push_back(i);
+  }
+  std::size_t reached = 0;
+  for (int depth = 1; !level.empty(); ++depth) {
+    if (depth > kMaxNodeDepth) throw Refusal(ImporterExit::kLimitExceeded, "nodes stacked more than 64 deep");
+    reached += level.size();
+    std::vector<std::size_t> next;
+    for (const std::size_t i : level) next.insert(next.end(), children[i].begin(), children[i].end());
+    level = std::move(next);
+  }
+  if (reached != children.size()) throw Refusal(ImporterExit::kBadSyntax, "nodes that contain each other");
+}
+
+void scan_json(std::string_view text) {
+  scan_depth(text);
+  const json document = json::parse(text, nullptr, false);
+  if (!document.is_object()) throw Refusal(ImporterExit::kBadSyntax, "not a glTF file: no JSON object");
+  const auto nodes = document.find("nodes");
+  if (nodes != document.end() && nodes->is_array()) scan_nodes(*nodes);
+}
+
+}  // namespace
+
+void scan_gltf(std::span<const std::byte> bytes) {
+  scan_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+void scan_glb(std::span<const std::byte> bytes) {
+  struct Start {
+    char magic[4];
+    std::uint32_t version;
+    std::uint32_t file_size;
+    std::uint32_t json_size;
+    char json_magic[4];
+  } start = {};
+  if (bytes.size() < sizeof(start)) throw Refusal(ImporterExit::kBadSyntax, "not a .glb file: too short");
+  std::memcpy(&start, bytes.data(), sizeof(start));
+  if (std::memcmp(start.magic, "glTF", 4) != 0 || std::memcmp(start.json_magic, "JSON", 4) != 0 ||
+      start.json_size > bytes.size() - sizeof(start)) {
+    throw Refusal(ImporterExit::kBadSyntax, "not a .glb file");
+  }
+  if (start.version != 2) throw Refusal(ImporterExit::kUnsupported, "a .glb of another version than 2");
+  const auto text = bytes.subspan(sizeof(start), start.json_size);
+  scan_gltf(text);
+}
+
+}  // namespace hooke::importer

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "state/particles.h"
+#include "state/springs.h"
+
+#include <limits>
+
+/// \file
+/// Scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100 points, spacing 2 cm,
+/// 1 kg each, hanging flat, two top corners held; structural and shear springs rigid, bend springs soft.
+
+namespace hooke::bench {
+
+struct ClothList {
+  state::Particles particles;
+  state::Springs springs;
+};
+
+inline ClothList cloth_100(int side = 100) {
+  constexpr Real kSpacing = Real(0.02);
+  ClothList list;
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      const bool held = row == 0 && (column == 0 || column == side - 1);
+      list.particles.position.push_back(
+          {{kSpacing * static_cast<Real>(column), -kSpacing * static_cast<Real>(row), Real(0)}, held ? Real(0) : Real(1)});
+      list.particles.velocity.push_back({});
+    }
+  }
+  const auto add = [&](int column, int row, int columns, int rows, state::SpringClass kind) {
+    if (column + columns < 0 || column + columns >= side || row + rows >= side) return;
+    const auto a = static_cast<std::uint32_t>(row * side + column);
+    const auto b = static_cast<std::uint32_t>((row + rows) * side + column + columns);
+    const bool bend = kind == state::SpringClass::kBend;
+    list.springs.particle_a.push_back(a);
+    list.springs.particle_b.push_back(b);
+    list.springs.rest_length.push_back(length(list.particles.position[a].x - list.particles.position[b].x));
+    list.springs.stiffness.push_back(bend ? Real(1e4) : std::numeric_limits<Real>::infinity());
+    list.springs.damping.push_back(Real(0));
+    list.springs.kind.push_back(kind);
+    list.springs.form.push_back(state::SpringForm::kExplicit);
+  };
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      add(column, row, 1, 0, state::SpringClass::kStretch);
+      add(column, row, 0, 1, state::SpringClass::kStretch);
+      add(column, row, 1, 1, state::SpringClass::kShear);
+      add(column, row, -1, 1, state::SpringClass::kShear);
+      add(column, row, 2, 0, state::SpringClass::kBend);
+      add(column, row, 0, 2, state::SpringClass::kBend);
+    }
+  }
+  return list;
+}
+
+}  // namespace hooke::bench

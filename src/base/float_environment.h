@@ -1,0 +1,45 @@
+#pragma once
+
+#if defined(__SSE2__) || defined(_M_X64)
+#include <xmmintrin.h>
+#define HOOKE_HAS_MXCSR 1
+#else
+#include <cfenv>
+#endif
+
+namespace hooke::base {
+
+/// Sets round-to-nearest and gradual underflow for the calling thread and puts back what the host had on
+/// destruction: a host that flushes denormals or rounds upward must not change the bits (and must get its own
+/// settings back).
+class FloatEnvironment {
+ public:
+#ifdef HOOKE_HAS_MXCSR
+  FloatEnvironment() : saved_(_mm_getcsr()) {
+    _mm_setcsr(kDefault);
+  }
+  ~FloatEnvironment() {
+    _mm_setcsr(saved_);
+  }
+#else
+  FloatEnvironment() {
+    std::fegetenv(&saved_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~FloatEnvironment() {
+    std::fesetenv(&saved_);
+  }
+#endif
+  FloatEnvironment(const FloatEnvironment&) = delete;
+  FloatEnvironment& operator=(const FloatEnvironment&) = delete;
+
+ private:
+#ifdef HOOKE_HAS_MXCSR
+  static constexpr unsigned kDefault = 0x1F80;  // all exceptions masked, nearest, no FTZ, no DAZ
+  unsigned saved_;
+#else
+  std::fenv_t saved_;
+#endif
+};
+
+}  // namespace hooke::base

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/result.h"
+
+#include "state/tables.h"
+
+#include <string>
+#include <vector>
+
+/// \file
+/// From descriptions to rows. Each function checks the whole description first and appends only then: on an
+/// Error the tables are unchanged. The new object is the last of `tables.objects`; its slot is not set.
+
+namespace hooke::build {
+
+Result<void> add_rope(const RopeDesc& desc, state::Tables& tables);
+Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables);
+Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
+
+[[nodiscard]] Result<void> validate(const WorldDesc& desc);
+[[nodiscard]] Result<void> validate(const WindDesc& wind);
+[[nodiscard]] Result<void> validate(const FieldDesc& field);
+[[nodiscard]] Result<void> validate(const BodyDesc& body);
+[[nodiscard]] Result<void> validate(const MotionDesc& motion, const std::string& where);
+
+}  // namespace hooke::build

@@ -1,0 +1,39 @@
+#include "build/checks.h"
+
+#include <cstdio>
+
+namespace hooke::build {
+
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.9g", value);
+  return text;
+}
+
+}  // namespace
+
+std::string indexed(const std::string& name, std::size_t i) {
+  return name + std::string("[") + std::to_string(i) + std::string("]");
+}
+
+Checks& Checks::require(bool good, const std::string& field, double value, const char* must) {
+  if (good || error_) return *this;
+  error_ = Error{ErrorCode::kOutOfRange, object_ + "." + field, number(value) + " is out of range, " + must};
+  return *this;
+}
+
+Checks& Checks::require(bool good, const std::string& field, const char* must) {
+  if (good || error_) return *this;
+  error_ = Error{ErrorCode::kOutOfRange, object_ + "." + field, must};
+  return *this;
+}
+
+Checks& Checks::in_range(const std::string& field, double value, double least, double most) {
+  if ((value >= least && value <= most) || error_) return *this;
+  const std::string must = "must be " + number(least) + " to " + number(most);
+  return require(false, field, value, must.c_str());
+}
+
+}  // namespace hooke::build

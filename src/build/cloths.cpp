@@ -1,0 +1,337 @@
+/// Cloth from a grid or a mesh: points with mass by area, springs of three classes, bends, triangles,
+/// tethers.
+
+#include "build/build.h"
+#include "build/common.h"
+#include "build/tethers.h"
+#include "elements/dihedral.h"
+#include "geometry/triangle_mesh.h"
+#include "geometry/vertex_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::build {
+
+namespace {
+
+using geometry::EdgeSides;
+using geometry::MeshTopology;
+using geometry::Triangle;
+using state::SpringClass;
+
+constexpr std::size_t kMostPoints = std::size_t{1} << 22;
+
+/// The cloth's points and triangles at rest, in the maker's order.
+struct Surface {
+  std::vector<DVec3> points;
+  std::vector<Triangle> triangles;
+  MeshTopology topology;
+  bool is_grid = false;
+  int columns = 0, rows = 0;
+};
+
+Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
+  Checks checks("cloth");
+  if (is_grid) {
+    checks.place("corner", desc.corner)
+        .finite("column_direction", desc.column_direction)
+        .finite("row_direction", desc.row_direction)
+        .positive("width", static_cast<double>(desc.width))
+        .positive("height", static_cast<double>(desc.height));
+    const Vec3 normal = cross(normalize(desc.column_direction), normalize(desc.row_direction));
+    checks.require(length(normal) > Real(1e-3), "row_direction",
+                   "must not be zero or along column_direction");
+  }
+  checks.place("position", desc.position)
+      .positive("areal_density", static_cast<double>(desc.areal_density))
+      .positive("thickness", static_cast<double>(desc.thickness))
+      .stiffness("stretch_stiffness", static_cast<double>(desc.stretch_stiffness))
+      .require(desc.shear_stiffness >= Real(0), "shear_stiffness", static_cast<double>(desc.shear_stiffness),
+               "must be zero or positive, or rigid")
+      .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
+      .not_negative("damping", static_cast<double>(desc.damping))
+      .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
+      .stiffness("extension_max", static_cast<double>(desc.extension_max))
+      .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
+      .not_negative("lift_coefficient", static_cast<double>(desc.lift_coefficient))
+      .not_negative("air_friction", static_cast<double>(desc.air_friction))
+      .finite("charge", static_cast<double>(desc.charge))
+      .finite("velocity", desc.velocity)
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+  if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
+  check_points(checks, desc.pins, desc.loads, count);
+  return checks;
+}
+
+Surface make_grid(const ClothDesc& desc) {
+  Surface s;
+  s.is_grid = true;
+  s.columns = desc.columns;
+  s.rows = desc.rows;
+  const DVec3 right = static_cast<double>(desc.width) * normalize(vector_cast<double>(desc.column_direction));
+  const DVec3 down = static_cast<double>(desc.height) * normalize(vector_cast<double>(desc.row_direction));
+  for (int row = 0; row < s.rows; ++row) {
+    for (int column = 0; column < s.columns; ++column) {
+      s.points.push_back(desc.corner + (column / (s.columns - 1.0)) * right + (row / (s.rows - 1.0)) * down);
+    }
+  }
+  for (int row = 0; row + 1 < s.rows; ++row) {
+    for (int column = 0; column + 1 < s.columns; ++column) {
+      const auto a = static_cast<std::uint32_t>(row * s.columns + column);
+      const auto b = a + 1;
+      const auto c = a + static_cast<std::uint32_t>(s.columns);
+      const auto d = c + 1;
+      // Diagonals alternate, so that the cloth has no preferred way to fold.
+      const bool even = (row + column) % 2 == 0;
+      s.triangles.push_back(even ? Triangle{a, c, d} : Triangle{a, c, b});
+      s.triangles.push_back(even ? Triangle{a, d, b} : Triangle{b, c, d});
+    }
+  }
+  return s;
+}
+
+Surface surface_of_mesh(const ClothDesc& desc, const MeshDesc& mesh) {
+  Surface s;
+  const Quat rotation = normalize(desc.rotation);
+  for (const Vec3& p : mesh.positions)
+    s.points.push_back(desc.position + vector_cast<double>(rotate(rotation, p)));
+  s.triangles = mesh.triangles;
+  return s;
+}
+
+double area_of(const Surface& s, const Triangle& t) {
+  return 0.5 * length(cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]));
+}
+
+/// Share of the whole area that belongs to each point, and the whole [m^2].
+std::vector<double> area_shares(const Surface& s, double& total) {
+  std::vector<double> share(s.points.size(), 0.0);
+  for (const Triangle& t : s.triangles) {
+    for (const std::uint32_t p : t) share[p] += area_of(s, t) / 3.0;
+  }
+  if (s.is_grid) {  // by cells, so that corners have exactly 1/4 and rims 1/2 of an inner point's share
+    const auto rim = [](int i, int count) { return i == 0 || i + 1 == count ? 0.5 : 1.0; };
+    for (int row = 0; row < s.rows; ++row) {
+      for (int column = 0; column < s.columns; ++column) {
+        share[static_cast<std::size_t>(row) * s.columns + column] = rim(row, s.rows) * rim(column, s.columns);
+      }
+    }
+  }
+  double sum = 0;
+  total = 0;
+  for (const double a : share) sum += a;
+  for (const Triangle& t : s.triangles) total += area_of(s, t);
+  for (double& a : share) a *= total / sum;
+  return share;
+}
+
+SpringRow spring(const Surface& s, std::uint32_t a, std::uint32_t b, SpringClass kind,
+                 const ClothDesc& desc) {
+  const Real stiffness = kind == SpringClass::kStretch ? desc.stretch_stiffness
+                         : kind == SpringClass::kShear ? desc.shear_stiffness
+                                                       : desc.bend_stiffness;
+  return {.a = a,
+          .b = b,
+          .rest_length = static_cast<Real>(length(s.points[a] - s.points[b])),
+          .stiffness = stiffness,
+          .damping = kind == SpringClass::kBend ? Real(0) : desc.damping,
+          .kind = kind};
+}
+
+/// Along rows and columns, across cells, to second neighbors: n(m-1)+m(n-1), 2(n-1)(m-1), n(m-2)+m(n-2)
+/// springs.
+std::vector<SpringRow> grid_springs(const Surface& s, const ClothDesc& desc) {
+  std::vector<SpringRow> rows;
+  const auto add = [&](int column, int row, int right, int down, SpringClass kind) {
+    if (column + right < 0 || column + right >= s.columns || row + down >= s.rows) return;
+    const auto a = static_cast<std::uint32_t>(row * s.columns + column);
+    rows.push_back(
+        spring(s, a, static_cast<std::uint32_t>((row + down) * s.columns + column + right), kind, desc));
+  };
+  for (int row = 0; row < s.rows; ++row) {
+    for (int column = 0; column < s.columns; ++column) {
+      add(column, row, 1, 0, SpringClass::kStretch);
+      add(column, row, 0, 1, SpringClass::kStretch);
+      add(column, row, 1, 1, SpringClass::kShear);
+      add(column, row, -1, 1, SpringClass::kShear);
+      if (desc.bend != ClothDesc::Bend::kSpring) continue;
+      add(column, row, 2, 0, SpringClass::kBend);
+      add(column, row, 0, 2, SpringClass::kBend);
+    }
+  }
+  return rows;
+}
+
+bool is_longest(const Surface& s, const Triangle& t, double edge) {
+  for (int k = 0; k < 3; ++k) {
+    if (length(s.points[t[k]] - s.points[t[(k + 1) % 3]]) > edge * (1.0 + 1e-9)) return false;
+  }
+  return true;
+}
+
+/// One spring per edge whatever the number of its triangles. Across an inner edge that is the longest of both
+/// its triangles the two form a cell, and the spring between their far corners resists shear; across others
+/// it bends.
+std::vector<SpringRow> mesh_springs(const Surface& s, const ClothDesc& desc) {
+  std::vector<SpringRow> rows;
+  for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
+    const auto [a, b] = s.topology.edges[e];
+    rows.push_back(spring(s, a, b, SpringClass::kStretch, desc));
+    const EdgeSides& sides = s.topology.edge_sides[e];
+    if (sides.triangle_count != 2 || sides.opposite[0] == sides.opposite[1]) continue;
+    const double l = length(s.points[a] - s.points[b]);
+    const bool cell = is_longest(s, s.triangles[sides.triangles[0]], l) &&
+                      is_longest(s, s.triangles[sides.triangles[1]], l);
+    if (!cell && desc.bend != ClothDesc::Bend::kSpring) continue;
+    rows.push_back(spring(s, sides.opposite[0], sides.opposite[1],
+                          cell ? SpringClass::kShear : SpringClass::kBend, desc));
+  }
+  return rows;
+}
+
+void append_springs(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+  const std::vector<SpringRow> rows = s.is_grid ? grid_springs(s, desc) : mesh_springs(s, desc);
+  for (const SpringRow& row : rows) {
+    if (row.stiffness > Real(0) && row.rest_length > Real(0)) append_spring(row, tables);
+  }
+  if (std::isinf(desc.extension_max)) return;
+  for (SpringRow row : rows) {
+    if (row.kind != SpringClass::kStretch || !(row.rest_length > Real(0))) continue;
+    row.kind = SpringClass::kLimit;
+    row.rest_length *= Real(1) + desc.extension_max;
+    row.stiffness = kRigid;
+    row.damping = Real(0);
+    append_spring(row, tables);
+  }
+}
+
+/// Stiffness 3 |e|^2 k_b / (A_1 + A_2): the hinge energy of discrete shells (Grinspun et al. 2003) for a
+/// flexural rigidity k_b, twice over, as E = k C^2 / 2 here.
+void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+  if (desc.bend != ClothDesc::Bend::kAngle || !(desc.bend_stiffness > Real(0))) return;
+  state::Deformable& object = tables.objects.back();
+  for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
+    const EdgeSides& sides = s.topology.edge_sides[e];
+    if (sides.triangle_count != 2 || !sides.has_same_winding) continue;
+    // The first triangle runs along the edge from x0 to x1, see elements/dihedral.h.
+    auto [a, b] = s.topology.edges[e];
+    const Triangle& t = s.triangles[sides.triangles[0]];
+    for (int k = 0; k < 3; ++k) {
+      if (t[k] == b && t[(k + 1) % 3] == a) std::swap(a, b);
+    }
+    const auto& p = s.points;
+    const auto d = elements::dihedral(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
+    if (!d.valid) continue;
+    const double areas = area_of(s, t) + area_of(s, s.triangles[sides.triangles[1]]);
+    const double stiffness =
+        6.0 * length_squared(p[b] - p[a]) / areas * static_cast<double>(desc.bend_stiffness);
+    tables.bends.stencil.push_back({row_of(tables, object, a), row_of(tables, object, b),
+                                    row_of(tables, object, sides.opposite[0]),
+                                    row_of(tables, object, sides.opposite[1])});
+    tables.bends.rest_angle.push_back(static_cast<Real>(d.angle));
+    tables.bends.stiffness.push_back(static_cast<Real>(stiffness));
+    tables.bends.damping.push_back(static_cast<Real>(stiffness) * desc.bend_damping);
+    ++object.bends.count;
+  }
+}
+
+void append_triangles(const Surface& s, Real areal_density, state::Tables& tables) {
+  state::Deformable& object = tables.objects.back();
+  for (const Triangle& t : s.triangles) {
+    tables.triangles.corners.push_back(
+        {row_of(tables, object, t[0]), row_of(tables, object, t[1]), row_of(tables, object, t[2])});
+    tables.triangles.areal_density.push_back(areal_density);
+    ++object.triangles.count;
+  }
+}
+
+void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
+  if (!desc.tethers) return;
+  std::vector<std::uint32_t> pins;
+  for (const PinDesc& pin : desc.pins) pins.push_back(pin.point);
+  const TetherSurface surface = {s.points, s.triangles, s.is_grid};
+  for (const Tether& tether : find_tethers(surface, pins)) {
+    append_spring({.a = tether.point,
+                   .b = tether.pin,
+                   .rest_length = tether.length,
+                   .stiffness = kRigid,
+                   .damping = Real(0),
+                   .kind = SpringClass::kTether},
+                  tables);
+  }
+}
+
+Points make_points(const Surface& s, const ClothDesc& desc, double total_area,
+                   const std::vector<double>& share) {
+  Points points(s.points.size());
+  points.position = s.points;
+  const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
+                                      : total_area * static_cast<double>(desc.areal_density);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const double part = share[i] / total_area;
+    points.velocity[i] = desc.velocity;
+    points.mass[i] = static_cast<Real>(part * mass);
+    points.charge[i] = static_cast<Real>(part * static_cast<double>(desc.charge));
+    points.viscous_drag[i] = static_cast<Real>(part * static_cast<double>(desc.air_friction));
+    points.radius[i] = Real(0.5) * desc.thickness;
+  }
+  add_loads(desc.loads, points.mass);
+  if (!s.is_grid)
+    points.row_of =
+        geometry::invert_order(geometry::compute_cuthill_mckee_order(s.points.size(), s.topology.edges));
+  return points;
+}
+
+Result<Surface> make_surface(const ClothDesc& desc, const state::Tables& tables) {
+  if (!desc.mesh) {
+    Checks size("cloth");
+    size.in_range("columns", desc.columns, 2, 4096).in_range("rows", desc.rows, 2, 4096);
+    if (!size.good()) return size.result().error();
+    const std::size_t count = static_cast<std::size_t>(desc.columns) * static_cast<std::size_t>(desc.rows);
+    const Checks checks = check(desc, count, true);
+    if (!checks.good()) return checks.result().error();
+    return make_grid(desc);
+  }
+  const std::uint32_t row = tables.mesh_slots.find(desc.mesh);
+  if (row == tables.mesh_slots.kNone || !tables.meshes[row]) {
+    return Error{ErrorCode::kStaleId, "cloth.mesh", "refers to no mesh that is in the world"};
+  }
+  const MeshDesc& mesh = tables.meshes[row]->desc;
+  Checks checks = check(desc, mesh.positions.size(), false);
+  checks.in_range("mesh", static_cast<double>(mesh.positions.size()), 3, static_cast<double>(kMostPoints));
+  if (!checks.good()) return checks.result().error();
+  return surface_of_mesh(desc, mesh);
+}
+
+}  // namespace
+
+Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
+  Result<Surface> made = make_surface(desc, tables);
+  if (!made) return made.error();
+  Surface& surface = made.value();
+  surface.topology = geometry::compute_topology(surface.points.size(), surface.triangles);
+  double area = 0;
+  const std::vector<double> share = area_shares(surface, area);
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    if (!(share[i] > 0)) {
+      return Error{ErrorCode::kOutOfRange, "cloth.mesh",
+                   "vertex " + std::to_string(i) + " belongs to no area"};
+    }
+  }
+  const Points points = make_points(surface, desc, area, share);
+  state::Deformable& object = append_object(PointRef::Kind::kCloth, points, desc.pins, tables);
+  object.friction = desc.contact.friction;
+  object.drag_coefficient = desc.drag_coefficient;
+  object.lift_coefficient = desc.lift_coefficient;
+  object.feels_air = object.feels_air || desc.drag_coefficient > Real(0) || desc.lift_coefficient > Real(0);
+  append_springs(surface, desc, tables);
+  append_bends(surface, desc, tables);
+  const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
+                                      : area * static_cast<double>(desc.areal_density);
+  append_triangles(surface, static_cast<Real>(mass / area), tables);
+  append_tethers(surface, desc, tables);
+  return {};
+}
+
+}  // namespace hooke::build

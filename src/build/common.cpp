@@ -1,0 +1,113 @@
+#include "build/common.h"
+
+#include "build/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hooke::build {
+
+namespace {
+
+DVec3 rounded_middle(const std::vector<DVec3>& points) {
+  DVec3 low = points.front();
+  DVec3 high = points.front();
+  for (const DVec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const DVec3 middle = 0.5 * (low + high);
+  return {std::floor(middle.x + 0.5), std::floor(middle.y + 0.5), std::floor(middle.z + 0.5)};
+}
+
+}  // namespace
+
+Points::Points(std::size_t count)
+    : position(count),
+      velocity(count),
+      mass(count),
+      charge(count),
+      viscous_drag(count),
+      drag_area(count),
+      radius(count),
+      row_of(count) {
+  std::iota(row_of.begin(), row_of.end(), 0U);
+}
+
+void check_points(Checks& checks, const std::vector<PinDesc>& pins, const std::vector<LoadDesc>& loads,
+                  std::size_t count) {
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    const std::string where = indexed("pins", i);
+    checks.in_range(where + ".point", pins[i].point, 0, static_cast<double>(count) - 1);
+    const Result<void> motion = validate(pins[i].motion, "motion");
+    if (!motion) checks.require(false, where + "." + motion.error().where, motion.error().message.c_str());
+  }
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const std::string where = indexed("loads", i);
+    checks.in_range(where + ".point", loads[i].point, 0, static_cast<double>(count) - 1);
+    checks.not_negative(where + ".mass", static_cast<double>(loads[i].mass));
+  }
+}
+
+void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass) {
+  for (const LoadDesc& load : loads) mass[load.point] += load.mass;
+}
+
+state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
+                                 state::Tables& tables) {
+  const auto count = static_cast<std::uint32_t>(points.position.size());
+  state::Particles& particles = tables.particles;
+  state::Deformable object;
+  object.kind = kind;
+  object.origin = rounded_middle(points.position);
+  object.particles = {static_cast<std::uint32_t>(particles.count()), count};
+  object.springs = {static_cast<std::uint32_t>(tables.springs.count()), 0};
+  object.bends = {static_cast<std::uint32_t>(tables.bends.count()), 0};
+  object.triangles = {static_cast<std::uint32_t>(tables.triangles.count()), 0};
+  object.segments = {static_cast<std::uint32_t>(tables.segments.count()), 0};
+
+  const std::size_t first = object.particles.first;
+  state::Particles::for_each_column(particles, [&](auto& column) { column.resize(first + count); });
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t row = first + points.row_of[i];
+    particles.row_of[first + i] = points.row_of[i];
+    particles.position[row] = {vector_cast<Real>(points.position[i] - object.origin),
+                               Real(1) / points.mass[i]};
+    particles.velocity[row] = {points.velocity[i], points.radius[i]};
+    particles.mass[row] = points.mass[i];
+    particles.charge[row] = points.charge[i];
+    particles.viscous_drag[row] = points.viscous_drag[i];
+    particles.drag_area[row] = points.drag_area[i];
+    object.feels_air = object.feels_air || points.viscous_drag[i] > Real(0) || points.drag_area[i] > Real(0);
+  }
+
+  const auto object_row = static_cast<std::uint32_t>(tables.objects.size());
+  for (const PinDesc& pin : pins) {
+    const auto row = static_cast<std::uint32_t>(first + points.row_of[pin.point]);
+    if (particles.position[row].inverse_mass == Real(0)) continue;  // named twice
+    particles.position[row].inverse_mass = Real(0);
+    particles.velocity[row].v = {};
+    tables.pins.push_back({object_row, row, points.position[pin.point], tables.time, pin.motion});
+  }
+  std::sort(tables.pins.begin(), tables.pins.end(),
+            [](const state::Pin& a, const state::Pin& b) { return a.particle < b.particle; });
+  ++tables.revision;
+  tables.objects.push_back(object);
+  return tables.objects.back();
+}
+
+void append_spring(const SpringRow& spring, state::Tables& tables) {
+  state::Deformable& object = tables.objects.back();
+  state::Springs& springs = tables.springs;
+  springs.particle_a.push_back(row_of(tables, object, spring.a));
+  springs.particle_b.push_back(row_of(tables, object, spring.b));
+  springs.rest_length.push_back(spring.rest_length);
+  springs.stiffness.push_back(spring.stiffness);
+  springs.damping.push_back(spring.damping);
+  springs.kind.push_back(spring.kind);
+  springs.form.push_back(spring.form);
+  ++object.springs.count;
+}
+
+}  // namespace hooke::build

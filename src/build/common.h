@@ -1,0 +1,58 @@
+#pragma once
+
+#include "hooke/desc.h"
+
+#include "build/checks.h"
+#include "state/tables.h"
+
+#include <vector>
+
+namespace hooke::build {
+
+/// What every maker of particles hands over: one entry per point, in the maker's order.
+struct Points {
+  std::vector<DVec3> position;
+  std::vector<Vec3> velocity;
+  std::vector<Real> mass;
+  std::vector<Real> charge;
+  std::vector<Real> viscous_drag;
+  std::vector<Real> drag_area;
+  std::vector<Real> radius;
+  std::vector<std::uint32_t> row_of;  ///< Where each point's row goes.
+
+  /// `count` points with everything zero and rows in the same order.
+  explicit Points(std::size_t count);
+};
+
+/// Checks pins and loads against the number of points.
+void check_points(Checks& checks, const std::vector<PinDesc>& pins, const std::vector<LoadDesc>& loads,
+                  std::size_t count);
+
+/// Total mass per point with its loads.
+void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass);
+
+/// Appends a deformable with these points; its other rows begin at the ends of their tables and are still
+/// empty. Origin: the middle of the points' bounding box, rounded to whole meters, so that offsets are small
+/// and exact to shift.
+state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
+                                 state::Tables& tables);
+
+struct SpringRow {
+  std::uint32_t a = 0, b = 0;  ///< Points of the object, in the maker's order.
+  Real rest_length = Real(0);
+  Real stiffness = Real(0);
+  Real damping = Real(0);
+  state::SpringClass kind = state::SpringClass::kStretch;
+  state::SpringForm form = state::SpringForm::kExplicit;
+};
+
+/// Appends a spring to the last object.
+void append_spring(const SpringRow& spring, state::Tables& tables);
+
+/// The row of a point of `object`.
+[[nodiscard]] inline std::uint32_t row_of(const state::Tables& tables, const state::Deformable& object,
+                                          std::uint32_t point) {
+  return object.particles.first + tables.particles.row_of[object.particles.first + point];
+}
+
+}  // namespace hooke::build

@@ -1,0 +1,108 @@
+#include "build/build.h"
+#include "build/common.h"
+
+#include <cmath>
+
+namespace hooke::build {
+
+namespace {
+
+constexpr int kMostNodes = 65536;
+
+Checks check(const RopeDesc& desc) {
+  Checks checks("rope");
+  checks.positive("total_mass", static_cast<double>(desc.total_mass))
+      .stiffness("stiffness", static_cast<double>(desc.stiffness))
+      .not_negative("inner_friction", static_cast<double>(desc.inner_friction))
+      .not_negative("air_friction", static_cast<double>(desc.air_friction))
+      .stiffness("extension_max", static_cast<double>(desc.extension_max))
+      .positive("radius", static_cast<double>(desc.radius))
+      .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
+      .finite("charge", static_cast<double>(desc.charge))
+      .finite("velocity", desc.velocity)
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+  if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
+  if (desc.points.empty()) {
+    checks.in_range("masses", desc.masses, 2, kMostNodes)
+        .positive("length_at_rest", static_cast<double>(desc.length_at_rest))
+        .place("hook_point", desc.hook_point)
+        .finite("direction", desc.direction)
+        .require(length(desc.direction) > Real(0), "direction", "must not be zero");
+  } else {
+    checks.in_range("points", static_cast<double>(desc.points.size()), 2, kMostNodes);
+  }
+  for (std::size_t i = 0; i < desc.points.size(); ++i) {
+    checks.place(indexed("points", i), desc.points[i]);
+    const bool apart = i == 0 || length(desc.points[i] - desc.points[i - 1]) > 0;
+    checks.require(apart, indexed("points", i), "equals the point before it");
+  }
+  const std::size_t count = desc.points.empty() ? static_cast<std::size_t>(desc.masses) : desc.points.size();
+  check_points(checks, desc.pins, desc.loads, count);
+  return checks;
+}
+
+std::vector<DVec3> node_positions(const RopeDesc& desc) {
+  if (!desc.points.empty()) return desc.points;
+  std::vector<DVec3> points;
+  points.reserve(static_cast<std::size_t>(desc.masses));
+  const DVec3 way = static_cast<double>(desc.length_at_rest) * normalize(vector_cast<double>(desc.direction));
+  for (int i = 0; i < desc.masses; ++i) points.push_back(desc.hook_point + (i / (desc.masses - 1.0)) * way);
+  return points;
+}
+
+void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, double total,
+                     state::Tables& tables) {
+  const double stiffness = desc.axial_stiffness ? static_cast<double>(*desc.axial_stiffness) / total
+                                                : static_cast<double>(desc.stiffness);
+  for (const double length : lengths) {
+    // Springs in series: a share of the length is that much stiffer than the whole.
+    const double stiffer = desc.stiffness_of == RopeDesc::StiffnessOf::kRope ? total / length : 1.0;
+    state::Segments& s = tables.segments;
+    s.rest_length.push_back(static_cast<Real>(length));
+    s.stiffness.push_back(static_cast<Real>(stiffer * stiffness));
+    s.damping.push_back(static_cast<Real>(stiffer * static_cast<double>(desc.inner_friction)));
+    s.length_limit.push_back(static_cast<Real>(length * (1.0 + static_cast<double>(desc.extension_max))));
+    s.tension.push_back(Real(0));
+    s.mean_tension.push_back(Real(0));
+    s.limited.push_back(0);
+    ++tables.objects.back().segments.count;
+  }
+}
+
+}  // namespace
+
+Result<void> add_rope(const RopeDesc& desc, state::Tables& tables) {
+  const Checks checks = check(desc);
+  if (!checks.good()) return checks.result();
+
+  const std::vector<DVec3> nodes = node_positions(desc);
+  std::vector<double> lengths;
+  double total = 0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    lengths.push_back(length(nodes[i] - nodes[i - 1]));
+    total += lengths.back();
+  }
+
+  Points points(nodes.size());
+  points.position = nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double before = i > 0 ? lengths[i - 1] : 0.0;
+    const double after = i < lengths.size() ? lengths[i] : 0.0;
+    const double share = 0.5 * (before + after) / total;
+    points.velocity[i] = desc.velocity;
+    points.mass[i] = static_cast<Real>(share * static_cast<double>(desc.total_mass));
+    points.charge[i] = static_cast<Real>(share * static_cast<double>(desc.charge));
+    points.viscous_drag[i] = static_cast<Real>(share * static_cast<double>(desc.air_friction));
+    points.radius[i] = desc.radius;
+  }
+  add_loads(desc.loads, points.mass);
+
+  state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
+  object.friction = desc.contact.friction;
+  object.drag_coefficient = desc.drag_coefficient;
+  object.feels_air = object.feels_air || desc.drag_coefficient > Real(0);
+  append_segments(desc, lengths, total, tables);
+  return {};
+}
+
+}  // namespace hooke::build

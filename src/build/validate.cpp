@@ -1,0 +1,78 @@
+#include "build/build.h"
+#include "build/checks.h"
+
+namespace hooke::build {
+
+Result<void> validate(const WindDesc& wind) {
+  return Checks("wind")
+      .finite("velocity", wind.velocity)
+      .in_range("gust", static_cast<double>(wind.gust), 0, 10)
+      .in_range("side_gust", static_cast<double>(wind.side_gust), 0, 10)
+      .positive("correlation_time", static_cast<double>(wind.correlation_time))
+      .positive("correlation_length", static_cast<double>(wind.correlation_length))
+      .not_negative("air_density", static_cast<double>(wind.air_density))
+      .result();
+}
+
+Result<void> validate(const WorldDesc& desc) {
+  const Checks checks = Checks("world")
+                            .finite("gravity", desc.gravity)
+                            .in_range("substeps", desc.substeps, 1, 64)
+                            .in_range("particle_substeps", desc.particle_substeps, 1, 64)
+                            .in_range("workers", desc.workers, 1, 64);
+  if (!checks.good()) return checks.result();
+  Result<void> wind = validate(desc.wind);
+  if (wind) return wind;
+  Error error = wind.error();
+  error.where = "world." + error.where;
+  return error;
+}
+
+Result<void> validate(const FieldDesc& field) {
+  return Checks("field")
+      .finite("vector", field.vector)
+      .place("center", field.center)
+      .finite("strength", field.strength)
+      .result();
+}
+
+Result<void> validate(const BodyDesc& body) {
+  Checks checks("body");
+  const Quat& q = body.rotation;
+  const bool turns = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w) &&
+                     q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w > Real(0);
+  checks.place("position", body.position)
+      .require(turns, "rotation", "must be finite and not zero")
+      .in_range("contact.friction", static_cast<double>(body.contact.friction), 0, 100);
+  if (body.shape.kind == ShapeKind::kSphere) {
+    checks.positive("shape.radius", static_cast<double>(body.shape.radius));
+  }
+  if (body.shape.kind == ShapeKind::kBox) {
+    checks.positive("shape.half_extents.x", static_cast<double>(body.shape.half_extents.x))
+        .positive("shape.half_extents.y", static_cast<double>(body.shape.half_extents.y))
+        .positive("shape.half_extents.z", static_cast<double>(body.shape.half_extents.z));
+  }
+  return checks.result();
+}
+
+Result<void> validate(const MotionDesc& motion, const std::string& where) {
+  Checks checks(where);
+  checks.finite("velocity", motion.velocity)
+      .finite("amplitude", motion.amplitude)
+      .not_negative("frequency_hz", static_cast<double>(motion.frequency_hz))
+      .finite("phase", static_cast<double>(motion.phase));
+  if (motion.kind == MotionDesc::Kind::kKeyframes) {
+    checks.require(!motion.keyframes.empty(), "keyframes", "needs at least one keyframe");
+  }
+  for (std::size_t i = 0; i < motion.keyframes.size(); ++i) {
+    const std::string key = indexed("keyframes", i);
+    checks.finite(key + ".time", motion.keyframes[i].time)
+        .finite(key + ".offset", motion.keyframes[i].offset);
+    const bool later = i == 0 || motion.keyframes[i].time > motion.keyframes[i - 1].time;
+    checks.require(later, key + ".time", motion.keyframes[i].time,
+                   "must be later than the keyframe before it");
+  }
+  return checks.result();
+}
+
+}  // namespace hooke::build

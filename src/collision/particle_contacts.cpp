@@ -1,0 +1,136 @@
+#include "collision/particle_contacts.h"
+
+#include "collision/shape_gap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::collision {
+
+namespace {
+
+constexpr Real kMargin = Real(0.02);  ///< [m]
+
+/// A body's frame as one object sees it: x_body = R^T (x - offset), x relative to the object's origin.
+struct Frame {
+  const state::Body* body = nullptr;
+  Vec3 offset = {};
+
+  [[nodiscard]] Vec3 to_body(Vec3 x) const { return rotate(conjugate(body->rotation), x - offset); }
+  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(body->rotation, direction); }
+};
+
+Frame frame_of(const state::Body& body, const state::Deformable& object) {
+  return {&body, vector_cast<Real>(body.position - object.origin)};
+}
+
+struct Key {
+  std::uint32_t particle, body, feature;
+
+  friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+Key key_of(const state::Contacts& contacts, std::size_t row) {
+  return {contacts.particle[row], contacts.body[row], contacts.feature[row]};
+}
+
+void append(state::Contacts& contacts, Key key, std::uint32_t object, Real friction) {
+  contacts.particle.push_back(key.particle);
+  contacts.body.push_back(key.body);
+  contacts.feature.push_back(key.feature);
+  contacts.object.push_back(object);
+  contacts.friction.push_back(friction);
+  contacts.normal.push_back({});
+  contacts.separation.push_back(Real(0));
+  contacts.normal_force.push_back(Real(0));
+  contacts.friction_force.push_back({});
+}
+
+/// Appends the rows of one particle against one body.
+void find_pair(const state::Tables& t, std::uint32_t object_row, std::uint32_t particle,
+               std::uint32_t body_row, Real way, state::Contacts& contacts) {
+  const state::Deformable& object = t.objects[object_row];
+  const state::Body& body = t.bodies[body_row];
+  const Frame frame = frame_of(body, object);
+  const Vec3 x = frame.to_body(t.particles.position[particle].x);
+  const Real reach = t.particles.velocity[particle].radius + way + kMargin;
+  const Real friction = std::sqrt(object.friction * body.friction);
+  if (body.shape.kind != ShapeKind::kMesh) {
+    if (gap_to_shape(body.shape, x).distance > reach) return;
+    append(contacts, {particle, body_row, 0}, object_row, friction);
+    return;
+  }
+  for (const std::uint32_t triangle : triangles_near(*body.mesh, x, reach)) {
+    append(contacts, {particle, body_row, triangle}, object_row, friction);
+  }
+}
+
+/// Rows of both tables stand in order of their keys: one walk carries the forces over.
+void carry_forces(const state::Contacts& from, state::Contacts& to) {
+  std::size_t old = 0;
+  for (std::size_t row = 0; row < to.particle.size(); ++row) {
+    const Key key = key_of(to, row);
+    while (old < from.particle.size() && key_of(from, old) < key) ++old;
+    if (old == from.particle.size()) return;
+    if (key_of(from, old) != key) continue;
+    to.normal_force[row] = from.normal_force[old];
+    to.friction_force[row] = from.friction_force[old];
+  }
+}
+
+Gap gap_of(const state::Body& body, Vec3 x, std::uint32_t feature) {
+  return body.shape.kind == ShapeKind::kMesh ? gap_to_triangle(*body.mesh, feature, x)
+                                             : gap_to_shape(body.shape, x);
+}
+
+}  // namespace
+
+void find_contacts(state::Tables& t, double dt) {
+  const auto step = static_cast<Real>(dt);
+  const Real fall = length(t.desc.gravity) * step * step;
+  state::Contacts found;
+  const bool any =
+      std::any_of(t.bodies.begin(), t.bodies.end(), [](const state::Body& b) { return b.collides; });
+  for (std::uint32_t o = 0; any && o < t.objects.size(); ++o) {
+    for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
+      const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
+      for (std::uint32_t b = 0; b < t.bodies.size(); ++b) {
+        if (t.bodies[b].collides) find_pair(t, o, p, b, way, found);
+      }
+    }
+  }
+  carry_forces(t.contacts, found);
+  t.contacts = std::move(found);
+}
+
+void update_contacts(parallel::Range range, state::Tables& t) {
+  for (int i = range.begin; i < range.end; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const std::uint32_t particle = t.contacts.particle[row];
+    const state::Body& body = t.bodies[t.contacts.body[row]];
+    const Frame frame = frame_of(body, t.objects[t.contacts.object[row]]);
+    const Gap gap = gap_of(body, frame.to_body(t.particles.position[particle].x), t.contacts.feature[row]);
+    t.contacts.normal[row] = frame.to_world(gap.normal);
+    t.contacts.separation[row] = gap.distance - t.particles.velocity[particle].radius;
+  }
+}
+
+double largest_penetration(const state::Tables& t) {
+  double deepest = 0;
+  for (const state::Deformable& object : t.objects) {
+    for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+      const Real radius = t.particles.velocity[p].radius;
+      for (const state::Body& body : t.bodies) {
+        if (!body.collides) continue;
+        const Vec3 x = frame_of(body, object).to_body(t.particles.position[p].x);
+        const bool mesh = body.shape.kind == ShapeKind::kMesh;
+        const Real distance =
+            mesh ? distance_to_mesh(*body.mesh, x, radius) : gap_to_shape(body.shape, x).distance;
+        deepest = std::max(deepest, static_cast<double>(radius - distance));
+      }
+    }
+  }
+  return deepest;
+}
+
+}  // namespace hooke::collision

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "state/tables.h"
+
+namespace hooke::collision {
+
+/// Finds the particles that may touch a static shape within the next `dt` and makes their contact rows, in
+/// order of particle, body and triangle. Rows that were there before keep their forces.
+///
+/// Reach: twice the way of the particle at its speed, plus that of gravity, plus 2 cm. What is pulled farther
+/// than that within one step is found one step late.
+void find_contacts(state::Tables& tables, double dt);
+
+/// Normal and separation of each row at the particle's present place. `range` counts contact rows.
+void update_contacts(parallel::Range range, state::Tables& tables);
+
+/// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Looks at all
+/// pairs.
+[[nodiscard]] double largest_penetration(const state::Tables& tables);
+
+}  // namespace hooke::collision

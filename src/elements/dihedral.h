@@ -1,0 +1,48 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "math/trig.h"
+
+#include <array>
+
+namespace hooke::elements {
+
+/// The angle between two triangles that share the edge from x0 to x1, and its gradient.
+///
+///     theta = atan2((n_a x n_b) . e / |e|, n_a . n_b),  n_a = (x0 - x2) x (x1 - x2),  n_b = (x1 - x3) x (x0
+///     - x3)
+///
+/// 0 is flat, positive folds the wings x2 and x3 to the side the normals point away from. Gradient after
+/// Bridson, Marino and Fedkiw 2003, "Simulation of clothing with folds and wrinkles". `valid` is false where
+/// a triangle or the edge has no extent: no angle then, and no force.
+template <class T>
+struct Dihedral {
+  T angle = T(0);
+  std::array<Vector3<T>, 4> gradient = {};
+  bool valid = false;
+};
+
+template <class T>
+Dihedral<T> dihedral(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vector3<T> x3) {
+  const Vector3<T> e = x1 - x0;
+  const Vector3<T> na = cross(x0 - x2, x1 - x2);
+  const Vector3<T> nb = cross(x1 - x3, x0 - x3);
+  const T le = length(e);
+  const T aa = dot(na, na);
+  const T bb = dot(nb, nb);
+  if (!(le > T(0)) || !(aa > T(0)) || !(bb > T(0))) return Dihedral<T>();
+
+  Dihedral<T> d;
+  d.valid = true;
+  d.angle = math::atan2(dot(cross(na, nb), e) / le, dot(na, nb));
+  const Vector3<T> ua = (T(1) / aa) * na;
+  const Vector3<T> ub = (T(1) / bb) * nb;
+  d.gradient[2] = -le * ua;
+  d.gradient[3] = -le * ub;
+  d.gradient[0] = (-dot(x2 - x1, e) / le) * ua + (-dot(x3 - x1, e) / le) * ub;
+  d.gradient[1] = (dot(x2 - x0, e) / le) * ua + (dot(x3 - x0, e) / le) * ub;
+  return d;
+}
+
+}  // namespace hooke::elements

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "geometry/triangle_mesh.h"
+
+namespace hooke::geometry {
+
+/// For each vertex, how far it is from the nearest source along the surface, and which source that is.
+struct GeodesicField {
+  std::vector<Real> distance = {};         ///< [m]; infinity where no source can be reached.
+  std::vector<std::uint32_t> source = {};  ///< A vertex of `sources`; kNone where none can be reached.
+};
+
+/// Distances along the triangles from the nearest of `sources` (vertices; those the mesh does not have are
+/// ignored). Exact on flat convex sheets with one source, else near: paths may bend at any place of an edge
+/// but are followed one triangle at a time. Never shorter than the straight line to the source, never longer
+/// than the way along edges.
+///
+/// A front is marched outward from the sources (Kimmel and Sethian, 1998, Computing geodesic paths on
+/// manifolds) with the update of Novotni and Klein (2002, Computing geodesic distances on triangular meshes):
+/// the two known distances of a triangle place the source in the triangle's plane, and the third is the
+/// straight line from there. Where the two come from different sources the front is taken as straight. A
+/// vertex whose distance shrinks is marched from again, which makes obtuse triangles harmless.
+///
+/// Precondition: `topology` is that of `triangles`, and has one vertex for each position.
+GeodesicField compute_geodesic_field(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                     const MeshTopology& topology, std::span<const std::uint32_t> sources);
+
+}  // namespace hooke::geometry

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "hooke/math.h"
+#include "hooke/model_io.h"
+
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// \file
+/// Writers of mesh formats, each from a model that `check_model` accepts to the bytes of a file, in meters.
+/// The same model gives the same bytes. Images are referred to by their bare names, not copied.
+
+namespace hooke::io {
+
+using Bytes = std::vector<std::byte>;
+
+/// Appends a value as it lies in memory, little-endian.
+template <class T>
+void put(Bytes& bytes, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const auto* first = reinterpret_cast<const std::byte*>(&value);
+  bytes.insert(bytes.end(), first, first + sizeof(T));
+}
+
+inline void put_text(Bytes& bytes, std::string_view text) {
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  bytes.insert(bytes.end(), first, first + text.size());
+}
+
+/// The image's name without its folders; empty for none, and for a name that no format can hold.
+[[nodiscard]] std::string image_name(const ModelMaterial& material);
+
+/// Printable ASCII of at most `size` bytes for each material, no two the same even when case is ignored.
+[[nodiscard]] std::vector<std::string> plain_material_names(const Model& model, std::size_t size);
+
+/// As on screen, from linear, each [0, 1].
+[[nodiscard]] float srgb_of_linear(float value);
+
+[[nodiscard]] bool has_uvs(const Model& model);
+
+/// y up to z up.
+[[nodiscard]] inline std::array<float, 3> stand_on_z(const std::array<float, 3>& v) {
+  return {v[0], -v[2], v[1]};
+}
+
+struct ObjText {
+  std::string obj;
+  std::string mtl;
+};
+
+/// y up; positions, normals and texture coordinates once each. `library` is the name of the .mtl file.
+[[nodiscard]] ObjText write_obj(const Model& model, std::string_view library);
+
+/// Binary, z up. Materials, texture coordinates and smooth normals have no place in it.
+[[nodiscard]] Bytes write_stl(const Model& model);
+
+/// One mesh, a primitive for each part, the image by its name beside the file.
+[[nodiscard]] Bytes write_glb(const Model& model);
+
+/// z up, smoothing groups from the creases of the normals. Objects hold at most 65535 vertices and faces
+/// each, so a large model becomes several.
+[[nodiscard]] Bytes write_3ds(const Model& model);
+
+}  // namespace hooke::io

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "hooke/math.h"
+
+namespace hooke::math {
+
+/// Symmetric 3x3 matrix.
+template <class T>
+struct Symmetric3 {
+  T xx = T(0), xy = T(0), xz = T(0), yy = T(0), yz = T(0), zz = T(0);
+
+  static constexpr Symmetric3 diagonal(T s) { return {s, T(0), T(0), s, T(0), s}; }
+};
+
+template <class T>
+constexpr Symmetric3<T> operator+(const Symmetric3<T>& a, const Symmetric3<T>& b) {
+  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+}
+template <class T>
+constexpr Vector3<T> operator*(const Symmetric3<T>& m, Vector3<T> v) {
+  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+          m.xz * v.x + m.yz * v.y + m.zz * v.z};
+}
+
+/// along n n^T + across (1 - n n^T) for a unit vector n.
+template <class T>
+constexpr Symmetric3<T> axial(Vector3<T> n, T along, T across) {
+  const T d = along - across;
+  return {across + d * n.x * n.x, d * n.x * n.y, d * n.x * n.z,
+          across + d * n.y * n.y, d * n.y * n.z, across + d * n.z * n.z};
+}
+
+/// The inverse by cofactors; meant for positive definite matrices. Not finite if the determinant is zero.
+template <class T>
+constexpr Symmetric3<T> inverse(const Symmetric3<T>& m) {
+  const T xx = m.yy * m.zz - m.yz * m.yz;
+  const T xy = m.xz * m.yz - m.xy * m.zz;
+  const T xz = m.xy * m.yz - m.xz * m.yy;
+  const T s = T(1) / (m.xx * xx + m.xy * xy + m.xz * xz);
+  return {s * xx,
+          s * xy,
+          s * xz,
+          s * (m.xx * m.zz - m.xz * m.xz),
+          s * (m.xy * m.xz - m.xx * m.yz),
+          s * (m.xx * m.yy - m.xy * m.xy)};
+}
+
+/// The symmetric part of a b c.
+template <class T>
+constexpr Symmetric3<T> symmetric_product(const Symmetric3<T>& a, const Symmetric3<T>& b,
+                                          const Symmetric3<T>& c) {
+  const Vector3<T> x = a * (b * Vector3<T>{c.xx, c.xy, c.xz});
+  const Vector3<T> y = a * (b * Vector3<T>{c.xy, c.yy, c.yz});
+  const Vector3<T> z = a * (b * Vector3<T>{c.xz, c.yz, c.zz});
+  return {x.x, T(0.5) * (x.y + y.x), T(0.5) * (x.z + z.x), y.y, T(0.5) * (y.z + z.y), z.z};
+}
+
+}  // namespace hooke::math

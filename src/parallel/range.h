@@ -1,0 +1,13 @@
+#pragma once
+
+namespace hooke::parallel {
+
+/// Half-open range of rows [begin, end).
+struct Range {
+  int begin = 0;
+  int end = 0;
+
+  [[nodiscard]] constexpr int count() const { return end - begin; }
+};
+
+}  // namespace hooke::parallel

@@ -1,0 +1,104 @@
+#include "parallel/thread_pool.h"
+
+#include "base/float_environment.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace hooke::parallel {
+
+namespace {
+
+/// About 50 microseconds: longer than the gap between two stages of a step, shorter than a scheduler's time
+/// slice.
+constexpr int kSpins = 4000;
+
+inline void pause_briefly() {
+#if defined(__x86_64__) || defined(_M_X64)
+  __builtin_ia32_pause();
+#else
+  std::this_thread::yield();
+#endif
+}
+
+}  // namespace
+
+struct ThreadPool::Shared {
+  std::atomic<std::uint64_t> job_number{0};
+  std::atomic<int> unfinished{0};
+  std::atomic<bool> stopping{false};
+  std::atomic<int> sleepers{0};
+  void (*job)(void*, int) = nullptr;
+  void* context = nullptr;
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::vector<std::thread> threads;
+
+  void wait_for_job(std::uint64_t last) {
+    for (int i = 0; i < kSpins; ++i) {
+      if (job_number.load(std::memory_order_acquire) != last) return;
+      pause_briefly();
+    }
+    std::unique_lock<std::mutex> lock(mutex);
+    sleepers.fetch_add(1);
+    wake.wait(lock, [&] { return job_number.load(std::memory_order_acquire) != last; });
+    sleepers.fetch_sub(1);
+  }
+
+  void work(int part) {
+    std::uint64_t last = 0;
+    for (;;) {
+      wait_for_job(last);
+      last = job_number.load(std::memory_order_acquire);
+      if (stopping.load(std::memory_order_acquire)) return;
+      {
+        const base::FloatEnvironment environment;
+        job(context, part);
+      }
+      unfinished.fetch_sub(1, std::memory_order_release);
+    }
+  }
+
+  void publish() {
+    {
+      // The lock orders this with a worker that is about to sleep: it either sees the number or is woken.
+      const std::lock_guard<std::mutex> lock(mutex);
+      job_number.fetch_add(1, std::memory_order_release);
+    }
+    if (sleepers.load() > 0) wake.notify_all();
+  }
+};
+
+ThreadPool::ThreadPool(int workers) : workers_(workers), shared_(std::make_unique<Shared>()) {
+  for (int part = 1; part < workers_; ++part) {
+    shared_->threads.emplace_back([shared = shared_.get(), part] { shared->work(part); });
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  shared_->stopping.store(true, std::memory_order_release);
+  shared_->publish();
+  for (std::thread& thread : shared_->threads) thread.join();
+}
+
+void ThreadPool::run(void (*job)(void*, int), void* context) {
+  Shared& shared = *shared_;
+  shared.job = job;
+  shared.context = context;
+  shared.unfinished.store(workers_ - 1, std::memory_order_relaxed);
+  shared.publish();
+  job(context, 0);
+  for (int i = 0; shared.unfinished.load(std::memory_order_acquire) > 0; ++i) {
+    if (i < kSpins) {
+      pause_briefly();
+    } else {
+      std::this_thread::yield();
+    }
+  }
+}
+
+}  // namespace hooke::parallel

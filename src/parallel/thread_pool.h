@@ -1,0 +1,63 @@
+#pragma once
+
+#include "parallel/range.h"
+
+#include <memory>
+#include <type_traits>
+
+namespace hooke::parallel {
+
+/// Threads that wait for short jobs: they spin for some tens of microseconds after a job, then sleep.
+///
+/// The split of a job depends on nothing but its size and the number of workers, and kernels write disjoint
+/// rows, so the result depends on neither.
+class ThreadPool {
+ public:
+  /// `workers` counts the calling thread: 1 starts none. Range [1, 64].
+  explicit ThreadPool(int workers);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  [[nodiscard]] int workers() const { return workers_; }
+
+  /// Calls `job(context, part)` once for each part in [0, workers), part 0 on the calling thread. Returns
+  /// when all are done. Not reentrant.
+  void run(void (*job)(void* context, int part), void* context);
+
+ private:
+  struct Shared;
+  int workers_;
+  std::unique_ptr<Shared> shared_;
+};
+
+/// Calls `kernel(range)` over disjoint ranges that cover [0, count). Ranges start at multiples of `grain`,
+/// the size below which a job is not worth splitting. Kernels of one call must not write a row that another
+/// range reads.
+template <class Kernel>
+void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
+  if (count <= 0) return;
+  const int blocks = (count + grain - 1) / grain;
+  if (pool.workers() == 1 || blocks == 1) {
+    kernel(Range{0, count});
+    return;
+  }
+  struct Context {
+    std::remove_reference_t<Kernel>* kernel;
+    int count, grain, blocks, workers;
+  } context{&kernel, count, grain, blocks, pool.workers()};
+  pool.run(
+      [](void* data, int part) {
+        const auto& c = *static_cast<Context*>(data);
+        const auto edge = [&c](int i) {
+          const auto block = static_cast<int>(static_cast<long long>(c.blocks) * i / c.workers);
+          const long long row = static_cast<long long>(block) * c.grain;
+          return row < c.count ? static_cast<int>(row) : c.count;
+        };
+        const Range range{edge(part), edge(part + 1)};
+        if (range.begin < range.end) (*c.kernel)(range);
+      },
+      &context);
+}
+
+}  // namespace hooke::parallel

@@ -1,0 +1,202 @@
+#include "render/batches.h"
+
+#include "render/shapes.h"
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+namespace hooke::render {
+
+namespace {
+
+/// A copy of a mesh on its way into a batch.
+struct Item {
+  Batch batch;
+  Instance instance;
+  std::size_t geometry_order = 0;
+  std::size_t texture_order = 0;
+  float eye_distance = 0;
+};
+
+auto batch_key(const Item& item) {
+  const Batch& b = item.batch;
+  return std::tuple(b.alpha, item.geometry_order, item.texture_order, b.first_index, b.index_count,
+                    b.two_sided, b.mirrored, b.casts_shadow);
+}
+
+bool drawn_before(const Item& a, const Item& b) {
+  const bool blends = a.batch.alpha == AlphaMode::kBlend && b.batch.alpha == AlphaMode::kBlend;
+  return blends ? a.eye_distance > b.eye_distance : batch_key(a) < batch_key(b);
+}
+
+std::array<float, 12> rows_of(const Mat4& a) {
+  return {a.m[0][0], a.m[1][0], a.m[2][0], a.m[3][0], a.m[0][1], a.m[1][1],
+          a.m[2][1], a.m[3][1], a.m[0][2], a.m[1][2], a.m[2][2], a.m[3][2]};
+}
+
+std::array<float, 4> linear_of(Color color, float opacity) {
+  const auto c = linear_of(color);
+  return {c[0], c[1], c[2], std::clamp(opacity, 0.0F, 1.0F)};
+}
+
+/// Collects items; knows each geometry's box and order of appearance.
+class Collector {
+ public:
+  explicit Collector(Vec3 eye) : eye_(eye) {}
+
+  void add(Item item, const Mat4& transform) {
+    const auto [place, is_new] = boxes_.try_emplace(item.batch.geometry.get());
+    if (is_new) {
+      place->second.order = boxes_.size();
+      for (const Vertex& vertex : item.batch.geometry->vertices) extend(place->second.box, vertex.position);
+    }
+    item.geometry_order = place->second.order;
+    item.texture_order = textures_.try_emplace(item.batch.texture.get(), textures_.size()).first->second;
+    const Bounds box = transformed(place->second.box, transform);
+    item.eye_distance = is_empty(box) ? 0 : length(center_of(box) - eye_);
+    result_.objects.push_back(box);
+    if (item.batch.casts_shadow) extend(result_.casters, box);
+    items_.push_back(std::move(item));
+  }
+
+  Batches finish() {
+    std::stable_sort(items_.begin(), items_.end(), drawn_before);
+    const Item* previous = nullptr;
+    for (const Item& item : items_) {
+      // See-through copies stay apart: others may lie between them.
+      const bool joins = previous != nullptr && item.batch.alpha != AlphaMode::kBlend &&
+                         batch_key(*previous) == batch_key(item);
+      if (!joins) {
+        result_.batches.push_back(item.batch);
+        result_.batches.back().first_instance = result_.instances.size();
+      }
+      ++result_.batches.back().instance_count;
+      result_.instances.push_back(item.instance);
+      previous = &item;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Known {
+    Bounds box;
+    std::size_t order = 0;
+  };
+
+  Vec3 eye_;
+  Batches result_;
+  std::vector<Item> items_;
+  std::unordered_map<const MeshGeometry*, Known> boxes_;
+  std::unordered_map<const Image*, std::size_t> textures_;
+};
+
+Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
+  const std::size_t total = mesh.geometry->indices.size();
+  const std::string where = "meshes[" + std::to_string(index) + "]";
+  if (mesh.first_index > total || mesh.index_count > total - mesh.first_index) {
+    return Error{ErrorCode::kOutOfRange, where,
+                 "first_index " + std::to_string(mesh.first_index) + " and index_count " +
+                     std::to_string(mesh.index_count) + " leave the " + std::to_string(total) + " indices"};
+  }
+  Item item;
+  Batch& batch = item.batch;
+  batch.geometry = mesh.geometry;
+  batch.texture = mesh.texture;
+  batch.first_index = mesh.first_index;
+  batch.index_count = mesh.index_count > 0 ? mesh.index_count : total - mesh.first_index;
+  if (batch.index_count % 3 != 0) {
+    return Error{ErrorCode::kOutOfRange, where,
+                 std::to_string(batch.index_count) + " indices are not whole triangles"};
+  }
+  const bool see_through = mesh.opacity < 1 || mesh.alpha == AlphaMode::kBlend;
+  batch.alpha = see_through ? AlphaMode::kBlend : mesh.alpha;
+  batch.two_sided = mesh.two_sided;
+  batch.mirrored = determinant(linear_part(mesh.transform)) < 0;
+  batch.casts_shadow = mesh.casts_shadow && mesh.opacity >= 0.5F;
+  batch.mesh = index;
+  item.instance = {rows_of(mesh.transform),
+                   linear_of(mesh.color, mesh.opacity),
+                   {std::max(mesh.shininess, 1.0F), std::max(mesh.specular, 0.0F), 0, 0}};
+  return item;
+}
+
+/// All tubes go into one mesh, each a range of its own.
+void collect_ropes(const std::vector<DrawRope>& ropes, SharedMeshes& shared, Collector& collector) {
+  MeshGeometry& mesh = *shared.ropes;
+  mesh.vertices.clear();
+  mesh.indices.clear();
+  ++mesh.vertex_revision;
+  ++mesh.topology_revision;
+  std::vector<Item> items;
+  for (const DrawRope& rope : ropes) {
+    Item item;
+    item.batch.first_index = mesh.indices.size();
+    add_tube(rope.points, rope.radius, mesh);
+    item.batch.index_count = mesh.indices.size() - item.batch.first_index;
+    if (item.batch.index_count == 0) continue;
+    item.batch.geometry = shared.ropes;
+    item.instance = {rows_of(Mat4{}),
+                     linear_of(rope.color, 1),
+                     {std::max(rope.shininess, 1.0F), std::max(rope.specular, 0.0F), 0, 0}};
+    items.push_back(std::move(item));
+  }
+  // Only now is the mesh whole and its box known.
+  for (Item& item : items) collector.add(std::move(item), Mat4{});
+}
+
+void collect_spheres(const DrawList& list, int height_px, const SharedMeshes& shared, Collector& collector) {
+  const float half_angle = list.camera.vertical_fov_deg * std::numbers::pi_v<float> / 360;
+  const float pixels = 0.5F * static_cast<float>(height_px) / std::max(std::tan(half_angle), 1e-3F);
+  for (const DrawSphere& sphere : list.spheres) {
+    if (!is_finite(sphere.center) || !(sphere.radius > 0)) continue;
+    const float distance = std::max(length(sphere.center - list.camera.eye), 1e-3F);
+    const float radius_px = pixels * sphere.radius / distance;
+    // The silhouette of each is within half a pixel of the circle at the size where the next one starts.
+    const std::size_t detail = radius_px < 8 ? 0 : radius_px < 60 ? 1 : 2;
+    Item item;
+    item.batch.geometry = shared.spheres[detail];
+    item.batch.index_count = item.batch.geometry->indices.size();
+    const float r = sphere.radius;
+    const Mat4 transform = affine(Mat3{{r, 0, 0}, {0, r, 0}, {0, 0, r}}, sphere.center);
+    item.instance = {rows_of(transform), linear_of(sphere.color, 1), {40, 0.15F, 0, 0}};
+    collector.add(std::move(item), transform);
+  }
+}
+
+}  // namespace
+
+SharedMeshes make_shared_meshes() {
+  SharedMeshes shared;
+  for (std::size_t i = 0; i < shared.spheres.size(); ++i) {
+    shared.spheres[i] = std::make_shared<const MeshGeometry>(make_sphere(static_cast<int>(i) + 2));
+  }
+  shared.ropes = std::make_shared<MeshGeometry>();
+  return shared;
+}
+
+Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& shared) {
+  Collector collector(list.camera.eye);
+  for (std::size_t i = 0; i < list.meshes.size(); ++i) {
+    const DrawMesh& mesh = list.meshes[i];
+    if (!mesh.geometry || mesh.geometry->indices.empty() || !(mesh.opacity > 0)) continue;
+    auto item = make_item(mesh, i);
+    if (!item) return item.error();
+    collector.add(std::move(item).value(), mesh.transform);
+  }
+  collect_ropes(list.ropes, shared, collector);
+  collect_spheres(list, height_px, shared, collector);
+  return collector.finish();
+}
+
+std::array<float, 3> linear_of(Color color) {
+  const auto decode = [](float c) {
+    const float x = std::clamp(c, 0.0F, 1.0F);
+    return x <= 0.04045F ? x / 12.92F : std::pow((x + 0.055F) / 1.055F, 2.4F);
+  };
+  return {decode(color.r), decode(color.g), decode(color.b)};
+}
+
+}  // namespace hooke::render

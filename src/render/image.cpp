@@ -1,0 +1,135 @@
+#include "render/image.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <unistd.h>
+
+// Static, because other libraries of a program bring their own copies. The formats left out are those nobody
+// needs and whose decoders had the most faults.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_NO_GIF
+#define STBI_NO_PSD
+#define STBI_NO_PIC
+#define STBI_NO_HDR
+#define STBI_NO_PNM
+#define STBI_NO_STDIO
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+
+namespace hooke::render {
+
+namespace {
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, FileCloser>;
+
+struct PixelsFreer {
+  void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
+};
+
+struct PngSink {
+  std::FILE* file = nullptr;
+  bool failed = false;
+};
+
+void write_bytes(void* context, void* data, int size) {
+  auto* sink = static_cast<PngSink*>(context);
+  const auto count = static_cast<std::size_t>(size);
+  if (std::fwrite(data, 1, count, sink->file) != count) sink->failed = true;
+}
+
+bool write_png_file(const Image& image, const std::string& path) {
+  File file(std::fopen(path.c_str(), "wb"));
+  if (!file) return false;
+  PngSink sink{file.get()};
+  const int done = stbi_write_png_to_func(write_bytes, &sink, image.width, image.height, image.channels,
+                                          image.pixels.data(), image.width * image.channels);
+  const bool closed = std::fclose(file.release()) == 0;
+  return done != 0 && !sink.failed && closed;
+}
+
+Result<std::vector<std::uint8_t>> read_file(const std::string& path, std::size_t max_bytes) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) {
+    return Error{ErrorCode::kFileNotReadable, path, "not a readable file"};
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, code);
+  if (code) return Error{ErrorCode::kFileNotReadable, path, code.message()};
+  if (size > max_bytes) {
+    return Error{ErrorCode::kLimitExceeded, path,
+                 std::to_string(size) + " bytes, at most " + std::to_string(max_bytes) + " are accepted"};
+  }
+  const File file(std::fopen(path.c_str(), "rb"));
+  if (!file) return Error{ErrorCode::kFileNotReadable, path, std::strerror(errno)};
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+    return Error{ErrorCode::kFileNotReadable, path, "the file ended early"};
+  }
+  return bytes;
+}
+
+}  // namespace
+
+bool is_consistent(const Image& image) {
+  if (image.width <= 0 || image.height <= 0 || (image.channels != 3 && image.channels != 4)) return false;
+  const auto expected = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                        static_cast<std::size_t>(image.channels);
+  return image.pixels.size() == expected;
+}
+
+Result<void> write_png(const Image& image, const std::string& path) {
+  if (!is_consistent(image))
+    return Error{ErrorCode::kOutOfRange, path, "the image's size and pixels disagree"};
+  const std::string temporary = path + ".part-" + std::to_string(::getpid());
+  std::error_code code;
+  if (!write_png_file(image, temporary)) {
+    const std::string reason = std::strerror(errno);
+    std::filesystem::remove(temporary, code);
+    return Error{ErrorCode::kFileNotWritable, path, "cannot write: " + reason};
+  }
+  std::filesystem::rename(temporary, path, code);
+  if (code) {
+    const std::string reason = code.message();
+    std::filesystem::remove(temporary, code);
+    return Error{ErrorCode::kFileNotWritable, path, "cannot rename into place: " + reason};
+  }
+  return {};
+}
+
+Result<Image> load_image(const std::string& path, const ImageLimits& limits) {
+  const auto bytes = read_file(path, limits.max_file_bytes);
+  if (!bytes) return bytes.error();
+  const stbi_uc* data = bytes.value().data();
+  const int size = static_cast<int>(bytes.value().size());
+  Image image;
+  int channels = 0;
+  if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {
+    return Error{ErrorCode::kBadSyntax, path, "not a PNG, JPEG, BMP or TGA image"};
+  }
+  if (image.width > limits.max_side || image.height > limits.max_side) {
+    return Error{ErrorCode::kLimitExceeded, path,
+                 std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels, at most " +
+                     std::to_string(limits.max_side) + " a side are accepted"};
+  }
+  // Gray with alpha (2) also has transparency.
+  image.channels = channels == 2 || channels == 4 ? 4 : 3;
+  const std::unique_ptr<stbi_uc, PixelsFreer> pixels(
+      stbi_load_from_memory(data, size, &image.width, &image.height, &channels, image.channels));
+  if (!pixels) return Error{ErrorCode::kBadSyntax, path, stbi_failure_reason()};
+  const auto count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                     static_cast<std::size_t>(image.channels);
+  image.pixels.assign(pixels.get(), pixels.get() + count);
+  return image;
+}
+
+}  // namespace hooke::render

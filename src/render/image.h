@@ -1,0 +1,37 @@
+#pragma once
+
+#include "hooke/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hooke::render {
+
+/// Bytes of sRGB color, rows from top to bottom without padding.
+struct Image {
+  int width = 0;
+  int height = 0;
+  int channels = 3;  ///< 3 is RGB, 4 is RGB and alpha.
+  std::vector<std::uint8_t> pixels;
+
+  friend bool operator==(const Image&, const Image&) = default;
+};
+
+/// Whether the sizes are positive, the channels 3 or 4 and the pixels as many as these say.
+bool is_consistent(const Image& image);
+
+/// Writes a temporary file beside `path` and renames it, so `path` is never half a picture.
+Result<void> write_png(const Image& image, const std::string& path);
+
+/// What a file from elsewhere may cost.
+struct ImageLimits {
+  std::size_t max_file_bytes = std::size_t{64} << 20;
+  int max_side = 8192;  ///< [px]
+};
+
+/// Reads PNG, JPEG, BMP or TGA. A file with transparency gives four channels, any other three.
+Result<Image> load_image(const std::string& path, const ImageLimits& limits = {});
+
+}  // namespace hooke::render

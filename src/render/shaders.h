@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+/// \file
+/// The GLSL sources. All of them share the uniform block Frame, laid out like FrameUniforms in renderer.cpp.
+
+namespace hooke::render {
+
+struct ShaderSource {
+  std::string vertex;
+  std::string fragment;
+};
+
+ShaderSource mesh_shader();           ///< Lit triangles, instanced.
+ShaderSource shadow_shader();         ///< Depth only, instanced.
+ShaderSource cutout_shadow_shader();  ///< Depth where the texture is not a hole.
+ShaderSource ground_shader();         ///< The plane with its grid.
+ShaderSource sky_shader();            ///< The gradient behind everything.
+ShaderSource line_shader();           ///< Lines of a width in pixels, instanced.
+ShaderSource text_shader();           ///< Triangles in pixels.
+ShaderSource present_shader();        ///< The finished picture into a window.
+
+}  // namespace hooke::render

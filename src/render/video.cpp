@@ -1,0 +1,317 @@
+#include "render/video.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <optional>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+extern char** environ;
+
+namespace hooke::render {
+
+namespace {
+
+enum class Format { kMp4, kGif, kPictures };
+
+/// A file descriptor that is closed with this value.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+
+  void close() {
+    if (number_ >= 0) ::close(number_);
+    number_ = -1;
+  }
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_ = -1;
+};
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+bool ends_in(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// The name of a numbered picture around its number.
+struct NumberedName {
+  std::string before;
+  std::size_t digits = 0;
+  std::string after;
+};
+
+/// Only %d, %Nd and %0Nd with N of one digit: the name comes from a user and never reaches printf.
+std::optional<NumberedName> parse_numbered(const std::string& path) {
+  const std::size_t start = path.find('%');
+  if (start == std::string::npos || path.find('%', start + 1) != std::string::npos) return std::nullopt;
+  std::size_t at = start + 1;
+  if (at < path.size() && path[at] == '0') ++at;
+  NumberedName name;
+  if (at < path.size() && path[at] >= '1' && path[at] <= '9') {
+    name.digits = static_cast<std::size_t>(path[at++] - '0');
+  }
+  if (at >= path.size() || path[at] != 'd') return std::nullopt;
+  name.before = path.substr(0, start);
+  name.after = path.substr(at + 1);
+  return name;
+}
+
+std::string numbered(const NumberedName& name, int number) {
+  const std::string digits = std::to_string(number);
+  const std::string zeros(name.digits > digits.size() ? name.digits - digits.size() : 0, '0');
+  return name.before + zeros + digits + name.after;
+}
+
+Result<Format> format_of(const VideoOptions& options) {
+  const std::string size = std::to_string(options.width) + " x " + std::to_string(options.height);
+  if (options.width < 1 || options.height < 1 || options.width > 8192 || options.height > 8192) {
+    return Error{ErrorCode::kOutOfRange, options.path, size + " pixels; each side must be 1 to 8192"};
+  }
+  if (options.frames_per_second < 1 || options.frames_per_second > 240) {
+    return Error{ErrorCode::kOutOfRange, options.path,
+                 std::to_string(options.frames_per_second) + " frames per second; 1 to 240 are accepted"};
+  }
+  if (ends_in(options.path, ".gif")) return Format::kGif;
+  if (ends_in(options.path, ".mp4")) {
+    if (options.width % 2 == 0 && options.height % 2 == 0) return Format::kMp4;
+    return Error{ErrorCode::kOutOfRange, options.path,
+                 size + " pixels; both sides must be even for .mp4, for example " +
+                     std::to_string(options.width + options.width % 2) + " x " +
+                     std::to_string(options.height + options.height % 2)};
+  }
+  if (ends_in(options.path, ".png") && parse_numbered(options.path)) return Format::kPictures;
+  return Error{ErrorCode::kOutOfRange, options.path, "the name must end in .mp4, .gif or %04d.png"};
+}
+
+std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format format,
+                                          const std::string& output) {
+  std::vector<std::string> words = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y"};
+  const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
+  const std::string rate = std::to_string(options.frames_per_second);
+  words.insert(words.end(),
+               {"-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-an"});
+  if (format == Format::kMp4) {
+    words.insert(words.end(), {"-vf",
+                               "scale=out_color_matrix=bt709:out_range=tv",
+                               "-c:v",
+                               "libx264",
+                               "-preset",
+                               "veryfast",
+                               "-crf",
+                               "18",
+                               "-pix_fmt",
+                               "yuv420p",
+                               "-colorspace",
+                               "bt709",
+                               "-color_primaries",
+                               "bt709",
+                               "-color_trc",
+                               "bt709",
+                               "-color_range",
+                               "tv",
+                               "-movflags",
+                               "+faststart",
+                               "-f",
+                               "mp4"});
+  } else {
+    // Delays are hundredths of a second, and browsers slow down anything below two.
+    const std::string fewer = options.frames_per_second > 50 ? "fps=50," : "";
+    words.insert(words.end(), {"-filter_complex",
+                               fewer + "split[a][b];[a]palettegen=stats_mode=diff[p];"
+                                       "[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
+                               "-f", "gif"});
+  }
+  // Without the prefix a colon in the name would be read as a protocol.
+  words.push_back("file:" + output);
+  return words;
+}
+
+}  // namespace
+
+struct VideoData {
+  VideoOptions options;
+  Format format = Format::kMp4;
+  NumberedName name;      ///< Of numbered pictures.
+  std::string temporary;  ///< What ffmpeg writes.
+  Descriptor input;       ///< Our end of ffmpeg's input.
+  std::unique_ptr<std::FILE, FileCloser> messages;
+  pid_t process = -1;
+  int frame_count = 0;
+  bool failed = false;
+
+  VideoData() = default;
+  VideoData(const VideoData&) = delete;
+  VideoData& operator=(const VideoData&) = delete;
+  ~VideoData() { abandon(); }
+
+  /// Ends ffmpeg, if it runs, and removes what it wrote.
+  void abandon() {
+    input.close();
+    if (process > 0) {
+      ::kill(process, SIGKILL);
+      wait_for_end();
+    }
+    if (!temporary.empty()) ::unlink(temporary.c_str());
+    temporary.clear();
+  }
+
+  /// Whether ffmpeg ended well.
+  bool wait_for_end() {
+    int status = -1;
+    pid_t ended = -1;
+    do {
+      ended = ::waitpid(process, &status, 0);
+    } while (ended < 0 && errno == EINTR);
+    process = -1;
+    return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+
+  /// The beginning of what ffmpeg said.
+  std::string read_messages() {
+    std::array<char, 400> text{};
+    std::rewind(messages.get());
+    const std::size_t size = std::fread(text.data(), 1, text.size(), messages.get());
+    std::string result(text.data(), size);
+    while (!result.empty() && (result.back() == '\n' || result.back() == '\r')) result.pop_back();
+    return result;
+  }
+
+  Error fail(ErrorCode code, const std::string& message) {
+    failed = true;
+    abandon();
+    return {code, options.path, message};
+  }
+};
+
+namespace {
+
+/// Starts ffmpeg with `input` as its standard input and our message file as its standard error.
+int spawn_ffmpeg(VideoData& data, int input) {
+  std::vector<std::string> words = ffmpeg_arguments(data.options, data.format, data.temporary);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  int code = posix_spawn_file_actions_init(&actions);
+  if (code != 0) return code;
+  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(data.messages.get()), STDERR_FILENO);
+  code = posix_spawnp(&data.process, "ffmpeg", &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (code != 0) data.process = -1;
+  return code;
+}
+
+Result<void> start_ffmpeg(VideoData& data) {
+  data.messages.reset(std::tmpfile());
+  if (!data.messages) return data.fail(ErrorCode::kFileNotWritable, "no room for temporary files");
+  const std::string temporary = data.options.path + ".part-" + std::to_string(::getpid());
+  const Descriptor probe(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (probe.number() < 0) return data.fail(ErrorCode::kFileNotWritable, std::strerror(errno));
+  data.temporary = temporary;
+
+  // A socket instead of a pipe: writing to it can be told not to raise SIGPIPE when ffmpeg has ended.
+  std::array<int, 2> ends = {-1, -1};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    return data.fail(ErrorCode::kLimitExceeded, std::strerror(errno));
+  }
+  data.input = Descriptor(ends[0]);
+  const Descriptor theirs(ends[1]);
+  const int code = spawn_ffmpeg(data, theirs.number());
+  if (code == 0) return {};
+  return data.fail(ErrorCode::kUnsupported, std::string("cannot start the program ffmpeg: ") +
+                                                std::strerror(code) + " (Debian: package ffmpeg)");
+}
+
+bool send_all(int socket, const std::uint8_t* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t sent = ::send(socket, bytes, count, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return false;
+    bytes += sent;
+    count -= static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+}  // namespace
+
+VideoWriter::VideoWriter(std::unique_ptr<VideoData> data) : data_(std::move(data)) {}
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
+VideoWriter& VideoWriter::operator=(VideoWriter&&) noexcept = default;
+VideoWriter::~VideoWriter() = default;
+
+Result<VideoWriter> VideoWriter::create(const VideoOptions& options) {
+  const auto format = format_of(options);
+  if (!format) return format.error();
+  auto data = std::make_unique<VideoData>();
+  data->options = options;
+  data->format = format.value();
+  if (data->format == Format::kPictures) {
+    data->name = parse_numbered(options.path).value_or(NumberedName{});
+  } else {
+    const auto started = start_ffmpeg(*data);
+    if (!started) return started.error();
+  }
+  return VideoWriter(std::move(data));
+}
+
+Result<void> VideoWriter::add(const Image& frame) {
+  VideoData& data = *data_;
+  if (data.failed) return Error{ErrorCode::kFileNotWritable, data.options.path, "the film has failed before"};
+  if (!is_consistent(frame) || frame.channels != 3 || frame.width != data.options.width ||
+      frame.height != data.options.height) {
+    return Error{ErrorCode::kOutOfRange, data.options.path,
+                 "frame " + std::to_string(data.frame_count) + " is not RGB of the film's size"};
+  }
+  const int number = data.frame_count++;
+  if (data.format == Format::kPictures) return write_png(frame, numbered(data.name, number));
+  if (send_all(data.input.number(), frame.pixels.data(), frame.pixels.size())) return {};
+  // It has ended or is about to: what it said last is the reason.
+  data.input.close();
+  data.wait_for_end();
+  return data.fail(ErrorCode::kFileNotWritable, "ffmpeg ended early: " + data.read_messages());
+}
+
+Result<void> VideoWriter::finish() {
+  VideoData& data = *data_;
+  if (data.failed) return Error{ErrorCode::kFileNotWritable, data.options.path, "the film has failed before"};
+  if (data.frame_count == 0) return data.fail(ErrorCode::kOutOfRange, "a film needs at least one frame");
+  data.failed = true;  // nothing can be added from here on
+  if (data.format == Format::kPictures) return {};
+  data.input.close();
+  if (!data.wait_for_end()) {
+    return data.fail(ErrorCode::kFileNotWritable, "ffmpeg failed: " + data.read_messages());
+  }
+  std::error_code code;
+  std::filesystem::rename(data.temporary, data.options.path, code);
+  if (code) return data.fail(ErrorCode::kFileNotWritable, "cannot rename into place: " + code.message());
+  data.temporary.clear();
+  return {};
+}
+
+}  // namespace hooke::render

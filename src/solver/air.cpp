@@ -1,0 +1,77 @@
+#include "solver/air.h"
+
+namespace hooke::solver {
+
+void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads) {
+  loads.first_of.assign(static_cast<std::size_t>(particle_count) + 1, 0);
+  for (const auto& t : triangles.corners) {
+    for (const std::uint32_t p : {t.a, t.b, t.c}) ++loads.first_of[p + 1];
+  }
+  for (std::size_t p = 1; p < loads.first_of.size(); ++p) loads.first_of[p] += loads.first_of[p - 1];
+  std::vector<std::uint32_t> next(loads.first_of.begin(), loads.first_of.end() - 1);
+  loads.triangle_of.resize(3 * triangles.corners.size());
+  for (std::uint32_t i = 0; i < triangles.corners.size(); ++i) {
+    const auto& t = triangles.corners[i];
+    for (const std::uint32_t p : {t.a, t.b, t.c}) loads.triangle_of[next[p]++] = i;
+  }
+  loads.corner_impulse.assign(triangles.corners.size(), Vec3{});
+}
+
+void load_triangles(const state::Deformable& object, const state::Triangles& triangles,
+                    const state::Particles& particles, const std::vector<Vec3>& wind, Real air_density,
+                    Real h, parallel::Range range, AirLoads& loads) {
+  const Real third = Real(1) / Real(3);
+  for (int i = range.begin; i < range.end; ++i) {
+    const std::size_t row = object.triangles.first + static_cast<std::size_t>(i);
+    const auto [a, b, c] = triangles.corners[row];
+    const Vec3 flow = third * ((wind[a] - particles.velocity[a].v) + (wind[b] - particles.velocity[b].v) +
+                               (wind[c] - particles.velocity[c].v));
+    const Vec3 normal = cross(particles.position[b].x - particles.position[a].x,
+                              particles.position[c].x - particles.position[a].x);
+    const Real area2 = length(normal);
+    const Real speed = length(flow);
+    loads.corner_impulse[row] = {};
+    if (!(area2 > Real(0)) || !(speed > Real(0))) continue;
+
+    const Real along = dot(normal, flow) / area2;  // n . u
+    const Vec3 n = ((along < Real(0) ? Real(-1) : Real(1)) / area2) * normal;
+    const Real cosine = (along < Real(0) ? -along : along) / speed;
+    const Vec3 lift = n - (cosine / speed) * flow;
+    const Real pressure = Real(0.5) * air_density * speed * cosine;  // force per area and velocity
+    const Vec3 per_area =
+        pressure * (object.drag_coefficient * flow + (object.lift_coefficient * speed) * lift);
+    const Real stiffening =
+        h * pressure * (object.drag_coefficient + object.lift_coefficient) / triangles.areal_density[row];
+    loads.corner_impulse[row] = (third * h * Real(0.5) * area2 / (Real(1) + stiffening)) * per_area;
+  }
+}
+
+void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles) {
+  for (int p = range.begin; p < range.end; ++p) {
+    Vec3 sum = {};
+    for (std::uint32_t i = loads.first_of[p]; i < loads.first_of[p + 1]; ++i) {
+      sum += loads.corner_impulse[loads.triangle_of[i]];
+    }
+    particles.velocity[p].v += particles.position[p].inverse_mass * sum;
+  }
+}
+
+void push_segments(const state::Deformable& object, const state::Segments& segments,
+                   const std::vector<Vec3>& wind, Real air_density, Real h, state::Particles& particles) {
+  for (std::uint32_t i = 0; i < object.segments.count; ++i) {
+    const std::size_t a = object.particles.first + i;
+    const std::size_t b = a + 1;
+    const Vec3 axis = normalize(particles.position[b].x - particles.position[a].x);
+    const Vec3 flow = Real(0.5) * ((wind[a] - particles.velocity[a].v) + (wind[b] - particles.velocity[b].v));
+    const Vec3 across = flow - dot(flow, axis) * axis;
+    const Real diameter = Real(2) * particles.velocity[a].radius;
+    const Real drag = Real(0.5) * air_density * object.drag_coefficient * diameter *
+                      segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
+    for (const std::size_t p : {a, b}) {
+      const Real w = particles.position[p].inverse_mass;
+      particles.velocity[p].v += (w * h * Real(0.5) * drag / (Real(1) + w * h * drag)) * across;
+    }
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "state/particles.h"
+#include "state/springs.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Springs as the kernels want them: blocks of 16 rows that share no particle, blocks of one color after
+/// another.
+
+namespace hooke::solver {
+
+inline constexpr int kLanes = 16;
+
+/// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
+/// fill it.
+struct SpringBlock {
+  std::uint32_t line_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
+  std::uint32_t line_b[kLanes];
+  Real rest_length[kLanes];
+};
+
+/// What all rows of a block have in common. The coefficients are those of one substep of length h.
+struct SpringMaterial {
+  Real stiffness = Real(0);
+  Real damping = Real(0);
+  bool one_sided = false;  ///< Only pulls.
+  bool anchored = false;   ///< Particle b is pinned and not written.
+  state::SpringForm form = state::SpringForm::kExplicit;
+  Real bias = Real(0);   ///< b = k / (c + h k) [1/s]; written by prepare_springs.
+  Real gamma = Real(0);  ///< 1 / (h (c + h k)) [1/kg]; written by prepare_springs.
+
+  friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
+};
+
+/// Blocks [first, end) hold rows of one color and one material: no two rows share a particle that is written.
+struct SpringPass {
+  std::uint32_t material = 0;
+  int first = 0;
+  int end = 0;
+  int last_count = kLanes;  ///< Rows in the last block.
+  state::SpringClass kind = state::SpringClass::kStretch;
+};
+
+struct SpringBlocks {
+  std::vector<SpringBlock> blocks;
+  std::vector<SpringMaterial> materials;
+  std::vector<SpringPass> passes;  ///< In the order they are solved; passes of one color follow each other.
+};
+
+/// Colors the rows of each class greedily in the order of the table, 16 to a block. A tether whose anchor is
+/// not pinned is left out.
+void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
+                         SpringBlocks& blocks);
+
+/// b and gamma of every material for a substep of `h` [s].
+void prepare_springs(SpringBlocks& blocks, Real h);
+
+/// The smallest color in 0..63 that no particle of a row uses yet, and marks it; 64 and above mean a row
+/// alone in its color (a hub of more than 64 rows). `used[particle]` is a bit mask.
+int take_color(std::vector<std::uint64_t>& used, const std::uint32_t* particles, int count);
+
+}  // namespace hooke::solver

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "solver/spring_blocks.h"
+#include "state/particles.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+/// \file
+/// Kernels over many lanes. One source for all instruction sets (Highway), chosen at run time; every one
+/// gives the bits of its scalar twin, because each lane does the same operations in the same order, with no
+/// fused multiply-add and no approximate division. The double twin of the engine runs the scalar twins.
+
+namespace hooke::solver::wide {
+
+/// Blocks that share no written particle; the last holds `last_count` rows.
+struct SpringRun {
+  std::span<const SpringBlock> blocks;
+  int last_count = kLanes;
+};
+
+/// One pass over a run; the formula stands in solver/springs.h.
+void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
+                   state::VelocityLine* velocity);
+
+/// v += h a for particles that can move; components below 1e-20 m/s become zero, so that nothing decays into
+/// denormals.
+void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
+
+/// x += h v.
+void move(Real h, parallel::Range rows, state::Particles& particles);
+
+// The scalar twins: the same bits, one row at a time.
+void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
+                          const state::PositionLine* position, state::VelocityLine* velocity);
+void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
+void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
+
+/// Instruction sets of this machine, "scalar" first, the widest last.
+[[nodiscard]] std::vector<std::string> targets();
+
+/// Runs every kernel with the named set from now on, in the whole process; "" goes back to the widest. For
+/// tests and benchmarks: the bits do not depend on it. False, and no change, if this machine does not have
+/// it.
+bool use_target(const std::string& name);
+
+}  // namespace hooke::solver::wide

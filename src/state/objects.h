@@ -1,0 +1,73 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/id.h"
+#include "hooke/math.h"
+#include "hooke/shape.h"
+
+#include "state/mesh.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+/// \file
+/// What the tables of rows belong to: deformable objects, bodies, pins, fields.
+
+namespace hooke::state {
+
+/// Rows [first, first + count) of a table.
+struct Rows {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+
+  [[nodiscard]] std::uint32_t end() const { return first + count; }
+};
+
+/// One rope, cloth or group of particles: its origin and its rows. Objects stand in order of creation.
+struct Deformable {
+  PointRef::Kind kind = PointRef::Kind::kNone;
+  std::uint32_t slot = 0;  ///< Of its id.
+  DVec3 origin = {};       ///< Positions of its particles are offsets from here [m].
+  Rows particles = {};
+  Rows springs = {};
+  Rows bends = {};
+  Rows triangles = {};
+  Rows segments = {};
+  Real friction = Real(0);
+  Real drag_coefficient = Real(0);
+  Real lift_coefficient = Real(0);
+  bool feels_air = false;  ///< Some drag of any kind.
+};
+
+/// A point that is held, and how it moves.
+struct Pin {
+  std::uint32_t object = 0;  ///< Row of the deformable.
+  std::uint32_t particle = 0;
+  DVec3 start = {};         ///< Where it was when the motion began [m].
+  double start_time = 0.0;  ///< [s]
+  MotionDesc motion = {};
+};
+
+struct Field {
+  FieldDesc desc = {};
+  std::uint32_t slot = 0;
+};
+
+struct ForceLawEntry {
+  ForceLaw law;
+  std::uint32_t slot = 0;
+};
+
+/// A shape with a pose. It does not move in this version: every body is static or only drawn.
+struct Body {
+  std::uint32_t slot = 0;
+  Shape shape = {};
+  std::shared_ptr<const Mesh> mesh;  ///< For a mesh shape.
+  DVec3 position = {};
+  Quat rotation = {};
+  Real friction = Real(0);
+  bool collides = true;
+};
+
+}  // namespace hooke::state

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// All point masses of a World: ropes, cloth and loose particles differ only in their constraints.
+
+namespace hooke::state {
+
+/// What a kernel reads of a particle in one load.
+struct alignas(4 * sizeof(Real)) PositionLine {
+  Vec3 x = {};                  ///< Position [m], an offset from the origin of the owning object.
+  Real inverse_mass = Real(0);  ///< w [1/kg]; 0 holds the particle still.
+};
+
+/// What a kernel writes of a particle in one store.
+struct alignas(4 * sizeof(Real)) VelocityLine {
+  Vec3 v = {};            ///< Velocity [m/s].
+  Real radius = Real(0);  ///< Contact radius [m].
+};
+
+/// Columns of equal length; row i describes particle i. An object owns one contiguous range of rows.
+struct Particles {
+  std::vector<PositionLine> position;
+  std::vector<VelocityLine> velocity;
+  std::vector<Real> mass;          ///< [kg], also of pinned particles.
+  std::vector<Real> charge;        ///< [C]
+  std::vector<Real> viscous_drag;  ///< Share of the object's air friction [N s/m].
+  std::vector<Real> drag_area;     ///< Cd A / 2 of the particle as a sphere [m^2].
+  std::vector<Vec3> force;         ///< External force for the current step [N]; cleared by finish.
+  std::vector<std::uint32_t>
+      row_of;  ///< From the maker's order to rows, both relative to the object's first row.
+
+  [[nodiscard]] int count() const { return static_cast<int>(position.size()); }
+
+  /// Calls `visit(column)` for each column.
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.position);
+    visit(self.velocity);
+    visit(self.mass);
+    visit(self.charge);
+    visit(self.viscous_drag);
+    visit(self.drag_area);
+    visit(self.force);
+    visit(self.row_of);
+  }
+};
+
+}  // namespace hooke::state

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace hooke::state {
+
+/// Maps ids to dense rows. Slots only grow; the generation of new slots rises when a snapshot is restored, so
+/// that an id made between the snapshot and its restoration never means a later object.
+template <class IdType>
+class SlotTable {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  /// The id of a new object that lives in `row`.
+  IdType add(std::uint32_t row) {
+    entries_.push_back({row, generation_});
+    return {.slot = static_cast<std::uint32_t>(entries_.size()), .generation = generation_};
+  }
+
+  /// The row, or kNone for a null, stale or foreign id.
+  [[nodiscard]] std::uint32_t find(IdType id) const {
+    if (id.slot == 0 || id.slot > entries_.size()) return kNone;
+    const Entry& entry = entries_[id.slot - 1];
+    return entry.generation == id.generation ? entry.row : kNone;
+  }
+
+  void move(std::uint32_t slot, std::uint32_t row) { entries_[slot - 1].row = row; }
+
+  [[nodiscard]] std::uint32_t generation() const { return generation_; }
+  void set_generation(std::uint32_t generation) { generation_ = generation; }
+
+ private:
+  struct Entry {
+    std::uint32_t row;
+    std::uint32_t generation;
+  };
+  std::vector<Entry> entries_;
+  std::uint32_t generation_ = 1;
+};
+
+}  // namespace hooke::state

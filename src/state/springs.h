@@ -1,0 +1,118 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Rows between particles of one object, in the order they were made. The solver keeps its own colored copy
+/// (solver/spring_blocks.h), made anew when rows come or go.
+
+namespace hooke::state {
+
+/// What a spring row is for. Rows of one class are solved together, classes in this order.
+enum class SpringClass : std::uint8_t {
+  kStretch,  ///< Along an edge, or given by the user.
+  kShear,    ///< Across a cell.
+  kBend,     ///< To the second neighbor.
+  kTether,   ///< From a free particle (a) to a pinned one (b): only pulls; inextensible.
+  kLimit,    ///< The largest length of a stretch spring: only pulls.
+};
+
+/// How the row's force is computed.
+enum class SpringForm : std::uint8_t {
+  kExplicit,           ///< Direction at the start of the substep.
+  kPredicted,          ///< Direction where the particles are about to be.
+  kExplicitIsotropic,  ///< Damping acts on the whole relative velocity.
+  kPredictedIsotropic,
+};
+
+struct Springs {
+  std::vector<std::uint32_t> particle_a;
+  std::vector<std::uint32_t> particle_b;
+  std::vector<Real> rest_length;  ///< L [m]; for limits and tethers the largest length.
+  std::vector<Real> stiffness;    ///< k [N/m]; infinity is a rigid link.
+  std::vector<Real> damping;      ///< c [N s/m]
+  std::vector<SpringClass> kind;
+  std::vector<SpringForm> form;
+
+  [[nodiscard]] int count() const { return static_cast<int>(particle_a.size()); }
+
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.particle_a);
+    visit(self.particle_b);
+    visit(self.rest_length);
+    visit(self.stiffness);
+    visit(self.damping);
+    visit(self.kind);
+    visit(self.form);
+  }
+};
+
+/// One row per inner edge that resists folding.
+struct Bends {
+  struct Stencil {
+    std::uint32_t edge_a, edge_b;  ///< Ends of the shared edge.
+    std::uint32_t wing_a, wing_b;  ///< Opposite vertices of the two triangles.
+  };
+  std::vector<Stencil> stencil;
+  std::vector<Real> rest_angle;  ///< theta_0 [rad]; 0 is flat.
+  std::vector<Real> stiffness;   ///< k [N m / rad], of the energy k (theta - theta_0)^2 / 2.
+  std::vector<Real> damping;     ///< c [N m s / rad]
+
+  [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
+
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.stencil);
+    visit(self.rest_angle);
+    visit(self.stiffness);
+    visit(self.damping);
+  }
+};
+
+/// Triangles of cloths: what the wind pushes and what is drawn.
+struct Triangles {
+  struct Corners {
+    std::uint32_t a, b, c;
+  };
+  std::vector<Corners> corners;
+  std::vector<Real> areal_density;  ///< [kg/m^2]
+
+  [[nodiscard]] int count() const { return static_cast<int>(corners.size()); }
+
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.corners);
+    visit(self.areal_density);
+  }
+};
+
+/// Segments of ropes: segment row s of a rope joins its nodes s and s + 1.
+struct Segments {
+  std::vector<Real> rest_length;   ///< L [m]
+  std::vector<Real> stiffness;     ///< k [N/m] of the segment; infinity is rigid.
+  std::vector<Real> damping;       ///< c [N s/m] of the segment.
+  std::vector<Real> length_limit;  ///< Largest length [m]; infinity for none.
+  std::vector<Real> tension;       ///< At the end of the last substep [N]; written by solve_chains.
+  std::vector<Real> mean_tension;  ///< Over the last step [N]; written by solve_chains.
+  std::vector<std::uint8_t>
+      limited;  ///< 1 while the segment is held at its largest length; written by solve_chains.
+
+  [[nodiscard]] int count() const { return static_cast<int>(rest_length.size()); }
+
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.rest_length);
+    visit(self.stiffness);
+    visit(self.damping);
+    visit(self.length_limit);
+    visit(self.tension);
+    visit(self.mean_tension);
+    visit(self.limited);
+  }
+};
+
+}  // namespace hooke::state

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "hooke/desc.h"
+
+#include "state/contacts.h"
+#include "state/mesh.h"
+#include "state/objects.h"
+#include "state/particles.h"
+#include "state/slot_table.h"
+#include "state/springs.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hooke::state {
+
+/// Everything a World holds that a copy must hold: a snapshot is a copy, a restoration an assignment, the
+/// hash a walk.
+struct Tables {
+  WorldDesc desc;
+  double time = 0.0;  ///< [s]
+  std::uint64_t step_count = 0;
+  std::uint64_t revision = 0;  ///< Grows when rows come, go or change what they join; derived tables follow.
+
+  std::vector<Deformable> objects;  ///< In order of creation.
+  Particles particles;
+  Springs springs;
+  Bends bends;
+  Triangles triangles;
+  Segments segments;
+  Contacts contacts;
+  std::vector<Pin> pins;                            ///< In order of particle.
+  std::vector<Body> bodies;                         ///< In order of creation.
+  std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
+  std::vector<Field> fields;
+  std::vector<ForceLawEntry> force_laws;
+  bool any_force = false;  ///< Some particle has an external force for the coming step.
+
+  SlotTable<MeshId> mesh_slots;
+  SlotTable<BodyId> body_slots;
+  SlotTable<RopeId> rope_slots;
+  SlotTable<ClothId> cloth_slots;
+  SlotTable<ParticlesId> particles_slots;
+  SlotTable<FieldId> field_slots;
+  SlotTable<ForceLawId> force_law_slots;
+};
+
+}  // namespace hooke::state

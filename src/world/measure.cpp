@@ -1,0 +1,120 @@
+#include "collision/particle_contacts.h"
+#include "elements/dihedral.h"
+#include "world/world_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke {
+
+namespace {
+
+using state::Tables;
+
+DVec3 place_of(const Tables& t, const state::Deformable& object, std::uint32_t p) {
+  return object.origin + vector_cast<double>(t.particles.position[p].x);
+}
+
+double distance(const Tables& t, std::uint32_t a, std::uint32_t b) {
+  return length(vector_cast<double>(t.particles.position[a].x) -
+                vector_cast<double>(t.particles.position[b].x));
+}
+
+double potential_of(const Tables& t, DVec3 x, double mass) {
+  double sum = -mass * dot(vector_cast<double>(t.desc.gravity), x);
+  for (const state::Field& field : t.fields) {
+    if (field.desc.kind == FieldDesc::Kind::kUniform)
+      sum -= mass * dot(vector_cast<double>(field.desc.vector), x);
+    const double r = length(x - field.desc.center);
+    if (field.desc.kind == FieldDesc::Kind::kInverseSquare && r > 0) sum -= mass * field.desc.strength / r;
+  }
+  return sum;
+}
+
+/// Kinetic and potential energy, momenta. A pinned particle has no part in any of them.
+void measure_particles(const Tables& t, Measurement& m) {
+  for (const state::Deformable& object : t.objects) {
+    for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+      if (!(t.particles.position[p].inverse_mass > Real(0))) continue;
+      const auto mass = static_cast<double>(t.particles.mass[p]);
+      const DVec3 x = place_of(t, object, p);
+      const DVec3 v = vector_cast<double>(t.particles.velocity[p].v);
+      m.energy.kinetic += 0.5 * mass * length_squared(v);
+      m.energy.potential += potential_of(t, x, mass);
+      m.momentum += mass * v;
+      m.angular_momentum += mass * cross(x, v);
+    }
+  }
+}
+
+struct Stretch {
+  double largest = 0, sum = 0;
+  std::size_t count = 0;
+
+  void add(double length, double rest) {
+    if (!(rest > 0)) return;
+    const double relative = std::abs(length / rest - 1.0);
+    largest = std::max(largest, relative);
+    sum += relative;
+    ++count;
+  }
+};
+
+double elastic(double stiffness, double extension) {
+  return std::isinf(stiffness) ? 0.0 : 0.5 * stiffness * extension * extension;
+}
+
+double measure_springs(const Tables& t, Stretch& stretch) {
+  double energy = 0;
+  for (int i = 0; i < t.springs.count(); ++i) {
+    const state::SpringClass kind = t.springs.kind[i];
+    if (kind == state::SpringClass::kTether || kind == state::SpringClass::kLimit) continue;
+    const double l = distance(t, t.springs.particle_a[i], t.springs.particle_b[i]);
+    const auto rest = static_cast<double>(t.springs.rest_length[i]);
+    if (kind == state::SpringClass::kStretch) stretch.add(l, rest);
+    energy += elastic(static_cast<double>(t.springs.stiffness[i]), l - rest);
+  }
+  return energy;
+}
+
+double measure_segments(const Tables& t, Stretch& stretch) {
+  double energy = 0;
+  for (const state::Deformable& object : t.objects) {
+    for (std::uint32_t i = 0; i < object.segments.count; ++i) {
+      const std::size_t s = object.segments.first + i;
+      const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
+      const auto rest = static_cast<double>(t.segments.rest_length[s]);
+      stretch.add(l, rest);
+      energy += elastic(static_cast<double>(t.segments.stiffness[s]), l - rest);
+    }
+  }
+  return energy;
+}
+
+double measure_bends(const Tables& t) {
+  double energy = 0;
+  for (int i = 0; i < t.bends.count(); ++i) {
+    const state::Bends::Stencil& s = t.bends.stencil[i];
+    const auto x = [&](std::uint32_t p) { return vector_cast<double>(t.particles.position[p].x); };
+    const auto d = elements::dihedral(x(s.edge_a), x(s.edge_b), x(s.wing_a), x(s.wing_b));
+    const double angle = d.valid ? d.angle - static_cast<double>(t.bends.rest_angle[i]) : 0.0;
+    energy += elastic(static_cast<double>(t.bends.stiffness[i]), angle);
+  }
+  return energy;
+}
+
+}  // namespace
+
+Measurement World::measure() const {
+  const Tables& t = data_->tables;
+  Measurement m;
+  Stretch stretch;
+  measure_particles(t, m);
+  m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t);
+  m.largest_stretch = stretch.largest;
+  m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
+  m.largest_penetration = collision::largest_penetration(t);
+  return m;
+}
+
+}  // namespace hooke

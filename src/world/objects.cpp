@@ -1,0 +1,138 @@
+#include "world/objects.h"
+
+#include <algorithm>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Deformable;
+using state::Rows;
+using state::Tables;
+
+template <class Table>
+void erase_rows(Table& table, Rows rows) {
+  Table::for_each_column(
+      table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
+}
+
+/// Subtracts the removed particles from every row number behind them.
+void renumber_particles(Tables& t, Rows removed) {
+  const auto moved = [&](std::uint32_t& p) {
+    if (p >= removed.end()) p -= removed.count;
+  };
+  std::for_each(t.springs.particle_a.begin(), t.springs.particle_a.end(), moved);
+  std::for_each(t.springs.particle_b.begin(), t.springs.particle_b.end(), moved);
+  for (state::Bends::Stencil& s : t.bends.stencil) {
+    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) moved(*p);
+  }
+  for (state::Triangles::Corners& c : t.triangles.corners) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) moved(*p);
+  }
+  for (state::Pin& pin : t.pins) moved(pin.particle);
+}
+
+std::uint32_t object_row(const Tables& t, PointRef point) {
+  switch (point.kind) {
+    case PointRef::Kind::kRope:
+      return t.rope_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kCloth:
+      return t.cloth_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kParticles:
+      return t.particles_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kNone:
+      break;
+  }
+  return state::SlotTable<RopeId>::kNone;
+}
+
+void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
+  if (object.kind == PointRef::Kind::kRope) t.rope_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kCloth) t.cloth_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kParticles) t.particles_slots.move(object.slot, row);
+}
+
+}  // namespace
+
+std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
+  const std::uint32_t row = object_row(tables, point);
+  if (row == state::SlotTable<RopeId>::kNone) return std::nullopt;
+  const Deformable& object = tables.objects[row];
+  if (point.index >= object.particles.count) return std::nullopt;
+  const std::uint32_t first = object.particles.first;
+  return ParticleRow{first + tables.particles.row_of[first + point.index], row};
+}
+
+bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
+  if (row == state::SlotTable<RopeId>::kNone || t.objects[row].kind != kind) return false;
+  const Deformable gone = t.objects[row];
+  erase_rows(t.particles, gone.particles);
+  erase_rows(t.springs, gone.springs);
+  erase_rows(t.bends, gone.bends);
+  erase_rows(t.triangles, gone.triangles);
+  erase_rows(t.segments, gone.segments);
+  std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.object == row; });
+  for (state::Pin& pin : t.pins) pin.object -= pin.object > row ? 1 : 0;
+  renumber_particles(t, gone.particles);
+  t.contacts = {};  // detect finds them again
+
+  move_slot(t, gone, state::SlotTable<RopeId>::kNone);
+  t.objects.erase(t.objects.begin() + row);
+  for (std::uint32_t i = row; i < t.objects.size(); ++i) {
+    Deformable& object = t.objects[i];
+    object.particles.first -= gone.particles.count;
+    object.springs.first -= gone.springs.count;
+    object.bends.first -= gone.bends.count;
+    object.triangles.first -= gone.triangles.count;
+    object.segments.first -= gone.segments.count;
+    move_slot(t, object, i);
+  }
+  ++t.revision;
+  return true;
+}
+
+void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
+  state::PositionLine& line = t.particles.position[row.particle];
+  const DVec3 place = t.objects[row.object].origin + vector_cast<double>(line.x);
+  const state::Pin pin = {row.object, row.particle, place, t.time, motion};
+  const auto at =
+      std::lower_bound(t.pins.begin(), t.pins.end(), row.particle,
+                       [](const state::Pin& p, std::uint32_t particle) { return p.particle < particle; });
+  if (at != t.pins.end() && at->particle == row.particle) {
+    *at = pin;
+  } else {
+    t.pins.insert(at, pin);
+  }
+  line.inverse_mass = Real(0);
+  t.particles.velocity[row.particle].v = {};
+  ++t.revision;
+}
+
+void unpin_particle(Tables& t, ParticleRow row) {
+  const auto removed =
+      std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.particle == row.particle; });
+  if (removed == 0) return;
+  t.particles.position[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
+  ++t.revision;
+}
+
+void restore_tables(const Tables& from, Tables& to) {
+  const int workers = to.desc.workers;
+  const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
+  const std::uint32_t generations[] = {to.mesh_slots.generation(),      to.body_slots.generation(),
+                                       to.rope_slots.generation(),      to.cloth_slots.generation(),
+                                       to.particles_slots.generation(), to.field_slots.generation(),
+                                       to.force_law_slots.generation()};
+  to = from;
+  to.desc.workers = workers;
+  to.revision = revision;
+  to.mesh_slots.set_generation(generations[0] + 1);
+  to.body_slots.set_generation(generations[1] + 1);
+  to.rope_slots.set_generation(generations[2] + 1);
+  to.cloth_slots.set_generation(generations[3] + 1);
+  to.particles_slots.set_generation(generations[4] + 1);
+  to.field_slots.set_generation(generations[5] + 1);
+  to.force_law_slots.set_generation(generations[6] + 1);
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "hooke/id.h"
+
+#include "state/tables.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Finding, removing, holding: the API's work on whole objects and single particles.
+
+namespace hooke::world {
+
+struct ParticleRow {
+  std::uint32_t particle = 0;  ///< Row of the particle table.
+  std::uint32_t object = 0;    ///< Row of the deformable.
+};
+
+/// Nothing for a stale id or an index beyond the object's points.
+[[nodiscard]] std::optional<ParticleRow> find_particle(const state::Tables& tables, PointRef point);
+
+/// Takes an object's ranges out of every table and moves what stands behind them. `row` may be SlotTable's
+/// kNone: false then.
+bool remove_object(state::Tables& tables, PointRef::Kind kind, std::uint32_t row);
+
+void pin_particle(state::Tables& tables, ParticleRow row, const MotionDesc& motion);
+void unpin_particle(state::Tables& tables, ParticleRow row);
+
+/// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers.
+void restore_tables(const state::Tables& from, state::Tables& to);
+
+/// Removes one row of a table whose rows know their slot; those behind it move up.
+template <class IdType, class Entry>
+bool remove_row(state::SlotTable<IdType>& slots, IdType id, std::vector<Entry>& table) {
+  const std::uint32_t row = slots.find(id);
+  if (row == slots.kNone) return false;
+  table.erase(table.begin() + row);
+  slots.move(id.slot, slots.kNone);
+  for (std::uint32_t i = row; i < table.size(); ++i) slots.move(table[i].slot, i);
+  return true;
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,214 @@
+#include "world/stages.h"
+
+#include "solver/forces.h"
+#include "solver/wind.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke {
+
+/// The one place that may fill a ForceView.
+struct ForceViewAccess {
+  static ForceView make(const state::Tables& tables, const state::Deformable& object, double time,
+                        Vec3* forces) {
+    const std::size_t first = object.particles.first;
+    const state::Particles& p = tables.particles;
+    const auto* positions = reinterpret_cast<const std::byte*>(p.position.data() + first);
+    const auto* velocities = reinterpret_cast<const std::byte*>(p.velocity.data() + first);
+    const std::uint32_t* row_of = p.row_of.data() + first;
+    ForceView view;
+    view.positions_ =
+        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
+    view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
+    view.lines_ = positions;
+    view.forces_ = forces + first;
+    view.row_of_ = row_of;
+    view.kind_ = object.kind;
+    view.slot_ = object.slot;
+    view.time_ = time;
+    return view;
+  }
+};
+
+}  // namespace hooke
+
+namespace hooke::world {
+
+namespace {
+
+using parallel::for_ranges;
+using parallel::Range;
+
+constexpr int kParticleGrain = 1024;
+constexpr int kTriangleGrain = 512;
+
+/// An object is moved back to its origin when its first particle is farther than this from it [m].
+constexpr Real kFarFromOrigin = Real(64);
+
+bool air_moves(const state::Tables& tables, const state::Deformable& object) {
+  return tables.desc.wind.air_density > Real(0) &&
+         (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
+}
+
+void read_wind(WorldData& world, double time) {
+  const state::Tables& tables = world.tables;
+  for (const state::Deformable& object : tables.objects) {
+    if (!object.feels_air) continue;
+    for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain, [&](Range range) {
+      for (int i = range.begin; i < range.end; ++i) {
+        const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
+        const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
+        world.wind[p] = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
+      }
+    });
+  }
+}
+
+}  // namespace
+
+void refresh_derived(WorldData& world) {
+  state::Tables& tables = world.tables;
+  if (world.derived_revision == tables.revision) return;
+  world.derived_revision = tables.revision;
+  solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
+  solver::build_bend_rows(tables.bends, tables.particles.count(), world.bend_rows);
+  solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
+  world.chains.clear();
+  for (const state::Deformable& object : tables.objects) {
+    if (object.kind != PointRef::Kind::kRope) continue;
+    world.chains.push_back({.first_particle = object.particles.first,
+                            .node_count = object.particles.count,
+                            .first_segment = object.segments.first});
+  }
+  const auto count = static_cast<std::size_t>(tables.particles.count());
+  world.velocity_before.assign(count, Vec3{});
+  world.wind.assign(count, Vec3{});
+  world.law_force.assign(count, Vec3{});
+}
+
+void begin_step(WorldData& world, double dt) {
+  state::Tables& tables = world.tables;
+  world.start_position = tables.particles.position;
+  world.start_origin.clear();
+  for (const state::Deformable& object : tables.objects) world.start_origin.push_back(object.origin);
+  read_wind(world, tables.time + 0.5 * dt);
+
+  std::fill(tables.segments.mean_tension.begin(), tables.segments.mean_tension.end(), Real(0));
+  std::size_t row = 0;
+  const state::Contacts& contacts = tables.contacts;
+  for (solver::Chain& chain : world.chains) {
+    const auto begins = [&](std::uint32_t particle) {
+      return row < contacts.particle.size() && contacts.particle[row] < particle;
+    };
+    while (begins(chain.first_particle)) ++row;
+    chain.first_contact = static_cast<std::uint32_t>(row);
+    while (begins(chain.first_particle + chain.node_count)) ++row;
+    chain.end_contact = static_cast<std::uint32_t>(row);
+    chain.solves = 0;
+    chain.unconverged = false;
+  }
+}
+
+void remember_rope_velocities(WorldData& world) {
+  for (const solver::Chain& chain : world.chains) {
+    for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+      const std::size_t p = chain.first_particle + i;
+      world.velocity_before[p] = world.tables.particles.velocity[p].v;
+    }
+  }
+}
+
+void apply_forces(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
+                                      tables.any_force};
+  for (const state::Deformable& object : tables.objects) {
+    if (tables.fields.empty() && !tables.any_force && !object.feels_air) continue;
+    for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
+               [&](Range range) { solver::apply_forces(object, inputs, h, range, tables.particles); });
+  }
+}
+
+void apply_wind(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  const Real density = tables.desc.wind.air_density;
+  bool any_triangles = false;
+  for (const state::Deformable& object : tables.objects) {
+    if (!air_moves(tables, object)) continue;
+    for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
+      solver::load_triangles(object, tables.triangles, tables.particles, world.wind, density, h, range,
+                             world.air_loads);
+    });
+    any_triangles = any_triangles || object.triangles.count > 0;
+    if (object.segments.count > 0) {
+      solver::push_segments(object, tables.segments, world.wind, density, h, tables.particles);
+    }
+  }
+  if (!any_triangles) return;
+  for_ranges(*world.pool, tables.particles.count(), kParticleGrain,
+             [&](Range range) { solver::push_particles(world.air_loads, range, tables.particles); });
+}
+
+void call_force_laws(WorldData& world, double time, Real h) {
+  state::Tables& tables = world.tables;
+  if (tables.force_laws.empty()) return;
+  std::fill(world.law_force.begin(), world.law_force.end(), Vec3{});
+  for (const state::ForceLawEntry& entry : tables.force_laws) {
+    for (const state::Deformable& object : tables.objects) {
+      ForceView view = ForceViewAccess::make(tables, object, time, world.law_force.data());
+      entry.law(view);
+    }
+  }
+  for (std::size_t p = 0; p < world.law_force.size(); ++p) {
+    tables.particles.velocity[p].v += (h * tables.particles.position[p].inverse_mass) * world.law_force[p];
+  }
+}
+
+std::uint32_t quarantine_non_finite(WorldData& world) {
+  state::Particles& particles = world.tables.particles;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    if (is_finite(particles.position[i].x) && is_finite(particles.velocity[i].v)) continue;
+    particles.position[i].x = world.start_position[i].x;
+    particles.velocity[i].v = {};
+    ++count;
+  }
+  for (Real& tension : world.tables.segments.tension) tension = std::isfinite(tension) ? tension : Real(0);
+  return count;
+}
+
+void rebase_origins(WorldData& world) {
+  state::Particles& particles = world.tables.particles;
+  for (state::Deformable& object : world.tables.objects) {
+    const Vec3 first = particles.position[object.particles.first].x;
+    const Real size = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
+    if (size <= kFarFromOrigin) continue;
+    const Vec3 shift = {std::floor(first.x + Real(0.5)), std::floor(first.y + Real(0.5)),
+                        std::floor(first.z + Real(0.5))};
+    object.origin += vector_cast<double>(shift);
+    for (std::uint32_t i = object.particles.first; i < object.particles.end(); ++i)
+      particles.position[i].x -= shift;
+  }
+}
+
+void end_step(WorldData& world, double dt, StepReport& report) {
+  state::Tables& tables = world.tables;
+  const WorldDesc& desc = tables.desc;
+  const Real share = Real(1) / static_cast<Real>(desc.substeps * desc.particle_substeps);
+  for (Real& tension : tables.segments.mean_tension) tension *= share;
+  for (const solver::Chain& chain : world.chains) {
+    report.chain_solves += chain.solves;
+    report.chains_unconverged += chain.unconverged ? 1 : 0;
+  }
+  report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
+                                                             tables.contacts.normal_force.end(),
+                                                             [](Real n) { return n > Real(0); }));
+  if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
+  tables.any_force = false;
+  tables.time += dt;
+  ++tables.step_count;
+  report.moved = true;
+}
+
+}  // namespace hooke::world

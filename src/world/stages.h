@@ -1,0 +1,34 @@
+#pragma once
+
+#include "world/world_data.h"
+
+/// \file
+/// The stages of the step that look at whole objects. The kernels they call are in solver/ and collision/.
+
+namespace hooke::world {
+
+/// Makes the solver's copies of rows anew if rows came or went since they were made.
+void refresh_derived(WorldData& world);
+
+/// Remembers where everything is, reads the wind at each particle for the middle of the step, zeroes what the
+/// step sums up.
+void begin_step(WorldData& world, double dt);
+
+/// Velocities of rope nodes before the substep's forces change them.
+void remember_rope_velocities(WorldData& world);
+
+/// Fields, drag, charges, user's forces; then the wind on triangles and segments; then the user's force laws.
+void apply_forces(WorldData& world, Real h);
+void apply_wind(WorldData& world, Real h);
+void call_force_laws(WorldData& world, double time, Real h);
+
+/// Puts rows that are not finite back to where they began the step, at rest. Returns how many.
+std::uint32_t quarantine_non_finite(WorldData& world);
+
+/// Moves the origin of each object that has wandered far from it, by whole meters.
+void rebase_origins(WorldData& world);
+
+/// Counts what the step did; ends the forces that were set for it.
+void end_step(WorldData& world, double dt, StepReport& report);
+
+}  // namespace hooke::world

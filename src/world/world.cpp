@@ -1,0 +1,380 @@
+/// The public API over the tables: adding, removing, reading, pushing. The step is in step.cpp.
+
+#include "hooke/world.h"
+
+#include "base/hash.h"
+#include "build/build.h"
+#include "geometry/triangle_mesh.h"
+#include "solver/forces.h"
+#include "solver/wind.h"
+#include "world/objects.h"
+#include "world/world_data.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace hooke {
+
+namespace {
+
+Error stale(const char* what) {
+  return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
+}
+
+Error not_finite(const char* what) {
+  return {ErrorCode::kOutOfRange, what, "must be finite"};
+}
+
+/// Runs `add`, which appends an object, and gives that object an id.
+template <class IdType, class Add>
+Result<IdType> add_object(state::Tables& tables, state::SlotTable<IdType>& slots, Add&& add) {
+  const Result<void> added = add();
+  if (!added) return added.error();
+  const IdType id = slots.add(static_cast<std::uint32_t>(tables.objects.size()) - 1);
+  tables.objects.back().slot = id.slot;
+  return id;
+}
+
+template <class IdType>
+PointView position_view(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
+  const std::uint32_t row = slots.find(id);
+  if (row == slots.kNone) return {};
+  const state::Deformable& object = tables.objects[row];
+  const std::size_t first = object.particles.first;
+  return {object.origin, reinterpret_cast<const std::byte*>(tables.particles.position.data() + first),
+          object.particles.count, sizeof(state::PositionLine), tables.particles.row_of.data() + first};
+}
+
+template <class IdType>
+PointView velocity_view(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
+  const std::uint32_t row = slots.find(id);
+  if (row == slots.kNone) return {};
+  const state::Deformable& object = tables.objects[row];
+  const std::size_t first = object.particles.first;
+  return {DVec3{}, reinterpret_cast<const std::byte*>(tables.particles.velocity.data() + first),
+          object.particles.count, sizeof(state::VelocityLine), tables.particles.row_of.data() + first};
+}
+
+}  // namespace
+
+Vec3 PointView::offset(std::size_t i) const {
+  if (i >= count_) return {};
+  const std::size_t row = row_of_ != nullptr ? row_of_[i] : i;
+  Vec3 value;
+  std::memcpy(&value, first_ + row * stride_, sizeof(value));
+  return value;
+}
+
+Real ForceView::mass(std::size_t i) const {
+  if (i >= size()) return Real(0);
+  state::PositionLine line;
+  std::memcpy(&line, lines_ + row_of_[i] * sizeof(line), sizeof(line));
+  return line.inverse_mass > Real(0) ? Real(1) / line.inverse_mass : Real(0);
+}
+
+void ForceView::add_force(std::size_t i, Vec3 force) {
+  if (i < size()) forces_[row_of_[i]] += force;
+}
+
+Result<World> World::create(const WorldDesc& desc) {
+  const Result<void> good = build::validate(desc);
+  if (!good) return good.error();
+  auto data = std::make_unique<WorldData>();
+  data->tables.desc = desc;
+  data->pool = std::make_unique<parallel::ThreadPool>(desc.workers);
+  return World(std::move(data));
+}
+
+World::World(std::unique_ptr<WorldData> data) : data_(std::move(data)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+Result<MeshId> World::add_mesh(const MeshDesc& desc) {
+  const Result<void> good = geometry::validate_mesh(desc);
+  if (!good) return good.error();
+  auto mesh = std::make_shared<state::Mesh>();
+  mesh->desc = desc;
+  state::Tables& t = data_->tables;
+  t.meshes.push_back(std::move(mesh));
+  return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
+}
+
+Result<BodyId> World::add_body(const BodyDesc& desc) {
+  const Result<void> good = build::validate(desc);
+  if (!good) return good.error();
+  state::Tables& t = data_->tables;
+  state::Body body = {.slot = 0,
+                      .shape = desc.shape,
+                      .mesh = nullptr,
+                      .position = desc.position,
+                      .rotation = normalize(desc.rotation),
+                      .friction = desc.contact.friction,
+                      .collides = desc.collides};
+  if (desc.shape.kind == ShapeKind::kMesh) {
+    const std::uint32_t row = t.mesh_slots.find(desc.shape.mesh);
+    if (row == t.mesh_slots.kNone || !t.meshes[row]) return stale("body.shape.mesh");
+    body.mesh = t.meshes[row];
+  }
+  const BodyId id = t.body_slots.add(static_cast<std::uint32_t>(t.bodies.size()));
+  body.slot = id.slot;
+  t.bodies.push_back(std::move(body));
+  return id;
+}
+
+Result<RopeId> World::add_rope(const RopeDesc& desc) {
+  state::Tables& t = data_->tables;
+  return add_object(t, t.rope_slots, [&] { return build::add_rope(desc, t); });
+}
+
+Result<ClothId> World::add_cloth(const ClothDesc& desc) {
+  state::Tables& t = data_->tables;
+  return add_object(t, t.cloth_slots, [&] { return build::add_cloth(desc, t); });
+}
+
+Result<ParticlesId> World::add_particles(const ParticlesDesc& desc) {
+  state::Tables& t = data_->tables;
+  return add_object(t, t.particles_slots, [&] { return build::add_particles(desc, t); });
+}
+
+Result<FieldId> World::add_field(const FieldDesc& desc) {
+  const Result<void> good = build::validate(desc);
+  if (!good) return good.error();
+  state::Tables& t = data_->tables;
+  const FieldId id = t.field_slots.add(static_cast<std::uint32_t>(t.fields.size()));
+  t.fields.push_back({desc, id.slot});
+  return id;
+}
+
+Result<ForceLawId> World::add_force_law(ForceLaw law) {
+  if (!law) return Error{ErrorCode::kOutOfRange, "force_law", "must be a function"};
+  if (data_->stepping) return Error{ErrorCode::kUnsupported, "force_law", "cannot be added during a step"};
+  state::Tables& t = data_->tables;
+  const ForceLawId id = t.force_law_slots.add(static_cast<std::uint32_t>(t.force_laws.size()));
+  t.force_laws.push_back({std::move(law), id.slot});
+  return id;
+}
+
+bool World::remove(MeshId id) {
+  state::Tables& t = data_->tables;
+  const std::uint32_t row = t.mesh_slots.find(id);
+  if (row == t.mesh_slots.kNone || !t.meshes[row]) return false;
+  t.meshes[row] = nullptr;  // bodies that use it share it
+  t.mesh_slots.move(id.slot, t.mesh_slots.kNone);
+  return true;
+}
+
+bool World::remove(BodyId id) {
+  state::Tables& t = data_->tables;
+  ++t.revision;
+  t.contacts = {};  // rows of the body table move; detect finds the contacts again
+  return world::remove_row(t.body_slots, id, t.bodies);
+}
+
+bool World::remove(FieldId id) {
+  return world::remove_row(data_->tables.field_slots, id, data_->tables.fields);
+}
+
+bool World::remove(ForceLawId id) {
+  if (data_->stepping) return false;
+  return world::remove_row(data_->tables.force_law_slots, id, data_->tables.force_laws);
+}
+
+bool World::remove(RopeId id) {
+  return world::remove_object(data_->tables, PointRef::Kind::kRope, data_->tables.rope_slots.find(id));
+}
+
+bool World::remove(ClothId id) {
+  return world::remove_object(data_->tables, PointRef::Kind::kCloth, data_->tables.cloth_slots.find(id));
+}
+
+bool World::remove(ParticlesId id) {
+  return world::remove_object(data_->tables, PointRef::Kind::kParticles,
+                              data_->tables.particles_slots.find(id));
+}
+
+PointView World::positions(RopeId id) const {
+  return position_view(data_->tables, data_->tables.rope_slots, id);
+}
+PointView World::positions(ClothId id) const {
+  return position_view(data_->tables, data_->tables.cloth_slots, id);
+}
+PointView World::positions(ParticlesId id) const {
+  return position_view(data_->tables, data_->tables.particles_slots, id);
+}
+PointView World::velocities(RopeId id) const {
+  return velocity_view(data_->tables, data_->tables.rope_slots, id);
+}
+PointView World::velocities(ClothId id) const {
+  return velocity_view(data_->tables, data_->tables.cloth_slots, id);
+}
+PointView World::velocities(ParticlesId id) const {
+  return velocity_view(data_->tables, data_->tables.particles_slots, id);
+}
+
+Pose World::pose(BodyId id) const {
+  const std::uint32_t row = data_->tables.body_slots.find(id);
+  if (row == data_->tables.body_slots.kNone) return {};
+  return {data_->tables.bodies[row].position, data_->tables.bodies[row].rotation};
+}
+
+std::vector<Real> World::tensions(RopeId id) const {
+  const std::uint32_t row = data_->tables.rope_slots.find(id);
+  if (row == data_->tables.rope_slots.kNone) return {};
+  const state::Rows rows = data_->tables.objects[row].segments;
+  const auto first = data_->tables.segments.mean_tension.begin() + rows.first;
+  return {first, first + rows.count};
+}
+
+std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
+  const std::uint32_t row = data_->tables.cloth_slots.find(id);
+  if (row == data_->tables.cloth_slots.kNone) return {};
+  const state::Deformable& object = data_->tables.objects[row];
+  std::vector<std::uint32_t> point_of(object.particles.count);
+  for (std::uint32_t i = 0; i < object.particles.count; ++i) {
+    point_of[data_->tables.particles.row_of[object.particles.first + i]] = i;
+  }
+  std::vector<std::array<std::uint32_t, 3>> result;
+  for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
+    const auto [a, b, c] = data_->tables.triangles.corners[i];
+    const std::uint32_t first = object.particles.first;
+    result.push_back({point_of[a - first], point_of[b - first], point_of[c - first]});
+  }
+  return result;
+}
+
+Result<void> World::apply_force(PointRef point, Vec3 force) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  if (!is_finite(force)) return not_finite("force");
+  data_->tables.particles.force[row->particle] += force;
+  data_->tables.any_force = true;
+  return {};
+}
+
+Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  if (!is_finite(impulse)) return not_finite("impulse");
+  state::Particles& particles = data_->tables.particles;
+  particles.velocity[row->particle].v += particles.position[row->particle].inverse_mass * impulse;
+  return {};
+}
+
+Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  if (!is_finite(velocity)) return not_finite("velocity");
+  state::Particles& particles = data_->tables.particles;
+  if (particles.position[row->particle].inverse_mass > Real(0))
+    particles.velocity[row->particle].v = velocity;
+  return {};
+}
+
+Result<void> World::set_position(PointRef point, DVec3 position) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  if (!is_finite(position)) return not_finite("position");
+  state::Tables& t = data_->tables;
+  t.particles.position[row->particle].x = vector_cast<Real>(position - t.objects[row->object].origin);
+  for (state::Pin& pin : t.pins) {
+    if (pin.particle == row->particle)
+      pin.start = position - solver::motion_offset(pin.motion, t.time - pin.start_time);
+  }
+  return {};
+}
+
+Result<void> World::pin(PointRef point, const MotionDesc& motion) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  const Result<void> good = build::validate(motion, "motion");
+  if (!good) return good.error();
+  world::pin_particle(data_->tables, *row, motion);
+  return {};
+}
+
+Result<void> World::unpin(PointRef point) {
+  const auto row = world::find_particle(data_->tables, point);
+  if (!row) return stale("point");
+  world::unpin_particle(data_->tables, *row);
+  return {};
+}
+
+Result<void> World::set_gravity(Vec3 gravity) {
+  if (!is_finite(gravity)) return not_finite("gravity");
+  data_->tables.desc.gravity = gravity;
+  return {};
+}
+
+Result<void> World::set_wind(const WindDesc& wind) {
+  Result<void> good = build::validate(wind);
+  if (good) data_->tables.desc.wind = wind;
+  return good;
+}
+
+Result<void> World::set_workers(int workers) {
+  if (workers < 1 || workers > 64) return Error{ErrorCode::kOutOfRange, "workers", "must be 1 to 64"};
+  if (data_->stepping) return Error{ErrorCode::kUnsupported, "workers", "cannot change during a step"};
+  data_->tables.desc.workers = workers;
+  data_->pool = std::make_unique<parallel::ThreadPool>(workers);
+  return {};
+}
+
+double World::time() const {
+  return data_->tables.time;
+}
+std::uint64_t World::step_count() const {
+  return data_->tables.step_count;
+}
+const WorldDesc& World::desc() const {
+  return data_->tables.desc;
+}
+
+Vec3 World::wind_at(DVec3 place, double time) const {
+  return solver::wind_at(data_->tables.desc.wind, place, time, data_->tables.step_count);
+}
+
+std::uint64_t World::state_hash() const {
+  const state::Tables& t = data_->tables;
+  base::StateHash hash;
+  hash.add(t.time);
+  hash.add(t.step_count);
+  for (const state::Deformable& object : t.objects) hash.add(object.origin);
+  hash.add(t.particles.position);
+  hash.add(t.particles.velocity);
+  hash.add(t.segments.tension);
+  hash.add(t.segments.limited);
+  hash.add(t.contacts.particle);
+  hash.add(t.contacts.normal_force);
+  hash.add(t.contacts.friction_force);
+  return hash.value();
+}
+
+Snapshot World::snapshot() const {
+  return Snapshot(std::make_shared<const SnapshotData>(SnapshotData{data_->tables}));
+}
+
+Result<void> World::restore(const Snapshot& snapshot) {
+  if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
+  if (data_->stepping) return Error{ErrorCode::kUnsupported, "snapshot", "cannot be restored during a step"};
+  world::restore_tables(snapshot.data_->tables, data_->tables);
+  return {};
+}
+
+World::Memory World::memory() const {
+  Memory memory;
+  const state::Tables& t = data_->tables;
+  memory.particles = static_cast<std::size_t>(t.particles.count());
+  memory.springs = static_cast<std::size_t>(t.springs.count());
+  const auto bytes = [](const auto& column) { return column.size() * sizeof(column[0]); };
+  state::Particles::for_each_column(t.particles,
+                                    [&](const auto& column) { memory.particle_bytes += bytes(column); });
+  state::Springs::for_each_column(t.springs,
+                                  [&](const auto& column) { memory.spring_bytes += bytes(column); });
+  memory.particle_bytes += bytes(data_->start_position) + bytes(data_->velocity_before) + bytes(data_->wind) +
+                           bytes(data_->law_force);
+  memory.spring_bytes += bytes(data_->spring_blocks.blocks);
+  return memory;
+}
+
+}  // namespace hooke

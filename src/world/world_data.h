@@ -1,0 +1,45 @@
+#pragma once
+
+#include "hooke/world.h"
+
+#include "parallel/thread_pool.h"
+#include "solver/air.h"
+#include "solver/bends.h"
+#include "solver/chains.h"
+#include "solver/spring_blocks.h"
+#include "state/tables.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hooke {
+
+/// A World's inside: the tables, what is derived from them, and what lasts one step.
+struct WorldData {
+  state::Tables tables;
+
+  // Derived from the tables whenever their revision changes; see world::refresh_derived.
+  std::uint64_t derived_revision = ~std::uint64_t{0};
+  solver::SpringBlocks spring_blocks;
+  solver::BendRows bend_rows;
+  solver::AirLoads air_loads;
+  std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
+
+  // Lives for one step.
+  std::vector<state::PositionLine>
+      start_position;  ///< At the start of the step: where quarantine puts rows back.
+  std::vector<DVec3> start_origin;
+  std::vector<Vec3> velocity_before;  ///< Of rope nodes, before the substep's forces.
+  std::vector<Vec3> wind;             ///< At each particle [m/s].
+  std::vector<Vec3> law_force;        ///< What force laws ask for [N].
+
+  std::unique_ptr<parallel::ThreadPool> pool;
+  bool stepping = false;
+};
+
+struct SnapshotData {
+  state::Tables tables;
+};
+
+}  // namespace hooke
