@@ -166,6 +166,22 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(simulation.errors[0].where == "demo.json:2:26: ropes[0].direction");
   }
 
+  TEST_CASE("a scene made in code is checked as one from a file") {
+    hooke::Scene scene;
+    scene.objects.cloths.push_back({.mesh = "nowhere"});
+    scene.objects.ropes.push_back({.tag = {.material = "nothing"}});
+    scene.expect.push_back({.of = "rope", .point = hooke::ScenePoint{}, .at_step = 601});
+    const auto simulation = hooke::Simulation::create(scene);
+    REQUIRE(simulation.errors.size() == 3);
+    CHECK(hooke::to_line(simulation.errors[0]) == "ropes[0].material: there is no material 'nothing'");
+    CHECK(hooke::to_line(simulation.errors[1]) == "cloths[0].mesh: there is no mesh 'nowhere'");
+    CHECK(hooke::to_line(simulation.errors[2]) ==
+          "expect[0].at_step: 601 is after the end of the scene, step 600");
+    hooke::Scene large;
+    large.objects.ropes.push_back({.desc = {.masses = 1'000'000'000}});
+    CHECK(hooke::Simulation::create(large).errors.at(0).code == hooke::ErrorCode::kLimitExceeded);
+  }
+
   TEST_CASE("expectations are judged at their step") {
     hooke::Simulation simulation = simulate(R"({
       "version": 1, "seconds": 1,
