@@ -103,6 +103,7 @@ std::vector<Error> check(const Scene& scene) {
   std::vector<io::JsonError> found;
   io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found);
   std::vector<Error> errors;
+  errors.reserve(found.size());
   for (io::JsonError& one : found) {
     errors.push_back(
         io::error_at(scene.source.get(), one.error.where, one.error.code, std::move(one.error.message)));
