@@ -73,6 +73,7 @@ class Curve {
   [[nodiscard]] std::vector<double> zero_crossings() const;
   /// Local maxima of |value|, by the parabola through three samples.
   [[nodiscard]] std::vector<double> peaks() const;
+  [[nodiscard]] double last() const { return samples_.empty() ? 0.0 : samples_.back().value; }
   /// Mean period of an oscillation about zero: first to last crossing. NaN with fewer than three.
   [[nodiscard]] double period() const;
 
