@@ -253,7 +253,10 @@ void load_touches(const Chain& chain, double h, const state::Contacts& contacts,
     t.n0 = h * static_cast<double>(contacts.normal_force[row]);
     t.f0 = across(t.n, h * vector_cast<double>(contacts.friction_force[row]));
     t.active = t.n0 > 0 || t.separation <= 0;
-    const double size = length(t.f0);
+    // A node that slides goes on sliding: the share that its speed calls for, not that of a node at rest.
+    const V trial = t.f0 - (t.n0 > 0 ? kContactStiffness * s.nodes[t.node].mass : 0.0) *
+                               across(t.n, s.nodes[t.node].v_before);
+    const double size = length(trial);
     t.share = size > t.friction * t.n0 && size > 0 ? t.friction * t.n0 / size : 1.0;
     s.touches.push_back(t);
   }
