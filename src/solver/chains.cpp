@@ -290,6 +290,8 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
   load_touches(chain, h, contacts, s);
 
   Setting setting;
+  // The damping quiets waves of short length, which a single segment does not have.
+  if (s.segments.size() == 1) setting.damping = 0;
   if (!s.touches.empty()) setting = {kComplianceInContact, kDampingInContact, true};
   double error = 0;
   for (int solves = 1; solves <= kMostSolves; ++solves) {
