@@ -37,7 +37,7 @@ struct Chain {
 /// max(0, last tension, largest of this substep): it acts on the change of velocity, so that a swing keeps
 /// its energy; without it stiff ropes explode. A sweep from the first node condenses everything behind it to
 /// u = s + X q (compliance form: exact for k = infinity), a sweep back gives q and u. The solve repeats,
-/// linearized anew, while a length error exceeds 1 %, at most 8 times. A contact holds its node with N =
+/// linearized anew, while a length error exceeds 0.1 %, at most 8 times. A contact holds its node with N =
 /// max(0, N0 - rho (n.u + s/h)), rho = 1000 m, N0 carried over substeps; friction likewise, scaled onto the
 /// disc mu N. Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable
 /// constrained dynamics".
