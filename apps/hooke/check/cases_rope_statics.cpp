@@ -76,13 +76,14 @@ struct Hanging {
 Hanging hang_between_pins(const CheckSetting& setting, double mass, Real axial_stiffness) {
   const int edges = 200;
   const double drop = std::sqrt(0.75 * 0.75 - 0.25);
-  RopeDesc desc{.total_mass = real(mass),
-                .inner_friction = real(0.2),
-                // Gravity enters a substep before drag does, so a rope at rest weighs h c / m less: 0.08 % here.
-                .air_friction = real(0.4 * mass),
-                .axial_stiffness = axial_stiffness,
-                .pins = {{.point = 0}, {.point = edges}},
-                .drag_coefficient = real(0)};
+  RopeDesc desc{
+      .total_mass = real(mass),
+      .inner_friction = real(0.2),
+      // Gravity enters a substep before drag does, so a rope at rest weighs h c / m less: 0.08 % here.
+      .air_friction = real(0.4 * mass),
+      .axial_stiffness = axial_stiffness,
+      .pins = {{.point = 0}, {.point = edges}},
+      .drag_coefficient = real(0)};
   for (int i = 0; i <= edges; ++i) {
     const double s = static_cast<double>(i) / edges;
     desc.points.push_back({s, -drop * (1 - std::abs(2 * s - 1)), 0});
