@@ -36,7 +36,8 @@ def percent(kind, value):
 def material(name, rgb, shininess, image=None):
     parts = [chunk(0xA000, text(name)), color(0xA010, rgb), color(0xA020, rgb), color(0xA030, (60, 60, 60)),
              percent(0xA040, shininess), percent(0xA041, 50),
-             percent(0xA050, 0)]
+             percent(0xA050, 0),
+             chunk(0xA100, struct.pack("<H", 3))]
     if image:
         parts.append(chunk(0xA200, chunk(0x0030, struct.pack("<H", 100)), chunk(0xA300, text(image))))
     return chunk(0xAFFF, *parts)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <assimp/material.h>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -63,12 +64,27 @@ std::string bare_name(const std::string& path) {
   return io::is_bare_file_name(name) ? name : std::string();
 }
 
-std::string texture_of(const aiMaterial& material) {
+/// With each %XX made the byte it stands for.
+std::string percent_decoded(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* digits = text.data() + i + 1;
+    const bool is_escape = text[i] == '%' && i + 2 < text.size() &&
+                           std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    result += is_escape ? static_cast<char>(byte) : text[i];
+    i += is_escape ? 2 : 0;
+  }
+  return result;
+}
+
+std::string texture_of(const aiMaterial& material, bool is_uri) {
   aiString name;
   const bool found = material.GetTexture(aiTextureType_BASE_COLOR, 0, &name) == aiReturn_SUCCESS ||
                      material.GetTexture(aiTextureType_DIFFUSE, 0, &name) == aiReturn_SUCCESS;
   const bool is_embedded = found && name.length > 0 && name.C_Str()[0] == '*';
-  return found && !is_embedded ? bare_name(name.C_Str()) : std::string();
+  if (!found || is_embedded) return {};
+  return bare_name(is_uri ? percent_decoded(name.C_Str()) : name.C_Str());
 }
 
 ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
@@ -92,7 +108,7 @@ ModelMaterial material_of(const aiMaterial& material, const Frame& frame) {
   if (material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS) {
     result.shininess = shininess_of(fraction(roughness, 1.0f));
   }
-  result.texture = texture_of(material);
+  result.texture = texture_of(material, frame.names_are_uris);
   return result;
 }
 
@@ -111,6 +127,7 @@ class Builder {
 
   void add_mesh(unsigned index, const DMat4& transform) {
     if (index >= scene_.mNumMeshes) throw Refusal(ImporterExit::kBadSyntax, "a node without its mesh");
+    is_placed_[index] = true;
     const aiMesh& mesh = *scene_.mMeshes[index];
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > io::kMaxModelVertices ||
@@ -125,6 +142,13 @@ class Builder {
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) add_vertex(mesh, i, transform, cofactors);
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       add_face(mesh.mFaces[i], mesh, static_cast<std::uint32_t>(base), mirror < 0);
+    }
+  }
+
+  /// Objects that no node of the keyframer names: a .3ds has them where they are.
+  void add_unplaced(const DMat4& transform) {
+    for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+      if (!is_placed_[i]) add_mesh(i, transform);
     }
   }
 
@@ -170,6 +194,7 @@ class Builder {
 
   const aiScene& scene_;
   bool has_normals_;
+  std::vector<bool> is_placed_ = std::vector<bool>(scene_.mNumMeshes, false);
   io::Soup soup_;
   std::vector<DVec3> corners_;  ///< Scratch of add_face.
 };
@@ -198,22 +223,25 @@ void add_nodes(Builder& builder, const aiNode& root) {
 
 /// Drops the points no triangle uses: their coordinates may be anything.
 void compact(io::Soup& soup) {
-  std::vector<std::uint32_t> moved(soup.positions.size(), std::numeric_limits<std::uint32_t>::max());
-  io::Soup used;
-  for (io::Triangle& triangle : soup.triangles) {
-    for (std::uint32_t& i : triangle) {
-      if (moved[i] == std::numeric_limits<std::uint32_t>::max()) {
-        moved[i] = static_cast<std::uint32_t>(used.positions.size());
-        used.positions.push_back(soup.positions[i]);
-        used.normals.push_back(soup.normals[i]);
-        used.uvs.push_back(soup.uvs[i]);
-      }
-      i = moved[i];
-    }
+  constexpr auto unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> moved(soup.positions.size(), unused);
+  for (const io::Triangle& triangle : soup.triangles) {
+    for (const std::uint32_t i : triangle) moved[i] = 0;
   }
-  soup.positions = std::move(used.positions);
-  soup.normals = std::move(used.normals);
-  soup.uvs = std::move(used.uvs);
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < moved.size(); ++i) {
+    if (moved[i] == unused) continue;
+    moved[i] = count++;
+    soup.positions[moved[i]] = soup.positions[i];
+    soup.normals[moved[i]] = soup.normals[i];
+    soup.uvs[moved[i]] = soup.uvs[i];
+  }
+  soup.positions.resize(count);
+  soup.normals.resize(count);
+  soup.uvs.resize(count);
+  for (io::Triangle& triangle : soup.triangles) {
+    for (std::uint32_t& i : triangle) i = moved[i];
+  }
 }
 
 double longest_side(const std::vector<DVec3>& points) {
@@ -245,7 +273,10 @@ void place(io::Soup& soup, const Frame& frame) {
 
 io::Soup convert_scene(const aiScene& scene, const Frame& frame) {
   Builder builder(scene, frame);
-  if (scene.mRootNode != nullptr) add_nodes(builder, *scene.mRootNode);
+  if (scene.mRootNode != nullptr) {
+    add_nodes(builder, *scene.mRootNode);
+    if (frame.stands_upright) builder.add_unplaced(matrix_of(scene.mRootNode->mTransformation));
+  }
   io::Soup soup = builder.take();
   if (soup.triangles.empty()) throw Refusal(ImporterExit::kOutOfRange, "no triangles");
   compact(soup);

@@ -12,6 +12,7 @@ namespace hooke::importer {
 struct Frame {
   bool stands_upright = false;  ///< The importer has put a rotation from z up to y up on the root.
   bool stores_srgb = false;     ///< Colors are as on screen, not linear.
+  bool names_are_uris = false;  ///< "%20" is a space in the name of an image.
   bool has_materials = true;    ///< Else all is of the default one.
   bool has_normals = true;      ///< Else they are no more than the faces'.
   UpAxis up = UpAxis::kY;       ///< Of the file; not kFormat.

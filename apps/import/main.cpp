@@ -55,9 +55,9 @@ constexpr std::array<Format, 6> kFormats = {{
      "Stereolithography (STL) Importer",
      {.has_materials = false, .has_normals = false, .up = UpAxis::kZ},
      nullptr},
-    {"ply", "Stanford Polygon Library (PLY) Importer", {.has_materials = false}, nullptr},
-    {"gltf", "glTF2 Importer", {}, scan_gltf},
-    {"glb", "glTF2 Importer", {}, scan_glb},
+    {"ply", "Stanford Polygon Library (PLY) Importer", {.has_materials = false}, scan_ply},
+    {"gltf", "glTF2 Importer", {.names_are_uris = true}, scan_gltf},
+    {"glb", "glTF2 Importer", {.names_are_uris = true}, scan_glb},
 }};
 
 struct Arguments {
@@ -79,10 +79,10 @@ double positive_number(std::string_view text, const char* name) {
 Arguments parse(int count, char** words) {
   if (count != 5) throw Refusal(ImporterExit::kOutOfRange, "usage: hooke-import FILE UP SCALE FIT");
   Arguments arguments = {.path = words[1]};
-  constexpr std::array<std::string_view, 4> kUp = {"format", "x", "y", "z"};
-  const auto* up = std::find(kUp.begin(), kUp.end(), std::string_view(words[2]));
-  if (up == kUp.end()) throw Refusal(ImporterExit::kOutOfRange, "UP must be format, x, y or z");
-  arguments.up = static_cast<UpAxis>(up - kUp.begin());
+  constexpr std::array<std::string_view, 4> up_words = {"format", "x", "y", "z"};
+  const auto* up = std::find(up_words.begin(), up_words.end(), std::string_view(words[2]));
+  if (up == up_words.end()) throw Refusal(ImporterExit::kOutOfRange, "UP must be format, x, y or z");
+  arguments.up = static_cast<UpAxis>(up - up_words.begin());
   arguments.scale = positive_number(words[3], "SCALE");
   if (std::string_view(words[4]) != "none") arguments.fit = positive_number(words[4], "FIT");
   return arguments;

@@ -18,6 +18,9 @@ void scan_gltf(std::span<const std::byte> bytes);
 /// The same for the first chunk of a .glb.
 void scan_glb(std::span<const std::byte> bytes);
 
+/// The header of a .ply: that it ends, and promises no more than there is.
+void scan_ply(std::span<const std::byte> bytes);
+
 /// The faces of an .obj: each has corners.
 void scan_obj(std::span<const std::byte> bytes);
 

@@ -18,38 +18,31 @@ using nlohmann::json;
 
 constexpr int kMaxJsonDepth = 64;
 
+/// Where the string that starts before `i` has its closing quote, or the end of the text.
+std::size_t end_of_string(std::string_view text, std::size_t i) {
+  while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+  return i;
+}
+
 /// Counts open brackets outside strings: enough to bound any parser's recursion.
 void scan_depth(std::string_view text) {
   int depth = 0;
-  bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
-        throw Refusal(ImporterExit::kLimitExceeded, "JSON nested more than 64 deep");
-      }
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
+    if (c == '"') i = end_of_string(text, i + 1);
+    if (c == '{' || c == '[') ++depth;
+    if (c == '}' || c == ']') --depth;
+    if (depth > kMaxJsonDepth) throw Refusal(ImporterExit::kLimitExceeded, "JSON nested more than 64 deep");
   }
 }
 
-/// The nodes below each node, by number; numbers that name no node are left to the importer.
-std::vector<std::vector<std::size_t>> children_of(const json& nodes) {
-  std::vector<std::vector<std::size_t>> children(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto list = nodes[i].is_object() ? nodes[i].find("children") : nodes[i].end();
-    if (!nodes[i].is_object() || list == nodes[i].end() || !list->is_array()) continue;
-    for (const json& child : *list) {
-      if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size()) {
-        children[i].push_back(child.get<std::size_t>());
-      }
-    }
+/// The nodes below a node, by number; numbers that name no node are left to the importer.
+std::vector<std::size_t> children_of(const json& node, std::size_t node_count) {
+  std::vector<std::size_t> children;
+  if (!node.is_object() || !node.contains("children")) return children;
+  for (const json& child : node["children"]) {
+    const bool is_node = child.is_number_unsigned() && child.get<std::uint64_t>() < node_count;
+    if (is_node) children.push_back(child.get<std::size_t>());
   }
   return children;
 }
@@ -59,7 +52,8 @@ void scan_nodes(const json& nodes) {
   if (nodes.size() > static_cast<std::size_t>(kMaxNodeCount)) {
     throw Refusal(ImporterExit::kLimitExceeded, "more than 16384 nodes");
   }
-  const auto children = children_of(nodes);
+  std::vector<std::vector<std::size_t>> children;
+  for (const json& node : nodes) children.push_back(children_of(node, nodes.size()));
   std::vector<int> parents(children.size(), 0);
   for (const auto& list : children) {
     for (const std::size_t child : list) ++parents[child];

@@ -1,6 +1,7 @@
 #include "refusal.h"
 #include "scan.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 

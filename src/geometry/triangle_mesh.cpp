@@ -5,21 +5,24 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace hooke::geometry {
 
 namespace {
 
 Error mesh_error(ErrorCode code, const std::string& where, std::string message) {
-  return {.code = code, .where = "mesh." + where, .message = std::move(message)};
+  return {.code = code, .where = std::string("mesh.").append(where), .message = std::move(message)};
 }
 
 std::string element(const char* name, std::size_t index) {
-  return std::string(name) + "[" + std::to_string(index) + "]";
+  return std::string(name).append("[").append(std::to_string(index)).append("]");
 }
 
 std::string as_text(const Triangle& t) {
-  return "{" + std::to_string(t[0]) + ", " + std::to_string(t[1]) + ", " + std::to_string(t[2]) + "}";
+  std::string text = "{";
+  text.append(std::to_string(t[0])).append(", ").append(std::to_string(t[1])).append(", ");
+  return text.append(std::to_string(t[2])).append("}");
 }
 
 void list_triangles_by_vertex(std::size_t vertex_count, std::span<const Triangle> triangles,

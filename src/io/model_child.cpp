@@ -21,8 +21,6 @@
 #include <unistd.h>
 #include <utility>
 
-extern char** environ;  // NOLINT(readability-identifier-naming): POSIX names it
-
 namespace hooke::io {
 
 namespace {
@@ -127,8 +125,8 @@ std::string number_text(double value) {
 
 std::array<std::string, 5> arguments(const std::string& program, const std::string& path,
                                      const ImportOptions& options) {
-  constexpr std::array<const char*, 4> kUp = {"format", "x", "y", "z"};
-  return {program, path, kUp[static_cast<std::size_t>(options.up)], number_text(options.scale),
+  constexpr std::array<const char*, 4> up_words = {"format", "x", "y", "z"};
+  return {program, path, up_words[static_cast<std::size_t>(options.up)], number_text(options.scale),
           options.fit ? number_text(*options.fit) : "none"};
 }
 

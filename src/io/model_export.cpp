@@ -36,7 +36,8 @@ std::vector<std::string> plain_material_names(const Model& model, std::size_t si
     for (char& c : base) c = c > ' ' && c < 0x7F && c != '#' ? c : '_';
     std::string name = base.substr(0, size);
     for (std::size_t number = 2; !taken.insert(lower(name)).second; ++number) {
-      const std::string ending = "." + std::to_string(number);
+      std::string ending = ".";
+      ending += std::to_string(number);
       name = base.substr(0, size - ending.size()) + ending;
     }
     names.push_back(name);

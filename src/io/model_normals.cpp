@@ -145,26 +145,25 @@ std::array<float, 3> narrow(DVec3 v) {
 std::vector<DVec3> crease_normals(std::span<const DVec3> points, std::span<const Triangle> triangles,
                                   double crease) {
   std::vector<DVec3> face(triangles.size());
-  std::vector<double> angle(3 * triangles.size());
+  std::vector<double> angle;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     face[t] = normalize(area_vector(points, triangles[t]));
-    for (std::size_t i = 0; i < 3; ++i) angle[3 * t + i] = corner_angle(points, triangles[t], i);
+    for (std::size_t i = 0; i < 3; ++i) angle.push_back(corner_angle(points, triangles[t], i));
   }
   const Fans fans = find_fans(points.size(), triangles);
   const double least_cosine = std::cos(std::clamp(crease, 0.0, 3.2)) - 1e-9;  // coplanar faces stay together
   std::vector<DVec3> normals(3 * triangles.size());
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const std::span<const std::uint32_t> fan =
-        std::span(fans.corners).subspan(fans.start[p], fans.start[p + 1] - fans.start[p]);
-    for (const std::uint32_t corner : fan) {
-      const DVec3 own = face[corner / 3];
-      DVec3 sum = {};
-      for (const std::uint32_t other : fan.size() > kMaxFan ? std::span<const std::uint32_t>() : fan) {
-        if (dot(own, face[other / 3]) >= least_cosine) sum += angle[other] * face[other / 3];
-      }
-      const DVec3 mean = normalize(sum);
-      normals[corner] = dot(mean, own) > 0 ? mean : own;
+  for (std::uint32_t corner = 0; corner < normals.size(); ++corner) {
+    const std::uint32_t p = triangles[corner / 3][corner % 3];
+    const DVec3 own = face[corner / 3];
+    DVec3 sum = {};
+    const bool is_crowded = fans.start[p + 1] - fans.start[p] > kMaxFan;
+    for (std::uint32_t k = fans.start[p]; k < fans.start[p + 1] && !is_crowded; ++k) {
+      const std::uint32_t other = fans.corners[k];
+      if (dot(own, face[other / 3]) >= least_cosine) sum += angle[other] * face[other / 3];
     }
+    const DVec3 mean = normalize(sum);
+    normals[corner] = dot(mean, own) > 0 ? mean : own;
   }
   return normals;
 }
@@ -183,7 +182,7 @@ Model assemble_model(const Soup& soup, double crease) {
   Model model;
   VertexTable table;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::uint32_t t = order[k];
+    const std::size_t t = order[k];
     const std::uint32_t material = faces.material_of[t];
     if (k == 0 || faces.material_of[order[k - 1]] != material) {
       model.parts.push_back({static_cast<std::uint32_t>(model.indices.size()), 0,

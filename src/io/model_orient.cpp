@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace hooke::io {
 
@@ -84,38 +85,52 @@ std::vector<std::uint32_t> find_surfaces(std::span<const Side> sides, std::size_
   return surface_of;
 }
 
-/// Turns triangles so that neighbors agree, starting from the first of each surface. Edges with two sides
-/// carry the agreement; others carry nothing.
-void make_consistent(std::span<const Side> sides, std::vector<std::uint8_t>& turned) {
+/// The neighbors of a triangle across edges with two sides.
+struct Neighbors {
   struct Link {
     std::uint32_t to = 0;
-    bool must_differ = false;
+    bool must_differ = false;  ///< Exactly one of the two must be turned for them to agree.
   };
-  std::vector<std::array<Link, 3>> links(turned.size());
-  std::vector<std::uint8_t> link_count(turned.size(), 0);
+  std::array<Link, 3> links = {};
+  std::size_t count = 0;
+};
+
+std::vector<Neighbors> find_neighbors(std::span<const Side> sides, std::size_t triangle_count) {
+  std::vector<Neighbors> neighbors(triangle_count);
   for_edges(sides, [&](std::span<const Side> edge) {
     if (edge.size() != 2) return;
     const bool differ = edge[0].ascending == edge[1].ascending;
-    links[edge[0].triangle][link_count[edge[0].triangle]++] = {edge[1].triangle, differ};
-    links[edge[1].triangle][link_count[edge[1].triangle]++] = {edge[0].triangle, differ};
+    Neighbors& a = neighbors[edge[0].triangle];
+    Neighbors& b = neighbors[edge[1].triangle];
+    a.links[a.count++] = {edge[1].triangle, differ};
+    b.links[b.count++] = {edge[0].triangle, differ};
   });
-  std::vector<std::uint8_t> is_seen(turned.size(), 0);
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t start = 0; start < turned.size(); ++start) {
-    if (is_seen[start] != 0) continue;
-    is_seen[start] = 1;
-    open.push_back(start);
-    while (!open.empty()) {
-      const std::uint32_t t = open.back();
-      open.pop_back();
-      for (std::size_t i = 0; i < link_count[t]; ++i) {
-        const Link link = links[t][i];
-        if (is_seen[link.to] != 0) continue;
-        is_seen[link.to] = 1;
-        turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
-        open.push_back(link.to);
-      }
+  return neighbors;
+}
+
+/// Turns triangles so that neighbors agree with `start` and with each other, as far as edges with two sides
+/// lead.
+void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::vector<std::uint8_t>& is_seen,
+                std::vector<std::uint8_t>& turned) {
+  std::vector<std::uint32_t> open = {start};
+  while (!open.empty()) {
+    const std::uint32_t t = open.back();
+    open.pop_back();
+    for (std::size_t i = 0; i < neighbors[t].count; ++i) {
+      const Neighbors::Link link = neighbors[t].links[i];
+      if (std::exchange(is_seen[link.to], std::uint8_t{1}) != 0) continue;
+      turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
+      open.push_back(link.to);
     }
+  }
+}
+
+/// Makes each surface agree with its first triangle.
+void make_consistent(std::span<const Side> sides, std::vector<std::uint8_t>& turned) {
+  const std::vector<Neighbors> neighbors = find_neighbors(sides, turned.size());
+  std::vector<std::uint8_t> is_seen(turned.size(), 0);
+  for (std::uint32_t start = 0; start < turned.size(); ++start) {
+    if (std::exchange(is_seen[start], std::uint8_t{1}) == 0) agree_from(start, neighbors, is_seen, turned);
   }
 }
 

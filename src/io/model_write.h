@@ -22,13 +22,15 @@ using Bytes = std::vector<std::byte>;
 template <class T>
 void put(Bytes& bytes, const T& value) {
   static_assert(std::is_trivially_copyable_v<T>);
-  const auto* first = reinterpret_cast<const std::byte*>(&value);
-  bytes.insert(bytes.end(), first, first + sizeof(T));
+  const std::size_t at = bytes.size();
+  bytes.resize(at + sizeof(T));
+  std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
 inline void put_text(Bytes& bytes, std::string_view text) {
-  const auto* first = reinterpret_cast<const std::byte*>(text.data());
-  bytes.insert(bytes.end(), first, first + text.size());
+  const std::size_t at = bytes.size();
+  bytes.resize(at + text.size());
+  if (!text.empty()) std::memcpy(bytes.data() + at, text.data(), text.size());
 }
 
 /// The image's name without its folders; empty for none, and for a name that no format can hold.

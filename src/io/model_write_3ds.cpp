@@ -71,8 +71,9 @@ void put_material(Bytes& bytes, const ModelMaterial& material, const std::string
   put_color(bytes, 0xA010, material.color);         // ambient
   put_color(bytes, 0xA020, material.color);         // diffuse
   put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});  // specular
+  put_chunk(bytes, 0xA100, std::uint16_t{3});       // Phong; a shading without highlights loses the exponent
   put_percent(bytes, 0xA040, material.shininess);   // read back as the exponent
-  put_percent(bytes, 0xA041, 50.0f);                // strength; without it the exponent is not read
+  put_percent(bytes, 0xA041, 50.0f);                // strength of the highlight
   put_percent(bytes, 0xA050, 100.0f * (1.0f - material.opacity));  // transparency
   const std::string image = image_name(material);
   if (image.empty()) return;
@@ -105,7 +106,7 @@ class Patches {
     for (std::uint32_t t = 0; t < parent_.size(); ++t) {
       const std::uint32_t patch = root(t);
       for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t point = welded_of_[model_.indices[3 * t + i]];
+        const std::uint32_t point = welded_of_[model_.indices[std::size_t{3} * t + i]];
         auto& here = patches_at[point];
         if (std::find(here.begin(), here.end(), patch) != here.end()) continue;
         here.push_back(patch);
@@ -141,8 +142,8 @@ class Patches {
     std::map<std::array<std::uint32_t, 2>, Edge> first_at;
     for (std::uint32_t t = 0; t < parent_.size(); ++t) {
       for (std::size_t i = 0; i < 3; ++i) {
-        std::array<std::uint32_t, 2> vertex = {model_.indices[3 * t + i],
-                                               model_.indices[3 * t + (i + 1) % 3]};
+        std::array<std::uint32_t, 2> vertex = {model_.indices[std::size_t{3} * t + i],
+                                               model_.indices[std::size_t{3} * t + (i + 1) % 3]};
         if (welded_of_[vertex[1]] < welded_of_[vertex[0]]) std::swap(vertex[0], vertex[1]);
         const Edge edge = {t, {normal_of(vertex[0]), normal_of(vertex[1])}};
         const auto [entry, is_new] =
@@ -169,38 +170,42 @@ class Patches {
 };
 
 /// What one object of the file holds.
-struct Object {
+class Object {
+ public:
+  [[nodiscard]] bool is_full() const {
+    return faces.size() == kMaxPerObject || positions.size() + 3 > kMaxPerObject;
+  }
+
+  /// The number of a vertex; the same place and image coordinate get the same number.
+  [[nodiscard]] std::uint16_t add(const ModelVertex& vertex) {
+    const auto next = static_cast<std::uint16_t>(positions.size());
+    const auto [entry, is_new] = known_.try_emplace({vertex.position, vertex.uv}, next);
+    if (is_new) {
+      positions.push_back(stand_on_z(vertex.position));
+      uvs.push_back(vertex.uv);
+    }
+    return entry->second;
+  }
+
   std::vector<std::array<float, 3>> positions = {};
   std::vector<std::array<float, 2>> uvs = {};
   std::vector<std::array<std::uint16_t, 3>> faces = {};
   std::vector<std::uint32_t> masks = {};
   std::vector<std::uint32_t> material_of = {};
+
+ private:
+  std::map<std::pair<std::array<float, 3>, std::array<float, 2>>, std::uint16_t> known_ = {};
 };
 
 std::vector<Object> split(const Model& model) {
   const std::vector<std::uint32_t> masks = Patches(model).masks();
-  using Corner = std::pair<std::array<float, 3>, std::array<float, 2>>;
-  std::map<Corner, std::uint16_t> known;
   std::vector<Object> objects(1);
   for (const ModelPart& part : model.parts) {
     for (std::uint32_t i = part.first; i < part.first + part.count; i += 3) {
-      if (objects.back().faces.size() == kMaxPerObject ||
-          objects.back().positions.size() + 3 > kMaxPerObject) {
-        objects.emplace_back();
-        known.clear();
-      }
+      if (objects.back().is_full()) objects.emplace_back();
       Object& object = objects.back();
       std::array<std::uint16_t, 3> face = {};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const ModelVertex& vertex = model.vertices[model.indices[i + k]];
-        const auto [entry, is_new] = known.try_emplace({vertex.position, vertex.uv},
-                                                       static_cast<std::uint16_t>(object.positions.size()));
-        if (is_new) {
-          object.positions.push_back(stand_on_z(vertex.position));
-          object.uvs.push_back(vertex.uv);
-        }
-        face[k] = entry->second;
-      }
+      for (std::size_t k = 0; k < 3; ++k) face[k] = object.add(model.vertices[model.indices[i + k]]);
       object.faces.push_back(face);
       object.masks.push_back(masks[i / 3]);
       object.material_of.push_back(part.material);
@@ -211,12 +216,12 @@ std::vector<Object> split(const Model& model) {
 
 /// Faces, the materials they have, and their smoothing groups.
 void put_faces(Bytes& bytes, const Object& object, const std::vector<std::string>& names) {
-  constexpr std::uint16_t kAllEdgesVisible = 7;
+  constexpr std::uint16_t all_edges_visible = 7;
   const Chunk chunk(bytes, 0x4120);
   put(bytes, static_cast<std::uint16_t>(object.faces.size()));
   for (const auto& face : object.faces) {
     put(bytes, face);
-    put(bytes, kAllEdgesVisible);
+    put(bytes, all_edges_visible);
   }
   for (std::size_t first = 0; first < object.faces.size();) {  // parts are runs of one material
     std::size_t last = first;
@@ -247,8 +252,8 @@ void put_object(Bytes& bytes, const Object& object, std::size_t number, const st
     put(bytes, static_cast<std::uint16_t>(object.uvs.size()));
     for (const auto& uv : object.uvs) put(bytes, uv);
   }
-  constexpr std::array<float, 12> kIdentity = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
-  put_chunk(bytes, 0x4160, kIdentity);
+  constexpr std::array<float, 12> identity = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  put_chunk(bytes, 0x4160, identity);
   put_faces(bytes, object, names);
 }
 

@@ -265,6 +265,12 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
 
 void Checker::check_expectation(const SceneExpectation& expectation, const std::string& path) {
   if (is_damaged(path)) return;
+  if (expectation.at_step.value_or(0) > scene_.step_count()) {
+    fail(path + ".at_step", ErrorCode::kOutOfRange,
+         std::to_string(*expectation.at_step) + " is after the end of the scene, step " +
+             std::to_string(scene_.step_count()));
+    return;
+  }
   const Subject subject = subject_of(expectation.quantity);
   if (subject == Subject::kWorld) {
     if (!expectation.of.empty()) {

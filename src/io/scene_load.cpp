@@ -60,6 +60,17 @@ bool check_version(const JsonDocument& document, std::vector<JsonError>& errors)
   return false;
 }
 
+std::vector<Error> warn(const Scene& scene) {
+  std::vector<Error> warnings;
+  for (std::size_t i = 0; i < scene.timeline.size() && warnings.size() < kMostErrors; ++i) {
+    if (scene.timeline[i].at_step < scene.step_count()) continue;
+    warnings.push_back(
+        error_at(scene.source.get(), indexed("timeline", i) + ".at_step", ErrorCode::kOutOfRange,
+                 "never happens: the scene ends at step " + std::to_string(scene.step_count())));
+  }
+  return warnings;
+}
+
 Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files) {
   auto source = std::make_shared<SceneSource>();
   JsonDocument& document = source->document;
@@ -77,7 +88,8 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files
   }
   if (!errors.empty()) return {.errors = finish(document, std::move(errors))};
   scene.source = std::move(source);
-  return {.value = std::move(scene)};
+  std::vector<Error> warnings = warn(scene);
+  return {.value = std::move(scene), .warnings = std::move(warnings)};
 }
 
 Loaded<Scene> unreadable(const std::string& path, ErrorCode code, std::string reason) {

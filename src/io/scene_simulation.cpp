@@ -1,5 +1,6 @@
 #include "hooke/scene_io.h"
 
+#include "io/scene_check.h"
 #include "io/scene_data.h"
 #include "io/scene_source.h"
 
@@ -96,7 +97,23 @@ void apply_due_events(SimulationData& data) {
   std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
 }
 
+/// What a reader would have refused: a scene may also be made or changed in code.
+std::vector<Error> check(const Scene& scene) {
+  const io::JsonDocument nothing;
+  std::vector<io::JsonError> found;
+  io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found);
+  std::vector<Error> errors;
+  errors.reserve(found.size());
+  for (io::JsonError& one : found) {
+    errors.push_back(
+        io::error_at(scene.source.get(), one.error.where, one.error.code, std::move(one.error.message)));
+  }
+  return errors;
+}
+
 Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
+  std::vector<Error> errors = check(scene);
+  if (!errors.empty()) return {.errors = std::move(errors)};
   Result<World> world = World::create(scene.world);
   if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
   auto data = std::make_unique<SimulationData>(
@@ -104,7 +121,6 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
   for (std::size_t i = 0; i < data->scene.materials.size(); ++i) {
     data->material_of[data->scene.materials[i].name] = i;
   }
-  std::vector<Error> errors;
   io::build_meshes(*data, errors);
   if (errors.empty()) io::build_objects(data->scene.objects, "", *data, errors);
   if (!errors.empty()) return {.errors = std::move(errors)};

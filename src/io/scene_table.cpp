@@ -296,9 +296,9 @@ const Kind& kind_of<SceneExpectation>() {
           {required(field<&SceneExpectation::quantity>("quantity", "", kAny, "What is measured.")),
            field<&SceneExpectation::of>("of", "", kNotEmpty, "Name of an object; the world without it."),
            field<&SceneExpectation::point>("point", "", kAny, "Of the object; of a tension, the segment."),
-           required(field<&SceneExpectation::op>(
-               "op", "", kAny,
-               "`==`: not further away than `tolerance`; `within`: not further than `tolerance` x |value|.")),
+           required(field<&SceneExpectation::op>("op", "", kAny,
+                                                 "`==`: not further away than `tolerance`; `within`: not "
+                                                 "further than `tolerance` times the value.")),
            required(field<&SceneExpectation::value>("value", "unit of the quantity", kAny, "Promised.")),
            field<&SceneExpectation::tolerance>("tolerance", "", kNotNegative, "For `==` and `within`."),
            field<&SceneExpectation::at_step>("at_step", "", kAny,

@@ -17,16 +17,15 @@ using math::Symmetric3;
 using V = DVec3;
 using M = Symmetric3<double>;
 
-constexpr double kDampingInAir = 0.02;     ///< Share of the geometric stiffness that acts on velocity itself.
-constexpr double kDampingInContact = 0.1;  ///< Below 0.05 the threshold of sliding is off.
-constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
-constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
+constexpr double kDamping = 0.2;               ///< Share of the geometric stiffness that damps waves.
+constexpr double kTransverseFloor = 1e-5;      ///< Of the lighter end's mass; keeps slack segments defined.
+constexpr double kComplianceInAir = 1e-7;      ///< Over the lighter end's mass.
 constexpr double kComplianceInContact = 1e-5;  ///< Rigid segments between stuck nodes would be undetermined.
-constexpr double kLengthTolerance = 1e-3;      ///< The next substep takes back what is left, as speed.
-constexpr double kReportedError = 0.01;
+constexpr double kLengthTolerance = 0.01;
 constexpr double kLimitTolerance = 1e-4;
 constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
 constexpr double kPushOutSpeed = 1.0;      ///< Overlap leaves no faster than this [m/s].
+constexpr double kSlidingShare = 0.9999;   ///< Of mu N: a node whose friction was this large was sliding.
 constexpr int kMostSolves = 8;
 constexpr int kLeastContactSolves = 2;
 constexpr int kSlidingSolves = 4;
@@ -53,14 +52,15 @@ struct Segment {
 struct Touch {
   std::uint32_t row = 0, node = 0;
   V n, f0, f;
-  double separation = 0, friction = 0, n0 = 0, normal = 0, share = 1;
-  bool active = false;
+  V against;  // direction of friction on a node that slides
+  double separation = 0, friction = 0, n0 = 0, normal = 0;
+  bool active = false, slides = false;
 };
 
 /// How a rope's segments are linearized.
 struct Setting {
   double compliance = kComplianceInAir;
-  double damping = kDampingInAir;
+  V turning = {};     ///< Angular velocity of the line between the rope's ends [rad/s].
   bool first = true;  ///< At the start of the substep; later about the last result.
 };
 
@@ -101,11 +101,23 @@ void linearize(Segment& e, const Node& a, const Node& b, double h, const Setting
 
   const double g = h * h * std::max(0.0, e.tension_bound) / e.rest;
   const double floor = kTransverseFloor * lighter;
-  const double beta = first ? (1.0 + setting.damping) * g + floor : g + floor;
-  const V transverse =
-      first ? ((g + floor) / beta) * across(e.n, b.v_before - a.v_before) : across(e.n, relative);
+  const double beta = first ? (1.0 + kDamping) * g + floor : g + floor;
+  const V turned = (kDamping * g / beta) * cross(setting.turning, e.rest * e.n);
+  const V kept = ((g + floor) / beta) * across(e.n, b.v_before - a.v_before);
+  const V transverse = first ? kept + across(e.n, turned) : across(e.n, relative);
   e.offset = (bias * (h * dot(e.n, relative) - c)) * e.n + transverse;
   e.compliance = math::axial(e.n, e.gamma, 1.0 / beta);
+}
+
+/// Angular velocity of the line from the first to the last node before this substep; zero for a rope that is
+/// folded to less than a quarter of its length, whose line means nothing.
+V turning_of(const Scratch& s) {
+  double total = 0;
+  for (const Segment& e : s.segments) total += e.rest;
+  const V line = s.nodes.back().x - s.nodes.front().x;
+  const double l2 = length_squared(line);
+  if (l2 < total * total / 16) return {};
+  return (1.0 / l2) * cross(line, s.nodes.back().v_before - s.nodes.front().v_before);
 }
 
 /// W and v* of every node, with what touches it.
@@ -123,8 +135,9 @@ void hold_nodes(Scratch& s, double h) {
       const Touch& t = s.touches[i];
       if (!t.active) continue;
       const double rho = kContactStiffness * node.mass;
-      mass = mass + math::axial(t.n, rho, t.share * rho);
-      impulse += (t.n0 - rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n + t.share * t.f0;
+      mass = mass + math::axial(t.n, rho, t.slides ? 0.0 : rho);
+      impulse += (t.n0 - rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
+      impulse += t.slides ? (t.friction * t.normal) * t.against : t.f0;
     }
     if (!(node.w > 0)) continue;
     node.inverse = math::inverse(mass);
@@ -157,29 +170,41 @@ void sweep(Scratch& s) {
   head.u = head.target + head.inverse * next;
 }
 
+/// Friction of an active contact: holds with f0 - rho u_t up to mu N, slides against u_t beyond.
+void update_friction(Touch& t, V u, double rho) {
+  const V sliding = across(t.n, u);
+  const double speed = length(sliding);
+  if (t.slides) {
+    t.slides = dot(sliding, t.against) <= 0;
+    if (t.slides && speed > 0) t.against = (-1.0 / speed) * sliding;
+  } else {
+    t.f = t.f0 - rho * sliding;
+    const double size = length(t.f);
+    t.slides = size > t.friction * t.normal;
+    if (t.slides) t.against = (1.0 / size) * t.f;
+  }
+  if (t.slides) t.f = (t.friction * t.normal) * t.against;
+}
+
 /// Contact forces that follow from u. True if the set of active contacts changed or a node slides.
 bool update_touches(Scratch& s, double h) {
   bool unsettled = false;
   for (Touch& t : s.touches) {
     const Node& node = s.nodes[t.node];
-    const double gap_rate = std::max(t.separation / h, -kPushOutSpeed);
-    const double approach = dot(t.n, node.u) + gap_rate;
+    const double approach = dot(t.n, node.u) + std::max(t.separation / h, -kPushOutSpeed);
     const double rho = kContactStiffness * node.mass;
     const bool was_active = t.active;
+    const bool slid = t.slides;
     if (t.active) {
       t.normal = std::max(0.0, t.n0 - rho * approach);
-      t.f = t.f0 - rho * across(t.n, node.u);
-      const double size = length(t.f);
-      t.share = size > t.friction * t.normal ? t.friction * t.normal / size : 1.0;
-      t.f = t.share * t.f;
       t.active = t.normal > 0;
-      unsettled = unsettled || t.share < 1.0;
+      update_friction(t, node.u, rho);
     } else {
       t.normal = 0;
       t.f = {};
       t.active = approach < 0;
     }
-    unsettled = unsettled || was_active != t.active;
+    unsettled = unsettled || was_active != t.active || slid != t.slides || t.slides;
   }
   return unsettled;
 }
@@ -254,11 +279,10 @@ void load_touches(const Chain& chain, double h, const state::Contacts& contacts,
     t.n0 = h * static_cast<double>(contacts.normal_force[row]);
     t.f0 = across(t.n, h * vector_cast<double>(contacts.friction_force[row]));
     t.active = t.n0 > 0 || t.separation <= 0;
-    // A node that slides goes on sliding: the share that its speed calls for, not that of a node at rest.
-    const V trial = t.f0 - (t.n0 > 0 ? kContactStiffness * s.nodes[t.node].mass : 0.0) *
-                               across(t.n, s.nodes[t.node].v_before);
-    const double size = length(trial);
-    t.share = size > t.friction * t.n0 && size > 0 ? t.friction * t.n0 / size : 1.0;
+    const double size = length(t.f0);
+    t.normal = t.n0;
+    t.slides = size > 0 && size >= kSlidingShare * t.friction * t.n0;
+    if (t.slides) t.against = (1.0 / size) * t.f0;
     s.touches.push_back(t);
   }
 }
@@ -291,9 +315,8 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
   load_touches(chain, h, contacts, s);
 
   Setting setting;
-  // The damping quiets waves of short length, which a single segment does not have.
-  if (s.segments.size() == 1) setting.damping = 0;
-  if (!s.touches.empty()) setting = {kComplianceInContact, kDampingInContact, true};
+  if (s.touches.empty()) setting.turning = turning_of(s);
+  if (!s.touches.empty()) setting.compliance = kComplianceInContact;
   double error = 0;
   for (int solves = 1; solves <= kMostSolves; ++solves) {
     for (std::size_t i = 0; i < s.segments.size(); ++i) {
@@ -312,7 +335,7 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
     if (long_enough && solves >= least) break;
     setting.first = setting.first && long_enough;
   }
-  chain.unconverged = chain.unconverged || !(error <= kReportedError) || !finite(s);
+  chain.unconverged = chain.unconverged || !(error <= kLengthTolerance) || !finite(s);
   if (finite(s)) store(chain, h, s, particles, segments, contacts);
 }
 

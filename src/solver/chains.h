@@ -28,23 +28,27 @@ struct Chain {
 /// The whole rope at once: velocities such that every segment carries the force of its stiffness at the end
 /// of the substep, with static contacts and friction inside the system.
 ///
-/// Unknown are node velocities u_i and segment impulses q_i. For a segment from a to b, n its direction, C =
-/// l - L:
-///   axial        n.(u_b - u_a) = -b C + gamma n.q,   b = k/(c + h k),  gamma = 1/(h (c + h k)) >= chi /
-///   min(m_a, m_b) transverse   q_t = (g + f)((u_b - u_a) - (v_b - v_a))_t + d g (u_b - u_a)_t,  g = h^2 T+ /
-///   L,  f = 1e-5 min(m_a, m_b)
-/// d is 0.02 in the air and 0.1 in contact. g is the geometric stiffness of a segment under tension T+ =
-/// max(0, last tension, largest of this substep): it acts on the change of velocity, so that a swing keeps
-/// its energy; without it stiff ropes explode. A sweep from the first node condenses everything behind it to
-/// u = s + X q (compliance form: exact for k = infinity), a sweep back gives q and u. The solve repeats,
-/// linearized anew, while a length error exceeds 0.1 %, at most 8 times. A contact holds its node with N =
-/// max(0, N0 - rho (n.u + s/h)), rho = 1000 m, N0 carried over substeps; friction likewise, scaled onto the
-/// disc mu N. Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable
-/// constrained dynamics".
+/// Unknown are node velocities u and segment impulses q. For a segment from a to b, n its direction,
+/// r = u_b - u_a, r0 = v_b - v_a before this substep's forces, C = l - L, m the lighter end's mass:
 ///
-/// `before` holds velocities from before this substep's forces. Segments of zero length keep their last
-/// direction's force out: they are treated as pointing down. Sweeps are in double: a rope is solved exactly
-/// or not at all.
+///   axial        n.r = -b C + gamma n.q,  b = k / (c + h k),  gamma = 1 / (h (c + h k)) >= chi / m
+///   transverse   q_t = (g + f) (r - r0)_t + d g (r - omega x L n)_t,  g = h^2 T+ / L,  f = 1e-5 m
+///
+/// g is the geometric stiffness of a segment under tension T+ = max(0, last tension, largest of this
+/// substep): it acts on the change of velocity, so that a swing keeps its energy; without it stiff ropes
+/// explode. The share d = 0.2 of it damps what moves unlike the line between the rope's ends, which turns at
+/// omega: waves, not swings. chi is 1e-7 in the air and 1e-5 in contact.
+///
+/// A sweep from the first node condenses everything behind it to u = s + X q (compliance form: exact for
+/// k = infinity), a sweep back gives q and u. The solve repeats, linearized anew, while a length error
+/// exceeds 1 %, at most 8 times.
+///
+/// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), rho = 1000 m, N0 carried over substeps;
+/// friction holds likewise up to mu N and is mu N against the motion beyond.
+///
+/// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable constrained
+/// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's
+/// segments differ in compliance by a factor of 1e10. `before` holds velocities from before the forces.
 void solve_chains(std::span<Chain> chains, const std::vector<Vec3>& before, Real h,
                   state::Particles& particles, state::Segments& segments, state::Contacts& contacts);
 

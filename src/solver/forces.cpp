@@ -37,6 +37,12 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
     const Real w = particles.position[p].inverse_mass;
     if (!(w > Real(0))) continue;
     Vec3& v = particles.velocity[p].v;
+    if (object.feels_air) {
+      const Vec3 flow = v - inputs.wind[p];
+      const Real drag =
+          particles.viscous_drag[p] + inputs.air_density * particles.drag_area[p] * length(flow);
+      v = inputs.wind[p] + (Real(1) / (Real(1) + h * w * drag)) * flow;
+    }
     if (inputs.any_force) v += (h * w) * particles.force[p];
     for (const state::Field& field : inputs.fields) {
       const DVec3 x = object.origin + vector_cast<double>(particles.position[p].x);
@@ -48,10 +54,6 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
                  static_cast<double>(h));
       }
     }
-    if (!object.feels_air) continue;
-    const Vec3 flow = v - inputs.wind[p];
-    const Real drag = particles.viscous_drag[p] + inputs.air_density * particles.drag_area[p] * length(flow);
-    v = inputs.wind[p] + (Real(1) / (Real(1) + h * w * drag)) * flow;
   }
 }
 

@@ -10,11 +10,13 @@
 
 namespace hooke::solver {
 
-/// Forces on single particles: v += h (fields + w force), then drag, then the turn of a magnetic field.
+/// Forces on single particles: drag, then v += h (fields + w force), then the turn of a magnetic field.
 ///
 /// Viscous drag c and quadratic drag k = rho C_d A / 2 act on v - wind implicitly: v - wind is divided by
-/// 1 + h w (c + k |v - wind|). A magnetic field turns v by exactly -(q/m) |B| h about B: the speed does not
-/// change. `range` counts the particles of `object`; gravity is not among these (it is added to all at once).
+/// 1 + h w (c + k |v - wind|). They act on the velocity before it is accelerated: what is held still by a
+/// rope then weighs m g, not m g / (1 + h w c). A magnetic field turns v by exactly -(q/m) |B| h about B: the
+/// speed does not change. `range` counts the particles of `object`; gravity is not among these (it is added
+/// to all at once).
 struct ForceInputs {
   const std::vector<state::Field>& fields;
   const std::vector<Vec3>& wind;

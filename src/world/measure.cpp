@@ -85,7 +85,9 @@ double measure_segments(const Tables& t, Stretch& stretch) {
       const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
       const auto rest = static_cast<double>(t.segments.rest_length[s]);
       stretch.add(l, rest);
-      energy += elastic(static_cast<double>(t.segments.stiffness[s]), l - rest);
+      // By the force: the length of a very stiff segment is known less exactly than its tension.
+      const auto tension = static_cast<double>(t.segments.tension[s]);
+      energy += 0.5 * tension * tension / static_cast<double>(t.segments.stiffness[s]);
     }
   }
   return energy;

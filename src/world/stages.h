@@ -17,9 +17,9 @@ void begin_step(WorldData& world, double dt);
 /// Velocities of rope nodes before the substep's forces change them.
 void remember_rope_velocities(WorldData& world);
 
-/// Fields, drag, charges, user's forces; then the wind on triangles and segments; then the user's force laws.
-void apply_forces(WorldData& world, Real h);
+/// The wind on triangles and segments; drag, forces, fields on particles; the user's force laws.
 void apply_wind(WorldData& world, Real h);
+void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
 
 /// Puts rows that are not finite back to where they began the step, at rest. Returns how many.

@@ -74,10 +74,10 @@ void solve_bends(WorldData& w) {
 void apply_forces(WorldData& w, double time, Real h) {
   state::Particles& particles = w.tables.particles;
   world::remember_rope_velocities(w);
+  world::apply_wind(w, h);
+  world::apply_forces(w, h);
   for_ranges(*w.pool, particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::accelerate(w.tables.desc.gravity, h, rows, particles); });
-  world::apply_forces(w, h);
-  world::apply_wind(w, h);
   world::call_force_laws(w, time, h);
   solver::drive_pins(w.tables.pins, w.tables.objects, time, h, particles);
 }

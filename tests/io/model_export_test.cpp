@@ -24,7 +24,7 @@ using hooke::io_test::turn_over;
 
 namespace {
 
-constexpr std::array<const char*, 4> kEndings = {".obj", ".stl", ".glb", ".3ds"};
+const std::array<std::string, 4> kEndings = {".obj", ".stl", ".glb", ".3ds"};
 
 Model round_trip(const Model& model, const std::string& path) {
   const auto written = export_model(model, path);
@@ -84,13 +84,13 @@ TEST_SUITE("io/model_export") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
     for (const bool with_uvs : {false, true}) {
-      for (const char* ending : kEndings) {
+      for (const std::string& ending : kEndings) {
         CAPTURE(ending);
         CAPTURE(with_uvs);
         const Model model = still_life(with_uvs);
-        const Model back = round_trip(model, folder / (std::string("still") + ending));
+        const Model back = round_trip(model, folder / ("still" + ending));
         check_same_shape(model, back);
-        if (with_uvs && std::string_view(ending) != ".stl") CHECK(worst_uv_error(back) < 1e-4);
+        if (with_uvs && ending != ".stl") CHECK(worst_uv_error(back) < 1e-4);
       }
     }
   }
@@ -99,9 +99,9 @@ TEST_SUITE("io/model_export") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
     (void)folder.file("my image.png", "image");
-    for (const char* ending : {".obj", ".glb", ".3ds"}) {
+    for (const std::string ending : {".obj", ".glb", ".3ds"}) {
       CAPTURE(ending);
-      const Model back = round_trip(still_life(true), folder / (std::string("still") + ending));
+      const Model back = round_trip(still_life(true), folder / ("still" + ending));
       REQUIRE(back.materials.size() == 2);
       REQUIRE(back.parts.size() == 2);
       CHECK(back.parts[0].count == 72);
@@ -119,9 +119,9 @@ TEST_SUITE("io/model_export") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
     const Model model = still_life(false);
-    for (const char* ending : kEndings) {
+    for (const std::string& ending : kEndings) {
       CAPTURE(ending);
-      const Model back = round_trip(model, folder / (std::string("still") + ending));
+      const Model back = round_trip(model, folder / ("still" + ending));
       CHECK(back.vertices.size() == model.vertices.size());  // each crease has its vertices twice
     }
   }
@@ -129,16 +129,16 @@ TEST_SUITE("io/model_export") {
   TEST_CASE("a .3ds of more than 65535 vertices becomes several objects and one model again") {
     const auto importer = built_importer();
     const TemporaryFolder folder;
-    const Model large = model_of(sphere(1, 300, 300));
+    const Model large = model_of(sphere(1, 260, 256));
     REQUIRE(large.vertices.size() > 65535);
     check_same_shape(large, round_trip(large, folder / "large.3ds"));
   }
 
   TEST_CASE("the same model gives the same bytes") {
     const TemporaryFolder folder;
-    for (const char* ending : kEndings) {
-      const std::string first = folder / (std::string("a") + ending);
-      const std::string second = folder / (std::string("a2") + ending);
+    for (const std::string& ending : kEndings) {
+      const std::string first = folder / ("a" + ending);
+      const std::string second = folder / ("a2" + ending);
       REQUIRE(export_model(still_life(true), first).has_value());
       const std::string bytes = read_file(first);
       REQUIRE(export_model(still_life(true), first).has_value());
@@ -151,8 +151,8 @@ TEST_SUITE("io/model_export") {
     const TemporaryFolder folder;
     Model broken = still_life(false);
     broken.indices[7] = 1000000;
-    for (const char* ending : kEndings) {
-      const std::string path = folder.file(std::string("kept") + ending, "old");
+    for (const std::string& ending : kEndings) {
+      const std::string path = folder.file("kept" + ending, "old");
       const auto written = export_model(broken, path);
       REQUIRE_FALSE(written.has_value());
       CHECK(written.error().where == path);

@@ -149,6 +149,15 @@ TEST_SUITE("io/model_hostile") {
     (void)refused(folder.file("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nl 1 2\n"));
   }
 
+  TEST_CASE("a header of a .ply that does not end is refused before the importer looks for its end") {
+    const auto importer = built_importer();
+    const TemporaryFolder folder;
+    const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n";
+    CHECK(has_line(refused(folder.file("cut.ply", head)), "without an end"));
+    CHECK(has_line(refused(folder.file("cut.ply", head + "end_header\n1\n")), "shorter"));
+    CHECK(has_line(refused(folder.file("type.ply", head + "property real y\nend_header\n")), "type"));
+  }
+
   TEST_CASE("what is no regular file is not opened") {
     const auto importer = built_importer();
     const TemporaryFolder folder;

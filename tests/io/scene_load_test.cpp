@@ -82,6 +82,15 @@ TEST_SUITE("io/scene_load") {
     CHECK(static_cast<double>(turned.z) == doctest::Approx(1.0));
   }
 
+  TEST_CASE("an event after the end is a warning") {
+    const auto loaded = hooke::parse_scene(
+        R"({"version": 1, "seconds": 1, "timeline": [{"at_step": 60, "gravity": [0, 0, 0]}]})", "demo.json");
+    REQUIRE(loaded);
+    REQUIRE(loaded.warnings.size() == 1);
+    CHECK(hooke::to_line(loaded.warnings[0]) ==
+          "demo.json:1:55: timeline[0].at_step: never happens: the scene ends at step 60");
+  }
+
   TEST_CASE("a byte order mark is not part of the first line") {
     CHECK(hooke::parse_scene("\xEF\xBB\xBF{\"version\": 1}", "demo.json"));
   }

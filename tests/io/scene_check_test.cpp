@@ -1,0 +1,54 @@
+#include "hooke/scene_io.h"
+
+#include <algorithm>
+#include <doctest/doctest.h>
+#include <filesystem>
+
+namespace {
+
+std::vector<std::string> scene_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(HOOKE_SCENES)) {
+    const bool scene = entry.path().extension() == ".json" && entry.path().filename() != "schema.json";
+    if (scene) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+hooke::Simulation run(hooke::Scene scene) {
+  auto simulation = hooke::Simulation::create(std::move(scene));
+  INFO((simulation.errors.empty() ? "" : hooke::to_line(simulation.errors.front())));
+  REQUIRE(simulation);
+  simulation.value->run();
+  return std::move(*simulation.value);
+}
+
+hooke::Scene load(const std::string& file) {
+  auto scene = hooke::load_scene(file);
+  INFO((scene.errors.empty() ? "" : hooke::to_line(scene.errors.front())));
+  REQUIRE(scene);
+  return std::move(*scene.value);
+}
+
+}  // namespace
+
+TEST_SUITE("scenes") {
+  TEST_CASE("every scene keeps what it promises, and notices when gravity is halved") {
+    for (const std::string& file : scene_files()) {
+      CAPTURE(file);
+      hooke::Scene scene = load(file);
+      const hooke::Simulation good = run(scene);
+      INFO(good.report());
+      CHECK(good.passed());
+      scene.world.gravity = hooke::Real(0.5) * scene.world.gravity;
+      CHECK_FALSE(run(scene).passed());
+    }
+  }
+
+  TEST_CASE("the cloth slides off the ball without friction") {
+    hooke::Scene scene = load(HOOKE_SCENES "/cloth_over_sphere.json");
+    for (hooke::SceneMaterial& material : scene.materials) material.friction = 0;
+    CHECK_FALSE(run(scene).passed());
+  }
+}

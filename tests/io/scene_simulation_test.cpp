@@ -1,0 +1,235 @@
+#include "hooke/scene_io.h"
+
+#include <doctest/doctest.h>
+
+namespace {
+
+hooke::Simulation simulate(const std::string& text) {
+  auto scene = hooke::parse_scene(text, "demo.json");
+  INFO((scene.errors.empty() ? "" : hooke::to_line(scene.errors.front())));
+  REQUIRE(scene);
+  auto simulation = hooke::Simulation::create(std::move(*scene.value));
+  INFO((simulation.errors.empty() ? "" : hooke::to_line(simulation.errors.front())));
+  REQUIRE(simulation);
+  return std::move(*simulation.value);
+}
+
+void step(hooke::Simulation& simulation, int count) {
+  for (int i = 0; i < count; ++i) REQUIRE(simulation.step().healthy());
+}
+
+/// One particle of 2 kg without gravity.
+std::string particle_scene(const std::string& rest) {
+  return R"({"version": 1, "world": {"gravity": [0, 0, 0]}, "seconds": 1,
+    "particles": [{"name": "ball", "particles": [{"position": [0, 1, 0], "mass": 2}]}], )" +
+         rest + "}";
+}
+
+double speed_x(const hooke::Simulation& simulation) {
+  const hooke::SceneObject* ball = simulation.find("ball");
+  REQUIRE(ball != nullptr);
+  return static_cast<double>(simulation.world().velocities(ball->particles).offset(0).x);
+}
+
+}  // namespace
+
+TEST_SUITE("io/scene_simulation") {
+  TEST_CASE("a scene becomes a world with names, looks and instances") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "materials": {"red": {"color": [1, 0, 0]}},
+      "bodies": [{"name": "box", "material": "red", "shape": {"box": {}},
+                  "array": {"grid": [2, 1, 3], "spacing": [2, 1, 5]}}],
+      "ropes": [{"masses": 5}]
+    })");
+    REQUIRE(simulation.objects().size() == 7);
+    const hooke::SceneObject* box = simulation.find("box[5]");
+    REQUIRE(box != nullptr);
+    CHECK(box->look.color[0] == 1.0f);
+    CHECK(box->look.color[1] == 0.0f);
+    CHECK(box->path == "bodies[0]");
+    CHECK(simulation.world().pose(box->body).position == hooke::DVec3{2, 0, 10});
+    const hooke::SceneObject* rope = simulation.find("ropes[0]");
+    REQUIRE(rope != nullptr);
+    CHECK(simulation.world().positions(rope->rope).size() == 5);
+    CHECK(simulation.find("box") == nullptr);
+  }
+
+  TEST_CASE("a pyramid narrows by one in each row and is centered") {
+    const hooke::SceneArray array = {
+        .kind = hooke::SceneArray::Kind::kPyramid, .pyramid = 3, .spacing = {2, 1, 0}};
+    REQUIRE(array.count() == 6);
+    CHECK(array.offset(0) == hooke::DVec3{0, 0, 0});
+    CHECK(array.offset(2) == hooke::DVec3{4, 0, 0});
+    CHECK(array.offset(3) == hooke::DVec3{1, 1, 0});
+    CHECK(array.offset(5) == hooke::DVec3{2, 2, 0});
+    CHECK(array.offset(6) == hooke::DVec3{});
+  }
+
+  TEST_CASE("a random array fills its box the same way everywhere") {
+    const hooke::SceneArray array = {.kind = hooke::SceneArray::Kind::kRandom,
+                                     .random = 1000,
+                                     .seed = 7,
+                                     .box = {hooke::DVec3{-1, 0, 2}, hooke::DVec3{1, 1, 3}}};
+    hooke::DVec3 sum;
+    for (std::size_t i = 0; i < 1000; ++i) {
+      const hooke::DVec3 p = array.offset(i);
+      CHECK((p.x >= -1 && p.x < 1 && p.y >= 0 && p.y < 1 && p.z >= 2 && p.z < 3));
+      sum += p;
+    }
+    // The mean of 1000 uniform numbers is off by 0.0091 of the width in the standard deviation.
+    CHECK(0.001 * sum.x == doctest::Approx(0).epsilon(0.06));
+    CHECK(0.001 * sum.y == doctest::Approx(0.5).epsilon(0.06));
+    CHECK(0.001 * sum.z == doctest::Approx(2.5).epsilon(0.02));
+  }
+
+  TEST_CASE("pins hold a column, a row, the topmost points and the last one") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "cloths": [
+        {"name": "column", "columns": 4, "rows": 3, "pins": [{"column": "last"}]},
+        {"name": "free", "columns": 4, "rows": 3},
+        {"name": "row", "columns": 4, "rows": 3, "pins": [{"row": 0}]},
+        {"name": "top", "columns": 4, "rows": 3, "pins": [{"topmost": 0.001}]}],
+      "ropes": [{"name": "rope", "masses": 4, "pins": [0, "last"]}]
+    })");
+    step(simulation, 10);
+    const hooke::World& world = simulation.world();
+    const hooke::PointView column = world.positions(simulation.find("column")->cloth);
+    const hooke::PointView free = world.positions(simulation.find("free")->cloth);
+    const hooke::PointView row = world.positions(simulation.find("row")->cloth);
+    const hooke::PointView top = world.positions(simulation.find("top")->cloth);
+    for (std::size_t i = 0; i < 12; ++i) {
+      const double from = -0.5 * static_cast<double>(i / 4);
+      CAPTURE(i);
+      if (i % 4 == 3) CHECK(column[i].y == doctest::Approx(from));
+      CHECK(free[i].y < from - 0.1);
+      if (i < 4) CHECK(row[i].y == doctest::Approx(from));
+      if (i < 4) CHECK(top[i].y == doctest::Approx(from));
+    }
+    const hooke::PointView rope = world.positions(simulation.find("rope")->rope);
+    CHECK(rope[3].y == doctest::Approx(0));
+    CHECK(rope[3].x == doctest::Approx(-1));
+  }
+
+  TEST_CASE("an impulse changes the velocity by impulse / mass just before its step") {
+    hooke::Simulation simulation = simulate(particle_scene(
+        R"("timeline": [{"at_step": 3, "impulse": {"object": "ball", "point": 0, "impulse": [1, 0, 0]}}])"));
+    step(simulation, 3);
+    CHECK(speed_x(simulation) == 0.0);
+    step(simulation, 1);
+    CHECK(speed_x(simulation) == doctest::Approx(0.5));
+    CHECK(simulation.errors().empty());
+  }
+
+  TEST_CASE("a force acts for its steps and no longer") {
+    hooke::Simulation simulation = simulate(particle_scene(
+        R"("timeline": [{"at_step": 2, "force": {"object": "ball", "point": "last", "force": [6, 0, 0], "steps": 10}}])"));
+    step(simulation, 30);
+    // 6 N x 10/60 s / 2 kg
+    CHECK(speed_x(simulation) == doctest::Approx(0.5));
+  }
+
+  TEST_CASE("objects come and go by the timeline") {
+    hooke::Simulation simulation = simulate(particle_scene(R"("timeline": [
+      {"at_step": 4, "remove": "rope"},
+      {"at_step": 2, "add": {"ropes": [{"name": "rope"}]}},
+      {"at_step": 5, "gravity": [0, -6, 0]}])"));
+    step(simulation, 2);
+    CHECK(simulation.find("rope") == nullptr);
+    step(simulation, 1);
+    CHECK(simulation.find("rope") != nullptr);
+    step(simulation, 2);
+    CHECK(simulation.find("rope") == nullptr);
+    CHECK(simulation.world().desc().gravity.y == 0);
+    step(simulation, 1);
+    CHECK(simulation.world().desc().gravity.y == hooke::Real(-6));
+    CHECK(simulation.errors().empty());
+  }
+
+  TEST_CASE("an event on an object that is not there is recorded with its place") {
+    hooke::Simulation simulation = simulate(particle_scene(R"(
+      "timeline": [{"at_step": 1, "remove": "ball"}, {"at_step": 2, "remove": "ball"}])"));
+    step(simulation, 3);
+    REQUIRE(simulation.errors().size() == 1);
+    CHECK(hooke::to_line(simulation.errors()[0]) ==
+          "demo.json:3:54: timeline[1]: there is no object 'ball' any more");
+    CHECK_FALSE(simulation.passed());
+  }
+
+  TEST_CASE("what only the world can refuse gets its place in the file") {
+    auto scene =
+        hooke::parse_scene("{\"version\": 1,\n \"ropes\": [{\"direction\": [0, 0, 0]}]}", "demo.json");
+    REQUIRE(scene);
+    const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+    REQUIRE(simulation.errors.size() == 1);
+    CHECK(simulation.errors[0].where == "demo.json:2:26: ropes[0].direction");
+  }
+
+  TEST_CASE("a scene made in code is checked as one from a file") {
+    hooke::Scene scene;
+    scene.objects.cloths.push_back({.mesh = "nowhere"});
+    scene.objects.ropes.push_back({.tag = {.material = "nothing"}});
+    scene.expect.push_back({.of = "rope", .point = hooke::ScenePoint{}, .at_step = 601});
+    const auto simulation = hooke::Simulation::create(scene);
+    REQUIRE(simulation.errors.size() == 3);
+    CHECK(hooke::to_line(simulation.errors[0]) == "ropes[0].material: there is no material 'nothing'");
+    CHECK(hooke::to_line(simulation.errors[1]) == "cloths[0].mesh: there is no mesh 'nowhere'");
+    CHECK(hooke::to_line(simulation.errors[2]) ==
+          "expect[0].at_step: 601 is after the end of the scene, step 600");
+    hooke::Scene large;
+    large.objects.ropes.push_back({.desc = {.masses = 1'000'000'000}});
+    CHECK(hooke::Simulation::create(large).errors.at(0).code == hooke::ErrorCode::kLimitExceeded);
+  }
+
+  TEST_CASE("expectations are judged at their step") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1, "seconds": 1,
+      "particles": [{"name": "ball", "particles": [{"position": [0, 10, 0]}]}],
+      "expect": [
+        {"quantity": "height", "of": "ball", "point": 0, "op": "==", "value": 10, "tolerance": 0, "at_step": 0},
+        {"quantity": "speed", "of": "ball", "point": 0, "op": "within", "value": 9.81, "tolerance": 0.001},
+        {"quantity": "kinetic_energy", "op": ">", "value": 1000},
+        {"quantity": "height", "of": "ball", "point": 0, "op": "<", "value": 10, "at_step": 1}]
+    })");
+    CHECK(simulation.verdicts().size() == 1);
+    CHECK_FALSE(simulation.passed());
+    simulation.run();
+    CHECK(simulation.world().step_count() == 60);
+    REQUIRE(simulation.verdicts().size() == 4);
+    const auto verdicts = simulation.verdicts();
+    CHECK((verdicts[0].index == 0 && verdicts[0].passed));
+    CHECK((verdicts[1].index == 3 && verdicts[1].passed && verdicts[1].step == 1));
+    CHECK((verdicts[2].index == 1 && verdicts[2].passed));
+    CHECK((verdicts[3].index == 2 && !verdicts[3].passed));
+    CHECK(verdicts[2].achieved == doctest::Approx(9.81));
+    CHECK(verdicts[2].text.starts_with("speed of 'ball' point 0 = 9.81"));
+    CHECK(verdicts[2].text.ends_with(", expected 9.81 within 0.1 %"));
+    CHECK_FALSE(simulation.passed());
+    CHECK(simulation.report().find("FAIL demo.json:7:9: expect[2]: kinetic energy = ") != std::string::npos);
+  }
+
+  TEST_CASE("the same scene gives the same bits") {
+    const std::string text = *hooke::starter_scene("rope");
+    hooke::Simulation a = simulate(text);
+    hooke::Simulation b = simulate(text);
+    step(a, 30);
+    step(b, 30);
+    CHECK(a.world().state_hash() == b.world().state_hash());
+  }
+
+  TEST_CASE("a mesh in place becomes a body and a cloth") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "meshes": {"roof": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}},
+      "bodies": [{"name": "body", "shape": {"mesh": "roof"}}],
+      "cloths": [{"name": "cloth", "mesh": "roof", "pins": [{"topmost": 0.1}]}]
+    })");
+    const hooke::SceneObject* cloth = simulation.find("cloth");
+    REQUIRE(cloth != nullptr);
+    CHECK(simulation.world().positions(cloth->cloth).size() == 3);
+    CHECK(cloth->model != nullptr);
+    REQUIRE(simulation.find("body") != nullptr);
+    CHECK(simulation.find("body")->shape.kind == hooke::ShapeKind::kMesh);
+  }
+}
