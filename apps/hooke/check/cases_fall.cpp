@@ -1,0 +1,165 @@
+/// One particle in gravity, in air and in fields.
+
+#include "cases.h"
+#include "rig.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::check {
+
+namespace {
+
+constexpr const char* kSolver = "particles";
+
+double fallen(const CheckSetting& setting, int substeps, double seconds) {
+  CheckSetting finer = setting;
+  finer.substeps = substeps;
+  Rig rig(finer);
+  const ParticlesId id = rig.add({.particles = {ParticleDesc{}}});
+  rig.run(seconds);
+  return -rig.world().positions(id)[0].y;
+}
+
+/// Downward speed of one particle after `seconds`.
+double speed_of_fall(const CheckSetting& setting, const ParticlesDesc& desc, double seconds) {
+  Rig rig(setting);
+  const ParticlesId id = rig.add(desc);
+  rig.run(seconds);
+  return -rig.world().velocities(id)[0].y;
+}
+
+CheckRow speed_row(const char* title, double expected, double achieved) {
+  return {.title = title,
+          .unit = "m/s",
+          .expected = expected,
+          .achieved = achieved,
+          .tolerance = 0.005,
+          .solver = kSolver};
+}
+
+}  // namespace
+
+/// y = g t^2 / 2 (textbook). Semi-implicit Euler falls g t h / 2 more, h the substep: first order.
+Rows free_fall(const CheckSetting& setting) {
+  const double t = 1.0;
+  const double exact = 0.5 * kGravity * t * t;
+  const double coarse = fallen(setting, setting.substeps, t);
+  const double fine = fallen(setting, 2 * setting.substeps, t);
+  const double h = setting.dt / setting.substeps;
+  return {{.title = "distance fallen in 1 s",
+           .unit = "m",
+           .expected = exact,
+           .achieved = coarse,
+           .tolerance = 0.005,
+           .solver = kSolver},
+          {.title = "excess over the exact distance",
+           .unit = "m",
+           .expected = 0.5 * kGravity * t * h,
+           .achieved = coarse - exact,
+           .tolerance = 0.005,
+           .solver = kSolver},
+          {.title = "order of convergence",
+           .expected = 1.0,
+           .achieved = std::log2((coarse - exact) / (fine - exact)),
+           .tolerance = 0.05,
+           .measure = CheckRow::Measure::kAbsolute,
+           .solver = kSolver}};
+}
+
+/// F = -c v: v = (m g / c) (1 - e^(-c t / m)) (textbook).
+Rows linear_drag(const CheckSetting& setting) {
+  const double m = 1.0;
+  const double c = 0.5;
+  const ParticlesDesc desc{.particles = {{.mass = real(m)}}, .air_friction = real(c)};
+  const auto speed = [&](double t) { return m * kGravity / c * (1 - std::exp(-c * t / m)); };
+  return {speed_row("speed after 1 s", speed(1), speed_of_fall(setting, desc, 1)),
+          speed_row("speed after 4 s", speed(4), speed_of_fall(setting, desc, 4)),
+          speed_row("terminal speed", m * kGravity / c, speed_of_fall(setting, desc, 30))};
+}
+
+/// F = rho Cd A v^2 / 2: v = v_t tanh(g t / v_t), v_t = sqrt(2 m g / (rho Cd A)) (textbook).
+Rows quadratic_drag(const CheckSetting& setting) {
+  const double m = 0.05;
+  const double radius = 0.1;
+  const double drag = 0.47;
+  const double density = 1.225;
+  const ParticlesDesc desc{.particles = {{.mass = real(m), .radius = real(radius)}},
+                           .drag_coefficient = real(drag)};
+  const double terminal = std::sqrt(2 * m * kGravity / (density * drag * 0.5 * kTau * radius * radius));
+  const auto speed = [&](double t) { return terminal * std::tanh(kGravity * t / terminal); };
+  return {speed_row("speed after 0.5 s", speed(0.5), speed_of_fall(setting, desc, 0.5)),
+          speed_row("speed after 1 s", speed(1), speed_of_fall(setting, desc, 1)),
+          speed_row("terminal speed", terminal, speed_of_fall(setting, desc, 30))};
+}
+
+/// T^2 = 4 pi^2 a^3 / (G M) (Kepler); v^2 = G M (2/r - 1/a); the Laplace-Runge-Lenz vector
+/// v x L / (G M) - r/|r| keeps its direction. Here e = 0.6, a = 1 m, T = 20 s, 100 orbits from the near end.
+Rows kepler_orbit(const CheckSetting& setting) {
+  const double period = 20;
+  const double strength = kTau * kTau / (period * period);
+  const double eccentricity = 0.6;
+  const double near = 1 - eccentricity;
+  const double speed = std::sqrt(strength * (2 / near - 1));
+
+  Rig rig(setting, weightless());
+  must(rig.world().add_field({.kind = FieldDesc::Kind::kInverseSquare, .strength = strength}));
+  const ParticlesId id =
+      rig.add({.particles = {{.position = {near, 0, 0}, .velocity = {real(0), real(speed), real(0)}}}});
+  const World& world = rig.world();
+  const double start = world.measure().energy.total();
+
+  // y grows through zero at the near end, once an orbit.
+  const Curve height = record(rig, 10.25 * period, [&] { return world.positions(id)[0].y; });
+  rig.run(100 * period - 10.25 * period);
+  const DVec3 x = world.positions(id)[0];
+  const DVec3 v = world.velocities(id)[0];
+  const DVec3 runge = (1 / strength) * cross(v, cross(x, v)) - normalize(x);
+  return {{.title = "period over 10 orbits, e = 0.6",
+           .unit = "s",
+           .expected = period,
+           .achieved = height.period(),
+           .tolerance = 0.001,
+           .solver = kSolver},
+          {.title = "energy after 100 orbits",
+           .unit = "J",
+           .expected = start,
+           .achieved = world.measure().energy.total(),
+           .tolerance = 0.001,
+           .solver = kSolver},
+          {.title = "turn of the axis in 100 orbits",
+           .unit = "rad",
+           .expected = 0,
+           .achieved = std::atan2(runge.y, runge.x),
+           .tolerance = 0.005 * kTau,
+           .measure = CheckRow::Measure::kAbsolute,
+           .solver = kSolver}};
+}
+
+/// w = q B / m, the speed stays (textbook).
+Rows charge_in_magnetic_field(const CheckSetting& setting) {
+  const double charge = 2;
+  const double field = 1.5;
+  const double mass = 3;
+  Rig rig(setting, weightless());
+  must(
+      rig.world().add_field({.kind = FieldDesc::Kind::kMagnetic, .vector = {real(0), real(field), real(0)}}));
+  const ParticlesId id = rig.add(
+      {.particles = {{.velocity = {real(1), real(0), real(0)}, .mass = real(mass), .charge = real(charge)}}});
+  const World& world = rig.world();
+  const Curve side = record(rig, 60, [&] { return world.velocities(id)[0].x; });
+  return {{.title = "period",
+           .unit = "s",
+           .expected = kTau * mass / (charge * field),
+           .achieved = side.period(),
+           .tolerance = 1e-4,
+           .solver = kSolver},
+          {.title = "speed after 60 s",
+           .unit = "m/s",
+           .expected = 1,
+           .achieved = length(world.velocities(id)[0]),
+           .tolerance = 1e-4,
+           .solver = kSolver}};
+}
+
+}  // namespace hooke::check

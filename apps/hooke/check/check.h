@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// \file
+/// `hooke check`: scenes whose answer is known, and how near the engine comes to it.
+///
+/// A case builds its worlds through the public API only and returns one row for each figure it measures. The
+/// sources know no precision: the same cases are built against the engine in float and in double.
+
+namespace hooke::check {
+
+/// How the worlds of a case are stepped, and what a test may spoil in them to see a case fail.
+struct CheckSetting {
+  double dt = 1.0 / 60.0;       ///< [s]
+  int substeps = 8;             ///< WorldDesc::substeps.
+  double gravity_scale = 1.0;   ///< Times the gravity of every world; 1 is right.
+  double friction_scale = 1.0;  ///< Times the friction of every contact; 1 is right.
+};
+
+/// One figure beside its known answer.
+struct CheckRow {
+  enum class Measure {
+    kRelative,  ///< Error is |achieved / expected - 1|.
+    kAbsolute,  ///< Error is |achieved - expected|, in `unit`.
+  };
+
+  std::string title = {};
+  std::string unit = {};  ///< Of `expected` and `achieved`; empty for a pure number.
+  double expected = 0;
+  double achieved = 0;
+  double tolerance = 0;  ///< Largest error that passes.
+  Measure measure = Measure::kRelative;
+  std::string solver = {};  ///< Which part of the engine did it.
+  double dt = 0;            ///< [s]; 0 stands for the setting's.
+  int substeps = 0;         ///< 0 stands for the setting's.
+
+  [[nodiscard]] double error() const;
+  /// False also for an error that is not a number.
+  [[nodiscard]] bool pass() const { return error() <= tolerance; }
+};
+
+struct CheckCase {
+  std::string id;
+  std::string title;
+  std::function<std::vector<CheckRow>(const CheckSetting&)> run;
+};
+
+/// All cases, in the order of the report.
+const std::vector<CheckCase>& check_cases();
+
+/// Runs one case. The rows come back complete: dt and substeps are filled in. A case that cannot build its
+/// world gives one failed row that says why.
+std::vector<CheckRow> run_case(const CheckCase& check, const CheckSetting& setting);
+
+/// "float" or "double": the engine these cases are linked to.
+const char* precision_name();
+
+struct CheckOptions {
+  std::vector<std::string> cases = {};  ///< Ids, in any case of letters; none for all.
+  std::string json_file = {};           ///< Also write the rows here; "-" for standard output.
+  std::string markdown_file = {};       ///< Also write a table here; "-" for standard output.
+  bool list = false;                    ///< Only print ids and titles.
+  int substeps = 8;
+};
+
+/// The command: prints one line per row as it comes. Returns 0 if every row passed, 1 if one failed, 2 for an
+/// unknown case or a file that cannot be written.
+int check_command(const CheckOptions& options);
+
+}  // namespace hooke::check

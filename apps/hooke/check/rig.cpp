@@ -1,0 +1,117 @@
+#include "rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hooke::check {
+
+namespace {
+
+World make_world(const CheckSetting& setting, WorldDesc desc) {
+  desc.gravity = real(setting.gravity_scale) * desc.gravity;
+  desc.substeps = setting.substeps;
+  return must(World::create(desc));
+}
+
+}  // namespace
+
+Rig::Rig(const CheckSetting& setting, WorldDesc desc)
+    : world_(make_world(setting, std::move(desc))),
+      dt_(setting.dt),
+      friction_scale_(setting.friction_scale) {}
+
+BodyId Rig::add(BodyDesc desc) {
+  // A contact uses the geometric mean of two coefficients, so the body's takes the square of the scale.
+  desc.contact.friction *= real(friction_scale_ * friction_scale_);
+  return must(world_.add_body(desc));
+}
+
+bool Rig::step() {
+  healthy_ = world_.step(real(dt_)).healthy() && healthy_;
+  return healthy_;
+}
+
+bool Rig::run(double seconds, const std::function<void()>& after_each) {
+  const auto frames = static_cast<long>(std::lround(seconds / dt_));
+  for (long i = 0; i < frames; ++i) {
+    step();
+    if (after_each) after_each();
+  }
+  return healthy_;
+}
+
+WorldDesc weightless() {
+  WorldDesc desc;
+  desc.gravity = {};
+  return desc;
+}
+
+double Curve::cubic(std::size_t left, double time) const {
+  const std::size_t count = samples_.size();
+  const std::size_t first = left == 0 ? 0 : std::min(left - 1, count < 4 ? 0 : count - 4);
+  const std::size_t last = std::min(first + 4, count);
+  double sum = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    double weight = 1;
+    for (std::size_t j = first; j < last; ++j) {
+      if (j != i) weight *= (time - samples_[j].time) / (samples_[i].time - samples_[j].time);
+    }
+    sum += weight * samples_[i].value;
+  }
+  return sum;
+}
+
+std::vector<double> Curve::zero_crossings() const {
+  std::vector<double> times;
+  for (std::size_t i = 0; i + 1 < samples_.size(); ++i) {
+    const bool up = samples_[i].value < 0 && samples_[i + 1].value >= 0;
+    const bool down = samples_[i].value > 0 && samples_[i + 1].value <= 0;
+    if (!up && !down) continue;
+    double low = samples_[i].time;
+    double high = samples_[i + 1].time;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      const bool before = up ? cubic(i, middle) < 0 : cubic(i, middle) > 0;
+      (before ? low : high) = middle;
+    }
+    times.push_back(0.5 * (low + high));
+  }
+  return times;
+}
+
+std::vector<double> Curve::peaks() const {
+  std::vector<double> found;
+  for (std::size_t i = 1; i + 1 < samples_.size(); ++i) {
+    const double a = std::abs(samples_[i - 1].value);
+    const double b = std::abs(samples_[i].value);
+    const double c = std::abs(samples_[i + 1].value);
+    if (!(b > a) || !(b >= c)) continue;
+    const double bend = a - 2 * b + c;
+    found.push_back(b - (a - c) * (a - c) / (8 * bend));
+  }
+  return found;
+}
+
+double Curve::period() const {
+  const std::vector<double> times = zero_crossings();
+  if (times.size() < 3) return std::numeric_limits<double>::quiet_NaN();
+  return 2 * (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+Curve record(Rig& rig, double seconds, const std::function<double()>& value) {
+  Curve curve;
+  curve.add(rig.time(), value());
+  rig.run(seconds, [&] { curve.add(rig.time(), value()); });
+  return curve;
+}
+
+double bisect(double holds, double fails, int halvings, const std::function<bool(double)>& stands) {
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (holds + fails);
+    (stands(middle) ? holds : fails) = middle;
+  }
+  return 0.5 * (holds + fails);
+}
+
+}  // namespace hooke::check

@@ -1,0 +1,123 @@
+#include "check.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+using hooke::check::check_cases;
+using hooke::check::check_command;
+using hooke::check::CheckCase;
+using hooke::check::CheckRow;
+using hooke::check::CheckSetting;
+using hooke::check::run_case;
+
+namespace {
+
+const CheckCase& named(const std::string& id) {
+  const auto& all = check_cases();
+  return *std::find_if(all.begin(), all.end(), [&](const CheckCase& c) { return c.id == id; });
+}
+
+int failed_rows(const std::string& id, const CheckSetting& setting) {
+  const auto rows = run_case(named(id), setting);
+  return static_cast<int>(
+      std::count_if(rows.begin(), rows.end(), [](const CheckRow& row) { return !row.pass(); }));
+}
+
+std::string temporary(const char* name) {
+  return (std::filesystem::temp_directory_path() / name).string();
+}
+
+}  // namespace
+
+TEST_SUITE("check/cases") {
+  TEST_CASE("half the gravity is found by every case that weighs something") {
+    const CheckSetting light{.gravity_scale = 0.5};
+    CHECK(failed_rows("V1", light) == 2);  // the order of convergence does not depend on it
+    CHECK(failed_rows("V2", light) == 3);
+    CHECK(failed_rows("V3", light) == 3);
+    CHECK(failed_rows("V6", light) == 4);
+    CHECK(failed_rows("V7", light) == 6);
+    CHECK(failed_rows("V17", light) == 12);
+    CHECK(failed_rows("I3", light) == 2);
+  }
+
+  TEST_CASE("a slope without friction is found") {
+    const CheckSetting slippery{.friction_scale = 0};
+    CHECK(failed_rows("I10", slippery) == 3);  // the row without friction stays
+  }
+
+  TEST_CASE("a tenth more friction is found") {
+    const CheckSetting rough{.friction_scale = 1.1};
+    CHECK(failed_rows("I10", rough) >= 2);
+  }
+
+  TEST_CASE("two substeps are too few for the period of a stiff spring") {
+    CHECK(failed_rows("V4", {.substeps = 2}) > 0);
+  }
+
+  TEST_CASE("ids are unique and rows are complete") {
+    for (const CheckCase& check : check_cases()) CHECK(&named(check.id) == &check);
+    for (const CheckRow& row : run_case(named("V24"), {})) {
+      CHECK(row.dt == doctest::Approx(1.0 / 60));
+      CHECK(row.substeps == 8);
+      CHECK(!row.solver.empty());
+      CHECK(row.tolerance > 0);
+    }
+  }
+}
+
+TEST_SUITE("check/rows") {
+  TEST_CASE("an error is relative or in the unit of the row") {
+    const CheckRow relative{.expected = 2, .achieved = 2.1, .tolerance = 0.04};
+    CHECK(relative.error() == doctest::Approx(0.05));
+    CHECK_FALSE(relative.pass());
+    const CheckRow absolute{.achieved = -0.1, .tolerance = 0.2, .measure = CheckRow::Measure::kAbsolute};
+    CHECK(absolute.error() == doctest::Approx(0.1));
+    CHECK(absolute.pass());
+  }
+
+  TEST_CASE("what is not a number does not pass") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(CheckRow{.expected = 1, .achieved = nan, .tolerance = 1}.pass());
+    CHECK_FALSE(CheckRow{.achieved = nan, .tolerance = 1, .measure = CheckRow::Measure::kAbsolute}.pass());
+  }
+
+  TEST_CASE("a case that cannot build its world fails and says why") {
+    const CheckCase broken{"X", "broken", [](const CheckSetting&) -> std::vector<CheckRow> {
+                             throw std::runtime_error("rope.masses: 1 is out of range");
+                           }};
+    const auto rows = run_case(broken, {});
+    REQUIRE(rows.size() == 1);
+    CHECK_FALSE(rows[0].pass());
+    CHECK(rows[0].title.find("rope.masses") != std::string::npos);
+  }
+}
+
+TEST_SUITE("check/command") {
+  TEST_CASE("the JSON file holds every row") {
+    const std::string file = temporary("hooke_check_test.json");
+    REQUIRE(check_command({.cases = {"v1", "V24"}, .json_file = file}) == 0);
+    std::ifstream in(file);
+    const auto json = nlohmann::json::parse(in);
+    REQUIRE(json["cases"].size() == 5);
+    CHECK(json["cases"][0]["id"] == "V1");
+    CHECK(json["cases"][0]["expected"].get<double>() == doctest::Approx(4.905));
+    CHECK(json["cases"][0]["pass"] == true);
+    CHECK(json["cases"][0]["substeps"] == 8);
+    std::filesystem::remove(file);
+  }
+
+  TEST_CASE("failed rows, unknown cases and unwritable files have their exit codes") {
+    CHECK(check_command({.cases = {"V4"}, .substeps = 2}) == 1);
+    CHECK(check_command({.cases = {"V1000"}}) == 2);
+    CHECK(check_command({.cases = {"V24"}, .json_file = "/no/such/folder/check.json"}) == 2);
+    CHECK(check_command({.list = true}) == 0);
+  }
+}
