@@ -1,6 +1,6 @@
 #include "hooke/view_window.h"
 
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_NONE  // NOLINT(readability-identifier-naming): GLFW's own name
 #include "render/orbit_camera.h"
 #include "render/renderer.h"
 
@@ -263,11 +263,11 @@ Result<void> draw_picture(Session& session, render::Renderer& renderer, GLFWwind
   ImGui::Render();
   if (!visible) return {};
   fill_list(session);
-  const auto sized = renderer.resize(width, height);
+  auto sized = renderer.resize(width, height);
   if (!sized) return sized;
-  const auto drawn = renderer.draw(session.list);
+  auto drawn = renderer.draw(session.list);
   if (!drawn) return drawn;
-  const auto shown = renderer.present(width, height);
+  auto shown = renderer.present(width, height);
   if (!shown) return shown;
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glfwSwapBuffers(window);
@@ -300,7 +300,7 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
     last = Clock::now();
     smooth(session.picture_ms, elapsed_ms);
     play(session, elapsed_ms / 1000);
-    const auto drawn = draw_picture(session, renderer.value(), window);
+    auto drawn = draw_picture(session, renderer.value(), window);
     if (!drawn) return drawn;
   }
   return {};

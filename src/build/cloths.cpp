@@ -250,7 +250,7 @@ void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   if (!desc.tethers) return;
   std::vector<std::uint32_t> pins;
   for (const PinDesc& pin : desc.pins) pins.push_back(pin.point);
-  const TetherSurface surface = {s.points, s.triangles, s.is_grid};
+  const TetherSurface surface = {s.points, s.triangles, s.topology, s.is_grid};
   for (const Tether& tether : find_tethers(surface, pins)) {
     append_spring({.a = tether.point,
                    .b = tether.pin,

@@ -1,5 +1,7 @@
 #include "build/tethers.h"
 
+#include "geometry/geodesic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +14,14 @@ constexpr std::size_t kMostPinsWithSecond = 8;
 
 std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t pin) {
   std::vector<double> result;
-  for (const DVec3& p : surface.points) result.push_back(length(p - surface.points[pin]));
+  if (surface.is_flat) {
+    for (const DVec3& p : surface.points) result.push_back(length(p - surface.points[pin]));
+    return result;
+  }
+  std::vector<Vec3> offsets;
+  for (const DVec3& p : surface.points) offsets.push_back(vector_cast<Real>(p - surface.points[pin]));
+  const auto field = geometry::compute_geodesic_field(offsets, surface.triangles, surface.topology, {&pin, 1});
+  result.assign(field.distance.begin(), field.distance.end());
   return result;
 }
 

@@ -2,7 +2,8 @@
 
 #include "hooke/math.h"
 
-#include <array>
+#include "geometry/triangle_mesh.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,7 +19,8 @@ struct Tether {
 /// A surface at rest. `is_flat` promises that straight distances are distances along it.
 struct TetherSurface {
   std::span<const DVec3> points;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const geometry::Triangle> triangles;
+  const geometry::MeshTopology& topology;
   bool is_flat = false;
 };
 

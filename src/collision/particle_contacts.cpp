@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hooke::collision {
 
 namespace {
 
-constexpr Real kMargin = Real(0.02);  ///< [m]
+constexpr Real kMargin = Real(0.02);    ///< [m]
+constexpr Real kNoContact = Real(1e9);  ///< Distance of a row that does not hold now [m].
 
 /// A body's frame as one object sees it: x_body = R^T (x - offset), x relative to the object's origin.
 struct Frame {
@@ -57,11 +59,12 @@ void find_pair(const state::Tables& t, std::uint32_t object_row, std::uint32_t p
   const Real friction = std::sqrt(object.friction * body.friction);
   if (body.shape.kind != ShapeKind::kMesh) {
     if (gap_to_shape(body.shape, x).distance > reach) return;
-    append(contacts, {particle, body_row, 0}, object_row, friction);
+    append(finder.contacts, {particle, body_row, 0}, object_row, friction);
     return;
   }
-  for (const std::uint32_t triangle : triangles_near(*body.mesh, x, reach)) {
-    append(contacts, {particle, body_row, triangle}, object_row, friction);
+  find_triangles_near(*body.mesh, x, reach, finder.triangles);
+  for (const std::uint32_t triangle : finder.triangles) {
+    append(finder.contacts, {particle, body_row, triangle}, object_row, friction);
   }
 }
 
@@ -78,9 +81,36 @@ void carry_forces(const state::Contacts& from, state::Contacts& to) {
   }
 }
 
-Gap gap_of(const state::Body& body, Vec3 x, std::uint32_t feature) {
-  return body.shape.kind == ShapeKind::kMesh ? gap_to_triangle(*body.mesh, feature, x)
-                                             : gap_to_shape(body.shape, x);
+void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap gap, Real radius) {
+  contacts.normal[row] = frame.to_world(gap.normal);
+  contacts.separation[row] = gap.distance - radius;
+}
+
+/// Rows [first, end) are triangles of one mesh near one particle. The nearest triangle tells whether the particle is
+/// inside: then it alone pushes out. Outside, faces below the particle hold it; a rim does only where no face is, so
+/// that sliding over the edges between triangles of a flat mesh is not felt.
+void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t end, const Frame& frame, Vec3 x,
+                      Real radius) {
+  const state::Mesh& mesh = *frame.body->mesh;
+  const Vec3 place = frame.to_body(x);
+  std::size_t nearest = first;
+  Real least = std::numeric_limits<Real>::infinity();
+  bool any_face = false;
+  for (std::size_t row = first; row < end; ++row) {
+    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
+    any_face = any_face || (g.over_face && g.gap.distance >= Real(0));
+    // Of equally near triangles one that is below the particle counts, not one beside it.
+    const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
+    nearest = better ? row : nearest;
+    least = better ? g.unsigned_distance : least;
+  }
+  const bool inside = gap_to_triangle(mesh, contacts.feature[nearest], place).gap.distance < Real(0);
+  for (std::size_t row = first; row < end; ++row) {
+    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
+    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && row == nearest;
+    const bool active = inside ? row == nearest : holds;
+    set_row(contacts, row, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
+  }
 }
 
 }  // namespace
@@ -88,30 +118,42 @@ Gap gap_of(const state::Body& body, Vec3 x, std::uint32_t feature) {
 void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
-  state::Contacts found;
+  Finder finder;
   const bool any =
       std::any_of(t.bodies.begin(), t.bodies.end(), [](const state::Body& b) { return b.collides; });
   for (std::uint32_t o = 0; any && o < t.objects.size(); ++o) {
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
       for (std::uint32_t b = 0; b < t.bodies.size(); ++b) {
-        if (t.bodies[b].collides) find_pair(t, o, p, b, way, found);
+        if (t.bodies[b].collides) find_pair(t, o, p, b, way, finder);
       }
     }
   }
-  carry_forces(t.contacts, found);
-  t.contacts = std::move(found);
+  carry_forces(t.contacts, finder.contacts);
+  t.contacts = std::move(finder.contacts);
 }
 
 void update_contacts(parallel::Range range, state::Tables& t) {
-  for (int i = range.begin; i < range.end; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    const std::uint32_t particle = t.contacts.particle[row];
-    const state::Body& body = t.bodies[t.contacts.body[row]];
-    const Frame frame = frame_of(body, t.objects[t.contacts.object[row]]);
-    const Gap gap = gap_of(body, frame.to_body(t.particles.position[particle].x), t.contacts.feature[row]);
-    t.contacts.normal[row] = frame.to_world(gap.normal);
-    t.contacts.separation[row] = gap.distance - t.particles.velocity[particle].radius;
+  state::Contacts& contacts = t.contacts;
+  const std::size_t count = contacts.particle.size();
+  const auto same_pair = [&](std::size_t a, std::size_t b) {
+    return contacts.particle[a] == contacts.particle[b] && contacts.body[a] == contacts.body[b];
+  };
+  auto row = static_cast<std::size_t>(range.begin);
+  while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
+  while (row < static_cast<std::size_t>(range.end)) {
+    const std::size_t first = row;
+    while (row < count && same_pair(row, first)) ++row;
+    const std::uint32_t particle = contacts.particle[first];
+    const state::Body& body = t.bodies[contacts.body[first]];
+    const Frame frame = frame_of(body, t.objects[contacts.object[first]]);
+    const Vec3 x = t.particles.position[particle].x;
+    const Real radius = t.particles.velocity[particle].radius;
+    if (body.shape.kind == ShapeKind::kMesh) {
+      update_mesh_rows(contacts, first, row, frame, x, radius);
+    } else {
+      set_row(contacts, first, frame, gap_to_shape(body.shape, frame.to_body(x)), radius);
+    }
   }
 }
 

@@ -1,57 +1,61 @@
 #include "collision/shape_gap.h"
 
-#include <algorithm>
+#include "geometry/closest.h"
+
 #include <cmath>
+#include <limits>
 
 namespace hooke::collision {
 
 namespace {
 
-Gap gap_to_sphere(Real radius, Vec3 x) {
-  const Real r = length(x);
-  if (!(r > Real(0))) return {-radius, {Real(0), Real(1), Real(0)}};
-  return {r - radius, (Real(1) / r) * x};
-}
-
-Gap gap_to_box(Vec3 half, Vec3 x) {
-  const Vec3 size = {std::abs(x.x), std::abs(x.y), std::abs(x.z)};
-  const auto sign = [](Real v) { return v < Real(0) ? Real(-1) : Real(1); };
-  const Vec3 over = size - half;
-  const Vec3 outside = {std::max(over.x, Real(0)), std::max(over.y, Real(0)), std::max(over.z, Real(0))};
-  const Real apart = length(outside);
-  if (apart > Real(0)) {
-    const Vec3 n = (Real(1) / apart) * outside;
-    return {apart, {sign(x.x) * n.x, sign(x.y) * n.y, sign(x.z) * n.z}};
-  }
-  if (over.x >= over.y && over.x >= over.z) return {over.x, {sign(x.x), Real(0), Real(0)}};
-  if (over.y >= over.z) return {over.y, {Real(0), sign(x.y), Real(0)}};
-  return {over.z, {Real(0), Real(0), sign(x.z)}};
+Gap gap_of(const geometry::SurfacePoint<Real>& surface) {
+  return {surface.signed_distance, surface.normal};
 }
 
 }  // namespace
 
 Gap gap_to_shape(const Shape& shape, Vec3 x) {
   switch (shape.kind) {
-    case ShapeKind::kHalfSpace:
-      return {x.y, {Real(0), Real(1), Real(0)}};
-    case ShapeKind::kSphere:
-      return gap_to_sphere(shape.radius, x);
-    case ShapeKind::kBox:
-      return gap_to_box(shape.half_extents, x);
-    case ShapeKind::kMesh:
-      break;
+    case ShapeKind::kHalfSpace: return gap_of(geometry::closest_on_half_space(x));
+    case ShapeKind::kSphere: return gap_of(geometry::closest_on_sphere(x, shape.radius));
+    case ShapeKind::kBox: return gap_of(geometry::closest_on_box(x, shape.half_extents));
+    case ShapeKind::kMesh: break;
   }
   return {std::numeric_limits<Real>::infinity(), {Real(0), Real(1), Real(0)}};
 }
 
-Gap gap_to_triangle(const state::Mesh&, std::uint32_t, Vec3) {
-  return {};
+TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x) {
+  const auto [ia, ib, ic] = mesh.desc.triangles[triangle];
+  const Vec3 a = mesh.desc.positions[ia];
+  const Vec3 b = mesh.desc.positions[ib];
+  const Vec3 c = mesh.desc.positions[ic];
+  const auto nearest = geometry::closest_on_triangle(x, a, b, c);
+  const Vec3 front = normalize(cross(b - a, c - a));
+  const Real height = dot(front, x - a);
+  const Vec3 w = nearest.weights;
+  TriangleGap result;
+  result.unsigned_distance = std::sqrt(nearest.distance_squared);
+  result.over_face = w.x > Real(0) && w.y > Real(0) && w.z > Real(0);
+  if (result.over_face) {
+    result.gap = {height, front};
+    return result;
+  }
+  const bool in_front = height >= Real(0);
+  result.gap.distance = in_front ? result.unsigned_distance : -result.unsigned_distance;
+  const Vec3 away = geometry::direction_or(x - nearest.point, front);
+  result.gap.normal = in_front ? away : -away;
+  return result;
 }
-std::vector<std::uint32_t> triangles_near(const state::Mesh&, Vec3, Real) {
-  return {};
+
+void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found) {
+  const Vec3 r = {reach, reach, reach};
+  geometry::find_triangles(mesh.bvh, {.lower = x - r, .upper = x + r}, found);
 }
-Real distance_to_mesh(const state::Mesh&, Vec3, Real reach) {
-  return reach;
+
+Real distance_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
+  const auto nearest = geometry::find_closest(mesh.bvh, x, reach);
+  return nearest ? gap_to_triangle(mesh, nearest->triangle, x).gap.distance : reach;
 }
 
 }  // namespace hooke::collision

@@ -18,18 +18,23 @@ struct Gap {
   Vec3 normal = {};
 };
 
-/// Half-space, sphere or box. The center of a sphere leads up; a point in the middle of a box leaves by its
-/// nearest face, the first of x, y, z among equals.
+/// Half-space, sphere or box; degenerate places as in geometry/closest.h.
 [[nodiscard]] Gap gap_to_shape(const Shape& shape, Vec3 x);
 
-/// One triangle, solid behind its front: over its face the distance is signed, beside it that to the nearest
-/// edge.
-[[nodiscard]] Gap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x);
+/// One triangle of a mesh that is solid behind its fronts. Over the face the distance is signed; beside it the nearest
+/// point is on the rim, and the distance is positive in front of the triangle's plane.
+struct TriangleGap {
+  Gap gap;
+  bool over_face = false;
+  Real unsigned_distance = Real(0);
+};
 
-/// Triangles within `reach` of a point, in ascending order.
-[[nodiscard]] std::vector<std::uint32_t> triangles_near(const state::Mesh& mesh, Vec3 x, Real reach);
+[[nodiscard]] TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x);
 
-/// Signed distance to the nearest triangle within `reach`, or `reach` if there is none.
+/// Triangles whose boxes come within `reach` of a point, in ascending order.
+void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found);
+
+/// Signed distance to the nearest triangle, or `reach` if none is that near.
 [[nodiscard]] Real distance_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach);
 
 }  // namespace hooke::collision

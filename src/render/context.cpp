@@ -2,7 +2,7 @@
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_NONE  // NOLINT(readability-identifier-naming): GLFW's own name
 #include <GLFW/glfw3.h>
 #include <array>
 #include <string_view>

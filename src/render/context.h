@@ -19,6 +19,7 @@ class Context {
   static Result<Context> create_headless();
 
   /// A window that can be resized, `width` by `height` in screen units. kUnsupported without a display.
+  /// One window at a time: closing it ends the window system's library for all.
   static Result<Context> create_window(const std::string& title, int width, int height);
 
   /// Makes the context the calling thread's current one; an Error if the driver refuses.

@@ -69,6 +69,10 @@ Result<GlName> make_program(const std::string& title, const std::string& vertex,
   return Error{ErrorCode::kUnsupported, "shader " + title, log.data()};
 }
 
+const void* buffer_offset(std::size_t bytes) {
+  return reinterpret_cast<const void*>(bytes);  // NOLINT(performance-no-int-to-ptr)
+}
+
 Result<void> take_gl_error(const std::string& where) {
   const GLenum first = glGetError();
   if (first == GL_NO_ERROR) return {};

@@ -2,6 +2,7 @@
 
 #include "hooke/result.h"
 
+#include <cstddef>
 #include <epoxy/gl.h>
 #include <string>
 #include <utility>
@@ -45,6 +46,9 @@ GlName make_renderbuffer();
 
 /// A linked program; the driver's message if the shaders do not compile. `title` names it in the error.
 Result<GlName> make_program(const std::string& title, const std::string& vertex, const std::string& fragment);
+
+/// A place in the bound buffer, as OpenGL wants it: disguised as a pointer.
+const void* buffer_offset(std::size_t bytes);
 
 /// All pending OpenGL errors as one Error; none is success.
 Result<void> take_gl_error(const std::string& where);

@@ -23,8 +23,7 @@ GpuMesh make_gpu_mesh(const std::shared_ptr<const MeshGeometry>& geometry) {
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh.indices.name());
   const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
     glEnableVertexAttribArray(location);
-    glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(offset));
+    glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex), buffer_offset(offset));
   };
   attribute(0, 3, offsetof(Vertex, position));
   attribute(1, 3, offsetof(Vertex, normal));

@@ -8,6 +8,8 @@
 #include "render/text.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
 
@@ -36,6 +38,8 @@ struct LineInstance {
 
 /// The outermost ring of the ground mesh, whose innermost ring is at one half.
 constexpr float kGroundRadius = 16384;
+
+constexpr int kGroundSides = 32;
 
 /// What both passes draw.
 struct Prepared {
@@ -75,7 +79,7 @@ void set_float_attribute(GLuint location, GLint size, std::size_t stride, std::s
                          GLuint divisor) {
   glEnableVertexAttribArray(location);
   glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride),
-                        reinterpret_cast<const void*>(offset));
+                        buffer_offset(offset));
   glVertexAttribDivisor(location, divisor);
 }
 
@@ -109,15 +113,15 @@ Stream make_text_stream() {
 
 /// Rings whose radius doubles, so that no triangle is so large that its depth loses digits.
 GroundMesh make_ground_mesh() {
-  constexpr int kSides = 32;
   std::vector<Vec3> vertices;
   const auto at = [](int side, float radius) {
-    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(side) / kSides;
+    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(side) / kGroundSides;
     return Vec3{radius * std::sin(angle), 0, radius * std::cos(angle)};
   };
   float inner = 0;
-  for (float outer = 0.5F; outer <= kGroundRadius; outer *= 2) {
-    for (int side = 0; side < kSides; ++side) {
+  for (int ring = -1; std::exp2(ring) <= kGroundRadius; ++ring) {
+    const auto outer = static_cast<float>(std::exp2(ring));
+    for (int side = 0; side < kGroundSides; ++side) {
       vertices.insert(vertices.end(), {at(side, inner), at(side, outer), at(side + 1, outer)});
       vertices.insert(vertices.end(), {at(side, inner), at(side + 1, outer), at(side + 1, inner)});
     }
@@ -156,14 +160,15 @@ void draw_batch(const RendererData& data, const Batch& batch, const GpuMesh& mes
   glBindVertexArray(mesh.vertex_array.name());
   glBindBuffer(GL_ARRAY_BUFFER, data.instance_buffer.name());
   const std::size_t start = batch.first_instance * sizeof(Instance);
-  for (GLuint row = 0; row < 3; ++row) {
-    set_float_attribute(3 + row, 4, sizeof(Instance), start + offsetof(Instance, rows) + 16 * row, 1);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::size_t place = start + offsetof(Instance, rows) + 4 * sizeof(float) * row;
+    set_float_attribute(static_cast<GLuint>(3 + row), 4, sizeof(Instance), place, 1);
   }
   set_float_attribute(6, 4, sizeof(Instance), start + offsetof(Instance, color), 1);
   set_float_attribute(7, 2, sizeof(Instance), start + offsetof(Instance, gloss), 1);
   glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
   glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(batch.index_count), GL_UNSIGNED_INT,
-                          reinterpret_cast<const void*>(batch.first_index * sizeof(std::uint32_t)),
+                          buffer_offset(batch.first_index * sizeof(std::uint32_t)),
                           static_cast<GLsizei>(batch.instance_count));
 }
 
@@ -356,7 +361,7 @@ Result<Renderer> Renderer::create(const Context& context, const RendererOptions&
 
 Result<void> Renderer::resize(int width, int height) {
   if (width == data_->picture.width && height == data_->picture.height) return {};
-  const auto current = data_->context.make_current();
+  auto current = data_->context.make_current();
   if (!current) return current;
   auto picture = make_picture_target(width, height, data_->options.samples);
   if (!picture) return picture.error();
@@ -366,7 +371,7 @@ Result<void> Renderer::resize(int width, int height) {
 
 Result<void> Renderer::draw(const DrawList& list) {
   RendererData& data = *data_;
-  const auto current = data.context.make_current();
+  auto current = data.context.make_current();
   if (!current) return current;
   data.cache.remove_orphans();
   const auto prepared = prepare(data, list);
@@ -400,7 +405,7 @@ Result<Image> Renderer::read_image() const {
 }
 
 Result<void> Renderer::present(int width, int height) const {
-  const auto current = data_->context.make_current();
+  auto current = data_->context.make_current();
   if (!current) return current;
   reset_state();
   glDisable(GL_DEPTH_TEST);

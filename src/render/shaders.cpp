@@ -75,6 +75,8 @@ vec3 lit(vec3 albedo, vec3 normal, vec3 point, vec2 gloss) {
   vec3 to_eye = normalize(eye.xyz - point);
   float n_dot_l = dot(normal, sun_direction.xyz);
   vec3 light = mix(ground_light.rgb, sky_light.rgb, 0.5 + 0.5 * normal.y);
+  // The sky is brighter around the sun, which keeps folds readable where the sun itself does not reach.
+  light *= 0.875 + 0.275 * n_dot_l;
   vec3 color = albedo * light;
   // Towards the light the highlight starts softly, so that it has no edge where the light ends.
   float facing = clamp(n_dot_l, 0.0, 1.0);

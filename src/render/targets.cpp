@@ -9,7 +9,7 @@ namespace {
 constexpr int kMaxSide = 8192;
 
 Result<void> check_framebuffer(const std::string& where) {
-  const auto error = take_gl_error(where);
+  auto error = take_gl_error(where);
   if (!error) return error;
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return {};
   return Error{ErrorCode::kUnsupported, where, "the driver cannot draw into this kind of picture"};

@@ -16,8 +16,6 @@
 #include <utility>
 #include <vector>
 
-extern char** environ;
-
 namespace hooke::render {
 
 namespace {
@@ -212,6 +210,7 @@ namespace {
 int spawn_ffmpeg(VideoData& data, int input) {
   std::vector<std::string> words = ffmpeg_arguments(data.options, data.format, data.temporary);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -95,6 +95,7 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc) {
   if (!good) return good.error();
   auto mesh = std::make_shared<state::Mesh>();
   mesh->desc = desc;
+  mesh->bvh = geometry::build_bvh(desc.positions, desc.triangles);
   state::Tables& t = data_->tables;
   t.meshes.push_back(std::move(mesh));
   return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);

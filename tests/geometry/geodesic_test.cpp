@@ -99,6 +99,26 @@ TEST_SUITE("geometry/geodesic") {
     }
   }
 
+  TEST_CASE("a sheet rolled to half a tube keeps the distances from its straight edge") {
+    MeshDesc mesh = make_uneven_grid(31, 0.3);
+    const MeshDesc flat = mesh;
+    const double radius = 30.0 / 3.14159265;
+    for (Vec3& p : mesh.positions) {
+      const double angle = p.y / radius;
+      p.y = static_cast<Real>(radius * std::sin(angle));
+      p.z = static_cast<Real>(radius * (1.0 - std::cos(angle)));
+    }
+    std::vector<std::uint32_t> row(31);
+    for (std::uint32_t column = 0; column < 31; ++column) row[column] = column;
+    const auto field = field_of(mesh, row);
+    for (std::uint32_t v = 5 * 31; v < mesh.positions.size(); ++v) {
+      // Between two sources the front runs ahead by what a straight line is nearer than its points: below
+      // 0.02.
+      CHECK(field.distance[v] >= flat.positions[v].y * 0.997 - 0.02);
+      CHECK(field.distance[v] <= flat.positions[v].y * 1.015 + 0.02);
+    }
+  }
+
   TEST_CASE("a slit is walked around, not across") {
     // The sheet is cut along row 10 from the left border to column 15: the lower copy of each point there
     // belongs to the triangles below.

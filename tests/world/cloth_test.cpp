@@ -1,0 +1,183 @@
+#include "world/make.h"
+
+#include "world/world_data.h"
+
+#include <cmath>
+
+namespace hooke {
+
+using test::make_world;
+using test::run;
+using test::take;
+
+namespace {
+
+ClothDesc small_flag() {
+  ClothDesc desc;
+  desc.columns = 12;
+  desc.rows = 9;
+  desc.width = Real(1.1);
+  desc.height = Real(0.8);
+  desc.pins = {{0}, {11}};
+  return desc;
+}
+
+/// A flat square of 2 x 2 triangles per side unit, in the plane y = 0.
+MeshDesc sheet(int side) {
+  MeshDesc mesh;
+  for (int z = 0; z <= side; ++z) {
+    for (int x = 0; x <= side; ++x) mesh.positions.push_back({static_cast<Real>(x), Real(0), static_cast<Real>(z)});
+  }
+  for (int z = 0; z < side; ++z) {
+    for (int x = 0; x < side; ++x) {
+      const auto a = static_cast<std::uint32_t>(z * (side + 1) + x);
+      const auto c = a + static_cast<std::uint32_t>(side) + 1;
+      mesh.triangles.push_back({a, c, c + 1});
+      mesh.triangles.push_back({a, c + 1, a + 1});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_SUITE("world/cloth") {
+  TEST_CASE("a flag of n x m points has the springs and the mass that it should") {
+    World world = make_world();
+    ClothDesc desc = small_flag();
+    desc.bend = ClothDesc::Bend::kSpring;
+    desc.bend_stiffness = Real(10);
+    desc.areal_density = Real(0.5);
+    desc.pins = {};
+    take(world.add_cloth(desc));
+    // Structural n(m-1)+m(n-1), shear 2(n-1)(m-1), bend n(m-2)+m(n-2).
+    CHECK(world.memory().springs == 12 * 8 + 9 * 11 + 2 * 11 * 8 + 12 * 7 + 9 * 10);
+    world.step(Real(1) / Real(60));
+    const double mass = -world.measure().momentum.y * 60 / 9.81;
+    CHECK(mass == doctest::Approx(0.5 * 1.1 * 0.8).epsilon(1e-2));
+  }
+
+  TEST_CASE("corner points carry a quarter and rim points half of an inner point's mass") {
+    World world = make_world(test::empty_space());
+    ClothDesc desc = small_flag();
+    desc.pins = {};
+    desc.stretch_stiffness = desc.shear_stiffness = Real(1e-6);
+    const ClothId cloth = take(world.add_cloth(desc));
+    for (const std::uint32_t i : {0U, 5U, 12U * 4 + 5}) {
+      REQUIRE(world.apply_impulse(point(cloth, i), {Real(0), Real(0), Real(1)}));
+    }
+    const auto v = [&](std::size_t i) { return static_cast<double>(world.velocities(cloth).offset(i).z); };
+    CHECK(v(0) / v(12 * 4 + 5) == doctest::Approx(4.0).epsilon(1e-5));
+    CHECK(v(5) / v(12 * 4 + 5) == doctest::Approx(2.0).epsilon(1e-5));
+  }
+
+  TEST_CASE("a cloth from a mesh has one spring per edge and the area's mass") {
+    World world = make_world();
+    const MeshId mesh = take(world.add_mesh(sheet(4)));
+    ClothDesc desc;
+    desc.mesh = mesh;
+    desc.areal_density = Real(2);
+    desc.stretch_stiffness = Real(1e4);
+    const ClothId cloth = take(world.add_cloth(desc));
+    CHECK(world.positions(cloth).size() == 25);
+    // 40 along the sides, 16 diagonals, and one shear spring across each diagonal.
+    CHECK(world.memory().springs == 40 + 16 + 16);
+    world.step(Real(1) / Real(60));
+    CHECK(-world.measure().momentum.y * 60 / 9.81 == doctest::Approx(32.0).epsilon(5e-2));
+    // The maker's order is kept although rows are renumbered.
+    for (std::size_t i = 0; i < 25; ++i) {
+      CHECK(world.positions(cloth)[i].x == doctest::Approx(static_cast<double>(i % 5)).epsilon(1e-3));
+    }
+  }
+
+  TEST_CASE("tethers keep inextensible cloth within one percent where springs alone do not") {
+    double mean[2] = {};
+    for (const bool tethers : {false, true}) {
+      World world = make_world();
+      ClothDesc desc;
+      desc.columns = desc.rows = 50;
+      desc.width = desc.height = Real(0.98);
+      desc.stretch_stiffness = desc.shear_stiffness = kRigid;
+      desc.drag_coefficient = desc.lift_coefficient = Real(0);
+      desc.bend = ClothDesc::Bend::kNone;
+      desc.air_friction = Real(0.1);
+      desc.pins = {{0}, {49}};
+      desc.tethers = tethers;
+      take(world.add_cloth(desc));
+      run(world, 300);
+      mean[tethers ? 1 : 0] = world.measure().mean_stretch;
+    }
+    CHECK(mean[1] < 0.01);
+    CHECK(mean[1] < mean[0]);
+  }
+
+  TEST_CASE("the extension limit keeps a soft flag short") {
+    World world = make_world();
+    ClothDesc desc = small_flag();
+    desc.stretch_stiffness = Real(5);
+    desc.damping = Real(0.01);
+    desc.extension_max = Real(0.05);
+    take(world.add_cloth(desc));
+    run(world, 600);
+    CHECK(world.measure().largest_stretch < 0.08);
+  }
+
+  TEST_CASE("bending by angle brings a folded strip back to flat") {
+    World world = make_world(test::empty_space());
+    ClothDesc desc;
+    desc.columns = 9;
+    desc.rows = 2;
+    desc.width = Real(0.8);
+    desc.height = Real(0.1);
+    desc.bend_stiffness = Real(0.05);
+    desc.bend_damping = Real(0.02);
+    desc.row_direction = {Real(0), Real(0), Real(1)};
+    const ClothId cloth = take(world.add_cloth(desc));
+    for (std::uint32_t i = 0; i < 18; ++i) {
+      const double x = 0.1 * (i % 9);
+      REQUIRE(world.set_position(point(cloth, i), {x, 2 * (x - 0.4) * (x - 0.4), i < 9 ? 0.0 : 0.1}));
+    }
+    const double start = world.measure().energy.elastic;
+    run(world, 900);
+    const double end = world.measure().energy.elastic;
+    CHECK(end < 0.02 * start);
+    // Momentum and angular momentum of a free strip stay zero.
+    CHECK(length(world.measure().momentum) < 1e-5);
+    CHECK(length(world.measure().angular_momentum) < 1e-5);
+  }
+
+  TEST_CASE("a cloth falls over a sphere and rests on it") {
+    World world = make_world();
+    BodyDesc ball;
+    ball.shape = Shape::sphere(Real(0.4));
+    take(world.add_body(ball));
+    ClothDesc desc;
+    desc.columns = desc.rows = 21;
+    desc.corner = {-0.5, 0.45, -0.5};
+    desc.row_direction = {Real(0), Real(0), Real(1)};
+    desc.air_friction = Real(0.2);
+    const ClothId cloth = take(world.add_cloth(desc));
+    StepReport report;
+    for (int i = 0; i < 600; ++i) report = world.step(Real(1) / Real(60));
+    CHECK(report.contacts > 20);
+    CHECK(world.measure().largest_penetration < 1e-3);
+    CHECK(world.positions(cloth)[220].y == doctest::Approx(0.402).epsilon(1e-2));
+    CHECK(world.measure().energy.kinetic < 1e-3);
+  }
+
+  TEST_CASE("steady wind carries a free sheet with it") {
+    WorldDesc desc = test::empty_space();
+    desc.wind.air_density = Real(1.225);
+    desc.wind.velocity = {Real(0), Real(0), Real(5)};
+    World world = make_world(desc);
+    ClothDesc sheet_desc = small_flag();
+    sheet_desc.pins = {};
+    take(world.add_cloth(sheet_desc));
+    run(world, 1200);
+    const double speed = world.measure().momentum.z / (0.2 * 1.1 * 0.8);
+    CHECK(speed > 4.5);
+    CHECK(speed < 5.01);
+  }
+}
+
+}  // namespace hooke
