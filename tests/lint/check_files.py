@@ -3,6 +3,7 @@
 
 - no absolute path of a developer's machine in any text file;
 - every relative link of a Markdown file leads to a file that exists;
+- every suite and every file that docs/paper.md names exists;
 - every C++ block of README.md stands, line by line, in a program that the tests build.
 """
 import pathlib
@@ -14,6 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MACHINE_PATH = re.compile(r"(?<![\w.-])/(?:work|home|root|Users)/\w")
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 CPP_BLOCK = re.compile(r"^```cpp\n(.*?)^```", re.MULTILINE | re.DOTALL)
+QUOTED = re.compile(r"`([a-z_0-9./]+)`")
+SUITE = re.compile(r'TEST_SUITE\("([^"]+)"\)')
 TESTED_PROGRAMS = ("tests/consumer", "examples")
 
 
@@ -44,6 +47,16 @@ def broken_links(path, text):
             yield f"{path.relative_to(ROOT)}: link to '{target}', which does not exist"
 
 
+def missing_names(paper):
+    """A quoted `a/b` is a file, a folder or a test suite; `x.json` is a scene."""
+    suites = {suite for path in (ROOT / "tests").rglob("*.cpp") for suite in SUITE.findall(path.read_text())}
+    for name in set(QUOTED.findall(paper)):
+        path = ROOT / ("scenes/" + name if name.endswith(".json") else name)
+        header = ROOT / "include" / name
+        if ("/" in name or name.endswith(".json")) and not (name in suites or path.exists() or header.exists()):
+            yield f"docs/paper.md: no file or test suite is called '{name}'"
+
+
 def untested_programs(readme):
     programs = [path.read_text() for folder in TESTED_PROGRAMS for path in (ROOT / folder).glob("*.cpp")]
     for block in CPP_BLOCK.findall(readme):
@@ -65,6 +78,7 @@ def main():
         if path.suffix == ".md":
             errors += broken_links(path, text)
     errors += untested_programs((ROOT / "README.md").read_text())
+    errors += missing_names((ROOT / "docs/paper.md").read_text())
     print("\n".join(errors) or "files: ok")
     return 1 if errors else 0
 
