@@ -17,5 +17,7 @@ int command_render(Arguments arguments);
 int command_convert(Arguments arguments);
 int command_validate(Arguments arguments);
 int command_new(Arguments arguments);
+int command_check(Arguments arguments);
+int command_bench(Arguments arguments);
 
 }  // namespace hooke::app

@@ -22,6 +22,8 @@ constexpr std::array kCommands = {
     Command{"run", "simulate a scene, measure it, check what it promises", command_run},
     Command{"view", "show a scene or a model in a window", command_view},
     Command{"render", "draw a scene to a film or to pictures, without a display", command_render},
+    Command{"check", "run cases with known answers", command_check},
+    Command{"bench", "time scenes", command_bench},
     Command{"convert", "convert a model between .3ds .obj .stl .ply .gltf .glb", command_convert},
     Command{"validate", "check scene files and the models they use", command_validate},
     Command{"new", "write a scene to start from", command_new},
