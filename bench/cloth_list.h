@@ -6,8 +6,9 @@
 #include <limits>
 
 /// \file
-/// Scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100 points, spacing 2 cm,
-/// 1 kg each, hanging flat, two top corners held; structural and shear springs rigid, bend springs soft.
+/// Scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100 points,
+/// spacing 2 cm, 1 kg each, hanging flat, two top corners held; structural and shear springs rigid, bend
+/// springs soft.
 
 namespace hooke::bench {
 
@@ -23,7 +24,8 @@ inline ClothList cloth_100(int side = 100) {
     for (int column = 0; column < side; ++column) {
       const bool held = row == 0 && (column == 0 || column == side - 1);
       list.particles.position.push_back(
-          {{kSpacing * static_cast<Real>(column), -kSpacing * static_cast<Real>(row), Real(0)}, held ? Real(0) : Real(1)});
+          {{kSpacing * static_cast<Real>(column), -kSpacing * static_cast<Real>(row), Real(0)},
+           held ? Real(0) : Real(1)});
       list.particles.velocity.push_back({});
     }
   }

@@ -1,15 +1,14 @@
 /// One pass over the springs of a 100 x 100 cloth, one thread, for each instruction set of this machine.
 ///
-/// The list is scene "cloth": spacing 2 cm, 19 800 structural, 19 602 shear and 19 600 bend springs. The report's time
-/// is for the whole list; `ns_per_spring` divides it by 59 002. Counters `bytes_per_spring` and `bytes_per_particle` are
-/// what the solver reads.
+/// The list is scene "cloth": spacing 2 cm, 19 800 structural, 19 602 shear and 19 600 bend springs. The
+/// report's time is for the whole list; `ns_per_spring` divides it by 59 002. Counters `bytes_per_spring` and
+/// `bytes_per_particle` are what the solver reads.
 
 #include "cloth_list.h"
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
 
 #include <benchmark/benchmark.h>
-
 #include <string>
 
 namespace {
@@ -30,8 +29,8 @@ void spring_pass(benchmark::State& state, const std::string& target) {
     benchmark::ClobberMemory();
   }
   const auto springs = static_cast<double>(cloth.springs.count());
-  state.counters["ns_per_spring"] =
-      benchmark::Counter(springs * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_spring"] = benchmark::Counter(
+      springs * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["bytes_per_spring"] =
       static_cast<double>(blocks.blocks.size() * sizeof(solver::SpringBlock)) / springs;
   state.counters["bytes_per_particle"] = sizeof(state::PositionLine) + sizeof(state::VelocityLine);

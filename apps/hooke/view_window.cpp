@@ -274,6 +274,13 @@ Result<void> draw_picture(Session& session, render::Renderer& renderer, GLFWwind
   return {};
 }
 
+Result<void> save_screenshot(const ViewOptions& options, const render::Renderer& renderer) {
+  if (options.screenshot.empty()) return {};
+  const auto image = renderer.read_image();
+  if (!image) return image.error();
+  return render::write_png(image.value(), options.screenshot);
+}
+
 Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
   const auto context = render::Context::create_window(options.title, options.width, options.height);
   if (!context) return context.error();
@@ -295,6 +302,7 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
   auto last = Clock::now();
   for (int frame = 0; glfwWindowShouldClose(window) == GLFW_FALSE; ++frame) {
     if (options.max_frames > 0 && frame >= options.max_frames) break;
+    if (options.stop_time && frame > 0 && model.time && model.time() >= *options.stop_time) break;
     glfwPollEvents();
     const double elapsed_ms = milliseconds_since(last);
     last = Clock::now();
@@ -303,7 +311,7 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
     auto drawn = draw_picture(session, renderer.value(), window);
     if (!drawn) return drawn;
   }
-  return {};
+  return save_screenshot(options, renderer.value());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "render/draw_list.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace hooke::app {
@@ -33,7 +34,9 @@ struct ViewOptions {
   int height = 720;
   int samples = 0;  ///< Per pixel; 0 is 4, or 1 if a software driver draws, which takes half the time.
   bool start_paused = false;
-  int max_frames = 0;  ///< Closes after so many pictures; 0 never does.
+  int max_frames = 0;                    ///< Closes after so many pictures; 0 never does.
+  std::optional<double> stop_time = {};  ///< Closes when the model's time reaches it [s].
+  std::string screenshot = {};  ///< A .png that gets the last picture before it closes; empty for none.
 };
 
 /// Shows the window until it is closed. Left drag orbits, right drag pans, the wheel zooms; space plays and

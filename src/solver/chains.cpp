@@ -21,7 +21,8 @@ constexpr double kDamping = 0.2;               ///< Share of the geometric stiff
 constexpr double kTransverseFloor = 1e-5;      ///< Of the lighter end's mass; keeps slack segments defined.
 constexpr double kComplianceInAir = 1e-7;      ///< Over the lighter end's mass.
 constexpr double kComplianceInContact = 1e-5;  ///< Rigid segments between stuck nodes would be undetermined.
-constexpr double kLengthTolerance = 0.01;
+constexpr double kLengthTolerance = 1e-3;      ///< The next substep takes back what is left, as speed.
+constexpr double kReportedError = 0.01;
 constexpr double kLimitTolerance = 1e-4;
 constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
 constexpr double kPushOutSpeed = 1.0;      ///< Overlap leaves no faster than this [m/s].
@@ -335,7 +336,7 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
     if (long_enough && solves >= least) break;
     setting.first = setting.first && long_enough;
   }
-  chain.unconverged = chain.unconverged || !(error <= kLengthTolerance) || !finite(s);
+  chain.unconverged = chain.unconverged || !(error <= kReportedError) || !finite(s);
   if (finite(s)) store(chain, h, s, particles, segments, contacts);
 }
 

@@ -1,0 +1,94 @@
+#include "hooke/command_line.h"
+#include "hooke/output_file.h"
+#include "hooke/progress.h"
+#include "hooke/run_report.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+namespace hooke::app {
+
+namespace {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  std::vector<int> workers = {1};
+  int steps = 300;
+  std::string csv = "-";
+};
+
+struct BenchRow {
+  StepTimes ms;
+  std::uint32_t contacts = 0;
+  std::uint64_t hash = 0;
+  Measurement figures;
+};
+
+/// The first tenth of the steps warms up and is not timed.
+BenchRow measure(Simulation& simulation, int steps) {
+  BenchRow row;
+  std::vector<double> times;
+  for (int i = 0; i < steps; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    row.contacts = simulation.step().contacts;
+    const auto elapsed = std::chrono::steady_clock::now() - start;
+    if (i >= steps / 10) times.push_back(std::chrono::duration<double, std::milli>(elapsed).count());
+  }
+  row.ms = step_times(times);
+  row.hash = simulation.world().state_hash();
+  row.figures = simulation.world().measure();
+  return row;
+}
+
+std::string line(const std::string& scene, int workers, const BenchRow& row) {
+  char text[512];
+  std::snprintf(text, sizeof(text), "%s,hooke,%d,%.4f,%.4f,%.4f,%u,%.3g,%.3g,%.6g,%s\n", scene.c_str(),
+                workers, row.ms.min, row.ms.median, row.ms.p99, row.contacts, row.figures.mean_stretch,
+                row.figures.largest_penetration, row.figures.energy.kinetic, hash_text(row.hash).c_str());
+  return text;
+}
+
+}  // namespace
+
+int command_bench(Arguments arguments) {
+  CLI::App app("Times scenes. A hash that depends on the number of workers fails.", "hooke bench");
+  BenchOptions options;
+  app.add_option("SCENE", options.scenes, "Scene files")->required();
+  app.add_option("--workers", options.workers, "Numbers of threads to try")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 64));
+  app.add_option("--steps", options.steps, "Steps of each run")->check(CLI::Range(10, 1000000));
+  app.add_option("--csv", options.csv, "Where the table goes; printed by default");
+  app.footer("Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv");
+  if (const auto code = parse(app, arguments)) return *code;
+
+  std::string table =
+      "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,mean_stretch,max_penetration,"
+      "kinetic_energy,state_hash\n";
+  bool same = true;
+  Progress progress("timing", options.scenes.size() * options.workers.size());
+  std::uint64_t done = 0;
+  for (const std::string& path : options.scenes) {
+    std::optional<std::uint64_t> hash;
+    for (const int workers : options.workers) {
+      std::optional<Scene> scene = read_scene(path);
+      if (!scene) return kBadInput;
+      scene->world.workers = workers;
+      std::optional<Simulation> simulation = build_simulation(std::move(*scene));
+      if (!simulation) return kBadInput;
+      const BenchRow row = measure(*simulation, options.steps);
+      same = same && (!hash || *hash == row.hash);
+      hash = row.hash;
+      table += line(path, workers, row);
+      progress.show(++done);
+    }
+  }
+  const auto written = write_file(options.csv, table);
+  if (!written) return report(written.error());
+  if (!same) std::fputs("hooke bench: the state hash depends on the number of workers\n", stderr);
+  return same ? kGood : kFailed;
+}
+
+}  // namespace hooke::app

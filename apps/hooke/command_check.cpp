@@ -1,0 +1,26 @@
+#include "hooke/check/check.h"
+#include "hooke/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+namespace hooke::app {
+
+int command_check(Arguments arguments) {
+  CLI::App app("Runs scenes whose answer is known and says how near the engine comes to it.", "hooke check");
+  check::CheckOptions options;
+  app.add_option("CASE", options.cases, "Ids of cases; all by default");
+  app.add_option("--json", options.json_file, "Also write the rows as JSON; - prints them");
+  app.add_option("--markdown", options.markdown_file, "Also write a table; - prints it");
+  app.add_option("--substeps", options.substeps, "Substeps of every world")->check(CLI::Range(1, 64));
+  app.add_flag("--list", options.list, "Only print ids and titles");
+  app.footer(
+      "Exit code 1 if a case failed.\n\n"
+      "Examples:\n"
+      "  hooke check\n"
+      "  hooke check V7 V17 --json check.json\n"
+      "  hooke check --list");
+  if (const auto code = parse(app, arguments)) return *code;
+  return check::check_command(options);
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,87 @@
+#include "hooke/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+namespace hooke::app {
+
+std::optional<int> parse(CLI::App& app, Arguments arguments) {
+  // The library takes the words from the back.
+  std::vector<std::string> words(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(std::move(words));
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      app.exit(error);
+      return kGood;
+    }
+    std::string reason = error.what();
+    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    std::fprintf(stderr, "%s: %s; see %s --help\n", app.get_name().c_str(), reason.c_str(),
+                 app.get_name().c_str());
+    return kBadInput;
+  }
+}
+
+ExitCode report(const Error& error) {
+  std::fprintf(stderr, "%s\n", to_line(error).c_str());
+  switch (error.code) {
+    case ErrorCode::kFileNotWritable:
+    case ErrorCode::kUnsupported:
+    case ErrorCode::kLimitExceeded:
+      return kMachine;
+    default:
+      return kBadInput;
+  }
+}
+
+void warn(const Error& error) {
+  std::fprintf(stderr, "warning: %s\n", to_line(error).c_str());
+}
+
+ExitCode report(std::span<const Error> errors, std::span<const Error> warnings) {
+  for (const Error& warning : warnings) warn(warning);
+  for (const Error& error : errors) report(error);
+  return errors.empty() ? kGood : kBadInput;
+}
+
+std::optional<Scene> read_scene(const std::string& path) {
+  Loaded<Scene> loaded = load_scene(path);
+  report(loaded.errors, loaded.warnings);
+  return std::move(loaded.value);
+}
+
+std::optional<Simulation> build_simulation(Scene scene) {
+  Loaded<Simulation> loaded = Simulation::create(std::move(scene));
+  report(loaded.errors, loaded.warnings);
+  return std::move(loaded.value);
+}
+
+void add_overrides(CLI::App& app, SceneOverrides& overrides) {
+  app.add_option("--workers", overrides.workers, "Threads; the result does not depend on it")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--substeps", overrides.substeps, "Solver passes per step")->check(CLI::Range(1, 64));
+  app.add_option("--particle-substeps", overrides.particle_substeps, "Passes over deformables per substep")
+      ->check(CLI::Range(1, 64));
+}
+
+void apply(const SceneOverrides& overrides, WorldDesc& world) {
+  world.workers = overrides.workers.value_or(world.workers);
+  world.substeps = overrides.substeps.value_or(world.substeps);
+  world.particle_substeps = overrides.particle_substeps.value_or(world.particle_substeps);
+}
+
+void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help) {
+  app.add_option("--seconds", seconds, help)->check(CLI::Range(0.0, 1e6));
+}
+
+std::uint64_t steps_in(const Scene& scene, double seconds) {
+  return static_cast<std::uint64_t>(std::llround(seconds / static_cast<double>(scene.dt)));
+}
+
+}  // namespace hooke::app

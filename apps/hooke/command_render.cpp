@@ -1,0 +1,164 @@
+#include "hooke/command_line.h"
+#include "hooke/progress.h"
+#include "hooke/scene_drawing.h"
+
+#include "render/renderer.h"
+#include "render/video.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;
+  std::string size = "1280x720";
+  int width = 1280;
+  int height = 720;
+  int frames_per_second = 30;
+  std::optional<double> seconds;
+  std::optional<double> at;
+  SceneOverrides overrides;
+};
+
+void describe(CLI::App& app, RenderOptions& options) {
+  app.add_option("SCENE", options.scene, "Scene file")->required();
+  app.add_option("-o,--output", options.output, "X.mp4, X.gif, X_%04d.png, or X.png for one picture")
+      ->required();
+  app.add_option("--size", options.size, "Width x height in pixels")
+      ->capture_default_str()
+      ->option_text("WxH");
+  app.add_option("--fps", options.frames_per_second, "Pictures per simulated second")
+      ->check(CLI::Range(1, 240))
+      ->capture_default_str();
+  add_seconds(app, options.seconds, "Length of the film; the scene's by default");
+  app.add_option("--at", options.at, "Time of a single picture; the scene's end by default")
+      ->check(CLI::Range(0.0, 1e6));
+  add_overrides(app, options.overrides);
+  app.footer(
+      "Each picture shows the state at its own time, between the two steps around it.\n\n"
+      "Examples:\n"
+      "  hooke render scenes/flag.json -o flag.mp4 --seconds 2 --size 640x360\n"
+      "  hooke render scenes/rope.json -o rope.png --at 1.5\n"
+      "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180");
+}
+
+bool read_size(RenderOptions& options) {
+  int end = 0;
+  const int fields = std::sscanf(options.size.c_str(), "%5dx%5d%n", &options.width, &options.height, &end);
+  return fields == 2 && options.size.c_str()[end] == '\0' && options.width > 0 && options.height > 0;
+}
+
+bool ends_in(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// Advances the simulation to the two steps around a time and draws between them.
+class Film {
+ public:
+  Film(Simulation simulation, render::Renderer renderer)
+      : simulation_(std::move(simulation)), renderer_(std::move(renderer)) {
+    drawing_.record(simulation_);
+  }
+
+  /// Times must not decrease. [s]
+  Result<render::Image> picture_at(double time, Progress* progress) {
+    const double steps = time / static_cast<double>(simulation_.scene().dt);
+    // A time that is a whole number of steps, but for its rounding, needs no step beyond.
+    const auto last = static_cast<std::uint64_t>(std::ceil(std::max(steps - 1e-4, 0.0)));
+    while (simulation_.world().step_count() < last) {
+      const std::uint64_t left = last - simulation_.world().step_count();
+      if (!simulation_.step().moved) {
+        return Error{ErrorCode::kOutOfRange, simulation_.scene().path, "the step did not move"};
+      }
+      if (left <= 2) drawing_.record(simulation_);
+      if (progress != nullptr) progress->show(simulation_.world().step_count());
+    }
+    render::DrawList list;
+    drawing_.fill(time, renderer_.height(), list);
+    for (const std::string& line : drawing_.take_warnings()) {
+      std::fprintf(stderr, "warning: %s\n", line.c_str());
+    }
+    const auto drawn = renderer_.draw(list);
+    if (!drawn) return drawn.error();
+    return renderer_.read_image();
+  }
+
+  [[nodiscard]] const Simulation& simulation() const { return simulation_; }
+
+ private:
+  Simulation simulation_;
+  render::Renderer renderer_;
+  SceneDrawing drawing_;
+};
+
+Result<void> render_picture(Film& film, const RenderOptions& options) {
+  const Scene& scene = film.simulation().scene();
+  const double time = options.at.value_or(options.seconds.value_or(scene.seconds));
+  Progress progress("simulating", steps_in(scene, time));
+  const auto image = film.picture_at(time, &progress);
+  if (!image) return image.error();
+  return render::write_png(image.value(), options.output);
+}
+
+Result<void> render_film(Film& film, const RenderOptions& options) {
+  const double seconds = options.seconds.value_or(film.simulation().scene().seconds);
+  const auto frames = static_cast<std::uint64_t>(
+      std::max(1LL, std::llround(seconds * static_cast<double>(options.frames_per_second))));
+  auto video =
+      render::VideoWriter::create({options.output, options.width, options.height, options.frames_per_second});
+  if (!video) return video.error();
+  Progress progress("rendering", frames);
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    const auto image =
+        film.picture_at(static_cast<double>(i) / static_cast<double>(options.frames_per_second), nullptr);
+    if (!image) return image.error();
+    const auto added = video.value().add(image.value());
+    if (!added) return added;
+    progress.show(i + 1);
+  }
+  return video.value().finish();
+}
+
+Result<render::Renderer> make_renderer(const RenderOptions& options) {
+  const auto context = render::Context::create_headless();
+  if (!context) return context.error();
+  return render::Renderer::create(context.value(), {options.width, options.height});
+}
+
+}  // namespace
+
+int command_render(Arguments arguments) {
+  CLI::App app("Draws a scene to a film or to pictures. Needs no display.", "hooke render");
+  RenderOptions options;
+  describe(app, options);
+  if (const auto code = parse(app, arguments)) return *code;
+  if (!read_size(options)) {
+    return report({ErrorCode::kOutOfRange, "--size", "'" + options.size + "' is not like 1280x720"});
+  }
+  const bool single = ends_in(options.output, ".png") && options.output.find('%') == std::string::npos;
+  if (options.at && !single) {
+    return report({ErrorCode::kOutOfRange, "--at", "is for a single picture, X.png"});
+  }
+
+  auto scene = read_scene(options.scene);
+  if (!scene) return kBadInput;
+  apply(options.overrides, scene->world);
+  auto simulation = build_simulation(std::move(*scene));
+  if (!simulation) return kBadInput;
+  auto renderer = make_renderer(options);
+  if (!renderer) return report(renderer.error());
+  Film film(std::move(*simulation), std::move(renderer).value());
+  const auto done = single ? render_picture(film, options) : render_film(film, options);
+  if (!done) return report(done.error());
+  std::printf("%s\n", options.output.c_str());
+  return kGood;
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,129 @@
+#include "hooke/command_line.h"
+#include "hooke/output_file.h"
+#include "hooke/progress.h"
+#include "hooke/run_report.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+struct RunOptions {
+  std::string scene;
+  std::optional<double> seconds;
+  SceneOverrides overrides;
+  std::string csv;
+  std::string json;
+  bool hash = false;
+  std::uint64_t hash_every = 0;  ///< Steps; 0 is never.
+};
+
+void describe(CLI::App& app, RunOptions& options) {
+  app.add_option("SCENE", options.scene, "Scene file")->required();
+  add_seconds(app, options.seconds, "Simulated time; the scene's by default");
+  add_overrides(app, options.overrides);
+  app.add_option("--csv", options.csv, "Write one line per step");
+  app.add_option("--json", options.json, "Write a report; /dev/stdout or - prints it instead of the summary");
+  app.add_flag("--hash", options.hash, "Print only the hash of the last state");
+  app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
+      ->check(CLI::PositiveNumber);
+  app.footer(
+      "Exit code 1 if an expectation of the scene failed. Expectations later than --seconds do not count.\n\n"
+      "Examples:\n"
+      "  hooke run scenes/rope.json\n"
+      "  hooke run scenes/flag.json --seconds 2 --json report.json --csv steps.csv\n"
+      "  hooke run scenes/flag.json --seconds 1 --workers 2 --hash");
+}
+
+/// Steps to the end, and fills the record and the file of steps.
+Result<void> simulate(Simulation& simulation, const RunOptions& options, std::uint64_t steps,
+                      RunRecord& record) {
+  std::optional<OutputFile> csv;
+  if (!options.csv.empty()) {
+    auto created = OutputFile::create(options.csv);
+    if (!created) return created.error();
+    csv.emplace(std::move(created).value());
+    csv->write(csv_header());
+  }
+  record.start = simulation.world().measure().energy;
+  Progress progress("simulating", steps);
+  for (std::uint64_t i = 0; i < steps; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const StepReport step = simulation.step();
+    const auto elapsed = std::chrono::steady_clock::now() - start;
+    if (!step.moved) return Error{ErrorCode::kOutOfRange, options.scene, "the step did not move"};
+    record.step_ms.push_back(std::chrono::duration<double, std::milli>(elapsed).count());
+    record.contacts = step.contacts;
+    record.rows_quarantined += step.rows_quarantined;
+    record.steps_unconverged += step.chains_unconverged > 0 ? 1 : 0;
+    if (csv) csv->write(csv_line(simulation.world(), step.contacts));
+    if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {
+      std::printf("%llu %s\n", static_cast<unsigned long long>(i + 1),
+                  hash_text(simulation.world().state_hash()).c_str());
+    }
+    progress.show(i + 1);
+  }
+  if (csv) return csv->finish();
+  return {};
+}
+
+void add_numerical_warnings(RunRecord& record) {
+  if (record.rows_quarantined > 0) {
+    record.warnings.push_back(std::to_string(record.rows_quarantined) +
+                              " times a particle was put back because its state was not finite");
+  }
+  if (record.steps_unconverged > 0) {
+    record.warnings.push_back("in " + std::to_string(record.steps_unconverged) +
+                              " steps a rope stayed more than 1 % off its length in some substep");
+  }
+}
+
+ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record) {
+  for (const std::string& warning : record.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (!options.json.empty()) {
+    const auto written = write_file(options.json, run_json(simulation, record));
+    if (!written) return report(written.error());
+  }
+  if (options.hash) std::printf("%s\n", hash_text(simulation.world().state_hash()).c_str());
+  const bool taken = options.hash || options.hash_every > 0 || is_standard_output(options.json) ||
+                     is_standard_output(options.csv);
+  if (!taken) std::fputs(run_summary(simulation, record).c_str(), stdout);
+  for (const Error& error : simulation.errors()) report(error);
+  return passed(simulation) ? kGood : kFailed;
+}
+
+}  // namespace
+
+int command_run(Arguments arguments) {
+  CLI::App app("Simulates a scene, measures it and checks what it promises.", "hooke run");
+  RunOptions options;
+  describe(app, options);
+  if (const auto code = parse(app, arguments)) return *code;
+  if (is_standard_output(options.csv) && is_standard_output(options.json)) {
+    return report(
+        {ErrorCode::kOutOfRange, "hooke run", "--csv and --json cannot both go to the standard output"});
+  }
+
+  RunRecord record = {.scene = options.scene};
+  Loaded<Scene> loaded = load_scene(options.scene);
+  if (!loaded) return report(loaded.errors, loaded.warnings);
+  Scene scene = std::move(*loaded.value);
+  apply(options.overrides, scene.world);
+  const std::uint64_t steps = options.seconds ? steps_in(scene, *options.seconds) : scene.step_count();
+  Loaded<Simulation> built = Simulation::create(std::move(scene));
+  if (!built) return report(built.errors, built.warnings);
+  for (const Error& warning : loaded.warnings) record.warnings.push_back(to_line(warning));
+  for (const Error& warning : built.warnings) record.warnings.push_back(to_line(warning));
+
+  Simulation& simulation = *built.value;
+  const auto done = simulate(simulation, options, steps, record);
+  if (!done) return report(done.error());
+  add_numerical_warnings(record);
+  return print_results(simulation, options, record);
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,163 @@
+#include "hooke/command_line.h"
+#include "hooke/scene_drawing.h"
+#include "hooke/view_window.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+struct CommandOptions {
+  std::string path;
+  double fit = 1;  ///< [m]
+  bool paused = false;
+  std::optional<double> seconds;
+  std::string screenshot;
+  SceneOverrides overrides;
+};
+
+void describe(CLI::App& app, CommandOptions& options) {
+  app.add_option("SCENE", options.path, "Scene file, or a model: .3ds .obj .stl .ply .gltf .glb")->required();
+  app.add_option("--fit", options.fit, "Longest side of a model [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--paused", options.paused, "Start paused");
+  add_seconds(app, options.seconds, "Close after so much simulated time; never by default");
+  app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
+      ->needs("--seconds");
+  add_overrides(app, options.overrides);
+  app.footer(
+      "Left drag orbits, right drag pans, the wheel zooms. Space plays and pauses, S or right arrow steps, "
+      "R\n"
+      "resets, Escape closes.\n\n"
+      "Examples:\n"
+      "  hooke view scenes/showcase.json\n"
+      "  hooke view scenes/models/lantern.3ds --fit 0.4");
+}
+
+bool is_model(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto known = {".3ds", ".obj", ".stl", ".ply", ".gltf", ".glb"};
+  return std::any_of(known.begin(), known.end(), [&](const char* e) { return ending == e; });
+}
+
+/// The model standing on a ground.
+Result<Scene> scene_of_model(const CommandOptions& options) {
+  const ImportOptions import = {.fit = options.fit};
+  const auto model = import_model(options.path, import);
+  if (!model) return model.error();
+  float lowest = 0;
+  for (const ModelVertex& vertex : model.value().vertices) {
+    lowest =
+        &vertex == model.value().vertices.data() ? vertex.position[1] : std::min(lowest, vertex.position[1]);
+  }
+  Scene scene;
+  const std::filesystem::path path = options.path;
+  scene.title = path.filename().string();
+  // The mesh's file is relative to the scene's, which would lie beside it.
+  scene.path = (path.parent_path() / "model.json").string();
+  scene.meshes.push_back({.name = "model", .file = path.filename().string(), .import = import});
+  scene.materials.push_back({.name = "ground", .color = {0.32F, 0.36F, 0.34F}});
+  scene.objects.bodies.push_back({.tag = {.name = "ground", .material = "ground"}});
+  SceneBody body = {.tag = {.name = "model"}, .mesh = "model"};
+  body.desc.shape.kind = ShapeKind::kMesh;
+  body.desc.position = {0, -static_cast<double>(lowest), 0};
+  scene.objects.bodies.push_back(std::move(body));
+  return scene;
+}
+
+std::optional<Scene> read(const CommandOptions& options, int& code) {
+  code = kBadInput;
+  if (!is_model(options.path)) return read_scene(options.path);
+  auto scene = scene_of_model(options);
+  if (scene) return std::move(scene).value();
+  code = report(scene.error());
+  return std::nullopt;
+}
+
+/// A simulation that can begin again, and its pictures.
+class Show {
+ public:
+  explicit Show(Simulation simulation) : simulation_(std::move(simulation)), scene_(simulation_.scene()) {
+    drawing_.record(simulation_);
+  }
+
+  Result<void> advance() {
+    const StepReport step = simulation_.step();
+    if (!step.moved) return Error{ErrorCode::kOutOfRange, scene_.path, "the step did not move"};
+    drawing_.record(simulation_);
+    return {};
+  }
+
+  Result<void> reset() {
+    Loaded<Simulation> built = Simulation::create(scene_);
+    if (!built) return built.errors.front();
+    simulation_ = std::move(*built.value);
+    drawing_ = SceneDrawing();
+    drawing_.record(simulation_);
+    return {};
+  }
+
+  void fill(render::DrawList& list) {
+    // The window may be larger than this; ropes are then a little thinner on it.
+    constexpr int kHeight = 720;
+    drawing_.fill(simulation_.world().time(), kHeight, list);
+    for (const std::string& line : drawing_.take_warnings()) {
+      std::fprintf(stderr, "warning: %s\n", line.c_str());
+    }
+  }
+
+  [[nodiscard]] const World& world() const { return simulation_.world(); }
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
+ private:
+  Simulation simulation_;
+  Scene scene_;
+  SceneDrawing drawing_;
+};
+
+ViewModel model_of(Show& show) {
+  return {.advance = [&show] { return show.advance(); },
+          .reset = [&show] { return show.reset(); },
+          .fill = [&show](render::DrawList& list) { show.fill(list); },
+          .energies = [&show]() -> Energies {
+            const Energy energy = show.world().measure().energy;
+            return {energy.kinetic, energy.potential, energy.elastic};
+          },
+          .time = [&show] { return show.world().time(); },
+          .step_seconds = static_cast<double>(show.scene().dt)};
+}
+
+}  // namespace
+
+int command_view(Arguments arguments) {
+  CLI::App app("Shows a scene, or a model on a ground, in a window.", "hooke view");
+  CommandOptions options;
+  describe(app, options);
+  if (const auto code = parse(app, arguments)) return *code;
+
+  int code = kGood;
+  auto scene = read(options, code);
+  if (!scene) return code;
+  apply(options.overrides, scene->world);
+  auto simulation = build_simulation(std::move(*scene));
+  if (!simulation) return kBadInput;
+  Show show(std::move(*simulation));
+  ViewOptions view;
+  view.title = show.scene().title.empty() ? "Hooke" : "Hooke: " + show.scene().title;
+  view.start_paused = options.paused;
+  view.stop_time = options.seconds;
+  view.screenshot = options.screenshot;
+  const auto shown = run_view(model_of(show), view);
+  return shown ? kGood : report(shown.error());
+}
+
+}  // namespace hooke::app

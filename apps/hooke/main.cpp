@@ -1,0 +1,79 @@
+#include "hooke/command_line.h"
+#include "hooke/commands.h"
+
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hooke::app {
+
+namespace {
+
+struct Command {
+  const char* name;
+  const char* summary;
+  int (*function)(Arguments);
+};
+
+constexpr std::array kCommands = {
+    Command{"run", "simulate a scene, measure it, check what it promises", command_run},
+    Command{"view", "show a scene or a model in a window", command_view},
+    Command{"render", "draw a scene to a film or to pictures, without a display", command_render},
+    Command{"check", "run cases with known answers", command_check},
+    Command{"bench", "time scenes", command_bench},
+    Command{"convert", "convert a model between .3ds .obj .stl .ply .gltf .glb", command_convert},
+    Command{"validate", "check scene files and the models they use", command_validate},
+    Command{"new", "write a scene to start from", command_new},
+};
+
+int print_help() {
+  std::printf("hooke: a physics engine for ropes, cloth and everything in one world\n\n");
+  std::printf("Usage: hooke COMMAND [ARGUMENTS]\n       hooke COMMAND --help\n\nCommands:\n");
+  for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.summary);
+  std::printf(
+      "\nExit codes:\n"
+      "  0  good\n"
+      "  1  an expectation or a check failed\n"
+      "  2  bad input: a file or an argument\n"
+      "  3  the machine cannot: no OpenGL, no display, no ffmpeg, a write that failed\n"
+      "\nExamples:\n"
+      "  hooke run scenes/rope.json\n"
+      "  hooke render scenes/rope.json -o rope.png --at 1\n"
+      "  hooke validate scenes/rope.json\n");
+  return kGood;
+}
+
+int dispatch(Arguments arguments) {
+  if (arguments.empty()) {
+    std::fputs("hooke: a command is required; see hooke --help\n", stderr);
+    return kBadInput;
+  }
+  const std::string_view name = arguments.front();
+  if (name == "--help" || name == "-h" || name == "help") return print_help();
+  for (const Command& command : kCommands) {
+    if (name == command.name) return command.function(arguments.subspan(1));
+  }
+  std::fprintf(stderr, "hooke: there is no command '%s'; see hooke --help\n", arguments.front().c_str());
+  return kBadInput;
+}
+
+}  // namespace
+
+}  // namespace hooke::app
+
+int main(int argument_count, char** argument_values) {
+  try {
+    const std::vector<std::string> arguments(argument_values + (argument_count > 0 ? 1 : 0),
+                                             argument_values + argument_count);
+    const int code = hooke::app::dispatch(arguments);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    std::fputs("standard output: cannot be written\n", stderr);
+    return hooke::app::kMachine;
+  } catch (const std::exception& exception) {
+    std::fprintf(stderr, "hooke: %s\n", exception.what());
+    return hooke::app::kMachine;
+  }
+}

@@ -1,0 +1,171 @@
+#include "hooke/scene_drawing.h"
+
+#include "hooke/figure.h"
+
+#include "render/image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+/// The list's origin moves in steps, so that shadows and cached buffers stand still while the camera does
+/// not.
+constexpr double kOriginStep = 64;
+/// [px], half the least width of a rope.
+constexpr float kLeastRopeRadius = 0.9F;
+
+DVec3 origin_near(DVec3 place) {
+  const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
+  return {snap(place.x), snap(place.y), snap(place.z)};
+}
+
+PointView points_of(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return world.positions(object.rope);
+    case SceneObject::Kind::kCloth:
+      return world.positions(object.cloth);
+    case SceneObject::Kind::kParticles:
+      return world.positions(object.particles);
+    default:
+      return {};
+  }
+}
+
+DVec3 mix(DVec3 a, DVec3 b, double part) {
+  return a + part * (b - a);
+}
+
+Quat mix(Quat a, Quat b, float part) {
+  // Of the two quaternions of a rotation, the one on the side of `a`: the short way around.
+  const float side = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0 ? -1.0F : 1.0F;
+  const auto at = [&](float p, float q) { return p + part * (side * q - p); };
+  return normalize(Quat{at(a.x, b.x), at(a.y, b.y), at(a.z, b.z), at(a.w, b.w)});
+}
+
+}  // namespace
+
+std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::string& path) {
+  const auto [entry, is_new] = textures_.try_emplace(path);
+  if (!is_new) return entry->second;
+  auto image = render::load_image(path);
+  if (image) {
+    entry->second = std::make_shared<render::Image>(std::move(image).value());
+  } else {
+    warnings_.push_back(to_line(image.error()));
+  }
+  return entry->second;
+}
+
+std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, const SceneObject& object) {
+  const std::uint32_t slot = object.body.slot + object.rope.slot + object.cloth.slot + object.particles.slot;
+  const std::uint32_t generation =
+      object.body.generation + object.rope.generation + object.cloth.generation + object.particles.generation;
+  std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
+  if (figure == nullptr) {
+    figure = std::make_shared<Figure>(
+        make_figure(simulation, object, [this](const std::string& path) { return find_texture(path); }));
+  }
+  return figure;
+}
+
+void SceneDrawing::record(const Simulation& simulation) {
+  std::swap(previous_, current_);
+  current_.time = simulation.world().time();
+  current_.objects.clear();
+  for (const SceneObject& object : simulation.objects()) {
+    if (object.kind == SceneObject::Kind::kField) continue;
+    ObjectState& state = current_.objects.emplace_back();
+    state.figure = find_figure(simulation, object);
+    if (object.kind == SceneObject::Kind::kBody) state.pose = simulation.world().pose(object.body);
+    const PointView points = points_of(simulation.world(), object);
+    state.points.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
+  }
+  camera_ = simulation.scene().camera;
+  if (!camera_ && !automatic_) measure(current_);
+}
+
+void SceneDrawing::measure(const State& state) {
+  constexpr double kFar = 1e30;
+  DVec3 low = {kFar, kFar, kFar};
+  DVec3 high = {-kFar, -kFar, -kFar};
+  const auto extend = [&](DVec3 p) {
+    if (!is_finite(p)) return;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  };
+  for (const ObjectState& object : state.objects) {
+    for (const DVec3& point : object.points) extend(point);
+    const Figure& figure = *object.figure;
+    if (figure.geometry == nullptr || figure.shape.kind == ShapeKind::kHalfSpace) continue;
+    const Real scale = figure.shape.kind == ShapeKind::kSphere ? figure.shape.radius : Real(1);
+    for (const render::Vertex& vertex : figure.geometry->vertices) {
+      extend(object.pose.position +
+             vector_cast<double>(rotate(object.pose.rotation, scale * vertex.position)));
+    }
+  }
+  automatic_ = low.x <= high.x ? viewpoint_of_box(low, high) : Viewpoint{};
+}
+
+Viewpoint SceneDrawing::viewpoint(double time) const {
+  if (camera_) return viewpoint_at(*camera_, time);
+  return automatic_.value_or(Viewpoint{});
+}
+
+SceneDrawing::State SceneDrawing::between(double time) const {
+  State state = current_;
+  const double span = current_.time - previous_.time;
+  if (!(span > 0) || time >= current_.time) return state;
+  const double part = std::max(0.0, (time - previous_.time) / span);
+  for (std::size_t i = 0; i < state.objects.size(); ++i) {
+    ObjectState& object = state.objects[i];
+    // Most often the objects are the same in the same order.
+    const auto same = [&](const ObjectState& other) { return other.figure == object.figure; };
+    const auto& before = previous_.objects;
+    const auto found = i < before.size() && same(before[i])
+                           ? before.begin() + static_cast<std::ptrdiff_t>(i)
+                           : std::find_if(before.begin(), before.end(), same);
+    if (found == before.end()) continue;
+    object.pose.position = mix(found->pose.position, object.pose.position, part);
+    object.pose.rotation = mix(found->pose.rotation, object.pose.rotation, static_cast<float>(part));
+    for (std::size_t k = 0; k < std::min(object.points.size(), found->points.size()); ++k) {
+      object.points[k] = mix(found->points[k], object.points[k], part);
+    }
+  }
+  return state;
+}
+
+void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
+  const Viewpoint view = viewpoint(time);
+  const DVec3 origin = origin_near(view.target);
+  const auto local = [&](DVec3 p) { return vector_cast<float>(p - origin); };
+  list.ground.reset();
+  list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
+  const float half_fov = 0.5F * view.vertical_fov_deg * std::numbers::pi_v<float> / 180;
+  const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));
+  const State state = between(time);
+  std::vector<Vec3> points;
+  for (const ObjectState& object : state.objects) {
+    points.resize(object.points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = local(object.points[i]);
+    add_figure(*object.figure,
+               {.position = local(object.pose.position),
+                .rotation = object.pose.rotation,
+                .points = points,
+                .least_rope_radius = kLeastRopeRadius * pixel,
+                .eye = list.camera.eye},
+               list);
+  }
+}
+
+std::vector<std::string> SceneDrawing::take_warnings() {
+  return std::exchange(warnings_, {});
+}
+
+}  // namespace hooke::app
