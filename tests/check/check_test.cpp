@@ -48,9 +48,10 @@ TEST_SUITE("check/cases") {
     CHECK(failed_rows("I3", light) == 2);
   }
 
-  TEST_CASE("a slope without friction is found") {
+  TEST_CASE("a slope or a drum without friction is found") {
     const CheckSetting slippery{.friction_scale = 0};
     CHECK(failed_rows("I10", slippery) == 3);  // the row without friction stays
+    CHECK(failed_rows("I9", slippery) == 3);
   }
 
   TEST_CASE("a tenth more friction is found") {

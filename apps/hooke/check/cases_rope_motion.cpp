@@ -167,12 +167,12 @@ Rows crane(const CheckSetting& setting) {
 /// A rope of 1 m and 0.05 kg folded in half drops 500 kg into its length: the rope stays finite and comes to
 /// rest at its length.
 Rows folded_rope(const CheckSetting& setting) {
-  constexpr int kEdges = 50;
+  const int edges = 50;
   RopeDesc desc{
-      .total_mass = real(0.05), .loads = {{.point = kEdges, .mass = real(500)}}, .drag_coefficient = real(0)};
-  for (int i = 0; i <= kEdges; ++i) {
-    const bool back = i > kEdges / 2;
-    desc.points.push_back({0.02 * (back ? kEdges - i : i), back ? -0.001 : 0.0, 0});
+      .total_mass = real(0.05), .loads = {{.point = edges, .mass = real(500)}}, .drag_coefficient = real(0)};
+  for (int i = 0; i <= edges; ++i) {
+    const bool back = i > edges / 2;
+    desc.points.push_back({0.02 * (back ? edges - i : i), back ? -0.001 : 0.0, 0});
   }
   Rig rig(setting);
   const RopeId id = rig.add(desc);
