@@ -29,6 +29,7 @@ Frame frame_of(const state::Body& body, const state::Deformable& object) {
 struct Key {
   std::uint32_t particle, body, feature;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
