@@ -16,10 +16,8 @@ World make_world(const CheckSetting& setting, WorldDesc desc) {
 
 }  // namespace
 
-Rig::Rig(const CheckSetting& setting, WorldDesc desc)
-    : world_(make_world(setting, std::move(desc))),
-      dt_(setting.dt),
-      friction_scale_(setting.friction_scale) {}
+Rig::Rig(const CheckSetting& setting, const WorldDesc& desc)
+    : world_(make_world(setting, desc)), dt_(setting.dt), friction_scale_(setting.friction_scale) {}
 
 BodyId Rig::add(BodyDesc desc) {
   // A contact uses the geometric mean of two coefficients, so the body's takes the square of the scale.

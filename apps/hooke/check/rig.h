@@ -36,7 +36,7 @@ constexpr Real real(double value) {
 /// A world stepped as the setting says. Friction of bodies and gravity are scaled by the setting.
 class Rig {
  public:
-  explicit Rig(const CheckSetting& setting, WorldDesc desc = {});
+  explicit Rig(const CheckSetting& setting, const WorldDesc& desc = {});
 
   [[nodiscard]] World& world() { return world_; }
   [[nodiscard]] const World& world() const { return world_; }
