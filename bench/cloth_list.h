@@ -24,9 +24,8 @@ inline ClothList cloth_100(int side = 100) {
     for (int column = 0; column < side; ++column) {
       const bool held = row == 0 && (column == 0 || column == side - 1);
       list.particles.position.push_back(
-          {{kSpacing * static_cast<Real>(column), -kSpacing * static_cast<Real>(row), Real(0)},
-           held ? Real(0) : Real(1)});
-      list.particles.velocity.push_back({});
+          {{kSpacing * static_cast<Real>(column), -kSpacing * static_cast<Real>(row), Real(0)}});
+      list.particles.velocity.push_back({{}, held ? Real(0) : Real(1)});
     }
   }
   const auto add = [&](int column, int row, int columns, int rows, state::SpringClass kind) {

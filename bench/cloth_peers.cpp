@@ -107,6 +107,8 @@ void run_bullet(int iterations) {
   for (const auto& line : list.particles.position) {
     points.emplace_back(static_cast<btScalar>(line.x.x), static_cast<btScalar>(line.x.y),
                         static_cast<btScalar>(line.x.z));
+  }
+  for (const auto& line : list.particles.velocity) {
     masses.push_back(line.inverse_mass > Real(0) ? btScalar(1) : btScalar(0));
   }
   auto* cloth = new btSoftBody(&world.getWorldInfo(), kSide * kSide, points.data(), masses.data());

@@ -76,8 +76,20 @@ void apply(const SceneOverrides& overrides, WorldDesc& world) {
   world.particle_substeps = overrides.particle_substeps.value_or(world.particle_substeps);
 }
 
+void add_number(CLI::App& app, const std::string& name, std::optional<double>& number, double low,
+                double high, const std::string& help) {
+  const auto check = [low, high](const std::string& word) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(word, value) && value >= low && value <= high) return "";
+    char bounds[80];
+    std::snprintf(bounds, sizeof bounds, " is not a number from %g to %g", low, high);
+    return word + bounds;
+  };
+  app.add_option(name, number, help)->check(CLI::Validator(check, ""));
+}
+
 void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help) {
-  app.add_option("--seconds", seconds, help)->check(CLI::Range(0.0, 1e6));
+  add_number(app, "--seconds", seconds, 0, 1e6, help);
 }
 
 std::uint64_t steps_in(const Scene& scene, double seconds) {

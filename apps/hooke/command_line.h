@@ -52,6 +52,11 @@ struct SceneOverrides {
 void add_overrides(CLI::App& app, SceneOverrides& overrides);
 void apply(const SceneOverrides& overrides, WorldDesc& world);
 
+/// Adds an option for a number within the bounds; unlike the library's own check it refuses what is no
+/// number.
+void add_number(CLI::App& app, const std::string& name, std::optional<double>& number, double low,
+                double high, const std::string& help);
+
 /// Adds --seconds, within what a scene may say.
 void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help);
 

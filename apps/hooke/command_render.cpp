@@ -38,8 +38,7 @@ void describe(CLI::App& app, RenderOptions& options) {
       ->check(CLI::Range(1, 240))
       ->capture_default_str();
   add_seconds(app, options.seconds, "Length of the film; the scene's by default");
-  app.add_option("--at", options.at, "Time of a single picture; the scene's end by default")
-      ->check(CLI::Range(0.0, 1e6));
+  add_number(app, "--at", options.at, 0, 1e6, "Time of a single picture; the scene's end by default");
   add_overrides(app, options.overrides);
   app.footer(
       "Each picture shows the state at its own time, between the two steps around it.\n\n"

@@ -15,7 +15,7 @@ namespace {
 
 struct CommandOptions {
   std::string path;
-  double fit = 1;  ///< [m]
+  std::optional<double> fit;  ///< [m]
   bool paused = false;
   std::optional<double> seconds;
   std::string screenshot;
@@ -24,9 +24,7 @@ struct CommandOptions {
 
 void describe(CLI::App& app, CommandOptions& options) {
   app.add_option("SCENE", options.path, "Scene file, or a model: .3ds .obj .stl .ply .gltf .glb")->required();
-  app.add_option("--fit", options.fit, "Longest side of a model [m]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_number(app, "--fit", options.fit, 1e-6, 1e6, "Longest side of a model [m]; 1 by default");
   app.add_flag("--paused", options.paused, "Start paused");
   add_seconds(app, options.seconds, "Close after so much simulated time; never by default");
   app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
@@ -51,7 +49,7 @@ bool is_model(const std::string& path) {
 
 /// The model standing on a ground.
 Result<Scene> scene_of_model(const CommandOptions& options) {
-  const ImportOptions import = {.fit = options.fit};
+  const ImportOptions import = {.fit = options.fit.value_or(1)};
   const auto model = import_model(options.path, import);
   if (!model) return model.error();
   float lowest = 0;

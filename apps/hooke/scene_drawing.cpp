@@ -17,7 +17,7 @@ namespace {
 /// not.
 constexpr double kOriginStep = 64;
 /// [px], half the least width of a rope.
-constexpr float kLeastRopeRadius = 0.9F;
+constexpr float kLeastRopeRadius = 1.2F;
 
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };

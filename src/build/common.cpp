@@ -72,9 +72,8 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::size_t row = first + points.row_of[i];
     particles.row_of[first + i] = points.row_of[i];
-    particles.position[row] = {vector_cast<Real>(points.position[i] - object.origin),
-                               Real(1) / points.mass[i]};
-    particles.velocity[row] = {points.velocity[i], points.radius[i]};
+    particles.position[row] = {vector_cast<Real>(points.position[i] - object.origin), points.radius[i]};
+    particles.velocity[row] = {points.velocity[i], Real(1) / points.mass[i]};
     particles.mass[row] = points.mass[i];
     particles.charge[row] = points.charge[i];
     particles.viscous_drag[row] = points.viscous_drag[i];
@@ -85,9 +84,8 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   const auto object_row = static_cast<std::uint32_t>(tables.objects.size());
   for (const PinDesc& pin : pins) {
     const auto row = static_cast<std::uint32_t>(first + points.row_of[pin.point]);
-    if (particles.position[row].inverse_mass == Real(0)) continue;  // named twice
-    particles.position[row].inverse_mass = Real(0);
-    particles.velocity[row].v = {};
+    if (particles.velocity[row].inverse_mass == Real(0)) continue;  // named twice
+    particles.velocity[row] = {};
     tables.pins.push_back({object_row, row, points.position[pin.point], tables.time, pin.motion});
   }
   std::sort(tables.pins.begin(), tables.pins.end(),

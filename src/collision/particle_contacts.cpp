@@ -29,6 +29,7 @@ Frame frame_of(const state::Body& body, const state::Deformable& object) {
 struct Key {
   std::uint32_t particle, body, feature;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
@@ -58,7 +59,7 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real 
   const state::Deformable& object = t.objects[object_row];
   const state::Body& body = t.bodies[pair.body];
   const Vec3 x = frame_of(body, object).to_body(t.particles.position[pair.particle].x);
-  const Real reach = t.particles.velocity[pair.particle].radius + way + kMargin;
+  const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
   const Real friction = std::sqrt(object.friction * body.friction);
   if (body.shape.kind != ShapeKind::kMesh) {
     if (gap_to_shape(body.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
@@ -150,7 +151,7 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     const state::Body& body = t.bodies[contacts.body[first]];
     const Frame frame = frame_of(body, t.objects[contacts.object[first]]);
     const Vec3 x = t.particles.position[particle].x;
-    const Real radius = t.particles.velocity[particle].radius;
+    const Real radius = t.particles.position[particle].radius;
     if (body.shape.kind == ShapeKind::kMesh) {
       update_mesh_rows(contacts, first, row, frame, x, radius);
     } else {
@@ -163,7 +164,7 @@ double largest_penetration(const state::Tables& t) {
   double deepest = 0;
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
-      const Real radius = t.particles.velocity[p].radius;
+      const Real radius = t.particles.position[p].radius;
       for (const state::Body& body : t.bodies) {
         if (!body.collides) continue;
         const Vec3 x = frame_of(body, object).to_body(t.particles.position[p].x);

@@ -12,8 +12,8 @@ namespace hooke::collision {
 /// than that within one step is found one step late.
 void find_contacts(state::Tables& tables, double dt);
 
-/// Normal and separation of each row at the particle's present place. `range` counts contact rows and may begin
-/// anywhere: the rows of a particle and a body belong to the range that holds the first of them.
+/// Normal and separation of each row at the particle's present place. `range` counts contact rows and may
+/// begin anywhere: the rows of a particle and a body belong to the range that holds the first of them.
 void update_contacts(parallel::Range range, state::Tables& tables);
 
 /// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Looks at all

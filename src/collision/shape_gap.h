@@ -21,8 +21,8 @@ struct Gap {
 /// Half-space, sphere or box; degenerate places as in geometry/closest.h.
 [[nodiscard]] Gap gap_to_shape(const Shape& shape, Vec3 x);
 
-/// One triangle of a mesh that is solid behind its fronts. Over the face the distance is signed; beside it the nearest
-/// point is on the rim, and the distance is positive in front of the triangle's plane.
+/// One triangle of a mesh that is solid behind its fronts. Over the face the distance is signed; beside it
+/// the nearest point is on the rim, and the distance is positive in front of the triangle's plane.
 struct TriangleGap {
   Gap gap;
   bool over_face = false;

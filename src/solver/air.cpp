@@ -52,7 +52,7 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
     for (std::uint32_t i = loads.first_of[p]; i < loads.first_of[p + 1]; ++i) {
       sum += loads.corner_impulse[loads.triangle_of[i]];
     }
-    particles.velocity[p].v += particles.position[p].inverse_mass * sum;
+    particles.velocity[p].v += particles.velocity[p].inverse_mass * sum;
   }
 }
 
@@ -64,11 +64,11 @@ void push_segments(const state::Deformable& object, const state::Segments& segme
     const Vec3 axis = normalize(particles.position[b].x - particles.position[a].x);
     const Vec3 flow = Real(0.5) * ((wind[a] - particles.velocity[a].v) + (wind[b] - particles.velocity[b].v));
     const Vec3 across = flow - dot(flow, axis) * axis;
-    const Real diameter = Real(2) * particles.velocity[a].radius;
+    const Real diameter = Real(2) * particles.position[a].radius;
     const Real drag = Real(0.5) * air_density * object.drag_coefficient * diameter *
                       segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
     for (const std::size_t p : {a, b}) {
-      const Real w = particles.position[p].inverse_mass;
+      const Real w = particles.velocity[p].inverse_mass;
       particles.velocity[p].v += (w * h * Real(0.5) * drag / (Real(1) + w * h * drag)) * across;
     }
   }

@@ -64,11 +64,11 @@ void solve_bends(const BendRows& rows, parallel::Range range, state::Particles& 
     Real w = row.gamma;
     for (int k = 0; k < 4; ++k) {
       rate += dot(d.gradient[k], particles.velocity[at[k]].v);
-      w += particles.position[at[k]].inverse_mass * length_squared(d.gradient[k]);
+      w += particles.velocity[at[k]].inverse_mass * length_squared(d.gradient[k]);
     }
     const Real lambda = w > Real(0) ? -(rate + row.bias * c) / w : Real(0);
     for (int k = 0; k < 4; ++k) {
-      particles.velocity[at[k]].v += (particles.position[at[k]].inverse_mass * lambda) * d.gradient[k];
+      particles.velocity[at[k]].v += (particles.velocity[at[k]].inverse_mass * lambda) * d.gradient[k];
     }
   }
 }

@@ -249,7 +249,7 @@ void load(const Chain& chain, const std::vector<Vec3>& before, const state::Part
                   .v_free = vector_cast<double>(particles.velocity[row].v),
                   .v_before = vector_cast<double>(before[row]),
                   .mass = static_cast<double>(particles.mass[row]),
-                  .w = static_cast<double>(line.inverse_mass),
+                  .w = static_cast<double>(particles.velocity[row].inverse_mass),
                   .u = {},
                   .target = {},
                   .inverse = {}};

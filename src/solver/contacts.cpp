@@ -21,7 +21,7 @@ void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Partic
   const Real rate = length(sliding);
   const Real most = contacts.friction[row] * change;
   v -= (rate > most ? most / rate : Real(1)) * sliding;
-  contacts.normal_force[row] += change / (h * particles.position[p].inverse_mass);
+  contacts.normal_force[row] += change / (h * particles.velocity[p].inverse_mass);
 }
 
 void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
@@ -41,7 +41,7 @@ void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Ran
     const std::size_t first = row;
     while (row < particle.size() && particle[row] == particle[first]) ++row;
     if (objects[contacts.object[first]].kind == PointRef::Kind::kRope) continue;
-    if (!(particles.position[particle[first]].inverse_mass > Real(0))) continue;
+    if (!(particles.velocity[particle[first]].inverse_mass > Real(0))) continue;
 
     for (std::size_t i = first; i < row; ++i) contacts.normal_force[i] = Real(0);
     const int sweeps = row - first > 1 ? 2 : 1;

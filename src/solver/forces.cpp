@@ -34,7 +34,7 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
                   state::Particles& particles) {
   for (int i = range.begin; i < range.end; ++i) {
     const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
-    const Real w = particles.position[p].inverse_mass;
+    const Real w = particles.velocity[p].inverse_mass;
     if (!(w > Real(0))) continue;
     Vec3& v = particles.velocity[p].v;
     if (object.feels_air) {

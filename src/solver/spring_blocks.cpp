@@ -55,7 +55,7 @@ void color_class(const state::Springs& springs, const state::Particles& particle
     if (springs.kind[row] != kind) continue;
     const std::uint32_t ends[2] = {springs.particle_a[row], springs.particle_b[row]};
     const bool anchored = kind == SpringClass::kTether;
-    if (anchored && particles.position[ends[1]].inverse_mass > Real(0)) continue;
+    if (anchored && particles.velocity[ends[1]].inverse_mass > Real(0)) continue;
     int color = take_color(used, ends, anchored ? 1 : 2);
     if (color >= 64) color = lone_color++;
     const std::uint32_t material = find_or_add(materials, material_of(springs, row));

@@ -23,10 +23,10 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t a = block.line_a[lane] / 4;
     const std::uint32_t b = block.line_b[lane] / 4;
-    const state::PositionLine& line_a = particles.position[a];
-    const state::PositionLine& line_b = particles.position[b];
-    const Vec3 dv = particles.velocity[a].v - particles.velocity[b].v;
-    const Vec3 d = (line_a.x - line_b.x) + (predicted ? h * dv : Vec3{});
+    state::VelocityLine& line_a = particles.velocity[a];
+    state::VelocityLine& line_b = particles.velocity[b];
+    const Vec3 dv = line_a.v - line_b.v;
+    const Vec3 d = (particles.position[a].x - particles.position[b].x) + (predicted ? h * dv : Vec3{});
     const Real l = length(d);
     const Real w = line_a.inverse_mass + line_b.inverse_mass;
     if (!(l > Real(0)) || !(w > Real(0))) continue;
@@ -38,8 +38,8 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
     if (isotropic && material.damping > Real(0)) {
       p -= (Real(1) / (w + Real(1) / (h * material.damping))) * (dv - vn * n);
     }
-    particles.velocity[a].v += line_a.inverse_mass * p;
-    particles.velocity[b].v -= line_b.inverse_mass * p;
+    line_a.v += line_a.inverse_mass * p;
+    line_b.v -= line_b.inverse_mass * p;
   }
 }
 

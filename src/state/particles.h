@@ -10,16 +10,17 @@
 
 namespace hooke::state {
 
-/// What a kernel reads of a particle in one load.
+/// Where a particle is, in one load.
 struct alignas(4 * sizeof(Real)) PositionLine {
-  Vec3 x = {};                  ///< Position [m], an offset from the origin of the owning object.
-  Real inverse_mass = Real(0);  ///< w [1/kg]; 0 holds the particle still.
+  Vec3 x = {};            ///< Position [m], an offset from the origin of the owning object.
+  Real radius = Real(0);  ///< Contact radius [m].
 };
 
-/// What a kernel writes of a particle in one store.
+/// How it moves, in one load and store. The inverse mass stands beside the velocity that it turns impulses
+/// into: of positions the solver then needs only differences (docs/decisions/0003-spring-kernel.md).
 struct alignas(4 * sizeof(Real)) VelocityLine {
-  Vec3 v = {};            ///< Velocity [m/s].
-  Real radius = Real(0);  ///< Contact radius [m].
+  Vec3 v = {};                  ///< Velocity [m/s].
+  Real inverse_mass = Real(0);  ///< w [1/kg]; 0 holds the particle still.
 };
 
 /// Columns of equal length; row i describes particle i. An object owns one contiguous range of rows.

@@ -35,7 +35,7 @@ double potential_of(const Tables& t, DVec3 x, double mass) {
 void measure_particles(const Tables& t, Measurement& m) {
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
-      if (!(t.particles.position[p].inverse_mass > Real(0))) continue;
+      if (!(t.particles.velocity[p].inverse_mass > Real(0))) continue;
       const auto mass = static_cast<double>(t.particles.mass[p]);
       const DVec3 x = place_of(t, object, p);
       const DVec3 v = vector_cast<double>(t.particles.velocity[p].v);

@@ -92,8 +92,8 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
 }
 
 void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
-  state::PositionLine& line = t.particles.position[row.particle];
-  const DVec3 place = t.objects[row.object].origin + vector_cast<double>(line.x);
+  const Vec3 x = t.particles.position[row.particle].x;
+  const DVec3 place = t.objects[row.object].origin + vector_cast<double>(x);
   const state::Pin pin = {row.object, row.particle, place, t.time, motion};
   const auto at =
       std::lower_bound(t.pins.begin(), t.pins.end(), row.particle,
@@ -103,8 +103,7 @@ void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
   } else {
     t.pins.insert(at, pin);
   }
-  line.inverse_mass = Real(0);
-  t.particles.velocity[row.particle].v = {};
+  t.particles.velocity[row.particle] = {};
   ++t.revision;
 }
 
@@ -112,7 +111,7 @@ void unpin_particle(Tables& t, ParticleRow row) {
   const auto removed =
       std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.particle == row.particle; });
   if (removed == 0) return;
-  t.particles.position[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
+  t.particles.velocity[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
   ++t.revision;
 }
 

@@ -21,7 +21,7 @@ struct ForceViewAccess {
     view.positions_ =
         PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
     view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
-    view.lines_ = positions;
+    view.lines_ = velocities;
     view.forces_ = forces + first;
     view.row_of_ = row_of;
     view.kind_ = object.kind;
@@ -161,7 +161,7 @@ void call_force_laws(WorldData& world, double time, Real h) {
     }
   }
   for (std::size_t p = 0; p < world.law_force.size(); ++p) {
-    tables.particles.velocity[p].v += (h * tables.particles.position[p].inverse_mass) * world.law_force[p];
+    tables.particles.velocity[p].v += (h * tables.particles.velocity[p].inverse_mass) * world.law_force[p];
   }
 }
 

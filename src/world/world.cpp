@@ -67,7 +67,7 @@ Vec3 PointView::offset(std::size_t i) const {
 
 Real ForceView::mass(std::size_t i) const {
   if (i >= size()) return Real(0);
-  state::PositionLine line;
+  state::VelocityLine line;
   std::memcpy(&line, lines_ + row_of_[i] * sizeof(line), sizeof(line));
   return line.inverse_mass > Real(0) ? Real(1) / line.inverse_mass : Real(0);
 }
@@ -258,7 +258,7 @@ Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
   if (!row) return stale("point");
   if (!is_finite(impulse)) return not_finite("impulse");
   state::Particles& particles = data_->tables.particles;
-  particles.velocity[row->particle].v += particles.position[row->particle].inverse_mass * impulse;
+  particles.velocity[row->particle].v += particles.velocity[row->particle].inverse_mass * impulse;
   return {};
 }
 
@@ -267,7 +267,7 @@ Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
   if (!row) return stale("point");
   if (!is_finite(velocity)) return not_finite("velocity");
   state::Particles& particles = data_->tables.particles;
-  if (particles.position[row->particle].inverse_mass > Real(0))
+  if (particles.velocity[row->particle].inverse_mass > Real(0))
     particles.velocity[row->particle].v = velocity;
   return {};
 }

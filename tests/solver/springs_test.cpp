@@ -31,8 +31,8 @@ struct PairDesc {
 
 Pair make_pair(const PairDesc& d) {
   Pair pair;
-  pair.particles.position = {{{}, d.w_a}, {{d.separation, Real(0), Real(0)}, d.w_b}};
-  pair.particles.velocity = {{}, {}};
+  pair.particles.position = {{}, {{d.separation, Real(0), Real(0)}}};
+  pair.particles.velocity = {{{}, d.w_a}, {{}, d.w_b}};
   pair.springs = {{0}, {1}, {d.rest_length}, {d.stiffness}, {d.damping}, {d.kind}, {d.form}};
   return pair;
 }
@@ -54,8 +54,8 @@ Pair random_net(int particles, int springs, state::SpringClass kind) {
   const auto real = [&next] { return static_cast<Real>(next() >> 8) / static_cast<Real>(1 << 24); };
   for (int i = 0; i < particles; ++i) {
     const bool pinned = kind == state::SpringClass::kTether ? i < 4 : i % 17 == 0;
-    net.particles.position.push_back({{real(), real(), real()}, pinned ? Real(0) : Real(0.5) + real()});
-    net.particles.velocity.push_back({{real(), -real(), real()}, Real(0.01)});
+    net.particles.position.push_back({{real(), real(), real()}, Real(0.01)});
+    net.particles.velocity.push_back({{real(), -real(), real()}, pinned ? Real(0) : Real(0.5) + real()});
   }
   for (int i = 0; i < springs; ++i) {
     const auto a = static_cast<std::uint32_t>(4 + next() % static_cast<unsigned>(particles - 4));
@@ -171,8 +171,8 @@ TEST_SUITE("solver/springs") {
   TEST_CASE("a hub of a hundred springs is still solved") {
     Pair star;
     for (int i = 0; i < 101; ++i) {
-      star.particles.position.push_back({{static_cast<Real>(i), Real(1), Real(0)}, Real(1)});
-      star.particles.velocity.push_back({});
+      star.particles.position.push_back({{static_cast<Real>(i), Real(1), Real(0)}});
+      star.particles.velocity.push_back({{}, Real(1)});
       if (i == 0) continue;
       star.springs.particle_a.push_back(0);
       star.springs.particle_b.push_back(static_cast<std::uint32_t>(i));

@@ -103,21 +103,24 @@ HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index
 
 /// kWidth rows between their loads and their stores.
 struct Rows {
-  Vector dx, dy, dz, w_a, w_b, s;
-  Columns v_a, v_b;
+  Vector dx, dy, dz, s;
+  Columns v_a, v_b;  ///< Velocities, and inverse masses in w.
 };
 
 HWY_INLINE void load_rows(const SpringBlock& block, int first, const float* position, const float* velocity,
                           Rows& rows) {
-  const Columns a = load_columns(position, block.line_a + first);
-  const Columns b = load_columns(position, block.line_b + first);
-  rows.dx = hn::Sub(a.x, b.x);
-  rows.dy = hn::Sub(a.y, b.y);
-  rows.dz = hn::Sub(a.z, b.z);
-  rows.w_a = a.w;
-  rows.w_b = b.w;
-  rows.v_a = load_columns(velocity, block.line_a + first);
-  rows.v_b = load_columns(velocity, block.line_b + first);
+  const std::uint32_t* a = block.line_a + first;
+  const std::uint32_t* b = block.line_b + first;
+  const auto separation = [&](int j) HWY_ATTR {
+    return hn::Sub(load_lines(kTag, position, a + j), load_lines(kTag, position, b + j));
+  };
+  rows.dx = separation(0);
+  rows.dy = separation(1);
+  rows.dz = separation(2);
+  Vector radii = separation(3);
+  transpose(rows.dx, rows.dy, rows.dz, radii);
+  rows.v_a = load_columns(velocity, a);
+  rows.v_b = load_columns(velocity, b);
 }
 
 template <bool kOneSided>
@@ -131,7 +134,7 @@ HWY_INLINE void compute_impulses(Rows& rows, Vector rest_length, Vector bias, Ve
   Vector numerator = hn::Add(rate, hn::Mul(bias, hn::Mul(l, hn::Sub(l, rest_length))));
   const Vector zero = hn::Zero(kTag);
   if constexpr (kOneSided) numerator = hn::IfThenElseZero(hn::Gt(numerator, zero), numerator);
-  const Vector denominator = hn::Mul(l2, hn::Add(hn::Add(rows.w_a, rows.w_b), gamma));
+  const Vector denominator = hn::Mul(l2, hn::Add(hn::Add(rows.v_a.w, rows.v_b.w), gamma));
   rows.s = hn::IfThenElseZero(hn::Gt(denominator, zero), hn::Div(numerator, denominator));
 }
 
@@ -141,14 +144,14 @@ HWY_INLINE void apply_impulses(const Rows& rows, const SpringBlock& block, int f
   const Vector y = hn::Mul(rows.dy, rows.s);
   const Vector z = hn::Mul(rows.dz, rows.s);
   const Columns& a = rows.v_a;
-  store_columns({hn::Sub(a.x, hn::Mul(rows.w_a, x)), hn::Sub(a.y, hn::Mul(rows.w_a, y)),
-                 hn::Sub(a.z, hn::Mul(rows.w_a, z)), a.w},
-                velocity, block.line_a + first);
+  store_columns(
+      {hn::Sub(a.x, hn::Mul(a.w, x)), hn::Sub(a.y, hn::Mul(a.w, y)), hn::Sub(a.z, hn::Mul(a.w, z)), a.w},
+      velocity, block.line_a + first);
   if constexpr (kAnchored) return;
   const Columns& b = rows.v_b;
-  store_columns({hn::Add(b.x, hn::Mul(rows.w_b, x)), hn::Add(b.y, hn::Mul(rows.w_b, y)),
-                 hn::Add(b.z, hn::Mul(rows.w_b, z)), b.w},
-                velocity, block.line_b + first);
+  store_columns(
+      {hn::Add(b.x, hn::Mul(b.w, x)), hn::Add(b.y, hn::Mul(b.w, y)), hn::Add(b.z, hn::Mul(b.w, z)), b.w},
+      velocity, block.line_b + first);
 }
 
 /// A vector of rows: the lanes of a block from `first` on.
@@ -204,22 +207,21 @@ void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
 }
 
 template <class D>
-HWY_INLINE void accelerate_lines(D tag, const float* change, const float* position, float* velocity) {
-  const auto moves = hn::Gt(hn::Broadcast<3>(hn::LoadU(tag, position)), hn::Zero(tag));
-  const auto v = hn::Add(hn::LoadU(tag, velocity), hn::IfThenElseZero(moves, hn::LoadDup128(tag, change)));
-  hn::StoreU(hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::Set(tag, 1e-20f)), v), tag, velocity);
+HWY_INLINE void accelerate_lines(D tag, const float* change, float* velocity) {
+  alignas(16) static constexpr float kSettled[4] = {1e-20f, 1e-20f, 1e-20f, 0.0f};
+  const auto line = hn::LoadU(tag, velocity);
+  const auto moves = hn::Gt(hn::Broadcast<3>(line), hn::Zero(tag));
+  const auto v = hn::Add(line, hn::IfThenElseZero(moves, hn::LoadDup128(tag, change)));
+  hn::StoreU(hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::LoadDup128(tag, kSettled)), v), tag, velocity);
 }
 
 void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Particles& particles) {
   const Vec3 step = h * acceleration;
   alignas(16) const float change[4] = {step.x, step.y, step.z, 0.0f};
-  const auto* position = reinterpret_cast<const float*>(particles.position.data());
   auto* velocity = reinterpret_cast<float*>(particles.velocity.data());
   int i = rows.begin;
-  for (; i + kLineCount <= rows.end; i += kLineCount) {
-    accelerate_lines(kTag, change, position + 4 * i, velocity + 4 * i);
-  }
-  for (; i < rows.end; ++i) accelerate_lines(Line(), change, position + 4 * i, velocity + 4 * i);
+  for (; i + kLineCount <= rows.end; i += kLineCount) accelerate_lines(kTag, change, velocity + 4 * i);
+  for (; i < rows.end; ++i) accelerate_lines(Line(), change, velocity + 4 * i);
 }
 
 void move_here(float h, parallel::Range rows, state::Particles& particles) {

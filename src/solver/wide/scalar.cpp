@@ -14,7 +14,7 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
   const std::uint32_t b = block.line_b[lane] / 4;
   const Vec3 d = position[a].x - position[b].x;
   const Vec3 dv = velocity[a].v - velocity[b].v;
-  const Real w = position[a].inverse_mass + position[b].inverse_mass;
+  const Real w = velocity[a].inverse_mass + velocity[b].inverse_mass;
   const Real l2 = (d.x * d.x + d.y * d.y) + d.z * d.z;
   const Real l = std::sqrt(l2);
   Real numerator =
@@ -23,8 +23,8 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
   const Real denominator = l2 * (w + material.gamma);
   const Real s = denominator > Real(0) ? numerator / denominator : Real(0);
   const Vec3 p = {d.x * s, d.y * s, d.z * s};
-  velocity[a].v -= position[a].inverse_mass * p;
-  if (!material.anchored) velocity[b].v += position[b].inverse_mass * p;
+  velocity[a].v -= velocity[a].inverse_mass * p;
+  if (!material.anchored) velocity[b].v += velocity[b].inverse_mass * p;
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::P
   const Vec3 change = h * acceleration;
   const auto settled = [](Real v) { return std::abs(v) < Real(1e-20) ? Real(0) : v; };
   for (int i = rows.begin; i < rows.end; ++i) {
-    const bool moves = particles.position[i].inverse_mass > Real(0);
+    const bool moves = particles.velocity[i].inverse_mass > Real(0);
     const Vec3 v = particles.velocity[i].v + (moves ? change : Vec3{});
     particles.velocity[i].v = {settled(v.x), settled(v.y), settled(v.z)};
   }

@@ -1,0 +1,348 @@
+"""Runs the program `hooke` as a user does: cli_test.py PROGRAM PROJECT_FOLDER."""
+
+import copy
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from png import read_png
+
+PROGRAM = ""
+PROJECT = pathlib.Path()
+LIMIT = 300  # [s], for a program that hangs
+
+# A mass falls for one second: x = 1 m/s t, y = 10 m - 9.81 m/s^2 t^2 / 2, but for the integrator's error.
+FALLING = {
+    "version": 1,
+    "seconds": 1,
+    "particles": [{"name": "ball", "particles": [{"position": [0, 10, 0], "velocity": [1, 0, 0], "radius": 0.1}]}],
+    "expect": [{"quantity": "x", "of": "ball", "point": 0, "op": "==", "value": 1, "tolerance": 1e-4}],
+}
+
+
+class Program(unittest.TestCase):
+    """A temporary folder with the project's scenes, and the program."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="hooke_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        (self.folder / "scenes").symlink_to(PROJECT / "scenes")
+
+    def hooke(self, *words, code=0, environment=None):
+        """Runs it and returns (stdout, stderr); the exit code must be `code`."""
+        done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, capture_output=True, text=True,
+                              env=environment, check=False, timeout=LIMIT)
+        self.assertEqual(done.returncode, code, f"hooke {words}:\n{done.stdout}{done.stderr}")
+        return done.stdout, done.stderr
+
+    def scene(self, content, name="scene.json"):
+        text = content if isinstance(content, str) else json.dumps(content)
+        (self.folder / name).write_text(text)
+        return name
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir() if path.name != "scenes")
+
+    def draw(self, *words):
+        """As hooke render; skips the test on a machine without OpenGL."""
+        done = subprocess.run([PROGRAM, "render", *map(str, words)], cwd=self.folder, capture_output=True,
+                              text=True, check=False, timeout=LIMIT)
+        if done.returncode == 3 and "headless OpenGL" in done.stderr:
+            self.skipTest("no OpenGL without a display: " + done.stderr.strip())
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def assert_one_line(self, text, pattern):
+        self.assertEqual(text.count("\n"), 1, text)
+        self.assertRegex(text, pattern)
+
+
+class Run(Program):
+    def test_the_report_has_the_figures_of_the_motion(self):
+        name = self.scene(FALLING)
+        out, err = self.hooke("run", name, "--json", "/dev/stdout")
+        report = json.loads(out)
+        self.assertEqual(err, "")
+        self.assertEqual((report["scene"], report["steps"], report["contacts"]), (name, 60, 0))
+        self.assertAlmostEqual(report["seconds"], 1, places=5)
+        # One kilogram: m g h at the start; what is lost in height is gained in speed.
+        self.assertAlmostEqual(report["energy"]["start"]["potential"], 98.1, places=3)
+        self.assertAlmostEqual(report["energy"]["start"]["kinetic"], 0.5, places=5)
+        self.assertAlmostEqual(sum(report["energy"]["end"].values()), 98.6, delta=0.2)
+        self.assertAlmostEqual(report["momentum"][0], 1, places=4)
+        self.assertAlmostEqual(report["momentum"][1], -9.81, places=2)
+        times = report["ms_per_step"]
+        self.assertLessEqual(0, times["min"])
+        self.assertLessEqual(times["min"], times["median"])
+        self.assertLessEqual(times["median"], times["p99"])
+        self.assertRegex(report["state_hash"], "^[0-9a-f]{16}$")
+        self.assertEqual(report["warnings"], [])
+        (expectation,) = report["expect"]
+        self.assertTrue(expectation["passed"])
+        self.assertEqual(expectation["value"], 1)
+        self.assertAlmostEqual(expectation["achieved"], 1, delta=1e-4)
+        self.assertIn("x of 'ball'", expectation["text"])
+
+    def test_a_promise_that_is_broken_is_exit_code_1(self):
+        content = copy.deepcopy(FALLING)
+        content["expect"][0]["value"] = 2
+        out, _ = self.hooke("run", self.scene(content), code=1)
+        self.assertRegex(out, r"FAIL scene.json:1:\d+: expect\[0\]: x of 'ball'")
+
+    def test_an_expectation_after_the_end_does_not_count(self):
+        content = copy.deepcopy(FALLING)
+        content["expect"][0]["value"] = 2
+        out, _ = self.hooke("run", self.scene(content), "--seconds", 0.5)
+        self.assertIn("1 of 1 expectations are due later", out)
+
+    def test_the_table_has_a_line_for_each_step(self):
+        self.hooke("run", self.scene(FALLING), "--csv", "steps.csv", "--json", "report.json")
+        with open(self.folder / "steps.csv", encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertEqual([int(row["step"]) for row in rows], list(range(1, 61)))
+        self.assertEqual(list(rows[0]), [
+            "step", "time", "kinetic", "potential", "elastic", "momentum_x", "momentum_y", "momentum_z",
+            "largest_stretch", "largest_penetration", "contacts", "state_hash"])
+        self.assertEqual(rows[-1]["state_hash"], report["state_hash"])
+        self.assertEqual(float(rows[-1]["potential"]), report["energy"]["end"]["potential"])
+        self.assertAlmostEqual(float(rows[29]["momentum_y"]), -9.81 / 2, places=2)
+        self.assertEqual(self.files(), ["report.json", "scene.json", "steps.csv"])
+
+    def test_the_number_of_workers_does_not_change_a_bit(self):
+        hashes = {self.hooke("run", "scenes/flag.json", "--seconds", 0.25, "--workers", n, "--hash")[0]
+                  for n in (1, 2, 3, 8)}
+        self.assertEqual(len(hashes), 1, hashes)
+        self.assertRegex(hashes.pop(), "^[0-9a-f]{16}\n$")
+
+    def test_substeps_change_the_motion(self):
+        def hash_of(*words):
+            return self.hooke("run", "scenes/flag.json", "--seconds", 0.05, "--hash", *words)[0]
+        self.assertEqual(len({hash_of(), hash_of("--substeps", 3), hash_of("--particle-substeps", 2)}), 3)
+
+    def test_hashes_on_the_way_lead_to_the_last_one(self):
+        lines = self.hooke("run", self.scene(FALLING), "--hash-every", 20)[0].split("\n")
+        self.assertEqual([line.split(" ")[0] for line in lines[:3]], ["20", "40", "60"])
+        self.assertEqual(lines[2].split(" ")[1], self.hooke("run", "scene.json", "--hash")[0].strip())
+
+    def test_the_summary_names_title_energy_and_verdicts(self):
+        out, err = self.hooke("run", "scenes/rope.json")
+        self.assertEqual(err, "")
+        self.assertEqual(out.count("\npass scenes/rope.json:"), 5)
+        self.assertIn("scenes/rope.json: Rope\n", out)
+
+    def test_an_event_that_cannot_happen_fails_the_run(self):
+        content = dict(FALLING, timeline=[
+            {"at_step": 2, "remove": "ball"},
+            {"at_step": 3, "impulse": {"object": "ball", "point": 0, "impulse": [0, 1, 0]}}])
+        content.pop("expect")
+        self.assertIn("timeline[1]", self.hooke("run", self.scene(content), code=1)[1])
+
+
+class BadInput(Program):
+    def test_errors_name_line_and_path(self):
+        name = self.scene('{"version": 1,\n "ropes": [{"masses": 1}]}')
+        for command in (["run"], ["validate"], ["render", "-o", "x.png"], ["view"]):
+            _, err = self.hooke(*command, name, code=2)
+            self.assert_one_line(err, r"^scene.json:2:\d+: ropes\[0\].masses: 1 .*must be 2 to 65536")
+        self.assertEqual(self.files(), ["scene.json"])
+
+    def test_every_error_of_a_file_is_printed(self):
+        name = self.scene('{"version": 1, "ropes": [{"masses": 1, "radius": -1}], "unknown": 3}')
+        _, err = self.hooke("validate", name, code=2)
+        self.assertEqual(err.count("\n"), 3, err)
+
+    def test_files_that_are_missing_or_no_scene(self):
+        self.assert_one_line(self.hooke("run", "none.json", code=2)[1], r"^none.json: ")
+        self.assertRegex(self.hooke("run", ".", code=2)[1], r"^\.: ")
+        self.assertRegex(self.hooke("run", self.scene("{"), code=2)[1], r"^scene.json:1:\d+: ")
+
+    def test_a_model_that_is_missing_is_found_by_validate(self):
+        content = {"version": 1, "meshes": {"m": {"file": "none.3ds"}}}
+        self.assertIn("none.3ds", self.hooke("validate", self.scene(content), code=2)[1])
+
+    def test_arguments_that_make_no_sense(self):
+        name = self.scene(FALLING)
+        for words in ([], ["fly"], ["run"], ["run", name, "--workers", "0"], ["run", name, "--seconds", "-1"],
+                      ["run", name, "--seconds", "nan"], ["run", name, "--nonsense"], ["run", name, "more"],
+                      ["run", name, "--csv", "-", "--json", "-"], ["new", "castle"],
+                      ["convert", "a.obj", "b.obj", "--scale", "2", "--fit", "1"],
+                      ["convert", "scenes/models/crate.3ds", "b.obj", "--up", "w"],
+                      ["view", name, "--screenshot", "x.png"]):
+            self.assert_one_line(self.hooke(*words, code=2)[1], "^hooke")
+        for words in (["-o", "x.png", "--size", "big"], ["-o", "x.png", "--size", "0x5"], ["-o", "x.mp3"],
+                      ["-o", "x.mp4", "--at", "1"], ["-o", "x.mp4", "--size", "33x33"], ["-o", "x_%s.png"]):
+            done = subprocess.run([PROGRAM, "render", name, *words], cwd=self.folder, capture_output=True,
+                                  text=True, check=False, timeout=LIMIT)
+            if not (done.returncode == 3 and "headless OpenGL" in done.stderr):
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), (words, done.stderr))
+        self.assertEqual(self.files(), ["scene.json"])
+
+
+class Output(Program):
+    def test_a_folder_that_refuses_is_exit_code_3_and_leaves_nothing(self):
+        name = self.scene(FALLING)
+        for option in ("--json", "--csv"):
+            _, err = self.hooke("run", name, option, "none/out", code=3)
+            self.assert_one_line(err, "^none/out: cannot be written: ")
+            self.assert_one_line(self.hooke("run", name, option, "scenes", code=3)[1], "it is a folder")
+        self.assertEqual(self.files(), ["scene.json"])
+
+    def test_a_full_device_is_noticed(self):
+        if not pathlib.Path("/dev/full").exists():
+            self.skipTest("no /dev/full")
+        name = self.scene(FALLING)
+        for option in ("--json", "--csv"):
+            self.assertIn("/dev/full", self.hooke("run", name, option, "/dev/full", code=3)[1])
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([PROGRAM, "run", name], cwd=self.folder, stdout=full, check=False,
+                                  stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 3)
+
+    def test_a_run_that_is_killed_leaves_the_old_table(self):
+        (self.folder / "steps.csv").write_text("old")
+        with subprocess.Popen([PROGRAM, "run", "scenes/flag.json", "--seconds", "100000", "--csv", "steps.csv",
+                               "--hash-every", "1"], cwd=self.folder, stdout=subprocess.PIPE) as run:
+            # Output is buffered: what arrives tells that steps were done.
+            self.assertTrue(run.stdout.read(1000))
+            run.kill()
+        self.assertEqual((self.folder / "steps.csv").read_text(), "old")
+
+    def test_a_link_is_written_through(self):
+        (self.folder / "real.json").write_text("old")
+        (self.folder / "link.json").symlink_to("real.json")
+        self.hooke("run", self.scene(FALLING), "--json", "link.json")
+        self.assertTrue((self.folder / "link.json").is_symlink())
+        self.assertEqual(json.loads((self.folder / "real.json").read_text())["steps"], 60)
+
+
+class NewAndValidate(Program):
+    def test_starters_are_good_scenes_and_are_not_replaced(self):
+        for kind in ("rope", "flag", "empty"):
+            self.hooke("new", kind, "-o", kind + ".json")
+            self.assertEqual(self.hooke("validate", kind + ".json")[0], kind + ".json: good\n")
+            self.assertEqual(self.hooke("new", kind)[0], (self.folder / (kind + ".json")).read_text())
+        (self.folder / "rope.json").write_text("mine")
+        self.assert_one_line(self.hooke("new", "rope", "-o", "rope.json", code=2)[1], "^rope.json: exists")
+        self.assertEqual((self.folder / "rope.json").read_text(), "mine")
+        self.hooke("new", "rope", "-o", "rope.json", "--force")
+        self.hooke("run", "rope.json", "--seconds", 0.1)
+
+    def test_all_scenes_of_the_project_are_good(self):
+        scenes = sorted(path for path in (PROJECT / "scenes").glob("*.json") if path.name != "schema.json")
+        self.assertGreater(len(scenes), 5)
+        out, err = self.hooke("validate", *scenes)
+        self.assertEqual((out.count(": good\n"), err), (len(scenes), ""))
+
+
+class Convert(Program):
+    def test_a_model_keeps_its_size_through_another_format(self):
+        out, _ = self.hooke("convert", "scenes/models/crate.3ds", "crate.obj", "--fit", 2)
+        triangles = int(re.search(r"(\d+) triangles", out).group(1))
+        lines = (self.folder / "crate.obj").read_text().split("\n")
+        points = [[float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")]
+        sides = [max(p[axis] for p in points) - min(p[axis] for p in points) for axis in range(3)]
+        self.assertAlmostEqual(max(sides), 2, places=5)
+        out, _ = self.hooke("convert", "crate.obj", "crate.stl", "--scale", 3)
+        count = struct.unpack("<I", (self.folder / "crate.stl").read_bytes()[80:84])[0]
+        self.assertEqual((count, f"{triangles} triangles" in out), (triangles, True))
+
+    def test_bad_models_and_names(self):
+        (self.folder / "bad.3ds").write_bytes(b"MM\x00")
+        self.assert_one_line(self.hooke("convert", "bad.3ds", "x.obj", code=2)[1], r"^bad\.3ds: ")
+        self.assert_one_line(self.hooke("convert", "none.obj", "x.obj", code=2)[1], r"^none\.obj: ")
+        done = self.hooke("convert", "scenes/models/crate.3ds", "none/x.obj", code=3)
+        self.assertIn("none/x.", done[1])
+        self.assertEqual(self.files(), ["bad.3ds"])
+
+
+class Render(Program):
+    def test_scenes_give_pictures_with_something_on_them(self):
+        for scene in ("rope", "flag", "hanging_model"):
+            self.draw(f"scenes/{scene}.json", "-o", "x.png", "--at", 0.2, "--size", "160x90")
+            width, height, rows = read_png(self.folder / "x.png")
+            self.assertEqual((width, height), (160, 90))
+            # Sky and ground change from row to row only; things also change along a row.
+            edges = sum(abs(row[i] - row[i - 3]) > 40 for row in rows for i in range(3, len(row)))
+            self.assertGreater(edges, 20, scene)
+
+    def test_pictures_between_two_steps_differ_from_both(self):
+        content = dict(copy.deepcopy(FALLING), camera={"eye": [0, 10, 3], "target": [0, 10, 0]})
+        content["particles"][0]["particles"][0]["velocity"] = [20, 0, 0]
+        self.draw(self.scene(content), "-o", "x_%02d.png", "--fps", 240, "--seconds", 0.02, "--size", "160x90")
+        pictures = [(self.folder / f"x_{i:02}.png").read_bytes() for i in range(5)]
+        self.assertEqual(len(set(pictures)), 5)
+        self.draw("scene.json", "-o", "y.png", "--at", 1 / 60, "--size", "160x90")
+        self.assertEqual(read_png(self.folder / "y.png"), read_png(self.folder / "x_04.png"))
+
+    def test_a_film_has_as_many_pictures_as_its_length_says(self):
+        probe = shutil.which("ffprobe")
+        if probe is None:
+            self.skipTest("no ffprobe")
+        self.draw("scenes/rope.json", "-o", "x.mp4", "--fps", 25, "--seconds", 0.4, "--size", "160x90")
+        count = subprocess.run([probe, "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames",
+                                "-of", "csv=p=0", "x.mp4"], cwd=self.folder, capture_output=True, text=True,
+                               check=True)
+        self.assertEqual(count.stdout.strip().rstrip(","), "10")
+
+    def test_without_ffmpeg_a_film_is_refused_and_leaves_nothing(self):
+        self.draw("scenes/rope.json", "-o", "x.png", "--at", 0, "--size", "16x16")
+        (self.folder / "x.png").unlink()
+        _, err = self.hooke("render", "scenes/rope.json", "-o", "x.mp4", "--seconds", 0.1, "--size", "16x16",
+                            code=3, environment={**os.environ, "PATH": "/nowhere"})
+        self.assert_one_line(err, "ffmpeg")
+        self.assertEqual(self.files(), [])
+
+
+class View(Program):
+    def test_without_a_display_it_says_so(self):
+        environment = {key: value for key, value in os.environ.items()
+                       if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        _, err = self.hooke("view", "scenes/rope.json", code=3, environment=environment)
+        self.assert_one_line(err, "there is no display")
+
+    def test_scenes_and_models_are_shown(self):
+        server = os.environ.get("XVFB_RUN")
+        if not server:
+            self.skipTest("no xvfb-run")
+        for what in ("scenes/rope.json", "scenes/models/lantern.3ds"):
+            words = [server, "-a", "-s", "-screen 0 640x480x24", PROGRAM, "view", what, "--seconds", "0.02",
+                     "--screenshot", "x.png"]
+            done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=False, timeout=LIMIT)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = read_png(self.folder / "x.png")[2]
+            edges = sum(abs(row[i] - row[i - 3]) > 40 for row in rows for i in range(3, len(row)))
+            self.assertGreater(edges, 100, what)
+            (self.folder / "x.png").unlink()
+
+
+class Help(Program):
+    def test_every_example_works(self):
+        commands = re.findall(r"^  (\w+) ", self.hooke("--help")[0].split("Commands:")[1].split("Exit")[0], re.M)
+        self.assertGreaterEqual(set(commands), {"run", "view", "render", "convert", "validate", "new"})
+        texts = [self.hooke("--help")[0]] + [self.hooke(command, "--help")[0] for command in commands]
+        for text in texts:
+            examples = re.findall(r"^  hooke (.*)$", text.split("Examples:")[1], re.M)
+            self.assertTrue(examples, text)
+            for words in map(str.split, examples):
+                if words[0] == "render":
+                    self.draw(*words[1:])
+                elif words[0] != "view":
+                    self.hooke(*words)
+
+    def test_exit_codes_are_documented(self):
+        out, _ = self.hooke("--help")
+        for code in ("0  good", "1  an expectation", "2  bad input", "3  the machine"):
+            self.assertIn(code, out)
+
+
+if __name__ == "__main__":
+    PROGRAM, PROJECT = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
