@@ -9,20 +9,22 @@ namespace hooke::app {
 
 namespace {
 
+/// Normals that agree to this part of their length are the same.
+constexpr float kNormalSteps = 32;
+
 Vec3 vector_of(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
 }
 
 /// Vertices of one point whose normals agree in the file are one vertex of the surface.
 std::vector<std::uint32_t> normal_groups(const Model& model) {
-  constexpr float kSteps = 32;
   using Key = std::tuple<std::uint32_t, int, int, int>;
   std::map<Key, std::uint32_t> group_of_key;
   std::vector<std::uint32_t> groups;
   groups.reserve(model.vertices.size());
   for (std::size_t i = 0; i < model.vertices.size(); ++i) {
     const std::array<float, 3>& n = model.vertices[i].normal;
-    const auto step = [](float x) { return static_cast<int>(std::lround(kSteps * x)); };
+    const auto step = [](float x) { return static_cast<int>(std::lround(kNormalSteps * x)); };
     const Key key = {model.welded_of[i], step(n[0]), step(n[1]), step(n[2])};
     const auto next = static_cast<std::uint32_t>(group_of_key.size());
     groups.push_back(group_of_key.try_emplace(key, next).first->second);

@@ -62,7 +62,7 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     record.steps_unconverged += step.chains_unconverged > 0 ? 1 : 0;
     if (csv) csv->write(csv_line(simulation.world(), step.contacts));
     if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {
-      std::printf("%llu %s\n", static_cast<unsigned long long>(i + 1),
+      std::printf("%s %s\n", std::to_string(i + 1).c_str(),
                   hash_text(simulation.world().state_hash()).c_str());
     }
     progress.show(i + 1);

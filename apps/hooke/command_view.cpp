@@ -13,6 +13,9 @@ namespace hooke::app {
 
 namespace {
 
+/// [px]. In a larger window thin ropes are a little thinner than they might be.
+constexpr int kUsualHeight = 720;
+
 struct CommandOptions {
   std::string path;
   std::optional<double> fit;  ///< [m]
@@ -63,7 +66,7 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
   // The mesh's file is relative to the scene's, which would lie beside it.
   scene.path = (path.parent_path() / "model.json").string();
   scene.meshes.push_back({.name = "model", .file = path.filename().string(), .import = import});
-  scene.materials.push_back({.name = "ground", .color = {0.32F, 0.36F, 0.34F}});
+  scene.materials.push_back({.name = "ground", .color = {0.13F, 0.16F, 0.14F}});
   scene.objects.bodies.push_back({.tag = {.name = "ground", .material = "ground"}});
   SceneBody body = {.tag = {.name = "model"}, .mesh = "model"};
   body.desc.shape.kind = ShapeKind::kMesh;
@@ -105,9 +108,7 @@ class Show {
   }
 
   void fill(render::DrawList& list) {
-    // The window may be larger than this; ropes are then a little thinner on it.
-    constexpr int kHeight = 720;
-    drawing_.fill(simulation_.world().time(), kHeight, list);
+    drawing_.fill(simulation_.world().time(), kUsualHeight, list);
     for (const std::string& line : drawing_.take_warnings()) {
       std::fprintf(stderr, "warning: %s\n", line.c_str());
     }

@@ -15,6 +15,7 @@ namespace {
 /// Thinner springs than these are drawn as lines: round ones cost a hundred triangles each.
 constexpr std::size_t kMostRoundSprings = 3000;
 constexpr float kHalfSpaceSize = 50;  ///< [m], of a half-space that is not the ground.
+constexpr float kIronDensity = 7800;  ///< [kg/m^3]
 const render::Color kIron = {0.30F, 0.31F, 0.33F};
 
 float srgb_of(float linear) {
@@ -78,8 +79,7 @@ const SceneObjects& objects_of(const Scene& scene, const std::string& path, std:
 
 /// The ball of iron of that mass.
 float load_radius(Real mass) {
-  constexpr float kDensity = 7800;
-  return std::cbrt(3 * static_cast<float>(mass) / (4 * std::numbers::pi_v<float> * kDensity));
+  return std::cbrt(3 * static_cast<float>(mass) / (4 * std::numbers::pi_v<float> * kIronDensity));
 }
 
 void add_loads(const std::vector<SceneLoad>& loads, std::size_t points, Figure& figure) {

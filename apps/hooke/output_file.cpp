@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr mode_t kUsualMode = 0666;
+
 Error failure(const std::string& path, const std::string& reason) {
   return {ErrorCode::kFileNotWritable, path, "cannot be written: " + reason};
 }
@@ -35,8 +37,7 @@ Result<OutputFile> OutputFile::create(const std::string& path) {
     return OutputFile(device, path, "");
   }
   const std::string temporary = real.string() + ".part" + std::to_string(::getpid());
-  constexpr mode_t kReadableAsUsual = 0666;
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kReadableAsUsual);
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
   std::FILE* file = descriptor >= 0 ? ::fdopen(descriptor, "w") : nullptr;
   if (file == nullptr) return failure(path, std::strerror(errno));
   return OutputFile(file, real.string(), temporary);

@@ -8,6 +8,8 @@ namespace hooke::app {
 
 namespace {
 
+constexpr double kFovDeg = 40;  ///< Of the automatic view.
+
 /// Slope at keyframe `i`: of the line between its neighbors; at rest at both ends, so that films begin and
 /// end softly.
 DVec3 slope(const std::vector<SceneKeyframe>& path, std::size_t i, DVec3 SceneKeyframe::*member) {
@@ -44,7 +46,6 @@ Viewpoint viewpoint_at(const SceneCamera& camera, double time) {
 }
 
 Viewpoint viewpoint_of_box(DVec3 low, DVec3 high) {
-  constexpr double kFovDeg = 40;
   const DVec3 center = 0.5 * (low + high);
   const double radius = std::max(0.5 * length(high - low), 0.3);
   const double distance = 1.05 * radius / std::sin(0.5 * kFovDeg * std::numbers::pi / 180);

@@ -16,6 +16,7 @@ namespace {
 /// The list's origin moves in steps, so that shadows and cached buffers stand still while the camera does
 /// not.
 constexpr double kOriginStep = 64;
+constexpr double kFar = 1e30;  ///< [m], beyond everything.
 /// [px], half the least width of a rope.
 constexpr float kLeastRopeRadius = 1.2F;
 
@@ -92,7 +93,6 @@ void SceneDrawing::record(const Simulation& simulation) {
 }
 
 void SceneDrawing::measure(const State& state) {
-  constexpr double kFar = 1e30;
   DVec3 low = {kFar, kFar, kFar};
   DVec3 high = {-kFar, -kFar, -kFar};
   const auto extend = [&](DVec3 p) {
