@@ -13,9 +13,12 @@ namespace hooke::parallel {
 
 namespace {
 
-/// About 50 microseconds: longer than the gap between two stages of a step, shorter than a scheduler's time
-/// slice.
-constexpr int kSpins = 4000;
+/// About 50 microseconds: longer than the gap between two stages of a step, shorter than a scheduler's slice.
+/// With more workers than processors a spinning thread only keeps another from its work.
+int spins_for(int workers) {
+  constexpr int kSpins = 4000;
+  return workers <= static_cast<int>(std::thread::hardware_concurrency()) ? kSpins : 1;
+}
 
 inline void pause_briefly() {
 #if defined(__x86_64__) || defined(_M_X64)
@@ -28,6 +31,9 @@ inline void pause_briefly() {
 }  // namespace
 
 struct ThreadPool::Shared {
+  explicit Shared(int workers) : spins(spins_for(workers)) {}
+
+  const int spins;
   std::atomic<std::uint64_t> job_number{0};
   std::atomic<int> unfinished{0};
   std::atomic<bool> stopping{false};
@@ -39,7 +45,7 @@ struct ThreadPool::Shared {
   std::vector<std::thread> threads;
 
   void wait_for_job(std::uint64_t last) {
-    for (int i = 0; i < kSpins; ++i) {
+    for (int i = 0; i < spins; ++i) {
       if (job_number.load(std::memory_order_acquire) != last) return;
       pause_briefly();
     }
@@ -73,7 +79,7 @@ struct ThreadPool::Shared {
   }
 };
 
-ThreadPool::ThreadPool(int workers) : workers_(workers), shared_(std::make_unique<Shared>()) {
+ThreadPool::ThreadPool(int workers) : workers_(workers), shared_(std::make_unique<Shared>(workers)) {
   for (int part = 1; part < workers_; ++part) {
     shared_->threads.emplace_back([shared = shared_.get(), part] { shared->work(part); });
   }
@@ -93,7 +99,7 @@ void ThreadPool::run(void (*job)(void*, int), void* context) {
   shared.publish();
   job(context, 0);
   for (int i = 0; shared.unfinished.load(std::memory_order_acquire) > 0; ++i) {
-    if (i < kSpins) {
+    if (i < shared.spins) {
       pause_briefly();
     } else {
       std::this_thread::yield();

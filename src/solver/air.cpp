@@ -17,9 +17,9 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
   loads.corner_impulse.assign(triangles.corners.size(), Vec3{});
 }
 
-void load_triangles(const state::Deformable& object, const state::Triangles& triangles,
-                    const state::Particles& particles, const std::vector<Vec3>& wind, Real air_density,
-                    Real h, parallel::Range range, AirLoads& loads) {
+void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
+                    const state::Particles& particles, parallel::Range range, AirLoads& loads) {
+  const std::vector<Vec3>& wind = air.wind;
   const Real third = Real(1) / Real(3);
   for (int i = range.begin; i < range.end; ++i) {
     const std::size_t row = object.triangles.first + static_cast<std::size_t>(i);
@@ -37,12 +37,12 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
     const Vec3 n = ((along < Real(0) ? Real(-1) : Real(1)) / area2) * normal;
     const Real cosine = (along < Real(0) ? -along : along) / speed;
     const Vec3 lift = n - (cosine / speed) * flow;
-    const Real pressure = Real(0.5) * air_density * speed * cosine;  // force per area and velocity
+    const Real pressure = Real(0.5) * air.density * speed * cosine;  // force per area and velocity
     const Vec3 per_area =
         pressure * (object.drag_coefficient * flow + (object.lift_coefficient * speed) * lift);
     const Real stiffening =
-        h * pressure * (object.drag_coefficient + object.lift_coefficient) / triangles.areal_density[row];
-    loads.corner_impulse[row] = (third * h * Real(0.5) * area2 / (Real(1) + stiffening)) * per_area;
+        air.h * pressure * (object.drag_coefficient + object.lift_coefficient) / triangles.areal_density[row];
+    loads.corner_impulse[row] = (third * air.h * Real(0.5) * area2 / (Real(1) + stiffening)) * per_area;
   }
 }
 
@@ -56,8 +56,10 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
   }
 }
 
-void push_segments(const state::Deformable& object, const state::Segments& segments,
-                   const std::vector<Vec3>& wind, Real air_density, Real h, state::Particles& particles) {
+void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
+                   state::Particles& particles) {
+  const std::vector<Vec3>& wind = air.wind;
+  const Real h = air.h;
   for (std::uint32_t i = 0; i < object.segments.count; ++i) {
     const std::size_t a = object.particles.first + i;
     const std::size_t b = a + 1;
@@ -65,7 +67,7 @@ void push_segments(const state::Deformable& object, const state::Segments& segme
     const Vec3 flow = Real(0.5) * ((wind[a] - particles.velocity[a].v) + (wind[b] - particles.velocity[b].v));
     const Vec3 across = flow - dot(flow, axis) * axis;
     const Real diameter = Real(2) * particles.position[a].radius;
-    const Real drag = Real(0.5) * air_density * object.drag_coefficient * diameter *
+    const Real drag = Real(0.5) * air.density * object.drag_coefficient * diameter *
                       segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
     for (const std::size_t p : {a, b}) {
       const Real w = particles.velocity[p].inverse_mass;

@@ -16,6 +16,13 @@ struct AirLoads {
   std::vector<Vec3> corner_impulse;  ///< A third of each triangle's impulse [N s]; written by load_triangles.
 };
 
+/// What the air does in one substep.
+struct Air {
+  const std::vector<Vec3>& wind;  ///< At each particle [m/s].
+  Real density = Real(0);         ///< [kg/m^3]
+  Real h = Real(0);               ///< [s]
+};
+
 void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads);
 
 /// Drag and lift of the triangles of one cloth in air of density rho, on the velocity u of the air relative
@@ -24,11 +31,9 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
 ///     F = rho A |u| cos(a) (C_d u + C_l |u| e) / 2,   cos(a) = |n . u| / |u|,  e = n - (n . u) u / |u|^2
 ///
 /// with n turned to the side the air comes out of. Divided by 1 + h F / (m |u|), the implicit form, so that
-/// no wind is too strong for a light cloth. `wind` is that of each particle; `range` counts the triangles of
-/// `object`.
-void load_triangles(const state::Deformable& object, const state::Triangles& triangles,
-                    const state::Particles& particles, const std::vector<Vec3>& wind, Real air_density,
-                    Real h, parallel::Range range, AirLoads& loads);
+/// no wind is too strong for a light cloth. `range` counts the triangles of `object`.
+void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
+                    const state::Particles& particles, parallel::Range range, AirLoads& loads);
 
 /// Adds the impulses of a particle's triangles in the order of the table. `range` counts particles of the
 /// world.
@@ -36,7 +41,7 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
 
 /// Drag of the segments of one rope: F = rho C_d d L |u_t| u_t / 2, u_t across the segment; half to each end,
 /// implicit as above.
-void push_segments(const state::Deformable& object, const state::Segments& segments,
-                   const std::vector<Vec3>& wind, Real air_density, Real h, state::Particles& particles);
+void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
+                   state::Particles& particles);
 
 }  // namespace hooke::solver

@@ -310,11 +310,8 @@ bool finite(const Scratch& s) {
   return std::all_of(s.nodes.begin(), s.nodes.end(), [](const Node& node) { return is_finite(node.u); });
 }
 
-void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state::Particles& particles,
-                 state::Segments& segments, state::Contacts& contacts, Scratch& s) {
-  load(chain, before, particles, segments, s);
-  load_touches(chain, h, contacts, s);
-
+/// Newton steps until the rope is as long as its forces say and its contacts are settled. `s` is loaded.
+void solve_chain(Chain& chain, double h, Scratch& s) {
   Setting setting;
   if (s.touches.empty()) setting.turning = turning_of(s);
   if (!s.touches.empty()) setting.compliance = kComplianceInContact;
@@ -337,7 +334,6 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
     setting.first = setting.first && long_enough;
   }
   chain.unconverged = chain.unconverged || !(error <= kReportedError) || !finite(s);
-  if (finite(s)) store(chain, h, s, particles, segments, contacts);
 }
 
 }  // namespace
@@ -345,8 +341,12 @@ void solve_chain(Chain& chain, const std::vector<Vec3>& before, double h, state:
 void solve_chains(std::span<Chain> chains, const std::vector<Vec3>& before, Real h,
                   state::Particles& particles, state::Segments& segments, state::Contacts& contacts) {
   thread_local Scratch scratch;
+  const auto substep = static_cast<double>(h);
   for (Chain& chain : chains) {
-    solve_chain(chain, before, static_cast<double>(h), particles, segments, contacts, scratch);
+    load(chain, before, particles, segments, scratch);
+    load_touches(chain, substep, contacts, scratch);
+    solve_chain(chain, substep, scratch);
+    if (finite(scratch)) store(chain, substep, scratch, particles, segments, contacts);
   }
 }
 

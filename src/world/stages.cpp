@@ -132,17 +132,16 @@ void apply_forces(WorldData& world, Real h) {
 
 void apply_wind(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  const Real density = tables.desc.wind.air_density;
+  const solver::Air air = {world.wind, tables.desc.wind.air_density, h};
   bool any_triangles = false;
   for (const state::Deformable& object : tables.objects) {
     if (!air_moves(tables, object)) continue;
     for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
-      solver::load_triangles(object, tables.triangles, tables.particles, world.wind, density, h, range,
-                             world.air_loads);
+      solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.air_loads);
     });
     any_triangles = any_triangles || object.triangles.count > 0;
     if (object.segments.count > 0) {
-      solver::push_segments(object, tables.segments, world.wind, density, h, tables.particles);
+      solver::push_segments(object, tables.segments, air, tables.particles);
     }
   }
   if (!any_triangles) return;
