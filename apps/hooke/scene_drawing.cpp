@@ -25,19 +25,6 @@ DVec3 origin_near(DVec3 place) {
   return {snap(place.x), snap(place.y), snap(place.z)};
 }
 
-PointView points_of(const World& world, const SceneObject& object) {
-  switch (object.kind) {
-    case SceneObject::Kind::kRope:
-      return world.positions(object.rope);
-    case SceneObject::Kind::kCloth:
-      return world.positions(object.cloth);
-    case SceneObject::Kind::kParticles:
-      return world.positions(object.particles);
-    default:
-      return {};
-  }
-}
-
 DVec3 mix(DVec3 a, DVec3 b, double part) {
   return a + part * (b - a);
 }
@@ -84,7 +71,7 @@ void SceneDrawing::record(const Simulation& simulation) {
     ObjectState& state = current_.objects.emplace_back();
     state.figure = find_figure(simulation, object);
     if (object.kind == SceneObject::Kind::kBody) state.pose = simulation.world().pose(object.body);
-    const PointView points = points_of(simulation.world(), object);
+    const PointView points = positions_of(simulation.world(), object);
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
   }

@@ -305,6 +305,9 @@ struct SceneObject {
   std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth.
 };
 
+/// The points of a rope, a cloth or particles, as World::positions gives them; none for other objects.
+[[nodiscard]] PointView positions_of(const World& world, const SceneObject& object);
+
 /// One expectation, evaluated.
 struct SceneVerdict {
   std::size_t index = 0;  ///< In Scene::expect.

@@ -99,6 +99,7 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t 
   std::size_t nearest = first;
   Real least = std::numeric_limits<Real>::infinity();
   bool any_face = false;
+  bool inside = false;
   for (std::size_t row = first; row < end; ++row) {
     const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
     any_face = any_face || (g.over_face && g.gap.distance >= Real(0));
@@ -106,8 +107,8 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t 
     const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
     nearest = better ? row : nearest;
     least = better ? g.unsigned_distance : least;
+    inside = better ? g.gap.distance < Real(0) : inside;
   }
-  const bool inside = gap_to_triangle(mesh, contacts.feature[nearest], place).gap.distance < Real(0);
   for (std::size_t row = first; row < end; ++row) {
     const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
     const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && row == nearest;

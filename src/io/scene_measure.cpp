@@ -15,19 +15,6 @@ using Op = SceneExpectation::Op;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-PointView positions_of(const World& world, const SceneObject& object) {
-  switch (object.kind) {
-    case SceneObject::Kind::kRope:
-      return world.positions(object.rope);
-    case SceneObject::Kind::kCloth:
-      return world.positions(object.cloth);
-    case SceneObject::Kind::kParticles:
-      return world.positions(object.particles);
-    default:
-      return {};
-  }
-}
-
 PointView velocities_of(const World& world, const SceneObject& object) {
   switch (object.kind) {
     case SceneObject::Kind::kRope:
@@ -193,3 +180,20 @@ std::uint32_t due_step(const Scene& scene, const SceneExpectation& expectation) 
 }
 
 }  // namespace hooke::io
+
+namespace hooke {
+
+PointView positions_of(const World& world, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return world.positions(object.rope);
+    case SceneObject::Kind::kCloth:
+      return world.positions(object.cloth);
+    case SceneObject::Kind::kParticles:
+      return world.positions(object.particles);
+    default:
+      return {};
+  }
+}
+
+}  // namespace hooke

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 namespace hooke {
 
@@ -35,24 +36,17 @@ Result<IdType> add_object(state::Tables& tables, state::SlotTable<IdType>& slots
   return id;
 }
 
-template <class IdType>
-PointView position_view(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
+/// An object's part of a column of lines. Places are seen from the object's origin, velocities from zero.
+template <class IdType, class Line>
+PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id,
+                  const std::vector<Line>& column) {
   const std::uint32_t row = slots.find(id);
   if (row == slots.kNone) return {};
   const state::Deformable& object = tables.objects[row];
   const std::size_t first = object.particles.first;
-  return {object.origin, reinterpret_cast<const std::byte*>(tables.particles.position.data() + first),
-          object.particles.count, sizeof(state::PositionLine), tables.particles.row_of.data() + first};
-}
-
-template <class IdType>
-PointView velocity_view(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
-  const std::uint32_t row = slots.find(id);
-  if (row == slots.kNone) return {};
-  const state::Deformable& object = tables.objects[row];
-  const std::size_t first = object.particles.first;
-  return {DVec3{}, reinterpret_cast<const std::byte*>(tables.particles.velocity.data() + first),
-          object.particles.count, sizeof(state::VelocityLine), tables.particles.row_of.data() + first};
+  constexpr bool kPlaces = std::is_same_v<Line, state::PositionLine>;
+  return {kPlaces ? object.origin : DVec3{}, reinterpret_cast<const std::byte*>(column.data() + first),
+          object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
 }
 
 }  // namespace
@@ -195,22 +189,22 @@ bool World::remove(ParticlesId id) {
 }
 
 PointView World::positions(RopeId id) const {
-  return position_view(data_->tables, data_->tables.rope_slots, id);
+  return view_of(data_->tables, data_->tables.rope_slots, id, data_->tables.particles.position);
 }
 PointView World::positions(ClothId id) const {
-  return position_view(data_->tables, data_->tables.cloth_slots, id);
+  return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.position);
 }
 PointView World::positions(ParticlesId id) const {
-  return position_view(data_->tables, data_->tables.particles_slots, id);
+  return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.position);
 }
 PointView World::velocities(RopeId id) const {
-  return velocity_view(data_->tables, data_->tables.rope_slots, id);
+  return view_of(data_->tables, data_->tables.rope_slots, id, data_->tables.particles.velocity);
 }
 PointView World::velocities(ClothId id) const {
-  return velocity_view(data_->tables, data_->tables.cloth_slots, id);
+  return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.velocity);
 }
 PointView World::velocities(ParticlesId id) const {
-  return velocity_view(data_->tables, data_->tables.particles_slots, id);
+  return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.velocity);
 }
 
 Pose World::pose(BodyId id) const {
