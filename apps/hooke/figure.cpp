@@ -99,6 +99,16 @@ void prepare_body(const SceneObject& object, Figure& figure) {
     case ShapeKind::kBox:
       figure.geometry = std::make_shared<render::MeshGeometry>(render::make_box(object.shape.half_extents));
       break;
+    case ShapeKind::kCapsule:
+      figure.geometry = std::make_shared<render::MeshGeometry>(
+          render::make_capsule(object.shape.radius, object.shape.half_height));
+      break;
+    case ShapeKind::kCylinder:
+      figure.geometry = std::make_shared<render::MeshGeometry>(
+          render::make_cylinder(object.shape.radius, object.shape.half_height));
+      break;
+    case ShapeKind::kCone:
+    case ShapeKind::kHull:
     case ShapeKind::kMesh:
       if (object.model != nullptr) figure.geometry = geometry_of(*object.model);
       break;

@@ -43,12 +43,27 @@ struct WindDesc {
   friend bool operator==(const WindDesc&, const WindDesc&) = default;
 };
 
+/// What two materials do to each other, in place of the rule at ContactDesc.
+struct MaterialPairDesc {
+  std::uint16_t a = 0;
+  std::uint16_t b = 0;
+  Real friction = Real(0.5);  ///< [0, 100]
+  std::optional<Real> static_friction = {};
+  Real restitution = Real(0);  ///< [0, 1]
+};
+
 struct WorldDesc {
   Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
   int substeps = 8;                                ///< Solver passes per step; more is stiffer. [1, 64]
   int particle_substeps = 1;                       ///< Passes over deformables in each substep. [1, 64]
   int workers = 1;  ///< Threads used by step(). The result does not depend on it. [1, 64]
   WindDesc wind = {};
+  std::vector<MaterialPairDesc> materials = {};
+  Real contact_hz = Real(60);             ///< Stiffness of contacts between bodies, as a frequency. (0, 1000]
+  Real contact_damping_ratio = Real(10);  ///< Of the same. (0, 100]
+  int bias_sweeps =
+      1;  ///< Passes over contacts in each substep; 2 is cheaper than twice the substeps. [1, 8]
+  bool sleeping = true;  ///< Bodies that have come to rest are skipped until something wakes them.
 };
 
 /// A displacement as a function of time; zero at time zero.
@@ -84,18 +99,64 @@ struct LoadDesc {
   Real mass = Real(1);  ///< [kg], not negative.
 };
 
-/// How a surface or a point answers a contact.
+/// How a surface or a point answers a contact. Of two surfaces: friction sqrt(a b), the larger restitution,
+/// the larger rolling and spinning friction, the sum of the surface velocities; unless the world's table of
+/// materials lists the pair.
 struct ContactDesc {
-  Real friction = Real(0.5);  ///< Coulomb coefficient; a contact uses sqrt(a b) of the two. [0, 100]
+  Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
+  std::optional<Real> static_friction =
+      {};                      ///< Coefficient while at rest, not below `friction`, which it is by default.
+  Real restitution = Real(0);  ///< Speed after over speed before, of bodies. [0, 1]
+  Real rolling_friction = Real(0);   ///< Lever of the rolling resistance [m]. Not negative.
+  Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m]. Not negative.
+  Vec3 surface_velocity = {};        ///< Of a conveyor belt, in the body's frame [m/s].
+  std::uint16_t material = 0;        ///< The row of WorldDesc::materials it is listed under; any number.
 };
 
-/// A shape in the world. It stands still and is not moved by what touches it.
-struct BodyDesc {
+enum class BodyKind : std::uint8_t {
+  kStatic,     ///< Never moves.
+  kKinematic,  ///< Moves as told and is not moved by what it touches.
+  kDynamic,
+};
+
+/// Two bodies collide when each is in a category that the other's mask has, and they do not share a negative
+/// group; a shared positive group always collides.
+struct FilterDesc {
+  std::uint32_t category = 1;
+  std::uint32_t mask = 0xFFFFFFFF;
+  std::int32_t group = 0;
+};
+
+/// One shape of a body that has several.
+struct PartDesc {
   Shape shape = {};
-  DVec3 position = {};  ///< Origin of the shape's frame [m].
-  Quat rotation = {};   ///< Normalized on entry.
+  Vec3 position = {};         ///< Of the shape's frame in the body's [m].
+  Quat rotation = {};         ///< Of the shape's frame in the body's. Normalized on entry.
+  Real density = Real(1000);  ///< [kg/m^3], positive.
   ContactDesc contact = {};
+};
+
+/// A rigid body. Its mass, its center and its inertia come from the volume of its shapes.
+struct BodyDesc {
+  BodyKind kind = BodyKind::kStatic;
+  Shape shape = {};
+  std::vector<PartDesc> parts = {};  ///< Replaces `shape`, `density` and `contact`.
+  DVec3 position = {};               ///< Origin of the body's frame [m].
+  Quat rotation = {};                ///< Normalized on entry.
+  Vec3 velocity = {};                ///< Of the center of mass [m/s].
+  Vec3 angular_velocity = {};        ///< [rad/s], in the world's axes.
+  Real density = Real(1000);         ///< [kg/m^3], positive.
+  std::optional<Real> mass = {};     ///< [kg]: scales the density to give this mass.
+  Real linear_damping = Real(0);     ///< Rate at which the velocity decays [1/s].
+  Real angular_damping = Real(0);    ///< [1/s]
+  Real gravity_scale = Real(1);
+  ContactDesc contact = {};
+  FilterDesc filter = {};
   bool collides = true;  ///< False: only drawn.
+  bool sensor = false;   ///< Reports what overlaps it and pushes nothing.
+  bool bullet = false;   ///< Swept against moving bodies too, not only against those that stand.
+  bool can_sleep = true;
+  MotionDesc motion = {};  ///< kKinematic: its path from the start; rotation by `angular_velocity`.
 };
 
 /// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on

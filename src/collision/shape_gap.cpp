@@ -24,6 +24,10 @@ Gap gap_to_shape(const Shape& shape, Vec3 x) {
     case ShapeKind::kBox:
       return gap_of(geometry::closest_on_box(x, shape.half_extents));
     case ShapeKind::kMesh:
+    case ShapeKind::kCapsule:
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCone:
+    case ShapeKind::kHull:
       break;
   }
   return {std::numeric_limits<Real>::infinity(), {Real(0), Real(1), Real(0)}};

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "hooke/math.h"
+#include "hooke/result.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hooke::geometry {
+
+/// A convex polyhedron: vertices, polygonal faces, edges.
+struct ConvexHull {
+  struct Face {
+    Vec3 normal = {};       ///< Unit, outward.
+    Real offset = Real(0);  ///< dot(normal, x) = offset on the face [m].
+    std::uint16_t first =
+        0;  ///< Its vertices are loop[first, first + count), counter-clockwise from outside.
+    std::uint16_t count = 0;
+  };
+  struct Edge {
+    std::uint16_t vertex_a = 0, vertex_b = 0;  ///< vertex_a < vertex_b.
+    std::uint16_t face_a = 0, face_b = 0;      ///< face_a runs from vertex_a to vertex_b, face_b back.
+  };
+
+  static constexpr int kMaxVertices = 256;
+
+  std::vector<Vec3> vertices;
+  std::vector<Face> faces;
+  std::vector<std::uint16_t> loop;
+  std::vector<Edge> edges;
+  Vec3 center = {};             ///< Of volume.
+  Real inner_radius = Real(0);  ///< Distance from the center to the nearest face [m].
+  Real outer_radius = Real(0);  ///< From the center to the farthest vertex [m].
+};
+
+/// The convex hull of points. Points within the tolerance of a face count as on it; coplanar triangles are
+/// merged to polygons. Errors: fewer than four points, one that is not finite, or all of them in a plane
+/// (thinner than 1e-4 of their extent). More than kMaxVertices hull vertices are reduced to that many by
+/// leaving out those that change the volume least; the hull then lies inside the true one.
+[[nodiscard]] Result<ConvexHull> make_convex_hull(std::span<const Vec3> points);
+
+/// The hull of a box about the origin.
+[[nodiscard]] ConvexHull make_box_hull(Vec3 half_extents);
+
+}  // namespace hooke::geometry
