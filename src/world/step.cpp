@@ -42,12 +42,16 @@ constexpr int kChainGrain = 1;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
+  world::list_awake_bodies(w);
+  world::find_body_contacts(w, static_cast<Real>(dt));
   collision::find_contacts(w.tables, dt);
 }
 
 void prepare(WorldData& w, double dt, Real h) {
   solver::prepare_springs(w.spring_blocks, h);
   solver::prepare_bends(w.bend_rows, h);
+  solver::prepare_bodies(w.awake, w.tables.bodies);
+  solver::prepare_body_contacts(*w.pool, w.tables.pairs.manifold, w.tables.bodies, h, w.body_contacts);
   world::begin_step(w, dt);
 }
 
