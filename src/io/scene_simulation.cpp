@@ -114,7 +114,7 @@ std::vector<Error> check(const Scene& scene) {
 Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
   std::vector<Error> errors = check(scene);
   if (!errors.empty()) return {.errors = std::move(errors)};
-  Result<World> world = World::create(scene.world);
+  Result<World> world = World::create(io::world_of(scene));
   if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
   auto data = std::make_unique<SimulationData>(
       SimulationData{.scene = std::move(scene), .world = std::move(world).value()});
