@@ -247,6 +247,8 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   if (inner == path) return;
   const NamedObject* object = find_object(event.object, inner + ".object");
   if (object == nullptr) return;
+  const bool pushes = event.kind == SceneEvent::Kind::kForce || event.kind == SceneEvent::Kind::kImpulse;
+  if (object->kind == SceneObject::Kind::kBody && pushes) return;
   if (object->kind == SceneObject::Kind::kBody || object->kind == SceneObject::Kind::kField) {
     fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
     return;

@@ -48,7 +48,12 @@ Result<void> act_on_point(SimulationData& data, const SceneEvent& event) {
     return Error{ErrorCode::kStaleId, "",
                  "there is no object " + io::in_quotes(event.object) + " at this step"};
   }
-  const PointRef point = io::point_of(data.world, data.objects[found->second], event.point);
+  const SceneObject& object = data.objects[found->second];
+  if (object.kind == SceneObject::Kind::kBody) {
+    return event.kind == SceneEvent::Kind::kImpulse ? data.world.apply_impulse(object.body, event.vector)
+                                                    : data.world.apply_force(object.body, event.vector);
+  }
+  const PointRef point = io::point_of(data.world, object, event.point);
   switch (event.kind) {
     case SceneEvent::Kind::kMotion:
       return data.world.pin(point, event.motion);
