@@ -315,7 +315,10 @@ class View(Program):
         for what in ("scenes/rope.json", "scenes/models/lantern.3ds"):
             words = [server, "-a", "-s", "-screen 0 640x480x24", PROGRAM, "view", what, "--seconds", "0.02",
                      "--screenshot", "x.png"]
-            done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=False, timeout=LIMIT)
+            # The display's libraries leave a few bytes behind; leaks of ours show without a display too.
+            environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}
+            done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=False,
+                                  env=environment, timeout=LIMIT)
             self.assertEqual(done.returncode, 0, done.stderr)
             rows = read_png(self.folder / "x.png")[2]
             edges = sum(abs(row[i] - row[i - 3]) > 40 for row in rows for i in range(3, len(row)))
