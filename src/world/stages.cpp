@@ -72,7 +72,7 @@ void refresh_derived(WorldData& world) {
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
-  solver::build_bend_rows(tables.bends, tables.particles.count(), world.bend_rows);
+  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.chains.clear();
   for (const state::Deformable& object : tables.objects) {
