@@ -262,6 +262,14 @@ class Convert(Program):
         self.assertIn("none/x.", done[1])
         self.assertEqual(self.files(), ["bad.3ds"])
 
+    def test_a_kind_of_model_that_is_not_known_is_bad_input(self):
+        (self.folder / "x.xyz").write_text("0 0 0\n")
+        self.assert_one_line(self.hooke("convert", "x.xyz", "out.obj", code=2)[1], r"^x\.xyz: not one of")
+        self.assert_one_line(self.hooke("convert", "scenes/models/crate.3ds", "out.xyz", code=2)[1],
+                             "not one of")
+        content = {"version": 1, "meshes": {"m": {"file": "x.xyz"}}}
+        self.assertIn("not one of", self.hooke("run", self.scene(content), code=2)[1])
+
 
 class Render(Program):
     def test_scenes_give_pictures_with_something_on_them(self):
