@@ -1,4 +1,5 @@
 #include "collision/manifold_axes.h"
+#include "collision/manifold_clip.h"
 #include "collision/manifold_features.h"
 #include "collision/manifold_points.h"
 
@@ -90,6 +91,73 @@ Vec3 axis_of(const Convex& box, int i) {
   return i == 0 ? box.axes.x : i == 1 ? box.axes.y : box.axes.z;
 }
 
+Real half_of(const Convex& box, int i) {
+  return i == 0 ? box.shape.half_extents.x : i == 1 ? box.shape.half_extents.y : box.shape.half_extents.z;
+}
+
+/// The plane of a face of the reference box: seen along `normal`, u and v run along the other two axes.
+struct FacePlane {
+  Vec3 normal, u, v;
+  Real half_normal, half_u, half_v;
+  unsigned face;  ///< 0..5
+
+  FacePlane(const Convex& box, int axis, Vec3 outward)
+      : normal(outward),
+        u(axis_of(box, (axis + 1) % 3)),
+        v(axis_of(box, (axis + 2) % 3)),
+        half_normal(half_of(box, axis)),
+        half_u(half_of(box, (axis + 1) % 3)),
+        half_v(half_of(box, (axis + 2) % 3)),
+        face(2 * static_cast<unsigned>(axis) + (dot(outward, axis_of(box, axis)) < Real(0) ? 1 : 0)) {}
+};
+
+/// The face of the box that looks most against the plane's normal, as a polygon over the plane.
+CutPolygon face_over(const FacePlane& plane, const Convex& box, Vec3 from_plane) {
+  const Real along[3] = {dot(box.axes.x, plane.normal), dot(box.axes.y, plane.normal),
+                         dot(box.axes.z, plane.normal)};
+  const Real size[3] = {std::fabs(along[0]), std::fabs(along[1]), std::fabs(along[2])};
+  const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+  const bool positive = along[axis] < Real(0);
+  const Vec3 center = from_plane + (positive ? half_of(box, axis) : -half_of(box, axis)) * axis_of(box, axis);
+  const Vec3 side_u = half_of(box, (axis + 1) % 3) * axis_of(box, (axis + 1) % 3);
+  const Vec3 side_v = half_of(box, (axis + 2) % 3) * axis_of(box, (axis + 2) % 3);
+  const unsigned face = 2 * static_cast<unsigned>(axis) + (positive ? 0 : 1);
+  const Vec3 corners[4] = {center - side_u - side_v, center + side_u - side_v, center + side_u + side_v,
+                           center - side_u + side_v};
+  CutPolygon polygon;
+  const unsigned bit_u = 1u << (axis + 1) % 3;
+  const unsigned bit_v = 1u << (axis + 2) % 3;
+  const unsigned base = positive ? 1u << axis : 0u;
+  const unsigned vertices[4] = {base, base | bit_u, base | bit_u | bit_v, base | bit_v};
+  for (unsigned i = 0; i < 4; ++i) {
+    polygon.add({{dot(plane.u, corners[i]), dot(plane.v, corners[i])},
+                 dot(plane.normal, corners[i]),
+                 kVertexOfB | vertices[i],
+                 face * 4 + i});
+  }
+  return polygon;
+}
+
+/// A face of `reference` against the face of `other` that looks at it. `on_a`: the reference is A.
+void meet_faces(const Convex& reference, int axis, const Convex& other, bool on_a, Meeting& meeting) {
+  const FacePlane plane(reference, axis, on_a ? meeting.normal : -meeting.normal);
+  CutPolygon polygon = face_over(plane, other, other.center - reference.center);
+  const Flat corners[4] = {{-plane.half_u, -plane.half_v},
+                           {plane.half_u, -plane.half_v},
+                           {plane.half_u, plane.half_v},
+                           {-plane.half_u, plane.half_v}};
+  for (unsigned i = 0; i < 4; ++i)
+    clip_polygon(polygon, corners[i], corners[(i + 1) % 4], plane.face * 4 + i);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i) {
+    const Cut& cut = polygon.cut[i];
+    const Vec3 foot = reference.center + cut.at.u * plane.u + cut.at.v * plane.v;
+    const Vec3 on_face = foot + plane.half_normal * plane.normal;
+    const Vec3 on_other = foot + cut.height * plane.normal;
+    meeting.add(
+        {on_a ? on_face : on_other, on_a ? on_other : on_face, cut.height - plane.half_normal, cut.key});
+  }
+}
+
 /// The edge of a box along its axis i that lies farthest along n.
 Feature edge_along(const Convex& box, int i, Vec3 n) {
   unsigned corner = 0;
@@ -132,8 +200,8 @@ void meet_boxes(const Convex& a, const Convex& b, const MeetingQuery& query, Mee
                             : normalize(cross(axis_of(a, (axis - 6) / 3), axis_of(b, (axis - 6) % 3)));
   meeting.normal = dot(n, b.center - a.center) < Real(0) ? -n : n;
   if (axis >= 6) return meet_edges(a, b, axis - 6, meeting);
-  overlap_features(feature_along(a, meeting.normal, kSteep), feature_along(b, -meeting.normal, kSteep),
-                   Real(0), Real(0), meeting);
+  if (axis < 3) meet_faces(a, axis, b, true, meeting);
+  if (axis >= 3) meet_faces(b, axis - 3, a, false, meeting);
   if (meeting.count > 0 || meeting.separation > Real(0)) return;
   // Two faces that miss each other although the boxes overlap: a corner is inside.
   const Vec3 on_a = support_of(a, meeting.normal);

@@ -1,5 +1,7 @@
 #include "collision/manifold_features.h"
 
+#include "collision/manifold_clip.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,36 +47,6 @@ Feature box_feature(const Convex& box, Vec3 n, Real least_cosine) {
   const unsigned first = corner & ~(1u << flattest);
   const unsigned second = corner | 1u << flattest;
   return segment_feature(corner_of_box(box, first), first, corner_of_box(box, second), second);
-}
-
-Feature hull_feature(const Convex& c, Vec3 n, Real least_cosine) {
-  const geometry::ConvexHull& hull = *c.hull;
-  const Vec3 local = {dot(c.axes.x, n), dot(c.axes.y, n), dot(c.axes.z, n)};
-  std::size_t face = 0;
-  for (std::size_t i = 1; i < hull.faces.size(); ++i) {
-    if (dot(hull.faces[i].normal, local) > dot(hull.faces[face].normal, local)) face = i;
-  }
-  if (dot(hull.faces[face].normal, local) >= least_cosine) return face_of_hull(c, face);
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < hull.vertices.size(); ++i) {
-    if (dot(hull.vertices[i], local) > dot(hull.vertices[best], local)) best = i;
-  }
-  // The edge that falls off least from the farthest vertex.
-  Real flattest = kFlatSide;
-  std::size_t other = best;
-  for (const auto& edge : hull.edges) {
-    if (edge.vertex_a != best && edge.vertex_b != best) continue;
-    const std::size_t far_end = edge.vertex_a == best ? edge.vertex_b : edge.vertex_a;
-    const Vec3 along = hull.vertices[best] - hull.vertices[far_end];
-    const Real slope = dot(along, local) / length(along);
-    other = slope < flattest ? far_end : other;
-    flattest = std::min(flattest, slope);
-  }
-  const auto place = [&](std::size_t i) { return c.center + c.axes * hull.vertices[i]; };
-  const auto id = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
-  if (other == best) return point_feature(place(best), id(best));
-  const auto [first, second] = std::minmax(best, other);
-  return segment_feature(place(first), id(first), place(second), id(second));
 }
 
 Feature triangle_feature(const Convex& c, Vec3 n) {
@@ -152,35 +124,14 @@ Feature capsule_feature(const Convex& c, Vec3 n) {
   return along < Real(0) ? point_feature(c.center - end, 0) : point_feature(c.center + end, 1);
 }
 
-// --------------------------------------------------------------------------------------------------------
-// Overlap of two features in the plane across the normal, with coordinates (u, v).
-
-struct Flat {
-  Real u = Real(0);
-  Real v = Real(0);
-};
-
-Flat operator-(Flat a, Flat b) {
-  return {a.u - b.u, a.v - b.v};
-}
-Real dot(Flat a, Flat b) {
-  return a.u * b.u + a.v * b.v;
-}
-Real cross(Flat a, Flat b) {
-  return a.u * b.v - a.v * b.u;
-}
-Flat mix(Flat a, Flat b, Real t) {
-  return {a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)};
-}
-
 /// A feature seen along the normal: its points in the plane, and its height over the plane as a linear
 /// function of the place.
 struct Seen {
   const Feature* feature = nullptr;
   std::array<Flat, Feature::kMaxPoints> at;
-  Flat slope = {};
-  Real height = Real(0);  ///< At (0, 0).
-  Flat center = {};       ///< Of a disc.
+  Flat slope = {Real(0), Real(0)};
+  Real height = Real(0);             ///< At (0, 0).
+  Flat center = {Real(0), Real(0)};  ///< Of a disc.
 
   [[nodiscard]] Real height_at(Flat p) const { return height + dot(slope, p); }
 };
@@ -218,49 +169,6 @@ struct Projection {
   }
 };
 
-/// A corner of the polygon that is being clipped.
-struct Cut {
-  Flat at = {};
-  std::uint32_t key = 0;
-  std::uint32_t edge = 0;  ///< That leaves it: of the subject, or of the clipper with kOfClipper.
-};
-constexpr std::uint32_t kOfClipper = 1u << 15;
-constexpr int kMaxCuts = 2 * Feature::kMaxPoints;
-
-struct CutPolygon {
-  int count = 0;
-  std::array<Cut, kMaxCuts> cut;
-
-  void add(const Cut& c) {
-    if (count < kMaxCuts) cut[static_cast<std::size_t>(count++)] = c;
-  }
-};
-
-/// Key of the place where `edge` of the polygon leaves or enters across edge `clip` of the clipper.
-std::uint32_t crossing_key(std::uint32_t edge, std::uint32_t clip) {
-  // Two edges of the clipper meet in its vertex.
-  const std::uint32_t kind = (edge & kOfClipper) != 0 ? kVertexOfA : kCrossing;
-  return kind | (edge & (kOfClipper - 1)) << 15 | clip;
-}
-
-/// One side of Sutherland and Hodgman (1974): what lies left of the line from p to q.
-void clip_polygon(const CutPolygon& from, Flat p, Flat q, std::uint32_t clip, CutPolygon& to) {
-  const Flat along = q - p;
-  to.count = 0;
-  const auto height = [&](const Cut& c) { return cross(along, c.at - p); };
-  for (int i = 0; i < from.count; ++i) {
-    const Cut& now = from.cut[static_cast<std::size_t>(i)];
-    const Cut& next = from.cut[static_cast<std::size_t>(i + 1 < from.count ? i + 1 : 0)];
-    const Real h_now = height(now);
-    const Real h_next = height(next);
-    if (h_now >= Real(0)) to.add(now);
-    if ((h_now >= Real(0)) == (h_next >= Real(0))) continue;
-    const bool leaves = h_now >= Real(0);
-    to.add({mix(now.at, next.at, h_now / (h_now - h_next)), crossing_key(now.edge, clip),
-            leaves ? clip | kOfClipper : now.edge});
-  }
-}
-
 /// Collects points of the meeting.
 struct Collector {
   const Projection& projection;
@@ -276,28 +184,23 @@ struct Collector {
   }
 };
 
+/// A's outside is along the normal and B's against it: seen along the normal A runs counter-clockwise and B
+/// clockwise.
 void overlap_polygons(const Seen& clipper, const Seen& subject, bool clipper_is_a, const Collector& out) {
-  CutPolygon polygons[2];
-  CutPolygon* from = &polygons[0];
-  CutPolygon* to = &polygons[1];
+  CutPolygon polygon;
   const Feature& f = *subject.feature;
-  for (int i = 0; i < f.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    from->add({subject.at[k], kVertexOfB | f.vertex[k], f.edge[k]});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.count); ++i) {
+    polygon.add({subject.at[i], Real(0), kVertexOfB | f.vertex[i], f.edge[i]});
   }
-  // A's outside is along the normal and B's against it: seen along the normal A runs counter-clockwise and B
-  // clockwise.
   const Feature& g = *clipper.feature;
-  for (int i = 0; i < g.count && from->count > 0; ++i) {
+  for (int i = 0; i < g.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const auto next = static_cast<std::size_t>(i + 1 < g.count ? i + 1 : 0);
-    const Flat p = clipper.at[clipper_is_a ? k : next];
-    const Flat q = clipper.at[clipper_is_a ? next : k];
-    clip_polygon(*from, p, q, g.edge[k], *to);
-    std::swap(from, to);
+    clip_polygon(polygon, clipper.at[clipper_is_a ? k : next], clipper.at[clipper_is_a ? next : k],
+                 g.edge[k]);
   }
-  for (int i = 0; i < from->count; ++i) {
-    out.add(from->cut[static_cast<std::size_t>(i)].at, from->cut[static_cast<std::size_t>(i)].key);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i) {
+    out.add(polygon.cut[i].at, polygon.cut[i].key);
   }
 }
 
@@ -451,12 +354,51 @@ Feature face_of_hull(const Convex& c, std::size_t face) {
   return f;
 }
 
+Feature feature_of_hull(const Convex& c, Vec3 n, Real least_cosine) {
+  const geometry::ConvexHull& hull = *c.hull;
+  const Vec3 local = {dot(c.axes.x, n), dot(c.axes.y, n), dot(c.axes.z, n)};
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < hull.vertices.size(); ++i) {
+    if (dot(hull.vertices[i], local) > dot(hull.vertices[best], local)) best = i;
+  }
+  // Of the faces at the farthest vertex: another face may look along n more and yet lie behind.
+  const auto has_best = [&](const geometry::ConvexHull::Face& f) {
+    const auto first = hull.loop.begin() + f.first;
+    return std::find(first, first + f.count, best) != first + f.count;
+  };
+  std::size_t face = 0;
+  Real cosine = Real(-1);
+  for (std::size_t i = 0; i < hull.faces.size(); ++i) {
+    const Real c_face = dot(hull.faces[i].normal, local);
+    if (c_face <= cosine || !has_best(hull.faces[i])) continue;
+    face = i;
+    cosine = c_face;
+  }
+  if (cosine >= least_cosine) return face_of_hull(c, face);
+  // The edge that falls off least from the farthest vertex.
+  Real flattest = kFlatSide;
+  std::size_t other = best;
+  for (const auto& edge : hull.edges) {
+    if (edge.vertex_a != best && edge.vertex_b != best) continue;
+    const std::size_t far_end = edge.vertex_a == best ? edge.vertex_b : edge.vertex_a;
+    const Vec3 along = hull.vertices[best] - hull.vertices[far_end];
+    const Real slope = dot(along, local) / length(along);
+    other = slope < flattest ? far_end : other;
+    flattest = std::min(flattest, slope);
+  }
+  const auto place = [&](std::size_t i) { return c.center + c.axes * hull.vertices[i]; };
+  const auto id = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
+  if (other == best) return point_feature(place(best), id(best));
+  const auto [first, second] = std::minmax(best, other);
+  return segment_feature(place(first), id(first), place(second), id(second));
+}
+
 Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine) {
   switch (convex.shape.kind) {
     case ShapeKind::kBox:
       return box_feature(convex, n, least_cosine);
     case ShapeKind::kHull:
-      return hull_feature(convex, n, least_cosine);
+      return feature_of_hull(convex, n, least_cosine);
     case ShapeKind::kCylinder:
       return cylinder_feature(convex, n);
     case ShapeKind::kCone:

@@ -47,6 +47,8 @@ inline constexpr Real kSteep = Real(0.2);  ///< Where it is a face of the other 
 /// The face of a box, 0..5: +x, -x, +y, -y, +z, -z.
 [[nodiscard]] Feature face_of_box(const Convex& box, int face);
 [[nodiscard]] Feature face_of_hull(const Convex& hull, std::size_t face);
+/// feature_along for a shape with `hull` set, whatever its kind: vertices and edges are those of the hull.
+[[nodiscard]] Feature feature_of_hull(const Convex& hull, Vec3 n, Real least_cosine);
 
 /// Adds the points where the two features lie over each other as seen along meeting.normal, from A to B: the
 /// corners of what their projections have in common. `skin_a`, `skin_b` [m].

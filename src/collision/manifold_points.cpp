@@ -85,6 +85,10 @@ void meet(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& 
   const ShapeKind kind_b = b.shape.kind;
   if (is_round_pair(kind_a, kind_b)) return meet_round(a, b, query, meeting);
   if (kind_a == ShapeKind::kBox && kind_b == ShapeKind::kBox) return meet_boxes(a, b, query, meeting);
+  const auto is_polyhedron = [](const Convex& c) {
+    return c.hull != nullptr && (c.shape.kind == ShapeKind::kHull || c.shape.kind == ShapeKind::kBox);
+  };
+  if (is_polyhedron(a) && is_polyhedron(b)) return meet_hulls(a, b, query, meeting);
   return meet_convex(a, b, query, meeting);
 }
 

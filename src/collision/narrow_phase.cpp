@@ -38,6 +38,7 @@ struct Scene {
 struct Chunk {
   std::vector<Manifold> manifolds = {};
   NarrowPhaseCounts counts = {};
+  Meeting meeting = {};  ///< Of the pair at hand: scratch.
 };
 
 Convex place(const state::Bodies& bodies, const state::Colliders& colliders, std::size_t row) {
@@ -111,7 +112,8 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
 }
 
 void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame, Real margin,
-            Meeting& meeting, Chunk& chunk) {
+            Chunk& chunk) {
+  Meeting& meeting = chunk.meeting;
   if (meeting.count == 0) return;
   Manifold m = manifold_of(scene, pair, patch);
   make_points(meeting, margin, frame, find_old(scene, pair, patch), m);
@@ -123,18 +125,18 @@ Vec3 offset_between(const Scene& scene, std::uint32_t from, std::uint32_t to) {
 }
 
 /// Two convex shapes, in the neighborhood of A.
-void test_convex(const Scene& scene, Real margin, Pair& pair, Chunk& chunk, Meeting& meeting) {
+void test_convex(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
   const Vec3 apart =
       offset_between(scene, scene.colliders.body[pair.collider_a], scene.colliders.body[pair.collider_b]);
   Convex b = scene.placed[pair.collider_b];
   b.center += apart;
-  meet(scene.placed[pair.collider_a], b, {margin, pair.axis}, meeting);
-  append(scene, pair, 0, {{}, apart}, margin, meeting, chunk);
+  meet(scene.placed[pair.collider_a], b, {margin, pair.axis}, chunk.meeting);
+  append(scene, pair, 0, {{}, apart}, margin, chunk);
 }
 
 /// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
 /// over it is asked, in double.
-void test_half_space(const Scene& scene, Real margin, Pair& pair, Chunk& chunk, Meeting& meeting) {
+void test_half_space(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
   const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kHalfSpace;
   const Convex& plane = scene.placed[is_a ? pair.collider_a : pair.collider_b];
   const Convex& shape = scene.placed[is_a ? pair.collider_b : pair.collider_a];
@@ -144,23 +146,24 @@ void test_half_space(const Scene& scene, Real margin, Pair& pair, Chunk& chunk, 
   const DVec3 from_plane =
       scene.bodies.center[shape_body] - scene.bodies.center[plane_body] - vector_cast<double>(plane.center);
   const auto height = static_cast<Real>(dot(vector_cast<double>(n), from_plane));
-  meet_half_space(-height * n, n, shape, {margin, pair.axis}, meeting);
+  meet_half_space(-height * n, n, shape, {margin, pair.axis}, chunk.meeting);
   const Vec3 plane_center = offset_between(scene, shape_body, plane_body);
-  if (!is_a) swap_sides(meeting);
+  if (!is_a) swap_sides(chunk.meeting);
   append(scene, pair, 0, is_a ? MeetingFrame{plane_center, {}} : MeetingFrame{{}, plane_center}, margin,
-         meeting, chunk);
+         chunk);
 }
 
 void test_pair(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
   const ShapeKind kind_a = scene.placed[pair.collider_a].shape.kind;
   const ShapeKind kind_b = scene.placed[pair.collider_b].shape.kind;
   const auto either = [&](ShapeKind kind) { return kind_a == kind || kind_b == kind; };
-  Meeting meeting;
+  Meeting& meeting = chunk.meeting;
+  meeting.count = 0;
   if (either(ShapeKind::kMesh)) {
   } else if (either(ShapeKind::kHalfSpace)) {
-    test_half_space(scene, margin, pair, chunk, meeting);
+    test_half_space(scene, margin, pair, chunk);
   } else {
-    test_convex(scene, margin, pair, chunk, meeting);
+    test_convex(scene, margin, pair, chunk);
   }
   pair.gap = meeting.separation;
   pair.axis = meeting.axis;
