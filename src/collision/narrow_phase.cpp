@@ -2,7 +2,9 @@
 
 #include "collision/distance.h"
 #include "collision/manifold_match.h"
+#include "collision/manifold_mesh.h"
 #include "collision/manifold_points.h"
+#include "collision/narrow_phase_ghosts.h"
 
 #include <algorithm>
 #include <array>
@@ -38,7 +40,9 @@ struct Scene {
 struct Chunk {
   std::vector<Manifold> manifolds = {};
   NarrowPhaseCounts counts = {};
-  Meeting meeting = {};  ///< Of the pair at hand: scratch.
+  Real margin = Real(0);  // of the pair at hand
+  Meeting meeting = {};   // of the pair at hand
+  MeshScratch mesh = {};
 };
 
 Convex place(const state::Bodies& bodies, const state::Colliders& colliders, std::size_t row) {
@@ -104,19 +108,26 @@ Manifold manifold_of(const Scene& scene, const Pair& pair, std::uint32_t patch) 
   return m;
 }
 
-const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t patch) {
+/// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
+/// that are near: when that changes, the normal tells.
+const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t patch, Vec3 normal) {
+  const Manifold* best = nullptr;
+  Real closest = Real(0.99);
   for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
-    if (scene.old[i].patch == patch) return &scene.old[i];
+    const Manifold& old = scene.old[i];
+    if (old.patch == patch) return &old;
+    const Real cosine = dot(old.normal, normal);
+    best = cosine > closest ? &old : best;
+    closest = std::max(closest, cosine);
   }
-  return nullptr;
+  return best;
 }
 
-void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame, Real margin,
-            Chunk& chunk) {
-  Meeting& meeting = chunk.meeting;
+void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
+            Meeting& meeting, Chunk& chunk) {
   if (meeting.count == 0) return;
   Manifold m = manifold_of(scene, pair, patch);
-  make_points(meeting, margin, frame, find_old(scene, pair, patch), m);
+  make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
   if (m.point_count > 0) chunk.manifolds.push_back(m);
 }
 
@@ -125,18 +136,18 @@ Vec3 offset_between(const Scene& scene, std::uint32_t from, std::uint32_t to) {
 }
 
 /// Two convex shapes, in the neighborhood of A.
-void test_convex(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
+void test_convex(const Scene& scene, Pair& pair, Chunk& chunk) {
   const Vec3 apart =
       offset_between(scene, scene.colliders.body[pair.collider_a], scene.colliders.body[pair.collider_b]);
   Convex b = scene.placed[pair.collider_b];
   b.center += apart;
-  meet(scene.placed[pair.collider_a], b, {margin, pair.axis}, chunk.meeting);
-  append(scene, pair, 0, {{}, apart}, margin, chunk);
+  meet(scene.placed[pair.collider_a], b, {chunk.margin, pair.axis}, chunk.meeting);
+  append(scene, pair, 0, {{}, apart}, chunk.meeting, chunk);
 }
 
 /// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
 /// over it is asked, in double.
-void test_half_space(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
+void test_half_space(const Scene& scene, Pair& pair, Chunk& chunk) {
   const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kHalfSpace;
   const Convex& plane = scene.placed[is_a ? pair.collider_a : pair.collider_b];
   const Convex& shape = scene.placed[is_a ? pair.collider_b : pair.collider_a];
@@ -146,24 +157,53 @@ void test_half_space(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) 
   const DVec3 from_plane =
       scene.bodies.center[shape_body] - scene.bodies.center[plane_body] - vector_cast<double>(plane.center);
   const auto height = static_cast<Real>(dot(vector_cast<double>(n), from_plane));
-  meet_half_space(-height * n, n, shape, {margin, pair.axis}, chunk.meeting);
+  meet_half_space(-height * n, n, shape, {chunk.margin, pair.axis}, chunk.meeting);
   const Vec3 plane_center = offset_between(scene, shape_body, plane_body);
   if (!is_a) swap_sides(chunk.meeting);
-  append(scene, pair, 0, is_a ? MeetingFrame{plane_center, {}} : MeetingFrame{{}, plane_center}, margin,
-         chunk);
+  append(scene, pair, 0, is_a ? MeetingFrame{plane_center, {}} : MeetingFrame{{}, plane_center},
+         chunk.meeting, chunk);
 }
 
-void test_pair(const Scene& scene, Real margin, Pair& pair, Chunk& chunk) {
+/// A mesh collider, seen from the center of a body. The offset is taken in double: meshes may be wide.
+PlacedMesh place_mesh(const Scene& scene, std::uint32_t mesh, std::uint32_t from_body) {
+  const Convex& place = scene.placed[mesh];
+  const DVec3 d = scene.bodies.center[from_body] - scene.bodies.center[scene.colliders.body[mesh]] -
+                  vector_cast<double>(place.center);
+  const auto along = [&d](Vec3 axis) { return static_cast<Real>(dot(vector_cast<double>(axis), d)); };
+  return {*scene.colliders.shape[mesh].mesh,
+          place.axes,
+          {along(place.axes.x), along(place.axes.y), along(place.axes.z)}};
+}
+
+/// A mesh and a convex shape, in the neighborhood of the shape.
+void test_mesh(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kMesh;
+  const std::uint32_t mesh = is_a ? pair.collider_a : pair.collider_b;
+  const std::uint32_t shape = is_a ? pair.collider_b : pair.collider_a;
+  const std::uint32_t mesh_body = scene.colliders.body[mesh];
+  const std::uint32_t shape_body = scene.colliders.body[shape];
+  const PlacedMesh placed = place_mesh(scene, mesh, shape_body);
+  chunk.meeting.separation = meet_mesh(placed, scene.placed[shape], chunk.margin, chunk.mesh);
+  const Vec3 mesh_center = offset_between(scene, shape_body, mesh_body);
+  for (PatchMeeting& patch : chunk.mesh.patches) {
+    if (!is_a) swap_sides(patch.meeting);
+    append(scene, pair, patch.patch, is_a ? MeetingFrame{mesh_center, {}} : MeetingFrame{{}, mesh_center},
+           patch.meeting, chunk);
+  }
+}
+
+void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const ShapeKind kind_a = scene.placed[pair.collider_a].shape.kind;
   const ShapeKind kind_b = scene.placed[pair.collider_b].shape.kind;
   const auto either = [&](ShapeKind kind) { return kind_a == kind || kind_b == kind; };
   Meeting& meeting = chunk.meeting;
   meeting.count = 0;
   if (either(ShapeKind::kMesh)) {
+    test_mesh(scene, pair, chunk);
   } else if (either(ShapeKind::kHalfSpace)) {
-    test_half_space(scene, margin, pair, chunk);
+    test_half_space(scene, pair, chunk);
   } else {
-    test_convex(scene, margin, pair, chunk);
+    test_convex(scene, pair, chunk);
   }
   pair.gap = meeting.separation;
   pair.axis = meeting.axis;
@@ -187,13 +227,88 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       ++chunk.counts.skipped;
     } else {
       ++chunk.counts.tested;
-      test_pair(scene, margin, pair, chunk);
+      chunk.margin = margin;
+      test_pair(scene, pair, chunk);
       pair.odometer = odometer;
       pair.tested = true;
     }
   }
   pair.first_manifold = begin;
   pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
+}
+
+/// A manifold with something that nothing moves, seen from the collider that it holds.
+struct Support {
+  std::uint32_t held = 0;  ///< Collider.
+  std::uint32_t manifold = 0;
+};
+
+std::vector<Support> find_supports(const Scene& scene, const state::Pairs& pairs) {
+  std::vector<Support> supports;
+  for (std::uint32_t i = 0; i < pairs.manifold.size(); ++i) {
+    const Manifold& m = pairs.manifold[i];
+    const bool a_held = scene.bodies.mass[m.body_a].inverse_mass > Real(0);
+    const bool b_held = scene.bodies.mass[m.body_b].inverse_mass > Real(0);
+    if (a_held != b_held) supports.push_back({a_held ? m.collider_a : m.collider_b, i});
+  }
+  std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
+    return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
+  });
+  return supports;
+}
+
+/// The manifold as a contact with a piece of surface, in the neighborhood of the held body.
+SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& support) {
+  const bool a_held = support.held == m.collider_a;
+  const std::uint32_t piece = a_held ? m.collider_b : m.collider_a;
+  const std::uint32_t body = a_held ? m.body_a : m.body_b;
+  SurfaceContact contact = {scene.placed[piece], support.manifold, a_held ? -m.normal : m.normal};
+  if (contact.piece.shape.kind == ShapeKind::kMesh) {
+    contact.piece = place_mesh(scene, piece, body).triangle(m.patch);
+  } else {
+    contact.piece.center += offset_between(scene, body, scene.colliders.body[piece]);
+  }
+  const auto* deepest = std::min_element(
+      m.point.data(), m.point.data() + m.point_count,
+      [](const state::ContactPoint& p, const state::ContactPoint& q) { return p.separation < q.separation; });
+  contact.separation = deepest->separation;
+  contact.place = (a_held ? deepest->anchor_a : deepest->anchor_b) - deepest->separation * contact.normal;
+  return contact;
+}
+
+/// Empties the manifolds that others of the same collider cover. Returns how many.
+std::uint32_t empty_ghosts(const Scene& scene, state::Pairs& pairs) {
+  const std::vector<Support> supports = find_supports(scene, pairs);
+  std::vector<SurfaceContact> contacts;
+  std::vector<std::uint32_t> ghosts;
+  for (std::size_t begin = 0, end = 0; begin < supports.size(); begin = end) {
+    while (end < supports.size() && supports[end].held == supports[begin].held) ++end;
+    if (end - begin < 2) continue;
+    contacts.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      contacts.push_back(contact_of(scene, pairs.manifold[supports[i].manifold], supports[i]));
+    }
+    for (const SurfaceContact& contact : contacts) {
+      if (is_ghost(contact, contacts)) ghosts.push_back(contact.index);
+    }
+  }
+  for (const std::uint32_t i : ghosts) pairs.manifold[i].point_count = 0;
+  return static_cast<std::uint32_t>(ghosts.size());
+}
+
+/// Closes the gaps that manifolds without points leave.
+void remove_empty(state::Pairs& pairs) {
+  std::uint32_t kept = 0;
+  for (Pair& pair : pairs.pair) {
+    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
+    const std::uint32_t first = kept;
+    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
+      if (pairs.manifold[i].point_count > 0) pairs.manifold[kept++] = pairs.manifold[i];
+    }
+    pair.first_manifold = first;
+    pair.manifold_count = kept - first;
+  }
+  pairs.manifold.resize(kept);
 }
 
 std::vector<Convex> place_all(parallel::ThreadPool& pool, const state::Bodies& bodies,
@@ -258,7 +373,10 @@ NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodi
       }
     }
   });
-  return join(pool, chunks, pairs);
+  NarrowPhaseCounts counts = join(pool, chunks, pairs);
+  counts.ghosts = empty_ghosts(scene, pairs);
+  if (counts.ghosts > 0) remove_empty(pairs);
+  return counts;
 }
 
 }  // namespace hooke::collision
