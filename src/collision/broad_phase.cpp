@@ -16,11 +16,13 @@ namespace {
 constexpr int kSearchesPerBlock = 64;
 constexpr int kCandidatesPerBlock = 4096;
 
-// In mean sides of the box: how much a fat box is larger on every side, how many steps of the last motion it
-// foresees, and how much of it at most. Thicker boxes are searched for less often and overlap more in vain.
+// In mean sides of the box: how much a fat box is larger on every side, and how many steps of the last motion
+// it foresees and how much of it at most. Fatter boxes are searched for less often and overlap more in vain.
 constexpr Real kMargin = Real(0.05);
 constexpr Real kForesight = Real(4);
-constexpr Real kMaxForesight = Real(0.5);
+constexpr Real kMaxForesight = Real(0.75);
+constexpr Real kMaxFatness = Real(2);
+static_assert(Real(1) + Real(2) * kMargin + kMaxForesight < kMaxFatness, "a new fat box fits");
 
 Real mean_side(const Box& box) {
   const Vec3 size = box.upper - box.lower;
@@ -52,7 +54,7 @@ Box fattened(const Box& box, Vec3 way) {
 /// Whether a fat box still does for its tight one: around it, and not so much larger that a box that shrank
 /// or stopped would keep others searching in vain.
 bool still_fits(const Box& fat, const Box& tight) {
-  return contains(fat, tight) && mean_side(fat) <= Real(2) * mean_side(tight);
+  return contains(fat, tight) && mean_side(fat) <= kMaxFatness * mean_side(tight);
 }
 
 bool is_bounded(const Box& box) {

@@ -102,15 +102,19 @@ class BroadPhaseTree {
 };
 
 inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box) const {
-  // Without branches, so that the compiler asks four or eight lanes at a time.
-  std::array<int, kLanes> hit;
+  // Written so that compilers make four or eight lanes of it, which they do not of comparisons.
+  const auto greater = [](Real a, Real b) { return a > b ? a : b; };
+  const Vec3 lower = box.lower;
+  const Vec3 upper = box.upper;
+  std::array<Real, kLanes> gap;
   for (std::size_t i = 0; i < kLanes; ++i) {
-    hit[i] = static_cast<int>(lower_x[i] <= box.upper.x) & static_cast<int>(box.lower.x <= upper_x[i]) &
-             static_cast<int>(lower_y[i] <= box.upper.y) & static_cast<int>(box.lower.y <= upper_y[i]) &
-             static_cast<int>(lower_z[i] <= box.upper.z) & static_cast<int>(box.lower.z <= upper_z[i]);
+    const Real gap_x = greater(lower_x[i] - upper.x, lower.x - upper_x[i]);
+    const Real gap_y = greater(lower_y[i] - upper.y, lower.y - upper_y[i]);
+    const Real gap_z = greater(lower_z[i] - upper.z, lower.z - upper_z[i]);
+    gap[i] = greater(gap_x, greater(gap_y, gap_z));
   }
   unsigned mask = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) mask |= static_cast<unsigned>(hit[i]) << i;
+  for (std::size_t i = 0; i < kLanes; ++i) mask |= gap[i] <= Real(0) ? 1u << i : 0u;
   return mask & ((1u << count) - 1);  // an infinite box overlaps empty lanes too
 }
 
