@@ -256,15 +256,17 @@ void BroadPhase::find_candidates_of(std::uint32_t collider, std::vector<Collider
 }
 
 void BroadPhase::find_new_candidates(parallel::ThreadPool& pool) {
-  found_.resize(std::max(found_.size(), blocks_of(changed_.size(), kSearchesPerBlock)));
-  for (std::vector<ColliderPair>& found : found_) found.clear();
+  const std::size_t block_count = blocks_of(changed_.size(), kSearchesPerBlock);
+  if (found_.size() < block_count) found_.resize(block_count);
   for_blocks(pool, changed_.size(), kSearchesPerBlock,
              [&](std::size_t block, std::size_t begin, std::size_t end) {
+               found_[block].clear();
                for (std::size_t i = begin; i < end; ++i) find_candidates_of(changed_[i], found_[block]);
              });
   fresh_.clear();
-  for (const std::vector<ColliderPair>& found : found_)
-    fresh_.insert(fresh_.end(), found.begin(), found.end());
+  for (std::size_t block = 0; block < block_count; ++block) {
+    fresh_.insert(fresh_.end(), found_[block].begin(), found_[block].end());
+  }
   sort_pairs(fresh_, sorted_);
 }
 
