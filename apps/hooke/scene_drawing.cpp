@@ -1,5 +1,6 @@
 #include "hooke/scene_drawing.h"
 
+#include "hooke/clock.h"
 #include "hooke/figure.h"
 
 #include "render/image.h"
@@ -23,17 +24,6 @@ constexpr float kLeastRopeRadius = 1.2F;
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
   return {snap(place.x), snap(place.y), snap(place.z)};
-}
-
-DVec3 mix(DVec3 a, DVec3 b, double part) {
-  return a + part * (b - a);
-}
-
-Quat mix(Quat a, Quat b, float part) {
-  // Of the two quaternions of a rotation, the one on the side of `a`: the short way around.
-  const float side = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0 ? -1.0F : 1.0F;
-  const auto at = [&](float p, float q) { return p + part * (side * q - p); };
-  return normalize(Quat{at(a.x, b.x), at(a.y, b.y), at(a.z, b.z), at(a.w, b.w)});
 }
 
 }  // namespace
@@ -119,11 +109,8 @@ SceneDrawing::State SceneDrawing::between(double time) const {
                            ? before.begin() + static_cast<std::ptrdiff_t>(i)
                            : std::find_if(before.begin(), before.end(), same);
     if (found == before.end()) continue;
-    object.pose.position = mix(found->pose.position, object.pose.position, part);
-    object.pose.rotation = mix(found->pose.rotation, object.pose.rotation, static_cast<float>(part));
-    for (std::size_t k = 0; k < std::min(object.points.size(), found->points.size()); ++k) {
-      object.points[k] = mix(found->points[k], object.points[k], part);
-    }
+    object.pose = blend(found->pose, object.pose, part);
+    object.points = blend(found->points, object.points, part);
   }
   return state;
 }
