@@ -17,7 +17,7 @@ install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hooke)
 # follows its own rules in apps/.
 if(TARGET hooke_io)
   set_target_properties(hooke_io PROPERTIES EXPORT_NAME io)
-  install(TARGETS hooke_io EXPORT HookeIoTargets)
+  install(TARGETS hooke_io hooke_process EXPORT HookeIoTargets)
   install(EXPORT HookeIoTargets NAMESPACE hooke:: DESTINATION ${HOOKE_PACKAGE_DIR})
   install(FILES ${io_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hooke)
 endif()
