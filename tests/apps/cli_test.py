@@ -236,7 +236,7 @@ class NewAndValidate(Program):
         self.hooke("run", "rope.json", "--seconds", 0.1)
 
     def test_all_scenes_of_the_project_are_good(self):
-        scenes = sorted(path for path in (PROJECT / "scenes").glob("*.json") if path.name != "schema.json")
+        scenes = sorted(path for path in (PROJECT / "scenes").rglob("*.json") if path.name != "schema.json")
         self.assertGreater(len(scenes), 5)
         out, err = self.hooke("validate", *scenes)
         self.assertEqual((out.count(": good\n"), err), (len(scenes), ""))
