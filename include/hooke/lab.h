@@ -78,9 +78,8 @@ struct Options {
   std::vector<ObjectStepper> object_steppers = {};  ///< Replace `stepper` for some objects.
   double dt = 1.0 / 60;                             ///< Of one advance() [s]. (0, 1e6]
   double tolerance = 1e-8;  ///< Of adaptive methods, relative and absolute. [1e-14, 0.1]
-  /// Replaces `stepper` and `object_steppers`: verlet and rk4, and implicit_euler where neither is stable,
-  /// are tried with halved steps until two runs agree; the cheapest is taken. Then `dt` is of the output
-  /// only.
+  /// Replaces `stepper` and `object_steppers`: verlet, rk4, and bdf2 where the scene is stiff, are tried with
+  /// `dt` cut in 1, 2, 4, ... until two runs agree; the cheapest is taken. Then `dt` is of the output only.
   std::optional<Accuracy> accuracy = {};
   /// Run an explicit method where it is known to diverge. Otherwise that is an Error naming the spring.
   bool force = false;
@@ -132,7 +131,7 @@ class Run {
   /// As World::measure() has it: held points have none, fields and gravity are potential.
   [[nodiscard]] Energy energy() const;
 
-  [[nodiscard]] std::uint64_t evaluations() const;  ///< Of the forces, mean over the objects' points.
+  [[nodiscard]] std::uint64_t evaluations() const;  ///< Of the forces, summed over objects.
   [[nodiscard]] std::vector<ObjectReport> report() const;
 
  private:
