@@ -52,9 +52,9 @@ std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, 
   return figure;
 }
 
-void SceneDrawing::record(const Simulation& simulation) {
+void SceneDrawing::record(const Simulation& simulation, double time) {
   std::swap(previous_, current_);
-  current_.time = simulation.world().time();
+  current_.time = time;
   current_.objects.clear();
   for (const SceneObject& object : simulation.objects()) {
     if (object.kind == SceneObject::Kind::kField) continue;
@@ -65,6 +65,10 @@ void SceneDrawing::record(const Simulation& simulation) {
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
   }
+  // A step's time is a sum: half a step early is in time.
+  const double half_step = static_cast<double>(simulation.scene().dt) / 2;
+  const bool due = trail_.empty() || time >= trail_.back().time + trail_interval_.value_or(0) - half_step;
+  if (trail_interval_ && due) trail_.push_back(current_);
   camera_ = simulation.scene().camera;
   if (!camera_ && !automatic_) measure(current_);
 }
@@ -123,18 +127,33 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
   const float half_fov = 0.5F * view.vertical_fov_deg * std::numbers::pi_v<float> / 180;
   const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));
+  const FigurePlace place = {.least_rope_radius = kLeastRopeRadius * pixel, .eye = list.camera.eye};
+  add_trail(origin, place, list);
   const State state = between(time);
   std::vector<Vec3> points;
   for (const ObjectState& object : state.objects) {
     points.resize(object.points.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = local(object.points[i]);
-    add_figure(*object.figure,
-               {.position = local(object.pose.position),
-                .rotation = object.pose.rotation,
-                .points = points,
-                .least_rope_radius = kLeastRopeRadius * pixel,
-                .eye = list.camera.eye},
-               list);
+    FigurePlace here = place;
+    here.position = local(object.pose.position);
+    here.rotation = object.pose.rotation;
+    here.points = points;
+    add_figure(*object.figure, here, list);
+  }
+}
+
+void SceneDrawing::add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const {
+  FigurePlace left = place;
+  std::vector<Vec3> points;
+  for (const State& state : trail_) {
+    for (const ObjectState& object : state.objects) {
+      const auto kind = object.figure->kind;
+      if (kind != SceneObject::Kind::kRope && kind != SceneObject::Kind::kParticles) continue;
+      points.clear();
+      for (const DVec3& point : object.points) points.push_back(vector_cast<float>(point - origin));
+      left.points = points;
+      add_figure(*object.figure, left, list);
+    }
   }
 }
 

@@ -306,6 +306,7 @@ struct SceneObject {
   SceneMaterial look = {};
   std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
   std::string path = {};      ///< In the file, as "ropes[0]".
+  std::string stepper = {};   ///< Of the laboratory; empty for what the run chooses.
   Shape shape = {};           ///< Of a body.
   Real radius = Real(0);      ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
   double rest_length = 0;     ///< Of a rope [m].
