@@ -10,7 +10,7 @@ namespace hooke::lab {
 namespace {
 
 constexpr int kMostCuts = 14;             ///< dt / 16384 at least.
-constexpr double kMostEvaluations = 2e7;  ///< Of one trial.
+constexpr double kMostEvaluations = 1e6;  ///< Of one trial.
 constexpr double kImplicitCost = 10;      ///< Of a Newton step, in evaluations.
 constexpr int kStiffCuts = 6;             ///< Implicit methods are tried if rk4 needs more than 2^6.
 

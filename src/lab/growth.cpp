@@ -10,8 +10,10 @@ namespace hooke::lab {
 
 namespace {
 
-/// Two equal roots are found no better than the square root of a double's precision.
-constexpr double kRounding = 1e-7;
+constexpr double kRounding = 1e-10;
+
+/// Growth without damping is of fourth order and more: at smaller omega h it drowns in rounding.
+constexpr double kVisible = 0.05;
 
 }  // namespace
 
@@ -74,7 +76,7 @@ double stable_scale(Growth growth, double omega, double damping, double tolerate
     return is_stable(growth, {s * s * omega * omega, s * damping}, tolerated);
   };
   double low = kStart / rate;
-  if (!stable(low)) return 0;
+  if (!stable(low) || (damping == 0 && !stable(kVisible / rate))) return 0;
   double high = low;
   while (stable(high)) {
     low = high;

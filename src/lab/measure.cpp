@@ -61,6 +61,8 @@ Result<World> make_world(const Line& line) {
   return world;
 }
 
+constexpr double kMostGrowth = 1e8;  ///< Of the energy.
+
 /// Logarithm of the growth of the largest energy from the first quarter of a run to its last.
 Result<double> growth_of_run(std::string_view stepper, const Line& line, int steps) {
   const Result<World> world = make_world(line);
@@ -70,9 +72,12 @@ Result<double> growth_of_run(std::string_view stepper, const Line& line, int ste
   if (!run) return run.error();
   double first = 0;
   double last = 0;
+  // Before the masses pass one another, and the chain is linear no more.
+  const double most = kMostGrowth * run.value().energy().total();
   for (int i = 0; i < steps; ++i) {
     if (!run.value().advance()) return std::numeric_limits<double>::infinity();
     const double energy = run.value().energy().total();
+    if (!(energy < most)) return std::numeric_limits<double>::infinity();
     if (i < steps / 4) first = std::max(first, energy);
     if (i >= steps - steps / 4) last = std::max(last, energy);
   }

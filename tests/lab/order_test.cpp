@@ -50,7 +50,6 @@ TEST_SUITE("lab/order") {
       CHECK(orbit.order == doctest::Approx(info.order).epsilon(0.1 / info.order));
       const auto swing = take(lab::measure_order(pendulum, {.stepper = name, .dt = 0.02 * fine}, 1.0, 3));
       CHECK(swing.order == doctest::Approx(info.order).epsilon(0.1 / info.order));
-      MESSAGE(name << ": " << orbit.order << ", " << swing.order << "  error " << swing.error.back());
     }
   }
 }
