@@ -75,6 +75,19 @@ bool only_solver(const CompareOptions& options) {
   return options.steppers.size() == 1 && options.steppers.front() == kSolverName;
 }
 
+/// Whether the laboratory takes the scene by every stepper, before the long work. It knows no names of
+/// scenes.
+Result<void> check_stage(const Stage& stage, const CompareOptions& options) {
+  for (const std::string& name : options.steppers) {
+    const auto made = make_player(stage, name, stage.dt(), options.force);
+    if (made) continue;
+    const bool forced = !options.force && make_player(stage, name, stage.dt(), true);
+    return Error{ErrorCode::kOutOfRange, options.scene,
+                 made.error().message + (forced ? "; --force runs it all the same" : "")};
+  }
+  return {};
+}
+
 Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
   const Scene& scene = stage.scene();
   const Schedule schedule = make_schedule(scene.seconds, stage.dt());
@@ -91,14 +104,6 @@ Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
   if (scene.accuracy) {
     comparison.max_error = scene.accuracy->max_error;
     if (!only_solver(options)) names.push_back(kDeclaredName);
-  }
-  // What is refused should be so before the long work.
-  for (const std::string& name : names) {
-    const auto player = name == kDeclaredName ? Result<void>() : [&]() -> Result<void> {
-      auto made = make_player(stage, name, schedule.dt, options.force);
-      return made ? Result<void>() : made.error();
-    }();
-    if (!player) return player.error();
   }
   auto reference = make_reference(stage, schedule);
   if (reference) comparison.reference = std::move(reference).value();
@@ -203,6 +208,8 @@ int command_compare(Arguments arguments) {
   }
   auto stage = make_stage(std::move(scene), options.point);
   if (!stage) return report(stage.error());
+  const auto accepted = check_stage(stage.value(), options);
+  if (!accepted) return report(accepted.error());
   const auto folder = make_folder(options.output);
   if (!folder) return report(folder.error());
   const auto comparison = compare(stage.value(), options);

@@ -103,7 +103,10 @@ Result<Stage> make_stage(Scene scene, const std::string& point) {
 }
 
 Result<void> check_stepper(const std::string& name) {
-  if (name == kSolverName || lab::find_stepper(name)) return {};
+  if (name == kSolverName) return {};
+  const auto found = lab::find_stepper(name);
+  if (found && found.value().available) return {};
+  if (found) return Error{ErrorCode::kUnsupported, "--steppers", "'" + name + "' needs a build with SUNDIALS"};
   std::string names = kSolverName;
   for (const lab::StepperInfo& info : lab::steppers()) names += ", " + std::string(info.name);
   return Error{ErrorCode::kOutOfRange, "--steppers", "there is no '" + name + "'; there are " + names};

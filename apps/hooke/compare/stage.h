@@ -42,7 +42,7 @@ struct Player {
   std::string note = {};                ///< What was chosen, if the run chose.
 };
 
-/// Errors: no such stepper, with the list of those that exist.
+/// Errors: no such stepper, with the list of those that exist; kUnsupported for one that was not built in.
 Result<void> check_stepper(const std::string& name);
 
 /// The solver, a method of the laboratory, or kDeclaredName. `dt` [s] is the length of one advance. Errors:

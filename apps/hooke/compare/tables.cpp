@@ -136,7 +136,7 @@ double evaluations_at(const Trial& trial, double comparison_dt, double dt) {
 }
 
 std::optional<double> order_of(const Trial& trial, const Comparison& comparison) {
-  if (!trial.limits.order || trial.limits.order->error.size() < 2) return std::nullopt;
+  if (trial.diverged_at || !trial.limits.order || trial.limits.order->error.size() < 2) return std::nullopt;
   const std::vector<double>& errors = trial.limits.order->error;
   const double last = errors.back();
   const bool falls = last > 0 && last < 0.8 * errors[errors.size() - 2];

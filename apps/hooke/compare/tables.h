@@ -40,7 +40,7 @@ std::string order_csv(const Comparison& comparison);
 double evaluations_at(const Trial& trial, double comparison_dt, double dt);
 
 /// The measured order, if the errors fell to below a tenth of the extent and still fall: not where they are
-/// rounding, and not where the run diverged.
+/// rounding, and not if the run diverged.
 std::optional<double> order_of(const Trial& trial, const Comparison& comparison);
 
 /// One sentence: did it diverge, and how far it was off.
