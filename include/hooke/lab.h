@@ -17,22 +17,22 @@
 /// The integrator laboratory: the same scenes as a World, as an ordinary differential equation y' = f(t, y)
 /// in double, solved by the methods of the textbooks. Library hooke::lab.
 ///
-///     World world = ...;                                             // particles, ropes, cloths, fields
+///     World world = ...;  // with particles, ropes, cloths, fields
 ///     lab::Run run = lab::Run::create(world, {.stepper = "rk4"}).value();
 ///     while (run.time() < 10 && run.advance()) plot(run.time(), run.energy().total());
 ///
 /// Every method has its own file in src/lab, all with one signature, to be read side by side.
 ///
 /// What a World holds becomes forces: springs, segments of ropes, bends, gravity, fields, drag, wind, force
-/// laws. Points that are held follow their motion exactly. Three things differ from a World. Rigid springs
-/// and ropes are refused: they have no force. Limits and tethers, which have none either, are left out, and
-/// Report::left_out says so. A point that a step leaves inside a static body is put back on its surface and
-/// loses its speed into it, and of its sliding what friction takes: this makes any method first order there.
+/// laws. Points that are held follow their motion exactly. What differs from a World: rigid springs and ropes
+/// are refused, because they have no force law; limits and tethers, which have none either, are left out, and
+/// ObjectReport::left_out says so; a point that a step leaves inside a static body is put back on its surface
+/// and loses its speed into it, and of its sliding what friction takes, which makes any method first order
+/// there. Docs: docs/laboratory.md.
 
 namespace hooke::lab {
 
-/// A method of integration. `growth` and the limits speak of the oscillator x'' = -omega^2 x - 2 zeta omega
-/// x'.
+/// A method of integration. Limits are those of the oscillator x'' = -omega^2 x - 2 zeta omega x'.
 struct StepperInfo {
   std::string_view name;
   std::string_view title;  ///< For people: "Runge-Kutta 4".
@@ -52,8 +52,8 @@ struct StepperInfo {
 [[nodiscard]] Result<StepperInfo> find_stepper(std::string_view name);
 
 /// Factor by which one step multiplies an oscillation, from the method's own formula: the spectral radius at
-/// omega dt >= 0 and damping ratio zeta >= 0; more than 1 diverges. Adaptive methods: 0. Errors: unknown
-/// name.
+/// omega dt >= 0 and damping ratio zeta >= 0; more than 1 diverges. Adaptive methods: 0. Errors: an unknown
+/// name, arguments out of range.
 [[nodiscard]] Result<double> growth_per_step(std::string_view stepper, double omega_dt, double zeta);
 
 /// How far the result may be from the exact one, instead of how to compute it.
@@ -76,12 +76,14 @@ struct Options {
   ///   rk4             otherwise.
   std::string stepper = "rk4";
   std::vector<ObjectStepper> object_steppers = {};  ///< Replace `stepper` for some objects.
-  double dt = 1.0 / 60;                             ///< Of one advance() [s]. (0, 1e6]
+  double dt = 1.0 / 60;                             ///< Of one advance() [s]. [1e-9, 1e6]
   double tolerance = 1e-8;  ///< Of adaptive methods, relative and absolute. [1e-14, 0.1]
   /// Replaces `stepper` and `object_steppers`: verlet, rk4, and bdf2 where the scene is stiff, are tried with
-  /// `dt` cut in 1, 2, 4, ... until two runs agree; the cheapest is taken. Then `dt` is of the output only.
+  /// `dt` cut in 1, 2, 4, ... 16384 until two runs agree; the one with fewest evaluations is taken, an
+  /// implicit one counting tenfold. Then `dt` is of the output only.
   std::optional<Accuracy> accuracy = {};
-  /// Run an explicit method where it is known to diverge. Otherwise that is an Error naming the spring.
+  /// Run an explicit method where it is known to diverge. Otherwise that is an Error naming the spring: where
+  /// its oscillation grows, for methods without any stable step without damping by more than 10 % per period.
   bool force = false;
   bool contacts = true;  ///< With static bodies.
 };

@@ -20,6 +20,7 @@ constexpr int kMostStartUpParts = 10000;
 
 Matrix residual_slope(const Jacobian& jacobian, double gamma, Eigen::Index size) {
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(size) + jacobian.by_velocity.size() + jacobian.by_position.size());
   for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1.0);
   for (const Jacobian::Entry& e : jacobian.by_velocity)
     entries.emplace_back(e.row, e.column, -gamma * e.value);

@@ -57,7 +57,7 @@ void set_term(Vector3<T>& vector, int i, DVec3 value) {
   term(vector.z, i) = value.z;
 }
 
-DVec3 point_of(const State& coordinates, int i) {
+DVec3 point_of(const State& coordinates, Eigen::Index i) {
   return {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
 }
 

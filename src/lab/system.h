@@ -103,6 +103,7 @@ class System {
     std::vector<Vector3<T>> x, v;
   };
 
+  PointRow add_fields(const state::Tables& tables);
   void add_points(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_segments(const state::Tables& tables, const state::Deformable& object);

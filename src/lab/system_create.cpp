@@ -47,8 +47,8 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   return system;
 }
 
-void System::add_points(const state::Tables& tables, const state::Deformable& object) {
-  const state::Particles& p = tables.particles;
+/// What acts on all points alike; centers of attraction go to their own list.
+PointRow System::add_fields(const state::Tables& tables) {
   auto attractors = std::make_shared<std::vector<FieldDesc>>();
   PointRow all = {.uniform = vector_cast<double>(tables.desc.gravity)};
   for (const state::Field& field : tables.fields) {
@@ -57,13 +57,14 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
     if (field.desc.kind == FieldDesc::Kind::kMagnetic) all.magnetic += vector;
     if (field.desc.kind == FieldDesc::Kind::kInverseSquare) attractors->push_back(field.desc);
   }
-  attractors_ = attractors;
+  all.attractors = attractors.get();
+  attractors_ = std::move(attractors);
+  return all;
+}
 
-  pins_.resize(object.particles.count);
-  for (const state::Pin& pin : tables.pins) {
-    const std::uint32_t row = pin.particle - object.particles.first;
-    if (row < object.particles.count) pins_[row] = pin;  // unsigned: also those before the object
-  }
+void System::add_points(const state::Tables& tables, const state::Deformable& object) {
+  const state::Particles& p = tables.particles;
+  const PointRow all = add_fields(tables);
   for (std::uint32_t row = 0; row < object.particles.count; ++row) {
     const std::size_t i = object.particles.first + row;
     const bool held = !(p.velocity[i].inverse_mass > Real(0));
@@ -78,7 +79,6 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
     point.at = {row};
     point.mass = mass_.back();
     point.charge = number(p.charge[i]);
-    point.attractors = attractors_.get();
     if (object.feels_air) {
       point.viscous = number(p.viscous_drag[i]);
       point.half_rho_area = number(tables.desc.wind.air_density) * number(p.drag_area[i]);
@@ -88,6 +88,11 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
   coordinates_ = 3 * static_cast<Eigen::Index>(free_rows_.size());
   const auto first = p.row_of.begin() + object.particles.first;
   row_of_point_.assign(first, first + object.particles.count);
+  pins_.resize(object.particles.count);
+  for (const state::Pin& pin : tables.pins) {
+    const std::uint32_t row = pin.particle - object.particles.first;
+    if (row < object.particles.count) pins_[row] = pin;  // unsigned: also those before the object
+  }
 }
 
 Result<void> System::add_springs(const state::Tables& tables, const state::Deformable& object) {
@@ -160,6 +165,8 @@ void System::add_air(const state::Tables& tables, const state::Deformable& objec
 void System::note(const state::Tables& tables, const state::Deformable& object) {
   const WindDesc& wind = tables.desc.wind;
   gusts_ = object.feels_air && (wind.gust != Real(0) || wind.side_gust != Real(0));
+  if (gusts_ && wind.gusts == WindDesc::Gusts::kPaper)
+    left_out_.emplace_back("the change of the paper's gusts: they are drawn per step of a World, here once");
   bool damped = object.feels_air || laws_ != nullptr;
   for (const SpringRow& row : springs_) damped = damped || row.spring.damping > 0;
   for (const BendRow& row : bends_) damped = damped || row.damping > 0;

@@ -266,6 +266,45 @@ TEST_SUITE("lab/run") {
     }
   }
 
+  TEST_CASE("a ball comes to rest on the triangles of a mesh") {
+    World world = make_world();
+    MeshDesc plate;
+    plate.positions = {{Real(-1), Real(0), Real(-1)},
+                       {Real(-1), Real(0), Real(1)},
+                       {Real(1), Real(0), Real(1)},
+                       {Real(1), Real(0), Real(-1)}};
+    plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+    BodyDesc body;
+    body.shape = Shape::of_mesh(take(world.add_mesh(plate)));
+    take(world.add_body(body));
+    const ParticlesId id =
+        take(world.add_particles({.particles = {{.position = {0.3, 0.5, 0.2}, .radius = Real(0.1)}}}));
+    lab::Run run = make_run(world, {});
+    advance(run, 120);
+    CHECK(run.positions(id)[0].y == doctest::Approx(0.1).epsilon(1e-4));
+    CHECK(std::abs(run.velocities(id)[0].y) < 1e-6);
+  }
+
+  TEST_CASE("an object whose points are all held follows its motion, with any method") {
+    World world = make_world();
+    ParticlesDesc desc;
+    desc.particles = {{}};
+    PinDesc pin;
+    pin.motion.kind = MotionDesc::Kind::kConstantVelocity;
+    pin.motion.velocity = {Real(2), Real(0), Real(0)};
+    desc.pins = {pin};
+    const ParticlesId id = take(world.add_particles(desc));
+    for (const lab::StepperInfo& info : lab::steppers()) {
+      if (!info.available) continue;
+      CAPTURE(info.name);
+      lab::Run run = make_run(world, {.stepper = std::string(info.name)});
+      advance(run, 60);
+      CHECK(run.positions(id)[0].x == doctest::Approx(2));
+      CHECK(run.velocities(id)[0].x == 2);
+      CHECK(run.energy().total() == 0);
+    }
+  }
+
   TEST_CASE("ids that are not of the world give nothing") {
     const World world = make_net();
     const lab::Run run = make_run(world, {.stepper = "implicit_euler"});
