@@ -82,8 +82,9 @@ Result<void> check_stage(const Stage& stage, const CompareOptions& options) {
     const auto made = make_player(stage, name, stage.dt(), options.force);
     if (made) continue;
     const bool forced = !options.force && make_player(stage, name, stage.dt(), true);
-    return Error{ErrorCode::kOutOfRange, options.scene,
-                 made.error().message + (forced ? "; --force runs it all the same" : "")};
+    Error error = refusal(options.scene, made.error());
+    if (forced) error.message += "; --force runs it all the same";
+    return error;
   }
   return {};
 }

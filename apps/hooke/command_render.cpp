@@ -188,7 +188,7 @@ int command_render(Arguments arguments) {
   auto renderer = make_renderer(options);
   if (!renderer) return report(renderer.error());
   std::optional<lab::Run> run;
-  if (!options.stepper.empty()) {
+  if (!options.stepper.empty() && options.stepper != kSolverName) {
     auto created = make_run(*simulation, options.stepper,
                             options.seconds.value_or(simulation->scene().seconds), options.force);
     if (!created) return report(created.error());

@@ -1,4 +1,5 @@
 #include "hooke/command_line.h"
+#include "hooke/compare/stage.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
 #include "hooke/run_laboratory.h"
@@ -124,7 +125,7 @@ int command_run(Arguments arguments) {
   if (!loaded) return report(loaded.errors, loaded.warnings);
   Scene scene = std::move(*loaded.value);
   apply(options.overrides, scene.world);
-  if (!options.stepper.empty()) {
+  if (!options.stepper.empty() && options.stepper != kSolverName) {
     for (const Error& warning : loaded.warnings) warn(warning);
     const double seconds = options.seconds.value_or(scene.seconds);
     return run_laboratory(std::move(scene), {.scene = options.scene,

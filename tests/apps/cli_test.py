@@ -334,6 +334,8 @@ class Help(Program):
             for words in map(str.split, examples):
                 if words[0] == "render":
                     self.draw(*words[1:])
+                elif words[0] == "compare" and shutil.which("gnuplot") is None:
+                    continue
                 elif words[0] != "view":
                     self.hooke(*words)
 

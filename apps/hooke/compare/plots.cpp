@@ -20,9 +20,10 @@ namespace {
 constexpr std::size_t kMostPoints = 1500;  // of a curve: more than there are pixels
 constexpr std::chrono::seconds kLongestDrawing{60};
 
-// Told apart by people who see fewer colors, too (Okabe and Ito).
-constexpr std::array<const char*, 8> kColors = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
-                                                "#E69F00", "#56B4E9", "#8A6D00", "#7F3FBF"};
+// The first six are told apart by people who see fewer colors, too (Okabe and Ito).
+constexpr std::array<const char*, 12> kColors = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
+                                                 "#E69F00", "#56B4E9", "#8A6D00", "#7F3FBF",
+                                                 "#B22222", "#5F7F7F", "#FF69B4", "#7FA32F"};
 constexpr const char* kReferenceColor = "#000000";
 
 struct FileCloser {

@@ -102,14 +102,18 @@ Result<Stage> make_stage(Scene scene, const std::string& point) {
                watched.name + ":" + std::to_string(index)};
 }
 
+Error refusal(const std::string& scene, const Error& reason) {
+  return {ErrorCode::kOutOfRange, scene, reason.message};
+}
+
 Result<void> check_stepper(const std::string& name) {
   if (name == kSolverName) return {};
   const auto found = lab::find_stepper(name);
   if (found && found.value().available) return {};
-  if (found) return Error{ErrorCode::kUnsupported, "--steppers", "'" + name + "' needs a build with SUNDIALS"};
+  if (found) return Error{ErrorCode::kUnsupported, "stepper", "'" + name + "' needs a build with SUNDIALS"};
   std::string names = kSolverName;
   for (const lab::StepperInfo& info : lab::steppers()) names += ", " + std::string(info.name);
-  return Error{ErrorCode::kOutOfRange, "--steppers", "there is no '" + name + "'; there are " + names};
+  return Error{ErrorCode::kOutOfRange, "stepper", "there is no '" + name + "'; there are " + names};
 }
 
 Result<Player> make_player(const Stage& stage, const std::string& name, double dt, bool force) {
@@ -149,7 +153,11 @@ Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepp
   for (const SceneObject& object : simulation.objects()) {
     if (!object.stepper.empty()) options.object_steppers.push_back({reference_of(object), object.stepper});
   }
-  return lab::Run::create(simulation.world(), options);
+  const auto known = stepper == kDeclaredName || stepper == "auto" ? Result<void>() : check_stepper(stepper);
+  if (!known) return known.error();
+  auto run = lab::Run::create(simulation.world(), options);
+  if (!run) return refusal(scene.path, run.error());
+  return run;
 }
 
 Result<void> show_run(const lab::Run& run, Simulation& simulation) {

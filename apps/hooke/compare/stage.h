@@ -45,6 +45,9 @@ struct Player {
 /// Errors: no such stepper, with the list of those that exist; kUnsupported for one that was not built in.
 Result<void> check_stepper(const std::string& name);
 
+/// What the laboratory says against a scene is bad input, and the scene is where.
+Error refusal(const std::string& scene, const Error& reason);
+
 /// The solver, a method of the laboratory, or kDeclaredName. `dt` [s] is the length of one advance. Errors:
 /// as of lab::Run::create.
 Result<Player> make_player(const Stage& stage, const std::string& name, double dt, bool force);

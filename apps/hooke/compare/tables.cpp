@@ -9,6 +9,8 @@ namespace hooke::app {
 
 namespace {
 
+constexpr double kRounding = 1e-11;  // of the extent: errors below are sums of roundings
+
 /// "1.23e-05"; "any" for infinity; "-" for what is not known.
 std::string word(double value) {
   if (std::isnan(value)) return "-";
@@ -136,12 +138,17 @@ double evaluations_at(const Trial& trial, double comparison_dt, double dt) {
 }
 
 std::optional<double> order_of(const Trial& trial, const Comparison& comparison) {
-  if (trial.diverged_at || !trial.limits.order || trial.limits.order->error.size() < 2) return std::nullopt;
-  const std::vector<double>& errors = trial.limits.order->error;
-  const double last = errors.back();
-  const bool falls = last > 0 && last < 0.8 * errors[errors.size() - 2];
-  if (!falls || !(last < 0.1 * comparison.reference.extent)) return std::nullopt;
-  return trial.limits.order->order;
+  if (trial.diverged_at || !trial.limits.order) return std::nullopt;
+  const lab::OrderMeasurement& measured = *trial.limits.order;
+  for (std::size_t i = measured.error.size(); i-- > 1;) {
+    const double coarse = measured.error[i - 1];
+    const double fine = measured.error[i];
+    if (!(fine > kRounding * comparison.reference.extent)) continue;
+    const bool falls = fine < 0.8 * coarse && fine < 0.1 * comparison.reference.extent;
+    if (!falls) return std::nullopt;
+    return std::log(coarse / fine) / std::log(measured.dt[i - 1] / measured.dt[i]);
+  }
+  return std::nullopt;
 }
 
 std::string verdict_of(const Trial& trial, const Comparison& comparison) {

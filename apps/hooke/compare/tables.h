@@ -39,8 +39,8 @@ std::string order_csv(const Comparison& comparison);
 /// Evaluations of the forces per simulated second at a step of `dt`.
 double evaluations_at(const Trial& trial, double comparison_dt, double dt);
 
-/// The measured order, if the errors fell to below a tenth of the extent and still fall: not where they are
-/// rounding, and not if the run diverged.
+/// The measured order: slope between the two smallest steps whose errors are more than rounding. Nothing if
+/// the errors do not fall there, or if the run diverged.
 std::optional<double> order_of(const Trial& trial, const Comparison& comparison);
 
 /// One sentence: did it diverge, and how far it was off.
