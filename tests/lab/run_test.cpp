@@ -154,9 +154,16 @@ TEST_SUITE("lab/run") {
     CHECK(pair.positions()[1] == pair.positions(first)[1]);
     CHECK(pair.report()[0].stepper == "verlet");
     CHECK(pair.report()[1].stepper == "rk4");
-    // Verlet keeps its acceleration for the next step.
+    // Verlet keeps its acceleration for the next step, unless it was seen at a velocity that was predicted.
     CHECK(pair.report()[0].evaluations == 101);
     CHECK(pair.report()[1].evaluations == 400);
+    World damped = make_world();
+    ParticlesDesc desc = make_pendulum(1, Real(100));
+    desc.springs[0].damping = Real(1);
+    take(damped.add_particles(desc));
+    lab::Run twice = make_run(damped, {.stepper = "verlet"});
+    advance(twice, 100);
+    CHECK(twice.evaluations() == 200);
   }
 
   TEST_CASE("a declared accuracy is kept, and the report says by what") {
@@ -222,6 +229,25 @@ TEST_SUITE("lab/run") {
       CHECK(run.time() == time);
     }
     CHECK(contains(said, "particles 1 diverged"));
+  }
+
+  TEST_CASE("where one object fails, all stay") {
+    World world = make_world(empty_space());
+    ParticlesDesc calm = make_pendulum(1, Real(10));
+    calm.particles[1].velocity = {Real(1), Real(0), Real(0)};
+    take(world.add_particles(calm));
+    ParticlesDesc wild = make_pendulum(1, Real(1e6));
+    wild.springs[0].rest_length = Real(0.9);
+    take(world.add_particles(wild));
+    lab::Run run = make_run(world, {.stepper = "euler", .force = true});
+    for (int i = 0; i < 10000; ++i) {
+      const std::vector<DVec3> before = run.positions();
+      if (run.advance()) continue;
+      CHECK(run.positions() == before);
+      CHECK(run.report()[0].steps == run.report()[1].steps);
+      return;
+    }
+    FAIL("Euler did not diverge");
   }
 
   TEST_CASE("a force law acts as the field that it imitates") {
