@@ -51,11 +51,11 @@ void CreepMeter::add(double time, double extension) {
 }
 
 void print_row(const char* stepper, double dt, const FlagSetting& setting, const CreepMeter& meter,
-               double gone) {
+               const std::string& end) {
   std::printf("| %s | %.4g | %s | %s | ", stepper, 1000 * dt, setting.gusts ? "gusting" : "steady",
               setting.limited ? "5 %" : "none");
-  if (gone > 0) {
-    std::printf("gone after %.2g s | | |\n", gone);
+  if (!end.empty()) {
+    std::printf("%s | | |\n", end.c_str());
   } else {
     std::printf("%.3f | %.3f | %+.3f |\n", 100 * meter.first(), 100 * meter.last(),
                 100 * (meter.last() - meter.first()));
@@ -70,15 +70,15 @@ int print_solver_rows(const char* name) {
       if (!flag) return 1;
       World& world = flag.value().world;
       CreepMeter meter;
-      double gone = 0;
-      while (world.time() < kFlagSeconds && gone <= 0) {
-        if (!world.step(Real(1) / Real(60)).healthy()) gone = world.time();
+      std::string end;
+      while (world.time() < kFlagSeconds && end.empty()) {
+        if (!world.step(Real(1) / Real(60)).healthy()) end = "not finite";
         std::vector<DVec3> points;
         const PointView view = world.positions(flag.value().cloth);
         for (std::size_t i = 0; i < view.size(); ++i) points.push_back(view[i]);
         meter.add(world.time(), extension_of(points));
       }
-      print_row(name, 1.0 / 60, {gusts, limited}, meter, gone);
+      print_row(name, 1.0 / 60, {gusts, limited}, meter, end);
     }
   }
   return 0;

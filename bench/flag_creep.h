@@ -2,6 +2,7 @@
 
 #include "hooke/hooke.h"
 
+#include <string>
 #include <vector>
 
 /// \file
@@ -48,9 +49,9 @@ class CreepMeter {
   int last_count_ = 0;
 };
 
-/// One row of the table; `gone` [s] instead of the figures if positive.
+/// One row of the table; `end` instead of the figures if it is not empty: why the run is over.
 void print_row(const char* stepper, double dt, const FlagSetting& setting, const CreepMeter& meter,
-               double gone);
+               const std::string& end);
 
 /// The rows of the real-time solver in this build's precision.
 int print_solver_rows(const char* name);

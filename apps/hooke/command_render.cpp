@@ -152,7 +152,7 @@ Result<void> render_film(Film& film, const RenderOptions& options) {
     const auto image =
         film.picture_at(static_cast<double>(i) / static_cast<double>(options.frames_per_second), nullptr);
     if (!image) return image.error();
-    const auto added = video.value().add(image.value());
+    auto added = video.value().add(image.value());
     if (!added) return added;
     progress.show(i + 1);
   }

@@ -75,6 +75,7 @@ Result<Child> Child::start(std::vector<std::string> words, const Streams& stream
   const Descriptor output = copy_above_standard(streams.output);
   const Descriptor error_output = copy_above_standard(streams.error);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const Actions actions({input.number(), output.number(), error_output.number()});

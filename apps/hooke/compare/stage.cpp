@@ -167,7 +167,7 @@ Result<void> show_run(const lab::Run& run, Simulation& simulation) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(length(points[i]) < kGone)) return Error{ErrorCode::kOutOfRange, object.name, "is gone"};
       reference.index = static_cast<std::uint32_t>(i);
-      const auto moved = simulation.world().set_position(reference, points[i]);
+      auto moved = simulation.world().set_position(reference, points[i]);
       if (!moved) return moved;
     }
   }
