@@ -87,7 +87,7 @@ std::string verdicts(const Comparison& comparison) {
 
 std::string how(const Comparison& comparison) {
   const Reference& reference = comparison.reference;
-  std::string text = text_of("<p>%g s in steps of %.6g s, watched at ", comparison.seconds, comparison.dt) +
+  std::string text = text_of("<p>%.4g s in steps of %.4g s, watched at ", comparison.seconds, comparison.dt) +
                      "<code>" + escaped(comparison.point) + "</code>. ";
   text += reference.samples.empty()
               ? "The laboratory refuses this scene, so there is nothing to measure an error "

@@ -170,7 +170,9 @@ std::vector<PlotCurve> order_curves(const Comparison& comparison, const X& x) {
                        .color = kColors[i % kColors.size()],
                        .marked = true};
     for (std::size_t k = 0; k < order.dt.size(); ++k) {
-      curve.points.push_back({x(trial, order.dt[k]), order.error[k]});
+      // What has diverged would leave no room for the others.
+      const bool shown = order.error[k] < 10 * comparison.reference.extent;
+      if (shown) curve.points.push_back({x(trial, order.dt[k]), order.error[k]});
     }
     curves.push_back(std::move(curve));
   }
