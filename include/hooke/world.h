@@ -52,11 +52,23 @@ struct Pose {
   Quat rotation = {};
 };
 
+/// Where two bodies touched in the last step. Contacts stand in order of the bodies' creation.
+struct BodyContact {
+  BodyId a;
+  BodyId b;
+  DVec3 point = {};             ///< Midway between the two surfaces [m].
+  Vec3 normal = {};             ///< From a to b.
+  Real separation = Real(0);    ///< Negative: overlap [m].
+  Real normal_force = Real(0);  ///< Mean over the last substep [N].
+};
+
 /// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
 struct StepReport {
   bool moved =
       false;  ///< False: `dt` was not a positive finite number, or the step was called from a force law.
-  std::uint32_t contacts = 0;            ///< Points that touched something in the last substep.
+  std::uint32_t contacts = 0;  ///< Points that touched something in the last substep.
+  std::uint32_t pairs = 0;     ///< Shapes of bodies that are near each other.
+  std::uint32_t bodies_awake = 0;
   std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
   std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.
   std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
@@ -68,6 +80,8 @@ struct StepReport {
   [[nodiscard]] bool healthy() const { return moved && rows_quarantined == 0; }
 };
 
+/// Of the middle of the last substep: positions are half a substep ahead of velocities, so potential and
+/// elastic energy are taken where the particles were then. Energy of ropes is by their tension at its end.
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
@@ -83,7 +97,7 @@ struct Measurement {
   DVec3 angular_momentum = {};  ///< [kg m^2/s] about the world's origin.
   double largest_stretch = 0;  ///< Largest |length / rest length - 1| over rope segments and stretch springs.
   double mean_stretch = 0;     ///< Mean of the same.
-  double largest_penetration = 0;  ///< Deepest overlap of a particle's sphere with a shape [m].
+  double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
 };
 
 /// Everything that changes with time, and everything that was added, as it was. Copying is cheap; see
@@ -162,16 +176,31 @@ class World {
   [[nodiscard]] PointView velocities(ClothId id) const;
   [[nodiscard]] PointView velocities(ParticlesId id) const;
   [[nodiscard]] Pose pose(BodyId id) const;
+  [[nodiscard]] Vec3 velocity(BodyId id) const;          ///< Of the center of mass [m/s].
+  [[nodiscard]] Vec3 angular_velocity(BodyId id) const;  ///< [rad/s], in the world's axes.
+  [[nodiscard]] DVec3 center_of_mass(BodyId id) const;   ///< [m], in the world.
+  [[nodiscard]] Real mass(BodyId id) const;              ///< [kg]; 0 for a body that nothing moves.
+  [[nodiscard]] bool asleep(BodyId id) const;
+  /// Where bodies touched each other in the last step.
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
 
   // Pushing. Values must be finite.
-  Result<void> apply_force(PointRef point, Vec3 force);       ///< [N], during the next step.
-  Result<void> apply_impulse(PointRef point, Vec3 impulse);   ///< [N s], now.
-  Result<void> set_velocity(PointRef point, Vec3 velocity);   ///< [m/s], now; a pinned point keeps its own.
-  Result<void> set_position(PointRef point, DVec3 position);  ///< [m], now.
+  Result<void> apply_force(PointRef point, Vec3 force);         ///< [N], during the next step.
+  Result<void> apply_impulse(PointRef point, Vec3 impulse);     ///< [N s], now.
+  Result<void> set_velocity(PointRef point, Vec3 velocity);     ///< [m/s], now; a pinned point keeps its own.
+  Result<void> set_position(PointRef point, DVec3 position);    ///< [m], now.
+  Result<void> apply_force(BodyId body, Vec3 force);            ///< [N] at the center, during the next step.
+  Result<void> apply_force(BodyId body, Vec3 force, DVec3 at);  ///< [N] at a place [m] in the world.
+  Result<void> apply_torque(BodyId body, Vec3 torque);          ///< [N m], during the next step.
+  Result<void> apply_impulse(BodyId body, Vec3 impulse);        ///< [N s] at the center, now.
+  Result<void> apply_impulse(BodyId body, Vec3 impulse, DVec3 at);  ///< [N s] at a place in the world, now.
+  Result<void> set_velocity(BodyId body, Vec3 velocity);  ///< [m/s], now; a static body keeps still.
+  Result<void> set_angular_velocity(BodyId body, Vec3 angular_velocity);  ///< [rad/s], now.
+  Result<void> set_pose(BodyId body, const Pose& pose);  ///< Of the body's frame, now; keeps its velocity.
   Result<void> pin(PointRef point,
                    const MotionDesc& motion = {});  ///< Holds the point; its motion starts now.
   Result<void> unpin(PointRef point);

@@ -1,10 +1,13 @@
 #include "collision/particle_contacts.h"
 
 #include "collision/shape_gap.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace hooke::collision {
 
@@ -13,33 +16,46 @@ namespace {
 constexpr Real kMargin = Real(0.02);    ///< [m]
 constexpr Real kNoContact = Real(1e9);  ///< Distance of a row that does not hold now [m].
 
-/// A body's frame as one object sees it: x_body = R^T (x - offset), x relative to the object's origin.
+/// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
-  const state::Body* body = nullptr;
+  const state::ColliderShape* shape = nullptr;
+  Quat rotation = {};
   Vec3 offset = {};
 
-  [[nodiscard]] Vec3 to_body(Vec3 x) const { return rotate(conjugate(body->rotation), x - offset); }
-  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(body->rotation, direction); }
+  [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
+  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
 };
 
-Frame frame_of(const state::Body& body, const state::Deformable& object) {
-  return {&body, vector_cast<Real>(body.position - object.origin)};
+Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
+  const Pose pose = state::frame_of_collider(t.bodies, t.colliders, collider);
+  return {&t.colliders.shape[collider], pose.rotation, vector_cast<Real>(pose.position - object.origin)};
+}
+
+/// Rows of the colliders that particles may touch, in ascending order.
+std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
+    const std::uint32_t body = t.colliders.body[c];
+    if (body == state::Colliders::kNoBody) continue;
+    if (t.bodies.traits[body].collides && !t.bodies.traits[body].sensor) rows.push_back(c);
+  }
+  return rows;
 }
 
 struct Key {
-  std::uint32_t particle, body, feature;
+  std::uint32_t particle, collider, feature;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
 Key key_of(const state::Contacts& contacts, std::size_t row) {
-  return {contacts.particle[row], contacts.body[row], contacts.feature[row]};
+  return {contacts.particle[row], contacts.collider[row], contacts.feature[row]};
 }
 
 void append(state::Contacts& contacts, Key key, std::uint32_t object, Real friction) {
   contacts.particle.push_back(key.particle);
-  contacts.body.push_back(key.body);
+  contacts.collider.push_back(key.collider);
   contacts.feature.push_back(key.feature);
   contacts.object.push_back(object);
   contacts.friction.push_back(friction);
@@ -57,17 +73,17 @@ struct Finder {
 /// Appends the rows of one particle against one body.
 void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real way, Finder& finder) {
   const state::Deformable& object = t.objects[object_row];
-  const state::Body& body = t.bodies[pair.body];
-  const Vec3 x = frame_of(body, object).to_body(t.particles.position[pair.particle].x);
+  const state::ColliderShape& shape = t.colliders.shape[pair.collider];
+  const Vec3 x = frame_of(t, pair.collider, object).to_shape(t.particles.position[pair.particle].x);
   const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
-  const Real friction = std::sqrt(object.friction * body.friction);
-  if (body.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(body.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
+  const Real friction = std::sqrt(object.friction * t.colliders.surface[pair.collider].friction);
+  if (shape.shape.kind != ShapeKind::kMesh) {
+    if (gap_to_shape(shape.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
   }
-  find_triangles_near(*body.mesh, x, reach, finder.triangles);
+  find_triangles_near(*shape.mesh, x, reach, finder.triangles);
   for (const std::uint32_t triangle : finder.triangles) {
-    append(finder.contacts, {pair.particle, pair.body, triangle}, object_row, friction);
+    append(finder.contacts, {pair.particle, pair.collider, triangle}, object_row, friction);
   }
 }
 
@@ -89,31 +105,30 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
   contacts.separation[row] = gap.distance - radius;
 }
 
-/// Rows [first, end) are triangles of one mesh near one particle. The nearest triangle tells whether the
-/// particle is inside: then it alone pushes out. Outside, faces below the particle hold it; a rim does only
-/// where no face is, so that sliding over the edges between triangles of a flat mesh is not felt.
-void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t end, const Frame& frame,
-                      Vec3 x, Real radius) {
-  const state::Mesh& mesh = *frame.body->mesh;
-  const Vec3 place = frame.to_body(x);
-  std::size_t nearest = first;
+/// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
+/// triangle tells whether the particle is inside: then it alone pushes out. Outside, faces below the particle
+/// hold it; a rim does only where no face is, so that sliding over the edges between triangles of a flat mesh
+/// is not felt.
+void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
+                      const Frame& frame, Real radius) {
+  std::size_t nearest = 0;
   Real least = std::numeric_limits<Real>::infinity();
   bool any_face = false;
   bool inside = false;
-  for (std::size_t row = first; row < end; ++row) {
-    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
     any_face = any_face || (g.over_face && g.gap.distance >= Real(0));
     // Of equally near triangles one that is below the particle counts, not one beside it.
     const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
-    nearest = better ? row : nearest;
+    nearest = better ? i : nearest;
     least = better ? g.unsigned_distance : least;
     inside = better ? g.gap.distance < Real(0) : inside;
   }
-  for (std::size_t row = first; row < end; ++row) {
-    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
-    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && row == nearest;
-    const bool active = inside ? row == nearest : holds;
-    set_row(contacts, row, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
+    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && i == nearest;
+    const bool active = inside ? i == nearest : holds;
+    set_row(contacts, first + i, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
   }
 }
 
@@ -123,14 +138,11 @@ void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
   Finder finder;
-  const bool any =
-      std::any_of(t.bodies.begin(), t.bodies.end(), [](const state::Body& b) { return b.collides; });
-  for (std::uint32_t o = 0; any && o < t.objects.size(); ++o) {
+  const std::vector<std::uint32_t> colliders = solid_colliders(t);
+  for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
-      for (std::uint32_t b = 0; b < t.bodies.size(); ++b) {
-        if (t.bodies[b].collides) find_pair(t, {p, b, 0}, o, way, finder);
-      }
+      for (const std::uint32_t c : colliders) find_pair(t, {p, c, 0}, o, way, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);
@@ -141,37 +153,42 @@ void update_contacts(parallel::Range range, state::Tables& t) {
   state::Contacts& contacts = t.contacts;
   const std::size_t count = contacts.particle.size();
   const auto same_pair = [&](std::size_t a, std::size_t b) {
-    return contacts.particle[a] == contacts.particle[b] && contacts.body[a] == contacts.body[b];
+    return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
   };
+  std::vector<TriangleGap> gaps;  // of one particle to one mesh
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
   while (row < static_cast<std::size_t>(range.end)) {
     const std::size_t first = row;
     while (row < count && same_pair(row, first)) ++row;
     const std::uint32_t particle = contacts.particle[first];
-    const state::Body& body = t.bodies[contacts.body[first]];
-    const Frame frame = frame_of(body, t.objects[contacts.object[first]]);
-    const Vec3 x = t.particles.position[particle].x;
+    const Frame frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
+    const state::ColliderShape& shape = *frame.shape;
+    const Vec3 x = frame.to_shape(t.particles.position[particle].x);
     const Real radius = t.particles.position[particle].radius;
-    if (body.shape.kind == ShapeKind::kMesh) {
-      update_mesh_rows(contacts, first, row, frame, x, radius);
-    } else {
-      set_row(contacts, first, frame, gap_to_shape(body.shape, frame.to_body(x)), radius);
+    if (shape.shape.kind != ShapeKind::kMesh) {
+      set_row(contacts, first, frame, gap_to_shape(shape.shape, x), radius);
+      continue;
     }
+    gaps.clear();
+    for (std::size_t i = first; i < row; ++i)
+      gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
+    update_mesh_rows(contacts, first, gaps, frame, radius);
   }
 }
 
 double largest_penetration(const state::Tables& t) {
   double deepest = 0;
+  const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
-      for (const state::Body& body : t.bodies) {
-        if (!body.collides) continue;
-        const Vec3 x = frame_of(body, object).to_body(t.particles.position[p].x);
-        const bool mesh = body.shape.kind == ShapeKind::kMesh;
-        const Real distance =
-            mesh ? distance_to_mesh(*body.mesh, x, radius) : gap_to_shape(body.shape, x).distance;
+      for (const std::uint32_t c : colliders) {
+        const Frame frame = frame_of(t, c, object);
+        const Vec3 x = frame.to_shape(t.particles.position[p].x);
+        const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
+        const Real distance = mesh ? distance_to_mesh(*frame.shape->mesh, x, radius)
+                                   : gap_to_shape(frame.shape->shape, x).distance;
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }

@@ -67,6 +67,7 @@ struct Bodies {
   std::vector<DVec3> center;                  ///< Of mass, at the start of the step [m].
   std::vector<Quat> rotation;                 ///< Of the body's frame, at the start of the step.
   std::vector<Vec3> angular_momentum;         ///< About the center of mass [kg m^2/s]: the state of rotation.
+  std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
@@ -91,6 +92,7 @@ struct Bodies {
     visit(self.center);
     visit(self.rotation);
     visit(self.angular_momentum);
+    visit(self.angular_velocity);
     visit(self.scale);
     visit(self.mass);
     visit(self.traits);

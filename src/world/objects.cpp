@@ -54,6 +54,14 @@ void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
 
 }  // namespace
 
+Error stale(const char* what) {
+  return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
+}
+
+Error not_finite(const char* what) {
+  return {ErrorCode::kOutOfRange, what, "must be finite"};
+}
+
 std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
   const std::uint32_t row = object_row(tables, point);
   if (row == state::SlotTable<RopeId>::kNone) return std::nullopt;
@@ -113,6 +121,33 @@ void unpin_particle(Tables& t, ParticleRow row) {
   if (removed == 0) return;
   t.particles.velocity[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
   ++t.revision;
+}
+
+void wake_neighbors(Tables& t, std::uint32_t body) {
+  for (const state::Pair& pair : t.pairs.pair) {
+    const std::uint32_t a = t.colliders.body[pair.collider_a];
+    const std::uint32_t b = t.colliders.body[pair.collider_b];
+    if (a != body && b != body) continue;
+    for (const std::uint32_t near : {a, b}) {
+      t.bodies.asleep[near] = 0;
+      t.bodies.rest_time[near] = Real(0);
+    }
+  }
+}
+
+void hash_bodies(const Tables& t, base::StateHash& hash) {
+  for (const std::uint32_t body : t.moving_bodies) {
+    hash.add(t.bodies.center[body]);
+    hash.add(t.bodies.rotation[body]);
+    hash.add(t.bodies.motion[body].v);
+    hash.add(t.bodies.angular_momentum[body]);
+    hash.add(t.bodies.asleep[body]);
+  }
+  for (const state::Manifold& manifold : t.pairs.manifold) {
+    hash.add(manifold.collider_a);
+    hash.add(manifold.collider_b);
+    for (int i = 0; i < manifold.point_count; ++i) hash.add(manifold.point[i].normal_impulse);
+  }
 }
 
 void restore_tables(const Tables& from, Tables& to) {

@@ -2,9 +2,11 @@
 
 #include "hooke/world.h"
 
+#include "collision/broad_phase.h"
 #include "parallel/thread_pool.h"
 #include "solver/air.h"
 #include "solver/bends.h"
+#include "solver/body_contacts.h"
 #include "solver/chains.h"
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
@@ -22,11 +24,20 @@ struct WorldData {
   // Derived from the tables whenever their revision changes; see world::refresh_derived.
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
-  solver::BendRows bend_rows;
+  solver::BendBlocks bend_blocks;
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 
+  // Bodies. Derived from the tables; what it holds does not change what a step does.
+  collision::BroadPhase broad_phase;
+  bool broad_phase_stale = true;             ///< Everything must be put into it anew.
+  std::vector<std::uint32_t> bodies_placed;  ///< Added or moved by hand since the last step.
+
   // Lives for one step.
+  std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
+  std::vector<collision::ColliderPair> pairs_found;
+  solver::BodyContacts body_contacts;
+  Real last_substep = Real(0);  ///< Length of the substeps of the last step [s].
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
