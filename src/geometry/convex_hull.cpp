@@ -80,13 +80,15 @@ Result<GriddedPoints> put_on_grid(std::span<const Vec3> points) {
 
 /// The smallest distance between a face and the point farthest below it [grid units].
 double thickness_of(std::span<const HullTriangle> triangles, std::span<const GridPoint> points) {
+  std::vector<std::uint32_t> corners;
+  for (const HullTriangle& t : triangles) corners.insert(corners.end(), t.vertex.begin(), t.vertex.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   double thickness = std::numeric_limits<double>::infinity();
   for (const HullTriangle& face : triangles) {
-    double depth = 0;
-    for (const HullTriangle& t : triangles) {
-      for (const std::uint32_t v : t.vertex) depth = std::max(depth, -height_over(face, points, points[v]));
-    }
-    thickness = std::min(thickness, depth);
+    std::int64_t lowest = 0;
+    for (const std::uint32_t v : corners) lowest = std::min(lowest, scaled_height(face, points, points[v]));
+    thickness = std::min(thickness, -static_cast<double>(lowest) * face.inverse_length);
   }
   return thickness;
 }
@@ -115,9 +117,9 @@ void keep(const std::vector<std::uint8_t>& is_kept, GriddedPoints& points) {
 /// Faces of the hull, after leaving out all points but its corners. A point at which fewer than three faces
 /// meet lies inside the hull, a face or an edge; without it, others may stop being corners. No faces if the
 /// hull is too thin.
-Loops find_faces(GriddedPoints& points) {
+Loops find_faces(GriddedPoints& points, int vertex_limit) {
   for (;;) {
-    const auto triangles = triangulate_hull(points.grid, kToleranceOnGrid, ConvexHull::kMaxVertices);
+    const auto triangles = triangulate_hull(points.grid, kToleranceOnGrid, vertex_limit);
     if (triangles.empty() || thickness_of(triangles, points.grid) < kThicknessOnGrid) return {};
     const Loops rough = join_triangles(triangles, points.grid, kToleranceOnGrid, false);
     const auto meeting = count_loops(rough, points.grid.size());
@@ -212,14 +214,15 @@ ConvexHull assemble(std::vector<Vec3> vertices, const Loops& loops) {
 
 }  // namespace
 
-Result<ConvexHull> make_convex_hull(std::span<const Vec3> points) {
+Result<ConvexHull> make_convex_hull(std::span<const Vec3> points, int vertex_limit) {
+  HOOKE_ASSERT(vertex_limit >= 4 && vertex_limit <= ConvexHull::kMaxVertices);
   if (points.size() < 4) {
     return hull_error(ErrorCode::kOutOfRange, "points",
                       std::to_string(points.size()) + " points; a hull needs at least four");
   }
   Result<GriddedPoints> gridded = put_on_grid(points);
   if (!gridded) return gridded.error();
-  const Loops faces = find_faces(gridded.value());
+  const Loops faces = find_faces(gridded.value(), vertex_limit);
   if (faces.empty()) {
     return hull_error(ErrorCode::kOutOfRange, "points",
                       "the points lie in a plane; a hull is at least 1e-4 of its extent thick");
@@ -235,6 +238,17 @@ ConvexHull make_box_hull(Vec3 half_extents) {
   }
   return assemble(std::move(vertices),
                   {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}});
+}
+
+MeshDesc mesh_of(const ConvexHull& hull) {
+  MeshDesc mesh = {.positions = hull.vertices};
+  for (const ConvexHull::Face& face : hull.faces) {
+    const std::uint16_t* loop = hull.loop.data() + face.first;
+    for (std::size_t k = 1; k + 1 < face.count; ++k) {
+      mesh.triangles.push_back({loop[0], loop[k], loop[k + 1]});
+    }
+  }
+  return mesh;
 }
 
 }  // namespace hooke::geometry

@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 #include "hooke/result.h"
+#include "hooke/shape.h"
 
 #include <cstdint>
 #include <span>
@@ -38,16 +39,20 @@ struct ConvexHull {
 
 /// The convex hull of points. Only corners are left: points within the tolerance of a face or an edge count
 /// as on it, and coplanar triangles are one polygon. The vertices are some of the points, in ascending order
-/// of place; the hull does not depend on the order of the points. Of more corners than kMaxVertices those
-/// that stand out most are kept, and the hull lies inside the true one (of a sphere: 3 % of its volume are
-/// lost).
+/// of place; the hull does not depend on the order of the points. Of more corners than `vertex_limit` (4 to
+/// kMaxVertices) those that stand out most are kept, and the hull lies inside the true one (of a sphere: 256
+/// vertices lose 2.5 % of its volume).
 ///
 /// Errors: fewer than four points, one that is not finite, extents outside 1e-9 to 1e9 m, and a hull thinner
 /// than kThicknessMin.
-[[nodiscard]] Result<ConvexHull> make_convex_hull(std::span<const Vec3> points);
+[[nodiscard]] Result<ConvexHull> make_convex_hull(std::span<const Vec3> points,
+                                                  int vertex_limit = ConvexHull::kMaxVertices);
 
 /// The hull of a box about the origin.
 [[nodiscard]] ConvexHull make_box_hull(Vec3 half_extents);
+
+/// The surface in triangles.
+[[nodiscard]] MeshDesc mesh_of(const ConvexHull& hull);
 
 /// The vertex farthest along `direction` (any length); of equally far ones the first. A scan, 0.8 ns a
 /// vertex: climbing along edges gains nothing below 24 vertices, and a quarter at 64, unless it begins near
