@@ -181,9 +181,12 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const Number mass_scale = choose(apart, Number(Real(1)), Number(pass.softness.mass_scale));
     const Number impulse_scale = choose(apart, zero, Number(pass.softness.impulse_scale));
 
+    // All that does not wait for the point before comes first.
     const Number before = get<Number>(point.impulse + lane);
-    const Number ask = get<Number>(point.mass + lane) * (mass_scale * bodies.rate(rate, j_a, j_b) + bias);
-    const Number after = larger((before - impulse_scale * before) - ask, zero);
+    const Number mass = get<Number>(point.mass + lane);
+    const Number target = (before - impulse_scale * before) - mass * bias;
+    const Number scaled_mass = mass * mass_scale;
+    const Number after = larger(target - scaled_mass * bodies.rate(rate, j_a, j_b), zero);
     const Number change = after - before;
     write(after, point.impulse + lane);
     bodies.turn(change, j_a, j_b);
