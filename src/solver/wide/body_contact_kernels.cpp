@@ -22,8 +22,8 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-void compute_contact_rows_here(const ContactInputs& inputs, ContactBlock& block) {
-  compute_contact_rows_scalar(inputs, block);
+void compute_contact_rows_here(const ContactSource& source, ContactBlock& block) {
+  compute_contact_rows_scalar(source, block);
 }
 
 void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
@@ -99,13 +99,10 @@ HWY_INLINE Wide root(const Wide& a) {
   return r;
 }
 
-/// Four numbers of a line of each lane.
-struct Quad {
-  Wide x, y, z, w;
-};
+template <>
+constexpr int kLanesOf<Wide> = kStride;
 
-HWY_INLINE Quad read_quad(const float* base, const std::uint32_t* line) {
-  Quad q;
+HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
   for (int i = 0; i < kVectors; ++i) {
     const Columns c = load_columns(base, line + i * kWidth);
     q.x.raw[i] = c.x;
@@ -113,58 +110,19 @@ HWY_INLINE Quad read_quad(const float* base, const std::uint32_t* line) {
     q.z.raw[i] = c.z;
     q.w.raw[i] = c.w;
   }
-  return q;
 }
 
-HWY_INLINE void write_quad(const Quad& q, float* base, const std::uint32_t* line) {
+HWY_INLINE void write_quad(const Quad<Wide>& q, float* base, const std::uint32_t* line) {
   for (int i = 0; i < kVectors; ++i)
     store_columns({q.x.raw[i], q.y.raw[i], q.z.raw[i], q.w.raw[i]}, base, line + i * kWidth);
 }
 
-HWY_INLINE void read_line(const float* base, const std::uint32_t* line, Velocity<Wide>& motion,
-                          Displacement<Wide>& moved) {
-  const Quad first = read_quad(base, line);
-  const Quad second = read_quad(base + 4, line);
-  const Quad third = read_quad(base + 8, line);
-  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
-  moved = {{second.z, second.w, third.x}, {third.y, third.z, third.w}};
-}
-
-HWY_INLINE void write_line(const Velocity<Wide>& motion, const Displacement<Wide>& moved, float* base,
-                           const std::uint32_t* line) {
-  write_quad({motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, line);
-  write_quad({motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, line);
-}
-
-/// Where free lines begin, from where motion lines do.
-struct Halves {
-  std::uint32_t line[kStride];
-
-  HWY_INLINE explicit Halves(const std::uint32_t* whole) {
-    for (int i = 0; i < kStride; ++i) line[i] = whole[i] / 2;
-  }
-};
-
-HWY_INLINE void read_free(const float* base, const std::uint32_t* line, Velocity<Wide>& motion) {
-  const Halves halves(line);
-  const Quad first = read_quad(base, halves.line);
-  const Quad second = read_quad(base + 4, halves.line);
-  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
-}
-
-HWY_INLINE void write_free(const Velocity<Wide>& motion, float* base, const std::uint32_t* line) {
-  const Halves halves(line);
-  const Wide zero(0.0f);
-  write_quad({motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, halves.line);
-  write_quad({motion.omega.y, motion.omega.z, zero, zero}, base + 4, halves.line);
-}
-
-void compute_contact_rows_here(const ContactInputs& inputs, ContactBlock& block) {
+void compute_contact_rows_here(const ContactSource& source, ContactBlock& block) {
   for (int lane = 0; lane < kContactLanes; lane += kStride) {
     if (block.anchored) {
-      compute_lanes<Wide, true>(inputs, lane, block);
+      compute_lanes<Wide, true>(source, lane, block);
     } else {
-      compute_lanes<Wide, false>(inputs, lane, block);
+      compute_lanes<Wide, false>(source, lane, block);
     }
   }
 }
@@ -208,9 +166,9 @@ HWY_EXPORT(compute_contact_rows_here);
 HWY_EXPORT(solve_contacts_here);
 HWY_EXPORT(warm_start_contacts_here);
 
-void compute_contact_rows(const ContactInputs& inputs, ContactBlock& block) {
-  if (is_scalar()) return compute_contact_rows_scalar(inputs, block);
-  HWY_DYNAMIC_DISPATCH(compute_contact_rows_here)(inputs, block);
+void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
+  if (is_scalar()) return compute_contact_rows_scalar(source, block);
+  HWY_DYNAMIC_DISPATCH(compute_contact_rows_here)(source, block);
 }
 
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
@@ -231,8 +189,8 @@ void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* 
 
 namespace hooke::solver::wide {
 
-void compute_contact_rows(const ContactInputs& inputs, ContactBlock& block) {
-  compute_contact_rows_scalar(inputs, block);
+void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
+  compute_contact_rows_scalar(source, block);
 }
 
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
