@@ -21,23 +21,8 @@ using Lane = ContactBlock::Lane;
 constexpr int kFillGrain = 4;
 constexpr int kWarmGrain = 16;
 
-void put(Vec3 value, Lane (&to)[3], int lane) {
-  to[0][lane] = value.x;
-  to[1][lane] = value.y;
-  to[2][lane] = value.z;
-}
-
 Vec3 get(const Lane (&from)[3], int lane) {
   return {from[0][lane], from[1][lane], from[2][lane]};
-}
-
-void put(const math::Symmetric3<Real>& value, Lane (&to)[6], int lane) {
-  to[0][lane] = value.xx;
-  to[1][lane] = value.xy;
-  to[2][lane] = value.xz;
-  to[3][lane] = value.yy;
-  to[4][lane] = value.yz;
-  to[5][lane] = value.zz;
 }
 
 /// Whether the manifold's bodies change places in its rows, so that A moves.
@@ -45,41 +30,20 @@ bool is_swapped(const Manifold& m, const ContactBlock& block, int lane) {
   return block.line_a[lane] != 16 * m.body_a;
 }
 
-void fill_points(const Manifold& m, bool swapped, Real impulse_scale, int lane, wide::ContactInputs& inputs,
-                 ContactBlock& block) {
-  for (int k = 0; k < block.point_count; ++k) {
-    const bool present = k < m.point_count;
-    const ContactPoint p = present ? m.point[k] : ContactPoint{};
-    inputs.present[k][lane] = present ? Real(1) : Real(0);
-    put(swapped ? p.anchor_b : p.anchor_a, inputs.anchor_a[k], lane);
-    put(swapped ? p.anchor_a : p.anchor_b, inputs.anchor_b[k], lane);
-    block.point[k].separation[lane] = p.separation;
-    block.point[k].impulse[lane] = impulse_scale * p.normal_impulse;
-  }
-}
-
-/// Everything of one lane that needs no arithmetic to speak of.
-void fill_lane(const Manifold& m, const BodyContacts& contacts, const Bodies& bodies, const ContactStep& step,
-               int lane, wide::ContactInputs& inputs, ContactBlock& block) {
-  const bool swapped = contacts.colors.moves[m.body_a] == 0;
+/// Who is in the lane; the rest is for the kernel.
+void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bodies, int lane,
+               wide::ContactSource& source, ContactBlock& block) {
+  const Manifold& m = source.manifolds[row];
+  const bool swapped = colors.moves[m.body_a] == 0;
   const std::uint32_t a = swapped ? m.body_b : m.body_a;
   const std::uint32_t b = swapped ? m.body_a : m.body_b;
-  const Real sign = swapped ? Real(-1) : Real(1);
+  source.sign[lane] = swapped ? Real(-1) : Real(1);
+  source.points[lane] = static_cast<Real>(m.point_count);
+  source.manifold[lane] = row * static_cast<std::uint32_t>(sizeof(Manifold) / sizeof(Real));
   block.line_a[lane] = 16 * a;
   block.line_b[lane] = 16 * b;
   block.w_a[lane] = bodies.motion[a].inverse_mass;
   block.w_b[lane] = block.anchored ? Real(0) : bodies.motion[b].inverse_mass;
-  put(bodies.scale[a], inputs.scale_a, lane);
-  put(bodies.scale[b], inputs.scale_b, lane);
-  put(sign * m.normal, block.normal, lane);
-  put((sign * step.impulse_scale) * m.friction_impulse, inputs.friction_impulse, lane);
-  put(sign * m.surface_velocity, inputs.surface_velocity, lane);
-  fill_points(m, swapped, step.impulse_scale, lane, inputs, block);
-  block.twist_impulse[lane] = step.impulse_scale * m.twist_impulse;
-  block.friction[lane] = m.friction;
-  block.static_friction[lane] = m.static_friction;
-  inputs.spinning_friction[lane] = m.spinning_friction;
-  block.pushed[lane] = Real(0);
 }
 
 /// Acceleration of a body by all but contacts.
@@ -170,12 +134,13 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
                 const ContactStep& step, BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[index];
   const std::uint32_t* rows = contacts.manifold_of.data() + static_cast<std::size_t>(kContactLanes) * index;
-  wide::ContactInputs inputs;
-  for (int lane = 0; lane < kContactLanes; ++lane) {
-    const Manifold& m = manifolds[rows[std::min(lane, block.count - 1)]];
-    fill_lane(m, contacts, bodies, step, lane, inputs, block);
-  }
-  wide::compute_contact_rows(inputs, block);
+  wide::ContactSource source;
+  source.manifolds = manifolds.data();
+  source.scale = bodies.scale.data();
+  source.impulse_scale = step.impulse_scale;
+  for (int lane = 0; lane < kContactLanes; ++lane)
+    fill_lane(rows[std::min(lane, block.count - 1)], contacts.colors, bodies, lane, source, block);
+  wide::compute_contact_rows(source, block);
   for (int lane = 0; block.bounces >= 0 && lane < block.count; ++lane)
     fill_bounce(manifolds[rows[lane]], bodies, step, lane, block, contacts.bounces[block.bounces]);
   for (int i = 0; i < block.rolling_count; ++i) {

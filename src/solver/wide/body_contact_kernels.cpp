@@ -22,8 +22,8 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-void compute_contact_rows_here(const ContactInputs& inputs, ContactBlock& block) {
-  compute_contact_rows_scalar(inputs, block);
+void compute_contact_rows_here(const ContactSource& source, ContactBlock& block) {
+  compute_contact_rows_scalar(source, block);
 }
 
 void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
@@ -38,87 +38,91 @@ void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeL
 
 static_assert(kContactLanes == kLanes);
 
-/// kWidth lanes as a number.
+/// Two vectors in flight as one number, where a block has as many: the processor works on one while it waits
+/// for the other.
+constexpr int kVectors = kWidth < kContactLanes ? 2 : 1;
+constexpr int kStride = kVectors * kWidth;
+
 struct Wide {
-  Vector raw;
+  Vector raw[kVectors];
 
   Wide() = default;
-  HWY_INLINE explicit Wide(Vector v) : raw(v) {}
-  HWY_INLINE explicit Wide(float x) : raw(hn::Set(kTag, x)) {}
+  HWY_INLINE explicit Wide(float x) {
+    for (Vector& v : raw) v = hn::Set(kTag, x);
+  }
 
-  friend HWY_INLINE Wide operator+(Wide a, Wide b) { return Wide(hn::Add(a.raw, b.raw)); }
-  friend HWY_INLINE Wide operator-(Wide a, Wide b) { return Wide(hn::Sub(a.raw, b.raw)); }
-  friend HWY_INLINE Wide operator*(Wide a, Wide b) { return Wide(hn::Mul(a.raw, b.raw)); }
-};
-
-using Mask = hn::Mask<Lanes>;
-
-HWY_INLINE void read(const float* from, Wide& to) {
-  to.raw = hn::Load(kTag, from);
-}
-HWY_INLINE void write(Wide value, float* to) {
-  hn::Store(value.raw, kTag, to);
-}
-HWY_INLINE Mask above(Wide a, Wide b) {
-  return hn::Gt(a.raw, b.raw);
-}
-HWY_INLINE Wide choose(Mask condition, Wide yes, Wide no) {
-  return Wide(hn::IfThenElse(condition, yes.raw, no.raw));
-}
-HWY_INLINE Wide quotient(Wide a, Wide b) {
-  return Wide(hn::Div(a.raw, b.raw));
-}
-HWY_INLINE Wide root(Wide a) {
-  return Wide(hn::Sqrt(a.raw));
-}
-
-HWY_INLINE void read_velocity(const Columns& first, const Columns& second, Velocity<Wide>& motion) {
-  motion.v = {Wide(first.x), Wide(first.y), Wide(first.z)};
-  motion.omega = {Wide(first.w), Wide(second.x), Wide(second.y)};
-}
-
-HWY_INLINE void read_line(const float* base, const std::uint32_t* line, Velocity<Wide>& motion,
-                          Displacement<Wide>& moved) {
-  const Columns second = load_columns(base + 4, line);
-  const Columns third = load_columns(base + 8, line);
-  read_velocity(load_columns(base, line), second, motion);
-  moved.dx = {Wide(second.z), Wide(second.w), Wide(third.x)};
-  moved.theta = {Wide(third.y), Wide(third.z), Wide(third.w)};
-}
-
-HWY_INLINE void write_line(const Velocity<Wide>& motion, const Displacement<Wide>& moved, float* base,
-                           const std::uint32_t* line) {
-  store_columns({motion.v.x.raw, motion.v.y.raw, motion.v.z.raw, motion.omega.x.raw}, base, line);
-  store_columns({motion.omega.y.raw, motion.omega.z.raw, moved.dx.x.raw, moved.dx.y.raw}, base + 4, line);
-}
-
-/// Where free lines begin, from where motion lines do.
-struct Halves {
-  std::uint32_t line[kWidth];
-
-  HWY_INLINE explicit Halves(const std::uint32_t* whole) {
-    for (int i = 0; i < kWidth; ++i) line[i] = whole[i] / 2;
+  friend HWY_INLINE Wide operator+(const Wide& a, const Wide& b) {
+    Wide r;
+    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Add(a.raw[i], b.raw[i]);
+    return r;
+  }
+  friend HWY_INLINE Wide operator-(const Wide& a, const Wide& b) {
+    Wide r;
+    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Sub(a.raw[i], b.raw[i]);
+    return r;
+  }
+  friend HWY_INLINE Wide operator*(const Wide& a, const Wide& b) {
+    Wide r;
+    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Mul(a.raw[i], b.raw[i]);
+    return r;
   }
 };
 
-HWY_INLINE void read_free(const float* base, const std::uint32_t* line, Velocity<Wide>& motion) {
-  const Halves halves(line);
-  read_velocity(load_columns(base, halves.line), load_columns(base + 4, halves.line), motion);
+struct Mask {
+  hn::Mask<Lanes> raw[kVectors];
+};
+
+HWY_INLINE void read(const float* from, Wide& to) {
+  for (int i = 0; i < kVectors; ++i) to.raw[i] = hn::Load(kTag, from + i * kWidth);
+}
+HWY_INLINE void write(const Wide& value, float* to) {
+  for (int i = 0; i < kVectors; ++i) hn::Store(value.raw[i], kTag, to + i * kWidth);
+}
+HWY_INLINE Mask above(const Wide& a, const Wide& b) {
+  Mask r;
+  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Gt(a.raw[i], b.raw[i]);
+  return r;
+}
+HWY_INLINE Wide choose(const Mask& condition, const Wide& yes, const Wide& no) {
+  Wide r;
+  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::IfThenElse(condition.raw[i], yes.raw[i], no.raw[i]);
+  return r;
+}
+HWY_INLINE Wide quotient(const Wide& a, const Wide& b) {
+  Wide r;
+  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Div(a.raw[i], b.raw[i]);
+  return r;
+}
+HWY_INLINE Wide root(const Wide& a) {
+  Wide r;
+  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Sqrt(a.raw[i]);
+  return r;
 }
 
-HWY_INLINE void write_free(const Velocity<Wide>& motion, float* base, const std::uint32_t* line) {
-  const Halves halves(line);
-  const Vector zero = hn::Zero(kTag);
-  store_columns({motion.v.x.raw, motion.v.y.raw, motion.v.z.raw, motion.omega.x.raw}, base, halves.line);
-  store_columns({motion.omega.y.raw, motion.omega.z.raw, zero, zero}, base + 4, halves.line);
+template <>
+constexpr int kLanesOf<Wide> = kStride;
+
+HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
+  for (int i = 0; i < kVectors; ++i) {
+    const Columns c = load_columns(base, line + i * kWidth);
+    q.x.raw[i] = c.x;
+    q.y.raw[i] = c.y;
+    q.z.raw[i] = c.z;
+    q.w.raw[i] = c.w;
+  }
 }
 
-void compute_contact_rows_here(const ContactInputs& inputs, ContactBlock& block) {
-  for (int lane = 0; lane < kContactLanes; lane += kWidth) {
+HWY_INLINE void write_quad(const Quad<Wide>& q, float* base, const std::uint32_t* line) {
+  for (int i = 0; i < kVectors; ++i)
+    store_columns({q.x.raw[i], q.y.raw[i], q.z.raw[i], q.w.raw[i]}, base, line + i * kWidth);
+}
+
+void compute_contact_rows_here(const ContactSource& source, ContactBlock& block) {
+  for (int lane = 0; lane < kContactLanes; lane += kStride) {
     if (block.anchored) {
-      compute_lanes<Wide, true>(inputs, lane, block);
+      compute_lanes<Wide, true>(source, lane, block);
     } else {
-      compute_lanes<Wide, false>(inputs, lane, block);
+      compute_lanes<Wide, false>(source, lane, block);
     }
   }
 }
@@ -126,7 +130,7 @@ void compute_contact_rows_here(const ContactInputs& inputs, ContactBlock& block)
 void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
   auto* lines = reinterpret_cast<float*>(motion);
   for (ContactBlock& block : blocks) {
-    for (int lane = 0; lane < block.count; lane += kWidth) {
+    for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
         solve_lanes<Wide, true>(block, lane, pass, lines);
       } else {
@@ -139,7 +143,7 @@ void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass
 void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
   auto* lines = reinterpret_cast<float*>(free_motion);
   for (const ContactBlock& block : blocks) {
-    for (int lane = 0; lane < block.count; lane += kWidth) {
+    for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
         warm_start_lanes<Wide, true>(block, lane, lines);
       } else {
@@ -162,9 +166,9 @@ HWY_EXPORT(compute_contact_rows_here);
 HWY_EXPORT(solve_contacts_here);
 HWY_EXPORT(warm_start_contacts_here);
 
-void compute_contact_rows(const ContactInputs& inputs, ContactBlock& block) {
-  if (is_scalar()) return compute_contact_rows_scalar(inputs, block);
-  HWY_DYNAMIC_DISPATCH(compute_contact_rows_here)(inputs, block);
+void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
+  if (is_scalar()) return compute_contact_rows_scalar(source, block);
+  HWY_DYNAMIC_DISPATCH(compute_contact_rows_here)(source, block);
 }
 
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
@@ -185,8 +189,8 @@ void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* 
 
 namespace hooke::solver::wide {
 
-void compute_contact_rows(const ContactInputs& inputs, ContactBlock& block) {
-  compute_contact_rows_scalar(inputs, block);
+void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
+  compute_contact_rows_scalar(source, block);
 }
 
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {

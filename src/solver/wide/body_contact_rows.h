@@ -5,9 +5,8 @@
 ///   read, write      from and to consecutive lanes
 ///   above, choose    a comparison and a choice by it
 ///   quotient, root   exact division and square root
-///   read_line        velocities and, of a MotionLine, displacements of the bodies of the lanes
-///   write_line       their velocities
-///   read_free, write_free   the same of a FreeLine, whose numbers begin at half the place
+///   read_quad, write_quad   four numbers of each lane from and to different places
+///   kLanesOf         how many lanes it stands for
 
 #if defined(HOOKE_SOLVER_WIDE_BODY_CONTACT_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_WIDE_BODY_CONTACT_ROWS_H
@@ -19,6 +18,7 @@
 #include "solver/wide/body_contacts.h"
 
 #include <cmath>
+#include <cstddef>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -27,6 +27,11 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 template <class Number>
 struct Triple {
   Number x, y, z;
+};
+
+template <class Number>
+struct Quad {
+  Number x, y, z, w;
 };
 
 /// The half of a line that rows write, and the half they only read.
@@ -57,31 +62,20 @@ HWY_INLINE Real quotient(Real a, Real b) {
 HWY_INLINE Real root(Real a) {
   return std::sqrt(a);
 }
-HWY_INLINE void read_line(const Real* base, const std::uint32_t* line, Velocity<Real>& motion,
-                          Displacement<Real>& moved) {
-  const Real* m = base + *line;
-  motion = {{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
-  moved = {{m[6], m[7], m[8]}, {m[9], m[10], m[11]}};
+HWY_INLINE void read_quad(const Real* base, const std::uint32_t* line, Quad<Real>& q) {
+  const Real* from = base + *line;
+  q = {from[0], from[1], from[2], from[3]};
 }
-HWY_INLINE void write_line(const Velocity<Real>& motion, const Displacement<Real>& /*moved*/, Real* base,
-                           const std::uint32_t* line) {
-  Real* m = base + *line;
-  m[0] = motion.v.x;
-  m[1] = motion.v.y;
-  m[2] = motion.v.z;
-  m[3] = motion.omega.x;
-  m[4] = motion.omega.y;
-  m[5] = motion.omega.z;
+HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t* line) {
+  Real* to = base + *line;
+  to[0] = q.x;
+  to[1] = q.y;
+  to[2] = q.z;
+  to[3] = q.w;
 }
 
-HWY_INLINE void read_free(const Real* base, const std::uint32_t* line, Velocity<Real>& motion) {
-  const Real* m = base + *line / 2;
-  motion = {{m[0], m[1], m[2]}, {m[3], m[4], m[5]}};
-}
-HWY_INLINE void write_free(const Velocity<Real>& motion, Real* base, const std::uint32_t* line) {
-  const std::uint32_t half = *line / 2;
-  write_line(motion, {}, base, &half);
-}
+template <class Number>
+constexpr int kLanesOf = 1;
 
 template <class Number>
 HWY_INLINE Number get(const Real* from) {
@@ -137,6 +131,52 @@ HWY_INLINE void take(Number s, const Triple<Number>& a, Triple<Number>& to) {
   to = {to.x - s * a.x, to.y - s * a.y, to.z - s * a.z};
 }
 
+/// Reads the bodies' lines, the three quarters of each that rows look at.
+template <class Number>
+HWY_INLINE void read_motion(const Real* base, const std::uint32_t* line, Velocity<Number>& motion,
+                            Displacement<Number>& moved) {
+  Quad<Number> first, second, third;
+  read_quad(base, line, first);
+  read_quad(base + 4, line, second);
+  read_quad(base + 8, line, third);
+  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
+  moved = {{second.z, second.w, third.x}, {third.y, third.z, third.w}};
+}
+
+template <class Number>
+HWY_INLINE void write_motion(const Velocity<Number>& motion, const Displacement<Number>& moved, Real* base,
+                             const std::uint32_t* line) {
+  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, line);
+  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, line);
+}
+
+/// Where free lines begin, from where motion lines do.
+template <class Number>
+struct FreeLines {
+  std::uint32_t at[kLanesOf<Number>];
+
+  HWY_INLINE explicit FreeLines(const std::uint32_t* line) {
+    for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = line[i] / 2;
+  }
+};
+
+template <class Number>
+HWY_INLINE void read_free(const Real* base, const std::uint32_t* line, Velocity<Number>& motion) {
+  const FreeLines<Number> free(line);
+  Quad<Number> first, second;
+  read_quad(base, free.at, first);
+  read_quad(base + 4, free.at, second);
+  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
+}
+
+template <class Number>
+HWY_INLINE void write_free(const Velocity<Number>& motion, Real* base, const std::uint32_t* line) {
+  const FreeLines<Number> free(line);
+  const Number zero(Real(0));
+  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, free.at);
+  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, zero, zero}, base + 4, free.at);
+}
+
 /// Two bodies of the lanes from `lane` on, and how rows push them. B of an anchored block is only read.
 template <class Number, bool kAnchored>
 struct Bodies {
@@ -181,9 +221,12 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const Number mass_scale = choose(apart, Number(Real(1)), Number(pass.softness.mass_scale));
     const Number impulse_scale = choose(apart, zero, Number(pass.softness.impulse_scale));
 
+    // All that does not wait for the point before comes first.
     const Number before = get<Number>(point.impulse + lane);
-    const Number ask = get<Number>(point.mass + lane) * (mass_scale * bodies.rate(rate, j_a, j_b) + bias);
-    const Number after = larger((before - impulse_scale * before) - ask, zero);
+    const Number mass = get<Number>(point.mass + lane);
+    const Number target = (before - impulse_scale * before) - mass * bias;
+    const Number scaled_mass = mass * mass_scale;
+    const Number after = larger(target - scaled_mass * bodies.rate(rate, j_a, j_b), zero);
     const Number change = after - before;
     write(after, point.impulse + lane);
     bodies.turn(change, j_a, j_b);
@@ -254,12 +297,12 @@ HWY_INLINE void solve_lanes(ContactBlock& block, int lane, const ContactPass& pa
   Bodies<Number, kAnchored> bodies;
   Displacement<Number> moved_a;
   Displacement<Number> moved_b;
-  read_line(motion, block.line_a + lane, bodies.a, moved_a);
-  read_line(motion, block.line_b + lane, bodies.b, moved_b);
+  read_motion(motion, block.line_a + lane, bodies.a, moved_a);
+  read_motion(motion, block.line_b + lane, bodies.b, moved_b);
   solve_points(block, lane, pass, moved_a, moved_b, bodies);
   if (pass.friction) solve_friction(block, lane, bodies);
-  write_line(bodies.a, moved_a, motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_line(bodies.b, moved_b, motion, block.line_b + lane);
+  write_motion(bodies.a, moved_a, motion, block.line_a + lane);
+  if constexpr (!kAnchored) write_motion(bodies.b, moved_b, motion, block.line_b + lane);
 }
 
 /// Applies what the block holds to the bodies, with the opposite sign.
@@ -298,15 +341,100 @@ HWY_INLINE void warm_start_lanes(const ContactBlock& block, int lane, Real* free
   if constexpr (!kAnchored) write_free(bodies.b, free_motion, block.line_b + lane);
 }
 
-/// S x for the lanes from `lane` on.
+/// A symmetric matrix.
 template <class Number>
-HWY_INLINE Triple<Number> times(const ContactBlock::Lane (&scale)[6], int lane, const Triple<Number>& x) {
-  const Number xy = get<Number>(scale[1] + lane);
-  const Number xz = get<Number>(scale[2] + lane);
-  const Number yz = get<Number>(scale[4] + lane);
-  return {get<Number>(scale[0] + lane) * x.x + xy * x.y + xz * x.z,
-          xy * x.x + get<Number>(scale[3] + lane) * x.y + yz * x.z,
-          xz * x.x + yz * x.y + get<Number>(scale[5] + lane) * x.z};
+struct Scale {
+  Number xx, xy, xz, yy, yz, zz;
+
+  HWY_INLINE Triple<Number> times(const Triple<Number>& x) const {
+    return {xx * x.x + xy * x.y + xz * x.z, xy * x.x + yy * x.y + yz * x.z, xz * x.x + yz * x.y + zz * x.z};
+  }
+};
+
+/// What rows are made of, A and B in the order of the block.
+template <class Number>
+struct Inputs {
+  Scale<Number> scale_a, scale_b;
+  Triple<Number> n;
+  Triple<Number> anchor_a[state::Manifold::kMaxPoints], anchor_b[state::Manifold::kMaxPoints];
+  Number present[state::Manifold::kMaxPoints];  ///< 1 for a point, 0 for one the manifold lacks.
+  Number separation[state::Manifold::kMaxPoints];
+  Triple<Number> friction_impulse;  ///< On B.
+  Triple<Number> surface_velocity;
+  Number spinning_friction;
+};
+
+template <class Number>
+HWY_INLINE Scale<Number> read_scale(const math::Symmetric3<Real>* scale, const std::uint32_t* motion_line) {
+  std::uint32_t at[kLanesOf<Number>];
+  for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = motion_line[i] / 16 * 6;
+  const auto* base = reinterpret_cast<const Real*>(scale);
+  Quad<Number> first, last;
+  read_quad(base, at, first);
+  read_quad(base + 2, at, last);
+  return {first.x, first.y, first.z, first.w, last.z, last.w};
+}
+
+// The quarters of a manifold that are read begin at these numbers.
+constexpr std::size_t kNormalAt = offsetof(state::Manifold, normal) / sizeof(Real);
+constexpr std::size_t kPointAt = offsetof(state::Manifold, point) / sizeof(Real);
+constexpr std::size_t kPointStride = sizeof(state::ContactPoint) / sizeof(Real);
+constexpr std::size_t kFrictionImpulseAt = offsetof(state::Manifold, friction_impulse) / sizeof(Real);
+constexpr std::size_t kSurfaceAt = offsetof(state::Manifold, friction) / sizeof(Real);
+static_assert(offsetof(state::Manifold, normal) % sizeof(Real) == 0);
+static_assert(offsetof(state::ContactPoint, normal_impulse) == 7 * sizeof(Real));
+static_assert(offsetof(state::Manifold, twist_impulse) == (kFrictionImpulseAt + 3) * sizeof(Real));
+static_assert(offsetof(state::Manifold, surface_velocity) == (kSurfaceAt + 5) * sizeof(Real));
+
+/// Reads the points, and stores what the block keeps of them.
+template <class Number>
+HWY_INLINE void read_points(const ContactSource& source, int lane, ContactBlock& block,
+                            Inputs<Number>& inputs) {
+  const Number zero(Real(0));
+  const Number one(Real(1));
+  const auto swapped = above(zero, get<Number>(source.sign + lane));
+  const Number points = get<Number>(source.points + lane);
+  const auto* base = reinterpret_cast<const Real*>(source.manifolds) + kPointAt;
+  for (int k = 0; k < block.point_count; ++k) {
+    Quad<Number> first, second;
+    read_quad(base + kPointStride * k, source.manifold + lane, first);
+    read_quad(base + kPointStride * k + 4, source.manifold + lane, second);
+    const auto present = above(points, Number(static_cast<Real>(k)));
+    const auto either = [&](Number if_swapped, Number if_not)
+                            HWY_ATTR { return choose(present, choose(swapped, if_swapped, if_not), zero); };
+    inputs.anchor_a[k] = {either(first.w, first.x), either(second.x, first.y), either(second.y, first.z)};
+    inputs.anchor_b[k] = {either(first.x, first.w), either(first.y, second.x), either(first.z, second.y)};
+    inputs.separation[k] = choose(present, second.z, zero);
+    inputs.present[k] = choose(present, one, zero);
+    write(inputs.separation[k], block.point[k].separation + lane);
+    write(choose(present, Number(source.impulse_scale) * second.w, zero), block.point[k].impulse + lane);
+  }
+}
+
+template <class Number>
+HWY_INLINE void read_inputs(const ContactSource& source, int lane, ContactBlock& block,
+                            Inputs<Number>& inputs) {
+  const auto* base = reinterpret_cast<const Real*>(source.manifolds);
+  const std::uint32_t* at = source.manifold + lane;
+  const Number sign = get<Number>(source.sign + lane);
+  const Number impulse_scale(source.impulse_scale);
+  Quad<Number> normal, impulse, surface, velocity;
+  read_quad(base + kNormalAt, at, normal);
+  read_quad(base + kFrictionImpulseAt, at, impulse);
+  read_quad(base + kSurfaceAt, at, surface);
+  read_quad(base + kSurfaceAt + 4, at, velocity);
+  inputs.n = {sign * normal.x, sign * normal.y, sign * normal.z};
+  inputs.friction_impulse = scaled(sign * impulse_scale, Triple<Number>{impulse.x, impulse.y, impulse.z});
+  inputs.surface_velocity = scaled(sign, Triple<Number>{velocity.y, velocity.z, velocity.w});
+  inputs.spinning_friction = velocity.x;
+  put3(inputs.n, block.normal, lane);
+  write(impulse_scale * impulse.w, block.twist_impulse + lane);
+  write(surface.x, block.friction + lane);
+  write(surface.y, block.static_friction + lane);
+  write(Number(Real(0)), block.pushed + lane);
+  inputs.scale_a = read_scale<Number>(source.scale, block.line_a + lane);
+  inputs.scale_b = read_scale<Number>(source.scale, block.line_b + lane);
+  read_points(source, lane, block, inputs);
 }
 
 /// A unit vector across the unit vector n.
@@ -330,8 +458,7 @@ struct MeanAnchors {
   Triple<Number> a, b;
 };
 template <class Number>
-HWY_INLINE MeanAnchors<Number> mean_anchors(const ContactInputs& inputs, const ContactBlock& block,
-                                            int lane) {
+HWY_INLINE MeanAnchors<Number> mean_anchors(const Inputs<Number>& inputs, int points) {
   constexpr Real kFull = Real(0.005);
   constexpr Real kNone = Real(0.02);
   constexpr Real kLeast = Real(1e-4);
@@ -339,14 +466,12 @@ HWY_INLINE MeanAnchors<Number> mean_anchors(const ContactInputs& inputs, const C
   const Number one(Real(1));
   MeanAnchors<Number> mean = {{zero, zero, zero}, {zero, zero, zero}};
   Number sum = zero;
-  for (int k = 0; k < block.point_count; ++k) {
-    const Number near =
-        Number(Real(1) / (kNone - kFull)) * (Number(kNone) - get<Number>(block.point[k].separation + lane));
-    const Number weight =
-        get<Number>(inputs.present[k] + lane) * (larger(smaller(near, one), zero) + Number(kLeast));
+  for (int k = 0; k < points; ++k) {
+    const Number near = Number(Real(1) / (kNone - kFull)) * (Number(kNone) - inputs.separation[k]);
+    const Number weight = inputs.present[k] * (larger(smaller(near, one), zero) + Number(kLeast));
     sum = sum + weight;
-    add(weight, get3<Number>(inputs.anchor_a[k], lane), mean.a);
-    add(weight, get3<Number>(inputs.anchor_b[k], lane), mean.b);
+    add(weight, inputs.anchor_a[k], mean.a);
+    add(weight, inputs.anchor_b[k], mean.b);
   }
   const Number share = quotient(one, sum);
   return {scaled(share, mean.a), scaled(share, mean.b)};
@@ -354,7 +479,7 @@ HWY_INLINE MeanAnchors<Number> mean_anchors(const ContactInputs& inputs, const C
 
 template <class Number, bool kAnchored>
 struct RowMaker {
-  const ContactInputs& inputs;
+  const Inputs<Number>& inputs;
   ContactBlock& block;
   int lane;
   Number w;
@@ -368,27 +493,26 @@ struct RowMaker {
   /// j_a in `v`, j_b in `omega`.
   HWY_INLINE Velocity<Number> jacobians(const Triple<Number>& moment_a,
                                         const Triple<Number>& moment_b) const {
-    return {times(inputs.scale_a, lane, moment_a), times(inputs.scale_b, lane, moment_b)};
+    return {inputs.scale_a.times(moment_a), inputs.scale_b.times(moment_b)};
   }
 
-  HWY_INLINE void points(const Triple<Number>& n, const MeanAnchors<Number>& mean) const {
+  HWY_INLINE void points(const MeanAnchors<Number>& mean) const {
     const Number friction = get<Number>(block.friction + lane);
     for (int k = 0; k < block.point_count; ++k) {
       ContactBlock::Point& point = block.point[k];
-      const Triple<Number> r_a = get3<Number>(inputs.anchor_a[k], lane);
-      const Triple<Number> r_b = get3<Number>(inputs.anchor_b[k], lane);
-      const Velocity<Number> j = jacobians(cross(r_a, n), cross(r_b, n));
+      const Triple<Number> r_a = inputs.anchor_a[k];
+      const Triple<Number> r_b = inputs.anchor_b[k];
+      const Velocity<Number> j = jacobians(cross(r_a, inputs.n), cross(r_b, inputs.n));
       put3(j.v, point.j_a, lane);
       put3(j.omega, point.j_b, lane);
-      write(quotient(get<Number>(inputs.present[k] + lane), inverse_mass(w, j, j)), point.mass + lane);
+      write(quotient(inputs.present[k], inverse_mass(w, j, j)), point.mass + lane);
       const Triple<Number> lever = difference(r_a, mean.a);
-      write(friction * root(dot(lever, lever)) + get<Number>(inputs.spinning_friction + lane),
-            block.twist_lever[k] + lane);
+      write(friction * root(dot(lever, lever)) + inputs.spinning_friction, block.twist_lever[k] + lane);
     }
   }
 
-  HWY_INLINE void twist(const Triple<Number>& n) const {
-    const Velocity<Number> j = jacobians(n, n);
+  HWY_INLINE void twist() const {
+    const Velocity<Number> j = jacobians(inputs.n, inputs.n);
     put3(j.v, block.twist_j_a, lane);
     put3(j.omega, block.twist_j_b, lane);
     const Number inverse = inverse_mass(Number(Real(0)), j, j);
@@ -397,19 +521,17 @@ struct RowMaker {
           block.twist_mass + lane);
   }
 
-  HWY_INLINE void disc(const Triple<Number>& n, const MeanAnchors<Number>& mean) const {
-    const Triple<Number> t_1 = across(n);
-    const Triple<Number> t[2] = {t_1, cross(n, t_1)};
+  HWY_INLINE void disc(const MeanAnchors<Number>& mean) const {
+    const Triple<Number> t_1 = across(inputs.n);
+    const Triple<Number> t[2] = {t_1, cross(inputs.n, t_1)};
     put3(t_1, block.tangent, lane);
-    const Triple<Number> impulse = get3<Number>(inputs.friction_impulse, lane);
-    const Triple<Number> surface = get3<Number>(inputs.surface_velocity, lane);
     Velocity<Number> j[2];
     for (int i = 0; i < 2; ++i) {
       j[i] = jacobians(cross(mean.a, t[i]), cross(mean.b, t[i]));
       put3(j[i].v, block.friction_j_a[i], lane);
       put3(j[i].omega, block.friction_j_b[i], lane);
-      write(dot(impulse, t[i]), block.friction_impulse[i] + lane);
-      write(dot(surface, t[i]), block.surface_speed[i] + lane);
+      write(dot(inputs.friction_impulse, t[i]), block.friction_impulse[i] + lane);
+      write(dot(inputs.surface_velocity, t[i]), block.surface_speed[i] + lane);
     }
     const Number k_11 = inverse_mass(w, j[0], j[0]);
     const Number k_12 = inverse_mass(Number(Real(0)), j[0], j[1]);
@@ -423,15 +545,16 @@ struct RowMaker {
 };
 
 template <class Number, bool kAnchored>
-HWY_INLINE void compute_lanes(const ContactInputs& inputs, int lane, ContactBlock& block) {
+HWY_INLINE void compute_lanes(const ContactSource& source, int lane, ContactBlock& block) {
+  Inputs<Number> inputs;
+  read_inputs(source, lane, block, inputs);
   const Number w_a = get<Number>(block.w_a + lane);
   const RowMaker<Number, kAnchored> rows = {inputs, block, lane,
                                             kAnchored ? w_a : w_a + get<Number>(block.w_b + lane)};
-  const Triple<Number> n = get3<Number>(block.normal, lane);
-  const MeanAnchors<Number> mean = mean_anchors<Number>(inputs, block, lane);
-  rows.points(n, mean);
-  rows.twist(n);
-  rows.disc(n, mean);
+  const MeanAnchors<Number> mean = mean_anchors(inputs, block.point_count);
+  rows.points(mean);
+  rows.twist();
+  rows.disc(mean);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE

@@ -11,16 +11,14 @@
 
 namespace hooke::solver::wide {
 
-/// Inputs of a block's rows, lane by lane.
-struct alignas(64) ContactInputs {
-  using Lane = ContactBlock::Lane;
-
-  Lane scale_a[6], scale_b[6];  ///< S of the bodies: xx, xy, xz, yy, yz, zz.
-  Lane anchor_a[state::Manifold::kMaxPoints][3], anchor_b[state::Manifold::kMaxPoints][3];
-  Lane present[state::Manifold::kMaxPoints];  ///< 1 for a point, 0 for one the manifold lacks.
-  Lane friction_impulse[3];                   ///< On B [N s].
-  Lane surface_velocity[3];
-  Lane spinning_friction;
+/// Where the inputs of a block's rows are. Columns of structs are read as they are, four numbers at a time.
+struct alignas(64) ContactSource {
+  ContactBlock::Lane sign;                ///< -1 where the bodies of the manifold change places, 1 elsewhere.
+  ContactBlock::Lane points;              ///< Number of points.
+  std::uint32_t manifold[kContactLanes];  ///< Where the manifold begins, in numbers.
+  const state::Manifold* manifolds = nullptr;
+  const math::Symmetric3<Real>* scale = nullptr;  ///< S of each body.
+  Real impulse_scale = Real(1);                   ///< Of impulses carried over.
 };
 
 /// How a pass treats overlap and friction.
@@ -30,9 +28,8 @@ struct ContactPass {
   bool friction = false;
 };
 
-/// Jacobians, masses and friction of a block whose inputs, line numbers, w, normal, separations, impulses,
-/// twist impulse and coefficients stand.
-void compute_contact_rows(const ContactInputs& inputs, ContactBlock& block);
+/// The rows of a block of which only line numbers, w, number of points and `anchored` stand.
+void compute_contact_rows(const ContactSource& source, ContactBlock& block);
 
 /// One pass over blocks of one color.
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion);
@@ -41,7 +38,7 @@ void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, sta
 void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* free_motion);
 
 // The scalar twins.
-void compute_contact_rows_scalar(const ContactInputs& inputs, ContactBlock& block);
+void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block);
 void solve_contacts_scalar(std::span<ContactBlock> blocks, const ContactPass& pass,
                            state::MotionLine* motion);
 void warm_start_contacts_scalar(std::span<const ContactBlock> blocks, state::FreeLine* free_motion);

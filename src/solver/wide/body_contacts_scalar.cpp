@@ -4,12 +4,12 @@
 
 namespace hooke::solver::wide {
 
-void compute_contact_rows_scalar(const ContactInputs& inputs, ContactBlock& block) {
+void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block) {
   for (int lane = 0; lane < kContactLanes; ++lane) {
     if (block.anchored) {
-      HWY_NAMESPACE::compute_lanes<Real, true>(inputs, lane, block);
+      HWY_NAMESPACE::compute_lanes<Real, true>(source, lane, block);
     } else {
-      HWY_NAMESPACE::compute_lanes<Real, false>(inputs, lane, block);
+      HWY_NAMESPACE::compute_lanes<Real, false>(source, lane, block);
     }
   }
 }

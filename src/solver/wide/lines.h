@@ -28,11 +28,11 @@ constexpr Lanes kTag;
 constexpr int kWidth = hn::MaxLanes(Lanes());
 constexpr int kLineCount = kWidth / 4;  // lines in one vector
 
-/// A vector whose k-th line is line index[4 k] of `base`.
+/// A vector whose k-th line begins at number index[4 k] of `base`, anywhere.
 template <class D>
 HWY_INLINE hn::Vec<D> load_lines(D tag, const float* base, const std::uint32_t* index) {
   if constexpr (hn::MaxLanes(D()) == 4) {
-    return hn::Load(tag, base + *index);
+    return hn::LoadU(tag, base + *index);
   } else {
     const hn::Half<D> half;
     constexpr int kHalf = hn::MaxLanes(D()) / 2;
