@@ -16,7 +16,7 @@ using parallel::Range;
 using state::BodyTraits;
 using state::Tables;
 
-constexpr int kBodyGrain = 256;
+
 
 bool moves(const BodyTraits& traits) {
   return traits.kind != BodyKind::kStatic;
@@ -94,6 +94,18 @@ void find_body_contacts(WorldData& world, Real dt) {
   collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
 }
 
+void begin_contacts(WorldData& world, Real h) {
+  const WorldDesc& desc = world.tables.desc;
+  const auto before = static_cast<Real>(world.tables.body_substep);
+  world.contact_step = {.gravity = desc.gravity,
+                        .h = h,
+                        .hz = desc.contact_hz,
+                        .damping_ratio = desc.contact_damping_ratio,
+                        .sweeps = desc.bias_sweeps,
+                        .impulse_scale = before > Real(0) ? h / before : Real(1)};
+  world.tables.body_substep = static_cast<double>(h);
+}
+
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {
   state::Bodies& b = world.tables.bodies;
   for (const std::uint32_t body : world.awake) {
@@ -113,7 +125,7 @@ std::uint32_t quarantine_bodies(WorldData& world) {
     if (is_finite(m.v) && is_finite(m.omega_scaled) && is_finite(m.dx) && is_finite(m.theta_scaled)) continue;
     b.motion[body] = {.inverse_mass = m.inverse_mass};
     b.angular_momentum[body] = {};
-    b.warm_start[body] = {};
+    b.free_motion[body] = {};
     ++count;
   }
   return count;
