@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/body_geometry.h"
 #include "hooke/scene_camera.h"
 #include "hooke/scene_io.h"
 
@@ -49,6 +50,7 @@ class SceneDrawing {
   [[nodiscard]] State between(double time) const;
   void measure(const State& state);
 
+  BodyGeometries geometries_;
   std::map<Key, std::shared_ptr<Figure>> figures_;
   std::map<std::string, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;

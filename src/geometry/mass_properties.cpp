@@ -153,6 +153,7 @@ MassProperties mass_of(const Shape& shape) {
     case ShapeKind::kHalfSpace:
     case ShapeKind::kMesh:
     case ShapeKind::kHull:
+    case ShapeKind::kCompound:
       break;
   }
   return {};
