@@ -80,6 +80,8 @@ struct StepReport {
   [[nodiscard]] bool healthy() const { return moved && rows_quarantined == 0; }
 };
 
+/// Of the middle of the last substep: positions are half a substep ahead of velocities, so potential and
+/// elastic energy are taken where the particles were then. Energy of ropes is by their tension at its end.
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.

@@ -91,7 +91,7 @@ void find_body_contacts(WorldData& world, Real dt) {
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(t, pair); });
   collision::merge_pairs(world.pairs_found, t.pairs);
-  collision::update_manifolds(*world.pool, t.bodies, t.colliders, dt, t.pairs);
+  collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {

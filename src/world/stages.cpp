@@ -72,7 +72,7 @@ void refresh_derived(WorldData& world) {
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
-  solver::build_bend_rows(tables.bends, tables.particles.count(), world.bend_rows);
+  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.chains.clear();
   for (const state::Deformable& object : tables.objects) {
@@ -193,8 +193,8 @@ void rebase_origins(WorldData& world) {
 
 void end_step(WorldData& world, double dt, StepReport& report) {
   state::Tables& tables = world.tables;
-  const WorldDesc& desc = tables.desc;
-  const Real share = Real(1) / static_cast<Real>(desc.substeps * desc.particle_substeps);
+  const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
+  const Real share = Real(1) / static_cast<Real>(substeps);
   for (Real& tension : tables.segments.mean_tension) tension *= share;
   for (const solver::Chain& chain : world.chains) {
     report.chain_solves += chain.solves;
@@ -206,6 +206,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
   tables.any_force = false;
   tables.time += dt;
+  tables.substep = dt / substeps;
   ++tables.step_count;
   report.moved = true;
 }

@@ -36,22 +36,17 @@ using state::SpringClass;
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
 constexpr int kBlockGrain = 16;
-constexpr int kBendGrain = 256;
 constexpr int kContactGrain = 256;
 constexpr int kChainGrain = 1;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
-  world::list_awake_bodies(w);
-  world::find_body_contacts(w, static_cast<Real>(dt));
   collision::find_contacts(w.tables, dt);
 }
 
 void prepare(WorldData& w, double dt, Real h) {
   solver::prepare_springs(w.spring_blocks, h);
-  solver::prepare_bends(w.bend_rows, h);
-  solver::prepare_bodies(w.awake, w.tables.bodies);
-  solver::prepare_body_contacts(*w.pool, w.tables.pairs.manifold, w.tables.bodies, h, w.body_contacts);
+  solver::prepare_bends(w.bend_blocks, h);
   world::begin_step(w, dt);
 }
 
@@ -67,10 +62,10 @@ void solve_springs(WorldData& w, Real h, SpringClass first, SpringClass last) {
 }
 
 void solve_bends(WorldData& w) {
-  for (int c = 0; c < w.bend_rows.color_count(); ++c) {
-    const int first = w.bend_rows.color_begin[c];
-    for_ranges(*w.pool, w.bend_rows.color_begin[c + 1] - first, kBendGrain, [&](Range rows) {
-      solver::solve_bends(w.bend_rows, {first + rows.begin, first + rows.end}, w.tables.particles);
+  for (const solver::BendPass& pass : w.bend_blocks.passes) {
+    for_ranges(*w.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
+      const Range rows = {pass.first + blocks.begin, pass.first + blocks.end};
+      solver::solve_bends(w.bend_blocks, pass, rows, w.tables.particles);
     });
   }
 }

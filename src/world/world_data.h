@@ -24,7 +24,7 @@ struct WorldData {
   // Derived from the tables whenever their revision changes; see world::refresh_derived.
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
-  solver::BendRows bend_rows;
+  solver::BendBlocks bend_blocks;
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 

@@ -140,7 +140,8 @@ TEST_SUITE("io/scene_write") {
     const nlohmann::json schema = nlohmann::json::parse(hooke::scene_schema());
     for (const auto& [kind, definition] : schema["definitions"].items()) {
       if (kind == "rotation") continue;  // always written as a quaternion
-      for (const auto& [key, value] : definition["properties"].items()) {
+      for (const auto& property : definition["properties"].items()) {
+        const std::string& key = property.key();
         CAPTURE(key);
         const bool used = std::string_view(kEverything).find('"' + key + '"') != std::string_view::npos;
         CHECK((used || key == "$schema"));
