@@ -19,6 +19,7 @@ namespace hooke {
 
 struct WorldData;     // every table of the simulation; src/world/world_data.h
 struct SnapshotData;  // a copy of the tables
+struct WorldAccess;   // src/world/access.h
 
 /// Columns of one object's points in the order its maker gave them. Reads the engine's own memory, without a
 /// copy. Valid until the next call on the World that is not const. Indices beyond size() give zeros.
@@ -237,6 +238,7 @@ class World {
   [[nodiscard]] Memory memory() const;
 
  private:
+  friend struct WorldAccess;
   explicit World(std::unique_ptr<WorldData> data);
   std::unique_ptr<WorldData> data_;
 };

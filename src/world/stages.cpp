@@ -2,36 +2,10 @@
 
 #include "solver/forces.h"
 #include "solver/wind.h"
+#include "world/access.h"
 
 #include <algorithm>
 #include <cmath>
-
-namespace hooke {
-
-/// The one place that may fill a ForceView.
-struct ForceViewAccess {
-  static ForceView make(const state::Tables& tables, const state::Deformable& object, double time,
-                        Vec3* forces) {
-    const std::size_t first = object.particles.first;
-    const state::Particles& p = tables.particles;
-    const auto* positions = reinterpret_cast<const std::byte*>(p.position.data() + first);
-    const auto* velocities = reinterpret_cast<const std::byte*>(p.velocity.data() + first);
-    const std::uint32_t* row_of = p.row_of.data() + first;
-    ForceView view;
-    view.positions_ =
-        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
-    view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
-    view.lines_ = velocities;
-    view.forces_ = forces + first;
-    view.row_of_ = row_of;
-    view.kind_ = object.kind;
-    view.slot_ = object.slot;
-    view.time_ = time;
-    return view;
-  }
-};
-
-}  // namespace hooke
 
 namespace hooke::world {
 

@@ -390,4 +390,21 @@ TEST_SUITE("geometry/convex_hull") {
     // However thin.
     check_structure(hooke::geometry::make_box_hull({1, Real(1e-7), 1}));
   }
+
+  TEST_CASE("the support is the vertex farthest along a direction") {
+    const ConvexHull box = hooke::geometry::make_box_hull({1, 2, 3});
+    for (const Vec3 corner : box.vertices) {
+      CHECK(box.vertices[support(box, corner)] == corner);
+      CHECK(box.vertices[support(box, Real(1e-3) * corner)] == corner);
+    }
+    // All four corners of a face are equally far, and all eight along nothing.
+    CHECK(support(box, {1, 0, 0}) == 1);
+    CHECK(support(box, {}) == 0);
+    const Points points = on_sphere(100, 6);
+    const ConvexHull hull = hull_of(points);
+    for (const Vec3 direction : random_points(100, 7)) {
+      const Vec3 found = hull.vertices[support(hull, direction)];
+      for (const Vec3 p : points) CHECK(dot(direction, p) <= dot(direction, found));
+    }
+  }
 }
