@@ -93,8 +93,9 @@ void reduce_triangle(Simplex& s, const std::array<int, 3>& of) {
   weigh(s, of, near.weights);
 }
 
-/// False if the origin is inside. A flat tetrahedron has all faces outside.
-bool reduce_tetrahedron(Simplex& s) {
+/// False if the origin is inside. A flat tetrahedron has all faces outside; `is_outside` says that the origin
+/// is known to be outside, whatever rounding makes of a tetrahedron that is nearly flat.
+bool reduce_tetrahedron(Simplex& s, bool is_outside) {
   constexpr std::array<std::array<int, 4>, 4> kFaces = {
       {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}};
   double least = std::numeric_limits<double>::infinity();
@@ -102,7 +103,7 @@ bool reduce_tetrahedron(Simplex& s) {
   for (const auto& [i, j, k, opposite] : kFaces) {
     const DVec3 p = s.corner[i].w;
     const DVec3 normal = cross(s.corner[j].w - p, s.corner[k].w - p);
-    if (dot(normal, -p) * dot(normal, s.corner[opposite].w - p) > 0) continue;
+    if (!is_outside && dot(normal, -p) * dot(normal, s.corner[opposite].w - p) > 0) continue;
     Simplex face = s;
     reduce_triangle(face, {i, j, k});
     const double size = length_squared(face.combine(&Corner::w));
@@ -114,8 +115,8 @@ bool reduce_tetrahedron(Simplex& s) {
 }
 
 /// Keeps the corners that the point nearest to the origin needs. False if the origin is inside.
-bool reduce(Simplex& s) {
-  if (s.count == 4) return reduce_tetrahedron(s);
+bool reduce(Simplex& s, bool is_outside) {
+  if (s.count == 4) return reduce_tetrahedron(s, is_outside);
   if (s.count == 3) reduce_triangle(s, {0, 1, 2});
   if (s.count == 2) reduce_segment(s);
   if (s.count == 1) s.weight[0] = 1;
@@ -225,7 +226,7 @@ Distance distance_between(const Convex& a, const Convex& b) {
     if (!apart || size * size - dot(v, next.w) <= size * rounding * scale || holds(s, next.w)) break;
     const Simplex before = s;
     s.corner[s.count++] = next;
-    apart = reduce(s);
+    apart = reduce(s, dot(v, next.w) > 0);
     if (!apart) break;
     v = s.combine(&Corner::w);
     if (length_squared(v) >= size * size) {

@@ -20,15 +20,21 @@ Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axi
   Nearest nearest;
   for (int i = 0; i < kMaxPushes; ++i) {
     const Real core_separation = axis.separation + skin_of(a) + skin_of(b);
-    const Vec3 push = std::max(Real(0), clearance - core_separation) * axis.n;
+    // Where the cores are apart anyway the first direction is the right one.
+    const bool apart = core_separation > Real(16) * tolerance;
+    const Vec3 push = (apart ? Real(0) : clearance - core_separation) * axis.n;
     Convex pushed = b;
     pushed.center += push;
     for (Vec3& corner : pushed.corners) corner += push;
     const Distance d = distance_between(a, pushed);
     if (d.cores_overlap) break;
-    nearest = {d.point_a, d.point_b - push, true};
     const Real separation = separation_along(a, b, d.normal);
-    if (!(separation > axis.separation + tolerance)) break;
+    const bool gains = separation > axis.separation + tolerance;
+    // The push moves the points against each other, unless it is along the direction between them.
+    if (gains || !nearest.known || dot(d.normal, axis.n) > Real(0.999)) {
+      nearest = {d.point_a, d.point_b - push, true};
+    }
+    if (!gains) break;
     axis = {d.normal, separation, kFreeAxis};
   }
   return nearest;

@@ -75,7 +75,7 @@ void offer_edges(const BoxPair& p, Real bias, Choice& choice) {
     const int i1 = (i + 1) % 3;
     const int i2 = (i + 2) % 3;
     for (int j = 0; j < 3; ++j) {
-      const Real squared = Real(1) - p.r[i][j] * p.r[i][j];
+      const Real squared = p.r[i1][j] * p.r[i1][j] + p.r[i2][j] * p.r[i2][j];
       if (squared < kParallel) continue;
       const int j1 = (j + 1) % 3;
       const int j2 = (j + 2) % 3;

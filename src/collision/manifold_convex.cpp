@@ -26,6 +26,12 @@ struct BestAxis {
     axis = {n, separation, code};
     score = candidate_score;
   }
+  /// The direction of `d` that looks from A to B; none for a zero vector.
+  void offer_toward(Vec3 d) {
+    const Vec3 n = geometry::direction_or(d, Vec3{});
+    if (n == Vec3{}) return;
+    offer(dot(n, middle_of(b) - middle_of(a)) < Real(0) ? -n : n, kFreeAxis);
+  }
 };
 
 /// Outward normal of a cone's side, where it looks along `d`.
@@ -89,6 +95,24 @@ geometry::Segment<Real> shaft_of(const Convex& c) {
   return {c.center - end, c.center + end};
 }
 
+/// Directions across the axis of a round shape and the edges of a box.
+void offer_across_edges(const Convex& round, const Convex& box, BestAxis& best) {
+  for (const Vec3 edge : {box.axes.x, box.axes.y, box.axes.z}) best.offer_toward(cross(round.axes.y, edge));
+}
+
+/// Directions between the axes of round shapes, and across them.
+void offer_shafts(BestAxis& best) {
+  const bool round_a = has_shaft(best.a);
+  const bool round_b = has_shaft(best.b);
+  if (round_a && round_b) {
+    const auto pair = geometry::closest_between_segments(shaft_of(best.a), shaft_of(best.b));
+    best.offer_toward(pair.point_b - pair.point_a);
+    best.offer_toward(cross(best.a.axes.y, best.b.axes.y));
+  }
+  if (round_a && best.b.shape.kind == ShapeKind::kBox) offer_across_edges(best.a, best.b, best);
+  if (round_b && best.a.shape.kind == ShapeKind::kBox) offer_across_edges(best.b, best.a, best);
+}
+
 }  // namespace
 
 void meet_convex(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
@@ -96,20 +120,24 @@ void meet_convex(const Convex& a, const Convex& b, const MeetingQuery& query, Me
   best.offer(geometry::direction_or(middle_of(b) - middle_of(a), {Real(0), Real(1), Real(0)}), kFreeAxis);
   offer_faces(a, b, kAxisOfA, best);
   offer_faces(b, a, kAxisOfB, best);
-  if (has_shaft(a) && has_shaft(b)) {
-    const auto pair = geometry::closest_between_segments(shaft_of(a), shaft_of(b));
-    const Vec3 n = geometry::direction_or(pair.point_b - pair.point_a, Vec3{});
-    if (!(n == Vec3{})) best.offer(n, kFreeAxis);
-    const Vec3 across = geometry::direction_or(cross(a.axes.y, b.axes.y), Vec3{});
-    const Vec3 toward = dot(across, b.center - a.center) < Real(0) ? -across : across;
-    if (!(across == Vec3{})) best.offer(toward, kFreeAxis);
-  }
+  offer_shafts(best);
   Axis axis = best.axis;
   meeting.separation = axis.separation;
   meeting.axis = axis.code;
   if (axis.separation > query.margin) return;
   const Real tolerance = axis_tolerance(a, b);
-  const Nearest nearest = improve_axis(a, b, tolerance, axis);
+  Nearest nearest = improve_axis(a, b, tolerance, axis);
+  if (axis.separation < Real(0)) {
+    // Overlapping shapes have several places where the separation is largest nearby: look from their middles
+    // too.
+    BestAxis second = {a, b, 0, Real(0)};
+    second.offer_toward(middle_of(b) - middle_of(a));
+    const Nearest other = improve_axis(a, b, tolerance, second.axis);
+    if (second.axis.separation > axis.separation + tolerance) {
+      axis = second.axis;
+      nearest = other;
+    }
+  }
   meeting.normal = axis.n;
   meeting.separation = axis.separation;
   meeting.axis = axis.code;

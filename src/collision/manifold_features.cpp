@@ -259,6 +259,10 @@ void overlap_segments(const Seen& a, const Seen& b, const Collector& out) {
   add_part(b, part, out);
 }
 
+// How far beside an edge a point may lie and still count as inside, in lengths of the edge: what lies on an
+// edge that two faces share is over one of them.
+constexpr Real kSlack = Real(1e-5);
+
 /// A disc little tilted against the normal is seen as a circle.
 bool is_inside(const Seen& seen, bool is_a, Flat p) {
   const Feature& f = *seen.feature;
@@ -270,7 +274,8 @@ bool is_inside(const Seen& seen, bool is_a, Flat p) {
     const auto k = static_cast<std::size_t>(i);
     const auto next = static_cast<std::size_t>(i + 1 < f.count ? i + 1 : 0);
     const Flat along = seen.at[next] - seen.at[k];
-    if ((cross(along, p - seen.at[k]) < Real(0)) == is_a) return false;
+    const Real left = cross(along, p - seen.at[k]);
+    if ((is_a ? left : -left) < -kSlack * dot(along, along)) return false;
   }
   return true;
 }
@@ -426,6 +431,8 @@ void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin
   const Seen& high = a_first ? seen_a : seen_b;
   const Seen& low = a_first ? seen_b : seen_a;
   if (low.feature->kind == Kind::kPoint) {
+    // Where a point meets an edge or a point, the nearest points say better where.
+    if (high.feature->kind < Kind::kPolygon || !is_inside(high, a_first, low.at[0])) return;
     out.add(low.at[0], kVertexOfB | low.feature->vertex[0]);
   } else if (high.feature->kind == Kind::kDisc) {
     overlap_disc(high, low, a_first, out);

@@ -51,7 +51,8 @@ inline constexpr Real kSteep = Real(0.2);  ///< Where it is a face of the other 
 [[nodiscard]] Feature feature_of_hull(const Convex& hull, Vec3 n, Real least_cosine);
 
 /// Adds the points where the two features lie over each other as seen along meeting.normal, from A to B: the
-/// corners of what their projections have in common. `skin_a`, `skin_b` [m].
+/// corners of what their projections have in common. None for points and edges that miss each other, and for
+/// a point with anything but a face. `skin_a`, `skin_b` [m].
 void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, Meeting& meeting);
 
 }  // namespace hooke::collision

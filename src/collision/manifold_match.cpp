@@ -21,11 +21,21 @@ struct Matched {
   unsigned new_points = 0;
 };
 
+Real distance_squared(const ContactPoint& p, const ContactPoint& q) {
+  return std::min(length_squared(p.anchor_a - q.anchor_a), length_squared(p.anchor_b - q.anchor_b));
+}
+
+/// Two edges that are nearly parallel cross now near one end, now near the other, and keep their key.
+bool is_same_point(const ContactPoint& p, const ContactPoint& q) {
+  const bool crossing = (p.key & kNearest) == kCrossing;
+  return p.key == q.key && (!crossing || distance_squared(p, q) < kSamePlace * kSamePlace);
+}
+
 Matched match_by_key(const Manifold& old, Manifold& manifold) {
   Matched matched;
   for (unsigned i = 0; i < static_cast<unsigned>(manifold.point_count); ++i) {
     for (unsigned k = 0; k < static_cast<unsigned>(old.point_count); ++k) {
-      if (old.point[k].key != manifold.point[i].key || (matched.old_points >> k & 1u) != 0) continue;
+      if ((matched.old_points >> k & 1u) != 0 || !is_same_point(manifold.point[i], old.point[k])) continue;
       manifold.point[i].normal_impulse = old.point[k].normal_impulse;
       matched.old_points |= 1u << k;
       matched.new_points |= 1u << i;
@@ -44,8 +54,7 @@ void match_by_place(const Manifold& old, Matched matched, Manifold& manifold) {
     for (unsigned i = 0; i < static_cast<unsigned>(manifold.point_count); ++i) {
       for (unsigned k = 0; k < static_cast<unsigned>(old.point_count); ++k) {
         if ((matched.new_points >> i & 1u) != 0 || (matched.old_points >> k & 1u) != 0) continue;
-        const Real apart = std::min(length_squared(manifold.point[i].anchor_a - old.point[k].anchor_a),
-                                    length_squared(manifold.point[i].anchor_b - old.point[k].anchor_b));
+        const Real apart = distance_squared(manifold.point[i], old.point[k]);
         if (!(apart < nearest)) continue;
         nearest = apart;
         best_new = i;

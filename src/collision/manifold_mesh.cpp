@@ -27,17 +27,6 @@ Vec3 front_of(const Convex& triangle) {
   return normalize(cross(q - p, r - p));
 }
 
-/// Whether p, seen along the triangle's normal n, is over the triangle.
-bool is_over(const Convex& triangle, Vec3 n, Vec3 p) {
-  const auto& c = triangle.corners;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 along = c[(i + 1) % 3] - c[i];
-    const Real slack = Real(1e-5) * length_squared(along);
-    if (dot(n, cross(along, p - c[i])) < -slack) return false;
-  }
-  return true;
-}
-
 Real deepest_of(const Meeting& meeting) {
   Real deepest = std::numeric_limits<Real>::infinity();
   for (int i = 0; i < meeting.count; ++i) {
@@ -52,9 +41,7 @@ void meet_face(const Convex& triangle, const Convex& b, Meeting& meeting) {
   face.kind = Feature::Kind::kPolygon;
   face.normal = meeting.normal;
   for (std::uint32_t i = 0; i < 3; ++i) face.add(triangle.corners[i], i, i);
-  const Feature feature = feature_along(b, -meeting.normal, kSteep);
-  if (feature.kind == Feature::Kind::kPoint && !is_over(triangle, meeting.normal, feature.point[0])) return;
-  overlap_features(face, feature, Real(0), skin_of(b), meeting);
+  overlap_features(face, feature_along(b, -meeting.normal, kSteep), Real(0), skin_of(b), meeting);
 }
 
 /// False if they are farther apart than the margin, or the shape is behind the triangle.

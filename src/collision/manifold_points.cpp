@@ -9,10 +9,8 @@ namespace hooke::collision {
 
 namespace {
 
-// Of points that are equally good the one of the last step stays: by depth within this [m], by area within a
-// tenth.
-constexpr Real kKeepDepth = Real(5e-4);
-constexpr Real kKeepArea = Real(1.1);
+constexpr Real kSameDepth = Real(5e-4);  // [m]
+constexpr Real kKeepArea = Real(1.1);  // of points that span nearly the same, the one of the last step stays
 
 struct Candidates {
   const Meeting& meeting;
@@ -39,6 +37,20 @@ struct Candidates {
     return found;
   }
   [[nodiscard]] Real favor(int i) const { return is_old(i) ? kKeepArea : Real(1); }
+  /// Of the points that are about as deep as the deepest the one farthest from the middle: a point in the
+  /// middle of a side would leave a corner out.
+  [[nodiscard]] int outermost_of_deepest() const {
+    Real deepest = std::numeric_limits<Real>::infinity();
+    Vec3 middle = {};
+    for (int i = 0; i < meeting.count; ++i) {
+      deepest = std::min(deepest, at(i).separation);
+      middle += Real(1) / static_cast<Real>(meeting.count) * at(i).on_a;
+    }
+    return best([&](int i) {
+      if (at(i).separation > deepest + kSameDepth) return -std::numeric_limits<Real>::infinity();
+      return favor(i) * length_squared(at(i).on_a - middle);
+    });
+  }
 };
 
 }  // namespace
@@ -50,7 +62,7 @@ void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t>
   meeting.count = static_cast<int>(kept - meeting.point.begin());
   if (meeting.count <= state::Manifold::kMaxPoints) return;
   const Candidates c = {meeting, old_keys};
-  const int first = c.best([&](int i) { return (c.is_old(i) ? kKeepDepth : Real(0)) - c.at(i).separation; });
+  const int first = c.outermost_of_deepest();
   const int second =
       c.best([&](int i) { return c.favor(i) * length_squared(c.at(i).on_a - c.at(first).on_a); });
   const int third = c.best(

@@ -11,76 +11,10 @@ namespace hooke::collision {
 
 namespace {
 
-constexpr Vec3 kUp = {Real(0), Real(1), Real(0)};
-
-/// A place in the half plane of a body of revolution: distance from the axis, height along it.
-struct Profile {
-  Real out = Real(0);
-  Real up = Real(0);
-};
-
-struct ProfileGap {
-  Real distance = Real(0);
-  Profile normal = {};
-};
-
-ProfileGap gap_between(Profile p, Profile surface, ProfileGap if_on_it) {
-  const Profile d = {p.out - surface.out, p.up - surface.up};
-  const Real size = std::sqrt(d.out * d.out + d.up * d.up);
-  if (!(size > Real(0))) return if_on_it;
-  return {size, {d.out / size, d.up / size}};
-}
-
-ProfileGap gap_to_cylinder(Profile p, Real radius, Real half_height) {
-  const Real side = p.up < Real(0) ? Real(-1) : Real(1);
-  const Real over_end = std::fabs(p.up) - half_height;
-  const Real over_side = p.out - radius;
-  if (over_end > Real(0) && over_side > Real(0)) {
-    return gap_between(p, {radius, side * half_height}, {});
-  }
-  if (over_end >= over_side) return {over_end, {Real(0), side}};
-  return {over_side, {Real(1), Real(0)}};
-}
-
-ProfileGap gap_to_cone(Profile p, Real radius, Real half_height) {
-  const Real slant = std::sqrt(radius * radius + Real(4) * half_height * half_height);
-  const ProfileGap side = {(Real(2) * half_height * (p.out - radius) + radius * (p.up + half_height)) / slant,
-                           {Real(2) * half_height / slant, radius / slant}};
-  const ProfileGap base = {-p.up - half_height, {Real(0), Real(-1)}};
-  // Where along the side from the rim, 0, to the tip, 1.
-  const Real along =
-      (Real(2) * half_height * (p.up + half_height) - radius * (p.out - radius)) / (slant * slant);
-  if (side.distance <= Real(0) && base.distance <= Real(0)) {
-    return side.distance >= base.distance ? side : base;
-  }
-  if (base.distance > Real(0) && p.out <= radius) return base;
-  if (along <= Real(0)) return gap_between(p, {radius, -half_height}, side);
-  if (along >= Real(1)) return gap_between(p, {Real(0), half_height}, side);
-  return side;
-}
-
-/// Signed distance and outward normal of a shape at `x`, in the shape's frame.
-Gap gap_to(const Shape& shape, Vec3 x) {
-  if (shape.kind == ShapeKind::kSphere || shape.kind == ShapeKind::kBox) return gap_to_shape(shape, x);
-  if (shape.kind == ShapeKind::kCapsule) {
-    const Vec3 tip = shape.half_height * kUp;
-    const Vec3 from_axis = x - geometry::closest_on_segment(x, -tip, tip).point;
-    return {geometry::safe_length(from_axis) - shape.radius,
-            geometry::direction_or(from_axis, {Real(1), Real(0), Real(0)})};
-  }
-  const Vec3 across = {x.x, Real(0), x.z};
-  const Vec3 out = geometry::direction_or(across, {Real(1), Real(0), Real(0)});
-  const Profile p = {geometry::safe_length(across), x.y};
-  const ProfileGap gap = shape.kind == ShapeKind::kCylinder
-                             ? gap_to_cylinder(p, shape.radius, shape.half_height)
-                             : gap_to_cone(p, shape.radius, shape.half_height);
-  return {gap.distance, gap.normal.out * out + gap.normal.up * kUp};
-}
-
 /// A sphere and a shape that has its own closed form.
 void meet_sphere(const Convex& sphere, const Convex& b, Meeting& meeting) {
   const Vec3 d = sphere.center - b.center;
-  const Gap gap = gap_to(b.shape, {dot(b.axes.x, d), dot(b.axes.y, d), dot(b.axes.z, d)});
+  const Gap gap = gap_to_shape(b.shape, {dot(b.axes.x, d), dot(b.axes.y, d), dot(b.axes.z, d)});
   const Vec3 outward = b.axes * gap.normal;
   const Real radius = sphere.shape.radius;
   meeting.normal = -outward;

@@ -78,7 +78,7 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real 
   const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
   const Real friction = std::sqrt(object.friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(shape.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
+    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
   }
   find_triangles_near(*shape.mesh, x, reach, finder.triangles);
@@ -167,7 +167,7 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     const Vec3 x = frame.to_shape(t.particles.position[particle].x);
     const Real radius = t.particles.position[particle].radius;
     if (shape.shape.kind != ShapeKind::kMesh) {
-      set_row(contacts, first, frame, gap_to_shape(shape.shape, x), radius);
+      set_row(contacts, first, frame, gap_to_shape(shape, x), radius);
       continue;
     }
     gaps.clear();
@@ -187,8 +187,8 @@ double largest_penetration(const state::Tables& t) {
         const Frame frame = frame_of(t, c, object);
         const Vec3 x = frame.to_shape(t.particles.position[p].x);
         const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
-        const Real distance = mesh ? distance_to_mesh(*frame.shape->mesh, x, radius)
-                                   : gap_to_shape(frame.shape->shape, x).distance;
+        const Real distance =
+            mesh ? distance_to_mesh(*frame.shape->mesh, x, radius) : gap_to_shape(*frame.shape, x).distance;
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }

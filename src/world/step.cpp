@@ -36,33 +36,14 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 using state::SpringClass;
+using world::for_bodies;
+using world::for_contact_colors;
 
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
 constexpr int kBlockGrain = 16;
 constexpr int kContactGrain = 256;
 constexpr int kChainGrain = 1;
-constexpr int kBodyGrain = 128;
-constexpr int kContactBlockGrain = 4;
-
-/// Calls `kernel(rows)` for parts of the list of awake bodies.
-template <class Kernel>
-void for_bodies(WorldData& w, Kernel&& kernel) {
-  for_ranges(*w.pool, static_cast<int>(w.awake.size()), kBodyGrain, [&](Range part) {
-    kernel(std::span<const std::uint32_t>(w.awake).subspan(part.begin, part.count()));
-  });
-}
-
-/// Calls `kernel(blocks)` for each color of the contacts; blocks of one color share no body that moves.
-template <class Kernel>
-void for_contact_colors(WorldData& w, Kernel&& kernel) {
-  for (int c = 0; c < w.body_contacts.color_count(); ++c) {
-    const int first = w.body_contacts.color_begin[c];
-    for_ranges(*w.pool, w.body_contacts.color_begin[c + 1] - first, kContactBlockGrain, [&](Range blocks) {
-      kernel(Range{first + blocks.begin, first + blocks.end});
-    });
-  }
-}
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
@@ -78,6 +59,7 @@ void prepare(WorldData& w, double dt, Real h) {
   solver::prepare_springs(w.spring_blocks, particle_h);
   solver::prepare_bends(w.bend_blocks, particle_h);
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
+  world::begin_contacts(w, h);
   solver::prepare_body_contacts(*w.pool, t.pairs.manifold, t.bodies, w.contact_step, w.body_contacts);
   world::begin_step(w, dt);
 }
@@ -164,9 +146,9 @@ void finish_bodies(WorldData& w, double dt) {
       solver::restitute_body_contacts(blocks, pass, w.contact_step, w.body_contacts, bodies);
     });
   }
-  for_ranges(*w.pool, static_cast<int>(w.body_contacts.blocks.size()), kContactBlockGrain, [&](Range blocks) {
-    solver::store_body_contacts(blocks, w.body_contacts, bodies, w.tables.pairs.manifold);
-  });
+  for_ranges(
+      *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
+      [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
   world::put_to_sleep(w, static_cast<Real>(dt));
 }

@@ -37,7 +37,7 @@ struct WorldData {
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<collision::ColliderPair> pairs_found;
   solver::BodyContacts body_contacts;
-  Real last_substep = Real(0);  ///< Length of the substeps of the last step [s].
+  solver::ContactStep contact_step;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
