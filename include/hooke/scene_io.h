@@ -23,7 +23,7 @@ namespace hooke {
 /// The newest version of the format that this library reads, and the one that it writes.
 inline constexpr int kSceneVersion = 1;
 
-/// Most points of all objects together, events included; a body counts as one.
+/// Most points of all objects together, events included; a body counts as one, or as its parts.
 inline constexpr std::size_t kMostScenePoints = 1'000'000;
 
 /// How a surface looks and how it answers a contact.
@@ -89,6 +89,7 @@ struct SceneArray {
     kGrid,     ///< grid[0] x grid[1] x grid[2] copies, x fastest, `spacing` apart.
     kPyramid,  ///< `pyramid` copies in the lowest row along x, one less in each row above.
     kRandom,   ///< `random` copies, uniform in `box`, by `seed`.
+    kList,     ///< One copy for each of `list`.
   };
 
   Kind kind = Kind::kSingle;
@@ -98,11 +99,15 @@ struct SceneArray {
   DVec3 spacing = {1, 1, 1};  ///< [m]
   std::uint32_t seed = 1;
   std::array<DVec3, 2> box = {DVec3{}, DVec3{1, 1, 1}};  ///< Smallest and largest offset [m].
+  std::vector<DVec3> list = {};                          ///< Offsets [m].
+  std::vector<Quat> rotations = {};                      ///< Of a list of bodies: as many as `list`, or none.
 
   /// Number of copies; saturates.
   [[nodiscard]] std::size_t count() const;
   /// Offset of copy `i` from the object as described [m]; zero beyond count().
   [[nodiscard]] DVec3 offset(std::size_t i) const;
+  /// Turn of copy `i` about its own origin, after the rotation of the object as described.
+  [[nodiscard]] Quat rotation(std::size_t i) const;
 };
 
 /// What every object but a field has.
@@ -335,6 +340,7 @@ struct SceneObject {
     Quat rotation = {};
     std::shared_ptr<const Model> model = {};
     SceneMaterial look = {};
+    std::string material = {};  ///< As of the object.
   };
 
   Shape shape = {};              ///< Of a body.
@@ -343,7 +349,7 @@ struct SceneObject {
   double rest_length = 0;        ///< Of a rope [m].
   std::uint32_t columns = 0;     ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
-  std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth.
+  std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth; of a hull, its faces.
 };
 
 /// The points of a rope, a cloth or particles, as World::positions gives them; none for other objects.

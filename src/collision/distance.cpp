@@ -175,6 +175,7 @@ Real thinness_of(const Convex& c) {
     case ShapeKind::kCompound:
     case ShapeKind::kMesh:
     case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
       break;
   }
   return Real(0);
@@ -199,6 +200,7 @@ Vec3 support_of(const Convex& convex, Vec3 direction) {
       return support_of_triangle(convex, direction);
     case ShapeKind::kSphere:
     case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
       break;
   }
   return convex.center;

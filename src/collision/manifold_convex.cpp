@@ -81,6 +81,7 @@ void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, Bes
     case ShapeKind::kSphere:
     case ShapeKind::kCapsule:
     case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
       break;
   }
 }

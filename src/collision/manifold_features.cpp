@@ -415,6 +415,7 @@ Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine) {
       return triangle_feature(convex, n);
     case ShapeKind::kSphere:
     case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
       break;
   }
   return point_feature(convex.center, 0);

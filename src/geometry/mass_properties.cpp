@@ -154,6 +154,7 @@ MassProperties mass_of(const Shape& shape) {
     case ShapeKind::kCompound:
     case ShapeKind::kMesh:
     case ShapeKind::kHull:
+    case ShapeKind::kCompound:
       break;
   }
   return {};

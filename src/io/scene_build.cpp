@@ -1,3 +1,4 @@
+#include "geometry/convex_hull.h"
 #include "io/scene_check.h"
 #include "io/scene_data.h"
 #include "io/scene_source.h"
@@ -30,6 +31,9 @@ class Builder {
   [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
   /// Fills in what a body's description names: its material, its mesh, its parts.
   [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
+  /// What is drawn for a shape that refers to a mesh of this name; null for other shapes.
+  std::shared_ptr<const Model> drawn_model(ShapeKind kind, const std::string& mesh);
+  std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
   template <class IdType>
@@ -90,6 +94,47 @@ BodyDesc Builder::resolve(const SceneBody& body) const {
     desc.parts.push_back(made);
   }
   return desc;
+}
+
+/// Polygons as fans, every face flat; null for points without a hull, of which the world says why.
+std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
+  const Result<geometry::ConvexHull> hull = geometry::make_convex_hull(mesh.positions);
+  if (!hull) return nullptr;
+  MeshDesc faces;
+  faces.positions = hull.value().vertices;
+  for (const geometry::ConvexHull::Face& face : hull.value().faces) {
+    const auto corner = [&](std::size_t k) -> std::uint32_t { return hull.value().loop[face.first + k]; };
+    for (std::size_t k = 1; k + 1 < face.count; ++k) {
+      faces.triangles.push_back({corner(0), corner(k), corner(k + 1)});
+    }
+  }
+  constexpr double kFlat =
+      1e-3;  // [rad], far less than any two faces of a hull that can be told apart by eye
+  return std::make_shared<const Model>(model_of(faces, kFlat));
+}
+
+std::shared_ptr<const Model> Builder::drawn_model(ShapeKind kind, const std::string& mesh) {
+  const auto found = data_.models.find(mesh);
+  if (found == data_.models.end()) return nullptr;
+  SceneModel& model = found->second;
+  if (kind != ShapeKind::kHull) return model.model;
+  if (model.hull == nullptr) model.hull = hull_model(model.model->mesh);
+  return model.hull;
+}
+
+std::vector<SceneObject::Part> Builder::drawn_parts(const SceneBody& body) {
+  std::vector<SceneObject::Part> parts;
+  for (const ScenePart& part : body.parts) {
+    const std::string& material = part.material.empty() ? body.tag.material : part.material;
+    const SceneMaterial* look = find_material(material);
+    parts.push_back({.shape = part.desc.shape,
+                     .position = part.desc.position,
+                     .rotation = normalize(part.desc.rotation),
+                     .model = drawn_model(part.desc.shape.kind, part.mesh),
+                     .look = look != nullptr ? *look : SceneMaterial{},
+                     .material = material});
+  }
+  return parts;
 }
 
 SceneObject Builder::make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
@@ -213,25 +258,16 @@ double length_of(const std::vector<DVec3>& points) {
 
 void Builder::build(const SceneBody& body, const std::string& path) {
   BodyDesc desc = resolve(body);
-  const SceneModel model = body.mesh.empty() ? SceneModel{} : data_.models[body.mesh];
-  std::vector<SceneObject::Part> parts;
-  for (std::size_t k = 0; k < body.parts.size(); ++k) {
-    const ScenePart& part = body.parts[k];
-    const std::string& material = part.material.empty() ? body.tag.material : part.material;
-    const SceneMaterial* look = find_material(material);
-    parts.push_back({.shape = desc.parts[k].shape,
-                     .position = desc.parts[k].position,
-                     .rotation = normalize(desc.parts[k].rotation),
-                     .model = part.mesh.empty() ? nullptr : data_.models[part.mesh].model,
-                     .look = look != nullptr ? *look : SceneMaterial{}});
-  }
+  const std::shared_ptr<const Model> model = drawn_model(body.desc.shape.kind, body.mesh);
+  const std::vector<SceneObject::Part> parts = drawn_parts(body);
   for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
-    if (!reserve(1, path)) return;
+    if (!reserve(std::max<std::size_t>(parts.size(), 1), path)) return;
     desc.position = body.desc.position + body.tag.array.offset(i);
+    desc.rotation = normalize(body.tag.array.rotation(i)) * normalize(body.desc.rotation);
     SceneObject object = make_object(body.tag, SceneObject::Kind::kBody, path, i);
     object.shape = desc.shape;
     object.parts = parts;
-    object.model = model.model;
+    object.model = model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(desc))) return;
   }
 }

@@ -441,7 +441,7 @@ void Checker::count_points(const SceneObjects& objects, const std::string& prefi
          "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    count(objects.bodies[i].tag, 1, indexed(prefix + "bodies", i));
+    count(objects.bodies[i].tag, objects.bodies[i].parts.size(), indexed(prefix + "bodies", i));
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     count(objects.ropes[i].tag, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));

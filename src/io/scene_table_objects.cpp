@@ -89,14 +89,29 @@ const Kind& kind_of<SceneLoad>() {
 
 namespace {
 
+/// What is wrong with a key of an array of this kind; null if nothing.
+const char* misplaced(const std::string& key, SceneArray::Kind kind) {
+  const bool random = kind == SceneArray::Kind::kRandom;
+  const bool list = kind == SceneArray::Kind::kList;
+  if (key == "spacing" && random) return "has no effect on a random array";
+  if (key == "spacing" && list) return "has no effect on a list";
+  if ((key == "seed" || key == "box") && !random) return "is for a random array only";
+  if (key == "rotations" && !list) return "is for a list only";
+  return nullptr;
+}
+
 bool check_array(Reader& reader, const JsonNode& node, const void* object) {
   const auto& array = *static_cast<const SceneArray*>(object);
-  const bool random = array.kind == SceneArray::Kind::kRandom;
   for (const JsonNode& child : node.children) {
-    const bool of_random = child.key == "seed" || child.key == "box";
-    if (of_random == random || (!of_random && child.key != "spacing")) continue;
-    reader.fail_key(child, random ? "has no effect on a random array" : "is for a random array only");
+    const char* complaint = misplaced(child.key, array.kind);
+    if (complaint == nullptr) continue;
+    reader.fail_key(child, complaint);
     return false;
+  }
+  if (!array.rotations.empty() && array.rotations.size() != array.list.size()) {
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "there are " + std::to_string(array.rotations.size()) + " rotations for a list of " +
+                           std::to_string(array.list.size()));
   }
   const DVec3 size = array.box[1] - array.box[0];
   if (size.x >= 0 && size.y >= 0 && size.z >= 0) return true;
@@ -110,7 +125,7 @@ const Kind& kind_of<SceneArray>() {
   constexpr Rule copies = between(1, 1e6);
   static const Kind kind = {
       .name = "array",
-      .help = "Copies of an object. One of `grid`, `pyramid`, `random`.",
+      .help = "Copies of an object. One of `grid`, `pyramid`, `random`, `list`.",
       .fields = {choice<SceneArray::Kind::kGrid, &SceneArray::kind>(field<&SceneArray::grid>(
                      "grid", "", copies, "Copies along x, y and z; x counts fastest.")),
                  choice<SceneArray::Kind::kPyramid, &SceneArray::kind>(field<&SceneArray::pyramid>(
@@ -118,10 +133,15 @@ const Kind& kind_of<SceneArray>() {
                      "Copies in the lowest row along x; one less in each row above.")),
                  choice<SceneArray::Kind::kRandom, &SceneArray::kind>(field<&SceneArray::random>(
                      "random", "", copies, "Copies, evenly spread in `box`, the same on every machine.")),
+                 choice<SceneArray::Kind::kList, &SceneArray::kind>(field<&SceneArray::list>(
+                     "list", "m", kNotEmpty, "Offsets from the object, one for each copy.")),
                  field<&SceneArray::spacing>("spacing", "m", kAny, "Of a grid or pyramid."),
                  field<&SceneArray::seed>("seed", "", kAny, "Of a random array."),
                  field<&SceneArray::box>("box", "m", kAny,
-                                         "Of a random array: smallest and largest offset from the object.")},
+                                         "Of a random array: smallest and largest offset from the object."),
+                 field<&SceneArray::rotations>(
+                     "rotations", "", kAny,
+                     "Of a list of bodies: one for each copy, about its origin, after the body's own.")},
       .defaults = defaults_of<SceneArray>,
       .check = check_array};
   return kind;

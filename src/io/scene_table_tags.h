@@ -20,7 +20,11 @@ inline bool check_named(Reader& reader, const JsonNode& node, const std::string&
 
 template <class T>
 bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
-  return check_named(reader, node, static_cast<const T*>(object)->tag.name);
+  const SceneTag& tag = static_cast<const T*>(object)->tag;
+  if (!std::is_same_v<T, SceneBody> && !tag.array.rotations.empty()) {
+    return reader.fail(node, ErrorCode::kOutOfRange, "only an array of bodies has 'rotations'");
+  }
+  return check_named(reader, node, tag.name);
 }
 
 /// The rows of SceneTag, which every object but a field has; the laboratory has no steppers for bodies.
