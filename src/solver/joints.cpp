@@ -12,8 +12,6 @@ using parallel::Range;
 using state::Hook;
 using state::HookPlace;
 
-/// Multiplications for one solution of a group; about a millisecond.
-constexpr double kOperationBudget = 2e6;
 constexpr int kArticulationGrain = 1;
 constexpr int kHookGrain = 1024;
 
@@ -71,15 +69,23 @@ void add_up(Real h, Hook& hook) {
 
 }  // namespace
 
-void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, Joints& joints) {
+void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+                  Joints& joints) {
   joints.articulations.clear();
+  std::vector<std::uint32_t> rest;
   for (const std::vector<std::uint32_t>& group : find_groups(hooks, bodies)) {
-    std::optional<Articulation> art = make_articulation(group, hooks, bodies, kOperationBudget);
-    if (art) joints.articulations.push_back(std::move(*art));
+    std::optional<Articulation> art = make_articulation(group, hooks, bodies, budget);
+    if (art) {
+      joints.articulations.push_back(std::move(*art));
+    } else {
+      rest.insert(rest.end(), group.begin(), group.end());
+    }
   }
+  build_net(rest, hooks, bodies, joints.net);
 }
 
-void prepare_joints(std::vector<Hook>& hooks) {
+void prepare_joints(std::vector<Hook>& hooks, Joints& joints) {
+  prepare_net(joints.net);
   for (Hook& hook : hooks) {
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
@@ -95,12 +101,12 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
       if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
     }
   });
+  solve_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
 }
 
 void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
-  (void)bodies;
-  (void)joints;
+  relax_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
   parallel::for_ranges(pool, static_cast<int>(hooks.size()), kHookGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) add_up(h, hooks[i]);
   });

@@ -4,6 +4,7 @@
 
 #include "parallel/thread_pool.h"
 #include "solver/articulations.h"
+#include "solver/joint_nets.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
@@ -24,13 +25,19 @@ namespace hooke::solver {
 
 struct Joints {
   std::vector<Articulation> articulations;
+  JointNet net;  ///< All hooks that are in none of them.
 };
 
+/// Multiplications for one solution of a group; about a millisecond.
+inline constexpr double kArticulationBudget = 2e6;
+
 /// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
-void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, Joints& joints);
+/// Groups that cost more than `budget` multiplications go into the net.
+void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
+                  Joints& joints);
 
 /// Start of a step: no impulse yet.
-void prepare_joints(std::vector<state::Hook>& hooks);
+void prepare_joints(std::vector<state::Hook>& hooks, Joints& joints);
 
 /// The rows of a substep of length h [s], with their errors removed. Groups asleep are left alone.
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,

@@ -21,7 +21,7 @@ void refresh_hooks(WorldData& world) {
   const state::Tables& t = world.tables;
   if (world.joints_revision == t.hook_revision) return;
   world.joints_revision = t.hook_revision;
-  solver::build_joints(t.hooks, t.bodies, world.joints);
+  solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
   world.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {
     if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));

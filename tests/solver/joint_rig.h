@@ -35,6 +35,8 @@ struct JointRig {
   std::uint64_t built = ~std::uint64_t{0};
   Vec3 gravity = {Real(0), Real(-9.81), Real(0)};
 
+  double budget = kArticulationBudget;  ///< 0: everything is a net.
+
   explicit JointRig(int workers = 1) : pool(workers) {}
 
   BodyId add(const RigBody& d) {
@@ -67,11 +69,11 @@ struct JointRig {
   }
 
   void step(Real dt, int substeps) {
-    if (built != t.hook_revision) build_joints(t.hooks, t.bodies, joints);
+    if (built != t.hook_revision) build_joints(t.hooks, t.bodies, budget, joints);
     built = t.hook_revision;
     const Real h = dt / static_cast<Real>(substeps);
     prepare_bodies(rows, t.bodies);
-    prepare_joints(t.hooks);
+    prepare_joints(t.hooks, joints);
     for (int i = 0; i < substeps; ++i) {
       accelerate_bodies(rows, {.gravity = gravity, .h = h, .first = i == 0}, t.bodies);
       solve_joints(pool, h, t.hooks, t.bodies, joints);
