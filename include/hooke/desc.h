@@ -141,7 +141,7 @@ struct PartDesc {
 struct BodyDesc {
   BodyKind kind = BodyKind::kStatic;
   Shape shape = {};
-  std::vector<PartDesc> parts = {};  ///< Replaces `shape`, `density` and `contact`.
+  std::vector<PartDesc> parts = {};  ///< Of a compound: replace `density` and `contact`.
   DVec3 position = {};               ///< Origin of the body's frame [m].
   Quat rotation = {};                ///< Normalized on entry.
   Vec3 velocity = {};                ///< Of the center of mass [m/s].

@@ -34,6 +34,17 @@ struct SceneMaterial {
   float shininess = 16.0f;    ///< Blinn-Phong exponent. [1, 1000]
   float opacity = 1.0f;       ///< [0, 1]
   Real friction = Real(0.5);  ///< Coulomb coefficient. [0, 100]
+  std::optional<Real> static_friction = {};  ///< While at rest; not below `friction`, which it is by default.
+  Real restitution = Real(0);                ///< [0, 1]
+  Real rolling_friction = Real(0);           ///< Lever [m].
+  Real spinning_friction = Real(0);          ///< Lever [m].
+};
+
+/// What two materials do to each other, in place of what their own numbers would give.
+struct ScenePair {
+  std::string a = {};  ///< Names in Scene::materials.
+  std::string b = {};
+  MaterialPairDesc desc = {};
 };
 
 /// Triangles for bodies and cloths: a file, or vertices and triangles in place.
@@ -104,10 +115,16 @@ struct SceneTag {
 
 // Descriptions by value. What refers to something by name or by place stands beside the description and is
 // filled into it when the world is built: meshes, pins, loads, friction.
+struct ScenePart {
+  PartDesc desc = {};
+  std::string mesh = {};      ///< A name in Scene::meshes, for a mesh or a hull.
+  std::string material = {};  ///< A name in Scene::materials; the body's by default.
+};
 struct SceneBody {
   SceneTag tag = {};
   BodyDesc desc = {};
-  std::string mesh = {};  ///< A name in Scene::meshes, for a mesh shape.
+  std::string mesh = {};              ///< A name in Scene::meshes, for a mesh or a hull.
+  std::vector<ScenePart> parts = {};  ///< Replace desc.shape.
 };
 struct SceneRope {
   SceneTag tag = {};
@@ -187,6 +204,8 @@ struct SceneExpectation {
     kZ,
     kHeight,  ///< The same as kY.
     kSpeed,
+    kAngularSpeed,
+    kTilt,  ///< Angle between the y axis of a body and that of the world [deg].
     kExtension,
     kLargestStretch,
     kMeanStretch,
@@ -200,6 +219,7 @@ struct SceneExpectation {
     kMomentum,
     kPenetration,
     kContacts,
+    kAsleep,  ///< Number of bodies that sleep.
   };
   enum class Op : std::uint8_t {
     kLess,
@@ -232,6 +252,7 @@ struct Scene {
   double seconds = 10;           ///< How long it runs. [0, 1e6]
   std::vector<SceneMesh> meshes = {};
   std::vector<SceneMaterial> materials = {};
+  std::vector<ScenePair> material_pairs = {};
   SceneObjects objects = {};
   std::vector<SceneEvent> timeline = {};
   std::optional<SceneCamera> camera = {};
@@ -297,10 +318,20 @@ struct SceneObject {
   SceneMaterial look = {};
   std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
   std::string path = {};      ///< In the file, as "ropes[0]".
-  Shape shape = {};           ///< Of a body.
-  Real radius = Real(0);      ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
-  double rest_length = 0;     ///< Of a rope [m].
-  std::uint32_t columns = 0;  ///< Of a cloth's grid; 0 for a mesh.
+  /// One shape of a body that has several.
+  struct Part {
+    Shape shape = {};
+    Vec3 position = {};  ///< In the body's frame [m].
+    Quat rotation = {};
+    std::shared_ptr<const Model> model = {};
+    SceneMaterial look = {};
+  };
+
+  Shape shape = {};              ///< Of a body.
+  std::vector<Part> parts = {};  ///< Of a compound body.
+  Real radius = Real(0);         ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
+  double rest_length = 0;        ///< Of a rope [m].
+  std::uint32_t columns = 0;     ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
   std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth.
 };

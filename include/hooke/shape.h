@@ -27,6 +27,7 @@ enum class ShapeKind : std::uint8_t {
   kCylinder,  ///< Along y, its center at the origin.
   kCone,      ///< Along y, the tip up; the origin is halfway up, not the center of mass.
   kHull,      ///< The convex hull of a mesh's points.
+  kCompound,  ///< The shapes in BodyDesc::parts. Not of a part.
 };
 
 struct Shape {
@@ -51,6 +52,7 @@ struct Shape {
     return {.kind = ShapeKind::kCone, .radius = radius, .half_height = half_height};
   }
   static constexpr Shape of_mesh(MeshId mesh) { return {.kind = ShapeKind::kMesh, .mesh = mesh}; }
+  static constexpr Shape compound() { return {.kind = ShapeKind::kCompound}; }
   static constexpr Shape hull_of(MeshId mesh) { return {.kind = ShapeKind::kHull, .mesh = mesh}; }
 };
 

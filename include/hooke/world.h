@@ -72,9 +72,8 @@ struct HookForce {
 struct StepReport {
   bool moved =
       false;  ///< False: `dt` was not a positive finite number, or the step was called from a force law.
-  std::uint32_t contacts = 0;       ///< Particles that touched something in the last substep.
-  std::uint32_t body_contacts = 0;  ///< Patches where bodies touched each other in the last substep.
-  std::uint32_t pairs = 0;          ///< Shapes of bodies that are near each other.
+  std::uint32_t contacts = 0;  ///< Points that touched something in the last substep.
+  std::uint32_t pairs = 0;     ///< Shapes of bodies that are near each other.
   std::uint32_t bodies_awake = 0;
   std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
   std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.

@@ -47,6 +47,9 @@ void check_shape(const Shape& shape, const std::string& prefix, Checks& checks) 
     case ShapeKind::kMesh:
     case ShapeKind::kHull:
       break;
+    case ShapeKind::kCompound:
+      checks.require(false, prefix + "kind", "a part must not be a compound itself");
+      break;
     case ShapeKind::kSphere:
       size("radius", shape.radius);
       break;
@@ -66,12 +69,12 @@ void check_shape(const Shape& shape, const std::string& prefix, Checks& checks) 
 
 /// A body of one shape is a body of one part at its origin.
 std::vector<PartDesc> parts_of(const BodyDesc& desc) {
-  if (!desc.parts.empty()) return desc.parts;
+  if (desc.shape.kind == ShapeKind::kCompound) return desc.parts;
   return {{.shape = desc.shape, .density = desc.density, .contact = desc.contact}};
 }
 
 std::string prefix_of(const BodyDesc& desc, std::size_t part) {
-  return desc.parts.empty() ? std::string() : indexed("parts", part) + ".";
+  return desc.shape.kind != ShapeKind::kCompound ? std::string() : indexed("parts", part) + ".";
 }
 
 /// Meshes and hulls are made from the mesh that the shape names.
@@ -171,6 +174,7 @@ Extent extent_of(const Part& part, Vec3 center) {
               part.shape.hull->inner_radius};
     case ShapeKind::kHalfSpace:
     case ShapeKind::kMesh:
+    case ShapeKind::kCompound:
       break;
   }
   return {};
@@ -260,6 +264,7 @@ Result<void> validate(const BodyDesc& body) {
       .finite("gravity_scale", static_cast<double>(body.gravity_scale));
   if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);
   const std::vector<PartDesc> parts = parts_of(body);
+  checks.require(!parts.empty(), "parts", "needs at least one part");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string prefix = prefix_of(body, i);
     checks.finite(prefix + "position", parts[i].position)

@@ -66,6 +66,8 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
       const Vec3 center = rotate(rotation, Real(0.5) * (root.lower + root.upper));
       return around(center, turned_extents(rotation, Real(0.5) * (root.upper - root.lower)));
     }
+    case ShapeKind::kCompound:
+      break;
   }
   return {};
 }

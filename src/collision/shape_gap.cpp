@@ -28,6 +28,7 @@ Gap gap_to_shape(const Shape& shape, Vec3 x) {
     case ShapeKind::kCylinder:
     case ShapeKind::kCone:
     case ShapeKind::kHull:
+    case ShapeKind::kCompound:
       break;
   }
   return {std::numeric_limits<Real>::infinity(), {Real(0), Real(1), Real(0)}};

@@ -27,6 +27,9 @@ class Builder {
   bool reserve(std::size_t points, const std::string& path);
   [[nodiscard]] const SceneMaterial* find_material(const std::string& name) const;
   [[nodiscard]] Real friction_of(const SceneTag& tag) const;
+  [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
+  /// Fills in what a body's description names: its material, its mesh, its parts.
+  [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
   template <class IdType>
@@ -57,6 +60,36 @@ Real Builder::friction_of(const SceneTag& tag) const {
   if (tag.friction.has_value()) return *tag.friction;
   const SceneMaterial* material = find_material(tag.material);
   return material != nullptr ? material->friction : ContactDesc{}.friction;
+}
+
+ContactDesc Builder::surface_of(const std::string& name, ContactDesc surface) const {
+  const SceneMaterial* material = find_material(name);
+  if (material == nullptr) return surface;
+  surface.friction = material->friction;
+  surface.static_friction = material->static_friction;
+  surface.restitution = material->restitution;
+  surface.rolling_friction = material->rolling_friction;
+  surface.spinning_friction = material->spinning_friction;
+  surface.material = material_number(data_.scene, name);
+  return surface;
+}
+
+BodyDesc Builder::resolve(const SceneBody& body) const {
+  const auto mesh_of = [&](const std::string& name) {
+    const auto found = data_.models.find(name);
+    return found == data_.models.end() ? MeshId{} : found->second.id;
+  };
+  BodyDesc desc = body.desc;
+  desc.contact = surface_of(body.tag.material, desc.contact);
+  desc.contact.friction = friction_of(body.tag);
+  desc.shape.mesh = mesh_of(body.mesh);
+  for (const ScenePart& part : body.parts) {
+    PartDesc made = part.desc;
+    made.shape.mesh = mesh_of(part.mesh);
+    made.contact = part.material.empty() ? desc.contact : surface_of(part.material, made.contact);
+    desc.parts.push_back(made);
+  }
+  return desc;
 }
 
 SceneObject Builder::make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
@@ -178,18 +211,25 @@ double length_of(const std::vector<DVec3>& points) {
 }
 
 void Builder::build(const SceneBody& body, const std::string& path) {
-  BodyDesc desc = body.desc;
-  desc.contact.friction = friction_of(body.tag);
-  SceneModel model;
-  if (desc.shape.kind == ShapeKind::kMesh) {
-    model = data_.models[body.mesh];
-    desc.shape.mesh = model.id;
+  BodyDesc desc = resolve(body);
+  const SceneModel model = body.mesh.empty() ? SceneModel{} : data_.models[body.mesh];
+  std::vector<SceneObject::Part> parts;
+  for (std::size_t k = 0; k < body.parts.size(); ++k) {
+    const ScenePart& part = body.parts[k];
+    const std::string& material = part.material.empty() ? body.tag.material : part.material;
+    const SceneMaterial* look = find_material(material);
+    parts.push_back({.shape = desc.parts[k].shape,
+                     .position = desc.parts[k].position,
+                     .rotation = normalize(desc.parts[k].rotation),
+                     .model = part.mesh.empty() ? nullptr : data_.models[part.mesh].model,
+                     .look = look != nullptr ? *look : SceneMaterial{}});
   }
   for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
     if (!reserve(1, path)) return;
     desc.position = body.desc.position + body.tag.array.offset(i);
     SceneObject object = make_object(body.tag, SceneObject::Kind::kBody, path, i);
     object.shape = desc.shape;
+    object.parts = parts;
     object.model = model.model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(desc))) return;
   }
@@ -276,6 +316,22 @@ void build_list(Builder& builder, const std::vector<T>& list, const std::string&
 
 }  // namespace
 
+std::uint16_t material_number(const Scene& scene, const std::string& name) {
+  const auto named = [&](const SceneMaterial& material) { return material.name == name; };
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), named);
+  return found == scene.materials.end() ? 0 : static_cast<std::uint16_t>(found - scene.materials.begin() + 1);
+}
+
+WorldDesc world_of(const Scene& scene) {
+  WorldDesc desc = scene.world;
+  for (const ScenePair& pair : scene.material_pairs) {
+    desc.materials.push_back(pair.desc);
+    desc.materials.back().a = material_number(scene, pair.a);
+    desc.materials.back().b = material_number(scene, pair.b);
+  }
+  return desc;
+}
+
 void build_meshes(SimulationData& data, std::vector<Error>& errors) {
   for (const SceneMesh& mesh : data.scene.meshes) {
     const std::string path = "meshes." + mesh.name;
@@ -330,6 +386,7 @@ Error scene_error(const Scene& scene, const std::string& path, const Error& erro
   const std::size_t dot = error.where.find('.');
   std::string rest = dot == std::string::npos ? "" : error.where.substr(dot);
   // The world knows the members by their place in the description, where the scene has them in another.
+  if (rest.starts_with(".parts[")) rest.insert(0, ".shape");
   if (rest.starts_with(".contact.")) rest.erase(0, std::string_view(".contact").size());
   if (rest.starts_with(".pins[")) rest = ".pins";
   return error_at(scene.source.get(), path + rest, error.code, error.message);

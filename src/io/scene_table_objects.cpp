@@ -1,78 +1,9 @@
 #include "io/scene_table.h"
+#include "io/scene_table_tags.h"
 
 namespace hooke::io {
 
 namespace {
-
-bool check_tag(Reader& reader, const JsonNode& node, const std::string& name) {
-  const JsonNode* child = node.find("name");
-  if (child == nullptr) return true;
-  reader.enter("name");
-  const bool good = check_name(reader, *child, name);
-  reader.leave();
-  return good;
-}
-
-template <class T>
-bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
-  return check_tag(reader, node, static_cast<const T*>(object)->tag.name);
-}
-
-/// The rows of SceneTag, which every object but a field has.
-template <class T>
-void add_tag_rows(std::vector<Field>& rows) {
-  rows.insert(
-      rows.begin(),
-      {field<&T::tag, &SceneTag::name>(
-           "name", "", kNotEmpty, "Unique. Without it the object is called by its place, as `ropes[0]`."),
-       field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
-  rows.push_back(field<&T::tag, &SceneTag::friction>(
-      "friction", "", between(0, 100), "Coulomb coefficient, instead of the material's or of 0.5."));
-  rows.push_back(
-      field<&T::tag, &SceneTag::array>("array", "", kAny, "Copies, named `name[0]`, `name[1]`, ..."));
-}
-
-const Kind& half_space_kind() {
-  static const Kind kind = {.name = "half_space",
-                            .help = "Solid below the plane y = 0 of the body's frame. Has no keys.",
-                            .fields = {},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& sphere_kind() {
-  static const Kind kind = {.name = "sphere",
-                            .help = "A ball about the body's position.",
-                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::radius>(
-                                "radius", "m", kPositive, "Of the ball.")},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& box_kind() {
-  static const Kind kind = {.name = "box",
-                            .help = "A box about the body's position.",
-                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::half_extents>(
-                                "half_extents", "m", kPositive, "Half the length of each side.")},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& shape_kind() {
-  static const Kind kind = {
-      .name = "shape",
-      .help = "What a body is. One of the keys.",
-      .fields = {choice<ShapeKind::kHalfSpace, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("half_space", half_space_kind, "Ground without end.")),
-                 choice<ShapeKind::kSphere, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("sphere", sphere_kind, "A ball.")),
-                 choice<ShapeKind::kBox, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("box", box_kind, "A box.")),
-                 choice<ShapeKind::kMesh, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     field<&SceneBody::mesh>("mesh", "", kNotEmpty, "A name in `meshes`."))},
-      .defaults = defaults_of<SceneBody>};
-  return kind;
-}
 
 const Kind& sine_kind() {
   static const Kind kind = {
@@ -193,25 +124,6 @@ const Kind& kind_of<SceneArray>() {
                                          "Of a random array: smallest and largest offset from the object.")},
       .defaults = defaults_of<SceneArray>,
       .check = check_array};
-  return kind;
-}
-
-template <>
-const Kind& kind_of<SceneBody>() {
-  static const Kind kind = [] {
-    Kind made = {
-        .name = "body",
-        .help = "A shape in the world. It stands still; others bounce off it.",
-        .fields = {required(group("shape", shape_kind, "What it is.")),
-                   field<&SceneBody::desc, &BodyDesc::position>("position", "m", kAny,
-                                                                "Origin of its frame."),
-                   field<&SceneBody::desc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
-                   field<&SceneBody::desc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn.")},
-        .defaults = defaults_of<SceneBody>,
-        .check = check_tagged<SceneBody>};
-    add_tag_rows<SceneBody>(made.fields);
-    return made;
-  }();
   return kind;
 }
 
@@ -412,7 +324,7 @@ const Kind& magnetic_kind() {
 }
 
 bool check_field(Reader& reader, const JsonNode& node, const void* object) {
-  return check_tag(reader, node, static_cast<const SceneField*>(object)->name);
+  return check_named(reader, node, static_cast<const SceneField*>(object)->name);
 }
 
 }  // namespace
@@ -436,12 +348,7 @@ const Kind& kind_of<SceneField>() {
 }
 
 std::span<const Kind* const> object_kinds() {
-  static const std::array kinds = {&kind_of<SceneBody>(),
-                                   &shape_kind(),
-                                   &half_space_kind(),
-                                   &sphere_kind(),
-                                   &box_kind(),
-                                   &kind_of<SceneRope>(),
+  static const std::array kinds = {&kind_of<SceneRope>(),
                                    &kind_of<SceneCloth>(),
                                    &kind_of<SceneParticles>(),
                                    &kind_of<ParticleDesc>(),

@@ -39,10 +39,12 @@ struct BodyMass {
   Real inverse_mass = Real(0);  ///< [1/kg]
 };
 
-/// Impulse at the center of mass and its angular part in scaled form.
-struct ScaledImpulse {
-  Vec3 linear = {};   ///< [N s]
-  Vec3 angular = {};  ///< [sqrt(J)]: S times the moment.
+/// The velocities a body would have, had the contact rows of this substep done nothing. The difference to its
+/// line is what they did, and the warm start of the next substep. Laid out as the first half of a MotionLine.
+struct alignas(8 * sizeof(Real)) FreeLine {
+  Vec3 v = {};             ///< [m/s]
+  Vec3 omega_scaled = {};  ///< [sqrt(J)]
+  Real padding[2] = {};
 };
 
 /// What the step asks about a body once.
@@ -64,18 +66,19 @@ struct BodyTraits {
 /// Columns of equal length; row i describes body i.
 struct Bodies {
   std::vector<MotionLine> motion;
-  std::vector<DVec3> center;                  ///< Of mass, at the start of the step [m].
-  std::vector<Quat> rotation;                 ///< Of the body's frame, at the start of the step.
-  std::vector<Vec3> angular_momentum;         ///< About the center of mass [kg m^2/s]: the state of rotation.
+  std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
+  std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
+                                       ///< that tumble, now (solver/bodies.h).
+  std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
   std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
-  std::vector<Vec3> force;                ///< External, for the current step [N]; cleared by finish.
-  std::vector<Vec3> torque;               ///< External, for the current step [N m]; cleared by finish.
-  std::vector<ScaledImpulse> warm_start;  ///< Of L1 rows in the last substep; written by the solver.
-  std::vector<Real> odometer;             ///< Way of the fastest point since the body was made [m].
-  std::vector<Real> rest_time;            ///< Time spent slower than the sleep threshold [s].
+  std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.
+  std::vector<Vec3> torque;           ///< External, for the current step [N m]; cleared by finish.
+  std::vector<FreeLine> free_motion;  ///< Lives for one substep; written by the solver.
+  std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
+  std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
@@ -98,7 +101,7 @@ struct Bodies {
     visit(self.traits);
     visit(self.force);
     visit(self.torque);
-    visit(self.warm_start);
+    visit(self.free_motion);
     visit(self.odometer);
     visit(self.rest_time);
     visit(self.asleep);

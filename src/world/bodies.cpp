@@ -116,7 +116,7 @@ std::uint32_t quarantine_bodies(WorldData& world) {
     if (is_finite(m.v) && is_finite(m.omega_scaled) && is_finite(m.dx) && is_finite(m.theta_scaled)) continue;
     b.motion[body] = {.inverse_mass = m.inverse_mass};
     b.angular_momentum[body] = {};
-    b.warm_start[body] = {};
+    b.free_motion[body] = {};
     ++count;
   }
   return count;

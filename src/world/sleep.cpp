@@ -109,7 +109,7 @@ void put_to_sleep(WorldData& world, Real dt) {
     bodies.motion[body].v = {};
     bodies.angular_momentum[body] = {};
     bodies.angular_velocity[body] = {};
-    bodies.warm_start[body] = {};
+    bodies.free_motion[body] = {};
   }
 }
 
