@@ -1,6 +1,7 @@
 #include "solver/articulations.h"
 
 #include "base/assert.h"
+#include "math/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,8 @@ using state::HookPlace;
 constexpr int kFreePasses = 8;  ///< Rows come and go.
 constexpr int kMaxPasses = 16;  ///< In the rest rows only go.
 constexpr int kMaxSolves = 4;
+constexpr double kFastTurn = 0.03;           ///< In a substep, from which on rows are not straight [rad].
+constexpr double kLargeError = 2e-4;         ///< Gap of a joint over its levers, or its angle [rad].
 constexpr double kComplianceOfTrees = 1e-9;  ///< Share of each diagonal.
 constexpr double kComplianceOfLoops = 1e-5;
 constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left explicit.
@@ -133,15 +136,64 @@ void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
   }
 }
 
-/// Writes the stiffness of all links under the forces `force_of(joint)`; true if it grew so much that the
-/// solution found without it is not to be trusted.
-template <class ForceOf>
-bool stiffen(double h, const std::vector<Hook>& hooks, ForceOf&& force_of, Articulation& art) {
+/// The body as it will be at the end of the substep with the velocity that was found.
+JointBody moved(const Link& link, double h) {
+  JointBody body = link.body;
+  body.ahead = h * link.v;
+  body.center += body.ahead;
+  body.rotation = math::quaternion_of(body.scale * (h * link.omega_scaled)) * body.rotation;
+  return body;
+}
+
+/// What the gap of a joint is small against: its levers on bodies that move [m].
+double size_of(const Hook& hook, const Link& a, const Link& b) {
+  constexpr double kLeast = 0.01;
+  const double size_a = a.body.inverse_mass > 0 ? length(hook.a.anchor) : 0;
+  const double size_b = b.body.inverse_mass > 0 ? length(hook.b.anchor) : 0;
+  return std::max(kLeast, size_a + size_b);
+}
+
+/// Newton: the rows about the end of the substep as it was found, where C = c + h J (v' - v) for another
+/// velocity v'. Returns the largest error of a lock.
+double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
+  std::array<JointRow, Hook::kMaxRows> rows;
+  double worst = 0;
+  for (std::size_t i = 0; i < art.hooks.size(); ++i) {
+    const Articulation::Joint& joint = art.joints[i];
+    const Link& a = art.links[joint.a];
+    const Link& b = art.links[joint.b];
+    const double size = size_of(hooks[art.hooks[i]], a, b);
+    make_joint_rows(hooks[art.hooks[i]], moved(a, h), moved(b, h), h, rows);
+    for (int k = 0; k < joint.count; ++k) {
+      JointRow row = rows[k];
+      // An error beyond the speed limit comes back along the row it has.
+      const bool limited =
+          row.role == RowRole::kLock && std::abs(row.target) < 0.999 * row.rate * std::abs(row.c);
+      if (limited) continue;
+      const double v = dot(row.n, b.v - a.v) + dot(row.j_b, b.omega_scaled) - dot(row.j_a, a.omega_scaled);
+      row.target += row.rate * h * v;
+      art.rows[joint.first + k] = row;
+      if (row.role == RowRole::kLock)
+        worst = std::max(worst, std::abs(row.c) / (row.axis == DVec3{} ? size : 1));
+    }
+  }
+  return worst;
+}
+
+bool turns_fast(const Articulation& art, double h) {
+  return std::any_of(art.links.begin(), art.links.end(), [&](const Link& link) {
+    return link.body.inverse_mass > 0 && h * length(link.body.scale * link.omega_scaled) > kFastTurn;
+  });
+}
+
+/// Writes the stiffness of all links under the impulses of their hooks, where it grows; true if it grew so
+/// much that a solution found without it is not to be trusted.
+bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
   std::vector<Symmetric3<double>> found(art.links.size());
   for (std::size_t i = 0; i < art.joints.size(); ++i) {
     const Articulation::Joint& joint = art.joints[i];
     const Hook& hook = hooks[art.hooks[i]];
-    const DVec3 force = force_of(i);
+    const DVec3 force = (1 / h) * vector_cast<double>(hook.impulse);
     if (force == DVec3{}) continue;
     Link& a = art.links[joint.a];
     Link& b = art.links[joint.b];
@@ -308,24 +360,20 @@ void solve_with_bounds(Articulation& art) {
   apply_rows([](int) { return true; }, art);
 }
 
-DVec3 impulse_of(const Articulation& art, std::size_t joint) {
-  DVec3 sum;
-  for (int i = art.joints[joint].first; i < art.joints[joint].first + art.joints[joint].count; ++i)
-    sum += art.lambda[i] * art.rows[i].n;
-  return sum;
+void store_impulses(const Articulation& art, std::vector<Hook>& hooks) {
+  for (std::size_t i = 0; i < art.joints.size(); ++i) {
+    const auto first = static_cast<std::size_t>(art.joints[i].first);
+    const auto count = static_cast<std::size_t>(art.joints[i].count);
+    store_joint_impulses(std::span(art.rows).subspan(first, count),
+                         std::span(art.lambda).subspan(first, count), hooks[art.hooks[i]]);
+  }
 }
 
-void store(const Articulation& art, std::vector<Hook>& hooks, state::Bodies& bodies) {
+void store_velocities(const Articulation& art, state::Bodies& bodies) {
   for (std::size_t i = 0; i < art.links.size(); ++i) {
-    if (!(art.links[i].body.inverse_mass > 0)) continue;
     const Link& link = art.links[i];
-    set_joint_velocity(link.body, link.v, link.omega_scaled, art.bodies[i], bodies);
-  }
-  for (std::size_t i = 0; i < art.joints.size(); ++i) {
-    const Articulation::Joint& joint = art.joints[i];
-    store_joint_impulses({&art.rows[joint.first], static_cast<std::size_t>(joint.count)},
-                         {&art.lambda[joint.first], static_cast<std::size_t>(joint.count)},
-                         hooks[art.hooks[i]]);
+    if (link.body.inverse_mass > 0)
+      set_joint_velocity(link.body, link.v, link.omega_scaled, art.bodies[i], bodies);
   }
 }
 
@@ -377,16 +425,15 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
 void solve_articulation(double h, Articulation& art, std::vector<Hook>& hooks, state::Bodies& bodies) {
   load_links(bodies, art);
   make_rows(h, hooks, art);
-  stiffen(
-      h, hooks, [&](std::size_t i) { return (1 / h) * vector_cast<double>(hooks[art.hooks[i]].impulse); },
-      art);
+  stiffen(h, hooks, art);
   for (int i = 0; i < kMaxSolves; ++i) {
     solve_with_bounds(art);
-    if (!stiffen(
-            h, hooks, [&](std::size_t k) { return (1 / h) * impulse_of(art, k); }, art))
-      break;
+    store_impulses(art, hooks);
+    const bool grew = stiffen(h, hooks, art);
+    const bool bent = turns_fast(art, h) && make_rows_ahead(h, hooks, art) > kLargeError;
+    if (!grew && !bent) break;
   }
-  store(art, hooks, bodies);
+  store_velocities(art, bodies);
 }
 
 }  // namespace hooke::solver

@@ -47,6 +47,9 @@ struct Link {
 /// A body under moderate load has no G and keeps its angular momentum to rounding. F is the larger of the
 /// last substep's force and this one's: a joint that snaps taut is solved again with what it has found.
 ///
+/// Where a body turns by more than 0.03 rad in the substep, the rows are made anew about its end until locks
+/// err by less than 2e-4 of their levers: a Newton step each, four solutions at most in all.
+///
 /// Sources: Baraff 1996, "Linear-time dynamics using Lagrange multipliers"; geometric stiffness after
 /// Tournier et al. 2015, "Stable constrained dynamics".
 struct Articulation {

@@ -147,6 +147,8 @@ Freedoms find_freedoms(const Hook& hook, const JointBody& a, const JointBody& b)
   f.r_b = rotate(b.rotation, hook.b.anchor);
   f.r_a = (b.center - a.center) + f.r_b;
   const DVec3 d = f.r_a - arm_a;
+  f.r_a += a.ahead;
+  f.r_b += b.ahead;
   const DQuat q_a = a.rotation * to_double(hook.a.axes);
   const DQuat q_b = b.rotation * to_double(hook.b.axes);
   const DMat3 axes_a = matrix_of(q_a);
@@ -175,7 +177,8 @@ void make_spring(const HookSpring& spring, double h, JointRow& row) {
   const auto k = static_cast<double>(spring.stiffness);
   const auto c = static_cast<double>(spring.damping);
   row.gamma = 1 / (h * (c + h * k));
-  row.target = -k / (c + h * k) * row.c;
+  row.rate = k / (c + h * k);
+  row.target = -row.rate * row.c;
 }
 
 void make_limit(const HookLimits& limits, double value, double h, JointRow& row) {
@@ -189,7 +192,8 @@ void make_limit(const HookLimits& limits, double value, double h, JointRow& row)
   }
   row.c = std::min(above, below);
   row.low = 0;
-  row.target = row.c > 0 ? -row.c / h : std::min(-kLimitShare * row.c / h, kLimitSpeed);
+  row.rate = (row.c > 0 ? 1 : kLimitShare) / h;
+  row.target = std::min(-row.rate * row.c, kLimitSpeed);
 }
 
 }  // namespace
@@ -254,7 +258,8 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     switch (role) {
       case RowRole::kLock:
         if (!is_way) row.c -= whole_turns(row.c);
-        row.target = std::clamp(-row.c / h, -fastest, fastest);
+        row.rate = 1 / h;
+        row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;
       case RowRole::kSpring:
         make_spring(freedom.spring, h, row);

@@ -18,6 +18,7 @@ namespace hooke::solver {
 /// An end of a hook in the middle of a step, in double: errors of joints are small differences.
 struct JointBody {
   DVec3 center = {};  ///< Of mass, now [m].
+  DVec3 ahead = {};   ///< From where impulses act on it to `center`, where it will be; zero for now [m].
   Quaternion<double> rotation = {};
   DVec3 v = {};
   DVec3 omega_scaled = {};
@@ -50,7 +51,8 @@ struct JointRow {
   DVec3 axis = {};  ///< Of an angle; zero for ways.
   DVec3 j_a = {};   ///< S_a (r_a x n), or S_a axis.
   DVec3 j_b = {};
-  double c = 0;  ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
+  double c = 0;     ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
+  double rate = 0;  ///< b: share of c that the target takes back, per time [1/s].
   double target = 0;
   double gamma = 0;
   double low = 0;

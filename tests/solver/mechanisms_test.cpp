@@ -352,7 +352,7 @@ TEST_SUITE("solver/mechanisms") {
 
     Chain dropped(true, 1000, 0);
     const double top = dropped.energy();
-    CHECK(dropped.worst_stretch(20) < 4e-3);
+    CHECK(dropped.worst_stretch(20) < 1e-3);
     CHECK(dropped.energy() < top + 1);
   }
 }
