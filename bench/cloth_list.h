@@ -54,4 +54,35 @@ inline ClothList cloth_100(int side = 100) {
   return list;
 }
 
+/// The inner edges of the same cloth with both diagonals by turns, its rows waved by 5 mm so that they fold.
+inline state::Bends wave_cloth(ClothList& list, int side = 100) {
+  state::Bends bends;
+  const auto point = [side](int column, int row) { return static_cast<std::uint32_t>(row * side + column); };
+  for (auto& line : list.particles.position) {
+    const auto row = static_cast<int>(&line - list.particles.position.data()) * 7 / 3 % 5;
+    line.x.z = Real(0.005) * static_cast<Real>(row);
+  }
+  const auto add = [&](std::uint32_t edge_a, std::uint32_t edge_b, std::uint32_t wing_a,
+                       std::uint32_t wing_b) {
+    bends.stencil.push_back({edge_a, edge_b, wing_a, wing_b});
+    bends.rest_angle.push_back(Real(0));
+    bends.stiffness.push_back(Real(1e-3));
+    bends.damping.push_back(Real(1e-5));
+  };
+  for (int row = 0; row + 1 < side; ++row) {
+    for (int column = 0; column + 1 < side; ++column) {
+      const std::uint32_t a = point(column, row);
+      const std::uint32_t b = point(column + 1, row);
+      const std::uint32_t c = point(column, row + 1);
+      const std::uint32_t d = point(column + 1, row + 1);
+      const bool even = (row + column) % 2 == 0;
+      even ? add(d, a, c, b) : add(b, c, a, d);
+      // The wings of an edge between two cells are where their diagonals do not end.
+      if (column > 0) even ? add(a, c, point(column - 1, row), d) : add(a, c, point(column - 1, row + 1), b);
+      if (row > 0) even ? add(b, a, point(column + 1, row - 1), d) : add(b, a, point(column, row - 1), c);
+    }
+  }
+  return bends;
+}
+
 }  // namespace hooke::bench

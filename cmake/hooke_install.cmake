@@ -10,16 +10,25 @@ install(EXPORT HookeTargets NAMESPACE hooke:: DESTINATION ${HOOKE_PACKAGE_DIR})
 file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/hooke/*.h)
 set(io_headers ${HOOKE_IO_HEADERS})
 list(TRANSFORM io_headers PREPEND ${PROJECT_SOURCE_DIR}/include/hooke/)
-list(REMOVE_ITEM headers ${io_headers})
+set(lab_header ${PROJECT_SOURCE_DIR}/include/hooke/lab.h)
+list(REMOVE_ITEM headers ${io_headers} ${lab_header})
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hooke)
 
 # Scene and model files, and the importer that reads models (installed where it is built). The program `hooke`
 # follows its own rules in apps/.
 if(TARGET hooke_io)
   set_target_properties(hooke_io PROPERTIES EXPORT_NAME io)
-  install(TARGETS hooke_io EXPORT HookeIoTargets)
+  install(TARGETS hooke_io hooke_process EXPORT HookeIoTargets)
   install(EXPORT HookeIoTargets NAMESPACE hooke:: DESTINATION ${HOOKE_PACKAGE_DIR})
   install(FILES ${io_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hooke)
+endif()
+
+# The integrator laboratory.
+if(TARGET hooke_lab)
+  set_target_properties(hooke_lab PROPERTIES EXPORT_NAME lab)
+  install(TARGETS hooke_lab EXPORT HookeLabTargets)
+  install(EXPORT HookeLabTargets NAMESPACE hooke:: DESTINATION ${HOOKE_PACKAGE_DIR})
+  install(FILES ${lab_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hooke)
 endif()
 
 get_target_property(hooke_type hooke TYPE)

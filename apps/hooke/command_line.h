@@ -19,7 +19,7 @@ enum ExitCode : int {
   kGood = 0,
   kFailed = 1,    ///< It ran, and an expectation or a check failed.
   kBadInput = 2,  ///< A file or an argument is wrong.
-  kMachine = 3,   ///< The machine cannot: no OpenGL, no display, no ffmpeg, a write that failed.
+  kMachine = 3,   ///< The machine cannot: no OpenGL, no display, no ffmpeg or gnuplot, a write that failed.
 };
 
 /// Reads the words into what `app` was told about. An exit code when the command is over: after --help, or

@@ -1,4 +1,5 @@
 #include "hooke/command_line.h"
+#include "hooke/compare/stage.h"
 #include "hooke/progress.h"
 #include "hooke/scene_drawing.h"
 
@@ -24,6 +25,9 @@ struct RenderOptions {
   int frames_per_second = 30;
   std::optional<double> seconds;
   std::optional<double> at;
+  std::optional<double> trail;  ///< [s]
+  std::string stepper;          ///< Of the laboratory; empty for the solver.
+  bool force = false;
   SceneOverrides overrides;
 };
 
@@ -39,13 +43,20 @@ void describe(CLI::App& app, RenderOptions& options) {
       ->capture_default_str();
   add_seconds(app, options.seconds, "Length of the film; the scene's by default");
   add_number(app, "--at", options.at, 0, 1e6, "Time of a single picture; the scene's end by default");
+  add_number(app, "--trail", options.trail, 1e-6, 1e6,
+             "Leave ropes and particles in the picture as they were every so many seconds");
+  CLI::Option* stepper =
+      app.add_option("--stepper", options.stepper, "Draw the laboratory's run; see hooke compare --help");
+  app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
+      ->needs(stepper);
   add_overrides(app, options.overrides);
   app.footer(
       "Each picture shows the state at its own time, between the two steps around it.\n\n"
       "Examples:\n"
       "  hooke render scenes/flag.json -o flag.mp4 --seconds 2 --size 640x360\n"
       "  hooke render scenes/rope.json -o rope.png --at 1.5\n"
-      "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180");
+      "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180\n"
+      "  hooke render scenes/paper/fig2.json -o fig2.png --stepper euler --force --trail 0.016 --at 0.3");
 }
 
 bool read_size(RenderOptions& options) {
@@ -58,11 +69,15 @@ bool ends_in(const std::string& text, const std::string& ending) {
   return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-/// Advances the simulation to the two steps around a time and draws between them.
+/// Advances the simulation, or the laboratory's run of it, to the two steps around a time and draws between
+/// them.
 class Film {
  public:
-  Film(Simulation simulation, render::Renderer renderer)
-      : simulation_(std::move(simulation)), renderer_(std::move(renderer)) {
+  Film(Simulation simulation, std::optional<lab::Run> run, render::Renderer renderer,
+       std::optional<double> trail)
+      : simulation_(std::move(simulation)), run_(std::move(run)), renderer_(std::move(renderer)) {
+    if (trail) drawing_.keep_trail(*trail);
+    has_trail_ = trail.has_value();
     drawing_.record(simulation_);
   }
 
@@ -71,13 +86,12 @@ class Film {
     const double steps = time / static_cast<double>(simulation_.scene().dt);
     // A time that is a whole number of steps, but for its rounding, needs no step beyond.
     const auto last = static_cast<std::uint64_t>(std::ceil(std::max(steps - 1e-4, 0.0)));
-    while (simulation_.world().step_count() < last) {
-      const std::uint64_t left = last - simulation_.world().step_count();
-      if (!simulation_.step().moved) {
-        return Error{ErrorCode::kOutOfRange, simulation_.scene().path, "the step did not move"};
-      }
-      if (left <= 2) drawing_.record(simulation_);
-      if (progress != nullptr) progress->show(simulation_.world().step_count());
+    while (steps_ < last) {
+      const std::uint64_t left = last - steps_;
+      const auto stepped = step();
+      if (!stepped) return stepped.error();
+      if (left <= 2 || has_trail_) drawing_.record(simulation_, this->time());
+      if (progress != nullptr) progress->show(steps_);
     }
     render::DrawList list;
     drawing_.fill(time, renderer_.height(), list);
@@ -92,9 +106,29 @@ class Film {
   [[nodiscard]] const Simulation& simulation() const { return simulation_; }
 
  private:
+  [[nodiscard]] double time() const {
+    return run_ ? static_cast<double>(steps_) * static_cast<double>(simulation_.scene().dt)
+                : simulation_.world().time();
+  }
+
+  Result<void> step() {
+    ++steps_;
+    if (!run_) {
+      if (simulation_.step().moved) return {};
+      return Error{ErrorCode::kOutOfRange, simulation_.scene().path, "the step did not move"};
+    }
+    // What has diverged stays out of the picture.
+    gone_ = gone_ || !run_->advance() || !show_run(*run_, simulation_);
+    return {};
+  }
+
   Simulation simulation_;
+  std::optional<lab::Run> run_;
   render::Renderer renderer_;
   SceneDrawing drawing_;
+  std::uint64_t steps_ = 0;
+  bool has_trail_ = false;
+  bool gone_ = false;
 };
 
 Result<void> render_picture(Film& film, const RenderOptions& options) {
@@ -118,7 +152,7 @@ Result<void> render_film(Film& film, const RenderOptions& options) {
     const auto image =
         film.picture_at(static_cast<double>(i) / static_cast<double>(options.frames_per_second), nullptr);
     if (!image) return image.error();
-    const auto added = video.value().add(image.value());
+    auto added = video.value().add(image.value());
     if (!added) return added;
     progress.show(i + 1);
   }
@@ -153,7 +187,14 @@ int command_render(Arguments arguments) {
   if (!simulation) return kBadInput;
   auto renderer = make_renderer(options);
   if (!renderer) return report(renderer.error());
-  Film film(std::move(*simulation), std::move(renderer).value());
+  std::optional<lab::Run> run;
+  if (!options.stepper.empty() && options.stepper != kSolverName) {
+    auto created = make_run(*simulation, options.stepper,
+                            options.seconds.value_or(simulation->scene().seconds), options.force);
+    if (!created) return report(created.error());
+    run.emplace(std::move(created).value());
+  }
+  Film film(std::move(*simulation), std::move(run), std::move(renderer).value(), options.trail);
   const auto done = single ? render_picture(film, options) : render_film(film, options);
   if (!done) return report(done.error());
   std::printf("%s\n", options.output.c_str());

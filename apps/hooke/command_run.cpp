@@ -1,6 +1,8 @@
 #include "hooke/command_line.h"
+#include "hooke/compare/stage.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
+#include "hooke/run_laboratory.h"
 #include "hooke/run_report.h"
 
 #include <CLI/CLI.hpp>
@@ -20,6 +22,8 @@ struct RunOptions {
   std::string json;
   bool hash = false;
   std::uint64_t hash_every = 0;  ///< Steps; 0 is never.
+  std::string stepper;           ///< Of the laboratory; empty for the solver.
+  bool force = false;
 };
 
 void describe(CLI::App& app, RunOptions& options) {
@@ -28,15 +32,23 @@ void describe(CLI::App& app, RunOptions& options) {
   add_overrides(app, options.overrides);
   app.add_option("--csv", options.csv, "Write one line per step");
   app.add_option("--json", options.json, "Write a report; /dev/stdout or - prints it instead of the summary");
-  app.add_flag("--hash", options.hash, "Print only the hash of the last state");
+  CLI::Option* stepper = app.add_option(
+      "--stepper", options.stepper,
+      "Run the laboratory instead: a name from hooke compare --help, auto, or declared for what the "
+      "scene's accuracy chooses");
+  app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
+      ->needs(stepper);
+  app.add_flag("--hash", options.hash, "Print only the hash of the last state")->excludes(stepper);
   app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->excludes(stepper);
   app.footer(
       "Exit code 1 if an expectation of the scene failed. Expectations later than --seconds do not count.\n\n"
       "Examples:\n"
       "  hooke run scenes/rope.json\n"
       "  hooke run scenes/flag.json --seconds 2 --json report.json --csv steps.csv\n"
-      "  hooke run scenes/flag.json --seconds 1 --workers 2 --hash");
+      "  hooke run scenes/flag.json --seconds 1 --workers 2 --hash\n"
+      "  hooke run scenes/paper/fig3.json --stepper rk4");
 }
 
 /// Steps to the end, and fills the record and the file of steps.
@@ -113,6 +125,16 @@ int command_run(Arguments arguments) {
   if (!loaded) return report(loaded.errors, loaded.warnings);
   Scene scene = std::move(*loaded.value);
   apply(options.overrides, scene.world);
+  if (!options.stepper.empty() && options.stepper != kSolverName) {
+    for (const Error& warning : loaded.warnings) warn(warning);
+    const double seconds = options.seconds.value_or(scene.seconds);
+    return run_laboratory(std::move(scene), {.scene = options.scene,
+                                             .stepper = options.stepper,
+                                             .seconds = seconds,
+                                             .force = options.force,
+                                             .csv = options.csv,
+                                             .json = options.json});
+  }
   const std::uint64_t steps = options.seconds ? steps_in(scene, *options.seconds) : scene.step_count();
   Loaded<Simulation> built = Simulation::create(std::move(scene));
   if (!built) return report(built.errors, built.warnings);

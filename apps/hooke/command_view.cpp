@@ -107,8 +107,9 @@ class Show {
     return {};
   }
 
-  void fill(render::DrawList& list) {
-    drawing_.fill(simulation_.world().time(), kUsualHeight, list);
+  void fill(render::DrawList& list, double blend) {
+    const double behind = (1 - blend) * static_cast<double>(scene_.dt);
+    drawing_.fill(simulation_.world().time() - behind, kUsualHeight, list);
     for (const std::string& line : drawing_.take_warnings()) {
       std::fprintf(stderr, "warning: %s\n", line.c_str());
     }
@@ -126,7 +127,7 @@ class Show {
 ViewModel model_of(Show& show) {
   return {.advance = [&show] { return show.advance(); },
           .reset = [&show] { return show.reset(); },
-          .fill = [&show](render::DrawList& list) { show.fill(list); },
+          .fill = [&show](render::DrawList& list, double blend) { show.fill(list, blend); },
           .energies = [&show]() -> Energies {
             const Energy energy = show.world().measure().energy;
             return {energy.kinetic, energy.potential, energy.elastic};

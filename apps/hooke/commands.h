@@ -18,6 +18,7 @@ int command_convert(Arguments arguments);
 int command_validate(Arguments arguments);
 int command_new(Arguments arguments);
 int command_check(Arguments arguments);
+int command_compare(Arguments arguments);
 int command_bench(Arguments arguments);
 
 }  // namespace hooke::app

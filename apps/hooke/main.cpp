@@ -23,6 +23,7 @@ constexpr std::array kCommands = {
     Command{"view", "show a scene or a model in a window", command_view},
     Command{"render", "draw a scene to a film or to pictures, without a display", command_render},
     Command{"check", "run cases with known answers", command_check},
+    Command{"compare", "run a scene by several methods of integration, and plot them", command_compare},
     Command{"bench", "time scenes", command_bench},
     Command{"convert", "convert a model between .3ds .obj .stl .ply .gltf .glb", command_convert},
     Command{"validate", "check scene files and the models they use", command_validate},
@@ -38,7 +39,7 @@ int print_help() {
       "  0  good\n"
       "  1  an expectation or a check failed\n"
       "  2  bad input: a file or an argument\n"
-      "  3  the machine cannot: no OpenGL, no display, no ffmpeg, a write that failed\n"
+      "  3  the machine cannot: no OpenGL, no display, no ffmpeg or gnuplot, a write that failed\n"
       "\nExamples:\n"
       "  hooke run scenes/rope.json\n"
       "  hooke render scenes/rope.json -o rope.png --at 1\n"

@@ -1,9 +1,9 @@
 #include "hooke/run_report.h"
 
+#include "hooke/text_of.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -12,16 +12,6 @@ namespace hooke::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// As std::printf, to a string of at most 1000 characters.
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-  char text[1001];
-  std::va_list values;
-  va_start(values, format);
-  std::vsnprintf(text, sizeof text, format, values);
-  va_end(values);
-  return text;
-}
 
 Json json_of(const Energy& energy) {
   return {{"kinetic", energy.kinetic}, {"potential", energy.potential}, {"elastic", energy.elastic}};

@@ -1,5 +1,6 @@
 #include "hooke/scene_drawing.h"
 
+#include "hooke/clock.h"
 #include "hooke/figure.h"
 
 #include "render/image.h"
@@ -23,17 +24,6 @@ constexpr float kLeastRopeRadius = 1.2F;
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
   return {snap(place.x), snap(place.y), snap(place.z)};
-}
-
-DVec3 mix(DVec3 a, DVec3 b, double part) {
-  return a + part * (b - a);
-}
-
-Quat mix(Quat a, Quat b, float part) {
-  // Of the two quaternions of a rotation, the one on the side of `a`: the short way around.
-  const float side = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0 ? -1.0F : 1.0F;
-  const auto at = [&](float p, float q) { return p + part * (side * q - p); };
-  return normalize(Quat{at(a.x, b.x), at(a.y, b.y), at(a.z, b.z), at(a.w, b.w)});
 }
 
 }  // namespace
@@ -62,9 +52,9 @@ std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, 
   return figure;
 }
 
-void SceneDrawing::record(const Simulation& simulation) {
+void SceneDrawing::record(const Simulation& simulation, double time) {
   std::swap(previous_, current_);
-  current_.time = simulation.world().time();
+  current_.time = time;
   current_.objects.clear();
   for (const SceneObject& object : simulation.objects()) {
     if (object.kind == SceneObject::Kind::kField) continue;
@@ -75,6 +65,10 @@ void SceneDrawing::record(const Simulation& simulation) {
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
   }
+  // A step's time is a sum: half a step early is in time.
+  const double half_step = static_cast<double>(simulation.scene().dt) / 2;
+  const bool due = trail_.empty() || time >= trail_.back().time + trail_interval_.value_or(0) - half_step;
+  if (trail_interval_ && due) trail_.push_back(current_);
   camera_ = simulation.scene().camera;
   if (!camera_ && !automatic_) measure(current_);
 }
@@ -119,11 +113,8 @@ SceneDrawing::State SceneDrawing::between(double time) const {
                            ? before.begin() + static_cast<std::ptrdiff_t>(i)
                            : std::find_if(before.begin(), before.end(), same);
     if (found == before.end()) continue;
-    object.pose.position = mix(found->pose.position, object.pose.position, part);
-    object.pose.rotation = mix(found->pose.rotation, object.pose.rotation, static_cast<float>(part));
-    for (std::size_t k = 0; k < std::min(object.points.size(), found->points.size()); ++k) {
-      object.points[k] = mix(found->points[k], object.points[k], part);
-    }
+    object.pose = blend(found->pose, object.pose, part);
+    object.points = blend(found->points, object.points, part);
   }
   return state;
 }
@@ -136,18 +127,33 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
   const float half_fov = 0.5F * view.vertical_fov_deg * std::numbers::pi_v<float> / 180;
   const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));
+  const FigurePlace place = {.least_rope_radius = kLeastRopeRadius * pixel, .eye = list.camera.eye};
+  add_trail(origin, place, list);
   const State state = between(time);
   std::vector<Vec3> points;
   for (const ObjectState& object : state.objects) {
     points.resize(object.points.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = local(object.points[i]);
-    add_figure(*object.figure,
-               {.position = local(object.pose.position),
-                .rotation = object.pose.rotation,
-                .points = points,
-                .least_rope_radius = kLeastRopeRadius * pixel,
-                .eye = list.camera.eye},
-               list);
+    FigurePlace here = place;
+    here.position = local(object.pose.position);
+    here.rotation = object.pose.rotation;
+    here.points = points;
+    add_figure(*object.figure, here, list);
+  }
+}
+
+void SceneDrawing::add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const {
+  FigurePlace left = place;
+  std::vector<Vec3> points;
+  for (const State& state : trail_) {
+    for (const ObjectState& object : state.objects) {
+      const auto kind = object.figure->kind;
+      if (kind != SceneObject::Kind::kRope && kind != SceneObject::Kind::kParticles) continue;
+      points.clear();
+      for (const DVec3& point : object.points) points.push_back(vector_cast<float>(point - origin));
+      left.points = points;
+      add_figure(*object.figure, left, list);
+    }
   }
 }
 

@@ -14,14 +14,21 @@
 
 namespace hooke::app {
 
-struct Figure;  // one object's looks and triangles; figure.h
+struct Figure;       // one object's looks and triangles; figure.h
+struct FigurePlace;  // where it is; figure.h
 
 /// Turns a simulation into what the renderer draws. Keeps copies of the last two states it was shown, so that
 /// a picture may lie between two steps.
 class SceneDrawing {
  public:
   /// Takes a copy of the present state; the copy before it stays for interpolation.
-  void record(const Simulation& simulation);
+  void record(const Simulation& simulation) { record(simulation, simulation.world().time()); }
+  /// The same at a time [s] that the world does not know: its points were moved by hand.
+  void record(const Simulation& simulation, double time);
+
+  /// From now on ropes and particles leave a copy of themselves behind every `interval` [s], as on a plate
+  /// that is exposed again and again. Positive.
+  void keep_trail(double interval) { trail_interval_ = interval; }
 
   /// Fills the list with the state at `time` [s]: by straight lines between the two copies, the later one
   /// beyond it. Camera, bodies and ropes are relative to a place near the camera. `height_px` is the
@@ -49,6 +56,8 @@ class SceneDrawing {
   [[nodiscard]] State between(double time) const;
   void measure(const State& state);
 
+  void add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const;
+
   std::map<Key, std::shared_ptr<Figure>> figures_;
   std::map<std::string, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;
@@ -56,6 +65,8 @@ class SceneDrawing {
   std::optional<Viewpoint> automatic_;  ///< Frames the first state; for scenes without a camera.
   State previous_;
   State current_;
+  std::optional<double> trail_interval_;  ///< [s]
+  std::vector<State> trail_;              ///< Oldest first.
 };
 
 }  // namespace hooke::app

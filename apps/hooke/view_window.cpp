@@ -1,5 +1,7 @@
 #include "hooke/view_window.h"
 
+#include "hooke/clock.h"
+
 #define GLFW_INCLUDE_NONE  // NOLINT(readability-identifier-naming): GLFW's own name
 #include "render/orbit_camera.h"
 #include "render/renderer.h"
@@ -21,16 +23,16 @@ namespace hooke::app {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using WallClock = std::chrono::steady_clock;
 
 constexpr std::size_t kHistory = 600;
 // A slow machine shows the simulation slowly rather than never catching up.
-constexpr int kMaxStepsPerPicture = 4;
+constexpr int kCatchUpSteps = 4;
 constexpr float kRadiansPerPixel = 0.006F;
 constexpr float kPanelWidth = 300;
 
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+double milliseconds_since(WallClock::time_point start) {
+  return std::chrono::duration<double, std::milli>(WallClock::now() - start).count();
 }
 
 /// A value that follows its input slowly enough to be read.
@@ -57,7 +59,8 @@ const std::array<Curve, 4> kCurves = {{
 struct Session {
   const ViewModel& model;
   bool playing = true;
-  double owed_seconds = 0;  ///< Simulated time that playing has earned and not yet spent.
+  Clock clock;
+  double blend = 1;  ///< Where the picture lies between the last two states.
   double step_ms = 0;
   double picture_ms = 0;
   std::string problem;
@@ -109,7 +112,7 @@ void stop_with(Session& session, const Error& error) {
 }
 
 void step_once(Session& session) {
-  const auto start = Clock::now();
+  const auto start = WallClock::now();
   const auto done = session.model.advance();
   smooth(session.step_ms, milliseconds_since(start));
   if (!done) stop_with(session, done.error());
@@ -119,7 +122,8 @@ void step_once(Session& session) {
 void reset(Session& session) {
   const auto done = session.model.reset();
   session.history.clear();
-  session.owed_seconds = 0;
+  session.clock.reset();
+  session.blend = 1;
   session.problem.clear();
   if (!done) stop_with(session, done.error());
   record(session);
@@ -127,17 +131,15 @@ void reset(Session& session) {
 
 void single_step(Session& session) {
   session.playing = false;
+  session.blend = 1;
   step_once(session);
 }
 
 void play(Session& session, double elapsed_seconds) {
   if (!session.playing) return;
-  const double step = session.model.step_seconds;
-  session.owed_seconds = std::min(session.owed_seconds + elapsed_seconds, kMaxStepsPerPicture * step);
-  while (session.playing && session.owed_seconds >= step) {
-    session.owed_seconds -= step;
-    step_once(session);
-  }
+  const Clock::Due due = session.clock.advance(elapsed_seconds);
+  for (int i = 0; i < due.steps && session.playing; ++i) step_once(session);
+  session.blend = session.playing ? due.blend : 1;
 }
 
 /// Keeps every stroke for the next picture. The interface's own key states forget a key that is pressed and
@@ -225,6 +227,7 @@ void draw_panel(Session& session) {
   if (session.model.time) ImGui::Text("time     %10.3f s", session.model.time());
   ImGui::Text("step     %10.3f ms", session.step_ms);
   ImGui::Text("pictures %10.1f /s", session.picture_ms > 0 ? 1000 / session.picture_ms : 0.0);
+  ImGui::Text("dropped  %10.3f s", session.clock.dropped_seconds());
   if (!session.history.empty()) draw_plot(session);
   if (!session.problem.empty()) {
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + kPanelWidth);
@@ -244,7 +247,7 @@ void begin_interface() {
 
 void fill_list(Session& session) {
   session.list = {};
-  session.model.fill(session.list);
+  session.model.fill(session.list, session.blend);
   if (!session.has_camera) session.camera = render::make_orbit_camera(session.list.camera);
   session.has_camera = true;
   session.list.camera = render::camera_of(session.camera);
@@ -282,6 +285,8 @@ Result<void> save_screenshot(const ViewOptions& options, const render::Renderer&
 }
 
 Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
+  const auto clock = Clock::create({.step_seconds = model.step_seconds, .catch_up_steps = kCatchUpSteps});
+  if (!clock) return clock.error();
   const auto context = render::Context::create_window(options.title, options.width, options.height);
   if (!context) return context.error();
   const int automatic = context.value().driver().find("llvmpipe") == std::string::npos ? 4 : 1;
@@ -289,7 +294,7 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
   auto renderer = render::Renderer::create(context.value(), {options.width, options.height, samples, 2048});
   if (!renderer) return renderer.error();
   GLFWwindow* window = context.value().window();
-  Session session{model, !options.start_paused, 0, 0, 0, {}, {}, {}, false, {}, {}};
+  Session session{model, !options.start_paused, clock.value(), 1, 0, 0, {}, {}, {}, false, {}, {}};
   // Before the interface starts: it passes on to the callbacks it finds.
   glfwSetWindowUserPointer(window, &session);
   glfwSetKeyCallback(window, keep_key);
@@ -299,13 +304,13 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
 
   record(session);
   fill_list(session);
-  auto last = Clock::now();
+  auto last = WallClock::now();
   for (int frame = 0; glfwWindowShouldClose(window) == GLFW_FALSE; ++frame) {
     if (options.max_frames > 0 && frame >= options.max_frames) break;
     if (options.stop_time && frame > 0 && model.time && model.time() >= *options.stop_time) break;
     glfwPollEvents();
     const double elapsed_ms = milliseconds_since(last);
-    last = Clock::now();
+    last = WallClock::now();
     smooth(session.picture_ms, elapsed_ms);
     play(session, elapsed_ms / 1000);
     auto drawn = draw_picture(session, renderer.value(), window);

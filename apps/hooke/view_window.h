@@ -20,12 +20,14 @@ struct Energies {
 /// What the window shows and steers. It knows no world: the caller fills in the functions. All of them are
 /// called by the thread that calls run_view.
 struct ViewModel {
-  std::function<Result<void>()> advance;        ///< One step. An Error pauses and is shown.
-  std::function<Result<void>()> reset;          ///< Back to the start.
-  std::function<void(render::DrawList&)> fill;  ///< The present state. Its camera counts only the first time.
-  std::function<Energies()> energies;           ///< May be empty: no plot.
-  std::function<double()> time;                 ///< Of the simulation [s]; may be empty.
-  double step_seconds = 1.0 / 60;               ///< Simulated time of one advance.
+  std::function<Result<void>()> advance;  ///< One step. An Error pauses and is shown.
+  std::function<Result<void>()> reset;    ///< Back to the start.
+  /// The state between the last two, see Clock::Due::blend; 1 is the present one. Its camera counts only the
+  /// first time.
+  std::function<void(render::DrawList&, double blend)> fill;
+  std::function<Energies()> energies;  ///< May be empty: no plot.
+  std::function<double()> time;        ///< Of the simulation [s]; may be empty.
+  double step_seconds = 1.0 / 60;      ///< Simulated time of one advance.
 };
 
 struct ViewOptions {

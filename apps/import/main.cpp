@@ -96,7 +96,7 @@ const Format& format_of(const std::string& path) {
   const auto* format = std::find_if(kFormats.begin(), kFormats.end(),
                                     [&](const Format& candidate) { return candidate.ending == ending; });
   if (format == kFormats.end()) {
-    throw Refusal(ImporterExit::kUnsupported, "not one of .3ds .obj .stl .ply .gltf .glb");
+    throw Refusal(ImporterExit::kBadSyntax, "not one of .3ds .obj .stl .ply .gltf .glb");
   }
   return *format;
 }

@@ -104,7 +104,7 @@ void scan_glb(std::span<const std::byte> bytes) {
       start.json_size > bytes.size() - sizeof(start)) {
     throw Refusal(ImporterExit::kBadSyntax, "not a .glb file");
   }
-  if (start.version != 2) throw Refusal(ImporterExit::kUnsupported, "a .glb of another version than 2");
+  if (start.version != 2) throw Refusal(ImporterExit::kBadSyntax, "a .glb of another version than 2");
   const auto text = bytes.subspan(sizeof(start), start.json_size);
   scan_gltf(text);
 }

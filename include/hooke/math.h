@@ -71,7 +71,8 @@ constexpr T length_squared(Vector3<T> a) {
 }
 template <class T>
 T length(Vector3<T> a) {
-  return std::sqrt(dot(a, a));
+  using std::sqrt;  // T may bring its own
+  return sqrt(dot(a, a));
 }
 /// Unit vector along `a`; the zero vector if `a` is zero.
 template <class T>

@@ -110,6 +110,9 @@ struct SceneTag {
   std::string name = {};      ///< Unique; when empty, the object is called by its path, as "ropes[0]".
   std::string material = {};  ///< A name in Scene::materials; empty for none.
   std::optional<Real> friction = {};  ///< Replaces the material's. [0, 100]
+  /// How the laboratory integrates it: a name of lab::steppers() or "auto"; empty for what the run chooses.
+  /// Not of a body.
+  std::string stepper = {};
   SceneArray array = {};
 };
 
@@ -196,6 +199,11 @@ struct SceneCamera {
   std::vector<SceneKeyframe> path = {};  ///< Replaces eye and target; smooth between keyframes.
 };
 
+/// How exact the laboratory must be, whatever the method.
+struct SceneAccuracy {
+  double max_error = 1e-3;  ///< Of any point's position up to the end [m], positive.
+};
+
 /// A figure that the scene promises.
 struct SceneExpectation {
   enum class Quantity : std::uint8_t {
@@ -250,6 +258,7 @@ struct Scene {
   WorldDesc world = {};
   Real dt = Real(1) / Real(60);  ///< Of one step [s]. (0, 1]
   double seconds = 10;           ///< How long it runs. [0, 1e6]
+  std::optional<SceneAccuracy> accuracy = {};
   std::vector<SceneMesh> meshes = {};
   std::vector<SceneMaterial> materials = {};
   std::vector<ScenePair> material_pairs = {};
@@ -318,6 +327,7 @@ struct SceneObject {
   SceneMaterial look = {};
   std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
   std::string path = {};      ///< In the file, as "ropes[0]".
+  std::string stepper = {};   ///< Of the laboratory; empty for what the run chooses.
   /// One shape of a body that has several.
   struct Part {
     Shape shape = {};

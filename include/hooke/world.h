@@ -19,6 +19,7 @@ namespace hooke {
 
 struct WorldData;     // every table of the simulation; src/world/world_data.h
 struct SnapshotData;  // a copy of the tables
+struct WorldAccess;   // src/world/access.h
 
 /// Columns of one object's points in the order its maker gave them. Reads the engine's own memory, without a
 /// copy. Valid until the next call on the World that is not const. Indices beyond size() give zeros.
@@ -86,6 +87,8 @@ struct StepReport {
   [[nodiscard]] bool healthy() const { return moved && rows_quarantined == 0; }
 };
 
+/// Of the middle of the last substep: positions are half a substep ahead of velocities, so potential and
+/// elastic energy are taken where the particles were then. Energy of ropes is by their tension at its end.
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
@@ -254,6 +257,7 @@ class World {
   [[nodiscard]] Memory memory() const;
 
  private:
+  friend struct WorldAccess;
   explicit World(std::unique_ptr<WorldData> data);
   std::unique_ptr<WorldData> data_;
 };

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace hooke::collision {
 
@@ -76,7 +78,7 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real 
   const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
   const Real friction = std::sqrt(object.friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(shape.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
+    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
   }
   find_triangles_near(*shape.mesh, x, reach, finder.triangles);
@@ -103,31 +105,30 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
   contacts.separation[row] = gap.distance - radius;
 }
 
-/// Rows [first, end) are triangles of one mesh near one particle. The nearest triangle tells whether the
-/// particle is inside: then it alone pushes out. Outside, faces below the particle hold it; a rim does only
-/// where no face is, so that sliding over the edges between triangles of a flat mesh is not felt.
-void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::size_t end, const Frame& frame,
-                      Vec3 x, Real radius) {
-  const state::Mesh& mesh = *frame.shape->mesh;
-  const Vec3 place = frame.to_shape(x);
-  std::size_t nearest = first;
+/// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
+/// triangle tells whether the particle is inside: then it alone pushes out. Outside, faces below the particle
+/// hold it; a rim does only where no face is, so that sliding over the edges between triangles of a flat mesh
+/// is not felt.
+void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
+                      const Frame& frame, Real radius) {
+  std::size_t nearest = 0;
   Real least = std::numeric_limits<Real>::infinity();
   bool any_face = false;
   bool inside = false;
-  for (std::size_t row = first; row < end; ++row) {
-    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
     any_face = any_face || (g.over_face && g.gap.distance >= Real(0));
     // Of equally near triangles one that is below the particle counts, not one beside it.
     const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
-    nearest = better ? row : nearest;
+    nearest = better ? i : nearest;
     least = better ? g.unsigned_distance : least;
     inside = better ? g.gap.distance < Real(0) : inside;
   }
-  for (std::size_t row = first; row < end; ++row) {
-    const TriangleGap g = gap_to_triangle(mesh, contacts.feature[row], place);
-    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && row == nearest;
-    const bool active = inside ? row == nearest : holds;
-    set_row(contacts, row, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
+    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && i == nearest;
+    const bool active = inside ? i == nearest : holds;
+    set_row(contacts, first + i, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
   }
 }
 
@@ -154,6 +155,7 @@ void update_contacts(parallel::Range range, state::Tables& t) {
   const auto same_pair = [&](std::size_t a, std::size_t b) {
     return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
   };
+  std::vector<TriangleGap> gaps;  // of one particle to one mesh
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
   while (row < static_cast<std::size_t>(range.end)) {
@@ -161,13 +163,17 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     while (row < count && same_pair(row, first)) ++row;
     const std::uint32_t particle = contacts.particle[first];
     const Frame frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
-    const Vec3 x = t.particles.position[particle].x;
+    const state::ColliderShape& shape = *frame.shape;
+    const Vec3 x = frame.to_shape(t.particles.position[particle].x);
     const Real radius = t.particles.position[particle].radius;
-    if (frame.shape->shape.kind == ShapeKind::kMesh) {
-      update_mesh_rows(contacts, first, row, frame, x, radius);
-    } else {
-      set_row(contacts, first, frame, gap_to_shape(frame.shape->shape, frame.to_shape(x)), radius);
+    if (shape.shape.kind != ShapeKind::kMesh) {
+      set_row(contacts, first, frame, gap_to_shape(shape, x), radius);
+      continue;
     }
+    gaps.clear();
+    for (std::size_t i = first; i < row; ++i)
+      gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
+    update_mesh_rows(contacts, first, gaps, frame, radius);
   }
 }
 
@@ -181,8 +187,8 @@ double largest_penetration(const state::Tables& t) {
         const Frame frame = frame_of(t, c, object);
         const Vec3 x = frame.to_shape(t.particles.position[p].x);
         const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
-        const Real distance = mesh ? distance_to_mesh(*frame.shape->mesh, x, radius)
-                                   : gap_to_shape(frame.shape->shape, x).distance;
+        const Real distance =
+            mesh ? distance_to_mesh(*frame.shape->mesh, x, radius) : gap_to_shape(*frame.shape, x).distance;
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }

@@ -35,7 +35,8 @@ Dihedral<T> dihedral(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vector3<T> x3)
 
   Dihedral<T> d;
   d.valid = true;
-  d.angle = math::atan2(dot(cross(na, nb), e) / le, dot(na, nb));
+  using math::atan2;  // T may bring its own
+  d.angle = atan2(dot(cross(na, nb), e) / le, dot(na, nb));
   const Vector3<T> ua = (T(1) / aa) * na;
   const Vector3<T> ub = (T(1) / bb) * nb;
   d.gradient[2] = -le * ua;

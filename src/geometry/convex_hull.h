@@ -24,6 +24,8 @@ struct ConvexHull {
   };
 
   static constexpr int kMaxVertices = 256;
+  static constexpr double kTolerance = 2e-5;     ///< In units of the extent (the longest side of the bounds).
+  static constexpr double kThicknessMin = 1e-4;  ///< In units of the extent.
 
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
@@ -34,13 +36,32 @@ struct ConvexHull {
   Real outer_radius = Real(0);  ///< From the center to the farthest vertex [m].
 };
 
-/// The convex hull of points. Points within the tolerance of a face count as on it; coplanar triangles are
-/// merged to polygons. Errors: fewer than four points, one that is not finite, or all of them in a plane
-/// (thinner than 1e-4 of their extent). More than kMaxVertices hull vertices are reduced to that many by
-/// leaving out those that change the volume least; the hull then lies inside the true one.
+/// The convex hull of points. Only corners are left: points within the tolerance of a face or an edge count
+/// as on it, and coplanar triangles are one polygon. The vertices are some of the points, in ascending order
+/// of place; the hull does not depend on the order of the points. Of more corners than kMaxVertices those
+/// that stand out most are kept, and the hull lies inside the true one (of a sphere: 3 % of its volume are
+/// lost).
+///
+/// Errors: fewer than four points, one that is not finite, extents outside 1e-9 to 1e9 m, and a hull thinner
+/// than kThicknessMin.
 [[nodiscard]] Result<ConvexHull> make_convex_hull(std::span<const Vec3> points);
 
 /// The hull of a box about the origin.
 [[nodiscard]] ConvexHull make_box_hull(Vec3 half_extents);
+
+/// The vertex farthest along `direction` (any length); of equally far ones the first. A scan, 0.8 ns a
+/// vertex: climbing along edges gains nothing below 24 vertices, and a quarter at 64, unless it begins near
+/// the end.
+[[nodiscard]] inline std::uint16_t support(const ConvexHull& hull, Vec3 direction) {
+  std::size_t best = 0;
+  Real farthest = dot(direction, hull.vertices[0]);
+  for (std::size_t i = 1; i < hull.vertices.size(); ++i) {
+    const Real along = dot(direction, hull.vertices[i]);
+    if (!(along > farthest)) continue;
+    farthest = along;
+    best = i;
+  }
+  return static_cast<std::uint16_t>(best);
+}
 
 }  // namespace hooke::geometry

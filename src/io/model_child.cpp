@@ -1,6 +1,7 @@
 #include "io/model_child.h"
 
 #include "io/model_flat.h"
+#include "process/child.h"
 
 #include <algorithm>
 #include <array>
@@ -13,13 +14,10 @@
 #include <filesystem>
 #include <optional>
 #include <poll.h>
-#include <spawn.h>
 #include <string_view>
 #include <sys/wait.h>
 #include <system_error>
-#include <thread>
 #include <unistd.h>
-#include <utility>
 
 namespace hooke::io {
 
@@ -27,83 +25,21 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using process::Descriptor;
 
 constexpr std::size_t kMaxReason = 400;  // bytes of a refusal that are shown
 constexpr std::string_view kProgram = "hooke-import";
-
-/// Closes its file descriptor.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_ = -1;
-};
 
 struct Pipe {
   Descriptor read;
   Descriptor write;
 };
 
-/// A pipe above the three standard descriptors, so that none is overwritten while they are set up.
 std::optional<Pipe> make_pipe() {
   std::array<int, 2> ends = {-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
-  const Descriptor low_read(ends[0]);
-  const Descriptor low_write(ends[1]);
-  Pipe pipe = {Descriptor(::fcntl(ends[0], F_DUPFD_CLOEXEC, 3)),
-               Descriptor(::fcntl(ends[1], F_DUPFD_CLOEXEC, 3))};
-  if (pipe.read.number() < 0 || pipe.write.number() < 0) return std::nullopt;
-  return pipe;
+  return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
 }
-
-/// A running importer, in a process group of its own. Killed and collected when it goes out of scope.
-class Child {
- public:
-  explicit Child(pid_t id) : id_(id) {}
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() {
-    if (id_ <= 0) return;
-    ::kill(-id_, SIGKILL);
-    ::kill(id_, SIGKILL);
-    while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
-    }
-  }
-
-  /// The wait status, once it has ended by itself before `deadline`. A program that ignores SIGCHLD learns no
-  /// status: then the bytes alone must speak for themselves, as after a good end.
-  std::optional<int> wait(Clock::time_point deadline) {
-    for (;;) {
-      int status = 0;
-      const pid_t ended = ::waitpid(id_, &status, WNOHANG);
-      if (ended == id_ || (ended < 0 && errno != EINTR)) {
-        id_ = 0;
-        return ended < 0 ? 0 : status;
-      }
-      if (Clock::now() >= deadline) return std::nullopt;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  }
-
- private:
-  pid_t id_;
-};
 
 std::string find_program() {
   if (const char* chosen = std::getenv("HOOKE_IMPORT"); chosen != nullptr && *chosen != '\0') return chosen;
@@ -123,44 +59,11 @@ std::string number_text(double value) {
   return {buffer.data(), end};
 }
 
-std::array<std::string, 5> arguments(const std::string& program, const std::string& path,
-                                     const ImportOptions& options) {
+std::vector<std::string> arguments(const std::string& program, const std::string& path,
+                                   const ImportOptions& options) {
   constexpr std::array<const char*, 4> up_words = {"format", "x", "y", "z"};
   return {program, path, up_words[static_cast<std::size_t>(options.up)], number_text(options.scale),
           options.fit ? number_text(*options.fit) : "none"};
-}
-
-/// Starts the importer with the two pipes as its output and error; 0 on success, else an errno.
-int spawn(pid_t& id, std::array<std::string, 5>& words, const Pipe& output, const Pipe& reason) {
-  posix_spawn_file_actions_t actions;
-  if (const int error = posix_spawn_file_actions_init(&actions); error != 0) return error;
-  posix_spawnattr_t attributes;
-  if (const int error = posix_spawnattr_init(&attributes); error != 0) {
-    posix_spawn_file_actions_destroy(&actions);
-    return error;
-  }
-  sigset_t none;
-  sigset_t all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  std::array<char*, 6> argv = {};
-  std::transform(words.begin(), words.end(), argv.begin(), [](std::string& word) { return word.data(); });
-
-  int error = posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  if (error == 0) error = posix_spawn_file_actions_adddup2(&actions, output.write.number(), 1);
-  if (error == 0) error = posix_spawn_file_actions_adddup2(&actions, reason.write.number(), 2);
-  if (error == 0) error = posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-  if (error == 0) error = posix_spawnattr_setsigmask(&attributes, &none);
-  if (error == 0) error = posix_spawnattr_setsigdefault(&attributes, &all);
-  if (error == 0) error = posix_spawnattr_setpgroup(&attributes, 0);
-  if (error == 0) {
-    error = posix_spawnattr_setflags(&attributes,
-                                     POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  }
-  if (error == 0) error = posix_spawn(&id, argv[0], &actions, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  return error;
 }
 
 /// One pipe's end and what came out of it.
@@ -256,13 +159,11 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
   auto output = make_pipe();
   auto reason = make_pipe();
   if (!output || !reason) return Error{ErrorCode::kLimitExceeded, path, "no pipe for the importer"};
-  std::array<std::string, 5> words = arguments(program, path, options);
-  pid_t id = 0;
-  if (const int error = spawn(id, words, *output, *reason); error != 0) {
-    return Error{ErrorCode::kUnsupported, path,
-                 "cannot start " + program + ": " + std::generic_category().message(error)};
+  auto child = process::Child::start(arguments(program, path, options),
+                                     {.output = output->write.number(), .error = reason->write.number()});
+  if (!child) {
+    return Error{ErrorCode::kUnsupported, path, "cannot start " + program + ": " + child.error().message};
   }
-  Child child(id);
   output->write.close();
   reason->write.close();
   Stream model_stream = {.end = output->read, .limit = kMaxFlatModelSize};
@@ -271,7 +172,7 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
   if (model_stream.overflowed) {
     return Error{ErrorCode::kLimitExceeded, path, "the importer gave more bytes than any model has"};
   }
-  const std::optional<int> status = in_time ? child.wait(deadline) : std::nullopt;
+  const std::optional<int> status = in_time ? child.value().wait_until(deadline) : std::nullopt;
   if (!status) return Error{ErrorCode::kLimitExceeded, path, "reading it took too long"};
   if (*status != 0) return ending_error(path, *status, reason_stream.bytes);
   return std::move(model_stream.bytes);

@@ -76,7 +76,7 @@ Result<void> export_checked(const Model& model, const std::string& path) {
   if (ending == ".stl") return io::replace_file(path, io::write_stl(model));
   if (ending == ".glb") return io::replace_file(path, io::write_glb(model));
   if (ending == ".3ds") return io::replace_file(path, io::write_3ds(model));
-  if (ending != ".obj") return Error{ErrorCode::kUnsupported, path, "not one of .obj .stl .glb .3ds"};
+  if (ending != ".obj") return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};
   std::filesystem::path library = file;
   library.replace_extension(".mtl");
   const io::ObjText text = io::write_obj(model, library.filename().string());

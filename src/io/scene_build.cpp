@@ -100,6 +100,7 @@ SceneObject Builder::make_object(const SceneTag& tag, SceneObject::Kind kind, co
   object.kind = kind;
   object.path = path;
   object.material = tag.material;
+  object.stepper = tag.stepper;
   const SceneMaterial* material = find_material(tag.material);
   if (material != nullptr) object.look = *material;
   return object;

@@ -88,6 +88,9 @@ std::vector<Field> scene_rows() {
       field<&Scene::world>("world", "", kAny, "Gravity, wind, accuracy."),
       field<&Scene::dt>("dt", "s", step_range, "Length of a step."),
       field<&Scene::seconds>("seconds", "s", between(0, 1e6), "How long the scene runs."),
+      field<&Scene::accuracy>(
+          "accuracy", "", kAny,
+          "Of the laboratory: it then chooses method and step; without it they are given."),
       field<&Scene::meshes>("meshes", "", kAny, "Triangles, by name."),
       field<&Scene::materials>("materials", "", kAny, "Looks and friction, by name."),
       field<&Scene::material_pairs>("material_pairs", "", kAny, "What two materials do to each other."),
@@ -326,9 +329,22 @@ const Kind& kind_of<SceneExpectation>() {
   return kind;
 }
 
+template <>
+const Kind& kind_of<SceneAccuracy>() {
+  static const Kind kind = {
+      .name = "accuracy",
+      .help =
+          "How exact the laboratory must be (`hooke run --stepper`); the real-time solver has no use for it.",
+      .fields = {required(field<&SceneAccuracy::max_error>(
+          "max_error", "m", kPositive, "Largest error of any point's position up to the end."))},
+      .defaults = defaults_of<SceneAccuracy>};
+  return kind;
+}
+
 std::span<const Kind* const> all_kinds() {
   static const std::vector<const Kind*> kinds = [] {
-    std::vector<const Kind*> list = {&kind_of<Scene>(), &kind_of<WorldDesc>(), &kind_of<WindDesc>(),
+    std::vector<const Kind*> list = {&kind_of<Scene>(),     &kind_of<WorldDesc>(),
+                                     &kind_of<WindDesc>(),  &kind_of<SceneAccuracy>(),
                                      &kind_of<SceneMesh>(), &kind_of<SceneMaterial>()};
     list.insert(list.end(), body_kinds().begin(), body_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());

@@ -90,6 +90,8 @@ const Kind& kind_of<SceneCamera>();
 template <>
 const Kind& kind_of<SceneKeyframe>();
 template <>
+const Kind& kind_of<SceneAccuracy>();
+template <>
 const Kind& kind_of<SceneExpectation>();
 template <>
 const Kind& kind_of<Quat>();

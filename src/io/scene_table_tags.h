@@ -2,6 +2,8 @@
 
 #include "io/scene_table.h"
 
+#include <type_traits>
+
 /// \file
 /// What the tables of all named objects share.
 
@@ -21,7 +23,7 @@ bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
   return check_named(reader, node, static_cast<const T*>(object)->tag.name);
 }
 
-/// The rows of SceneTag, which every object but a field has.
+/// The rows of SceneTag, which every object but a field has; the laboratory has no steppers for bodies.
 template <class T>
 void add_tag_rows(std::vector<Field>& rows) {
   rows.insert(
@@ -31,6 +33,11 @@ void add_tag_rows(std::vector<Field>& rows) {
        field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
   rows.push_back(field<&T::tag, &SceneTag::friction>(
       "friction", "", between(0, 100), "Coulomb coefficient, instead of the material's or of 0.5."));
+  if constexpr (!std::is_same_v<T, SceneBody>) {
+    rows.push_back(field<&T::tag, &SceneTag::stepper>(
+        "stepper", "", kNotEmpty,
+        "How the laboratory integrates it, as `rk4`, or `auto`; `hooke compare --help` lists them."));
+  }
   rows.push_back(
       field<&T::tag, &SceneTag::array>("array", "", kAny, "Copies, named `name[0]`, `name[1]`, ..."));
 }

@@ -129,4 +129,25 @@ float atan2(float y, float x) {
   return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
 }
 
+// The order of every operation here is that of solver/wide/kernels.cpp.
+float quick_atan2(float y, float x) {
+  const float size_x = std::fabs(x);
+  const float size_y = std::fabs(y);
+  const bool is_steep = size_y > size_x;
+  const float larger = is_steep ? size_y : size_x;
+  const float t = larger > 0.0f ? (is_steep ? size_x : size_y) / larger : 0.0f;
+  const float z = t * t;
+  const float z2 = z * z;
+  const auto pair = [z](int i) { return kArctangent[i] + z * kArctangent[i + 1]; };
+  const float p = pair(0) + z2 * (pair(2) + z2 * (pair(4) + z2 * kArctangent[6]));
+  float angle = t + (t * z) * p;
+  if (is_steep) angle = static_cast<float>(kHalfPi) - angle;
+  if (x < 0.0f) angle = static_cast<float>(2.0 * kHalfPi) - angle;
+  return std::copysign(angle, y);
+}
+
+double quick_atan2(double y, double x) {
+  return atan2(y, x);
+}
+
 }  // namespace hooke::math

@@ -26,4 +26,16 @@ double atan2(double y, double x);
 /// The same, computed in double and rounded: the float nearest to pi is a little more than pi.
 float atan2(float y, float x);
 
+/// atan(t) = t + t z (k[0] + k[1] z + ...) with z = t^2, for t in [0, 1]: the polynomial whose largest
+/// relative error, 1.1e-7, is least (Remez' exchange). Kernels of many lanes use it too.
+inline constexpr float kArctangent[7] = {-0.3333239159f,  0.1997421407f,  -0.140413277f,   0.09968472985f,
+                                         -0.06020312876f, 0.02473406228f, -0.004822533899f};
+
+/// atan2 in float arithmetic throughout, for a tenth of the time: within 4e-7 of the angle, relatively. Signs
+/// of zeros and infinities do not count as in IEEE 754; (0, 0) gives 0.
+float quick_atan2(float y, float x);
+
+/// In double nothing is gained: atan2.
+double quick_atan2(double y, double x);
+
 }  // namespace hooke::math

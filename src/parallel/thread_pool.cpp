@@ -31,9 +31,15 @@ inline void pause_briefly() {
 }  // namespace
 
 struct ThreadPool::Shared {
-  explicit Shared(int workers) : spins(spins_for(workers)) {}
+  explicit Shared(int workers) : spins(spins_for(workers)), parts(workers) {}
+
+  /// The number of the last job that someone has begun this part of.
+  struct alignas(64) Part {
+    std::atomic<std::uint64_t> begun{0};
+  };
 
   const int spins;
+  std::vector<Part> parts;
   std::atomic<std::uint64_t> job_number{0};
   std::atomic<int> unfinished{0};
   std::atomic<bool> stopping{false};
@@ -55,17 +61,28 @@ struct ThreadPool::Shared {
     sleepers.fetch_sub(1);
   }
 
-  void work(int part) {
+  /// Does what is left of a job, its own part first: a part whose thread is kept from its work by others on
+  /// the machine is done by whoever is free. A part of an older job cannot be begun any more: a job ends when
+  /// all its parts have been begun and done.
+  void do_parts(std::uint64_t number, int own) {
+    const int count = static_cast<int>(parts.size());
+    for (int i = 0; i < count; ++i) {
+      const int part = own + i < count ? own + i : own + i - count;
+      std::uint64_t before = number - 1;
+      if (!parts[part].begun.compare_exchange_strong(before, number, std::memory_order_acq_rel)) continue;
+      job(context, part);
+      unfinished.fetch_sub(1, std::memory_order_release);
+    }
+  }
+
+  void work(int own) {
     std::uint64_t last = 0;
     for (;;) {
       wait_for_job(last);
       last = job_number.load(std::memory_order_acquire);
       if (stopping.load(std::memory_order_acquire)) return;
-      {
-        const base::FloatEnvironment environment;
-        job(context, part);
-      }
-      unfinished.fetch_sub(1, std::memory_order_release);
+      const base::FloatEnvironment environment;
+      do_parts(last, own);
     }
   }
 
@@ -95,9 +112,9 @@ void ThreadPool::run(void (*job)(void*, int), void* context) {
   Shared& shared = *shared_;
   shared.job = job;
   shared.context = context;
-  shared.unfinished.store(workers_ - 1, std::memory_order_relaxed);
+  shared.unfinished.store(workers_, std::memory_order_relaxed);
   shared.publish();
-  job(context, 0);
+  shared.do_parts(shared.job_number.load(std::memory_order_relaxed), 0);
   for (int i = 0; shared.unfinished.load(std::memory_order_acquire) > 0; ++i) {
     if (i < shared.spins) {
       pause_briefly();

@@ -21,8 +21,8 @@ class ThreadPool {
 
   [[nodiscard]] int workers() const { return workers_; }
 
-  /// Calls `job(context, part)` once for each part in [0, workers), part 0 on the calling thread. Returns
-  /// when all are done. Not reentrant.
+  /// Calls `job(context, part)` once for each part in [0, workers), on whichever thread is free; each thread
+  /// prefers the same part every time. Returns when all are done. Not reentrant.
   void run(void (*job)(void* context, int part), void* context);
 
  private:

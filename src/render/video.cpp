@@ -1,5 +1,7 @@
 #include "render/video.h"
 
+#include "process/child.h"
+
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -7,8 +9,6 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <optional>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <system_error>
@@ -20,31 +20,9 @@ namespace hooke::render {
 
 namespace {
 
+using process::Descriptor;
+
 enum class Format { kMp4, kGif, kPictures };
-
-/// A file descriptor that is closed with this value.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-  [[nodiscard]] int number() const { return number_; }
-
- private:
-  int number_ = -1;
-};
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -156,7 +134,7 @@ struct VideoData {
   std::string temporary;  ///< What ffmpeg writes.
   Descriptor input;       ///< Our end of ffmpeg's input.
   std::unique_ptr<std::FILE, FileCloser> messages;
-  pid_t process = -1;
+  process::Child ffmpeg;
   int frame_count = 0;
   bool failed = false;
 
@@ -168,23 +146,15 @@ struct VideoData {
   /// Ends ffmpeg, if it runs, and removes what it wrote.
   void abandon() {
     input.close();
-    if (process > 0) {
-      ::kill(process, SIGKILL);
-      wait_for_end();
-    }
+    ffmpeg.kill();
     if (!temporary.empty()) ::unlink(temporary.c_str());
     temporary.clear();
   }
 
   /// Whether ffmpeg ended well.
   bool wait_for_end() {
-    int status = -1;
-    pid_t ended = -1;
-    do {
-      ended = ::waitpid(process, &status, 0);
-    } while (ended < 0 && errno == EINTR);
-    process = -1;
-    return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    const int status = ffmpeg.wait();
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
 
   /// The beginning of what ffmpeg said.
@@ -206,25 +176,6 @@ struct VideoData {
 
 namespace {
 
-/// Starts ffmpeg with `input` as its standard input and our message file as its standard error.
-int spawn_ffmpeg(VideoData& data, int input) {
-  std::vector<std::string> words = ffmpeg_arguments(data.options, data.format, data.temporary);
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  int code = posix_spawn_file_actions_init(&actions);
-  if (code != 0) return code;
-  posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(data.messages.get()), STDERR_FILENO);
-  code = posix_spawnp(&data.process, "ffmpeg", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (code != 0) data.process = -1;
-  return code;
-}
-
 Result<void> start_ffmpeg(VideoData& data) {
   data.messages.reset(std::tmpfile());
   if (!data.messages) return data.fail(ErrorCode::kFileNotWritable, "no room for temporary files");
@@ -240,10 +191,14 @@ Result<void> start_ffmpeg(VideoData& data) {
   }
   data.input = Descriptor(ends[0]);
   const Descriptor theirs(ends[1]);
-  const int code = spawn_ffmpeg(data, theirs.number());
-  if (code == 0) return {};
-  return data.fail(ErrorCode::kUnsupported, std::string("cannot start the program ffmpeg: ") +
-                                                std::strerror(code) + " (Debian: package ffmpeg)");
+  auto started = process::Child::start(ffmpeg_arguments(data.options, data.format, data.temporary),
+                                       {.input = theirs.number(), .error = ::fileno(data.messages.get())});
+  if (!started) {
+    return data.fail(ErrorCode::kUnsupported, "cannot start the program ffmpeg: " + started.error().message +
+                                                  " (Debian: package ffmpeg)");
+  }
+  data.ffmpeg = std::move(started).value();
+  return {};
 }
 
 bool send_all(int socket, const std::uint8_t* bytes, std::size_t count) {

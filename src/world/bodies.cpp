@@ -17,7 +17,7 @@ using parallel::Range;
 using state::BodyTraits;
 using state::Tables;
 
-constexpr int kBodyGrain = 256;
+
 
 bool moves(const BodyTraits& traits) {
   return traits.kind != BodyKind::kStatic;
@@ -94,7 +94,19 @@ void find_body_contacts(WorldData& world, Real dt) {
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
   collision::merge_pairs(world.pairs_found, t.pairs);
-  collision::update_manifolds(*world.pool, t.bodies, t.colliders, dt, t.pairs);
+  collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
+}
+
+void begin_contacts(WorldData& world, Real h) {
+  const WorldDesc& desc = world.tables.desc;
+  const auto before = static_cast<Real>(world.tables.body_substep);
+  world.contact_step = {.gravity = desc.gravity,
+                        .h = h,
+                        .hz = desc.contact_hz,
+                        .damping_ratio = desc.contact_damping_ratio,
+                        .sweeps = desc.bias_sweeps,
+                        .impulse_scale = before > Real(0) ? h / before : Real(1)};
+  world.tables.body_substep = static_cast<double>(h);
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {

@@ -11,8 +11,11 @@ namespace {
 
 using state::Tables;
 
-DVec3 place_of(const Tables& t, const state::Deformable& object, std::uint32_t p) {
-  return object.origin + vector_cast<double>(t.particles.position[p].x);
+/// Where the particle was half a substep ago, from its object's origin. A substep moves it by h v with the
+/// new v: that is the velocity of the middle, and an energy must take both at one instant.
+DVec3 middle_of(const Tables& t, std::uint32_t p) {
+  return vector_cast<double>(t.particles.position[p].x) -
+         0.5 * t.substep * vector_cast<double>(t.particles.velocity[p].v);
 }
 
 double distance(const Tables& t, std::uint32_t a, std::uint32_t b) {
@@ -37,7 +40,7 @@ void measure_particles(const Tables& t, Measurement& m) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       if (!(t.particles.velocity[p].inverse_mass > Real(0))) continue;
       const auto mass = static_cast<double>(t.particles.mass[p]);
-      const DVec3 x = place_of(t, object, p);
+      const DVec3 x = object.origin + middle_of(t, p);
       const DVec3 v = vector_cast<double>(t.particles.velocity[p].v);
       m.energy.kinetic += 0.5 * mass * length_squared(v);
       m.energy.potential += potential_of(t, x, mass);
@@ -101,7 +104,9 @@ double measure_springs(const Tables& t, Stretch& stretch) {
     const double l = distance(t, t.springs.particle_a[i], t.springs.particle_b[i]);
     const auto rest = static_cast<double>(t.springs.rest_length[i]);
     if (kind == state::SpringClass::kStretch) stretch.add(l, rest);
-    energy += elastic(static_cast<double>(t.springs.stiffness[i]), l - rest);
+    const double middle =
+        length(middle_of(t, t.springs.particle_a[i]) - middle_of(t, t.springs.particle_b[i]));
+    energy += elastic(static_cast<double>(t.springs.stiffness[i]), middle - rest);
   }
   return energy;
 }
@@ -126,8 +131,8 @@ double measure_bends(const Tables& t) {
   double energy = 0;
   for (int i = 0; i < t.bends.count(); ++i) {
     const state::Bends::Stencil& s = t.bends.stencil[i];
-    const auto x = [&](std::uint32_t p) { return vector_cast<double>(t.particles.position[p].x); };
-    const auto d = elements::dihedral(x(s.edge_a), x(s.edge_b), x(s.wing_a), x(s.wing_b));
+    const auto d = elements::dihedral(middle_of(t, s.edge_a), middle_of(t, s.edge_b), middle_of(t, s.wing_a),
+                                      middle_of(t, s.wing_b));
     const double angle = d.valid ? d.angle - static_cast<double>(t.bends.rest_angle[i]) : 0.0;
     energy += elastic(static_cast<double>(t.bends.stiffness[i]), angle);
   }

@@ -2,36 +2,10 @@
 
 #include "solver/forces.h"
 #include "solver/wind.h"
+#include "world/access.h"
 
 #include <algorithm>
 #include <cmath>
-
-namespace hooke {
-
-/// The one place that may fill a ForceView.
-struct ForceViewAccess {
-  static ForceView make(const state::Tables& tables, const state::Deformable& object, double time,
-                        Vec3* forces) {
-    const std::size_t first = object.particles.first;
-    const state::Particles& p = tables.particles;
-    const auto* positions = reinterpret_cast<const std::byte*>(p.position.data() + first);
-    const auto* velocities = reinterpret_cast<const std::byte*>(p.velocity.data() + first);
-    const std::uint32_t* row_of = p.row_of.data() + first;
-    ForceView view;
-    view.positions_ =
-        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
-    view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
-    view.lines_ = velocities;
-    view.forces_ = forces + first;
-    view.row_of_ = row_of;
-    view.kind_ = object.kind;
-    view.slot_ = object.slot;
-    view.time_ = time;
-    return view;
-  }
-};
-
-}  // namespace hooke
 
 namespace hooke::world {
 
@@ -72,7 +46,7 @@ void refresh_derived(WorldData& world) {
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
-  solver::build_bend_rows(tables.bends, tables.particles.count(), world.bend_rows);
+  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.chains.clear();
   for (const state::Deformable& object : tables.objects) {
@@ -193,8 +167,8 @@ void rebase_origins(WorldData& world) {
 
 void end_step(WorldData& world, double dt, StepReport& report) {
   state::Tables& tables = world.tables;
-  const WorldDesc& desc = tables.desc;
-  const Real share = Real(1) / static_cast<Real>(desc.substeps * desc.particle_substeps);
+  const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
+  const Real share = Real(1) / static_cast<Real>(substeps);
   for (Real& tension : tables.segments.mean_tension) tension *= share;
   for (const solver::Chain& chain : world.chains) {
     report.chain_solves += chain.solves;
@@ -206,6 +180,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
   tables.any_force = false;
   tables.time += dt;
+  tables.substep = dt / substeps;
   ++tables.step_count;
   report.moved = true;
 }

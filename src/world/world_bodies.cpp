@@ -113,7 +113,7 @@ bool World::asleep(BodyId id) const {
 std::vector<BodyContact> World::body_contacts() const {
   const Tables& t = data_->tables;
   const auto id_of = [&](std::uint32_t body) { return t.body_slots.id_of(t.bodies.slot[body]); };
-  const Real h = data_->last_substep;
+  const auto h = static_cast<Real>(t.body_substep);
   std::vector<BodyContact> contacts;
   for (const state::Manifold& m : t.pairs.manifold) {
     for (int i = 0; m.touching && i < m.point_count; ++i) {

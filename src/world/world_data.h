@@ -26,7 +26,7 @@ struct WorldData {
   // Derived from the tables whenever their revision changes; see world::refresh_derived.
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
-  solver::BendRows bend_rows;
+  solver::BendBlocks bend_blocks;
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 
@@ -45,7 +45,7 @@ struct WorldData {
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<collision::ColliderPair> pairs_found;
   solver::BodyContacts body_contacts;
-  Real last_substep = Real(0);  ///< Length of the substeps of the last step [s].
+  solver::ContactStep contact_step;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;

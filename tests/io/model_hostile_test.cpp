@@ -168,8 +168,8 @@ TEST_SUITE("io/model_hostile") {
     std::filesystem::create_symlink("/dev/zero", folder.path() / "zero.obj");
     CHECK(has_line(refused(folder / "zero.obj"), "regular"));
     CHECK(refused(folder / "missing.obj").code == ErrorCode::kFileNotReadable);
-    CHECK(refused(folder / "model.fbx").code == ErrorCode::kUnsupported);
-    CHECK(refused(folder / "obj").code == ErrorCode::kUnsupported);
+    CHECK(refused(folder / "model.fbx").code == ErrorCode::kBadSyntax);
+    CHECK(refused(folder / "obj").code == ErrorCode::kBadSyntax);
     CHECK(refused("").code == ErrorCode::kFileNotReadable);
     CHECK(refused(std::string("a\0.obj", 6)).code == ErrorCode::kFileNotReadable);
     const std::string large = folder.file("large.stl", "");

@@ -8,7 +8,7 @@ namespace {
 
 std::vector<std::string> scene_files() {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(HOOKE_SCENES)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(HOOKE_SCENES)) {
     const bool scene = entry.path().extension() == ".json" && entry.path().filename() != "schema.json";
     if (scene) files.push_back(entry.path().string());
   }

@@ -36,9 +36,9 @@ TEST_SUITE("io/scene_load") {
       "$schema": "schema.json",
       "version": 1,  // a comment
       "world": {"gravity": [0, -1.62, 0], "substeps": 4, "wind": {"velocity": [3, 0, 0], "gusts": "paper"}},
-      "dt": 0.01, "seconds": 2,
+      "dt": 0.01, "seconds": 2, "accuracy": {"max_error": 1e-4},
       "bodies": [{"shape": {"sphere": {"radius": 0.25}}, "rotation": {"axis": [0, 0, 2], "angle_deg": 90}}],
-      "ropes": [{"masses": 32, "stiffness": 1e4, "stiffness_of": "segment", "extension_max": "rigid",
+      "ropes": [{"masses": 32, "stiffness": 1e4, "stiffness_of": "segment", "extension_max": "rigid", "stepper": "rk4",
                  "pins": [0, {"point": "last", "motion": {"sine": {"amplitude": [0, 0, 0.1]}}}]}],
       "cloths": [{"columns": 5, "rows": 4, "bend": "spring", "total_mass": 0.5, "pins": [{"row": "last"}]}],
       "particles": [{"particles": [{"position": [0, 0, 0], "mass": 2}, {"position": [1, 0, 0]}],
@@ -52,11 +52,15 @@ TEST_SUITE("io/scene_load") {
     CHECK(scene.world.gravity == hooke::Vec3{0, hooke::Real(-1.62), 0});
     CHECK(scene.world.wind.gusts == hooke::WindDesc::Gusts::kPaper);
     CHECK(scene.step_count() == 200);
+    REQUIRE(scene.accuracy.has_value());
+    CHECK(scene.accuracy->max_error == doctest::Approx(1e-4));
     const hooke::BodyDesc& body = scene.objects.bodies.at(0).desc;
     CHECK(body.shape.kind == hooke::ShapeKind::kSphere);
     CHECK(body.shape.radius == hooke::Real(0.25));
     CHECK(static_cast<double>(body.rotation.z) == doctest::Approx(std::sqrt(0.5)));
     const hooke::SceneRope& rope = scene.objects.ropes.at(0);
+    CHECK(rope.tag.stepper == "rk4");
+    CHECK(scene.objects.cloths.at(0).tag.stepper.empty());
     CHECK(rope.desc.masses == 32);
     CHECK(rope.desc.stiffness_of == hooke::RopeDesc::StiffnessOf::kSegment);
     CHECK(rope.desc.extension_max == hooke::kRigid);

@@ -129,4 +129,19 @@ TEST_SUITE("math/trig") {
     }
     CHECK(hash.value() == 13216208774556235252ULL);
   }
+
+  TEST_CASE("the quick arctangent in float is within 4e-7 of the angle, all the way round") {
+    double worst = 0.0;
+    for (int i = -20000; i <= 20000; ++i) {
+      const double angle = i * (kPi / 20000.0) * 0.99999;
+      const auto y = static_cast<float>(3e-3 * std::sin(angle));
+      const auto x = static_cast<float>(3e-3 * std::cos(angle));
+      const double exact = std::atan2(static_cast<double>(y), static_cast<double>(x));
+      const double off = std::fabs(static_cast<double>(hooke::math::quick_atan2(y, x)) - exact);
+      worst = std::fmax(worst, i == 0 ? 0.0 : off / std::fabs(exact));
+    }
+    CHECK(worst < 4e-7);
+    CHECK(hooke::math::quick_atan2(0.0f, 0.0f) == 0.0f);
+    CHECK(hooke::math::quick_atan2(1e-9f, 1.0f) == 1e-9f);
+  }
 }

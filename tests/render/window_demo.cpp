@@ -32,7 +32,7 @@ int main(int argument_count, char** arguments) {
     mass = {};
     return {};
   };
-  model.fill = [&](hooke::render::DrawList& list) {
+  model.fill = [&](hooke::render::DrawList& list, double /*blend*/) {
     list = hooke::render_test::make_scene(static_cast<float>(mass.time));
     list.texts.clear();
     list.spheres.push_back({{0.2F, 1.9F + static_cast<float>(mass.height), 0.8F}, 0.12F, {0.8F, 0.3F, 0.3F}});

@@ -207,6 +207,16 @@ TEST_SUITE("world/particles") {
       CHECK(world.velocities(puck)[0].x == doctest::Approx(3.0).epsilon(1e-5));
     }
   }
+
+  TEST_CASE("a fall keeps its energy to the last digits") {
+    World world = make_world();
+    const ParticlesId id = take(world.add_particles({.particles = {{.position = {0, 100, 0}}}}));
+    for (int i = 0; i < 120; ++i) {
+      run(world, 1);
+      CHECK(world.measure().energy.total() == doctest::Approx(981.0).epsilon(1e-5));
+    }
+    CHECK(world.positions(id)[0].y == doctest::Approx(80.38).epsilon(1e-2));
+  }
 }
 
 }  // namespace hooke

@@ -12,7 +12,7 @@
 namespace hooke::solver::wide {
 
 /// Inputs of a block's rows, lane by lane.
-struct ContactInputs {
+struct alignas(64) ContactInputs {
   using Lane = ContactBlock::Lane;
 
   Lane scale_a[6], scale_b[6];  ///< S of the bodies: xx, xy, xz, yy, yz, zz.

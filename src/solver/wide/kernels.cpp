@@ -1,11 +1,13 @@
 /// The kernels in one source for every instruction set, then their dispatch.
 ///
-/// A particle is one 16-byte line {x, y, z, w}. Lines are loaded whole and transposed in registers: hardware
-/// gathers are slower than this on every machine measured. Differences of two lines are taken before the
-/// transposition, so that a row costs two transpositions in (d with w_a + w_b in its fourth lane, dv) and one
-/// out (the impulse).
+/// A particle is one 16-byte line {x, y, z, w}; see lines.h. Of positions a row needs only differences, which
+/// are taken before the transposition.
 
+#include "math/trig.h"
 #include "solver/wide/wide.h"
+
+#include <limits>
+#include <numbers>
 
 #ifndef HOOKE_DOUBLE_PRECISION
 
@@ -13,6 +15,9 @@
 #define HWY_TARGET_INCLUDE "solver/wide/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+// After Highway, which includes this file anew for each instruction set.
+#include "solver/wide/lines.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
@@ -22,6 +27,11 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
                         const state::PositionLine* position, state::VelocityLine* velocity) {
   solve_springs_scalar(run, material, position, velocity);
+}
+
+void solve_bends_here(const BendRun& run, const state::PositionLine* position,
+                      state::VelocityLine* velocity) {
+  solve_bends_scalar(run, position, velocity);
 }
 
 void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Particles& particles) {
@@ -34,71 +44,24 @@ void move_here(float h, parallel::Range rows, state::Particles& particles) {
 
 #else
 
-namespace hn = hwy::HWY_NAMESPACE;
+constexpr float kPi = std::numbers::pi_v<float>;
 
-using Lanes = hn::CappedTag<float, kLanes>;
-using Vector = hn::Vec<Lanes>;
-using Line = hn::FixedTag<float, 4>;
-
-constexpr Lanes kTag;
-constexpr int kWidth = hn::MaxLanes(Lanes());
-constexpr int kLineCount = kWidth / 4;  // lines in one vector
-
-/// A vector whose k-th line is line index[4 k] of `base`.
-template <class D>
-HWY_INLINE hn::Vec<D> load_lines(D tag, const float* base, const std::uint32_t* index) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    return hn::Load(tag, base + *index);
-  } else {
-    const hn::Half<D> half;
-    constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    return hn::Combine(tag, load_lines(half, base, index + kHalf), load_lines(half, base, index));
-  }
-}
-
-/// Four vectors of lines to four of components, and back: the transposition is its own inverse.
-HWY_INLINE void transpose(Vector& r0, Vector& r1, Vector& r2, Vector& r3) {
-  const hn::Repartition<double, Lanes> pairs;
-  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r0, r1));
-  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r2, r3));
-  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r0, r1));
-  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r2, r3));
-  r0 = hn::BitCast(kTag, hn::InterleaveLower(pairs, low01, low23));
-  r1 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, low01, low23));
-  r2 = hn::BitCast(kTag, hn::InterleaveLower(pairs, high01, high23));
-  r3 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, high01, high23));
-}
-
-template <class D>
-HWY_INLINE void store_lines(D tag, hn::Vec<D> lines, float* base, const std::uint32_t* index) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    hn::Store(lines, tag, base + *index);
-  } else {
-    const hn::Half<D> half;
-    constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    store_lines(half, hn::LowerHalf(half, lines), base, index);
-    store_lines(half, hn::UpperHalf(half, lines), base, index + kHalf);
-  }
-}
-
-/// Components of kWidth lines.
-struct Columns {
-  Vector x, y, z, w;
+/// A vector in space per row.
+struct Vectors {
+  Vector x, y, z;
 };
 
-HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
-  Columns c = {load_lines(kTag, base, index), load_lines(kTag, base, index + 1),
-               load_lines(kTag, base, index + 2), load_lines(kTag, base, index + 3)};
-  transpose(c.x, c.y, c.z, c.w);
-  return c;
-}
-
-HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index) {
-  transpose(c.x, c.y, c.z, c.w);
-  store_lines(kTag, c.x, base, index);
-  store_lines(kTag, c.y, base, index + 1);
-  store_lines(kTag, c.z, base, index + 2);
-  store_lines(kTag, c.w, base, index + 3);
+/// Differences of kWidth lines: of positions, without their radii.
+HWY_INLINE Vectors load_offsets(const float* position, const std::uint32_t* to, const std::uint32_t* from) {
+  const auto offset = [&](int j) HWY_ATTR {
+    return hn::Sub(load_lines(kTag, position, to + j), load_lines(kTag, position, from + j));
+  };
+  Vector x = offset(0);
+  Vector y = offset(1);
+  Vector z = offset(2);
+  Vector radii = offset(3);
+  transpose(x, y, z, radii);
+  return {x, y, z};
 }
 
 /// kWidth rows between their loads and their stores.
@@ -111,14 +74,10 @@ HWY_INLINE void load_rows(const SpringBlock& block, int first, const float* posi
                           Rows& rows) {
   const std::uint32_t* a = block.line_a + first;
   const std::uint32_t* b = block.line_b + first;
-  const auto separation = [&](int j) HWY_ATTR {
-    return hn::Sub(load_lines(kTag, position, a + j), load_lines(kTag, position, b + j));
-  };
-  rows.dx = separation(0);
-  rows.dy = separation(1);
-  rows.dz = separation(2);
-  Vector radii = separation(3);
-  transpose(rows.dx, rows.dy, rows.dz, radii);
+  const Vectors d = load_offsets(position, a, b);
+  rows.dx = d.x;
+  rows.dy = d.y;
+  rows.dz = d.z;
   rows.v_a = load_columns(velocity, a);
   rows.v_b = load_columns(velocity, b);
 }
@@ -155,17 +114,29 @@ HWY_INLINE void apply_impulses(const Rows& rows, const SpringBlock& block, int f
 }
 
 /// A vector of rows: the lanes of a block from `first` on.
+template <class Block>
 struct Place {
-  const SpringBlock* block;
+  const Block* block;
   int first;
 };
+
+template <class Block>
+HWY_INLINE int count_vectors(const Run<Block>& run) {
+  const int rows = kLanes * (static_cast<int>(run.blocks.size()) - 1) + run.last_count;
+  return (rows + kWidth - 1) / kWidth;
+}
+
+template <class Block>
+HWY_INLINE Place<Block> place_of(const Run<Block>& run, int vector) {
+  return {&run.blocks[vector * kWidth / kLanes], vector * kWidth % kLanes};
+}
 
 /// Solves `kCount` vectors in three stages, not one after the other: the processor works on one while it
 /// waits for the roots and quotients of the other. All loads come before the first store, so the copies of
 /// the last row that fill a partial block store what that row stores.
 template <int kCount, bool kOneSided, bool kAnchored>
-HWY_INLINE void solve_vectors(const Place (&at)[kCount], Vector bias, Vector gamma, const float* position,
-                              float* velocity) {
+HWY_INLINE void solve_vectors(const Place<SpringBlock> (&at)[kCount], Vector bias, Vector gamma,
+                              const float* position, float* velocity) {
   Rows rows, more;
   load_rows(*at[0].block, at[0].first, position, velocity, rows);
   if constexpr (kCount > 1) load_rows(*at[1].block, at[1].first, position, velocity, more);
@@ -181,16 +152,15 @@ template <bool kOneSided, bool kAnchored>
 void solve_run(const SpringRun& run, const SpringMaterial& material, const float* position, float* velocity) {
   const Vector bias = hn::Set(kTag, material.bias);
   const Vector gamma = hn::Set(kTag, material.gamma);
-  const auto place = [&](int vector) {
-    return Place{&run.blocks[vector * kWidth / kLanes], vector * kWidth % kLanes};
-  };
-  const int rows = kLanes * (static_cast<int>(run.blocks.size()) - 1) + run.last_count;
-  const int vectors = (rows + kWidth - 1) / kWidth;
+  const int vectors = count_vectors(run);
   int i = 0;
   for (; i + 1 < vectors; i += 2) {
-    solve_vectors<2, kOneSided, kAnchored>({place(i), place(i + 1)}, bias, gamma, position, velocity);
+    solve_vectors<2, kOneSided, kAnchored>({place_of(run, i), place_of(run, i + 1)}, bias, gamma, position,
+                                           velocity);
   }
-  if (i < vectors) solve_vectors<1, kOneSided, kAnchored>({place(i)}, bias, gamma, position, velocity);
+  if (i < vectors) {
+    solve_vectors<1, kOneSided, kAnchored>({place_of(run, i)}, bias, gamma, position, velocity);
+  }
 }
 
 void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
@@ -203,6 +173,151 @@ void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
     solve_run<true, false>(run, material, position, velocity);
   } else {
     solve_run<false, false>(run, material, position, velocity);
+  }
+}
+
+HWY_INLINE Vectors subtract(Vectors a, Vectors b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+HWY_INLINE Vectors add(Vectors a, Vectors b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
+HWY_INLINE Vectors scale(Vector s, Vectors a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+
+HWY_INLINE Vector dot(Vectors a, Vectors b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+HWY_INLINE Vectors cross(Vectors a, Vectors b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+/// math::quick_atan2.
+HWY_INLINE Vector angle_of(Vector sine, Vector cosine) {
+  const Vector zero = hn::Zero(kTag);
+  const Vector size_x = hn::Abs(cosine);
+  const Vector size_y = hn::Abs(sine);
+  const auto is_steep = hn::Gt(size_y, size_x);
+  const Vector larger = hn::IfThenElse(is_steep, size_y, size_x);
+  const Vector smaller = hn::IfThenElse(is_steep, size_x, size_y);
+  const Vector t = hn::IfThenElseZero(hn::Gt(larger, zero), hn::Div(smaller, larger));
+  const Vector z = hn::Mul(t, t);
+  const Vector z2 = hn::Mul(z, z);
+  const auto k = [](int i) HWY_ATTR { return hn::Set(kTag, math::kArctangent[i]); };
+  const auto pair = [&](int i) HWY_ATTR { return hn::Add(k(i), hn::Mul(z, k(i + 1))); };
+  const Vector high = hn::Add(pair(4), hn::Mul(z2, k(6)));
+  const Vector p = hn::Add(pair(0), hn::Mul(z2, hn::Add(pair(2), hn::Mul(z2, high))));
+  Vector angle = hn::Add(t, hn::Mul(hn::Mul(t, z), p));
+  angle = hn::IfThenElse(is_steep, hn::Sub(hn::Set(kTag, kPi / 2), angle), angle);
+  angle = hn::IfThenElse(hn::Lt(cosine, zero), hn::Sub(hn::Set(kTag, kPi), angle), angle);
+  return hn::CopySign(angle, sine);
+}
+
+/// theta - theta_0 in (-pi, pi].
+HWY_INLINE Vector wrapped_error(Vector angle, Vector rest_angle) {
+  const Vector turn = hn::Set(kTag, 2 * kPi);
+  Vector c = hn::Sub(angle, rest_angle);
+  c = hn::IfThenElse(hn::Gt(c, hn::Set(kTag, kPi)), hn::Sub(c, turn), c);
+  return hn::IfThenElse(hn::Le(c, hn::Set(kTag, -kPi)), hn::Add(c, turn), c);
+}
+
+/// A vector of bend rows between its loads and its stores; the names are those of solver/bends.h.
+struct Hinges {
+  Vector l, l2, inverse_aa, inverse_bb;
+  Vector error;            ///< theta - theta_0
+  Vectors g0, g1, ua, ub;  ///< Gradients divided by l: g0, g1, -ua, -ub.
+  Columns v0, v1, v2, v3;
+  Vector s;  ///< -l lambda
+};
+
+HWY_INLINE void load_hinges(Place<BendBlock> at, const float* position, Hinges& rows) {
+  const std::uint32_t* x0 = at.block->line[0] + at.first;
+  const Vectors e = load_offsets(position, at.block->line[1] + at.first, x0);
+  const Vectors d2 = load_offsets(position, at.block->line[2] + at.first, x0);
+  const Vectors d3 = load_offsets(position, at.block->line[3] + at.first, x0);
+  const Vectors na = cross(e, d2);
+  const Vectors nb = cross(d3, e);
+  const Vector aa = dot(na, na);
+  const Vector bb = dot(nb, nb);
+  rows.l2 = dot(e, e);
+  rows.l = hn::Sqrt(rows.l2);
+  const Vector one = hn::Set(kTag, 1.0f);
+  const Vector least = hn::Set(kTag, std::numeric_limits<float>::min());
+  const auto has_extent = hn::And(hn::And(hn::Ge(rows.l2, least), hn::Ge(aa, least)), hn::Ge(bb, least));
+  const auto inverse = [&](Vector size)
+                           HWY_ATTR { return hn::IfThenElseZero(has_extent, hn::Div(one, size)); };
+  const Vector inverse_l2 = inverse(rows.l2);
+  const Vector alpha = hn::Mul(dot(d2, e), inverse_l2);
+  const Vector beta = hn::Mul(dot(d3, e), inverse_l2);
+  rows.inverse_aa = inverse(aa);
+  rows.inverse_bb = inverse(bb);
+  rows.ua = scale(rows.inverse_aa, na);
+  rows.ub = scale(rows.inverse_bb, nb);
+  rows.g0 = add(scale(hn::Sub(one, alpha), rows.ua), scale(hn::Sub(one, beta), rows.ub));
+  rows.g1 = add(scale(alpha, rows.ua), scale(beta, rows.ub));
+  const Vector angle = angle_of(hn::Neg(hn::Mul(rows.l, dot(na, d3))), dot(na, nb));
+  rows.error = wrapped_error(angle, hn::LoadU(kTag, at.block->rest_angle + at.first));
+}
+
+HWY_INLINE Vector rate_of(Vectors g, const Columns& v) {
+  return dot(g, {v.x, v.y, v.z});
+}
+
+/// Velocities are loaded only now, when most of what positions needed is out of the registers. Rows without
+/// extent have no gradients, so that their impulse is zero whatever s.
+HWY_INLINE void compute_impulses(Place<BendBlock> at, const float* velocity, Hinges& rows) {
+  rows.v0 = load_columns(velocity, at.block->line[0] + at.first);
+  rows.v1 = load_columns(velocity, at.block->line[1] + at.first);
+  rows.v2 = load_columns(velocity, at.block->line[2] + at.first);
+  rows.v3 = load_columns(velocity, at.block->line[3] + at.first);
+  const Vector rate = hn::Sub(hn::Add(rate_of(rows.g0, rows.v0), rate_of(rows.g1, rows.v1)),
+                              hn::Add(rate_of(rows.ua, rows.v2), rate_of(rows.ub, rows.v3)));
+  const Vector w =
+      hn::Add(hn::Add(hn::Mul(rows.v0.w, dot(rows.g0, rows.g0)), hn::Mul(rows.v1.w, dot(rows.g1, rows.g1))),
+              hn::Add(hn::Mul(rows.v2.w, rows.inverse_aa), hn::Mul(rows.v3.w, rows.inverse_bb)));
+  const Vector bias = hn::LoadU(kTag, at.block->bias + at.first);
+  const Vector gamma = hn::LoadU(kTag, at.block->gamma + at.first);
+  const Vector numerator = hn::Add(hn::Mul(rows.l, rate), hn::Mul(bias, rows.error));
+  const Vector denominator = hn::Add(hn::Mul(rows.l2, w), gamma);
+  const auto holds = hn::Gt(denominator, hn::Zero(kTag));
+  rows.s = hn::IfThenElseZero(holds, hn::Mul(rows.l, hn::Div(numerator, denominator)));
+}
+
+template <class Combine>
+HWY_INLINE Columns changed(const Columns& v, Vectors g, Vector s, Combine combine) {
+  const Vectors after = combine(Vectors{v.x, v.y, v.z}, scale(hn::Mul(v.w, s), g));
+  return {after.x, after.y, after.z, v.w};
+}
+
+HWY_INLINE void apply_impulses(const Hinges& rows, Place<BendBlock> at, float* velocity) {
+  store_columns(changed(rows.v0, rows.g0, rows.s, subtract), velocity, at.block->line[0] + at.first);
+  store_columns(changed(rows.v1, rows.g1, rows.s, subtract), velocity, at.block->line[1] + at.first);
+  store_columns(changed(rows.v2, rows.ua, rows.s, add), velocity, at.block->line[2] + at.first);
+  store_columns(changed(rows.v3, rows.ub, rows.s, add), velocity, at.block->line[3] + at.first);
+}
+
+void solve_bends_here(const BendRun& run, const state::PositionLine* positions,
+                      state::VelocityLine* velocities) {
+  const auto* position = reinterpret_cast<const float*>(positions);
+  auto* velocity = reinterpret_cast<float*>(velocities);
+  const int vectors = count_vectors(run);
+  for (int i = 0; i < vectors; i += 2) {
+    // The last of an odd number is solved twice: both store the same.
+    const bool is_pair = i + 1 < vectors;
+    const Place<BendBlock> at = place_of(run, i);
+    const Place<BendBlock> next = place_of(run, is_pair ? i + 1 : i);
+    Hinges rows, more;
+    load_hinges(at, position, rows);
+    load_hinges(next, position, more);
+    compute_impulses(at, velocity, rows);
+    compute_impulses(next, velocity, more);
+    apply_impulses(rows, at, velocity);
+    apply_impulses(more, next, velocity);
   }
 }
 
@@ -249,6 +364,7 @@ HWY_AFTER_NAMESPACE();
 namespace hooke::solver::wide {
 
 HWY_EXPORT(solve_springs_here);
+HWY_EXPORT(solve_bends_here);
 HWY_EXPORT(accelerate_here);
 HWY_EXPORT(move_here);
 
@@ -271,6 +387,12 @@ void solve_springs(const SpringRun& run, const SpringMaterial& material, const s
   HWY_DYNAMIC_DISPATCH(solve_springs_here)(run, material, position, velocity);
 }
 
+void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity) {
+  if (run.blocks.empty()) return;
+  if (scalar_only) return solve_bends_scalar(run, position, velocity);
+  HWY_DYNAMIC_DISPATCH(solve_bends_here)(run, position, velocity);
+}
+
 void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
   if (scalar_only) return accelerate_scalar(acceleration, h, rows, particles);
   HWY_DYNAMIC_DISPATCH(accelerate_here)(acceleration, h, rows, particles);
@@ -287,6 +409,10 @@ std::vector<std::string> targets() {
     names.insert(names.begin(), name_of(target));
   names.insert(names.begin(), "scalar");
   return names;
+}
+
+bool is_scalar() {
+  return scalar_only;
 }
 
 bool use_target(const std::string& name) {
@@ -319,6 +445,10 @@ void solve_springs(const SpringRun& run, const SpringMaterial& material, const s
   solve_springs_scalar(run, material, position, velocity);
 }
 
+void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity) {
+  solve_bends_scalar(run, position, velocity);
+}
+
 void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
   accelerate_scalar(acceleration, h, rows, particles);
 }
@@ -329,6 +459,10 @@ void move(Real h, parallel::Range rows, state::Particles& particles) {
 
 std::vector<std::string> targets() {
   return {"scalar"};
+}
+
+bool is_scalar() {
+  return true;
 }
 
 bool use_target(const std::string& name) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "parallel/range.h"
+#include "solver/bends.h"
 #include "solver/spring_blocks.h"
 #include "state/particles.h"
 
@@ -17,14 +18,20 @@
 namespace hooke::solver::wide {
 
 /// Blocks that share no written particle; the last holds `last_count` rows.
-struct SpringRun {
-  std::span<const SpringBlock> blocks;
+template <class Block>
+struct Run {
+  std::span<const Block> blocks;
   int last_count = kLanes;
 };
+using SpringRun = Run<SpringBlock>;
+using BendRun = Run<BendBlock>;
 
 /// One pass over a run; the formula stands in solver/springs.h.
 void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
                    state::VelocityLine* velocity);
+
+/// One pass over a run; the formula stands in solver/bends.h.
+void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity);
 
 /// v += h a for particles that can move; components below 1e-20 m/s become zero, so that nothing decays into
 /// denormals.
@@ -36,6 +43,8 @@ void move(Real h, parallel::Range rows, state::Particles& particles);
 // The scalar twins: the same bits, one row at a time.
 void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
                           const state::PositionLine* position, state::VelocityLine* velocity);
+void solve_bends_scalar(const BendRun& run, const state::PositionLine* position,
+                        state::VelocityLine* velocity);
 void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
 void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
 
@@ -46,5 +55,8 @@ void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
 /// tests and benchmarks: the bits do not depend on it. False, and no change, if this machine does not have
 /// it.
 bool use_target(const std::string& name);
+
+/// Whether the scalar twins run.
+[[nodiscard]] bool is_scalar();
 
 }  // namespace hooke::solver::wide

@@ -1,0 +1,221 @@
+#include "hooke/command_line.h"
+#include "hooke/compare/page.h"
+#include "hooke/compare/plots.h"
+#include "hooke/compare/stage.h"
+#include "hooke/compare/tables.h"
+#include "hooke/compare/trial.h"
+#include "hooke/output_file.h"
+#include "hooke/progress.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+struct CompareOptions {
+  std::string scene;
+  std::vector<std::string> steppers = {"euler", "heun", "rk4", kSolverName};
+  std::optional<double> seconds;
+  std::optional<double> dt;
+  std::string point;
+  std::string output;
+  bool force = false;
+  bool no_limits = false;
+};
+
+std::string footer() {
+  std::string text = "Steppers:\n  solver            the real-time solver, as in hooke run\n";
+  for (const lab::StepperInfo& info : lab::steppers()) {
+    const std::string name(info.name);
+    text += "  " + name + std::string(name.size() < 18 ? 18 - name.size() : 1, ' ') + std::string(info.title);
+    text += info.available ? "\n" : " (not built in)\n";
+  }
+  return text +
+         "A scene that declares an accuracy is also run by what that chooses, as 'declared'.\n\n"
+         "Writes into DIR: index.html, summary.csv, order.csv, series_*.csv and each plot as .png and .svg.\n"
+         "Exit code 3 if gnuplot is missing: tables and page are then written without pictures.\n\n"
+         "Examples:\n"
+         "  hooke compare scenes/paper/fig3.json --out fig3\n"
+         "  hooke compare scenes/paper/fig2.json --steppers euler,paper,verlet,rk4,solver --force --out fig2";
+}
+
+void describe(CLI::App& app, CompareOptions& options) {
+  app.add_option("SCENE", options.scene, "Scene file")->required();
+  app.add_option("--steppers", options.steppers, "Names, with commas between")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->option_text("A,B,...");
+  add_seconds(app, options.seconds, "Simulated time; the scene's by default");
+  add_number(app, "--dt", options.dt, 1e-7, 1, "Step [s]; the scene's by default");
+  app.add_option("--point", options.point, "Watched point, as rope:15 or rope:last; the first object's last");
+  app.add_flag("--force", options.force, "Run explicit methods where they are known to diverge, too");
+  app.add_flag("--no-limits", options.no_limits, "Do not measure orders and stability limits");
+  app.add_option("--out", options.output, "Folder for the results; made if it is missing")->required();
+  app.footer(footer());
+}
+
+Result<void> check(CompareOptions& options) {
+  std::vector<std::string> once;
+  for (const std::string& name : options.steppers) {
+    const auto known = check_stepper(name);
+    if (!known) return known;
+    if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+  }
+  options.steppers = std::move(once);
+  return {};
+}
+
+/// Only the solver runs what the laboratory refuses.
+bool only_solver(const CompareOptions& options) {
+  return options.steppers.size() == 1 && options.steppers.front() == kSolverName;
+}
+
+/// Whether the laboratory takes the scene by every stepper, before the long work. It knows no names of
+/// scenes.
+Result<void> check_stage(const Stage& stage, const CompareOptions& options) {
+  for (const std::string& name : options.steppers) {
+    const auto made = make_player(stage, name, stage.dt(), options.force);
+    if (made) continue;
+    const bool forced = !options.force && make_player(stage, name, stage.dt(), true);
+    Error error = refusal(options.scene, made.error());
+    if (forced) error.message += "; --force runs it all the same";
+    return error;
+  }
+  return {};
+}
+
+Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
+  const Scene& scene = stage.scene();
+  const Schedule schedule = make_schedule(scene.seconds, stage.dt());
+  Comparison comparison = {.scene = options.scene,
+                           .title = scene.title,
+                           .description = scene.description,
+                           .point = stage.point_name,
+                           .seconds = static_cast<double>(schedule.steps) * schedule.dt,
+                           .dt = schedule.dt,
+                           .reference = no_reference(stage),
+                           .rigid = rigid_pendulum(stage),
+                           .trials = {}};
+  std::vector<std::string> names = options.steppers;
+  if (scene.accuracy) {
+    comparison.max_error = scene.accuracy->max_error;
+    if (!only_solver(options)) names.push_back(kDeclaredName);
+  }
+  auto reference = make_reference(stage, schedule);
+  if (reference) comparison.reference = std::move(reference).value();
+  if (!reference && !only_solver(options)) return reference.error();
+  for (const std::string& name : names) {
+    auto trial = run_trial(stage, name, options.force, schedule, comparison.reference);
+    if (!trial) return trial.error();
+    comparison.trials.push_back(std::move(trial).value());
+  }
+  if (options.no_limits) return comparison;
+  Progress progress("limits", names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    comparison.trials[i].limits = measure_limits(stage, names[i], schedule, comparison.reference);
+    progress.show(i + 1);
+  }
+  return comparison;
+}
+
+Result<void> write_tables(const Comparison& comparison, const std::filesystem::path& folder) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    return write_file((folder / name).string(), text);
+  };
+  for (const Trial& trial : comparison.trials) {
+    const auto done = write("series_" + trial.name + ".csv", series_csv(trial.samples));
+    if (!done) return done;
+  }
+  if (!comparison.reference.samples.empty()) {
+    const auto done = write("series_reference.csv", series_csv(comparison.reference.samples));
+    if (!done) return done;
+  }
+  auto done = write("order.csv", order_csv(comparison));
+  if (done) done = write("summary.csv", summary_csv(comparison));
+  return done;
+}
+
+/// Draws every plot in both formats. Stops at the first that fails.
+Result<void> write_plots(const Comparison& comparison, const std::filesystem::path& folder,
+                         std::vector<Picture>& pictures) {
+  const std::vector<Plot> plots = plots_of(comparison);
+  Progress progress("drawing", plots.size());
+  for (const Plot& plot : plots) {
+    for (const PlotFormat format : {PlotFormat::kPng, PlotFormat::kSvg}) {
+      const bool svg = format == PlotFormat::kSvg;
+      const auto bytes = draw_plot(plot, format);
+      if (!bytes) return bytes.error();
+      const auto written =
+          write_file((folder / (plot.name + (svg ? ".svg" : ".png"))).string(), bytes.value());
+      if (!written) return written;
+      if (svg) pictures.push_back({plot.name, plot.caption, bytes.value()});
+    }
+    progress.show(pictures.size());
+  }
+  return {};
+}
+
+Result<void> make_folder(const std::string& path) {
+  std::error_code code;
+  std::filesystem::create_directories(path, code);
+  if (std::filesystem::is_directory(path)) return {};
+  return Error{ErrorCode::kFileNotWritable, path, code ? code.message() : "is no folder"};
+}
+
+ExitCode write(const Comparison& comparison, const std::string& folder) {
+  const auto tables = write_tables(comparison, folder);
+  if (!tables) return report(tables.error());
+  std::fputs(text_of_table(summary_table(comparison)).c_str(), stdout);
+  const std::string& title = comparison.reference.title;
+  std::printf("errors are distances from %s\n",
+              title.empty() ? "nothing: the laboratory refuses the scene" : title.c_str());
+  for (const Trial& trial : comparison.trials) {
+    std::printf("%s %s\n", trial.name.c_str(), verdict_of(trial, comparison).c_str());
+  }
+  std::vector<Picture> pictures;
+  const auto drawn = write_plots(comparison, folder, pictures);
+  const std::string note = drawn ? "" : "Pictures are missing: " + to_line(drawn.error());
+  const auto page = write_file((std::filesystem::path(folder) / "index.html").string(),
+                               make_page(comparison, pictures, note));
+  if (!drawn) return report(drawn.error());
+  if (!page) return report(page.error());
+  std::printf("%s\n", (std::filesystem::path(folder) / "index.html").c_str());
+  return kGood;
+}
+
+}  // namespace
+
+int command_compare(Arguments arguments) {
+  CLI::App app("Runs a scene by several methods of integration, and shows what they make of it.",
+               "hooke compare");
+  CompareOptions options;
+  describe(app, options);
+  if (const auto code = parse(app, arguments)) return *code;
+  const auto known = check(options);
+  if (!known) return report(known.error());
+
+  Loaded<Scene> loaded = load_scene(options.scene);
+  if (!loaded) return report(loaded.errors, loaded.warnings);
+  Scene scene = std::move(*loaded.value);
+  scene.seconds = options.seconds.value_or(scene.seconds);
+  if (options.dt) scene.dt = static_cast<Real>(*options.dt);
+  if (!scene.timeline.empty()) {
+    warn({ErrorCode::kUnsupported, options.scene, "the timeline is left out: nothing happens on the way"});
+  }
+  auto stage = make_stage(std::move(scene), options.point);
+  if (!stage) return report(stage.error());
+  const auto accepted = check_stage(stage.value(), options);
+  if (!accepted) return report(accepted.error());
+  const auto folder = make_folder(options.output);
+  if (!folder) return report(folder.error());
+  const auto comparison = compare(stage.value(), options);
+  if (!comparison) return report(comparison.error());
+  return write(comparison.value(), options.output);
+}
+
+}  // namespace hooke::app

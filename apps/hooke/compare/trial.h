@@ -1,0 +1,77 @@
+#pragma once
+
+#include "hooke/compare/exact.h"
+#include "hooke/compare/stage.h"
+#include "hooke/lab.h"
+#include "hooke/progress.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hooke::app {
+
+/// The watched point and the energy at one time.
+struct Sample {
+  double time = 0;      ///< [s]
+  DVec3 position = {};  ///< [m]
+  Energy energy = {};
+  double error = 0;  ///< Distance from the reference [m]; NaN without one.
+};
+
+/// How long and how often.
+struct Schedule {
+  std::uint64_t steps = 1;   ///< Of the scene.
+  std::uint64_t stride = 1;  ///< Steps between two samples.
+  double dt = 0;             ///< [s]
+
+  [[nodiscard]] double time(std::size_t sample) const { return static_cast<double>(sample * stride) * dt; }
+};
+
+/// What all are measured against.
+struct Reference {
+  std::string title;            ///< "the exact ...", or "rk4 at dt/16"; empty if there is none.
+  std::vector<Sample> samples;  ///< One for each of the schedule.
+  double extent = 1;            ///< Size of the motion and the object [m].
+};
+
+/// Measured beside theory. Empty where it has no meaning or did not fit into the time.
+struct Limits {
+  std::optional<lab::OrderMeasurement> order = {};
+  int order_in_theory = 0;
+  std::optional<double> stiffness = {};  ///< Largest stable k of 1 kg on one spring at dt [N/m].
+  std::optional<double> stiffness_in_theory = {};
+  std::optional<double> step = {};  ///< Largest stable omega dt, undamped.
+  std::optional<double> step_in_theory = {};
+};
+
+/// One stepper on the stage.
+struct Trial {
+  std::string name;
+  std::vector<Sample> samples;             ///< Fewer than the schedule's if it diverged.
+  std::optional<double> diverged_at = {};  ///< [s]
+  double cost_ms = 0;                      ///< Measured, per simulated second.
+  double evaluations = 0;                  ///< Of the forces, per simulated second.
+  double largest_error = 0;                ///< [m]; NaN without a reference.
+  std::string note = {};
+  Limits limits = {};
+};
+
+/// Steps of `dt` up to `seconds`, with at most a few thousand samples.
+Schedule make_schedule(double seconds, double dt);
+
+/// The exact motion if there is one, else rk4 with the step divided until it is stable, at least by 16.
+/// Errors: as of lab::Run::create.
+Result<Reference> make_reference(const Stage& stage, const Schedule& schedule);
+/// For scenes that the laboratory refuses: no samples, the object's size.
+Reference no_reference(const Stage& stage);
+
+/// Plays one stepper to the end, or until it is ten times the extent away from the reference.
+Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force, const Schedule& schedule,
+                        const Reference& reference);
+
+/// Order and stability of a stepper on this stage.
+Limits measure_limits(const Stage& stage, const std::string& name, const Schedule& schedule,
+                      const Reference& reference);
+
+}  // namespace hooke::app

@@ -1,0 +1,123 @@
+#include "hooke/run_laboratory.h"
+
+#include "hooke/compare/stage.h"
+#include "hooke/lab.h"
+#include "hooke/output_file.h"
+#include "hooke/progress.h"
+#include "hooke/text_of.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string name_of(const Simulation& simulation, const lab::ObjectReport& report) {
+  for (const SceneObject& object : simulation.objects()) {
+    const PointRef reference = reference_of(object);
+    if (reference.kind == report.kind && reference.slot == report.slot) return object.name;
+  }
+  return "?";
+}
+
+std::string csv_line(const lab::Run& run) {
+  const Energy energy = run.energy();
+  return text_of("%.17g,%.17g,%.17g,%.17g,%llu\n", run.time(), energy.kinetic, energy.potential,
+                 energy.elastic, static_cast<unsigned long long>(run.evaluations()));
+}
+
+Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t steps) {
+  std::optional<OutputFile> csv;
+  if (!options.csv.empty()) {
+    auto created = OutputFile::create(options.csv);
+    if (!created) return created.error();
+    csv.emplace(std::move(created).value());
+    csv->write("time,kinetic,potential,elastic,evaluations\n");
+  }
+  Progress progress("simulating", steps);
+  for (std::uint64_t i = 0; i < steps; ++i) {
+    const auto done = run.advance();
+    if (!done) return done;
+    if (csv) csv->write(csv_line(run));
+    progress.show(i + 1);
+  }
+  if (csv) return csv->finish();
+  return {};
+}
+
+Json json_of(const Energy& energy) {
+  return {{"kinetic", energy.kinetic}, {"potential", energy.potential}, {"elastic", energy.elastic}};
+}
+
+std::string json_text(const Simulation& simulation, const lab::Run& run, const LaboratoryRun& options,
+                      const Energy& start) {
+  Json objects = Json::array();
+  for (const lab::ObjectReport& report : run.report()) {
+    Json object = {{"name", name_of(simulation, report)},
+                   {"stepper", report.stepper},
+                   {"dt", report.dt},
+                   {"steps", report.steps},
+                   {"evaluations", report.evaluations},
+                   {"left_out", report.left_out}};
+    object["error"] = report.error ? Json(*report.error) : Json(nullptr);
+    objects.push_back(std::move(object));
+  }
+  const Json report = {{"scene", options.scene},
+                       {"stepper", options.stepper},
+                       {"seconds", run.time()},
+                       {"evaluations", run.evaluations()},
+                       {"energy", {{"start", json_of(start)}, {"end", json_of(run.energy())}}},
+                       {"objects", objects}};
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_text(const Simulation& simulation, const lab::Run& run, const LaboratoryRun& options,
+                         const Energy& start) {
+  const Energy end = run.energy();
+  std::string text = options.scene + ": " + simulation.scene().title + "\n";
+  text += text_of("time      %.6g s in the laboratory, %llu evaluations of the forces\n", run.time(),
+                  static_cast<unsigned long long>(run.evaluations()));
+  text += text_of("energy    %.6g J kinetic, %.6g potential, %.6g elastic; at the start %.6g, %.6g, %.6g\n",
+                  end.kinetic, end.potential, end.elastic, start.kinetic, start.potential, start.elastic);
+  for (const lab::ObjectReport& report : run.report()) {
+    text += name_of(simulation, report) + ": " + report.stepper;
+    text += text_of(", %llu steps of %.4g s", static_cast<unsigned long long>(report.steps), report.dt);
+    if (report.error) text += text_of(", estimated error %.2g m", *report.error);
+    for (const std::string& word : report.left_out) text += "; without " + word;
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+ExitCode run_laboratory(Scene scene, const LaboratoryRun& options) {
+  const std::uint64_t steps = steps_in(scene, options.seconds);
+  if (!scene.timeline.empty() || !scene.expect.empty()) {
+    warn(
+        {ErrorCode::kUnsupported, options.scene, "timeline and expectations are the solver's, and left out"});
+    scene.timeline.clear();
+    scene.expect.clear();
+  }
+  const auto simulation = build_simulation(std::move(scene));
+  if (!simulation) return kBadInput;
+  auto run = make_run(*simulation, options.stepper, options.seconds, options.force);
+  if (!run) return report(run.error());
+  const Energy start = run.value().energy();
+  const auto done = simulate(run.value(), options, steps);
+  if (!done) return report(done.error());
+  if (!options.json.empty()) {
+    const auto written = write_file(options.json, json_text(*simulation, run.value(), options, start));
+    return written ? kGood : report(written.error());
+  }
+  if (!is_standard_output(options.csv)) {
+    std::fputs(summary_text(*simulation, run.value(), options, start).c_str(), stdout);
+  }
+  return kGood;
+}
+
+}  // namespace hooke::app

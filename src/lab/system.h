@@ -1,0 +1,182 @@
+#pragma once
+
+#include "hooke/lab.h"
+
+#include "lab/elements.h"
+#include "state/tables.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// \file
+/// One object of a World as y' = f(t, y).
+
+namespace hooke::lab {
+
+/// y = (x, v, q, omega): positions [m] and velocities [m/s] of the n free points (for a body its center of
+/// mass), then rotations and angular velocities of bodies, of which there are none in this version. Held
+/// points are not in y: where they are is known.
+using State = Eigen::VectorXd;
+
+/// Entries of da/dx and da/dv, the derivatives of accelerations: row and column count coordinates of points.
+struct Jacobian {
+  struct Entry {
+    int row = 0, column = 0;
+    double value = 0;
+  };
+  std::vector<Entry> by_position;  ///< [1/s^2]
+  std::vector<Entry> by_velocity;  ///< [1/s]
+};
+
+/// The fastest oscillation that the rows at one point can make: an upper bound (Gershgorin) of omega^2 and of
+/// the rate of its damping, lambda^2 + damping lambda + omega^2 = 0, and the row that adds most to it.
+struct Oscillation {
+  double omega_squared = 0;  ///< [1/s^2]
+  double damping = 0;        ///< [1/s]
+  std::size_t row = 0;       ///< See System::row_name.
+};
+
+class Laws;
+
+class System {
+ public:
+  /// Object `object` of the tables. Errors: a rigid spring or segment.
+  static Result<System> create(const state::Tables& tables, std::uint32_t object);
+
+  [[nodiscard]] State initial_state() const;
+  [[nodiscard]] Eigen::Index coordinates() const { return coordinates_; }  ///< 3 per free point.
+
+  // The parts of y.
+  [[nodiscard]] auto x(State& y) const { return y.head(coordinates_); }
+  [[nodiscard]] auto v(State& y) const { return y.segment(coordinates_, coordinates_); }
+  [[nodiscard]] auto x(const State& y) const { return y.head(coordinates_); }
+  [[nodiscard]] auto v(const State& y) const { return y.segment(coordinates_, coordinates_); }
+
+  /// y' = (v, a). Counts as one evaluation, as do those below that say so.
+  [[nodiscard]] State operator()(double t, const State& y) const;
+  /// a(t, x, v). One evaluation.
+  [[nodiscard]] State acceleration(double t, const State& y) const;
+  /// a, its derivative in time along the solution (jerk), and that one's (snap): `count` of them, 1 to 3;
+  /// exact, by series. `count` evaluations. Precondition: differentiable().
+  [[nodiscard]] std::vector<State> acceleration_and_derivatives(double t, const State& y, int count) const;
+  /// J direction, J = df/dy; exact where differentiable(), force laws and gusts are taken as constant.
+  [[nodiscard]] State jacobian_times(double t, const State& y, const State& direction) const;
+  [[nodiscard]] Jacobian jacobian(double t, const State& y) const;
+
+  [[nodiscard]] Energy energy(double t, const State& y) const;
+  /// One per free point, if any row acts on it.
+  [[nodiscard]] std::vector<Oscillation> oscillations(double t, const State& y) const;
+  /// "spring 3 of particles 1 (k = 1e+05 N/m)"
+  [[nodiscard]] std::string row_name(std::size_t row) const;
+
+  /// Of all points of the object, held or not, in the order of their maker.
+  [[nodiscard]] std::vector<DVec3> positions(double t, const State& y) const;
+  [[nodiscard]] std::vector<DVec3> velocities(double t, const State& y) const;
+
+  /// Nothing in f is unknown to series: no force law, no gusts.
+  [[nodiscard]] bool differentiable() const { return laws_ == nullptr && !gusts_; }
+  /// Forces depend on velocities.
+  [[nodiscard]] bool velocity_dependent() const { return velocity_dependent_; }
+  /// Nothing but gravity and uniform fields acts.
+  [[nodiscard]] bool ballistic() const { return ballistic_; }
+  [[nodiscard]] bool has_laws() const { return laws_ != nullptr; }
+
+  [[nodiscard]] PointRef::Kind kind() const { return kind_; }
+  [[nodiscard]] std::uint32_t slot() const { return slot_; }
+  [[nodiscard]] std::string name() const;  ///< "particles 1"
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
+  [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
+
+  /// Free point `i` of y: its row of the object, for contacts.
+  [[nodiscard]] std::uint32_t row_of_free(Eigen::Index i) const { return free_rows_[i]; }
+  [[nodiscard]] double radius(std::uint32_t row) const { return radius_[row]; }
+
+ private:
+  static constexpr int kHeld = -1;
+
+  /// Positions and velocities of all rows of the object at one time.
+  template <class T>
+  struct Motion {
+    std::vector<Vector3<T>> x, v;
+  };
+
+  PointRow add_fields(const state::Tables& tables);
+  void add_points(const state::Tables& tables, const state::Deformable& object);
+  Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
+  Result<void> add_segments(const state::Tables& tables, const state::Deformable& object);
+  void add_bends(const state::Tables& tables, const state::Deformable& object);
+  void add_air(const state::Tables& tables, const state::Deformable& object);
+  void note(const state::Tables& tables, const state::Deformable& object);
+
+  template <class T, class Row, class From>
+  static auto gather(const Row& row, const Motion<From>& m, const std::vector<DVec3>& wind) {
+    Points<T, Row::kPoints> p;
+    for (int i = 0; i < Row::kPoints; ++i) {
+      p.x[i] = vector_cast<T>(m.x[row.at[i]]);
+      p.v[i] = vector_cast<T>(m.v[row.at[i]]);
+      p.wind[i] = wind[row.at[i]];
+    }
+    return p;
+  }
+  template <class T>
+  Motion<T> motion(double t, const std::vector<State>& x_terms, const std::vector<State>& v_terms) const;
+  /// Of all rows, without force laws; meaningless for held ones.
+  template <class T>
+  std::vector<Vector3<T>> accelerations(const Motion<T>& motion, const std::vector<DVec3>& wind) const;
+  /// Calls `visit(row)` for each row of each table.
+  template <class Visit>
+  void for_each_row(Visit&& visit) const {
+    for (const SpringRow& row : springs_) visit(row);
+    for (const BendRow& row : bends_) visit(row);
+    for (const SailRow& row : sails_) visit(row);
+    for (const StrandRow& row : strands_) visit(row);
+    for (const PointRow& row : points_) visit(row);
+  }
+  [[nodiscard]] std::vector<DVec3> wind(double t, const std::vector<DVec3>& x) const;
+  [[nodiscard]] Motion<double> motion_now(double t, const State& y) const;
+
+  std::vector<SpringRow> springs_;  ///< Of the table, then the segments of a rope.
+  std::vector<std::string> spring_names_;
+  std::vector<BendRow> bends_;
+  std::vector<SailRow> sails_;
+  std::vector<StrandRow> strands_;
+  std::vector<PointRow> points_;
+  std::shared_ptr<const std::vector<FieldDesc>> attractors_;
+  std::shared_ptr<Laws> laws_;  ///< None: null.
+
+  Eigen::Index coordinates_ = 0;
+  std::vector<std::uint32_t> free_rows_;
+  std::vector<int> free_of_row_;  ///< Or kHeld.
+  std::vector<state::Pin> pins_;  ///< By row; of held ones.
+  std::vector<std::uint32_t> row_of_point_;
+  std::vector<double> mass_, radius_;
+  std::vector<DVec3> start_x_, start_v_;
+
+  PointRef::Kind kind_ = PointRef::Kind::kNone;
+  std::uint32_t slot_ = 0;
+  WindDesc wind_;
+  std::uint64_t wind_step_ = 0;
+  bool feels_air_ = false;
+  bool gusts_ = false;
+  bool velocity_dependent_ = false;
+  bool ballistic_ = false;
+  std::vector<std::string> left_out_;
+  mutable std::uint64_t evaluations_ = 0;
+};
+
+template <class T>
+std::vector<Vector3<T>> System::accelerations(const Motion<T>& m, const std::vector<DVec3>& wind) const {
+  std::vector<Vector3<T>> force(m.x.size());
+  for_each_row([&](const auto& row) {
+    constexpr int kPoints = std::remove_cvref_t<decltype(row)>::kPoints;
+    const Forces<T, kPoints> f = row.force(gather<T>(row, m, wind));
+    for (int i = 0; i < kPoints; ++i) force[row.at[i]] += f[i];
+  });
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = (1 / mass_[i]) * force[i];
+  return force;
+}
+
+}  // namespace hooke::lab

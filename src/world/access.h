@@ -1,0 +1,39 @@
+#pragma once
+
+#include "world/world_data.h"
+
+#include <cstddef>
+
+/// \file
+/// What Hooke's own libraries may see of the API's classes.
+
+namespace hooke {
+
+struct WorldAccess {
+  static const state::Tables& tables(const World& world) { return world.data_->tables; }
+};
+
+/// The one place that may fill a ForceView.
+struct ForceViewAccess {
+  static ForceView make(const state::Tables& tables, const state::Deformable& object, double time,
+                        Vec3* forces) {
+    const std::size_t first = object.particles.first;
+    const state::Particles& p = tables.particles;
+    const auto* positions = reinterpret_cast<const std::byte*>(p.position.data() + first);
+    const auto* velocities = reinterpret_cast<const std::byte*>(p.velocity.data() + first);
+    const std::uint32_t* row_of = p.row_of.data() + first;
+    ForceView view;
+    view.positions_ =
+        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
+    view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
+    view.lines_ = velocities;
+    view.forces_ = forces + first;
+    view.row_of_ = row_of;
+    view.kind_ = object.kind;
+    view.slot_ = object.slot;
+    view.time_ = time;
+    return view;
+  }
+};
+
+}  // namespace hooke

@@ -1,0 +1,175 @@
+"""Runs `hooke compare` and what else drives the laboratory, as a user does: compare_test.py PROGRAM PROJECT_FOLDER."""
+
+import copy
+import csv
+import json
+import math
+import pathlib
+import re
+import shutil
+import sys
+import unittest
+
+import cli_test
+from cli_test import Program
+from png import read_png
+
+# A mass of 1 kg below a spring of 400 N/m, let go 0.1 m below its rest: omega = 20/s, zeta = 0.1.
+OSCILLATOR = {
+    "version": 1,
+    "seconds": 2,
+    "dt": 0.001,
+    "particles": [{
+        "name": "mass",
+        "particles": [{"position": [0, 2, 0]}, {"position": [0, 0.875, 0]}],
+        "springs": [{"a": 0, "b": 1, "stiffness": 400, "damping": 4, "rest_length": 1}],
+        "pins": [0],
+    }],
+}
+
+
+def stiff():
+    """The paper's pendulum: 1 kg on 10 000 N/m at 60 Hz, without damping."""
+    scene = copy.deepcopy(OSCILLATOR)
+    scene["dt"] = 1 / 60
+    scene["particles"][0]["particles"][1]["position"] = [0.7, 1.3, 0]
+    scene["particles"][0]["springs"][0] = {"a": 0, "b": 1, "stiffness": 10000}
+    return scene
+
+
+class Compare(Program):
+    def compare(self, *words, code=0):
+        """Runs it into `out` and returns the rows of the summary by stepper."""
+        if code == 0 and shutil.which("gnuplot") is None:
+            self.skipTest("gnuplot is not installed")
+        self.hooke("compare", *words, "--out", "out", code=code)
+        return self.summary()
+
+    def summary(self):
+        with open(self.folder / "out" / "summary.csv", encoding="utf-8", newline="") as file:
+            return {row["stepper"]: row for row in csv.DictReader(file)}
+
+    def series(self, stepper):
+        with open(self.folder / "out" / f"series_{stepper}.csv", encoding="utf-8", newline="") as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_errors_are_against_the_exact_oscillator(self):
+        rows = self.compare(self.scene(OSCILLATOR), "--steppers", "euler,verlet,rk4,solver")
+        # y(t) = rest + e^(-2 t) (0.1 cos(wd t) + 0.2 / wd sin(wd t)) downward, rest = 1 + g / 400.
+        damped = math.sqrt(396)
+        for row in self.series("reference")[::97]:
+            t = row["time_s"]
+            swing = 0.125 - 9.81 / 400
+            y = math.exp(-2 * t) * swing * (math.cos(damped * t) + 2 / damped * math.sin(damped * t))
+            self.assertAlmostEqual(row["y_m"], 2 - (1 + 9.81 / 400 + y), delta=1e-6)
+        self.assertLess(float(rows["rk4"]["largest_error_m"]), 1e-7)
+        self.assertGreater(float(rows["euler"]["largest_error_m"]), 1e-4)
+        self.assertLess(float(rows["solver"]["largest_error_m"]), 1e-3)
+        for stepper, order in (("euler", 1), ("verlet", 2), ("rk4", 4)):
+            self.assertAlmostEqual(float(rows[stepper]["order"]), order, delta=0.1)
+            self.assertEqual(float(rows[stepper]["order_theory"]), order)
+        self.assertEqual([round(float(rows[s]["evaluations_per_s"]), -1) for s in ("euler", "rk4")], [1000, 4000])
+
+    def test_the_paper_diverges_where_theory_says(self):
+        rows = self.compare(self.scene(stiff()), "--force", "--steppers", "euler,taylor2_paper,paper,verlet,rk4,solver")
+        gone = {stepper for stepper, row in rows.items() if row["diverged_at_s"]}
+        self.assertEqual(gone, {"euler", "taylor2_paper", "paper"})
+        for stepper, limit in (("paper", 7200), ("verlet", 14400), ("rk4", 28800)):
+            self.assertAlmostEqual(float(rows[stepper]["largest_stiffness_N_per_m"]) / limit, 1, delta=0.01)
+        self.assertEqual(float(rows["euler"]["largest_stiffness_N_per_m"]), 0)
+        self.assertLess(len(self.series("euler")), len(self.series("rk4")))
+
+    def test_the_page_needs_nothing_else(self):
+        self.compare(self.scene(OSCILLATOR | {"title": "A <mass> & a spring"}), "--steppers", "rk4,solver", "--seconds", 0.5)
+        page = (self.folder / "out" / "index.html").read_text()
+        names = ["trajectory", "position", "error", "energy", "order", "cost"]
+        self.assertEqual(page.count("<svg"), len(names))
+        self.assertEqual(re.findall(r"(?:src|href)\s*=\s*[\"'](?!#)", page.replace("xlink:", "")), [])
+        self.assertNotIn("url(http", page)
+        self.assertIn("A &lt;mass&gt; &amp; a spring", page)
+        ids = re.findall(r"\sid\s*=\s*[\"']([^\"']+)", page)
+        self.assertEqual(len(ids), len(set(ids)), "each picture keeps its own names")
+        files = sorted(path.name for path in (self.folder / "out").iterdir())
+        self.assertEqual(files, sorted([f"{n}.{e}" for n in names for e in ("png", "svg")] + [
+            "index.html", "order.csv", "series_reference.csv", "series_rk4.csv", "series_solver.csv", "summary.csv"]))
+        self.assertEqual(read_png(self.folder / "out" / "error.png")[:2], (1290, 705))
+
+    def test_without_gnuplot_the_tables_are_written_all_the_same(self):
+        _, err = self.hooke("compare", self.scene(OSCILLATOR), "--steppers", "rk4", "--seconds", 0.1, "--no-limits",
+                            "--out", "out", code=3, environment={"PATH": "/nowhere"})
+        self.assert_one_line(err, "^gnuplot: cannot start the program: .*gnuplot-nox")
+        self.assertEqual(list(self.summary()), ["rk4"])
+        page = (self.folder / "out" / "index.html").read_text()
+        self.assertIn("Pictures are missing", page)
+        self.assertNotIn("<svg", page)
+
+    def test_a_declared_accuracy_is_chosen_for_and_judged(self):
+        scene = stiff() | {"accuracy": {"max_error": 1e-6}, "seconds": 0.5}
+        rows = self.compare(self.scene(scene), "--steppers", "rk4", "--no-limits")
+        self.assertEqual(list(rows), ["rk4", "declared"])
+        self.assertLess(float(rows["declared"]["largest_error_m"]), 1e-6)
+        self.assertRegex((self.folder / "out" / "index.html").read_text(), "declared</b> .*, within the declared 1e-06 m")
+
+    def test_bad_input_is_one_line_and_leaves_nothing(self):
+        name = self.scene(stiff())
+        cases = [
+            (("none.json",), r"^none\.json: "),
+            ((name, "--steppers", "rk5"), "^stepper: there is no 'rk5'; there are solver, euler, "),
+            ((name, "--steppers", "euler"), "^scene.json: spring 0 .*k = 1e.04 N/m.* diverges.*; --force runs it"),
+            ((name, "--dt", 0), "--dt: 0 is not a number from"),
+            ((name, "--dt", "nan"), "--dt: nan is not a number from"),
+            ((name, "--seconds", -1), "--seconds: -1 is not a number"),
+            ((name, "--point", "mass:2"), "^--point: '2' is no point of 'mass', which has points 0 to 1"),
+            ((name, "--point", "mass:"), "^--point: '' is no point"),
+            ((name, "--point", "rope"), "^--point: there is no object 'rope'"),
+            (("scenes/rope.json", "--steppers", "rk4"), "^scenes/rope.json: .*rigid"),
+        ]
+        for words, pattern in cases:
+            _, err = self.hooke("compare", *words, "--out", "out", code=2)
+            self.assert_one_line(err, pattern)
+        self.assertEqual(self.files(), ["scene.json"])
+        (self.folder / "taken").write_text("mine")
+        _, err = self.hooke("compare", name, "--steppers", "rk4", "--out", "taken", code=3)
+        self.assert_one_line(err, "^taken: ")
+        self.assertEqual((self.folder / "taken").read_text(), "mine")
+
+
+class Laboratory(Program):
+    def test_a_run_reports_what_was_chosen_and_reached(self):
+        scene = stiff() | {"accuracy": {"max_error": 1e-5}}
+        report = json.loads(self.hooke("run", self.scene(scene), "--stepper", "declared", "--seconds", 0.5, "--json", "-")[0])
+        (mass,) = report["objects"]
+        self.assertEqual((mass["name"], report["stepper"]), ("mass", "declared"))
+        self.assertLess(mass["dt"], 1 / 60)
+        self.assertLess(mass["error"], 1e-5)
+        out, _ = self.hooke("run", "scene.json", "--stepper", "rk4", "--seconds", 0.5, "--csv", "steps.csv")
+        self.assertRegex(out, r"\nmass: rk4, 30 steps of 0\.01667 s")
+        self.assertEqual((self.folder / "steps.csv").read_text().count("\n"), 31)
+
+    def test_an_object_keeps_the_stepper_it_names(self):
+        scene = stiff()
+        scene["particles"][0]["stepper"] = "verlet"
+        out, _ = self.hooke("run", self.scene(scene), "--stepper", "rk4", "--seconds", 0.5)
+        self.assertRegex(out, "\nmass: verlet, ")
+
+    def test_bad_steppers_are_refused(self):
+        name = self.scene(stiff())
+        for stepper, pattern in (("rk5", "rk5"), ("euler", "diverges"), ("declared", "needs 'accuracy'")):
+            self.assert_one_line(self.hooke("run", name, "--stepper", stepper, code=2)[1], pattern)
+        self.hooke("run", name, "--force", code=2)
+
+    def test_a_trail_leaves_the_pendulum_in_the_picture(self):
+        words = ("scenes/paper/fig2.json", "--stepper", "euler", "--force", "--at", 1, "--size", "240x180")
+        self.draw(*words, "-o", "now.png")
+        self.draw(*words, "-o", "trail.png", "--trail", 0.05)
+
+        def orange(name):
+            pixels = b"".join(read_png(self.folder / name)[2])
+            return sum(1 for i in range(0, len(pixels) - 2, 3) if pixels[i] > pixels[i + 2] + 40)
+        self.assertGreater(orange("trail.png"), 3 * orange("now.png"))
+
+
+if __name__ == "__main__":
+    cli_test.PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+    cli_test.PROJECT = pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
