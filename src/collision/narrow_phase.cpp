@@ -87,12 +87,15 @@ Surface surface_of(const ContactDesc& a, const ContactDesc& b, std::span<const M
   return {friction, std::max(friction, at_rest), std::max(a.restitution, b.restitution)};
 }
 
-/// The manifold of a pair without its points.
-Manifold manifold_of(const Scene& scene, const Pair& pair, std::uint32_t patch) {
+Vec3 turned(Quat rotation, Vec3 v) {
+  return v == Vec3{} ? v : rotate(rotation, v);
+}
+
+/// Fills in all but the points.
+void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifold& m) {
   const ContactDesc& a = scene.colliders.surface[pair.collider_a];
   const ContactDesc& b = scene.colliders.surface[pair.collider_b];
   const Surface surface = surface_of(a, b, scene.materials);
-  Manifold m;
   m.collider_a = pair.collider_a;
   m.collider_b = pair.collider_b;
   m.body_a = scene.colliders.body[pair.collider_a];
@@ -103,9 +106,8 @@ Manifold manifold_of(const Scene& scene, const Pair& pair, std::uint32_t patch) 
   m.restitution = surface.restitution;
   m.rolling_friction = std::max(a.rolling_friction, b.rolling_friction);
   m.spinning_friction = std::max(a.spinning_friction, b.spinning_friction);
-  m.surface_velocity = rotate(scene.bodies.rotation[m.body_b], b.surface_velocity) -
-                       rotate(scene.bodies.rotation[m.body_a], a.surface_velocity);
-  return m;
+  m.surface_velocity = turned(scene.bodies.rotation[m.body_b], b.surface_velocity) -
+                       turned(scene.bodies.rotation[m.body_a], a.surface_velocity);
 }
 
 /// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
@@ -126,9 +128,13 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
 void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
             Meeting& meeting, Chunk& chunk) {
   if (meeting.count == 0) return;
-  Manifold m = manifold_of(scene, pair, patch);
+  Manifold& m = chunk.manifolds.emplace_back();
   make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
-  if (m.point_count > 0) chunk.manifolds.push_back(m);
+  if (m.point_count == 0) {
+    chunk.manifolds.pop_back();
+  } else {
+    describe(scene, pair, patch, m);
+  }
 }
 
 Vec3 offset_between(const Scene& scene, std::uint32_t from, std::uint32_t to) {

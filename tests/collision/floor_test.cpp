@@ -128,4 +128,76 @@ TEST_SUITE("collision/floor") {
       slide(scene, slider, 1e-4);
     }
   }
+
+  TEST_CASE("a wall on the floor and a step of a centimeter are felt") {
+    for (const double height : {0.01, 1.0}) {
+      PairScene scene;
+      add_mesh(scene, make_cut_floor());
+      const Real half = Real(height / 2);
+      scene.add_static(Shape::box({Real(0.1), half, Real(1)}), {1, height / 2, 0});
+      const std::uint32_t box =
+          scene.add_dynamic(Shape::box({Real(0.3), Real(0.2), Real(0.4)}), {0.595, 0.2, 0});
+      scene.update();
+      CHECK(scene.counts.ghosts == 0);
+      bool is_felt = false;
+      for (const Manifold& m : scene.pairs.manifold) {
+        const Vec3 out = m.body_b == box ? m.normal : -m.normal;
+        is_felt = is_felt || out.x < Real(-0.99);
+      }
+      CHECK(is_felt);
+    }
+  }
+
+  TEST_CASE("a box on a mesh of many triangles rests on its own corners, on either side of the pair") {
+    for (const bool mesh_first : {true, false}) {
+      PairScene scene;
+      if (mesh_first) add_mesh(scene, make_cut_floor());
+      const std::uint32_t box =
+          scene.add_dynamic(Shape::box({Real(0.7), Real(0.2), Real(0.9)}), {0.03, 0.1999, 0.05});
+      if (!mesh_first) add_mesh(scene, make_cut_floor());
+      scene.update();
+      REQUIRE(scene.pairs.manifold.size() == 1);
+      const Manifold& m = scene.pairs.manifold[0];
+      CHECK(m.normal.y == (mesh_first ? Real(1) : Real(-1)));
+      REQUIRE(m.point_count == 4);
+      for (const auto& p : m.point) {
+        const Vec3 anchor = m.body_b == box ? p.anchor_b : p.anchor_a;
+        CHECK(std::fabs(anchor.x) == doctest::Approx(0.7));
+        CHECK(std::fabs(anchor.z) == doctest::Approx(0.9));
+        CHECK(double(p.separation) == doctest::Approx(-1e-4).epsilon(0.01));
+      }
+    }
+  }
+
+  TEST_CASE("a sphere in a groove has a contact on both sides, over a ridge one, from below none") {
+    const auto add_roof = [](PairScene& scene, double slope) {
+      MeshDesc mesh;
+      const auto place = [&](double x, double z) {
+        return Vec3{Real(x), Real(-slope * std::fabs(x)), Real(z)};
+      };
+      mesh.positions = {place(-2, -2), place(-2, 2), place(0, 2), place(0, -2), place(2, 2), place(2, -2)};
+      mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
+      add_mesh(scene, mesh);
+    };
+    const Shape ball = Shape::sphere(Real(0.5));
+    PairScene groove;
+    add_roof(groove, -1);
+    groove.add_dynamic(ball, {0, 0.5 * std::sqrt(2.0) - 0.001, 0.1});
+    groove.update();
+    REQUIRE(groove.pairs.manifold.size() == 2);
+    for (const Manifold& m : groove.pairs.manifold) {
+      CHECK(m.point_count == 1);
+      CHECK(double(m.normal.y) == doctest::Approx(std::sqrt(0.5)));
+    }
+    PairScene ridge;
+    add_roof(ridge, 1);
+    const std::uint32_t over = ridge.add_dynamic(ball, {0.1, std::sqrt(0.24) - 0.001, 0.1});
+    ridge.update();
+    REQUIRE(ridge.pairs.manifold.size() == 1);
+    CHECK(double(ridge.pairs.manifold[0].normal.x) == doctest::Approx(0.2).epsilon(0.01));
+    ridge.bodies.center[over] = {0, -0.6, 0.1};
+    ridge.bodies.odometer[over] += Real(2);
+    ridge.update();
+    CHECK(ridge.pairs.manifold.empty());
+  }
 }

@@ -60,6 +60,7 @@ World make_heap(int workers) {
     BodyDesc body;
     body.kind = BodyKind::kDynamic;
     body.shape = shapes[i % 4];
+    body.contact.rolling_friction = Real(0.05);
     body.position = {0.35 * (i % 3) - 0.3 + 0.01 * i, 0.6 + 0.35 * i, 0.3 * (i % 2)};
     body.rotation = quaternion_about(Vec3{Real(1), Real(i % 5), Real(0.5)}, Real(0.3) * static_cast<Real>(i));
     take(world.add_body(body));
