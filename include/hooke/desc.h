@@ -4,6 +4,7 @@
 #include "hooke/math.h"
 #include "hooke/shape.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -157,6 +158,81 @@ struct BodyDesc {
   bool bullet = false;   ///< Swept against moving bodies too, not only against those that stand.
   bool can_sleep = true;
   MotionDesc motion = {};  ///< kKinematic: its path from the start; rotation by `angular_velocity`.
+};
+
+/// What a hook holds on one side.
+struct HookEnd {
+  BodyId body = {};  ///< None: the world itself.
+};
+
+enum class HookKind : std::uint8_t {
+  kBall,      ///< One point in common; turns freely within `cone` about its axis and `limits` of twist.
+  kHinge,     ///< Turns about `axis`.
+  kSlider,    ///< Slides along `axis` and does not turn.
+  kFixed,     ///< Moves as one.
+  kDistance,  ///< The distance of two points stays within `limits`, or what it was where there are none.
+  kWheel,     ///< B slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
+  kSixDegrees,  ///< Each of the six `freedoms` on its own.
+};
+
+/// Bounds of a freedom [m] or [rad]; infinite where there is none.
+struct HookLimits {
+  Real lower = -kRigid;
+  Real upper = kRigid;
+
+  friend bool operator==(const HookLimits&, const HookLimits&) = default;
+};
+
+/// F = -stiffness (value - target) - damping speed, whatever the stiffness without instability.
+struct HookSpring {
+  Real stiffness = Real(0);  ///< [N/m] or [N m/rad], not negative.
+  Real damping = Real(0);    ///< [N s/m] or [N m s/rad], not negative.
+  Real target = Real(0);     ///< Value at rest [m] or [rad], relative to how things stood when hooked.
+
+  friend bool operator==(const HookSpring&, const HookSpring&) = default;
+};
+
+/// Drives a freedom at a speed with a force that is limited. Speed zero: friction.
+struct HookMotor {
+  Real speed = Real(0);      ///< [m/s] or [rad/s]
+  Real max_force = Real(0);  ///< [N] or [N m], not negative; 0 switches the motor off.
+
+  friend bool operator==(const HookMotor&, const HookMotor&) = default;
+};
+
+/// One of the ways in which b may move relative to a. Zero is how they stood when hooked.
+struct HookFreedom {
+  bool locked = false;  ///< Held at `spring.target`.
+  HookLimits limits = {};
+  HookSpring spring = {};
+  HookMotor motor = {};
+
+  friend bool operator==(const HookFreedom&, const HookFreedom&) = default;
+};
+
+/// Holds two ends together. Anchor and axes are given in the world, as things stand when the hook is made.
+///
+/// Freedoms are those of b relative to a, in a's axes: x along `axis`, y along the part of `second_axis` that
+/// is across it, z across both (kWheel: z along the axle). A rotation is taken apart as one about a's x, then
+/// y, then b's z; the second is meant to stay within 90 degrees.
+struct HookDesc {
+  HookKind kind = HookKind::kBall;
+  HookEnd a = {};
+  HookEnd b = {};
+  DVec3 anchor = {};                         ///< Of both ends [m]; of a for kDistance.
+  std::optional<DVec3> anchor_b = {};        ///< kDistance: of b [m]; `anchor` by default.
+  Vec3 axis = {Real(0), Real(1), Real(0)};   ///< Any length but zero.
+  std::optional<Vec3> second_axis = {};      ///< Not along `axis`; any direction across it by default.
+  HookLimits limits = {};                    ///< Of what moves: angle, way, distance, twist, suspension.
+  std::optional<Real> cone = {};             ///< kBall: largest angle between the axes [rad], (0, pi].
+  HookSpring spring = {};                    ///< Of what moves. kBall: towards how things stood.
+  HookMotor motor = {};                      ///< Of what moves. kWheel: about the axle. kBall: the speed
+                                             ///< about `axis`, friction about every axis.
+  HookFreedom steering = {.locked = true};   ///< kWheel: about the suspension's axis.
+  std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y, z, then angles.
+  Real break_force = kRigid;                 ///< [N], positive: lets go above this in two substeps.
+  Real break_torque = kRigid;                ///< [N m], positive.
+  bool collide = false;                      ///< Whether the two bodies may touch each other.
 };
 
 /// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on

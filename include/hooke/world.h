@@ -63,6 +63,12 @@ struct BodyContact {
   Real normal_force = Real(0);  ///< Mean over the last substep [N].
 };
 
+/// What a hook did to b, and the opposite to a: mean over the last step.
+struct HookForce {
+  Vec3 force = {};   ///< [N]
+  Vec3 torque = {};  ///< About the anchor [N m].
+};
+
 /// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
 struct StepReport {
   bool moved =
@@ -154,15 +160,19 @@ class World {
   // Objects. An id stays valid until its object is removed; it is never reused.
   [[nodiscard]] Result<MeshId> add_mesh(const MeshDesc& desc);
   [[nodiscard]] Result<BodyId> add_body(const BodyDesc& desc);
+  /// Holds two bodies, or a body and the world, together; one end at least is a body that forces move.
+  [[nodiscard]] Result<HookId> add_hook(const HookDesc& desc);
   [[nodiscard]] Result<RopeId> add_rope(const RopeDesc& desc);
   [[nodiscard]] Result<ClothId> add_cloth(const ClothDesc& desc);
   [[nodiscard]] Result<ParticlesId> add_particles(const ParticlesDesc& desc);
   [[nodiscard]] Result<FieldId> add_field(const FieldDesc& desc);
   [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
 
-  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it.
+  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it; the hooks of
+  // a body go with it.
   bool remove(MeshId id);
   bool remove(BodyId id);
+  bool remove(HookId id);
   bool remove(RopeId id);
   bool remove(ClothId id);
   bool remove(ParticlesId id);
@@ -184,6 +194,12 @@ class World {
   [[nodiscard]] bool asleep(BodyId id) const;
   /// Where bodies touched each other in the last step.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
+  [[nodiscard]] HookForce hook_force(HookId id) const;
+  /// How far b has moved from where it was hooked: the angle of a hinge [rad], also beyond whole turns; the
+  /// way of a slider or of a wheel's suspension [m]; the length of a distance [m]; 0 for other kinds.
+  [[nodiscard]] Real hook_value(HookId id) const;
+  /// The hooks that broke in the last step, in order of creation. They are gone.
+  [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
@@ -202,6 +218,9 @@ class World {
   Result<void> set_velocity(BodyId body, Vec3 velocity);  ///< [m/s], now; a static body keeps still.
   Result<void> set_angular_velocity(BodyId body, Vec3 angular_velocity);  ///< [rad/s], now.
   Result<void> set_pose(BodyId body, const Pose& pose);  ///< Of the body's frame, now; keeps its velocity.
+  Result<void> set_motor(HookId hook, const HookMotor& motor);     ///< Of what moves; see HookDesc::motor.
+  Result<void> set_spring(HookId hook, const HookSpring& spring);  ///< Of what moves; see HookDesc::spring.
+  Result<void> set_steering(HookId hook, Real angle);              ///< Of a wheel [rad].
   Result<void> pin(PointRef point,
                    const MotionDesc& motion = {});  ///< Holds the point; its motion starts now.
   Result<void> unpin(PointRef point);

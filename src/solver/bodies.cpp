@@ -45,12 +45,6 @@ Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
   return math::inverse(scale) * x;
 }
 
-/// Whether the axis of a free body's rotation visibly moves.
-bool tumbles(const BodyMass& mass) {
-  const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
-  return most > Real(1.02) * least;
-}
-
 /// Mean angular velocity of a free body over h, from L; see accelerate_bodies.
 Vec3 midpoint_velocity(Quat axes, const BodyMass& mass, Vec3 momentum, Real h) {
   constexpr int kIterations = 3;
@@ -101,6 +95,11 @@ void finish_rotation(std::uint32_t i, Bodies& bodies) {
 }
 
 }  // namespace
+
+bool tumbles(const BodyMass& mass) {
+  const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
+  return most > Real(1.02) * least;
+}
 
 void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
   for (const std::uint32_t i : rows) {

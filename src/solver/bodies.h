@@ -20,6 +20,10 @@ struct BodyStep {
   bool first = false;  ///< The first substep of a step.
 };
 
+/// Whether the axis of a free body's rotation visibly moves. In the middle of a step the column of rotations
+/// is up to date for such bodies; others turn at its end.
+[[nodiscard]] bool tumbles(const state::BodyMass& mass);
+
 /// Start of a step: S = I^(-1/2) in world axes, omega_scaled = S L, no displacement yet. Of kinematic bodies
 /// S is the identity and omega_scaled their angular velocity.
 void prepare_bodies(std::span<const std::uint32_t> rows, state::Bodies& bodies);

@@ -5,6 +5,7 @@
 #include "state/bodies.h"
 #include "state/colliders.h"
 #include "state/contacts.h"
+#include "state/hooks.h"
 #include "state/manifolds.h"
 #include "state/mesh.h"
 #include "state/objects.h"
@@ -39,9 +40,11 @@ struct Tables {
   Bodies bodies;
   Colliders colliders;
   Pairs pairs;
+  std::vector<Hook> hooks;                   ///< In order of creation.
+  std::uint64_t hook_revision = 0;           ///< Grows when hooks come, go or change their rows.
   std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
-  std::vector<std::uint32_t> free_bodies;           ///< Holes of the body table; the last is filled first.
-  std::vector<Rows> free_colliders;                 ///< Holes of the collider table.
+  std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
+  std::vector<Rows> free_colliders;          ///< Holes of the collider table.
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
   std::vector<Field> fields;
   std::vector<ForceLawEntry> force_laws;
@@ -49,6 +52,7 @@ struct Tables {
 
   SlotTable<MeshId> mesh_slots;
   SlotTable<BodyId> body_slots;
+  SlotTable<HookId> hook_slots;
   SlotTable<RopeId> rope_slots;
   SlotTable<ClothId> cloth_slots;
   SlotTable<ParticlesId> particles_slots;

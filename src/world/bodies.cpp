@@ -3,6 +3,7 @@
 #include "collision/narrow_phase.h"
 #include "collision/shape_bounds.h"
 #include "solver/forces.h"
+#include "world/hooks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +28,15 @@ bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-bool may_collide(const Tables& t, collision::ColliderPair pair) {
+bool may_collide(const WorldData& world, collision::ColliderPair pair) {
+  const Tables& t = world.tables;
   const std::uint32_t a = t.colliders.body[pair.first];
   const std::uint32_t b = t.colliders.body[pair.second];
   const BodyTraits& ta = t.bodies.traits[a];
   const BodyTraits& tb = t.bodies.traits[b];
   const bool one_moves = ta.kind == BodyKind::kDynamic || tb.kind == BodyKind::kDynamic;
-  return a != b && one_moves && ta.collides && tb.collides && filters_agree(ta.filter, tb.filter);
+  return a != b && one_moves && ta.collides && tb.collides && filters_agree(ta.filter, tb.filter) &&
+         !are_hooked(world, a, b);
 }
 
 /// Colliders of bodies that were added, or put elsewhere by hand, since the last step.
@@ -89,7 +92,7 @@ void find_body_contacts(WorldData& world, Real dt) {
       world.broad_phase.set(c, t.colliders.bounds[c], true);
   }
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
-  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(t, pair); });
+  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
   collision::merge_pairs(world.pairs_found, t.pairs);
   collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
 }

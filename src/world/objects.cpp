@@ -153,13 +153,15 @@ void hash_bodies(const Tables& t, base::StateHash& hash) {
 void restore_tables(const Tables& from, Tables& to) {
   const int workers = to.desc.workers;
   const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
+  const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
   const std::uint32_t generations[] = {to.mesh_slots.generation(),      to.body_slots.generation(),
                                        to.rope_slots.generation(),      to.cloth_slots.generation(),
                                        to.particles_slots.generation(), to.field_slots.generation(),
-                                       to.force_law_slots.generation()};
+                                       to.force_law_slots.generation(), to.hook_slots.generation()};
   to = from;
   to.desc.workers = workers;
   to.revision = revision;
+  to.hook_revision = hook_revision;
   to.mesh_slots.set_generation(generations[0] + 1);
   to.body_slots.set_generation(generations[1] + 1);
   to.rope_slots.set_generation(generations[2] + 1);
@@ -167,6 +169,7 @@ void restore_tables(const Tables& from, Tables& to) {
   to.particles_slots.set_generation(generations[4] + 1);
   to.field_slots.set_generation(generations[5] + 1);
   to.force_law_slots.set_generation(generations[6] + 1);
+  to.hook_slots.set_generation(generations[7] + 1);
 }
 
 }  // namespace hooke::world

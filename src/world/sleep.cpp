@@ -1,8 +1,9 @@
 #include "world/sleep.h"
 
+#include "base/disjoint_sets.h"
+
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace hooke::world {
@@ -15,29 +16,8 @@ using state::Manifold;
 constexpr Real kRestSpeed = Real(0.05);  ///< Of the fastest point [m/s].
 constexpr Real kRestTime = Real(0.5);    ///< [s]
 
-/// Sets that merge. The root of a set is its smallest member, so that the result does not depend on order.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-  }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void merge(std::uint32_t a, std::uint32_t b) {
-    const auto [low, high] = std::minmax(root(a), root(b));
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
-  return bodies.traits[body].kind == BodyKind::kDynamic;
+  return body != state::HookPlace::kWorld && bodies.traits[body].kind == BodyKind::kDynamic;
 }
 
 /// Pushes, or overlaps: what is only near does not wake.
@@ -47,9 +27,15 @@ bool touches(const Manifold& manifold) {
                      [](const state::ContactPoint& p) { return p.separation < Real(0); });
 }
 
+bool sleeps(const Bodies& bodies, std::uint32_t body) {
+  return body != state::HookPlace::kWorld && bodies.asleep[body] != 0;
+}
+
 /// Awake and in motion: a kinematic body that stands still wakes nobody.
 bool disturbs(const Bodies& bodies, std::uint32_t body) {
-  if (bodies.traits[body].kind == BodyKind::kStatic || bodies.asleep[body] != 0) return false;
+  if (body == state::HookPlace::kWorld || bodies.traits[body].kind == BodyKind::kStatic ||
+      bodies.asleep[body] != 0)
+    return false;
   return is_dynamic(bodies, body) || bodies.motion[body].v != Vec3{} ||
          bodies.angular_velocity[body] != Vec3{};
 }
@@ -60,7 +46,7 @@ void wake(Bodies& bodies, std::uint32_t body) {
 }
 
 /// For how long each island has been at rest: the least over its members, at its root.
-std::vector<Real> rest_time_of_islands(const WorldData& world, DisjointSets& islands) {
+std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSets& islands) {
   const Bodies& bodies = world.tables.bodies;
   std::vector<Real> rest(bodies.motion.size(), std::numeric_limits<Real>::infinity());
   for (const std::uint32_t body : world.awake) {
@@ -87,6 +73,13 @@ bool wake_touched(WorldData& world) {
       wake(bodies, sleeper_a ? m.body_a : m.body_b);
       changed = any = true;
     }
+    for (const state::Hook& hook : world.tables.hooks) {
+      const bool sleeper_a = sleeps(bodies, hook.a.body);
+      const bool sleeper_b = sleeps(bodies, hook.b.body);
+      if (sleeper_a == sleeper_b || !disturbs(bodies, sleeper_a ? hook.b.body : hook.a.body)) continue;
+      wake(bodies, sleeper_a ? hook.a.body : hook.b.body);
+      changed = any = true;
+    }
   }
   return any;
 }
@@ -100,10 +93,14 @@ void put_to_sleep(WorldData& world, Real dt) {
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
   }
-  DisjointSets islands(bodies.motion.size());
+  base::DisjointSets islands(bodies.motion.size());
   for (const Manifold& m : t.pairs.manifold) {
     if (touches(m) && is_dynamic(bodies, m.body_a) && is_dynamic(bodies, m.body_b))
       islands.merge(m.body_a, m.body_b);
+  }
+  for (const state::Hook& hook : t.hooks) {
+    if (is_dynamic(bodies, hook.a.body) && is_dynamic(bodies, hook.b.body))
+      islands.merge(hook.a.body, hook.b.body);
   }
   const std::vector<Real> rest = rest_time_of_islands(world, islands);
   for (const std::uint32_t body : world.awake) {

@@ -19,9 +19,11 @@
 #include "solver/chains.h"
 #include "solver/contacts.h"
 #include "solver/forces.h"
+#include "solver/joints.h"
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
+#include "world/hooks.h"
 #include "world/sleep.h"
 #include "world/stages.h"
 #include "world/stopwatch.h"
@@ -47,6 +49,7 @@ constexpr int kChainGrain = 1;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
+  world::refresh_hooks(w);
   world::list_awake_bodies(w);
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w)) world::list_awake_bodies(w);
@@ -59,6 +62,7 @@ void prepare(WorldData& w, double dt, Real h) {
   solver::prepare_springs(w.spring_blocks, particle_h);
   solver::prepare_bends(w.bend_blocks, particle_h);
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
+  solver::prepare_joints(t.hooks, w.joints);
   world::begin_contacts(w, h);
   solver::prepare_body_contacts(*w.pool, t.pairs.manifold, t.bodies, w.contact_step, w.body_contacts);
   world::begin_step(w, dt);
@@ -117,8 +121,8 @@ void substep_particles(WorldData& w, double time, Real h) {
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
 }
 
-/// Bodies: contacts with bias, then everything that is tied to them, then poses; last the contacts again
-/// without bias, which takes out the speed that pushed overlaps apart, and friction.
+/// Bodies: contacts with bias, hooks, then everything that is tied to them, then poses; last the contacts
+/// again without bias, which takes out the speed that pushed overlaps apart, and friction.
 void substep(WorldData& w, int i, double time, Real h) {
   state::Bodies& bodies = w.tables.bodies;
   const int particle_substeps = w.tables.desc.particle_substeps;
@@ -131,10 +135,12 @@ void substep(WorldData& w, int i, double time, Real h) {
       solver::solve_body_contacts(blocks, w.contact_step, w.body_contacts, bodies);
     });
   }
+  solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for (int k = 1; k <= particle_substeps; ++k) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h);
   }
   for_bodies(w, [&](auto rows) { solver::move_bodies(rows, h, bodies); });
+  solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(
       w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });
 }
@@ -150,6 +156,8 @@ void finish_bodies(WorldData& w, double dt) {
       *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
       [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
+  solver::finish_joints(static_cast<Real>(dt), w.tables.hooks);
+  world::drop_broken_hooks(w);
   world::put_to_sleep(w, static_cast<Real>(dt));
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "solver/forces.h"
 #include "solver/wind.h"
+#include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
 
@@ -300,6 +301,7 @@ std::uint64_t World::state_hash() const {
   hash.add(t.contacts.normal_force);
   hash.add(t.contacts.friction_force);
   world::hash_bodies(t, hash);
+  world::hash_hooks(t, hash);
   return hash.value();
 }
 

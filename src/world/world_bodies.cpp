@@ -4,6 +4,7 @@
 
 #include "build/build.h"
 #include "state/body_frames.h"
+#include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
 
@@ -72,6 +73,7 @@ bool World::remove(BodyId id) {
   const std::uint32_t first = t.bodies.first_collider[row];
   for (std::uint32_t i = 0; i < t.bodies.collider_count[row]; ++i) data_->broad_phase.remove(first + i);
   std::erase(data_->bodies_placed, row);
+  world::remove_hooks_of(row, t);
   build::remove_body(row, t);
   t.body_slots.move(id.slot, kNone);
   t.contacts = {};  // detect finds those that remain again

@@ -8,11 +8,13 @@
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
 #include "solver/chains.h"
+#include "solver/joints.h"
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace hooke {
@@ -27,6 +29,12 @@ struct WorldData {
   solver::BendBlocks bend_blocks;
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
+
+  // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
+  std::uint64_t joints_revision = ~std::uint64_t{0};
+  solver::Joints joints;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
+  std::vector<HookId> broken_hooks;                                   ///< In the last step.
 
   // Bodies. Derived from the tables; what it holds does not change what a step does.
   collision::BroadPhase broad_phase;
