@@ -172,7 +172,6 @@ Real thinness_of(const Convex& c) {
       return std::min(c.shape.radius, c.shape.half_height);
     case ShapeKind::kHull:
       return c.hull->inner_radius;
-    case ShapeKind::kCompound:
     case ShapeKind::kMesh:
     case ShapeKind::kHalfSpace:
     case ShapeKind::kCompound:
@@ -195,7 +194,6 @@ Vec3 support_of(const Convex& convex, Vec3 direction) {
       return support_of_cone(convex, direction);
     case ShapeKind::kHull:
       return support_of_hull(convex, direction);
-    case ShapeKind::kCompound:
     case ShapeKind::kMesh:
       return support_of_triangle(convex, direction);
     case ShapeKind::kSphere:

@@ -74,7 +74,6 @@ void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, Bes
       offer(-own.axes.y, 0);
       offer(side_of_cone(own, to_other), 1);
       break;
-    case ShapeKind::kCompound:
     case ShapeKind::kMesh:
       offer(normalize(cross(own.corners[1] - own.corners[0], own.corners[2] - own.corners[0])), 0);
       break;

@@ -410,7 +410,6 @@ Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine) {
       return cone_feature(convex, n);
     case ShapeKind::kCapsule:
       return capsule_feature(convex, n);
-    case ShapeKind::kCompound:
     case ShapeKind::kMesh:
       return triangle_feature(convex, n);
     case ShapeKind::kSphere:

@@ -151,7 +151,6 @@ MassProperties mass_of(const Shape& shape) {
     case ShapeKind::kCone:
       return mass_of_cone(r, h);
     case ShapeKind::kHalfSpace:
-    case ShapeKind::kCompound:
     case ShapeKind::kMesh:
     case ShapeKind::kHull:
     case ShapeKind::kCompound:
