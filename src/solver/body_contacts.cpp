@@ -15,15 +15,9 @@ using parallel::Range;
 using state::Bodies;
 using state::ContactPoint;
 using state::Manifold;
-using state::MotionLine;
-using Lane = ContactBlock::Lane;
 
 constexpr int kFillGrain = 4;
 constexpr int kWarmGrain = 16;
-
-Vec3 get(const Lane (&from)[3], int lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
 
 /// Whether the manifold's bodies change places in its rows, so that A moves.
 bool is_swapped(const Manifold& m, const ContactBlock& block, int lane) {
@@ -58,7 +52,7 @@ void fill_bounce(const Manifold& m, const Bodies& bodies, const ContactStep& ste
                  const ContactBlock& block, BounceBlock& bounce) {
   const std::uint32_t a = block.line_a[lane] / 16;
   const std::uint32_t b = block.line_b[lane] / 16;
-  const Vec3 n = get(block.normal, lane);
+  const Vec3 n = vector_of(block.normal, lane);
   const Vec3 pull = block.anchored ? Vec3{} : free_acceleration(bodies, b, step.gravity);
   const Real acceleration = dot(n, pull - free_acceleration(bodies, a, step.gravity));
   const Real approach = dot(n, bodies.motion[b].v - bodies.motion[a].v);
@@ -66,8 +60,8 @@ void fill_bounce(const Manifold& m, const Bodies& bodies, const ContactStep& ste
   bounce.restitution[lane] = m.restitution;
   for (int k = 0; k < block.point_count; ++k) {
     const ContactBlock::Point& p = block.point[k];
-    const Real v = approach + dot(get(p.j_b, lane), bodies.motion[b].omega_scaled) -
-                   dot(get(p.j_a, lane), bodies.motion[a].omega_scaled);
+    const Real v = approach + dot(vector_of(p.j_b, lane), bodies.motion[b].omega_scaled) -
+                   dot(vector_of(p.j_a, lane), bodies.motion[a].omega_scaled);
     const Real now = v + Real(0.5) * step.h * acceleration;
     const Real impact = now * now - Real(2) * acceleration * p.separation[lane];
     const bool bounces = m.restitution > Real(0) && now < Real(0) && impact > kBounceSpeedSquared;
@@ -169,7 +163,7 @@ void roll(const ContactBlock& block, RollingRow& row, Bodies& bodies) {
   Real load = Real(0);
   for (int k = 0; k < block.point_count; ++k) load += block.point[k].impulse[row.lane];
   const Real limit = row.lever * load;
-  const Vec3 n = get(block.normal, row.lane);
+  const Vec3 n = vector_of(block.normal, row.lane);
   const Vec3 spin = bodies.scale[b] * omega_b - bodies.scale[a] * omega_a;
   Vec3 wish = row.impulse - row.inertia * spin;
   wish -= dot(n, wish) * n;
@@ -270,9 +264,9 @@ void store_body_contacts(Range blocks, const BodyContacts& contacts, std::vector
         any_bounced = any_bounced || has_bounced;
       }
       m.touching = block.pushed[lane] > Real(0);
-      const Vec3 t_1 = get(block.tangent, lane);
+      const Vec3 t_1 = vector_of(block.tangent, lane);
       const Vec3 friction = block.friction_impulse[0][lane] * t_1 +
-                            block.friction_impulse[1][lane] * cross(get(block.normal, lane), t_1);
+                            block.friction_impulse[1][lane] * cross(vector_of(block.normal, lane), t_1);
       const Real sign = any_bounced ? Real(0) : is_swapped(m, block, lane) ? Real(-1) : Real(1);
       m.friction_impulse = sign * friction;
       m.twist_impulse = any_bounced ? Real(0) : block.twist_impulse[lane];

@@ -90,6 +90,11 @@ struct alignas(64) ContactBlock {
   int rolling_count = 0;
 };
 
+/// A vector quantity of one lane.
+inline Vec3 vector_of(const ContactBlock::Lane (&from)[3], int lane) {
+  return {from[0][lane], from[1][lane], from[2][lane]};
+}
+
 /// What restitution needs to know of a block's points.
 struct BounceBlock {
   using Lane = ContactBlock::Lane;

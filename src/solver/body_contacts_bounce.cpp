@@ -8,11 +8,6 @@ namespace hooke::solver {
 namespace {
 
 using state::MotionLine;
-using Lane = ContactBlock::Lane;
-
-Vec3 get(const Lane (&from)[3], int lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
 
 bool was_hit(const BounceBlock& bounce, int k, int lane) {
   return bounce.impact_speed[k][lane] > Real(0) && bounce.largest_impulse[k][lane] > Real(0);
@@ -27,7 +22,7 @@ struct BouncingLane {
   MotionLine& a;
   MotionLine& b;
 
-  [[nodiscard]] Vec3 normal() const { return get(block.normal, lane); }
+  [[nodiscard]] Vec3 normal() const { return vector_of(block.normal, lane); }
   [[nodiscard]] Real w() const { return block.w_a[lane] + block.w_b[lane]; }
 
   [[nodiscard]] Real rate(Vec3 j_a, Vec3 j_b) const {
@@ -47,8 +42,9 @@ struct BouncingLane {
   /// The speed the point leaves with.
   [[nodiscard]] Real target(int k) const {
     const ContactBlock::Point& p = block.point[k];
-    const Real s = p.separation[lane] + dot(normal(), b.dx - a.dx) +
-                   (dot(get(p.j_b, lane), b.theta_scaled) - dot(get(p.j_a, lane), a.theta_scaled));
+    const Real s =
+        p.separation[lane] + dot(normal(), b.dx - a.dx) +
+        (dot(vector_of(p.j_b, lane), b.theta_scaled) - dot(vector_of(p.j_a, lane), a.theta_scaled));
     const Real e = bounce.restitution[lane];
     const Real acceleration = bounce.acceleration[lane];
     const Real speed_squared = e * e * bounce.impact_speed[k][lane] + Real(2) * acceleration * s;
@@ -65,8 +61,8 @@ struct BouncingLane {
     for (int k = 0; k < block.point_count; ++k) {
       bounce.impulse[k][lane] = block.point[k].impulse[lane];
       if (!bounced(k)) continue;
-      j_a += get(block.point[k].j_a, lane);
-      j_b += get(block.point[k].j_b, lane);
+      j_a += vector_of(block.point[k].j_a, lane);
+      j_b += vector_of(block.point[k].j_b, lane);
       wish += target(k);
       available += block.point[k].impulse[lane];
       ++count;
@@ -87,8 +83,8 @@ struct BouncingLane {
     for (int k = 0; k < block.point_count; ++k) {
       if (!bounced(k)) continue;
       const ContactBlock::Point& p = block.point[k];
-      const Vec3 j_a = get(p.j_a, lane);
-      const Vec3 j_b = get(p.j_b, lane);
+      const Vec3 j_a = vector_of(p.j_a, lane);
+      const Vec3 j_b = vector_of(p.j_b, lane);
       Real& impulse = bounce.impulse[k][lane];
       const Real after = std::max(Real(0), impulse + p.mass[lane] * (target(k) - rate(j_a, j_b)));
       push(after - impulse, j_a, j_b);

@@ -71,7 +71,7 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     const int fewer = Manifold::kMaxPoints - manifolds[i].point_count;
     return kKinds * rank(i) + (is_anchored(manifolds[i]) ? Manifold::kMaxPoints : 0) + fewer;
   };
-  colors.place.assign(static_cast<std::size_t>(kKinds * (kColors + lone) + 1), 0);
+  colors.place.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
     if (colors.color[i] >= 0) ++colors.place[key(i) + 1];
   }
