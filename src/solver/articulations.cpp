@@ -113,12 +113,18 @@ void load_links(const state::Bodies& bodies, Articulation& art) {
   }
 }
 
+/// -1 below the bounds, 1 above them.
+std::int8_t side_of(double value, double low, double high) {
+  if (value < low) return -1;
+  return value > high ? std::int8_t{1} : std::int8_t{0};
+}
+
 /// Rows begin where they ended in the last substep.
 std::int8_t first_bound(const JointRow& row, double last) {
   if (row.role == RowRole::kLimit) return last > 0 || row.c <= 0 ? 0 : -1;
   if (row.role != RowRole::kMotor) return 0;
   const double nearly = 0.999 * row.high;
-  return last > nearly ? 1 : last < -nearly ? -1 : 0;
+  return side_of(last, -nearly, nearly);
 }
 
 void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
@@ -331,7 +337,7 @@ bool revise_bounds(bool release, Articulation& art) {
       const JointRow& row = art.rows[i];
       std::int8_t bound = 0;
       if (art.bound[i] == 0) {
-        bound = art.lambda[i] < row.low ? -1 : art.lambda[i] > row.high ? 1 : 0;
+        bound = side_of(art.lambda[i], row.low, row.high);
       } else if (!release) {
         continue;
       } else {

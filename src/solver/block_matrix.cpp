@@ -1,6 +1,7 @@
 #include "solver/block_matrix.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -106,7 +107,7 @@ void factor_diagonal(double* a, int n) {
 /// B := B L^-T D^-1 for a block of m rows below the diagonal block of n.
 void factor_below(const double* diagonal, int n, double* b, int m) {
   for (int r = 0; r < m; ++r) {
-    double* x = b + r * n;
+    double* x = b + static_cast<std::ptrdiff_t>(r) * n;
     for (int j = 0; j < n; ++j) {
       for (int k = 0; k < j; ++k) x[j] -= x[k] * diagonal[j * n + k];
     }
@@ -128,6 +129,45 @@ void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, std:
       double sum = 0;
       for (int k = 0; k < n; ++k) sum += x[k] * d[k * n + k] * y[k];
       target[r * columns + c] -= sum;
+    }
+  }
+}
+
+/// x := L^-1 x.
+void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = 0; j < p.node_count(); ++j) {
+    const int n = p.size[j];
+    double* own = &x[p.first[j]];
+    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    for (int i = 1; i < n; ++i) {
+      for (int k = 0; k < i; ++k) own[i] -= diagonal[i * n + k] * own[k];
+    }
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      double* below = &x[p.first[p.block[b].row]];
+      const double* l = &numbers[p.block[b].offset];
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
+      }
+    }
+  }
+}
+
+/// x := L^-T D^-1 x.
+void substitute_back(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = p.node_count() - 1; j >= 0; --j) {
+    const int n = p.size[j];
+    double* own = &x[p.first[j]];
+    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    for (int i = 0; i < n; ++i) own[i] /= diagonal[i * n + i];
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      const double* below = &x[p.first[p.block[b].row]];
+      const double* l = &numbers[p.block[b].offset];
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
+      }
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      for (int k = i + 1; k < n; ++k) own[i] -= diagonal[k * n + i] * own[k];
     }
   }
 }
@@ -165,37 +205,8 @@ void factor(const BlockPattern& p, std::span<double> numbers) {
 }
 
 void solve(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
-  for (int j = 0; j < p.node_count(); ++j) {
-    const int n = p.size[j];
-    double* own = &x[p.first[j]];
-    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
-    for (int i = 1; i < n; ++i) {
-      for (int k = 0; k < i; ++k) own[i] -= diagonal[i * n + k] * own[k];
-    }
-    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
-      double* below = &x[p.first[p.block[b].row]];
-      const double* l = &numbers[p.block[b].offset];
-      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
-        for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
-      }
-    }
-  }
-  for (int j = p.node_count() - 1; j >= 0; --j) {
-    const int n = p.size[j];
-    double* own = &x[p.first[j]];
-    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
-    for (int i = 0; i < n; ++i) own[i] /= diagonal[i * n + i];
-    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
-      const double* below = &x[p.first[p.block[b].row]];
-      const double* l = &numbers[p.block[b].offset];
-      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
-        for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
-      }
-    }
-    for (int i = n - 1; i >= 0; --i) {
-      for (int k = i + 1; k < n; ++k) own[i] -= diagonal[k * n + i] * own[k];
-    }
-  }
+  substitute_forward(p, numbers, x);
+  substitute_back(p, numbers, x);
 }
 
 }  // namespace hooke::solver

@@ -163,6 +163,7 @@ void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Ho
   net = {};
   std::vector<std::uint64_t> used(bodies.motion.size());
   std::vector<std::pair<int, std::uint32_t>> colored;
+  colored.reserve(hook_rows.size());
   int next_own_color = kMaskColors;
   for (const std::uint32_t row : hook_rows)
     colored.emplace_back(choose_color(hooks[row], bodies, used, next_own_color), row);
