@@ -84,6 +84,7 @@ def fig1():
         ], [
             promise("tilt", "==", 30, "crate", 2, 90),
             promise("x", ">", length * c + 0.95, "hit"),
+            promise("kinetic_energy", "<", 0.01),  # friction has stopped both
             weight_energy([(mass, 0.3)] * 2, 0.01)
         ])
 
