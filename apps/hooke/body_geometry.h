@@ -5,6 +5,7 @@
 
 #include "render/draw_list.h"
 
+#include <array>
 #include <map>
 #include <memory>
 #include <utility>
@@ -13,8 +14,11 @@ namespace hooke::app {
 
 /// The triangles of a shape: a geometry that many shapes share, and its size along each axis.
 struct BodyGeometry {
-  std::shared_ptr<const render::MeshGeometry> fine;           ///< Null for a model that is not there.
-  std::shared_ptr<const render::MeshGeometry> coarse = fine;  ///< Enough for a small picture.
+  using Geometry = std::shared_ptr<const render::MeshGeometry>;
+
+  /// From fine to coarse, for smaller and smaller pictures; the same where less would not be faster. Null for
+  /// a model that is not there.
+  std::array<Geometry, 3> levels;
   Vec3 scale = {1, 1, 1};
   Vec3 shift = {};  ///< [m], in the shape's frame.
 };
@@ -26,9 +30,10 @@ class BodyGeometries {
   BodyGeometry find(const Shape& shape, const std::shared_ptr<const Model>& model);
 
  private:
-  using Geometry = std::shared_ptr<const render::MeshGeometry>;
+  using Geometry = BodyGeometry::Geometry;
 
-  Geometry sphere_, coarse_sphere_, box_, cylinder_, cone_;
+  std::array<Geometry, 3> spheres_;
+  Geometry box_, cylinder_, cone_;
   std::map<std::pair<Real, Real>, Geometry> capsules_;  ///< By radius and half height: they do not scale.
   std::map<std::shared_ptr<const Model>, Geometry> models_;
 };

@@ -15,9 +15,11 @@ namespace {
 /// Thinner springs than these are drawn as lines: round ones cost a hundred triangles each.
 constexpr std::size_t kMostRoundSprings = 3000;
 constexpr float kLeastRopeRadius = 1.2F;  ///< [px], half the least width of a rope.
-constexpr float kCoarseRadius = 40;       ///< [px]: coarse spheres are 0.4 px off at this size.
-constexpr float kSlabWidth = 20;          ///< Slabs are wider than so many times their thickness.
-constexpr float kIronDensity = 7800;      ///< [kg/m^3]
+/// [px]: larger spheres are drawn by the finest level, smaller ones by the next; below the second by the
+/// coarsest. None is more than half a pixel off.
+constexpr std::array<float, 2> kLevelRadius = {40, 10};
+constexpr float kSlabWidth = 20;      ///< Slabs are wider than so many times their thickness.
+constexpr float kIronDensity = 7800;  ///< [kg/m^3]
 const render::Color kIron = {0.30F, 0.31F, 0.33F};
 
 float srgb_of(float linear) {
@@ -205,11 +207,12 @@ void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& 
   const float distance = length(place.position - place.eye);
   const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
   for (const FigureSolid& solid : figure.solids) {
-    if (solid.geometry.fine == nullptr) continue;
-    const bool small = solid.geometry.scale.x < kCoarseRadius * place.pixel * distance;
+    const float radius = solid.geometry.scale.x / std::max(place.pixel * distance, 1e-9F);
+    const std::size_t level = radius > kLevelRadius[0] ? 0 : radius > kLevelRadius[1] ? 1 : 2;
+    if (solid.geometry.levels[level] == nullptr) continue;
     for (const PaintedRange& range : solid.ranges) {
       render::DrawMesh mesh = painted(range);
-      mesh.geometry = small ? solid.geometry.coarse : solid.geometry.fine;
+      mesh.geometry = solid.geometry.levels[level];
       mesh.transform = body * transform_of(solid);
       mesh.casts_shadow = solid.casts_shadow;
       list.meshes.push_back(std::move(mesh));

@@ -83,9 +83,9 @@ void SceneDrawing::measure(const State& state) {
     for (const DVec3& point : object.points) extend(point);
     if (object.figure->half_space) continue;
     for (const FigureSolid& solid : object.figure->solids) {
-      if (solid.geometry.coarse == nullptr) continue;
+      if (solid.geometry.levels.back() == nullptr) continue;
       const Mat4 transform = transform_of(solid);
-      for (const render::Vertex& vertex : solid.geometry.coarse->vertices) {
+      for (const render::Vertex& vertex : solid.geometry.levels.back()->vertices) {
         extend(
             object.pose.position +
             vector_cast<double>(rotate(object.pose.rotation, transform_point(transform, vertex.position))));
