@@ -2,8 +2,10 @@
 
 #include "lab/method.h"
 
+#include <array>
 #include <complex>
 #include <functional>
+#include <initializer_list>
 #include <span>
 
 /// \file

@@ -2,7 +2,6 @@
 
 #include "lab/system.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>

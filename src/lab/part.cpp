@@ -11,7 +11,9 @@ namespace hooke::lab {
 
 namespace {
 
-/// A method that always grows without damping is refused only where that is seen; the others at their limit.
+/// Growth per period that a method without any stable step may show before it is refused.
+constexpr double kToleratedGrowth = 1.1;
+
 double tolerated(const Method& method) {
   return method.info.imaginary_limit > 0 ? 1.0 : kToleratedGrowth;
 }
@@ -71,6 +73,7 @@ Result<void> advance(Part& part) {
     if (!part.work.error && !part.y.allFinite()) part.work.error = not_finite(part);
     if (part.work.error) {
       part.y = before;
+      part.steps -= static_cast<std::uint64_t>(i);
       part.work.forget();
       Error error = *part.work.error;
       part.work.error.reset();

@@ -39,7 +39,4 @@ Result<void> check(const Part& part, const Options& options);
 /// Sets method and steps of `part` so that the declared accuracy is kept. Errors: it cannot be.
 Result<void> reach(const Accuracy& accuracy, const Options& options, Part& part);
 
-/// Growth per period of an undamped oscillation that methods without a stable step may show unrefused.
-inline constexpr double kToleratedGrowth = 1.1;
-
 }  // namespace hooke::lab

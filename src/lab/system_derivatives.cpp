@@ -20,10 +20,10 @@ Direction& coordinate(Vector3<Direction>& a, int i) {
   return i == 0 ? a.x : (i == 1 ? a.y : a.z);
 }
 
-/// Derivatives of a row's forces: column `input` counts coordinates of x, then of v; `visit(point of the
-/// force, coordinate of it, point of the input, coordinate of it, whether of v, value)`.
-template <class Row, class Points0, class Visit>
-void differentiate(const Row& row, Points0 p, Visit&& visit) {
+/// Calls `visit(output, input, of_velocity, derivative)` for each derivative of a row's forces that is not
+/// zero: output and input count the coordinates of the row's points, three for each.
+template <class Row, class Visit>
+void differentiate(const Row& row, Points<Direction, Row::kPoints> p, Visit&& visit) {
   constexpr int kPoints = Row::kPoints;
   for (int input = 0; input < 6 * kPoints; ++input) {
     const bool of_velocity = input >= 3 * kPoints;
@@ -39,6 +39,42 @@ void differentiate(const Row& row, Points0 p, Visit&& visit) {
     }
   }
 }
+
+/// Gershgorin: no eigenvalue of M^-1 K is larger than the largest sum of the sizes of a row's blocks. A row's
+/// force is k times a gradient G of its length or angle, its blocks k G_i G_j^T: for a spring |G| = 1.
+class RowSums {
+ public:
+  RowSums(const std::vector<int>& free_of_row, const std::vector<double>& mass)
+      : free_of_row_(free_of_row), mass_(mass), sums_(mass.size()) {}
+
+  template <std::size_t n>
+  void add(const std::array<std::uint32_t, n>& at, const std::array<double, n>& gradient, double stiffness,
+           double damping, std::size_t number) {
+    double total = 0;
+    for (std::size_t j = 0; j < n; ++j) total += free_of_row_[at[j]] < 0 ? 0 : gradient[j];
+    for (std::size_t i = 0; i < n; ++i) {
+      if (free_of_row_[at[i]] < 0) continue;
+      const double size = gradient[i] * total / mass_[at[i]];
+      Sum& sum = sums_[at[i]];
+      sum.omega_squared += stiffness * size;
+      sum.damping += damping * size;
+      if (stiffness * size + damping * size > sum.largest) sum.number = number;
+      sum.largest = std::max(sum.largest, stiffness * size + damping * size);
+    }
+  }
+  void add_damping(std::uint32_t i, double damping) { sums_[i].damping += damping / mass_[i]; }
+
+  struct Sum {
+    double omega_squared = 0, damping = 0, largest = 0;
+    std::size_t number = ~std::size_t{0};  ///< Of the row that adds most; beyond all rows: air friction.
+  };
+  [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
+
+ private:
+  const std::vector<int>& free_of_row_;
+  const std::vector<double>& mass_;
+  std::vector<Sum> sums_;
+};
 
 }  // namespace
 
@@ -106,42 +142,6 @@ Energy System::energy(double t, const State& y) const {
   }
   return energy;
 }
-
-/// Gershgorin: no eigenvalue of M^-1 K is larger than the largest sum of the sizes of a row's blocks. A row's
-/// force is k times a gradient G of its length or angle, its blocks k G_i G_j^T: for a spring |G| = 1.
-class RowSums {
- public:
-  RowSums(const std::vector<int>& free_of_row, const std::vector<double>& mass)
-      : free_of_row_(free_of_row), mass_(mass), sums_(mass.size()) {}
-
-  template <std::size_t n>
-  void add(const std::array<std::uint32_t, n>& at, const std::array<double, n>& gradient, double stiffness,
-           double damping, std::size_t number) {
-    double total = 0;
-    for (std::size_t j = 0; j < n; ++j) total += free_of_row_[at[j]] < 0 ? 0 : gradient[j];
-    for (std::size_t i = 0; i < n; ++i) {
-      if (free_of_row_[at[i]] < 0) continue;
-      const double size = gradient[i] * total / mass_[at[i]];
-      Sum& sum = sums_[at[i]];
-      sum.omega_squared += stiffness * size;
-      sum.damping += damping * size;
-      if (stiffness * size + damping * size > sum.largest) sum.number = number;
-      sum.largest = std::max(sum.largest, stiffness * size + damping * size);
-    }
-  }
-  void add_damping(std::uint32_t i, double damping) { sums_[i].damping += damping / mass_[i]; }
-
-  struct Sum {
-    double omega_squared = 0, damping = 0, largest = 0;
-    std::size_t number = ~std::size_t{0};  ///< Of the row that adds most; beyond all rows: air friction.
-  };
-  [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
-
- private:
-  const std::vector<int>& free_of_row_;
-  const std::vector<double>& mass_;
-  std::vector<Sum> sums_;
-};
 
 std::vector<Oscillation> System::oscillations(double t, const State& y) const {
   const Motion<double> m = motion_now(t, y);

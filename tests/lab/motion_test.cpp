@@ -206,6 +206,51 @@ TEST_SUITE("lab/motion") {
     CHECK(run.velocities(id)[0].y == doctest::Approx(-1).epsilon(1e-6));
   }
 
+  TEST_CASE("a conical pendulum goes round with omega^2 = g / (L cos theta)") {
+    const double angle = 0.6;
+    const double stiffness = 1000;
+    // T = m g / cos(theta) stretches the spring to L.
+    const double length_now = 1 + kGravity / std::cos(angle) / stiffness;
+    const double omega = std::sqrt(kGravity / (length_now * std::cos(angle)));
+    World world = make_world();
+    ParticlesDesc desc = make_pendulum(0, static_cast<Real>(stiffness));
+    const double radius = length_now * std::sin(angle);
+    desc.particles[1].position = {radius, -length_now * std::cos(angle), 0};
+    desc.particles[1].velocity = {Real(0), Real(0), static_cast<Real>(omega * radius)};
+    const ParticlesId id = take(world.add_particles(desc));
+    lab::Run run = make_run(world, {.dt = 2 * kPi / omega / 400});
+    advance(run, 2000);  // five turns
+    CHECK(length(run.positions(id)[1] - desc.particles[1].position) < 1e-5);
+  }
+
+  TEST_CASE("a chain between two walls swings in its modes, omega_j = 2 sqrt(k/m) sin(j pi / 2(N + 1))") {
+    constexpr int kMasses = 9;
+    for (int j = 1; j <= 5; ++j) {
+      CAPTURE(j);
+      World world = make_world(empty_space());
+      ParticlesDesc desc;
+      for (int i = 0; i <= kMasses + 1; ++i) {
+        const double shape = 0.01 * std::sin(i * j * kPi / (kMasses + 1));
+        desc.particles.push_back({.position = {i + shape, 0, 0}});
+      }
+      for (std::uint32_t i = 0; i <= kMasses; ++i)
+        desc.springs.push_back({.a = i, .b = i + 1, .stiffness = Real(100), .rest_length = Real(1)});
+      PinDesc last;
+      last.point = kMasses + 1;
+      desc.pins = {{}, last};
+      const ParticlesId id = take(world.add_particles(desc));
+      const double omega = 20 * std::sin(j * kPi / (2 * (kMasses + 1)));
+      lab::Run run = make_run(world, {.dt = 2 * kPi / omega / 400});
+      advance(run, 500);  // a turn and a quarter: all pass their places at rest
+      double farthest = 0;
+      const std::vector<DVec3> points = run.positions(id);
+      for (int i = 0; i <= kMasses + 1; ++i) farthest = std::max(farthest, std::abs(points[i].x - i));
+      CHECK(farthest < 1e-6);
+      advance(run, 100);
+      CHECK(run.positions(id)[1].x - 1 == doctest::Approx(1 - desc.particles[1].position.x).epsilon(1e-4));
+    }
+  }
+
   TEST_CASE("a rope's stiffness is the rope's, whatever the number of its points") {
     for (const int masses : {4, 16}) {
       World world = make_world();
