@@ -10,7 +10,7 @@ namespace hooke::check {
 
 namespace {
 
-constexpr double kSettleTime = 10.0;         ///< [s]: over 20 decay times of the ropes below.
+constexpr double kSettleTime = 5.0;          ///< [s]: over 20 decay times of the ropes below.
 constexpr double kSpringsSettleTime = 20.0;  ///< [s]: 20 decay times of two springs.
 
 /// Load hanging from a rope of `segments` segments.

@@ -107,7 +107,7 @@ int check_command(const CheckOptions& options) {
     return write_ground_truth(options.markdown_file.empty() ? "-" : options.markdown_file);
   }
   const bool every_stepper = options.stepper == kAllSteppers;
-  if (!options.stepper.empty() && !every_stepper) {
+  if (!options.stepper.empty() && !every_stepper && options.stepper != "auto") {
     if (const auto found = lab::find_stepper(options.stepper); !found) {
       std::fprintf(stderr, "hooke check: %s\n", found.error().message.c_str());
       return kBadInput;
