@@ -137,8 +137,7 @@ const std::vector<TruthScene>& ground_truth_scenes() {
        "enlarge a displacement.",
        double_pendulum},
       {"pendulum on a shaken pivot",
-       "An implicit step brakes a spring by c + k h / 2 instead of c, here by a fifth more, and "
-       "what swings near its resonance shows it.",
+       "An implicit step brakes a spring by c + k h / 2 instead of c, here by a fifth more.",
        shaken_pendulum},
       {"damped oscillator, zeta = 0.05",
        "The damping ratio is larger by omega h / 2, 0.06 instead of 0.05, as in case V5; it "
@@ -154,14 +153,13 @@ const std::vector<TruthScene>& ground_truth_scenes() {
        "places of points.",
        stiff_rope},
       {"soft cloth on two corners",
-       "Rows that share a point are solved one after the other, which gives each a compliance of "
-       "about h^2 / m: a fall by more than 3 with half the step, early. Then folds form, which "
-       "are chaotic.",
+       "At first it falls by more than 3 with half the step: rows that share a point are solved one after "
+       "the other, which gives each a compliance of about h^2 / m. Later the exact solution is sensitive, "
+       "too.",
        soft_cloth},
       {"small flag in an even wind",
-       "Cloth lighter than the air it moves: forces of the air act with the places and "
-       "velocities at the start of a substep. Then it flutters out of phase, and more substeps "
-       "do not bring the phase back.",
+       "Large from the first pictures on, and not of first order later: the forces of the air meet a light "
+       "cloth, and then it flutters out of phase. Which part does what has not been taken apart.",
        flag},
       {"planet, e = 0.6",
        "It runs ahead along the right orbit, linearly in time: energy and axis stay, as in case "
