@@ -27,6 +27,20 @@ bool touches(const Manifold& manifold) {
                      [](const state::ContactPoint& p) { return p.separation < Real(0); });
 }
 
+/// Will overlap within `dt` at the bodies' present speeds: a sleeper that is hit must be awake in that step,
+/// or it takes the hit like a wall.
+bool meets(const Bodies& bodies, const Manifold& manifold, Real dt) {
+  const auto speed = [&](std::uint32_t body, Vec3 anchor) {
+    return dot(manifold.normal, bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor));
+  };
+  return std::any_of(manifold.point.begin(), manifold.point.begin() + manifold.point_count,
+                     [&](const state::ContactPoint& p) {
+                       const Real parting =
+                           speed(manifold.body_b, p.anchor_b) - speed(manifold.body_a, p.anchor_a);
+                       return p.separation + dt * parting < Real(0);
+                     });
+}
+
 bool sleeps(const Bodies& bodies, std::uint32_t body) {
   return body != state::HookPlace::kWorld && bodies.asleep[body] != 0;
 }
@@ -60,7 +74,7 @@ std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSet
 
 }  // namespace
 
-bool wake_touched(WorldData& world) {
+bool wake_touched(WorldData& world, Real dt) {
   Bodies& bodies = world.tables.bodies;
   bool any = false;
   for (bool changed = true; changed;) {
@@ -68,7 +82,7 @@ bool wake_touched(WorldData& world) {
     for (const Manifold& m : world.tables.pairs.manifold) {
       const bool sleeper_a = bodies.asleep[m.body_a] != 0;
       const bool sleeper_b = bodies.asleep[m.body_b] != 0;
-      if (sleeper_a == sleeper_b || !touches(m)) continue;
+      if (sleeper_a == sleeper_b || !(touches(m) || meets(bodies, m, dt))) continue;
       if (!disturbs(bodies, sleeper_a ? m.body_b : m.body_a)) continue;
       wake(bodies, sleeper_a ? m.body_a : m.body_b);
       changed = any = true;

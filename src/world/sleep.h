@@ -6,9 +6,9 @@
 
 namespace hooke::world {
 
-/// Wakes the bodies that sleep and are touched by one that moves, and with each all that it touches. Returns
-/// whether any woke; `awake` is then out of date.
-bool wake_touched(WorldData& world);
+/// Wakes the bodies that sleep and are touched, or will be within `dt`, by one that moves, and with each all
+/// that it touches. Returns whether any woke; `awake` is then out of date.
+bool wake_touched(WorldData& world, Real dt);
 
 /// Puts to sleep the islands (bodies that touch each other or are hooked to each other) all of whose bodies
 /// have been slower than 5 cm/s for half a second.

@@ -52,7 +52,7 @@ void detect(WorldData& w, double dt) {
   world::refresh_hooks(w);
   world::list_awake_bodies(w);
   world::find_body_contacts(w, static_cast<Real>(dt));
-  if (world::wake_touched(w)) world::list_awake_bodies(w);
+  if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
   collision::find_contacts(w.tables, dt);
 }
 
