@@ -17,7 +17,7 @@
 
 /// \file
 /// Cuts a solid into parts that are nearly convex. After the idea of approximate convex decomposition (Lien
-/// and Amato 2007, Approximate convex decomposition of polyhedra): the measure of a part is how deep its
+/// and Amato 2007): the measure of a part is how deep its
 /// surface dips below its hull, and the deepest is cut. Of a number of planes the one is taken that leaves
 /// the smallest hulls. The cuts themselves are in the hull's faces, and need no looking at. In the end parts
 /// that make a good one are joined.

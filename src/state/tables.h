@@ -23,9 +23,9 @@ namespace hooke::state {
 /// hash a walk.
 struct Tables {
   WorldDesc desc;
-  double time = 0.0;     ///< [s]
+  double time = 0.0;          ///< [s]
   double body_substep = 0.0;  ///< Length of the last one of bodies [s]; 0 before the first step.
-  double substep = 0.0;  ///< Length of the last one [s]; 0 before the first step.
+  double substep = 0.0;       ///< Length of the last one [s]; 0 before the first step.
   std::uint64_t step_count = 0;
   std::uint64_t revision = 0;  ///< Grows when rows come, go or change what they join; derived tables follow.
 

@@ -17,8 +17,6 @@ using parallel::Range;
 using state::BodyTraits;
 using state::Tables;
 
-
-
 bool moves(const BodyTraits& traits) {
   return traits.kind != BodyKind::kStatic;
 }

@@ -1,6 +1,5 @@
 #include "collision/broad_phase.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
