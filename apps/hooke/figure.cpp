@@ -14,7 +14,11 @@ namespace {
 
 /// Thinner springs than these are drawn as lines: round ones cost a hundred triangles each.
 constexpr std::size_t kMostRoundSprings = 3000;
-constexpr float kHalfSpaceSize = 50;  ///< [m], of a half-space that is not the ground.
+constexpr float kLeastRopeRadius = 1.2F;  ///< [px], half the least width of a rope.
+/// [px]: larger spheres are drawn by the finest level, smaller ones by the next; below the second by the
+/// coarsest. None is more than half a pixel off.
+constexpr std::array<float, 2> kLevelRadius = {40, 10};
+constexpr float kSlabWidth = 20;      ///< Slabs are wider than so many times their thickness.
 constexpr float kIronDensity = 7800;  ///< [kg/m^3]
 const render::Color kIron = {0.30F, 0.31F, 0.33F};
 
@@ -41,24 +45,38 @@ render::Color usual_color(SceneObject::Kind kind) {
   }
 }
 
-Finish finish_of(const Scene& scene, const SceneObject& object, const TextureLoader& textures) {
-  if (object.material.empty()) return {.color = usual_color(object.kind)};
-  const SceneMaterial& look = object.look;
+Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoader& textures) {
   Finish finish = {color_of(look.color), nullptr, look.opacity, look.shininess};
   if (look.texture.empty()) return finish;
   finish.texture = textures((std::filesystem::path(scene.path).parent_path() / look.texture).string());
   return finish;
 }
 
-std::vector<FigurePart> model_parts(const Model& model, const TextureLoader& textures) {
-  std::vector<FigurePart> parts;
+std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& textures) {
+  std::vector<PaintedRange> ranges;
   for (const ModelPart& part : model.parts) {
     const ModelMaterial& material = model.materials[part.material];
     Finish finish = {color_of(material.color), nullptr, material.opacity, material.shininess};
     if (!material.texture.empty()) finish.texture = textures(material.texture);
-    if (part.count > 0) parts.push_back({part.first, part.count, finish});
+    if (part.count > 0) ranges.push_back({part.first, part.count, finish});
   }
-  return parts;
+  return ranges;
+}
+
+/// What the ranges of an object, or of a part of it, depend on.
+struct Look {
+  SceneObject::Kind kind;
+  const std::string& material;  ///< Empty: a model's own materials, or the usual color.
+  const SceneMaterial& look;
+  const Model* model;
+};
+
+std::vector<PaintedRange> ranges_of(const Scene& scene, const Look& look, const TextureLoader& textures) {
+  if (!look.material.empty()) return {{0, 0, finish_of(scene, look.look, textures)}};
+  std::vector<PaintedRange> ranges;
+  if (look.model != nullptr) ranges = model_ranges(*look.model, textures);
+  if (ranges.empty()) ranges.push_back({0, 0, {.color = usual_color(look.kind)}});
+  return ranges;
 }
 
 /// Names of an object's description: "ropes[2]", or "timeline[0].add.ropes[2]".
@@ -90,23 +108,35 @@ void add_loads(const std::vector<SceneLoad>& loads, std::size_t points, Figure& 
   }
 }
 
-void prepare_body(const SceneObject& object, Figure& figure) {
-  figure.shape = object.shape;
-  switch (object.shape.kind) {
-    case ShapeKind::kSphere:
-      figure.geometry = std::make_shared<render::MeshGeometry>(render::make_sphere(4));
-      break;
-    case ShapeKind::kBox:
-      figure.geometry = std::make_shared<render::MeshGeometry>(render::make_box(object.shape.half_extents));
-      break;
-    case ShapeKind::kMesh:
-      if (object.model != nullptr) figure.geometry = geometry_of(*object.model);
-      break;
-    case ShapeKind::kHalfSpace:
-      figure.geometry = std::make_shared<render::MeshGeometry>(
-          render::make_box({kHalfSpaceSize, 0.5F * kHalfSpaceSize, kHalfSpaceSize}));
-      break;
+/// A hull has faces of its own, and no materials.
+const Model* drawn_materials(const Shape& shape, const std::shared_ptr<const Model>& model) {
+  return shape.kind == ShapeKind::kMesh ? model.get() : nullptr;
+}
+
+/// Ground: what it would shade lies below it, and its shadow would take the whole shadow map.
+bool is_slab(const Shape& shape) {
+  const Vec3 half = shape.half_extents;
+  return shape.kind == ShapeKind::kBox && std::min(half.x, half.z) > kSlabWidth * half.y;
+}
+
+std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object,
+                                   const TextureLoader& textures, BodyGeometries& geometries) {
+  if (object.shape.kind != ShapeKind::kCompound) {
+    const Look look = {object.kind, object.material, object.look,
+                       drawn_materials(object.shape, object.model)};
+    return {{.geometry = geometries.find(object.shape, object.model),
+             .ranges = ranges_of(scene, look, textures),
+             .casts_shadow = !is_slab(object.shape)}};
   }
+  std::vector<FigureSolid> solids;
+  for (const SceneObject::Part& part : object.parts) {
+    const Look look = {object.kind, part.material, part.look, drawn_materials(part.shape, part.model)};
+    solids.push_back({.geometry = geometries.find(part.shape, part.model),
+                      .position = part.position,
+                      .rotation = part.rotation,
+                      .ranges = ranges_of(scene, look, textures)});
+  }
+  return solids;
 }
 
 void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figure& figure) {
@@ -141,31 +171,27 @@ float specular_of(float shininess) {
   return std::clamp(0.03F + 0.004F * shininess, 0.03F, 0.45F);
 }
 
-void add_mesh(const Figure& figure, const std::shared_ptr<const render::MeshGeometry>& geometry,
-              const Mat4& transform, render::DrawList& list) {
-  for (const FigurePart& part : figure.parts) {
-    render::DrawMesh mesh;
-    mesh.geometry = geometry;
-    mesh.first_index = part.first;
-    mesh.index_count = part.count;
-    mesh.transform = transform;
-    mesh.texture = part.finish.texture;
-    mesh.color = part.finish.color;
-    mesh.opacity = part.finish.opacity;
-    mesh.shininess = part.finish.shininess;
-    mesh.specular = specular_of(part.finish.shininess);
-    const bool holed = part.finish.texture != nullptr && part.finish.texture->channels == 4;
-    mesh.alpha = holed ? render::AlphaMode::kCutout : render::AlphaMode::kOpaque;
-    mesh.two_sided = figure.surface.has_value();
-    list.meshes.push_back(std::move(mesh));
-  }
+/// A mesh to be drawn with one finish.
+render::DrawMesh painted(const PaintedRange& range) {
+  const Finish& finish = range.finish;
+  render::DrawMesh mesh;
+  mesh.first_index = range.first;
+  mesh.index_count = range.count;
+  mesh.texture = finish.texture;
+  mesh.color = finish.color;
+  mesh.opacity = finish.opacity;
+  mesh.shininess = finish.shininess;
+  mesh.specular = specular_of(finish.shininess);
+  const bool holed = finish.texture != nullptr && finish.texture->channels == 4;
+  mesh.alpha = holed ? render::AlphaMode::kCutout : render::AlphaMode::kOpaque;
+  return mesh;
 }
 
 bool add_ground(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
   const Vec3 up = rotate(place.rotation, Vec3{0, 1, 0});
   if (list.ground.has_value() || up.y < 0.9999F) return false;
   render::Ground ground;
-  const Finish& finish = figure.parts.front().finish;
+  const Finish& finish = figure.solids.front().ranges.front().finish;
   ground.height = place.position.y;
   ground.color = finish.color;
   ground.line_color = {0.78F * finish.color.r, 0.78F * finish.color.g, 0.78F * finish.color.b};
@@ -177,26 +203,42 @@ bool add_ground(const Figure& figure, const FigurePlace& place, render::DrawList
 }
 
 void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
-  if (figure.geometry == nullptr) return;
-  Vec3 position = place.position;
-  Vec3 scale = {1, 1, 1};
-  if (figure.shape.kind == ShapeKind::kSphere) {
-    scale = {figure.shape.radius, figure.shape.radius, figure.shape.radius};
+  if (figure.half_space && add_ground(figure, place, list)) return;
+  const float distance = length(place.position - place.eye);
+  const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
+  for (const FigureSolid& solid : figure.solids) {
+    const float radius = solid.geometry.scale.x / std::max(place.pixel * distance, 1e-9F);
+    const std::size_t level = radius > kLevelRadius[0] ? 0 : radius > kLevelRadius[1] ? 1 : 2;
+    if (solid.geometry.levels[level] == nullptr) continue;
+    for (const PaintedRange& range : solid.ranges) {
+      render::DrawMesh mesh = painted(range);
+      mesh.geometry = solid.geometry.levels[level];
+      mesh.transform = body * transform_of(solid);
+      mesh.casts_shadow = solid.casts_shadow;
+      list.meshes.push_back(std::move(mesh));
+    }
   }
-  if (figure.shape.kind == ShapeKind::kHalfSpace) {
-    if (add_ground(figure, place, list)) return;
-    position += rotate(place.rotation, Vec3{0, -0.5F * kHalfSpaceSize, 0});
+}
+
+void add_cloth(Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  if (!figure.surface) return;
+  update_surface(*figure.surface, place.points);
+  for (const PaintedRange& range : figure.ranges) {
+    render::DrawMesh mesh = painted(range);
+    mesh.geometry = figure.surface->geometry;
+    mesh.transform = affine(Mat3{}, Vec3{});
+    mesh.two_sided = true;
+    list.meshes.push_back(std::move(mesh));
   }
-  add_mesh(figure, figure.geometry, make_transform(position, place.rotation, scale), list);
 }
 
 float visible_radius(float radius, Vec3 point, const FigurePlace& place) {
-  return std::max(radius, place.least_rope_radius * length(point - place.eye));
+  return std::max(radius, kLeastRopeRadius * place.pixel * length(point - place.eye));
 }
 
 void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
   if (place.points.empty()) return;
-  const Finish& finish = figure.parts.front().finish;
+  const Finish& finish = figure.ranges.front().finish;
   const float radius = visible_radius(figure.radius, place.points[place.points.size() / 2], place);
   list.ropes.push_back({{place.points.begin(), place.points.end()},
                         radius,
@@ -213,7 +255,7 @@ void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList&
 }
 
 void add_springs(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
-  const Finish& finish = figure.parts.front().finish;
+  const Finish& finish = figure.ranges.front().finish;
   const bool round = figure.springs.size() <= kMostRoundSprings;
   for (const SpringDesc& spring : figure.springs) {
     if (spring.a >= place.points.size() || spring.b >= place.points.size()) continue;
@@ -233,22 +275,32 @@ void add_particles(const Figure& figure, const FigurePlace& place, render::DrawL
   add_springs(figure, place, list);
   const std::size_t count = std::min(place.points.size(), figure.radii.size());
   for (std::size_t i = 0; i < count; ++i) {
-    list.spheres.push_back({place.points[i], figure.radii[i], figure.parts.front().finish.color});
+    list.spheres.push_back({place.points[i], figure.radii[i], figure.ranges.front().finish.color});
   }
 }
 
 }  // namespace
 
-Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures) {
+Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
+                   BodyGeometries& geometries) {
   Figure figure;
   figure.kind = object.kind;
   figure.radius = static_cast<float>(object.radius);
-  if (object.model != nullptr && object.material.empty()) figure.parts = model_parts(*object.model, textures);
-  if (figure.parts.empty()) figure.parts.push_back({0, 0, finish_of(simulation.scene(), object, textures)});
-  if (object.kind == SceneObject::Kind::kBody) prepare_body(object, figure);
+  if (object.kind == SceneObject::Kind::kBody) {
+    figure.solids = solids_of(simulation.scene(), object, textures, geometries);
+    figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;
+    return figure;
+  }
+  const Look look = {object.kind, object.material, object.look, object.model.get()};
+  figure.ranges = ranges_of(simulation.scene(), look, textures);
   if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
   prepare_points(simulation, object, figure);
   return figure;
+}
+
+Mat4 transform_of(const FigureSolid& solid) {
+  const Vec3 position = solid.position + rotate(solid.rotation, solid.geometry.shift);
+  return make_transform(position, solid.rotation, solid.geometry.scale);
 }
 
 void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list) {
@@ -260,9 +312,7 @@ void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list
       add_rope(figure, place, list);
       break;
     case SceneObject::Kind::kCloth:
-      if (!figure.surface) break;
-      update_surface(*figure.surface, place.points);
-      add_mesh(figure, figure.surface->geometry, affine(Mat3{}, Vec3{}), list);
+      add_cloth(figure, place, list);
       break;
     case SceneObject::Kind::kParticles:
       add_particles(figure, place, list);

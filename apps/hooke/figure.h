@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/body_geometry.h"
 #include "hooke/cloth_surface.h"
 #include "hooke/scene_io.h"
 
@@ -23,10 +24,19 @@ struct Finish {
 };
 
 /// Consecutive triangles with one finish.
-struct FigurePart {
+struct PaintedRange {
   std::size_t first = 0;
   std::size_t count = 0;  ///< Indices; 0 is all.
   Finish finish;
+};
+
+/// A body, or one of its parts.
+struct FigureSolid {
+  BodyGeometry geometry;
+  Vec3 position = {};  ///< In the body's frame [m].
+  Quat rotation = {};
+  std::vector<PaintedRange> ranges;
+  bool casts_shadow = true;
 };
 
 /// A weight that is tied to a point.
@@ -39,28 +49,32 @@ struct FigureLoad {
 /// that are filled anew.
 struct Figure {
   SceneObject::Kind kind = SceneObject::Kind::kBody;
-  Shape shape = {};  ///< Of a body.
-  float radius = 0;  ///< Of a rope's strand [m].
-  std::vector<FigurePart> parts;
-  std::shared_ptr<const render::MeshGeometry> geometry;  ///< Of a body.
-  std::optional<ClothSurface> surface;                   ///< Of a cloth.
-  std::vector<float> radii;                              ///< Of particles [m].
-  std::vector<SpringDesc> springs;                       ///< Of particles.
-  std::vector<FigureLoad> loads;                         ///< Of ropes and cloths.
+  float radius = 0;                     ///< Of a rope's strand [m].
+  std::vector<PaintedRange> ranges;     ///< Of all but bodies; at least one.
+  std::vector<FigureSolid> solids;      ///< Of a body.
+  bool half_space = false;              ///< The body is one.
+  std::optional<ClothSurface> surface;  ///< Of a cloth.
+  std::vector<float> radii;             ///< Of particles [m].
+  std::vector<SpringDesc> springs;      ///< Of particles.
+  std::vector<FigureLoad> loads;        ///< Of ropes and cloths.
 };
 
 /// Gives the image of a path, or null.
 using TextureLoader = std::function<std::shared_ptr<const render::Image>(const std::string&)>;
 
 /// Everything that can be prepared about an object of a simulation.
-Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures);
+Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
+                   BodyGeometries& geometries);
+
+/// A solid's frame and size, in the body's frame.
+Mat4 transform_of(const FigureSolid& solid);
 
 /// The pose of a body and the points of the others, relative to the list's origin.
 struct FigurePlace {
   Vec3 position = {};
   Quat rotation = {};
   std::span<const Vec3> points = {};
-  float least_rope_radius = 0;  ///< [m], for one meter of distance from `eye`.
+  float pixel = 0;  ///< [m], what one pixel covers a meter away from `eye`.
   Vec3 eye = {};
 };
 

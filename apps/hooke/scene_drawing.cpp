@@ -18,8 +18,6 @@ namespace {
 /// not.
 constexpr double kOriginStep = 64;
 constexpr double kFar = 1e30;  ///< [m], beyond everything.
-/// [px], half the least width of a rope.
-constexpr float kLeastRopeRadius = 1.2F;
 
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
@@ -46,8 +44,8 @@ std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, 
       object.body.generation + object.rope.generation + object.cloth.generation + object.particles.generation;
   std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
   if (figure == nullptr) {
-    figure = std::make_shared<Figure>(
-        make_figure(simulation, object, [this](const std::string& path) { return find_texture(path); }));
+    figure = std::make_shared<Figure>(make_figure(
+        simulation, object, [this](const std::string& path) { return find_texture(path); }, geometries_));
   }
   return figure;
 }
@@ -83,12 +81,15 @@ void SceneDrawing::measure(const State& state) {
   };
   for (const ObjectState& object : state.objects) {
     for (const DVec3& point : object.points) extend(point);
-    const Figure& figure = *object.figure;
-    if (figure.geometry == nullptr || figure.shape.kind == ShapeKind::kHalfSpace) continue;
-    const Real scale = figure.shape.kind == ShapeKind::kSphere ? figure.shape.radius : Real(1);
-    for (const render::Vertex& vertex : figure.geometry->vertices) {
-      extend(object.pose.position +
-             vector_cast<double>(rotate(object.pose.rotation, scale * vertex.position)));
+    if (object.figure->half_space) continue;
+    for (const FigureSolid& solid : object.figure->solids) {
+      if (solid.geometry.levels.back() == nullptr) continue;
+      const Mat4 transform = transform_of(solid);
+      for (const render::Vertex& vertex : solid.geometry.levels.back()->vertices) {
+        extend(
+            object.pose.position +
+            vector_cast<double>(rotate(object.pose.rotation, transform_point(transform, vertex.position))));
+      }
     }
   }
   automatic_ = low.x <= high.x ? viewpoint_of_box(low, high) : Viewpoint{};
@@ -127,7 +128,7 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   list.camera = {local(view.eye), local(view.target), {0, 1, 0}, view.vertical_fov_deg};
   const float half_fov = 0.5F * view.vertical_fov_deg * std::numbers::pi_v<float> / 180;
   const float pixel = 2 * std::tan(half_fov) / static_cast<float>(std::max(height_px, 1));
-  const FigurePlace place = {.least_rope_radius = kLeastRopeRadius * pixel, .eye = list.camera.eye};
+  const FigurePlace place = {.pixel = pixel, .eye = list.camera.eye};
   add_trail(origin, place, list);
   const State state = between(time);
   std::vector<Vec3> points;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/body_geometry.h"
 #include "hooke/scene_camera.h"
 #include "hooke/scene_io.h"
 
@@ -58,6 +59,7 @@ class SceneDrawing {
 
   void add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const;
 
+  BodyGeometries geometries_;
   std::map<Key, std::shared_ptr<Figure>> figures_;
   std::map<std::string, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;

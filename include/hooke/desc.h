@@ -4,6 +4,7 @@
 #include "hooke/math.h"
 #include "hooke/shape.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -43,12 +44,27 @@ struct WindDesc {
   friend bool operator==(const WindDesc&, const WindDesc&) = default;
 };
 
+/// What two materials do to each other, in place of the rule at ContactDesc.
+struct MaterialPairDesc {
+  std::uint16_t a = 0;
+  std::uint16_t b = 0;
+  Real friction = Real(0.5);  ///< [0, 100]
+  std::optional<Real> static_friction = {};
+  Real restitution = Real(0);  ///< [0, 1]
+};
+
 struct WorldDesc {
   Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
   int substeps = 8;                                ///< Solver passes per step; more is stiffer. [1, 64]
   int particle_substeps = 1;                       ///< Passes over deformables in each substep. [1, 64]
   int workers = 1;  ///< Threads used by step(). The result does not depend on it. [1, 64]
   WindDesc wind = {};
+  std::vector<MaterialPairDesc> materials = {};
+  Real contact_hz = Real(60);             ///< Stiffness of contacts between bodies, as a frequency. (0, 1000]
+  Real contact_damping_ratio = Real(10);  ///< Of the same. (0, 100]
+  int bias_sweeps =
+      1;  ///< Passes over contacts in each substep; 2 is cheaper than twice the substeps. [1, 8]
+  bool sleeping = true;  ///< Bodies that have come to rest are skipped until something wakes them.
 };
 
 /// A displacement as a function of time; zero at time zero.
@@ -84,18 +100,139 @@ struct LoadDesc {
   Real mass = Real(1);  ///< [kg], not negative.
 };
 
-/// How a surface or a point answers a contact.
+/// How a surface or a point answers a contact. Of two surfaces: friction sqrt(a b), the larger restitution,
+/// the larger rolling and spinning friction, the sum of the surface velocities; unless the world's table of
+/// materials lists the pair.
 struct ContactDesc {
-  Real friction = Real(0.5);  ///< Coulomb coefficient; a contact uses sqrt(a b) of the two. [0, 100]
+  Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
+  std::optional<Real> static_friction =
+      {};                      ///< Coefficient while at rest, not below `friction`, which it is by default.
+  Real restitution = Real(0);  ///< Speed after over speed before, of bodies. [0, 1]
+  Real rolling_friction = Real(0);   ///< Lever of the rolling resistance [m]. Not negative.
+  Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m]. Not negative.
+  Vec3 surface_velocity = {};        ///< Of a conveyor belt, in the body's frame [m/s].
+  std::uint16_t material = 0;        ///< The row of WorldDesc::materials it is listed under; any number.
 };
 
-/// A shape in the world. It stands still and is not moved by what touches it.
-struct BodyDesc {
+enum class BodyKind : std::uint8_t {
+  kStatic,     ///< Never moves.
+  kKinematic,  ///< Moves as told and is not moved by what it touches.
+  kDynamic,
+};
+
+/// Two bodies collide when each is in a category that the other's mask has, and they do not share a negative
+/// group; a shared positive group always collides.
+struct FilterDesc {
+  std::uint32_t category = 1;
+  std::uint32_t mask = 0xFFFFFFFF;
+  std::int32_t group = 0;
+};
+
+/// One shape of a body that has several.
+struct PartDesc {
   Shape shape = {};
-  DVec3 position = {};  ///< Origin of the shape's frame [m].
-  Quat rotation = {};   ///< Normalized on entry.
+  Vec3 position = {};         ///< Of the shape's frame in the body's [m].
+  Quat rotation = {};         ///< Of the shape's frame in the body's. Normalized on entry.
+  Real density = Real(1000);  ///< [kg/m^3], positive.
   ContactDesc contact = {};
+};
+
+/// A rigid body. Its mass, its center and its inertia come from the volume of its shapes.
+struct BodyDesc {
+  BodyKind kind = BodyKind::kStatic;
+  Shape shape = {};
+  std::vector<PartDesc> parts = {};  ///< Of a compound: replace `density` and `contact`.
+  DVec3 position = {};               ///< Origin of the body's frame [m].
+  Quat rotation = {};                ///< Normalized on entry.
+  Vec3 velocity = {};                ///< Of the center of mass [m/s].
+  Vec3 angular_velocity = {};        ///< [rad/s], in the world's axes.
+  Real density = Real(1000);         ///< [kg/m^3], positive.
+  std::optional<Real> mass = {};     ///< [kg]: scales the density to give this mass.
+  Real linear_damping = Real(0);     ///< Rate at which the velocity decays [1/s].
+  Real angular_damping = Real(0);    ///< [1/s]
+  Real gravity_scale = Real(1);
+  ContactDesc contact = {};
+  FilterDesc filter = {};
   bool collides = true;  ///< False: only drawn.
+  bool sensor = false;   ///< Reports what overlaps it and pushes nothing.
+  bool bullet = false;   ///< Swept against moving bodies too, not only against those that stand.
+  bool can_sleep = true;
+  MotionDesc motion = {};  ///< kKinematic: its path from the start; rotation by `angular_velocity`.
+};
+
+/// What a hook holds on one side.
+struct HookEnd {
+  BodyId body = {};  ///< None: the world itself.
+};
+
+enum class HookKind : std::uint8_t {
+  kBall,      ///< One point in common; turns freely within `cone` about its axis and `limits` of twist.
+  kHinge,     ///< Turns about `axis`.
+  kSlider,    ///< Slides along `axis` and does not turn.
+  kFixed,     ///< Moves as one.
+  kDistance,  ///< The distance of two points stays within `limits`, or what it was where there are none.
+  kWheel,     ///< B slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
+  kSixDegrees,  ///< Each of the six `freedoms` on its own.
+};
+
+/// Bounds of a freedom [m] or [rad]; infinite where there is none.
+struct HookLimits {
+  Real lower = -kRigid;
+  Real upper = kRigid;
+
+  friend bool operator==(const HookLimits&, const HookLimits&) = default;
+};
+
+/// F = -stiffness (value - target) - damping speed, whatever the stiffness without instability.
+struct HookSpring {
+  Real stiffness = Real(0);  ///< [N/m] or [N m/rad], not negative.
+  Real damping = Real(0);    ///< [N s/m] or [N m s/rad], not negative.
+  Real target = Real(0);     ///< Value at rest [m] or [rad], relative to how things stood when hooked.
+
+  friend bool operator==(const HookSpring&, const HookSpring&) = default;
+};
+
+/// Drives a freedom at a speed with a force that is limited. Speed zero: friction.
+struct HookMotor {
+  Real speed = Real(0);      ///< [m/s] or [rad/s]
+  Real max_force = Real(0);  ///< [N] or [N m], not negative; 0 switches the motor off.
+
+  friend bool operator==(const HookMotor&, const HookMotor&) = default;
+};
+
+/// One of the ways in which b may move relative to a. Zero is how they stood when hooked.
+struct HookFreedom {
+  bool locked = false;  ///< Held at `spring.target`.
+  HookLimits limits = {};
+  HookSpring spring = {};
+  HookMotor motor = {};
+
+  friend bool operator==(const HookFreedom&, const HookFreedom&) = default;
+};
+
+/// Holds two ends together. Anchor and axes are given in the world, as things stand when the hook is made.
+///
+/// Freedoms are those of b relative to a, in a's axes: x along `axis`, y along the part of `second_axis` that
+/// is across it, z across both (kWheel: z along the axle). A rotation is taken apart as one about a's x, then
+/// y, then b's z; the second is meant to stay within 90 degrees.
+struct HookDesc {
+  HookKind kind = HookKind::kBall;
+  HookEnd a = {};
+  HookEnd b = {};
+  DVec3 anchor = {};                         ///< Of both ends [m]; of a for kDistance.
+  std::optional<DVec3> anchor_b = {};        ///< kDistance: of b [m]; `anchor` by default.
+  Vec3 axis = {Real(0), Real(1), Real(0)};   ///< Any length but zero.
+  std::optional<Vec3> second_axis = {};      ///< Not along `axis`; any direction across it by default.
+  HookLimits limits = {};                    ///< Of what moves: angle, way, distance, twist, suspension.
+  std::optional<Real> cone = {};             ///< kBall: largest angle between the axes [rad], (0, pi].
+  HookSpring spring = {};                    ///< Of what moves. kBall: towards how things stood.
+  HookMotor motor = {};                      ///< Of what moves. kWheel: about the axle. kBall: the speed
+                                             ///< about `axis`, friction about every axis.
+  HookFreedom steering = {.locked = true};   ///< kWheel: about the suspension's axis.
+  std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y, z, then angles.
+  Real break_force = kRigid;                 ///< [N], positive: lets go above this in two substeps.
+  Real break_torque = kRigid;                ///< [N m], positive.
+  bool collide = false;                      ///< Whether the two bodies may touch each other.
 };
 
 /// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on

@@ -19,6 +19,7 @@ struct Id {
 
 using MeshId = Id<struct MeshTag>;            ///< Triangles shared by bodies and cloths.
 using BodyId = Id<struct BodyTag>;            ///< A shape with a pose.
+using HookId = Id<struct HookTag>;            ///< What holds two things together.
 using RopeId = Id<struct RopeTag>;            ///< A chain of point masses.
 using ClothId = Id<struct ClothTag>;          ///< A surface of point masses.
 using ParticlesId = Id<struct ParticlesTag>;  ///< Loose point masses and their springs.

@@ -23,7 +23,7 @@ namespace hooke {
 /// The newest version of the format that this library reads, and the one that it writes.
 inline constexpr int kSceneVersion = 1;
 
-/// Most points of all objects together, events included; a body counts as one.
+/// Most points of all objects together, events included; a body counts as one, or as its parts.
 inline constexpr std::size_t kMostScenePoints = 1'000'000;
 
 /// How a surface looks and how it answers a contact.
@@ -34,6 +34,17 @@ struct SceneMaterial {
   float shininess = 16.0f;    ///< Blinn-Phong exponent. [1, 1000]
   float opacity = 1.0f;       ///< [0, 1]
   Real friction = Real(0.5);  ///< Coulomb coefficient. [0, 100]
+  std::optional<Real> static_friction = {};  ///< While at rest; not below `friction`, which it is by default.
+  Real restitution = Real(0);                ///< [0, 1]
+  Real rolling_friction = Real(0);           ///< Lever [m].
+  Real spinning_friction = Real(0);          ///< Lever [m].
+};
+
+/// What two materials do to each other, in place of what their own numbers would give.
+struct ScenePair {
+  std::string a = {};  ///< Names in Scene::materials.
+  std::string b = {};
+  MaterialPairDesc desc = {};
 };
 
 /// Triangles for bodies and cloths: a file, or vertices and triangles in place.
@@ -78,6 +89,7 @@ struct SceneArray {
     kGrid,     ///< grid[0] x grid[1] x grid[2] copies, x fastest, `spacing` apart.
     kPyramid,  ///< `pyramid` copies in the lowest row along x, one less in each row above.
     kRandom,   ///< `random` copies, uniform in `box`, by `seed`.
+    kList,     ///< One copy for each of `list`.
   };
 
   Kind kind = Kind::kSingle;
@@ -87,11 +99,15 @@ struct SceneArray {
   DVec3 spacing = {1, 1, 1};  ///< [m]
   std::uint32_t seed = 1;
   std::array<DVec3, 2> box = {DVec3{}, DVec3{1, 1, 1}};  ///< Smallest and largest offset [m].
+  std::vector<DVec3> list = {};                          ///< Offsets [m].
+  std::vector<Quat> rotations = {};                      ///< Of a list of bodies: as many as `list`, or none.
 
   /// Number of copies; saturates.
   [[nodiscard]] std::size_t count() const;
   /// Offset of copy `i` from the object as described [m]; zero beyond count().
   [[nodiscard]] DVec3 offset(std::size_t i) const;
+  /// Turn of copy `i` about its own origin, after the rotation of the object as described.
+  [[nodiscard]] Quat rotation(std::size_t i) const;
 };
 
 /// What every object but a field has.
@@ -107,10 +123,16 @@ struct SceneTag {
 
 // Descriptions by value. What refers to something by name or by place stands beside the description and is
 // filled into it when the world is built: meshes, pins, loads, friction.
+struct ScenePart {
+  PartDesc desc = {};
+  std::string mesh = {};      ///< A name in Scene::meshes, for a mesh or a hull.
+  std::string material = {};  ///< A name in Scene::materials; the body's by default.
+};
 struct SceneBody {
   SceneTag tag = {};
   BodyDesc desc = {};
-  std::string mesh = {};  ///< A name in Scene::meshes, for a mesh shape.
+  std::string mesh = {};              ///< A name in Scene::meshes, for a mesh or a hull.
+  std::vector<ScenePart> parts = {};  ///< Replace desc.shape.
 };
 struct SceneRope {
   SceneTag tag = {};
@@ -195,6 +217,8 @@ struct SceneExpectation {
     kZ,
     kHeight,  ///< The same as kY.
     kSpeed,
+    kAngularSpeed,
+    kTilt,  ///< Angle between the y axis of a body and that of the world [deg].
     kExtension,
     kLargestStretch,
     kMeanStretch,
@@ -208,6 +232,7 @@ struct SceneExpectation {
     kMomentum,
     kPenetration,
     kContacts,
+    kAsleep,  ///< Number of bodies that sleep.
   };
   enum class Op : std::uint8_t {
     kLess,
@@ -241,6 +266,7 @@ struct Scene {
   std::optional<SceneAccuracy> accuracy = {};
   std::vector<SceneMesh> meshes = {};
   std::vector<SceneMaterial> materials = {};
+  std::vector<ScenePair> material_pairs = {};
   SceneObjects objects = {};
   std::vector<SceneEvent> timeline = {};
   std::optional<SceneCamera> camera = {};
@@ -307,12 +333,23 @@ struct SceneObject {
   std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
   std::string path = {};      ///< In the file, as "ropes[0]".
   std::string stepper = {};   ///< Of the laboratory; empty for what the run chooses.
-  Shape shape = {};           ///< Of a body.
-  Real radius = Real(0);      ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
-  double rest_length = 0;     ///< Of a rope [m].
-  std::uint32_t columns = 0;  ///< Of a cloth's grid; 0 for a mesh.
+  /// One shape of a body that has several.
+  struct Part {
+    Shape shape = {};
+    Vec3 position = {};  ///< In the body's frame [m].
+    Quat rotation = {};
+    std::shared_ptr<const Model> model = {};
+    SceneMaterial look = {};
+    std::string material = {};  ///< As of the object.
+  };
+
+  Shape shape = {};              ///< Of a body.
+  std::vector<Part> parts = {};  ///< Of a compound body.
+  Real radius = Real(0);         ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
+  double rest_length = 0;        ///< Of a rope [m].
+  std::uint32_t columns = 0;     ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
-  std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth.
+  std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth; of a hull, its faces.
 };
 
 /// The points of a rope, a cloth or particles, as World::positions gives them; none for other objects.

@@ -53,11 +53,29 @@ struct Pose {
   Quat rotation = {};
 };
 
+/// Where two bodies touched in the last step. Contacts stand in order of the bodies' creation.
+struct BodyContact {
+  BodyId a;
+  BodyId b;
+  DVec3 point = {};             ///< Midway between the two surfaces [m].
+  Vec3 normal = {};             ///< From a to b.
+  Real separation = Real(0);    ///< Negative: overlap [m].
+  Real normal_force = Real(0);  ///< Mean over the last substep [N].
+};
+
+/// What a hook did to b, and the opposite to a: mean over the last step.
+struct HookForce {
+  Vec3 force = {};   ///< [N]
+  Vec3 torque = {};  ///< About the anchor [N m].
+};
+
 /// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
 struct StepReport {
   bool moved =
       false;  ///< False: `dt` was not a positive finite number, or the step was called from a force law.
-  std::uint32_t contacts = 0;            ///< Points that touched something in the last substep.
+  std::uint32_t contacts = 0;  ///< Points that touched something in the last substep.
+  std::uint32_t pairs = 0;     ///< Shapes of bodies that are near each other.
+  std::uint32_t bodies_awake = 0;
   std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
   std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.
   std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
@@ -86,7 +104,7 @@ struct Measurement {
   DVec3 angular_momentum = {};  ///< [kg m^2/s] about the world's origin.
   double largest_stretch = 0;  ///< Largest |length / rest length - 1| over rope segments and stretch springs.
   double mean_stretch = 0;     ///< Mean of the same.
-  double largest_penetration = 0;  ///< Deepest overlap of a particle's sphere with a shape [m].
+  double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
 };
 
 /// Everything that changes with time, and everything that was added, as it was. Copying is cheap; see
@@ -142,15 +160,19 @@ class World {
   // Objects. An id stays valid until its object is removed; it is never reused.
   [[nodiscard]] Result<MeshId> add_mesh(const MeshDesc& desc);
   [[nodiscard]] Result<BodyId> add_body(const BodyDesc& desc);
+  /// Holds two bodies, or a body and the world, together; one end at least is a body that forces move.
+  [[nodiscard]] Result<HookId> add_hook(const HookDesc& desc);
   [[nodiscard]] Result<RopeId> add_rope(const RopeDesc& desc);
   [[nodiscard]] Result<ClothId> add_cloth(const ClothDesc& desc);
   [[nodiscard]] Result<ParticlesId> add_particles(const ParticlesDesc& desc);
   [[nodiscard]] Result<FieldId> add_field(const FieldDesc& desc);
   [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
 
-  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it.
+  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it; the hooks of
+  // a body go with it.
   bool remove(MeshId id);
   bool remove(BodyId id);
+  bool remove(HookId id);
   bool remove(RopeId id);
   bool remove(ClothId id);
   bool remove(ParticlesId id);
@@ -165,16 +187,40 @@ class World {
   [[nodiscard]] PointView velocities(ClothId id) const;
   [[nodiscard]] PointView velocities(ParticlesId id) const;
   [[nodiscard]] Pose pose(BodyId id) const;
+  [[nodiscard]] Vec3 velocity(BodyId id) const;          ///< Of the center of mass [m/s].
+  [[nodiscard]] Vec3 angular_velocity(BodyId id) const;  ///< [rad/s], in the world's axes.
+  [[nodiscard]] DVec3 center_of_mass(BodyId id) const;   ///< [m], in the world.
+  [[nodiscard]] Real mass(BodyId id) const;              ///< [kg]; 0 for a body that nothing moves.
+  [[nodiscard]] bool asleep(BodyId id) const;
+  /// Where bodies touched each other in the last step.
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const;
+  [[nodiscard]] HookForce hook_force(HookId id) const;
+  /// How far b has moved from where it was hooked: the angle of a hinge [rad], also beyond whole turns; the
+  /// way of a slider or of a wheel's suspension [m]; the length of a distance [m]; 0 for other kinds.
+  [[nodiscard]] Real hook_value(HookId id) const;
+  /// The hooks that broke in the last step, in order of creation. They are gone.
+  [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
 
   // Pushing. Values must be finite.
-  Result<void> apply_force(PointRef point, Vec3 force);       ///< [N], during the next step.
-  Result<void> apply_impulse(PointRef point, Vec3 impulse);   ///< [N s], now.
-  Result<void> set_velocity(PointRef point, Vec3 velocity);   ///< [m/s], now; a pinned point keeps its own.
-  Result<void> set_position(PointRef point, DVec3 position);  ///< [m], now.
+  Result<void> apply_force(PointRef point, Vec3 force);         ///< [N], during the next step.
+  Result<void> apply_impulse(PointRef point, Vec3 impulse);     ///< [N s], now.
+  Result<void> set_velocity(PointRef point, Vec3 velocity);     ///< [m/s], now; a pinned point keeps its own.
+  Result<void> set_position(PointRef point, DVec3 position);    ///< [m], now.
+  Result<void> apply_force(BodyId body, Vec3 force);            ///< [N] at the center, during the next step.
+  Result<void> apply_force(BodyId body, Vec3 force, DVec3 at);  ///< [N] at a place [m] in the world.
+  Result<void> apply_torque(BodyId body, Vec3 torque);          ///< [N m], during the next step.
+  Result<void> apply_impulse(BodyId body, Vec3 impulse);        ///< [N s] at the center, now.
+  Result<void> apply_impulse(BodyId body, Vec3 impulse, DVec3 at);  ///< [N s] at a place in the world, now.
+  Result<void> set_velocity(BodyId body, Vec3 velocity);  ///< [m/s], now; a static body keeps still.
+  Result<void> set_angular_velocity(BodyId body, Vec3 angular_velocity);  ///< [rad/s], now.
+  Result<void> set_pose(BodyId body, const Pose& pose);  ///< Of the body's frame, now; keeps its velocity.
+  Result<void> set_motor(HookId hook, const HookMotor& motor);     ///< Of what moves; see HookDesc::motor.
+  Result<void> set_spring(HookId hook, const HookSpring& spring);  ///< Of what moves; see HookDesc::spring.
+  Result<void> set_steering(HookId hook, Real angle);              ///< Of a wheel [rad].
   Result<void> pin(PointRef point,
                    const MotionDesc& motion = {});  ///< Holds the point; its motion starts now.
   Result<void> unpin(PointRef point);

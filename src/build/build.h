@@ -5,6 +5,7 @@
 
 #include "state/tables.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,21 @@ Result<void> add_rope(const RopeDesc& desc, state::Tables& tables);
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables);
 Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
 
+/// The row of the new body; its slot is not set.
+Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
+/// Leaves holes in the tables of bodies and colliders, and forgets the pairs of its colliders.
+void remove_body(std::uint32_t row, state::Tables& tables);
+
+/// The new hook is the last of `tables.hooks`; its slot is not set.
+Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
+
 [[nodiscard]] Result<void> validate(const WorldDesc& desc);
 [[nodiscard]] Result<void> validate(const WindDesc& wind);
 [[nodiscard]] Result<void> validate(const FieldDesc& field);
 [[nodiscard]] Result<void> validate(const BodyDesc& body);
+[[nodiscard]] Result<void> validate(const HookDesc& desc);
+[[nodiscard]] Result<void> validate(const HookMotor& motor);
+[[nodiscard]] Result<void> validate(const HookSpring& spring);
 [[nodiscard]] Result<void> validate(const MotionDesc& motion, const std::string& where);
 
 }  // namespace hooke::build

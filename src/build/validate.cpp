@@ -15,11 +15,15 @@ Result<void> validate(const WindDesc& wind) {
 }
 
 Result<void> validate(const WorldDesc& desc) {
-  const Checks checks = Checks("world")
-                            .finite("gravity", desc.gravity)
-                            .in_range("substeps", desc.substeps, 1, 64)
-                            .in_range("particle_substeps", desc.particle_substeps, 1, 64)
-                            .in_range("workers", desc.workers, 1, 64);
+  const Checks checks =
+      Checks("world")
+          .finite("gravity", desc.gravity)
+          .in_range("substeps", desc.substeps, 1, 64)
+          .in_range("particle_substeps", desc.particle_substeps, 1, 64)
+          .in_range("workers", desc.workers, 1, 64)
+          .in_range("contact_hz", static_cast<double>(desc.contact_hz), 0.1, 1000)
+          .in_range("contact_damping_ratio", static_cast<double>(desc.contact_damping_ratio), 0.01, 100)
+          .in_range("bias_sweeps", desc.bias_sweeps, 1, 8);
   if (!checks.good()) return checks.result();
   Result<void> wind = validate(desc.wind);
   if (wind) return wind;
@@ -34,25 +38,6 @@ Result<void> validate(const FieldDesc& field) {
       .place("center", field.center)
       .finite("strength", field.strength)
       .result();
-}
-
-Result<void> validate(const BodyDesc& body) {
-  Checks checks("body");
-  const Quat& q = body.rotation;
-  const bool turns = std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w) &&
-                     q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w > Real(0);
-  checks.place("position", body.position)
-      .require(turns, "rotation", "must be finite and not zero")
-      .in_range("contact.friction", static_cast<double>(body.contact.friction), 0, 100);
-  if (body.shape.kind == ShapeKind::kSphere) {
-    checks.positive("shape.radius", static_cast<double>(body.shape.radius));
-  }
-  if (body.shape.kind == ShapeKind::kBox) {
-    checks.positive("shape.half_extents.x", static_cast<double>(body.shape.half_extents.x))
-        .positive("shape.half_extents.y", static_cast<double>(body.shape.half_extents.y))
-        .positive("shape.half_extents.z", static_cast<double>(body.shape.half_extents.z));
-  }
-  return checks.result();
 }
 
 Result<void> validate(const MotionDesc& motion, const std::string& where) {

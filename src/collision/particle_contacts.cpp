@@ -1,6 +1,7 @@
 #include "collision/particle_contacts.h"
 
 #include "collision/shape_gap.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,33 +16,46 @@ namespace {
 constexpr Real kMargin = Real(0.02);    ///< [m]
 constexpr Real kNoContact = Real(1e9);  ///< Distance of a row that does not hold now [m].
 
-/// A body's frame as one object sees it: x_body = R^T (x - offset), x relative to the object's origin.
+/// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
-  const state::Body* body = nullptr;
+  const state::ColliderShape* shape = nullptr;
+  Quat rotation = {};
   Vec3 offset = {};
 
-  [[nodiscard]] Vec3 to_body(Vec3 x) const { return rotate(conjugate(body->rotation), x - offset); }
-  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(body->rotation, direction); }
+  [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
+  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
 };
 
-Frame frame_of(const state::Body& body, const state::Deformable& object) {
-  return {&body, vector_cast<Real>(body.position - object.origin)};
+Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
+  const Pose pose = state::frame_of_collider(t.bodies, t.colliders, collider);
+  return {&t.colliders.shape[collider], pose.rotation, vector_cast<Real>(pose.position - object.origin)};
+}
+
+/// Rows of the colliders that particles may touch, in ascending order.
+std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
+    const std::uint32_t body = t.colliders.body[c];
+    if (body == state::Colliders::kNoBody) continue;
+    if (t.bodies.traits[body].collides && !t.bodies.traits[body].sensor) rows.push_back(c);
+  }
+  return rows;
 }
 
 struct Key {
-  std::uint32_t particle, body, feature;
+  std::uint32_t particle, collider, feature;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
 Key key_of(const state::Contacts& contacts, std::size_t row) {
-  return {contacts.particle[row], contacts.body[row], contacts.feature[row]};
+  return {contacts.particle[row], contacts.collider[row], contacts.feature[row]};
 }
 
 void append(state::Contacts& contacts, Key key, std::uint32_t object, Real friction) {
   contacts.particle.push_back(key.particle);
-  contacts.body.push_back(key.body);
+  contacts.collider.push_back(key.collider);
   contacts.feature.push_back(key.feature);
   contacts.object.push_back(object);
   contacts.friction.push_back(friction);
@@ -59,17 +73,17 @@ struct Finder {
 /// Appends the rows of one particle against one body.
 void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real way, Finder& finder) {
   const state::Deformable& object = t.objects[object_row];
-  const state::Body& body = t.bodies[pair.body];
-  const Vec3 x = frame_of(body, object).to_body(t.particles.position[pair.particle].x);
+  const state::ColliderShape& shape = t.colliders.shape[pair.collider];
+  const Vec3 x = frame_of(t, pair.collider, object).to_shape(t.particles.position[pair.particle].x);
   const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
-  const Real friction = std::sqrt(object.friction * body.friction);
-  if (body.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(body.shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
+  const Real friction = std::sqrt(object.friction * t.colliders.surface[pair.collider].friction);
+  if (shape.shape.kind != ShapeKind::kMesh) {
+    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
   }
-  find_triangles_near(*body.mesh, x, reach, finder.triangles);
+  find_triangles_near(*shape.mesh, x, reach, finder.triangles);
   for (const std::uint32_t triangle : finder.triangles) {
-    append(finder.contacts, {pair.particle, pair.body, triangle}, object_row, friction);
+    append(finder.contacts, {pair.particle, pair.collider, triangle}, object_row, friction);
   }
 }
 
@@ -124,14 +138,11 @@ void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
   Finder finder;
-  const bool any =
-      std::any_of(t.bodies.begin(), t.bodies.end(), [](const state::Body& b) { return b.collides; });
-  for (std::uint32_t o = 0; any && o < t.objects.size(); ++o) {
+  const std::vector<std::uint32_t> colliders = solid_colliders(t);
+  for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
-      for (std::uint32_t b = 0; b < t.bodies.size(); ++b) {
-        if (t.bodies[b].collides) find_pair(t, {p, b, 0}, o, way, finder);
-      }
+      for (const std::uint32_t c : colliders) find_pair(t, {p, c, 0}, o, way, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);
@@ -142,7 +153,7 @@ void update_contacts(parallel::Range range, state::Tables& t) {
   state::Contacts& contacts = t.contacts;
   const std::size_t count = contacts.particle.size();
   const auto same_pair = [&](std::size_t a, std::size_t b) {
-    return contacts.particle[a] == contacts.particle[b] && contacts.body[a] == contacts.body[b];
+    return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
   };
   std::vector<TriangleGap> gaps;  // of one particle to one mesh
   auto row = static_cast<std::size_t>(range.begin);
@@ -151,32 +162,33 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     const std::size_t first = row;
     while (row < count && same_pair(row, first)) ++row;
     const std::uint32_t particle = contacts.particle[first];
-    const state::Body& body = t.bodies[contacts.body[first]];
-    const Frame frame = frame_of(body, t.objects[contacts.object[first]]);
-    const Vec3 x = frame.to_body(t.particles.position[particle].x);
+    const Frame frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
+    const state::ColliderShape& shape = *frame.shape;
+    const Vec3 x = frame.to_shape(t.particles.position[particle].x);
     const Real radius = t.particles.position[particle].radius;
-    if (body.shape.kind != ShapeKind::kMesh) {
-      set_row(contacts, first, frame, gap_to_shape(body.shape, x), radius);
+    if (shape.shape.kind != ShapeKind::kMesh) {
+      set_row(contacts, first, frame, gap_to_shape(shape, x), radius);
       continue;
     }
     gaps.clear();
     for (std::size_t i = first; i < row; ++i)
-      gaps.push_back(gap_to_triangle(*body.mesh, contacts.feature[i], x));
+      gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
     update_mesh_rows(contacts, first, gaps, frame, radius);
   }
 }
 
 double largest_penetration(const state::Tables& t) {
   double deepest = 0;
+  const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
-      for (const state::Body& body : t.bodies) {
-        if (!body.collides) continue;
-        const Vec3 x = frame_of(body, object).to_body(t.particles.position[p].x);
-        const bool mesh = body.shape.kind == ShapeKind::kMesh;
+      for (const std::uint32_t c : colliders) {
+        const Frame frame = frame_of(t, c, object);
+        const Vec3 x = frame.to_shape(t.particles.position[p].x);
+        const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
         const Real distance =
-            mesh ? distance_to_mesh(*body.mesh, x, radius) : gap_to_shape(body.shape, x).distance;
+            mesh ? distance_to_mesh(*frame.shape->mesh, x, radius) : gap_to_shape(*frame.shape, x).distance;
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }

@@ -1,6 +1,7 @@
 #include "collision/shape_gap.h"
 
 #include "geometry/closest.h"
+#include "geometry/closest_hull.h"
 
 #include <cmath>
 #include <limits>
@@ -23,10 +24,23 @@ Gap gap_to_shape(const Shape& shape, Vec3 x) {
       return gap_of(geometry::closest_on_sphere(x, shape.radius));
     case ShapeKind::kBox:
       return gap_of(geometry::closest_on_box(x, shape.half_extents));
+    case ShapeKind::kCapsule:
+      return gap_of(geometry::closest_on_capsule(x, shape.radius, shape.half_height));
+    case ShapeKind::kCylinder:
+      return gap_of(geometry::closest_on_cylinder(x, shape.radius, shape.half_height));
+    case ShapeKind::kCone:
+      return gap_of(geometry::closest_on_cone(x, shape.radius, shape.half_height));
     case ShapeKind::kMesh:
+    case ShapeKind::kHull:
+    case ShapeKind::kCompound:
       break;
   }
   return {std::numeric_limits<Real>::infinity(), {Real(0), Real(1), Real(0)}};
+}
+
+Gap gap_to_shape(const state::ColliderShape& shape, Vec3 x) {
+  if (shape.shape.kind == ShapeKind::kHull) return gap_of(geometry::closest_on_hull(x, *shape.hull));
+  return gap_to_shape(shape.shape, x);
 }
 
 TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x) {

@@ -2,13 +2,14 @@
 
 #include "hooke/shape.h"
 
+#include "state/colliders.h"
 #include "state/mesh.h"
 
 #include <cstdint>
 #include <vector>
 
 /// \file
-/// How far a point is from a static shape, in the shape's frame.
+/// How far a point is from a shape, in the shape's frame.
 
 namespace hooke::collision {
 
@@ -18,8 +19,11 @@ struct Gap {
   Vec3 normal = {};
 };
 
-/// Half-space, sphere or box; degenerate places as in geometry/closest.h.
+/// Shapes that are told by their sizes alone, all but hulls and meshes; degenerate places as in
+/// geometry/closest.h.
 [[nodiscard]] Gap gap_to_shape(const Shape& shape, Vec3 x);
+/// Those and hulls.
+[[nodiscard]] Gap gap_to_shape(const state::ColliderShape& shape, Vec3 x);
 
 /// One triangle of a mesh that is solid behind its fronts. Over the face the distance is signed; beside it
 /// the nearest point is on the rim, and the distance is positive in front of the triangle's plane.

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "geometry/closest.h"
+#include "geometry/ray_slabs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,33 +59,6 @@ void visit_near_to_far(const Bvh& bvh, double limit, const Bound& bound, const V
     push(near.bound <= far.bound ? near : far);
   }
 }
-
-/// A ray against a box: the fraction where it enters, infinity if it misses. The slack makes up for rounding,
-/// so that a hit on the rim of the box is never lost (after Ize, 2013, Robust BVH ray traversal).
-struct RaySlabs {
-  DVec3 origin = {};
-  DVec3 inverse = {};  // infinite where the direction has no component
-
-  [[nodiscard]] double enter(const BvhNode& node) const {
-    const double lower[3] = {node.lower.x, node.lower.y, node.lower.z};
-    const double upper[3] = {node.upper.x, node.upper.y, node.upper.z};
-    const double from[3] = {origin.x, origin.y, origin.z};
-    const double scale[3] = {inverse.x, inverse.y, inverse.z};
-    double near = 0.0;
-    double far = kNever;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::isinf(scale[axis])) {
-        if (from[axis] < lower[axis] || from[axis] > upper[axis]) return kNever;
-        continue;
-      }
-      const double a = (lower[axis] - from[axis]) * scale[axis];
-      const double b = (upper[axis] - from[axis]) * scale[axis];
-      near = std::max(near, std::min(a, b));
-      far = std::min(far, std::max(a, b));
-    }
-    return near <= far * (1.0 + 1e-14) ? near * (1.0 - 1e-14) : kNever;
-  }
-};
 
 /// Fraction where the line hits the triangle; infinity if it does not. The three volumes have opposite signs
 /// in the triangles on both sides of an edge, to the last bit: no line slips through.
@@ -146,7 +120,7 @@ std::optional<BvhClosest> find_closest(const Bvh& bvh, Vec3 p, Real distance_max
 
 std::optional<BvhHit> cast_ray(const Bvh& bvh, DVec3 origin, DVec3 direction, double fraction_max) {
   if (direction == DVec3{}) return {};
-  const RaySlabs ray = {origin, {1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z}};
+  const RaySlabs ray = RaySlabs::of(origin, direction);
   std::optional<BvhHit> best;
   double limit = fraction_max;
   const auto visit = [&](const BvhNode& leaf) {
@@ -162,7 +136,7 @@ std::optional<BvhHit> cast_ray(const Bvh& bvh, DVec3 origin, DVec3 direction, do
     return limit;
   };
   visit_near_to_far(
-      bvh, limit, [&](const BvhNode& node) { return ray.enter(node); }, visit);
+      bvh, limit, [&](const BvhNode& node) { return ray.enter(box_of(node)); }, visit);
   return best;
 }
 

@@ -125,6 +125,59 @@ SurfacePoint<T> closest_on_box(Vector3<T> p, Vector3<T> half_extents) {
   return {.point = {p.x, p.y, s * h.z}, .signed_distance = -gap.z, .normal = {T(0), T(0), s}};
 }
 
+/// Surface point of the capsule of `radius` about the segment from -half_height to half_height on the y axis
+/// (neither negative). From a point of that segment it lies along +x.
+template <class T>
+SurfacePoint<T> closest_on_capsule(Vector3<T> p, T radius, T half_height) {
+  const T y = p.y < -half_height ? -half_height : p.y > half_height ? half_height : p.y;
+  const Vector3<T> out = {p.x, p.y - y, p.z};
+  const Vector3<T> normal = direction_or(out, {T(1), T(0), T(0)});
+  return {.point = Vector3<T>{T(0), y, T(0)} + radius * normal,
+          .signed_distance = safe_length(out) - radius,
+          .normal = normal};
+}
+
+/// A solid of revolution about y asked in the half plane through `p`: `closest` takes a point (distance from
+/// the axis, height, 0) and gives the surface point in that plane. Points on the axis are seen from +x.
+template <class T, class Closest>
+SurfacePoint<T> closest_on_revolved(Vector3<T> p, const Closest& closest) {
+  const Vector3<T> across = {p.x, T(0), p.z};
+  const Vector3<T> out = direction_or(across, {T(1), T(0), T(0)});
+  const SurfacePoint<T> flat = closest(Vector3<T>{safe_length(across), p.y, T(0)});
+  const auto turned = [&](Vector3<T> v) { return v.x * out + Vector3<T>{T(0), v.y, T(0)}; };
+  return {turned(flat.point), flat.signed_distance, turned(flat.normal)};
+}
+
+/// Surface point of the cylinder of `radius` about the y axis, from -half_height to half_height (neither
+/// negative). Inside, an end is taken before the side, the upper before the lower.
+template <class T>
+SurfacePoint<T> closest_on_cylinder(Vector3<T> p, T radius, T half_height) {
+  const Vector3<T> half_extents = {radius, half_height, std::numeric_limits<T>::infinity()};
+  return closest_on_revolved(p, [&](Vector3<T> flat) { return closest_on_box(flat, half_extents); });
+}
+
+/// Surface point of the cone about the y axis with its base at -half_height and its tip at half_height (both
+/// positive). Inside, the side is taken before the base.
+template <class T>
+SurfacePoint<T> closest_on_cone(Vector3<T> p, T radius, T half_height) {
+  return closest_on_revolved(p, [&](Vector3<T> flat) -> SurfacePoint<T> {
+    const Vector3<T> rim = {radius, -half_height, T(0)};
+    const Vector3<T> tip = {T(0), half_height, T(0)};
+    const Vector3<T> along = normalize(tip - rim);
+    const Vector3<T> outward = {along.y, -along.x, T(0)};  // of the side
+    const T over_side = dot(outward, flat - rim);
+    const T over_base = -half_height - flat.y;
+    const bool is_inside = over_side <= T(0) && over_base <= T(0);
+    if (is_inside ? over_base > over_side : over_base > T(0) && flat.x <= radius) {
+      return {{flat.x, -half_height, T(0)}, over_base, {T(0), T(-1), T(0)}};
+    }
+    const bool is_beside = dot(along, flat - rim) >= T(0) && dot(along, flat - tip) <= T(0);
+    if (is_inside || is_beside) return {flat - over_side * outward, over_side, outward};
+    const Vector3<T> corner = dot(along, flat - rim) < T(0) ? rim : tip;
+    return {corner, safe_length(flat - corner), direction_or(flat - corner, outward)};
+  });
+}
+
 /// The pair that has one end of a segment: of `a` if `is_of_a`, its last if `is_end`.
 template <class T>
 SegmentPair<T> pair_with_end(const Segment<T>& a, const Segment<T>& b, bool is_of_a, bool is_end) {

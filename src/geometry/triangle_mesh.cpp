@@ -138,6 +138,35 @@ Result<void> validate_mesh(const MeshDesc& mesh) {
   return {};
 }
 
+Result<void> validate_solid(const MeshDesc& mesh) {
+  if (Result<void> usable = validate_mesh(mesh); !usable) return usable;
+  const MeshTopology topology = compute_topology(mesh.positions.size(), mesh.triangles);
+  for (const EdgeSides& sides : topology.edge_sides) {
+    const std::string where = element("triangles", sides.triangles[0]);
+    if (sides.triangle_count == 1) {
+      return mesh_error(ErrorCode::kOutOfRange, where,
+                        "has an edge without a neighbor, one of " +
+                            std::to_string(topology.border_edge_count) + "; a solid's surface is closed");
+    }
+    if (sides.triangle_count > 2) {
+      return mesh_error(ErrorCode::kOutOfRange, where,
+                        "has an edge with " + std::to_string(sides.triangle_count) +
+                            " triangles; a solid's surface has two at each");
+    }
+    if (!sides.has_same_winding) {
+      return mesh_error(ErrorCode::kOutOfRange, where,
+                        "and triangle " + std::to_string(sides.triangles[1]) + " face opposite sides");
+    }
+  }
+  const double volume = compute_signed_volume(mesh.positions, mesh.triangles);
+  if (!(volume > 0)) {
+    return mesh_error(ErrorCode::kOutOfRange, "triangles",
+                      "enclose " + std::to_string(volume) +
+                          " m^3; a solid's triangles are counter-clockwise seen from outside");
+  }
+  return {};
+}
+
 MeshTopology compute_topology(std::size_t vertex_count, std::span<const Triangle> triangles) {
   MeshTopology topology;
   list_triangles_by_vertex(vertex_count, triangles, topology);

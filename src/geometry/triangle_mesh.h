@@ -56,6 +56,11 @@ struct MeshTopology {
 /// the Error is like "mesh.triangles[12]".
 Result<void> validate_mesh(const MeshDesc& mesh);
 
+/// Whether the mesh is the surface of a solid: a mesh that can be worked with, every edge with two triangles
+/// that run along it in opposite directions, and the inside on the inner side of most. Vertices at the same
+/// place are not the same vertex: weld them first. `where` of the Error is like "mesh.triangles[12]".
+Result<void> validate_solid(const MeshDesc& mesh);
+
 /// Precondition: a mesh that validate_mesh accepts (or no triangles at all).
 MeshTopology compute_topology(std::size_t vertex_count, std::span<const Triangle> triangles);
 

@@ -44,6 +44,8 @@ std::size_t SceneArray::count() const {
       return positive(pyramid) * (positive(pyramid) + 1) / 2;
     case Kind::kRandom:
       return positive(random);
+    case Kind::kList:
+      return list.size();
   }
   return 0;
 }
@@ -71,7 +73,11 @@ DVec3 SceneArray::offset(std::size_t i) const {
     return {uniform(first, box[0].x, box[1].x), uniform(first + 1, box[0].y, box[1].y),
             uniform(first + 2, box[0].z, box[1].z)};
   }
-  return {};
+  return kind == Kind::kList ? list[i] : DVec3{};
+}
+
+Quat SceneArray::rotation(std::size_t i) const {
+  return kind == Kind::kList && i < rotations.size() ? rotations[i] : Quat{};
 }
 
 }  // namespace hooke

@@ -1,3 +1,4 @@
+#include "geometry/convex_hull.h"
 #include "io/scene_check.h"
 #include "io/scene_data.h"
 #include "io/scene_source.h"
@@ -27,6 +28,12 @@ class Builder {
   bool reserve(std::size_t points, const std::string& path);
   [[nodiscard]] const SceneMaterial* find_material(const std::string& name) const;
   [[nodiscard]] Real friction_of(const SceneTag& tag) const;
+  [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
+  /// Fills in what a body's description names: its material, its mesh, its parts.
+  [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
+  /// What is drawn for a shape that refers to a mesh of this name; null for other shapes.
+  std::shared_ptr<const Model> drawn_model(ShapeKind kind, const std::string& mesh);
+  std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
   template <class IdType>
@@ -57,6 +64,77 @@ Real Builder::friction_of(const SceneTag& tag) const {
   if (tag.friction.has_value()) return *tag.friction;
   const SceneMaterial* material = find_material(tag.material);
   return material != nullptr ? material->friction : ContactDesc{}.friction;
+}
+
+ContactDesc Builder::surface_of(const std::string& name, ContactDesc surface) const {
+  const SceneMaterial* material = find_material(name);
+  if (material == nullptr) return surface;
+  surface.friction = material->friction;
+  surface.static_friction = material->static_friction;
+  surface.restitution = material->restitution;
+  surface.rolling_friction = material->rolling_friction;
+  surface.spinning_friction = material->spinning_friction;
+  surface.material = material_number(data_.scene, name);
+  return surface;
+}
+
+BodyDesc Builder::resolve(const SceneBody& body) const {
+  const auto mesh_of = [&](const std::string& name) {
+    const auto found = data_.models.find(name);
+    return found == data_.models.end() ? MeshId{} : found->second.id;
+  };
+  BodyDesc desc = body.desc;
+  desc.contact = surface_of(body.tag.material, desc.contact);
+  desc.contact.friction = friction_of(body.tag);
+  desc.shape.mesh = mesh_of(body.mesh);
+  for (const ScenePart& part : body.parts) {
+    PartDesc made = part.desc;
+    made.shape.mesh = mesh_of(part.mesh);
+    made.contact = part.material.empty() ? desc.contact : surface_of(part.material, made.contact);
+    desc.parts.push_back(made);
+  }
+  return desc;
+}
+
+/// Polygons as fans, every face flat; null for points without a hull, of which the world says why.
+std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
+  const Result<geometry::ConvexHull> hull = geometry::make_convex_hull(mesh.positions);
+  if (!hull) return nullptr;
+  MeshDesc faces;
+  faces.positions = hull.value().vertices;
+  for (const geometry::ConvexHull::Face& face : hull.value().faces) {
+    const auto corner = [&](std::size_t k) -> std::uint32_t { return hull.value().loop[face.first + k]; };
+    for (std::size_t k = 1; k + 1 < face.count; ++k) {
+      faces.triangles.push_back({corner(0), corner(k), corner(k + 1)});
+    }
+  }
+  constexpr double kFlat =
+      1e-3;  // [rad], far less than any two faces of a hull that can be told apart by eye
+  return std::make_shared<const Model>(model_of(faces, kFlat));
+}
+
+std::shared_ptr<const Model> Builder::drawn_model(ShapeKind kind, const std::string& mesh) {
+  const auto found = data_.models.find(mesh);
+  if (found == data_.models.end()) return nullptr;
+  SceneModel& model = found->second;
+  if (kind != ShapeKind::kHull) return model.model;
+  if (model.hull == nullptr) model.hull = hull_model(model.model->mesh);
+  return model.hull;
+}
+
+std::vector<SceneObject::Part> Builder::drawn_parts(const SceneBody& body) {
+  std::vector<SceneObject::Part> parts;
+  for (const ScenePart& part : body.parts) {
+    const std::string& material = part.material.empty() ? body.tag.material : part.material;
+    const SceneMaterial* look = find_material(material);
+    parts.push_back({.shape = part.desc.shape,
+                     .position = part.desc.position,
+                     .rotation = normalize(part.desc.rotation),
+                     .model = drawn_model(part.desc.shape.kind, part.mesh),
+                     .look = look != nullptr ? *look : SceneMaterial{},
+                     .material = material});
+  }
+  return parts;
 }
 
 SceneObject Builder::make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
@@ -179,19 +257,17 @@ double length_of(const std::vector<DVec3>& points) {
 }
 
 void Builder::build(const SceneBody& body, const std::string& path) {
-  BodyDesc desc = body.desc;
-  desc.contact.friction = friction_of(body.tag);
-  SceneModel model;
-  if (desc.shape.kind == ShapeKind::kMesh) {
-    model = data_.models[body.mesh];
-    desc.shape.mesh = model.id;
-  }
+  BodyDesc desc = resolve(body);
+  const std::shared_ptr<const Model> model = drawn_model(body.desc.shape.kind, body.mesh);
+  const std::vector<SceneObject::Part> parts = drawn_parts(body);
   for (std::size_t i = 0; i < body.tag.array.count() && !full(); ++i) {
-    if (!reserve(1, path)) return;
+    if (!reserve(std::max<std::size_t>(parts.size(), 1), path)) return;
     desc.position = body.desc.position + body.tag.array.offset(i);
+    desc.rotation = normalize(body.tag.array.rotation(i)) * normalize(body.desc.rotation);
     SceneObject object = make_object(body.tag, SceneObject::Kind::kBody, path, i);
     object.shape = desc.shape;
-    object.model = model.model;
+    object.parts = parts;
+    object.model = model;
     if (!keep(object, &SceneObject::body, data_.world.add_body(desc))) return;
   }
 }
@@ -277,6 +353,22 @@ void build_list(Builder& builder, const std::vector<T>& list, const std::string&
 
 }  // namespace
 
+std::uint16_t material_number(const Scene& scene, const std::string& name) {
+  const auto named = [&](const SceneMaterial& material) { return material.name == name; };
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), named);
+  return found == scene.materials.end() ? 0 : static_cast<std::uint16_t>(found - scene.materials.begin() + 1);
+}
+
+WorldDesc world_of(const Scene& scene) {
+  WorldDesc desc = scene.world;
+  for (const ScenePair& pair : scene.material_pairs) {
+    desc.materials.push_back(pair.desc);
+    desc.materials.back().a = material_number(scene, pair.a);
+    desc.materials.back().b = material_number(scene, pair.b);
+  }
+  return desc;
+}
+
 void build_meshes(SimulationData& data, std::vector<Error>& errors) {
   for (const SceneMesh& mesh : data.scene.meshes) {
     const std::string path = "meshes." + mesh.name;
@@ -331,6 +423,7 @@ Error scene_error(const Scene& scene, const std::string& path, const Error& erro
   const std::size_t dot = error.where.find('.');
   std::string rest = dot == std::string::npos ? "" : error.where.substr(dot);
   // The world knows the members by their place in the description, where the scene has them in another.
+  if (rest.starts_with(".parts[")) rest.insert(0, ".shape");
   if (rest.starts_with(".contact.")) rest.erase(0, std::string_view(".contact").size());
   if (rest.starts_with(".pins[")) rest = ".pins";
   return error_at(scene.source.get(), path + rest, error.code, error.message);

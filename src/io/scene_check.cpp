@@ -46,6 +46,8 @@ class Checker {
   void add_name(const std::string& name, const NamedObject& object);
   void collect(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
+  void check_pairs();
+  void check_material(const std::string& name, const std::string& path);
   void check_mesh_name(const std::string& name, const std::string& path);
   void check_references(const SceneObjects& objects, const std::string& prefix);
   void check_event(const SceneEvent& event, const std::string& path);
@@ -133,9 +135,13 @@ void Checker::collect_names() {
 }
 
 void Checker::check_tag(const SceneTag& tag, const std::string& path) {
-  if (tag.material.empty() || materials_.contains(tag.material) || full()) return;
-  fail(path + ".material", ErrorCode::kOutOfRange,
-       "there is no material " + in_quotes(tag.material) + closest_name(scene_.materials, tag.material));
+  check_material(tag.material, path + ".material");
+}
+
+void Checker::check_material(const std::string& name, const std::string& path) {
+  if (name.empty() || materials_.contains(name) || full()) return;
+  fail(path, ErrorCode::kOutOfRange,
+       "there is no material " + in_quotes(name) + closest_name(scene_.materials, name));
 }
 
 void Checker::check_mesh_name(const std::string& name, const std::string& path) {
@@ -148,7 +154,15 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
     const std::string path = indexed(prefix + "bodies", i);
     check_tag(objects.bodies[i].tag, path);
-    check_mesh_name(objects.bodies[i].mesh, path + ".shape.mesh");
+    const bool hull = objects.bodies[i].desc.shape.kind == ShapeKind::kHull;
+    check_mesh_name(objects.bodies[i].mesh, path + (hull ? ".shape.hull" : ".shape.mesh"));
+    for (std::size_t k = 0; k < objects.bodies[i].parts.size(); ++k) {
+      const ScenePart& part = objects.bodies[i].parts[k];
+      const std::string part_path = indexed(path + ".shape.parts", k);
+      const bool part_hull = part.desc.shape.kind == ShapeKind::kHull;
+      check_mesh_name(part.mesh, part_path + (part_hull ? ".shape.hull" : ".shape.mesh"));
+      check_material(part.material, part_path + ".material");
+    }
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     check_tag(objects.ropes[i].tag, indexed(prefix + "ropes", i));
@@ -233,6 +247,8 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   if (inner == path) return;
   const NamedObject* object = find_object(event.object, inner + ".object");
   if (object == nullptr) return;
+  const bool pushes = event.kind == SceneEvent::Kind::kForce || event.kind == SceneEvent::Kind::kImpulse;
+  if (object->kind == SceneObject::Kind::kBody && pushes) return;
   if (object->kind == SceneObject::Kind::kBody || object->kind == SceneObject::Kind::kField) {
     fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
     return;
@@ -241,7 +257,7 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
 }
 
 /// What a quantity is measured on.
-enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope };
+enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody };
 
 Subject subject_of(SceneExpectation::Quantity quantity) {
   using Quantity = SceneExpectation::Quantity;
@@ -252,6 +268,9 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
     case Quantity::kHeight:
     case Quantity::kSpeed:
       return Subject::kPoint;
+    case Quantity::kAngularSpeed:
+    case Quantity::kTilt:
+      return Subject::kBody;
     case Quantity::kLowest:
     case Quantity::kHighest:
       return Subject::kObject;
@@ -286,7 +305,9 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
   const NamedObject* object = find_object(expectation.of, path + ".of");
   if (object == nullptr) return;
   const bool body = object->kind == SceneObject::Kind::kBody;
-  if (object->kind == SceneObject::Kind::kField || (body && subject != Subject::kPoint)) {
+  if (subject == Subject::kBody) {
+    if (!body) fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " is not a body");
+  } else if (object->kind == SceneObject::Kind::kField || (body && subject != Subject::kPoint)) {
     fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " has no points");
   } else if (subject == Subject::kRope && object->kind != SceneObject::Kind::kRope) {
     fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " is not a rope");
@@ -298,7 +319,16 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
   }
 }
 
+void Checker::check_pairs() {
+  for (std::size_t i = 0; i < scene_.material_pairs.size(); ++i) {
+    const std::string path = indexed("material_pairs", i);
+    check_material(scene_.material_pairs[i].a, path + ".a");
+    check_material(scene_.material_pairs[i].b, path + ".b");
+  }
+}
+
 void Checker::check_references() {
+  check_pairs();
   check_references(scene_.objects, "");
   for (std::size_t i = 0; i < scene_.timeline.size(); ++i) {
     const std::string path = indexed("timeline", i);
@@ -411,7 +441,7 @@ void Checker::count_points(const SceneObjects& objects, const std::string& prefi
          "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    count(objects.bodies[i].tag, 1, indexed(prefix + "bodies", i));
+    count(objects.bodies[i].tag, objects.bodies[i].parts.size(), indexed(prefix + "bodies", i));
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     count(objects.ropes[i].tag, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));

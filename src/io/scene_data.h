@@ -18,6 +18,7 @@ struct ActiveForce {
 struct SceneModel {
   MeshId id = {};
   std::shared_ptr<const Model> model = {};
+  std::shared_ptr<const Model> hull = {};  ///< Of its points; made when the first body asks for it.
 };
 
 /// What a Simulation owns. Built by scene_build.cpp, stepped by scene_simulation.cpp, measured by
@@ -39,6 +40,12 @@ struct SimulationData {
 };
 
 namespace io {
+
+/// The number that a material has in the world's table of pairs: its place in the list plus one.
+[[nodiscard]] std::uint16_t material_number(const Scene& scene, const std::string& name);
+
+/// The world as described, with the pairs of materials that are named.
+[[nodiscard]] WorldDesc world_of(const Scene& scene);
 
 /// Reads and adds the meshes.
 void build_meshes(SimulationData& data, std::vector<Error>& errors);

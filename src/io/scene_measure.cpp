@@ -13,6 +13,7 @@ namespace {
 using Quantity = SceneExpectation::Quantity;
 using Op = SceneExpectation::Op;
 
+constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 PointView velocities_of(const World& world, const SceneObject& object) {
@@ -33,11 +34,25 @@ double coordinate(DVec3 position, Quantity quantity) {
   return quantity == Quantity::kZ ? position.z : position.y;
 }
 
-double point_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
-  const bool speed = wanted.quantity == Quantity::kSpeed;
-  if (object.kind == SceneObject::Kind::kBody) {
-    return speed ? 0.0 : coordinate(world.pose(object.body).position, wanted.quantity);
+double body_figure(const World& world, BodyId body, Quantity quantity) {
+  const Pose pose = world.pose(body);
+  switch (quantity) {
+    case Quantity::kSpeed:
+      return length(vector_cast<double>(world.velocity(body)));
+    case Quantity::kAngularSpeed:
+      return length(vector_cast<double>(world.angular_velocity(body)));
+    case Quantity::kTilt: {
+      const DVec3 up = vector_cast<double>(rotate(pose.rotation, Vec3{Real(0), Real(1), Real(0)}));
+      return std::atan2(std::hypot(up.x, up.z), up.y) * kDegreesPerRadian;
+    }
+    default:
+      return coordinate(pose.position, quantity);
   }
+}
+
+double point_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+  if (object.kind == SceneObject::Kind::kBody) return body_figure(world, object.body, wanted.quantity);
+  const bool speed = wanted.quantity == Quantity::kSpeed;
   const PointView view = speed ? velocities_of(world, object) : positions_of(world, object);
   if (view.empty() || !wanted.point.has_value()) return kNothing;
   const std::size_t index = wanted.point->last ? view.size() - 1 : wanted.point->index;
@@ -106,6 +121,11 @@ double world_figure(const SimulationData& data, Quantity quantity) {
       return measured.largest_penetration;
     case Quantity::kContacts:
       return static_cast<double>(data.contacts);
+    case Quantity::kAsleep:
+      return static_cast<double>(
+          std::count_if(data.objects.begin(), data.objects.end(), [&](const SceneObject& object) {
+            return object.kind == SceneObject::Kind::kBody && data.world.asleep(object.body);
+          }));
     default:
       return kNothing;
   }

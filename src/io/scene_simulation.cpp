@@ -48,7 +48,12 @@ Result<void> act_on_point(SimulationData& data, const SceneEvent& event) {
     return Error{ErrorCode::kStaleId, "",
                  "there is no object " + io::in_quotes(event.object) + " at this step"};
   }
-  const PointRef point = io::point_of(data.world, data.objects[found->second], event.point);
+  const SceneObject& object = data.objects[found->second];
+  if (object.kind == SceneObject::Kind::kBody) {
+    return event.kind == SceneEvent::Kind::kImpulse ? data.world.apply_impulse(object.body, event.vector)
+                                                    : data.world.apply_force(object.body, event.vector);
+  }
+  const PointRef point = io::point_of(data.world, object, event.point);
   switch (event.kind) {
     case SceneEvent::Kind::kMotion:
       return data.world.pin(point, event.motion);
@@ -114,7 +119,7 @@ std::vector<Error> check(const Scene& scene) {
 Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
   std::vector<Error> errors = check(scene);
   if (!errors.empty()) return {.errors = std::move(errors)};
-  Result<World> world = World::create(scene.world);
+  Result<World> world = World::create(io::world_of(scene));
   if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
   auto data = std::make_unique<SimulationData>(
       SimulationData{.scene = std::move(scene), .world = std::move(world).value()});

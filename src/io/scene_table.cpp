@@ -56,7 +56,7 @@ const Kind& impulse_event_kind() {
 template <auto... Prefix>
 std::vector<Field> object_rows() {
   return {
-      field<Prefix..., &SceneObjects::bodies>("bodies", "", kAny, "Shapes that others bounce off."),
+      field<Prefix..., &SceneObjects::bodies>("bodies", "", kAny, "Rigid bodies, still or moving."),
       field<Prefix..., &SceneObjects::ropes>("ropes", "", kAny, "Ropes, strings, hair."),
       field<Prefix..., &SceneObjects::cloths>("cloths", "", kAny, "Cloths, flags, soft shells."),
       field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
@@ -93,6 +93,7 @@ std::vector<Field> scene_rows() {
           "Of the laboratory: it then chooses method and step; without it they are given."),
       field<&Scene::meshes>("meshes", "", kAny, "Triangles, by name."),
       field<&Scene::materials>("materials", "", kAny, "Looks and friction, by name."),
+      field<&Scene::material_pairs>("material_pairs", "", kAny, "What two materials do to each other."),
   };
   for (const Field& row : object_rows<&Scene::objects>()) rows.push_back(row);
   rows.push_back(field<&Scene::timeline>("timeline", "", kAny, "What happens on the way."));
@@ -122,7 +123,14 @@ const Kind& kind_of<WorldDesc>() {
            field<&WorldDesc::particle_substeps>("particle_substeps", "", passes,
                                                 "Passes over ropes, cloths, particles in each substep."),
            field<&WorldDesc::workers>("workers", "", passes, "Threads. The result does not depend on it."),
-           field<&WorldDesc::wind>("wind", "", kAny, "Moving air.")},
+           field<&WorldDesc::wind>("wind", "", kAny, "Moving air."),
+           field<&WorldDesc::contact_hz>("contact_hz", "Hz", between(0.1, 1000),
+                                         "Stiffness of contacts between bodies."),
+           field<&WorldDesc::contact_damping_ratio>("contact_damping_ratio", "", between(0.01, 100),
+                                                    "Damping of the same."),
+           field<&WorldDesc::bias_sweeps>("bias_sweeps", "", between(1, 8),
+                                          "Passes over contacts in each substep."),
+           field<&WorldDesc::sleeping>("sleeping", "", kAny, "Bodies at rest are skipped until touched.")},
       .defaults = defaults_of<WorldDesc>};
   return kind;
 }
@@ -207,7 +215,18 @@ const Kind& kind_of<SceneMaterial>() {
                  field<&SceneMaterial::opacity>("opacity", "", between(0, 1), "1 hides what is behind."),
                  field<&SceneMaterial::friction>(
                      "friction", "", between(0, 100),
-                     "Coulomb coefficient; a contact uses sqrt(a b) of the two surfaces.")},
+                     "Coulomb coefficient while sliding; a contact uses sqrt(a b) of the two surfaces."),
+                 field<&SceneMaterial::static_friction>("static_friction", "", between(0, 100),
+                                                        "While at rest; not below `friction`."),
+                 field<&SceneMaterial::restitution>(
+                     "restitution", "", between(0, 1),
+                     "Speed after over speed before; a contact uses the larger of the two."),
+                 field<&SceneMaterial::rolling_friction>(
+                     "rolling_friction", "m", kNotNegative,
+                     "Lever of the resistance to rolling; a contact uses the larger of the two."),
+                 field<&SceneMaterial::spinning_friction>(
+                     "spinning_friction", "m", kNotNegative,
+                     "Lever of the resistance to spin; a contact uses the larger of the two.")},
       .defaults = defaults_of<SceneMaterial>};
   return kind;
 }
@@ -327,6 +346,7 @@ std::span<const Kind* const> all_kinds() {
     std::vector<const Kind*> list = {&kind_of<Scene>(),     &kind_of<WorldDesc>(),
                                      &kind_of<WindDesc>(),  &kind_of<SceneAccuracy>(),
                                      &kind_of<SceneMesh>(), &kind_of<SceneMaterial>()};
+    list.insert(list.end(), body_kinds().begin(), body_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());
     const std::initializer_list<const Kind*> last = {
         &kind_of<SceneEvent>(),  &kind_of<SceneObjects>(),  &motion_event_kind(),
@@ -372,6 +392,8 @@ std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
                                        {"z", static_cast<int>(Quantity::kZ)},
                                        {"height", static_cast<int>(Quantity::kHeight)},
                                        {"speed", static_cast<int>(Quantity::kSpeed)},
+                                       {"angular_speed", static_cast<int>(Quantity::kAngularSpeed)},
+                                       {"tilt", static_cast<int>(Quantity::kTilt)},
                                        {"extension", static_cast<int>(Quantity::kExtension)},
                                        {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
                                        {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
@@ -384,7 +406,8 @@ std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
                                        {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
                                        {"momentum", static_cast<int>(Quantity::kMomentum)},
                                        {"penetration", static_cast<int>(Quantity::kPenetration)},
-                                       {"contacts", static_cast<int>(Quantity::kContacts)}};
+                                       {"contacts", static_cast<int>(Quantity::kContacts)},
+                                       {"asleep", static_cast<int>(Quantity::kAsleep)}};
   return names;
 }
 

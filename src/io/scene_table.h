@@ -6,7 +6,8 @@
 
 /// \file
 /// The tables of the scene format: one Kind for each JSON object. scene_table.cpp has the scene, world,
-/// timeline, camera and expectations; scene_table_objects.cpp has what a world holds.
+/// timeline, camera and expectations; scene_table_bodies.cpp has bodies, scene_table_objects.cpp what else a
+/// world holds.
 
 namespace hooke::io {
 
@@ -37,6 +38,8 @@ struct Codec<ScenePin> {
 
 /// Every kind, in the order of the documentation.
 [[nodiscard]] std::span<const Kind* const> all_kinds();
+/// Those of scene_table_bodies.cpp.
+[[nodiscard]] std::span<const Kind* const> body_kinds();
 /// Those of scene_table_objects.cpp.
 [[nodiscard]] std::span<const Kind* const> object_kinds();
 
@@ -54,6 +57,10 @@ template <>
 const Kind& kind_of<SceneObjects>();
 template <>
 const Kind& kind_of<SceneBody>();
+template <>
+const Kind& kind_of<ScenePart>();
+template <>
+const Kind& kind_of<ScenePair>();
 template <>
 const Kind& kind_of<SceneRope>();
 template <>
@@ -93,6 +100,8 @@ template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>();
 template <>
 std::span<const EnumName> names_of<UpAxis>();
+template <>
+std::span<const EnumName> names_of<BodyKind>();
 template <>
 std::span<const EnumName> names_of<RopeDesc::StiffnessOf>();
 template <>

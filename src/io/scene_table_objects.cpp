@@ -1,85 +1,9 @@
 #include "io/scene_table.h"
-
-#include <type_traits>
+#include "io/scene_table_tags.h"
 
 namespace hooke::io {
 
 namespace {
-
-bool check_tag(Reader& reader, const JsonNode& node, const std::string& name) {
-  const JsonNode* child = node.find("name");
-  if (child == nullptr) return true;
-  reader.enter("name");
-  const bool good = check_name(reader, *child, name);
-  reader.leave();
-  return good;
-}
-
-template <class T>
-bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
-  return check_tag(reader, node, static_cast<const T*>(object)->tag.name);
-}
-
-/// The rows of SceneTag, which every object but a field has; a body does not move and has no stepper.
-template <class T>
-void add_tag_rows(std::vector<Field>& rows) {
-  rows.insert(
-      rows.begin(),
-      {field<&T::tag, &SceneTag::name>(
-           "name", "", kNotEmpty, "Unique. Without it the object is called by its place, as `ropes[0]`."),
-       field<&T::tag, &SceneTag::material>("material", "", kNotEmpty, "A name in `materials`.")});
-  rows.push_back(field<&T::tag, &SceneTag::friction>(
-      "friction", "", between(0, 100), "Coulomb coefficient, instead of the material's or of 0.5."));
-  if constexpr (!std::is_same_v<T, SceneBody>) {
-    rows.push_back(field<&T::tag, &SceneTag::stepper>(
-        "stepper", "", kNotEmpty,
-        "How the laboratory integrates it, as `rk4`, or `auto`; `hooke compare --help` lists them."));
-  }
-  rows.push_back(
-      field<&T::tag, &SceneTag::array>("array", "", kAny, "Copies, named `name[0]`, `name[1]`, ..."));
-}
-
-const Kind& half_space_kind() {
-  static const Kind kind = {.name = "half_space",
-                            .help = "Solid below the plane y = 0 of the body's frame. Has no keys.",
-                            .fields = {},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& sphere_kind() {
-  static const Kind kind = {.name = "sphere",
-                            .help = "A ball about the body's position.",
-                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::radius>(
-                                "radius", "m", kPositive, "Of the ball.")},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& box_kind() {
-  static const Kind kind = {.name = "box",
-                            .help = "A box about the body's position.",
-                            .fields = {field<&SceneBody::desc, &BodyDesc::shape, &Shape::half_extents>(
-                                "half_extents", "m", kPositive, "Half the length of each side.")},
-                            .defaults = defaults_of<SceneBody>};
-  return kind;
-}
-
-const Kind& shape_kind() {
-  static const Kind kind = {
-      .name = "shape",
-      .help = "What a body is. One of the keys.",
-      .fields = {choice<ShapeKind::kHalfSpace, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("half_space", half_space_kind, "Ground without end.")),
-                 choice<ShapeKind::kSphere, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("sphere", sphere_kind, "A ball.")),
-                 choice<ShapeKind::kBox, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     group("box", box_kind, "A box.")),
-                 choice<ShapeKind::kMesh, &SceneBody::desc, &BodyDesc::shape, &Shape::kind>(
-                     field<&SceneBody::mesh>("mesh", "", kNotEmpty, "A name in `meshes`."))},
-      .defaults = defaults_of<SceneBody>};
-  return kind;
-}
 
 const Kind& sine_kind() {
   static const Kind kind = {
@@ -165,14 +89,29 @@ const Kind& kind_of<SceneLoad>() {
 
 namespace {
 
+/// What is wrong with a key of an array of this kind; null if nothing.
+const char* misplaced(const std::string& key, SceneArray::Kind kind) {
+  const bool random = kind == SceneArray::Kind::kRandom;
+  const bool list = kind == SceneArray::Kind::kList;
+  if (key == "spacing" && random) return "has no effect on a random array";
+  if (key == "spacing" && list) return "has no effect on a list";
+  if ((key == "seed" || key == "box") && !random) return "is for a random array only";
+  if (key == "rotations" && !list) return "is for a list only";
+  return nullptr;
+}
+
 bool check_array(Reader& reader, const JsonNode& node, const void* object) {
   const auto& array = *static_cast<const SceneArray*>(object);
-  const bool random = array.kind == SceneArray::Kind::kRandom;
   for (const JsonNode& child : node.children) {
-    const bool of_random = child.key == "seed" || child.key == "box";
-    if (of_random == random || (!of_random && child.key != "spacing")) continue;
-    reader.fail_key(child, random ? "has no effect on a random array" : "is for a random array only");
+    const char* complaint = misplaced(child.key, array.kind);
+    if (complaint == nullptr) continue;
+    reader.fail_key(child, complaint);
     return false;
+  }
+  if (!array.rotations.empty() && array.rotations.size() != array.list.size()) {
+    return reader.fail(node, ErrorCode::kOutOfRange,
+                       "there are " + std::to_string(array.rotations.size()) + " rotations for a list of " +
+                           std::to_string(array.list.size()));
   }
   const DVec3 size = array.box[1] - array.box[0];
   if (size.x >= 0 && size.y >= 0 && size.z >= 0) return true;
@@ -186,7 +125,7 @@ const Kind& kind_of<SceneArray>() {
   constexpr Rule copies = between(1, 1e6);
   static const Kind kind = {
       .name = "array",
-      .help = "Copies of an object. One of `grid`, `pyramid`, `random`.",
+      .help = "Copies of an object. One of `grid`, `pyramid`, `random`, `list`.",
       .fields = {choice<SceneArray::Kind::kGrid, &SceneArray::kind>(field<&SceneArray::grid>(
                      "grid", "", copies, "Copies along x, y and z; x counts fastest.")),
                  choice<SceneArray::Kind::kPyramid, &SceneArray::kind>(field<&SceneArray::pyramid>(
@@ -194,31 +133,17 @@ const Kind& kind_of<SceneArray>() {
                      "Copies in the lowest row along x; one less in each row above.")),
                  choice<SceneArray::Kind::kRandom, &SceneArray::kind>(field<&SceneArray::random>(
                      "random", "", copies, "Copies, evenly spread in `box`, the same on every machine.")),
+                 choice<SceneArray::Kind::kList, &SceneArray::kind>(field<&SceneArray::list>(
+                     "list", "m", kNotEmpty, "Offsets from the object, one for each copy.")),
                  field<&SceneArray::spacing>("spacing", "m", kAny, "Of a grid or pyramid."),
                  field<&SceneArray::seed>("seed", "", kAny, "Of a random array."),
                  field<&SceneArray::box>("box", "m", kAny,
-                                         "Of a random array: smallest and largest offset from the object.")},
+                                         "Of a random array: smallest and largest offset from the object."),
+                 field<&SceneArray::rotations>(
+                     "rotations", "", kAny,
+                     "Of a list of bodies: one for each copy, about its origin, after the body's own.")},
       .defaults = defaults_of<SceneArray>,
       .check = check_array};
-  return kind;
-}
-
-template <>
-const Kind& kind_of<SceneBody>() {
-  static const Kind kind = [] {
-    Kind made = {
-        .name = "body",
-        .help = "A shape in the world. It stands still; others bounce off it.",
-        .fields = {required(group("shape", shape_kind, "What it is.")),
-                   field<&SceneBody::desc, &BodyDesc::position>("position", "m", kAny,
-                                                                "Origin of its frame."),
-                   field<&SceneBody::desc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
-                   field<&SceneBody::desc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn.")},
-        .defaults = defaults_of<SceneBody>,
-        .check = check_tagged<SceneBody>};
-    add_tag_rows<SceneBody>(made.fields);
-    return made;
-  }();
   return kind;
 }
 
@@ -419,7 +344,7 @@ const Kind& magnetic_kind() {
 }
 
 bool check_field(Reader& reader, const JsonNode& node, const void* object) {
-  return check_tag(reader, node, static_cast<const SceneField*>(object)->name);
+  return check_named(reader, node, static_cast<const SceneField*>(object)->name);
 }
 
 }  // namespace
@@ -443,12 +368,7 @@ const Kind& kind_of<SceneField>() {
 }
 
 std::span<const Kind* const> object_kinds() {
-  static const std::array kinds = {&kind_of<SceneBody>(),
-                                   &shape_kind(),
-                                   &half_space_kind(),
-                                   &sphere_kind(),
-                                   &box_kind(),
-                                   &kind_of<SceneRope>(),
+  static const std::array kinds = {&kind_of<SceneRope>(),
                                    &kind_of<SceneCloth>(),
                                    &kind_of<SceneParticles>(),
                                    &kind_of<ParticleDesc>(),

@@ -1,6 +1,7 @@
 #include "lab/contacts.h"
 
 #include "collision/shape_gap.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,13 +27,14 @@ Gap gap_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
   return best;
 }
 
-Gap gap_to_body(const state::Body& body, DVec3 x, double radius) {
-  const Vec3 local = rotate(conjugate(body.rotation), vector_cast<Real>(x - body.position));
+Gap gap_to(const Bodies::Entry& entry, DVec3 x, double radius) {
+  const state::ColliderShape& shape = entry.shape;
+  const Vec3 local = rotate(conjugate(entry.pose.rotation), vector_cast<Real>(x - entry.pose.position));
   // A point that is deeper than this inside a mesh stays there: twice its radius and 5 cm.
   const Real reach = static_cast<Real>(2 * radius + 0.05);
-  Gap gap = body.shape.kind == ShapeKind::kMesh ? gap_to_mesh(*body.mesh, local, reach)
-                                                : collision::gap_to_shape(body.shape, local);
-  gap.normal = rotate(body.rotation, gap.normal);
+  Gap gap = shape.shape.kind == ShapeKind::kMesh ? gap_to_mesh(*shape.mesh, local, reach)
+                                                 : collision::gap_to_shape(shape.shape, local);
+  gap.normal = rotate(entry.pose.rotation, gap.normal);
   return gap;
 }
 
@@ -40,10 +42,15 @@ Gap gap_to_body(const state::Body& body, DVec3 x, double radius) {
 
 Bodies bodies_near(const state::Tables& tables, const state::Deformable& object) {
   Bodies bodies;
-  for (const state::Body& body : tables.bodies) {
-    const double friction =
-        std::sqrt(static_cast<double>(object.friction) * static_cast<double>(body.friction));
-    if (body.collides) bodies.entries.push_back({body, friction});
+  for (std::uint32_t c = 0; c < tables.colliders.body.size(); ++c) {
+    const std::uint32_t body = tables.colliders.body[c];
+    if (body == state::Colliders::kNoBody) continue;
+    const state::BodyTraits& traits = tables.bodies.traits[body];
+    if (traits.kind != BodyKind::kStatic || !traits.collides || traits.sensor) continue;
+    const double friction = std::sqrt(static_cast<double>(object.friction) *
+                                      static_cast<double>(tables.colliders.surface[c].friction));
+    bodies.entries.push_back(
+        {tables.colliders.shape[c], state::frame_of_collider(tables.bodies, tables.colliders, c), friction});
   }
   return bodies;
 }
@@ -56,7 +63,7 @@ bool push_out(const System& system, const Bodies& bodies, State& y) {
   for (Eigen::Index i = 0; i < system.coordinates() / 3; ++i) {
     const double radius = system.radius(system.row_of_free(i));
     for (const Bodies::Entry& entry : bodies.entries) {
-      const Gap gap = gap_to_body(entry.body, {x[3 * i], x[3 * i + 1], x[3 * i + 2]}, radius);
+      const Gap gap = gap_to(entry, {x[3 * i], x[3 * i + 1], x[3 * i + 2]}, radius);
       const double overlap = radius - static_cast<double>(gap.distance);
       if (!(overlap > 0)) continue;
       moved = true;

@@ -9,7 +9,8 @@ namespace hooke::lab {
 /// The static bodies of a World, and how points of one object answer them.
 struct Bodies {
   struct Entry {
-    state::Body body;
+    state::ColliderShape shape;
+    Pose pose;            ///< Of the shape's frame.
     double friction = 0;  ///< Of the pair, sqrt(a b).
   };
   std::vector<Entry> entries;  ///< Those that collide.

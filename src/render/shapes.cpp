@@ -145,6 +145,16 @@ MeshGeometry make_cylinder(float radius, float half_height) {
   return make_turned(profile);
 }
 
+MeshGeometry make_cone(float radius, float half_height) {
+  // The side's normal is across the line from the tip to the rim.
+  const float outward = 2 * half_height;
+  const ProfilePoint profile[] = {{0, half_height, outward, radius, 1},
+                                  {radius, -half_height, outward, radius, 0},
+                                  {radius, -half_height, 0, -1, 0},
+                                  {0, -half_height, 0, -1, 0}};
+  return make_turned(profile);
+}
+
 void update_normals(MeshGeometry& geometry) {
   std::vector<Vec3> sums(geometry.vertices.size());
   for (std::size_t i = 0; i + 2 < geometry.indices.size(); i += 3) {

@@ -23,6 +23,9 @@ MeshGeometry make_capsule(float radius, float half_height);
 /// A cylinder of `radius` along y from -half_height to half_height, with flat ends.
 MeshGeometry make_cylinder(float radius, float half_height);
 
+/// A cone along y: a disk of `radius` at -half_height, the tip at half_height.
+MeshGeometry make_cone(float radius, float half_height);
+
 /// Smooth normals from the triangles, weighted by area. Vertices of no triangle keep theirs. Raises the
 /// vertex revision.
 void update_normals(MeshGeometry& geometry);

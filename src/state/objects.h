@@ -3,16 +3,12 @@
 #include "hooke/desc.h"
 #include "hooke/id.h"
 #include "hooke/math.h"
-#include "hooke/shape.h"
-
-#include "state/mesh.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 /// \file
-/// What the tables of rows belong to: deformable objects, bodies, pins, fields.
+/// What the tables of rows belong to: deformable objects, pins, fields.
 
 namespace hooke::state {
 
@@ -57,17 +53,6 @@ struct Field {
 struct ForceLawEntry {
   ForceLaw law;
   std::uint32_t slot = 0;
-};
-
-/// A shape with a pose. It does not move in this version: every body is static or only drawn.
-struct Body {
-  std::uint32_t slot = 0;
-  Shape shape = {};
-  std::shared_ptr<const Mesh> mesh;  ///< For a mesh shape.
-  DVec3 position = {};
-  Quat rotation = {};
-  Real friction = Real(0);
-  bool collides = true;
 };
 
 }  // namespace hooke::state

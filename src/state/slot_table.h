@@ -25,6 +25,11 @@ class SlotTable {
     return entry.generation == id.generation ? entry.row : kNone;
   }
 
+  /// The id whose slot this is.
+  [[nodiscard]] IdType id_of(std::uint32_t slot) const {
+    return {.slot = slot, .generation = entries_[slot - 1].generation};
+  }
+
   void move(std::uint32_t slot, std::uint32_t row) { entries_[slot - 1].row = row; }
 
   [[nodiscard]] std::uint32_t generation() const { return generation_; }

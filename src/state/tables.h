@@ -2,7 +2,11 @@
 
 #include "hooke/desc.h"
 
+#include "state/bodies.h"
+#include "state/colliders.h"
 #include "state/contacts.h"
+#include "state/hooks.h"
+#include "state/manifolds.h"
 #include "state/mesh.h"
 #include "state/objects.h"
 #include "state/particles.h"
@@ -19,8 +23,9 @@ namespace hooke::state {
 /// hash a walk.
 struct Tables {
   WorldDesc desc;
-  double time = 0.0;     ///< [s]
-  double substep = 0.0;  ///< Length of the last one [s]; 0 before the first step.
+  double time = 0.0;          ///< [s]
+  double body_substep = 0.0;  ///< Length of the last one of bodies [s]; 0 before the first step.
+  double substep = 0.0;       ///< Length of the last one [s]; 0 before the first step.
   std::uint64_t step_count = 0;
   std::uint64_t revision = 0;  ///< Grows when rows come, go or change what they join; derived tables follow.
 
@@ -31,8 +36,15 @@ struct Tables {
   Triangles triangles;
   Segments segments;
   Contacts contacts;
-  std::vector<Pin> pins;                            ///< In order of particle.
-  std::vector<Body> bodies;                         ///< In order of creation.
+  std::vector<Pin> pins;  ///< In order of particle.
+  Bodies bodies;
+  Colliders colliders;
+  Pairs pairs;
+  std::vector<Hook> hooks;                   ///< In order of creation.
+  std::uint64_t hook_revision = 0;           ///< Grows when hooks come, go or change their rows.
+  std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
+  std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
+  std::vector<Rows> free_colliders;          ///< Holes of the collider table.
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
   std::vector<Field> fields;
   std::vector<ForceLawEntry> force_laws;
@@ -40,6 +52,7 @@ struct Tables {
 
   SlotTable<MeshId> mesh_slots;
   SlotTable<BodyId> body_slots;
+  SlotTable<HookId> hook_slots;
   SlotTable<RopeId> rope_slots;
   SlotTable<ClothId> cloth_slots;
   SlotTable<ParticlesId> particles_slots;

@@ -50,6 +50,35 @@ void measure_particles(const Tables& t, Measurement& m) {
   }
 }
 
+/// Kinetic energy p^2 / 2 m + L I^-1 L / 2.
+void measure_bodies(const Tables& t, Measurement& m) {
+  for (const std::uint32_t body : t.moving_bodies) {
+    const state::BodyMass& mass = t.bodies.mass[body];
+    if (!(mass.mass > Real(0))) continue;
+    const auto kilograms = static_cast<double>(mass.mass);
+    const DVec3 v = vector_cast<double>(t.bodies.motion[body].v);
+    const DVec3 momentum = vector_cast<double>(t.bodies.angular_momentum[body]);
+    const Quat axes = t.bodies.rotation[body] * mass.principal;
+    const DVec3 l = vector_cast<double>(rotate(conjugate(axes), t.bodies.angular_momentum[body]));
+    const DVec3 inertia = vector_cast<double>(mass.inertia);
+    m.energy.kinetic += 0.5 * kilograms * length_squared(v);
+    m.energy.kinetic += 0.5 * (l.x * l.x / inertia.x + l.y * l.y / inertia.y + l.z * l.z / inertia.z);
+    m.energy.potential += static_cast<double>(t.bodies.traits[body].gravity_scale) *
+                          potential_of(t, t.bodies.center[body], kilograms);
+    m.momentum += kilograms * v;
+    m.angular_momentum += kilograms * cross(t.bodies.center[body], v) + momentum;
+  }
+}
+
+double deepest_of_bodies(const Tables& t) {
+  double deepest = 0;
+  for (const state::Manifold& manifold : t.pairs.manifold) {
+    for (int i = 0; i < manifold.point_count; ++i)
+      deepest = std::max(deepest, -static_cast<double>(manifold.point[i].separation));
+  }
+  return deepest;
+}
+
 struct Stretch {
   double largest = 0, sum = 0;
   std::size_t count = 0;
@@ -117,10 +146,11 @@ Measurement World::measure() const {
   Measurement m;
   Stretch stretch;
   measure_particles(t, m);
+  measure_bodies(t, m);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
-  m.largest_penetration = collision::largest_penetration(t);
+  m.largest_penetration = std::max(collision::largest_penetration(t), deepest_of_bodies(t));
   return m;
 }
 

@@ -54,6 +54,14 @@ void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
 
 }  // namespace
 
+Error stale(const char* what) {
+  return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
+}
+
+Error not_finite(const char* what) {
+  return {ErrorCode::kOutOfRange, what, "must be finite"};
+}
+
 std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
   const std::uint32_t row = object_row(tables, point);
   if (row == state::SlotTable<RopeId>::kNone) return std::nullopt;
@@ -115,16 +123,45 @@ void unpin_particle(Tables& t, ParticleRow row) {
   ++t.revision;
 }
 
+void wake_neighbors(Tables& t, std::uint32_t body) {
+  for (const state::Pair& pair : t.pairs.pair) {
+    const std::uint32_t a = t.colliders.body[pair.collider_a];
+    const std::uint32_t b = t.colliders.body[pair.collider_b];
+    if (a != body && b != body) continue;
+    for (const std::uint32_t near : {a, b}) {
+      t.bodies.asleep[near] = 0;
+      t.bodies.rest_time[near] = Real(0);
+    }
+  }
+}
+
+void hash_bodies(const Tables& t, base::StateHash& hash) {
+  for (const std::uint32_t body : t.moving_bodies) {
+    hash.add(t.bodies.center[body]);
+    hash.add(t.bodies.rotation[body]);
+    hash.add(t.bodies.motion[body].v);
+    hash.add(t.bodies.angular_momentum[body]);
+    hash.add(t.bodies.asleep[body]);
+  }
+  for (const state::Manifold& manifold : t.pairs.manifold) {
+    hash.add(manifold.collider_a);
+    hash.add(manifold.collider_b);
+    for (int i = 0; i < manifold.point_count; ++i) hash.add(manifold.point[i].normal_impulse);
+  }
+}
+
 void restore_tables(const Tables& from, Tables& to) {
   const int workers = to.desc.workers;
   const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
+  const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
   const std::uint32_t generations[] = {to.mesh_slots.generation(),      to.body_slots.generation(),
                                        to.rope_slots.generation(),      to.cloth_slots.generation(),
                                        to.particles_slots.generation(), to.field_slots.generation(),
-                                       to.force_law_slots.generation()};
+                                       to.force_law_slots.generation(), to.hook_slots.generation()};
   to = from;
   to.desc.workers = workers;
   to.revision = revision;
+  to.hook_revision = hook_revision;
   to.mesh_slots.set_generation(generations[0] + 1);
   to.body_slots.set_generation(generations[1] + 1);
   to.rope_slots.set_generation(generations[2] + 1);
@@ -132,6 +169,7 @@ void restore_tables(const Tables& from, Tables& to) {
   to.particles_slots.set_generation(generations[4] + 1);
   to.field_slots.set_generation(generations[5] + 1);
   to.force_law_slots.set_generation(generations[6] + 1);
+  to.hook_slots.set_generation(generations[7] + 1);
 }
 
 }  // namespace hooke::world

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "hooke/id.h"
+#include "hooke/result.h"
 
+#include "base/hash.h"
 #include "state/tables.h"
 
 #include <cstdint>
@@ -12,6 +14,9 @@
 /// Finding, removing, holding: the API's work on whole objects and single particles.
 
 namespace hooke::world {
+
+[[nodiscard]] Error stale(const char* what);
+[[nodiscard]] Error not_finite(const char* what);
 
 struct ParticleRow {
   std::uint32_t particle = 0;  ///< Row of the particle table.
@@ -30,6 +35,12 @@ void unpin_particle(state::Tables& tables, ParticleRow row);
 
 /// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers.
 void restore_tables(const state::Tables& from, state::Tables& to);
+
+/// Wakes every body that is near `body`, before it goes or is moved by hand.
+void wake_neighbors(state::Tables& tables, std::uint32_t body);
+
+/// Adds the state of bodies and their contacts.
+void hash_bodies(const state::Tables& tables, base::StateHash& hash);
 
 /// Removes one row of a table whose rows know their slot; those behind it move up.
 template <class IdType, class Entry>

@@ -1,9 +1,9 @@
 /// The step, in order. This file says what happens and when; each named stage says how.
 ///
-///   detect    which particles are near which shapes              collision/
+///   detect    who is near whom, and where they touch             collision/, world/bodies
 ///   prepare   rows in solver form, colored; the wind             solver/, world/stages
 ///   substep   force, correct, move; a few per step               solver/
-///   finish    quarantine, origins, report                        world/stages
+///   finish    bounces, quarantine, sleep, origins, report        world/
 ///
 /// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, under 200 lines.
 /// A stage reads the tables it takes by const reference and writes the ones it takes by reference.
@@ -14,11 +14,17 @@
 #include "collision/particle_contacts.h"
 #include "parallel/thread_pool.h"
 #include "solver/bends.h"
+#include "solver/bodies.h"
+#include "solver/body_contacts.h"
 #include "solver/chains.h"
 #include "solver/contacts.h"
 #include "solver/forces.h"
+#include "solver/joints.h"
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
+#include "world/bodies.h"
+#include "world/hooks.h"
+#include "world/sleep.h"
 #include "world/stages.h"
 #include "world/stopwatch.h"
 #include "world/world_data.h"
@@ -32,6 +38,8 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 using state::SpringClass;
+using world::for_bodies;
+using world::for_contact_colors;
 
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
@@ -41,12 +49,22 @@ constexpr int kChainGrain = 1;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
+  world::refresh_hooks(w);
+  world::list_awake_bodies(w);
+  world::find_body_contacts(w, static_cast<Real>(dt));
+  if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
   collision::find_contacts(w.tables, dt);
 }
 
 void prepare(WorldData& w, double dt, Real h) {
-  solver::prepare_springs(w.spring_blocks, h);
-  solver::prepare_bends(w.bend_blocks, h);
+  state::Tables& t = w.tables;
+  const Real particle_h = h / static_cast<Real>(t.desc.particle_substeps);
+  solver::prepare_springs(w.spring_blocks, particle_h);
+  solver::prepare_bends(w.bend_blocks, particle_h);
+  for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
+  solver::prepare_joints(t.hooks, w.joints);
+  world::begin_contacts(w, h);
+  solver::prepare_body_contacts(*w.pool, t.pairs.manifold, t.bodies, w.contact_step, w.body_contacts);
   world::begin_step(w, dt);
 }
 
@@ -103,8 +121,50 @@ void substep_particles(WorldData& w, double time, Real h) {
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
 }
 
+/// Bodies: contacts with bias, hooks, then everything that is tied to them, then poses; last the contacts
+/// again without bias, which takes out the speed that pushed overlaps apart, and friction.
+void substep(WorldData& w, int i, double time, Real h) {
+  state::Bodies& bodies = w.tables.bodies;
+  const int particle_substeps = w.tables.desc.particle_substeps;
+  const Real particle_h = h / static_cast<Real>(particle_substeps);
+  world::drive_kinematic_bodies(w, time + static_cast<double>(h), h);
+  const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
+  for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
+  for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {
+    for_contact_colors(w, [&](Range blocks) {
+      solver::solve_body_contacts(blocks, w.contact_step, w.body_contacts, bodies);
+    });
+  }
+  solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
+  for (int k = 1; k <= particle_substeps; ++k) {
+    substep_particles(w, time + k * static_cast<double>(particle_h), particle_h);
+  }
+  for_bodies(w, [&](auto rows) { solver::move_bodies(rows, h, bodies); });
+  solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
+  for_contact_colors(
+      w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });
+}
+
+void finish_bodies(WorldData& w, double dt) {
+  state::Bodies& bodies = w.tables.bodies;
+  for (int pass = 0; w.body_contacts.any_bounce() && pass < solver::kRestitutionPasses; ++pass) {
+    for_contact_colors(w, [&](Range blocks) {
+      solver::restitute_body_contacts(blocks, pass, w.contact_step, w.body_contacts, bodies);
+    });
+  }
+  for_ranges(
+      *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
+      [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
+  for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
+  solver::finish_joints(static_cast<Real>(dt), w.tables.hooks);
+  world::drop_broken_hooks(w);
+  world::put_to_sleep(w, static_cast<Real>(dt));
+}
+
 void finish(WorldData& w, double dt, StepReport& report) {
-  report.rows_quarantined = world::quarantine_non_finite(w);
+  report.rows_quarantined = world::quarantine_bodies(w);
+  finish_bodies(w, dt);
+  report.rows_quarantined += world::quarantine_non_finite(w);
   world::rebase_origins(w);
   world::end_step(w, dt, report);
 }
@@ -119,15 +179,14 @@ StepReport World::step(Real dt) {
   w.stepping = true;
   world::Stopwatch watch;
   const auto frame = static_cast<double>(dt);
-  const int passes = w.tables.desc.substeps * w.tables.desc.particle_substeps;
-  const Real h = dt / static_cast<Real>(passes);
+  const int substeps = w.tables.desc.substeps;
+  const Real h = dt / static_cast<Real>(substeps);
 
   detect(w, frame);
   report.detect_ms = watch.lap_ms();
   prepare(w, frame, h);
   report.prepare_ms = watch.lap_ms();
-  // Bodies stand still in this version, so a substep of the world is its particle substeps.
-  for (int i = 1; i <= passes; ++i) substep_particles(w, w.tables.time + i * (frame / passes), h);
+  for (int i = 0; i < substeps; ++i) substep(w, i, w.tables.time + i * (frame / substeps), h);
   report.substep_ms = watch.lap_ms();
   finish(w, frame, report);
   report.finish_ms = watch.lap_ms();

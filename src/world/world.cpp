@@ -7,6 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "solver/forces.h"
 #include "solver/wind.h"
+#include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
 
@@ -17,14 +18,6 @@
 namespace hooke {
 
 namespace {
-
-Error stale(const char* what) {
-  return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
-}
-
-Error not_finite(const char* what) {
-  return {ErrorCode::kOutOfRange, what, "must be finite"};
-}
 
 /// Runs `add`, which appends an object, and gives that object an id.
 template <class IdType, class Add>
@@ -95,28 +88,6 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc) {
   return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
 }
 
-Result<BodyId> World::add_body(const BodyDesc& desc) {
-  const Result<void> good = build::validate(desc);
-  if (!good) return good.error();
-  state::Tables& t = data_->tables;
-  state::Body body = {.slot = 0,
-                      .shape = desc.shape,
-                      .mesh = nullptr,
-                      .position = desc.position,
-                      .rotation = normalize(desc.rotation),
-                      .friction = desc.contact.friction,
-                      .collides = desc.collides};
-  if (desc.shape.kind == ShapeKind::kMesh) {
-    const std::uint32_t row = t.mesh_slots.find(desc.shape.mesh);
-    if (row == t.mesh_slots.kNone || !t.meshes[row]) return stale("body.shape.mesh");
-    body.mesh = t.meshes[row];
-  }
-  const BodyId id = t.body_slots.add(static_cast<std::uint32_t>(t.bodies.size()));
-  body.slot = id.slot;
-  t.bodies.push_back(std::move(body));
-  return id;
-}
-
 Result<RopeId> World::add_rope(const RopeDesc& desc) {
   state::Tables& t = data_->tables;
   return add_object(t, t.rope_slots, [&] { return build::add_rope(desc, t); });
@@ -157,13 +128,6 @@ bool World::remove(MeshId id) {
   t.meshes[row] = nullptr;  // bodies that use it share it
   t.mesh_slots.move(id.slot, t.mesh_slots.kNone);
   return true;
-}
-
-bool World::remove(BodyId id) {
-  state::Tables& t = data_->tables;
-  ++t.revision;
-  t.contacts = {};  // rows of the body table move; detect finds the contacts again
-  return world::remove_row(t.body_slots, id, t.bodies);
 }
 
 bool World::remove(FieldId id) {
@@ -207,12 +171,6 @@ PointView World::velocities(ParticlesId id) const {
   return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.velocity);
 }
 
-Pose World::pose(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  if (row == data_->tables.body_slots.kNone) return {};
-  return {data_->tables.bodies[row].position, data_->tables.bodies[row].rotation};
-}
-
 std::vector<Real> World::tensions(RopeId id) const {
   const std::uint32_t row = data_->tables.rope_slots.find(id);
   if (row == data_->tables.rope_slots.kNone) return {};
@@ -240,8 +198,8 @@ std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
 
 Result<void> World::apply_force(PointRef point, Vec3 force) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
-  if (!is_finite(force)) return not_finite("force");
+  if (!row) return world::stale("point");
+  if (!is_finite(force)) return world::not_finite("force");
   data_->tables.particles.force[row->particle] += force;
   data_->tables.any_force = true;
   return {};
@@ -249,8 +207,8 @@ Result<void> World::apply_force(PointRef point, Vec3 force) {
 
 Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
-  if (!is_finite(impulse)) return not_finite("impulse");
+  if (!row) return world::stale("point");
+  if (!is_finite(impulse)) return world::not_finite("impulse");
   state::Particles& particles = data_->tables.particles;
   particles.velocity[row->particle].v += particles.velocity[row->particle].inverse_mass * impulse;
   return {};
@@ -258,8 +216,8 @@ Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
 
 Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
-  if (!is_finite(velocity)) return not_finite("velocity");
+  if (!row) return world::stale("point");
+  if (!is_finite(velocity)) return world::not_finite("velocity");
   state::Particles& particles = data_->tables.particles;
   if (particles.velocity[row->particle].inverse_mass > Real(0))
     particles.velocity[row->particle].v = velocity;
@@ -268,8 +226,8 @@ Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
 
 Result<void> World::set_position(PointRef point, DVec3 position) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
-  if (!is_finite(position)) return not_finite("position");
+  if (!row) return world::stale("point");
+  if (!is_finite(position)) return world::not_finite("position");
   state::Tables& t = data_->tables;
   t.particles.position[row->particle].x = vector_cast<Real>(position - t.objects[row->object].origin);
   for (state::Pin& pin : t.pins) {
@@ -281,7 +239,7 @@ Result<void> World::set_position(PointRef point, DVec3 position) {
 
 Result<void> World::pin(PointRef point, const MotionDesc& motion) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
+  if (!row) return world::stale("point");
   const Result<void> good = build::validate(motion, "motion");
   if (!good) return good.error();
   world::pin_particle(data_->tables, *row, motion);
@@ -290,13 +248,13 @@ Result<void> World::pin(PointRef point, const MotionDesc& motion) {
 
 Result<void> World::unpin(PointRef point) {
   const auto row = world::find_particle(data_->tables, point);
-  if (!row) return stale("point");
+  if (!row) return world::stale("point");
   world::unpin_particle(data_->tables, *row);
   return {};
 }
 
 Result<void> World::set_gravity(Vec3 gravity) {
-  if (!is_finite(gravity)) return not_finite("gravity");
+  if (!is_finite(gravity)) return world::not_finite("gravity");
   data_->tables.desc.gravity = gravity;
   return {};
 }
@@ -342,6 +300,8 @@ std::uint64_t World::state_hash() const {
   hash.add(t.contacts.particle);
   hash.add(t.contacts.normal_force);
   hash.add(t.contacts.friction_force);
+  world::hash_bodies(t, hash);
+  world::hash_hooks(t, hash);
   return hash.value();
 }
 
@@ -353,6 +313,7 @@ Result<void> World::restore(const Snapshot& snapshot) {
   if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
   if (data_->stepping) return Error{ErrorCode::kUnsupported, "snapshot", "cannot be restored during a step"};
   world::restore_tables(snapshot.data_->tables, data_->tables);
+  data_->broad_phase_stale = true;
   return {};
 }
 

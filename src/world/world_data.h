@@ -2,15 +2,19 @@
 
 #include "hooke/world.h"
 
+#include "collision/broad_phase.h"
 #include "parallel/thread_pool.h"
 #include "solver/air.h"
 #include "solver/bends.h"
+#include "solver/body_contacts.h"
 #include "solver/chains.h"
+#include "solver/joints.h"
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace hooke {
@@ -26,7 +30,22 @@ struct WorldData {
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 
+  // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
+  std::uint64_t joints_revision = ~std::uint64_t{0};
+  solver::Joints joints;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
+  std::vector<HookId> broken_hooks;                                   ///< In the last step.
+
+  // Bodies. Derived from the tables; what it holds does not change what a step does.
+  collision::BroadPhase broad_phase;
+  bool broad_phase_stale = true;             ///< Everything must be put into it anew.
+  std::vector<std::uint32_t> bodies_placed;  ///< Added or moved by hand since the last step.
+
   // Lives for one step.
+  std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
+  std::vector<collision::ColliderPair> pairs_found;
+  solver::BodyContacts body_contacts;
+  solver::ContactStep contact_step;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -44,8 +45,45 @@ TEST_SUITE("check/cases") {
     CHECK(failed_rows("V3", light) == 3);
     CHECK(failed_rows("V6", light) == 4);
     CHECK(failed_rows("V7", light) == 6);
-    CHECK(failed_rows("V17", light) == 12);
+    CHECK(failed_rows("V17", light) == 14);
+    CHECK(failed_rows("V18", light) >= 2);
+    CHECK(failed_rows("V19", light) == 3);
     CHECK(failed_rows("I3", light) == 2);
+  }
+
+  TEST_CASE("half the gravity is found in the laboratory too") {
+    const CheckSetting light{.gravity_scale = 0.5, .stepper = "rk4"};
+    for (const char* id : {"V1", "V2", "V3", "V17", "V18", "V19"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, light) > 0);
+    }
+  }
+
+  TEST_CASE("Runge-Kutta 4 reaches the goals, Euler does not") {
+    for (const char* id : {"V1", "V2", "V3", "V4", "V5", "V8", "V17", "V18", "V19", "V24", "V91", "V94"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, {.stepper = "rk4"}) == 0);
+    }
+    for (const char* id : {"V1", "V2", "V4", "V17", "V18", "V19", "V24"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, {.stepper = "euler"}) > 0);
+    }
+  }
+
+  TEST_CASE("in the laboratory a case has its own step and the goal as tolerance") {
+    for (const CheckRow& row : run_case(named("V24"), {.stepper = "rk4"})) {
+      CHECK(row.dt == doctest::Approx(1.0 / 60));
+      CHECK(row.substeps == 1);
+      CHECK(row.solver == "rk4");
+      CHECK(row.tolerance == doctest::Approx(1e-6));
+    }
+  }
+
+  TEST_CASE("a method that would diverge gives a row that says so") {
+    const auto rows = run_case(named("V9"), {.stepper = "euler"});
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].failure == hooke::ErrorCode::kLimitExceeded);
+    CHECK(rows[0].title.find("diverges") != std::string::npos);
   }
 
   TEST_CASE("a slope or a drum without friction is found") {
@@ -115,10 +153,24 @@ TEST_SUITE("check/command") {
     std::filesystem::remove(file);
   }
 
+  TEST_CASE("the table of all methods says which reach a goal and by how much the others miss it") {
+    const std::string file = temporary("hooke_check_goals.md");
+    REQUIRE(check_command({.cases = {"V1", "V24"}, .markdown_file = file, .stepper = "all"}) == 0);
+    std::ifstream in(file);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    CHECK(text.find("| `rk4` | reached | reached |") != std::string::npos);
+    CHECK(text.find("| `solver` | reached | reached |") != std::string::npos);
+    CHECK(text.find("| `euler` | 1.67 % of 0.01 % |") != std::string::npos);
+    std::filesystem::remove(file);
+  }
+
   TEST_CASE("failed rows, unknown cases and unwritable files have their exit codes") {
     CHECK(check_command({.cases = {"V4"}, .substeps = 2}) == 1);
     CHECK(check_command({.cases = {"V1000"}}) == 2);
     CHECK(check_command({.cases = {"V24"}, .json_file = "/no/such/folder/check.json"}) == 2);
     CHECK(check_command({.list = true}) == 0);
+    CHECK(check_command({.cases = {"V24"}, .stepper = "rk5"}) == 2);
+    CHECK(check_command({.cases = {"V24"}, .stepper = "rk4"}) == 0);
+    CHECK(check_command({.cases = {"V24"}, .stepper = "euler"}) == 1);
   }
 }

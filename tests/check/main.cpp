@@ -1,4 +1,5 @@
-/// hooke_check [CASE...] [--json F] [--markdown F] [--substeps N] [--list]
+/// hooke_check [CASE...] [--json F] [--markdown F] [--substeps N] [--stepper NAME]
+///             [--ground-truth] [--list]
 
 #include "check.h"
 
@@ -19,6 +20,10 @@ int main(int count, char** words) {
       options.markdown_file = words[++i];
     } else if (word == "--substeps" && more) {
       options.substeps = std::atoi(words[++i]);
+    } else if (word == "--stepper" && more) {
+      options.stepper = words[++i];
+    } else if (word == "--ground-truth") {
+      options.ground_truth = true;
     } else if (word.starts_with("--")) {
       std::fprintf(stderr, "hooke_check: unknown option %s\n", words[i]);
       return 2;

@@ -1,16 +1,22 @@
 #include "geometry/closest.h"
 
+#include "geometry/closest_hull.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <doctest/doctest.h>
 #include <limits>
 #include <random>
+#include <vector>
 
 using hooke::DVec3;
 using hooke::Vector3;
 using hooke::geometry::closest_between_segments;
 using hooke::geometry::closest_on_box;
+using hooke::geometry::closest_on_capsule;
+using hooke::geometry::closest_on_cone;
+using hooke::geometry::closest_on_cylinder;
 using hooke::geometry::closest_on_half_space;
 using hooke::geometry::closest_on_segment;
 using hooke::geometry::closest_on_sphere;
@@ -92,6 +98,33 @@ void check_segments(const Segment<T>& a, const Segment<T>& b) {
     nearest_sample = std::min(nearest_sample, std::sqrt(other.distance_squared));
   }
   CHECK(reached <= nearest_sample + kRounding<T>);
+}
+
+/// The answer lies on the surface, in the direction it says, and no sample of the surface is nearer.
+/// `sample(a, b, is_end)` is a surface point for a and b in [-1, 1].
+template <class T, class Closest, class Sample, class IsInside>
+void check_solid(const Closest& closest, const Sample& sample, const IsInside& is_inside) {
+  std::mt19937 random(7);
+  std::vector<Vector3<T>> samples;
+  for (int i = 0; i < 2000; ++i) {
+    const T a = signed_unit<T>(random);
+    samples.push_back(sample(a, signed_unit<T>(random), i % 3 == 0));
+  }
+  int inside = 0;
+  for (const Vector3<T>& s : samples) CHECK(std::fabs(double(closest(s).signed_distance)) < kRounding<T>);
+  for (int i = 0; i < 400; ++i) {
+    const Vector3<T> p = T(i % 2 == 0 ? 0.5 : 1.8) * random_vector<T>(random);
+    const auto found = closest(p);
+    inside += found.signed_distance < T(0) ? 1 : 0;
+    CHECK(std::fabs(double(hooke::length(found.normal)) - 1.0) < kRounding<T>);
+    CHECK(distance(p, found.point + found.signed_distance * found.normal) < kRounding<T>);
+    CHECK(std::fabs(double(closest(found.point).signed_distance)) < kRounding<T>);
+    CHECK((found.signed_distance <= T(0)) == is_inside(p));
+    double nearest = 1e30;
+    for (const Vector3<T>& s : samples) nearest = std::min(nearest, distance(p, s));
+    CHECK(std::fabs(double(found.signed_distance)) <= nearest + kRounding<T>);
+  }
+  CHECK(inside > 5);
 }
 
 }  // namespace
@@ -269,6 +302,99 @@ TEST_SUITE("geometry/closest") {
     CHECK(normal({1, 0, 0}) == DVec3{1, 0, 0});
     CHECK(closest_on_box(DVec3{1, 0, 0}, {1, 1, 1}).signed_distance == 0.0);
     CHECK(closest_on_box(DVec3{0.25, 2, 0.5}, {1, 0, 1}).normal == DVec3{0, 1, 0});
+  }
+
+  TEST_CASE_TEMPLATE("no sample of a capsule, cylinder or cone is nearer than the answer", T, float, double) {
+    const T r = T(0.4);
+    const T h = T(0.6);
+    const auto on_side = [=](T around, T up, T radius) {
+      const double angle = 3.14159265358979 * double(around);
+      return Vector3<T>{radius * T(std::cos(angle)), up, radius * T(std::sin(angle))};
+    };
+    check_solid<T>(
+        [=](auto p) { return closest_on_capsule(p, r, h); },
+        [=](T a, T b, bool is_end) {
+          const T up = is_end ? r * b : h * b;
+          const T side = b < T(0) ? -h : h;
+          const T radius = is_end ? std::sqrt(r * r - up * up) : r;
+          return on_side(a, is_end ? up + side : up, radius);
+        },
+        [=](auto p) {
+          return closest_on_segment(p, {T(0), -h, T(0)}, {T(0), h, T(0)}).distance_squared <= r * r;
+        });
+    check_solid<T>([=](auto p) { return closest_on_cylinder(p, r, h); },
+                   [=](T a, T b, bool is_end) {
+                     return is_end ? on_side(a, b < T(0) ? -h : h, r * std::fabs(b)) : on_side(a, h * b, r);
+                   },
+                   [=](auto p) { return std::fabs(p.y) <= h && p.x * p.x + p.z * p.z <= r * r; });
+    check_solid<T>(
+        [=](auto p) { return closest_on_cone(p, r, h); },
+        [=](T a, T b, bool is_end) {
+          return is_end ? on_side(a, -h, r * std::fabs(b)) : on_side(a, h * b, r * (T(1) - b) / T(2));
+        },
+        [=](auto p) {
+          return std::fabs(p.y) <= h && std::sqrt(p.x * p.x + p.z * p.z) <= r * (h - p.y) / (T(2) * h);
+        });
+  }
+
+  TEST_CASE("round shapes answer with the documented place where several are equally near") {
+    CHECK(closest_on_capsule(DVec3{0, 0.5, 0}, 1.0, 2.0).normal == DVec3{1, 0, 0});
+    CHECK(closest_on_capsule(DVec3{0, 2.5, 0}, 1.0, 2.0).normal == DVec3{0, 1, 0});
+    CHECK(closest_on_capsule(DVec3{0, 0.5, 0}, 1.0, 2.0).signed_distance == -1.0);
+    CHECK(closest_on_cylinder(DVec3{0, 0, 0}, 1.0, 1.0).normal == DVec3{0, 1, 0});
+    CHECK(closest_on_cylinder(DVec3{0, 0, 0}, 1.0, 2.0).point == DVec3{1, 0, 0});
+    CHECK(closest_on_cylinder(DVec3{0, -1.5, 0}, 1.0, 2.0).point == DVec3{0, -2, 0});
+    const auto over_tip = closest_on_cone(DVec3{0, 3, 0}, 1.0, 2.0);
+    CHECK(over_tip.point == DVec3{0, 2, 0});
+    CHECK(over_tip.normal == DVec3{0, 1, 0});
+    CHECK(closest_on_cone(DVec3{0, -1.9, 0}, 1.0, 2.0).normal == DVec3{0, -1, 0});
+    CHECK(closest_on_cone(DVec3{0, 1.9, 0}, 1.0, 2.0).normal.x == doctest::Approx(4 / std::sqrt(17.0)));
+  }
+
+  TEST_CASE("beside a cone the distance is that to the line of its side") {
+    // The side of radius 3, height 4 has the normal (4, 3) / 5.
+    const auto beside = closest_on_cone(DVec3{1.5 + 0.8, 0.6, 0}, 3.0, 2.0);
+    CHECK(beside.signed_distance == doctest::Approx(1.0));
+    CHECK(beside.normal.x == doctest::Approx(0.8));
+    CHECK(beside.normal.y == doctest::Approx(0.6));
+    CHECK(closest_on_cone(DVec3{3 + 0.3, -2 - 0.4, 0}, 3.0, 2.0).signed_distance == doctest::Approx(0.5));
+  }
+
+  TEST_CASE("no sample of a hull is nearer than the answer") {
+    std::mt19937 random(8);
+    for (int round = 0; round < 4; ++round) {
+      std::vector<hooke::Vec3> points;
+      for (int i = 0; i < (round == 0 ? 4 : 40); ++i) points.push_back(random_vector<hooke::Real>(random));
+      const auto hull = hooke::geometry::make_convex_hull(points).value();
+      // A place in a random triangle of a random face.
+      const auto sample = [&](hooke::Real a, hooke::Real b, bool) {
+        const auto& face = hull.faces[random() % hull.faces.size()];
+        const std::size_t corner = 1 + random() % (face.count - 2u);
+        const auto vertex = [&](std::size_t i) { return hull.vertices[hull.loop[face.first + i]]; };
+        const hooke::Real u = std::fabs(a);
+        const hooke::Real v = (hooke::Real(1) - u) * std::fabs(b);
+        return vertex(0) + u * (vertex(corner) - vertex(0)) + v * (vertex(corner + 1) - vertex(0));
+      };
+      check_solid<hooke::Real>(
+          [&](auto p) { return hooke::geometry::closest_on_hull(p, hull); }, sample,
+          [&](auto p) {
+            return std::all_of(hull.faces.begin(), hull.faces.end(),
+                               [&](const auto& face) { return hooke::dot(face.normal, p) <= face.offset; });
+          });
+    }
+  }
+
+  TEST_CASE("a hull of a box answers as the box does") {
+    std::mt19937 random(9);
+    const hooke::Vec3 h = {1, hooke::Real(0.5), hooke::Real(0.25)};
+    const auto hull = hooke::geometry::make_box_hull(h);
+    for (int i = 0; i < 500; ++i) {
+      const hooke::Vec3 p = hooke::Real(i % 2 == 0 ? 0.6 : 2.0) * random_vector<hooke::Real>(random);
+      const auto expected = closest_on_box(p, h);
+      const auto found = hooke::geometry::closest_on_hull(p, hull);
+      CHECK(std::fabs(double(found.signed_distance - expected.signed_distance)) < kRounding<hooke::Real>);
+      CHECK(distance(found.point, expected.point) < kRounding<hooke::Real>);
+    }
   }
 
   TEST_CASE("a hair outside a box the normal still has length one") {

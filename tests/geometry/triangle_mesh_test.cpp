@@ -168,4 +168,34 @@ TEST_SUITE("geometry/triangle_mesh") {
     CHECK(error_of(mesh).code == hooke::ErrorCode::kLimitExceeded);
     CHECK(error_of(mesh).where == "mesh.positions");
   }
+
+  TEST_CASE("a solid's surface is closed, has one side outside and faces outward") {
+    const auto text_of = [](const MeshDesc& mesh) {
+      const auto result = geometry::validate_solid(mesh);
+      return result.has_value() ? std::string() : result.error().where + ": " + result.error().message;
+    };
+    const MeshDesc cube = hooke::test::make_cube(1);
+    CHECK(text_of(cube).empty());
+    CHECK(text_of(hooke::test::make_sphere(3)).empty());
+    MeshDesc open = cube;
+    open.triangles.pop_back();
+    CHECK(text_of(open) ==
+          "mesh.triangles[0]: has an edge without a neighbor, one of 3; a solid's surface is closed");
+    MeshDesc branching = cube;
+    branching.triangles.push_back({0, 1, 7});
+    CHECK(text_of(branching) ==
+          "mesh.triangles[4]: has an edge with 3 triangles; a solid's surface has two at each");
+    MeshDesc turned = cube;
+    std::swap(turned.triangles[5][0], turned.triangles[5][1]);
+    CHECK(text_of(turned).find("face opposite sides") != std::string::npos);
+    MeshDesc inside_out = cube;
+    for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
+    CHECK(
+        text_of(inside_out) ==
+        "mesh.triangles: enclose -8.000000 m^3; a solid's triangles are counter-clockwise seen from outside");
+    MeshDesc flat = cube;
+    for (hooke::Vec3& p : flat.positions) p.y = 0;
+    CHECK(text_of(flat).find("enclose 0.0") != std::string::npos);
+    CHECK(text_of({}) == "mesh.triangles: a mesh needs at least one triangle");
+  }
 }

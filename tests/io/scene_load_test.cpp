@@ -75,6 +75,49 @@ TEST_SUITE("io/scene_load") {
     CHECK(scene.objects.fields.at(0).desc.kind == hooke::FieldDesc::Kind::kInverseSquare);
   }
 
+  TEST_CASE("a body that moves arrives in its descriptor, with its parts and what two materials do") {
+    const auto loaded = hooke::parse_scene(R"({
+      "version": 1,
+      "world": {"contact_hz": 30, "sleeping": false},
+      "meshes": {"rock": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "triangles": [[0, 1, 2]]}},
+      "materials": {"ice": {"friction": 0.02, "static_friction": 0.05, "restitution": 0.5}, "steel": {}},
+      "material_pairs": [{"a": "ice", "b": "steel", "friction": 0.01}],
+      "bodies": [
+        {"kind": "dynamic", "shape": {"parts": [
+           {"shape": {"cylinder": {"radius": 0.2, "half_height": 3}}, "position": [0, 1, 0]},
+           {"shape": {"hull": "rock"}, "density": 7800, "material": "ice"}]},
+         "velocity": [1, 0, 0], "angular_velocity": [0, 2, 0], "mass": 5, "mask": 6, "bullet": true},
+        {"kind": "kinematic", "shape": {"box": {}}, "motion": {"velocity": [0, 1, 0]}, "surface_velocity": [3, 0, 0]}]
+    })",
+                                           "demo.json");
+    INFO(first_line(loaded));
+    REQUIRE(loaded);
+    const hooke::Scene& scene = *loaded.value;
+    CHECK(scene.world.contact_hz == hooke::Real(30));
+    CHECK_FALSE(scene.world.sleeping);
+    CHECK(scene.materials.at(0).static_friction == hooke::Real(0.05));
+    CHECK(scene.material_pairs.at(0).b == "steel");
+    const hooke::SceneBody& body = scene.objects.bodies.at(0);
+    CHECK(body.desc.kind == hooke::BodyKind::kDynamic);
+    CHECK(body.desc.shape.kind == hooke::ShapeKind::kCompound);
+    CHECK(body.desc.velocity == hooke::Vec3{1, 0, 0});
+    CHECK(body.desc.angular_velocity == hooke::Vec3{0, 2, 0});
+    CHECK(body.desc.mass == hooke::Real(5));
+    CHECK(body.desc.filter.mask == 6);
+    CHECK(body.desc.bullet);
+    REQUIRE(body.parts.size() == 2);
+    CHECK(body.parts[0].desc.shape.kind == hooke::ShapeKind::kCylinder);
+    CHECK(body.parts[0].desc.shape.half_height == hooke::Real(3));
+    CHECK(body.parts[0].desc.position == hooke::Vec3{0, 1, 0});
+    CHECK(body.parts[1].desc.shape.kind == hooke::ShapeKind::kHull);
+    CHECK(body.parts[1].mesh == "rock");
+    CHECK(body.parts[1].material == "ice");
+    CHECK(body.parts[1].desc.density == hooke::Real(7800));
+    CHECK(scene.objects.bodies.at(1).desc.kind == hooke::BodyKind::kKinematic);
+    CHECK(scene.objects.bodies.at(1).desc.motion.kind == hooke::MotionDesc::Kind::kConstantVelocity);
+    CHECK(scene.objects.bodies.at(1).desc.contact.surface_velocity == hooke::Vec3{3, 0, 0});
+  }
+
   TEST_CASE("turns about the fixed axes come in the order x, y, z") {
     const auto loaded = hooke::parse_scene(
         R"({"version": 1, "bodies": [{"shape": {"box": {}}, "rotation": {"euler_deg": [90, 0, 90]}}]})",

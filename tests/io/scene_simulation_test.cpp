@@ -83,6 +83,91 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(0.001 * sum.z == doctest::Approx(2.5).epsilon(0.02));
   }
 
+  TEST_CASE("a list places and turns each copy, after the turn of the body itself") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "bodies": [{"name": "box", "shape": {"box": {}}, "position": [1, 0, 0],
+                  "rotation": {"axis": [1, 0, 0], "angle_deg": 90},
+                  "array": {"list": [[0, 0, 0], [0, 2, 5]],
+                            "rotations": [[0, 0, 0, 1], {"axis": [0, 1, 0], "angle_deg": 90}]}}]
+    })");
+    REQUIRE(simulation.objects().size() == 2);
+    const hooke::Pose first = simulation.world().pose(simulation.find("box[0]")->body);
+    const hooke::Pose second = simulation.world().pose(simulation.find("box[1]")->body);
+    CHECK(second.position == hooke::DVec3{1, 2, 5});
+    // About x the y axis goes to z; from there the copy's own turn about y takes it to x.
+    CHECK(static_cast<double>(hooke::rotate(first.rotation, hooke::Vec3{0, 1, 0}).z) == doctest::Approx(1));
+    CHECK(static_cast<double>(hooke::rotate(second.rotation, hooke::Vec3{0, 1, 0}).x) == doctest::Approx(1));
+  }
+
+  TEST_CASE("a hull is drawn as its faces, flat, without the points inside it") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "meshes": {"spiky": {
+        "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1],
+                     [0.5, 0.5, 0.5]],
+        "triangles": [[0, 1, 8], [1, 2, 8], [2, 3, 8], [3, 0, 8], [4, 5, 8], [5, 6, 8], [6, 7, 8], [7, 4, 8]]}},
+      "bodies": [{"name": "one", "kind": "dynamic", "shape": {"hull": "spiky"}},
+                 {"name": "other", "shape": {"hull": "spiky"}}, {"name": "mesh", "shape": {"mesh": "spiky"}}]
+    })");
+    const auto& model = simulation.find("one")->model;
+    REQUIRE(model != nullptr);
+    CHECK(model->vertices.size() == 24);  // a corner has a normal on each of its three faces
+    CHECK(model->indices.size() == 3 * 12);
+    for (const hooke::ModelVertex& vertex : model->vertices) {
+      // A face of this cube is at 0 or 1 along its normal.
+      const float along = vertex.normal[0] * vertex.position[0] + vertex.normal[1] * vertex.position[1] +
+                          vertex.normal[2] * vertex.position[2];
+      const float sum = vertex.normal[0] + vertex.normal[1] + vertex.normal[2];
+      CHECK(static_cast<double>(along) == doctest::Approx(sum > 0 ? 1 : 0));
+    }
+    CHECK(simulation.find("other")->model == model);
+    CHECK(simulation.find("mesh")->model != model);
+    CHECK(static_cast<double>(simulation.world().mass(simulation.find("one")->body)) ==
+          doctest::Approx(1000));
+  }
+
+  TEST_CASE("parts have looks of their own, or that of the body") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "materials": {"red": {"color": [1, 0, 0]}, "blue": {"color": [0, 0, 1]}},
+      "bodies": [{"name": "hammer", "kind": "dynamic", "material": "red", "shape": {"parts": [
+        {"shape": {"cylinder": {}}, "position": [0, 1, 0]}, {"shape": {"box": {}}, "material": "blue"}]}}]
+    })");
+    const hooke::SceneObject& hammer = *simulation.find("hammer");
+    REQUIRE(hammer.parts.size() == 2);
+    CHECK(hammer.parts[0].look.color[0] == 1.0f);
+    CHECK(hammer.parts[0].position == hooke::Vec3{0, 1, 0});
+    CHECK(hammer.parts[1].look.color[2] == 1.0f);
+    CHECK(hammer.parts[1].material == "blue");
+  }
+
+  TEST_CASE("a hull of points in a plane is an error at its place") {
+    auto scene = hooke::parse_scene(R"({"version": 1,
+"meshes": {"flat": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}},
+"bodies": [{"shape": {"hull": "flat"}}]})",
+                                    "demo.json");
+    REQUIRE(scene);
+    const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+    REQUIRE(simulation.errors.size() == 1);
+    CHECK(hooke::to_line(simulation.errors[0]).starts_with("demo.json:3:"));
+  }
+
+  TEST_CASE("figures of a body are measured: speed, spin and tilt") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "bodies": [{"name": "top", "kind": "dynamic", "shape": {"box": {}}, "velocity": [3, 0, 4],
+                  "angular_velocity": [0, 0, 2], "rotation": {"axis": [1, 0, 0], "angle_deg": 30}}],
+      "expect": [{"quantity": "speed", "of": "top", "op": "==", "value": 5, "tolerance": 1e-5},
+                 {"quantity": "angular_speed", "of": "top", "op": "==", "value": 2, "tolerance": 1e-5},
+                 {"quantity": "tilt", "of": "top", "op": "==", "value": 30, "tolerance": 1e-4}]
+    })");
+    for (std::size_t i = 0; i < 3; ++i) {
+      INFO(simulation.check(i).text);
+      CHECK(simulation.check(i).passed);
+    }
+  }
+
   TEST_CASE("pins hold a column, a row, the topmost points and the last one") {
     hooke::Simulation simulation = simulate(R"({
       "version": 1,

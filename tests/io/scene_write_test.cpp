@@ -57,20 +57,34 @@ constexpr const char* kEverything = R"({
   "version": 1, "title": "All \"keys\"\nand \u00e9", "description": "d", "dt": 0.004, "seconds": 3,
   "accuracy": {"max_error": 2e-4},
   "world": {"gravity": [1, -2, 3], "substeps": 2, "particle_substeps": 3, "workers": 2,
+    "contact_hz": 50, "contact_damping_ratio": 5, "bias_sweeps": 2, "sleeping": false,
     "wind": {"velocity": [1, 0, 0.1], "gust": 0.5, "side_gust": 0.25, "correlation_time": 0.7,
              "correlation_length": 3, "seed": 7, "gusts": "paper", "air_density": 1.1}},
   "meshes": {"file": {"file": "a/b.obj", "up": "x", "scale": 0.001},
              "fit": {"file": "c.3ds", "fit": 0.4},
              "inline": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}},
   "materials": {"silk": {"color": [0.1, 0.2, 0.3], "texture": "t.png", "shininess": 3, "opacity": 0.5,
-                         "friction": 0.9}, "plain": {}},
+                         "friction": 0.9, "static_friction": 1, "restitution": 0.25, "rolling_friction": 0.001,
+                         "spinning_friction": 0.002}, "plain": {}},
+  "material_pairs": [{"a": "silk", "b": "plain", "friction": 0.3, "static_friction": 0.4, "restitution": 0.75}],
   "bodies": [
     {"name": "ground", "material": "silk", "shape": {"half_space": {}}, "friction": 0.25},
     {"shape": {"sphere": {"radius": 0.3}}, "position": [1, 2, 3], "rotation": [0, 0, 1, 0], "collides": false,
      "array": {"grid": [2, 3, 4], "spacing": [1, 0.5, 0.25]}},
     {"shape": {"box": {"half_extents": [1, 2, 3]}}, "array": {"pyramid": 4, "spacing": [1, 1, 1.5]}},
     {"shape": {"box": {}}, "array": {"random": 5, "seed": 9, "box": [[-1, -1, -1], [1, 2, 3]]}},
-    {"shape": {"mesh": "inline"}}],
+    {"shape": {"mesh": "inline"}},
+    {"name": "top", "kind": "dynamic", "shape": {"cone": {"radius": 0.25, "half_height": 1}}, "velocity": [1, 2, 3],
+     "angular_velocity": [3, 2, 1], "density": 500, "linear_damping": 0.1, "angular_damping": 0.2,
+     "gravity_scale": 0.5, "category": 2, "mask": 5, "group": -1, "bullet": true, "can_sleep": false,
+     "array": {"list": [[0, 0, 0], [1, 0.5, 0]], "rotations": [[0, 0, 1, 0], [0, 1, 0, 0]]}},
+    {"kind": "dynamic", "mass": 3, "shape": {"parts": [
+      {"shape": {"capsule": {"radius": 0.1, "half_height": 0.25}}, "position": [1, 0, 0], "rotation": [1, 0, 0, 0],
+       "density": 700, "material": "plain"},
+      {"shape": {"cylinder": {"half_height": 2}}}, {"shape": {"box": {"half_extents": [1, 2, 3]}}},
+      {"shape": {"sphere": {"radius": 2}}}, {"shape": {"hull": "inline"}}]}},
+    {"kind": "kinematic", "shape": {"hull": "inline"}, "surface_velocity": [0, 0, 1], "motion": {"velocity": [0, 1, 0]}},
+    {"shape": {"capsule": {}}, "sensor": true}, {"shape": {"cylinder": {}}}],
   "ropes": [
     {"name": "rope", "stepper": "verlet", "hook_point": [0, 3, 0], "direction": [0, -1, 0], "total_mass": 2,
      "masses": 9,
@@ -103,6 +117,7 @@ constexpr const char* kEverything = R"({
     {"at_step": 4, "unpin": {"object": "cloth", "point": 2}},
     {"at_step": 5, "force": {"object": "net", "point": 0, "force": [1, 2, 3], "steps": 4}},
     {"at_step": 6, "impulse": {"object": "rope", "point": 1, "impulse": [1, 2, 3]}},
+    {"at_step": 6, "impulse": {"object": "top[1]", "point": 0, "impulse": [0, 1, 0]}},
     {"at_step": 7, "wind": {"velocity": [2, 0, 0]}},
     {"at_step": 8, "gravity": [0, -1, 0]}],
   "camera": {"eye": [1, 2, 3], "target": [3, 2, 1], "fov_deg": 60,
@@ -111,6 +126,8 @@ constexpr const char* kEverything = R"({
   "expect": [
     {"quantity": "height", "of": "rope", "point": "last", "op": "==", "value": 1.5, "tolerance": 0.01},
     {"quantity": "tension", "of": "rope", "op": "within", "value": 10, "tolerance": 0.1, "at_step": 5},
+    {"quantity": "tilt", "of": "top[0]", "op": "<", "value": 5},
+    {"quantity": "angular_speed", "of": "top[1]", "op": ">", "value": 1}, {"quantity": "asleep", "op": ">=", "value": 1},
     {"quantity": "total_energy", "op": "<=", "value": 12}]
 })";
 
@@ -157,6 +174,12 @@ TEST_SUITE("io/scene_write") {
     hooke::Scene other = *loaded.value;
     CHECK(other == *loaded.value);
     other.objects.ropes[0].pins[2].motion.phase += 1;
+    CHECK_FALSE(other == *loaded.value);
+    other = *loaded.value;
+    other.objects.bodies[6].parts[1].desc.shape.half_height += 1;
+    CHECK_FALSE(other == *loaded.value);
+    other = *loaded.value;
+    other.objects.bodies[5].tag.array.rotations.pop_back();
     CHECK_FALSE(other == *loaded.value);
   }
 

@@ -59,6 +59,10 @@ TEST_SUITE("render/shapes") {
     const MeshGeometry cylinder = hooke::render::make_cylinder(0.5F, 1);
     CHECK(volume(cylinder) == doctest::Approx(kPi * 0.25 * 2).epsilon(0.01));
     CHECK(worst_agreement(cylinder) > 0.99F);
+
+    const MeshGeometry cone = hooke::render::make_cone(0.5F, 1);
+    CHECK(volume(cone) == doctest::Approx(kPi * 0.25 * 2 / 3).epsilon(0.01));
+    CHECK(worst_agreement(cone) > 0.99F);
   }
 
   TEST_CASE("a tube encloses the volume of its rope, ends included") {

@@ -36,6 +36,35 @@ TEST_SUITE("world/particles") {
           doctest::Approx(-std::sqrt(2 * 9.81 / (1.225 * 0.5 * area))).epsilon(1e-3));
   }
 
+  TEST_CASE("particles rest on capsules, cylinders, cones and hulls") {
+    World world = make_world();
+    const Quat upside_down = {Real(1), Real(0), Real(0), Real(0)};
+    const MeshId corners =
+        take(world.add_mesh({.positions = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {0, -1, 0}},
+                             .triangles = {{0, 1, 4}}}));
+    const Shape shapes[] = {Shape::capsule(Real(0.3), Real(0.5)), Shape::cylinder(Real(0.3), Real(0.5)),
+                            Shape::cone(Real(0.3), Real(0.5)), Shape::hull_of(corners)};
+    const double tops[] = {0.8, 0.5, 0.5, 0};
+    ParticlesDesc desc;
+    for (int i = 0; i < 4; ++i) {
+      BodyDesc body;
+      body.shape = shapes[i];
+      body.position = {4.0 * i, 0, 0};
+      if (body.shape.kind == ShapeKind::kCone) body.rotation = upside_down;
+      take(world.add_body(body));
+      ParticleDesc stone;
+      stone.position = {4.0 * i, tops[i] + 0.15, 0};
+      stone.radius = Real(0.1);
+      desc.particles.push_back(stone);
+    }
+    const ParticlesId stones = take(world.add_particles(desc));
+    run(world, 120);
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(world.positions(stones)[i].y == doctest::Approx(tops[i] + 0.1).epsilon(1e-3));
+      CHECK(std::fabs(double(world.velocities(stones)[i].y)) < 1e-3);
+    }
+  }
+
   TEST_CASE("a spinning dumbbell keeps its angular momentum under central damping") {
     World world = make_world(empty_space());
     ParticlesDesc desc;

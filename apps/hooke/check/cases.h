@@ -43,12 +43,21 @@ Rows pendulum_amplitude(const CheckSetting& setting);
 Rows pendulum_right_angle(const CheckSetting& setting);
 Rows inverted_pendulum(const CheckSetting& setting);
 
+// cases_two_angles.cpp
+Rows double_pendulum(const CheckSetting& setting);
+Rows conical_pendulum(const CheckSetting& setting);
+
 // cases_contact.cpp: friction
 Rows capstan(const CheckSetting& setting);
 Rows sliding_block(const CheckSetting& setting);
 
 // cases_time.cpp: the same physics at any rate
 Rows display_rate(const CheckSetting& setting);
+Rows overload(const CheckSetting& setting);
 Rows gusts(const CheckSetting& setting);
+
+// cases_methods.cpp
+Rows orders(const CheckSetting& setting);
+Rows stability(const CheckSetting& setting);
 
 }  // namespace hooke::check

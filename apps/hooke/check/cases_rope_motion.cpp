@@ -51,7 +51,7 @@ double string_period(const CheckSetting& setting, const String& string) {
   const bool across = string.transverse > 0;
   const Curve curve = record(rig, 4, [&] {
     double sum = 0;
-    const PointView x = world.positions(id);
+    const std::vector<DVec3> x = rig.positions(id);
     for (int i = 1; i < String::kSegments; ++i) {
       const DVec3 moved = x[static_cast<std::size_t>(i)] - DVec3{place(i), 0, 0};
       sum += shape(i) * (across ? moved.y : moved.x);

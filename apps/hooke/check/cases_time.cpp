@@ -3,6 +3,7 @@
 #include "cases.h"
 #include "rig.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,12 +14,12 @@ namespace {
 
 constexpr int kFlagColumns = 13;
 constexpr int kFlagRows = 9;
-constexpr int kSteps = 300;  ///< Fixed steps of each run.
 
 /// Ropes, cloth and particles in gusts over a ground.
-void fill(Rig& rig) {
+void fill(Rig& rig, const CheckSetting& setting) {
   rig.add(BodyDesc{.shape = Shape::half_space(), .position = {0, -1, 0}});
-  rig.add(RopeDesc{.masses = 20, .loads = {{.point = 19, .mass = real(2)}}});
+  rig.add(
+      RopeDesc{.masses = 20, .stiffness = stiff(setting, 1e4), .loads = {{.point = 19, .mass = real(2)}}});
   rig.add(ClothDesc{.columns = 12, .rows = 8, .corner = {0.5, 0, 0}, .pins = {{.point = 0}, {.point = 84}}});
   rig.add(ParticlesDesc{.particles = {{.position = {0, 0, 1}}, {.position = {0.3, 0, 1}}},
                         .springs = {{.a = 0, .b = 1}},
@@ -41,25 +42,27 @@ double uneven(int picture) {
   return 0.001 * (1 + (picture * 7919) % 53);
 }
 
-/// State after kSteps fixed steps, taken as the time of the display allows and read at every picture.
+/// State after at least 300 fixed steps and 0.6 s, taken as the time of the display allows and read at every
+/// picture.
 std::uint64_t state_after(const CheckSetting& setting, Display display) {
   WorldDesc desc;
   desc.wind = {.velocity = {real(5), real(0), real(1)}, .gust = real(0.5)};
   Rig rig(setting, desc);
-  fill(rig);
+  fill(rig, setting);
+  const int all = std::max(300, static_cast<int>(0.6 / setting.dt));
   double owed = 0;
   int steps = 0;
-  for (int picture = 0; steps < kSteps; ++picture) {
-    for (owed += display(picture); owed >= setting.dt && steps < kSteps; owed -= setting.dt) {
+  for (int picture = 0; steps < all; ++picture) {
+    for (owed += display(picture); owed >= setting.dt && steps < all; owed -= setting.dt) {
       rig.step();
       ++steps;
     }
     // What a viewer does at every picture must not touch the state.
-    if (!std::isfinite(rig.world().measure().energy.total())) return 0;
+    if (!std::isfinite(rig.energy().total())) return 0;
     const Snapshot kept = rig.world().snapshot();
     if (picture % 10 == 0) must(rig.world().restore(kept));
   }
-  return rig.world().state_hash();
+  return rig.state_hash();
 }
 
 WorldDesc windy() {
@@ -161,6 +164,57 @@ Rows display_rate(const CheckSetting& setting) {
                     .solver = "all"});
   }
   return rows;
+}
+
+/// A machine that needs `cost` for a step [s], for a while ten times as much, and shows 60 pictures a second
+/// when it can. Clock (hooke/clock.h) may ask for at most 4 steps between two pictures, so in the overload
+/// the machine makes 1 / cost steps per second, and right after it 60 again; the steps are those of a machine
+/// without load, fewer of them.
+Rows overload(const CheckSetting& setting) {
+  constexpr double kPicture = 1.0 / 60;
+  constexpr double kCost = 0.004;
+  Rig rig(setting);
+  fill(rig, setting);
+  Clock clock = must(Clock::create({.step_seconds = kPicture}));
+  double now = 0;
+  int most = 0;
+  int made = 0;
+  // Until `end`, at this cost; returns steps per second.
+  const auto live = [&](double end, double cost) {
+    const double start = now;
+    const int before = made;
+    double passed = kPicture;
+    for (; now < end; now += passed) {
+      const int due = clock.advance(passed).steps;
+      for (int i = 0; i < due; ++i) rig.run(kPicture);
+      most = std::max(most, due);
+      made += due;
+      passed = std::max(kPicture, due * cost);
+    }
+    return (made - before) / (now - start);
+  };
+  live(1, kCost);
+  const double slow = live(3, 10 * kCost);
+  live(3.2, kCost);  // the last slow picture's time is still owed
+  const double again = live(5.2, kCost);
+  Rig calm(setting);
+  fill(calm, setting);
+  for (int i = 0; i < made; ++i) calm.run(kPicture);
+  const auto row = [](const char* title, const char* unit, double expected, double achieved,
+                      double tolerance) {
+    return CheckRow{.title = title,
+                    .unit = unit,
+                    .expected = expected,
+                    .achieved = achieved,
+                    .tolerance = tolerance,
+                    .measure = CheckRow::Measure::kAbsolute,
+                    .solver = "clock"};
+  };
+  return {row("most steps between two pictures beyond 4", "", 0, std::max(0, most - 4), 0),
+          row("steps per second while a step takes 40 ms", "1/s", 0.1 / kCost, slow, 1),
+          row("steps per second right after", "1/s", 60, again, 1),
+          row("bits that differ from a machine without load", "", 0,
+              rig.healthy() && rig.state_hash() == calm.state_hash() ? 0 : 1, 0)};
 }
 
 /// The wind is a function of time and place, so what it does has the same size at 30, 60, 120 and 240 Hz.

@@ -1,7 +1,9 @@
+#include "hooke/lab.h"
 #include "hooke/math.h"
 
 #include "cases.h"
 #include "check.h"
+#include "rig.h"
 
 #include <cmath>
 #include <exception>
@@ -16,22 +18,27 @@ double CheckRow::error() const {
 
 const std::vector<CheckCase>& check_cases() {
   static const std::vector<CheckCase> cases = {
-      {"V1", "Free fall", free_fall},
-      {"V2", "Fall with linear drag", linear_drag},
-      {"V3", "Fall with quadratic drag", quadratic_drag},
-      {"V4", "Mass on a spring", simple_oscillator},
-      {"V5", "Damped oscillator", damped_oscillator},
-      {"V6", "Hanging spring with its own weight", hanging_weight},
-      {"V7", "Springs in series and in parallel", series_and_parallel},
-      {"V8", "Normal modes of a chain", chain_modes},
-      {"V9", "Wave speeds of a string", wave_speeds},
-      {"V11", "Catenary", catenary},
-      {"V12", "Elastic catenary", elastic_catenary},
-      {"V17", "Pendulum of any amplitude", pendulum_amplitude},
-      {"V20", "Inverted pendulum on a shaken pivot", inverted_pendulum},
-      {"V23", "Kepler orbit", kepler_orbit},
-      {"V24", "Charge in a magnetic field", charge_in_magnetic_field},
-      {"V86", "Any display rate", display_rate},
+      {"V1", "Free fall", free_fall, 1.0 / 60},
+      {"V2", "Fall with linear drag", linear_drag, 1.0 / 60},
+      {"V3", "Fall with quadratic drag", quadratic_drag, 1.0 / 60},
+      {"V4", "Mass on a spring", simple_oscillator, 1.0 / 600},
+      {"V5", "Damped oscillator", damped_oscillator, 1.0 / 60},
+      {"V6", "Hanging spring with its own weight", hanging_weight, 5e-4, 1.0 / 60},
+      {"V7", "Springs in series and in parallel", series_and_parallel, 1e-4, 1.0 / 60},
+      {"V8", "Normal modes of a chain", chain_modes, 1.0 / 120},
+      {"V9", "Wave speeds of a string", wave_speeds, 1e-3},
+      {"V11", "Catenary", catenary, 8e-5, 1e-3},
+      {"V12", "Elastic catenary", elastic_catenary, 4e-4, 1e-3},
+      {"V17", "Pendulum of any amplitude", pendulum_amplitude, 5e-4},
+      {"V18", "Double pendulum", double_pendulum, 5e-4},
+      {"V19", "Conical and spherical pendulum", conical_pendulum, 5e-4},
+      {"V20", "Inverted pendulum on a shaken pivot", inverted_pendulum, 1e-3},
+      {"V23", "Kepler orbit", kepler_orbit, 0.01},
+      {"V24", "Charge in a magnetic field", charge_in_magnetic_field, 1.0 / 60},
+      {"V86", "Any display rate", display_rate, 2e-4, 1.0 / 60},
+      {"V91", "Order by halving the step", orders, 1.0 / 60},
+      {"V92", "Overload", overload, 2e-4, 1.0 / 60},
+      {"V94", "The paper's limits of stability", stability, 1.0 / 60},
       {"I1", "Rope extension at any resolution", resolution_of_rope},
       {"I2", "Any stiffness at 60 Hz", any_stiffness},
       {"I3", "Pendulum from the horizontal", pendulum_right_angle},
@@ -46,17 +53,40 @@ const std::vector<CheckCase>& check_cases() {
   return cases;
 }
 
+namespace {
+
+CheckRow failed_row(const std::exception& failure) {
+  return {.title = std::string("could not run: ") + failure.what(),
+          .achieved = std::numeric_limits<double>::quiet_NaN()};
+}
+
+/// Methods by tolerance choose steps of their own, so they count as those without a limit.
+double laboratory_dt(const CheckCase& check, const std::string& stepper) {
+  const auto info = lab::find_stepper(stepper);
+  const bool unlimited = info && std::isinf(info.value().imaginary_limit);
+  return unlimited && check.implicit_dt > 0 ? check.implicit_dt : check.laboratory_dt;
+}
+
+}  // namespace
+
 std::vector<CheckRow> run_case(const CheckCase& check, const CheckSetting& setting) {
   std::vector<CheckRow> rows;
+  CheckSetting own = setting;
+  if (setting.laboratory()) own.dt = laboratory_dt(check, setting.stepper);
   try {
-    rows = check.run(setting);
+    rows = check.run(own);
+  } catch (const Failure& failure) {
+    rows = {failed_row(failure)};
+    rows.back().failure = failure.code;
   } catch (const std::exception& failure) {
-    rows = {{.title = std::string("could not run: ") + failure.what(),
-             .achieved = std::numeric_limits<double>::quiet_NaN()}};
+    rows = {failed_row(failure)};
   }
   for (CheckRow& row : rows) {
-    if (!(row.dt > 0)) row.dt = setting.dt;
-    if (row.substeps == 0) row.substeps = setting.substeps;
+    if (!(row.dt > 0)) row.dt = own.dt;
+    if (row.substeps == 0) row.substeps = setting.laboratory() ? 1 : setting.substeps;
+    if (!setting.laboratory()) continue;
+    if (row.goal > 0) row.tolerance = row.goal;
+    row.solver = setting.stepper;
   }
   return rows;
 }

@@ -1,20 +1,21 @@
+#include "hooke/lab.h"
+
 #include "check.h"
+#include "ground_truth.h"
+#include "report.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <exception>
 
 namespace hooke::check {
 
 namespace {
 
-struct Ran {
-  const CheckCase* check = nullptr;
-  CheckRow row;
-};
+constexpr int kPassed = 0;
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
 
 std::string upper(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -29,117 +30,96 @@ const CheckCase* find_case(const std::string& id) {
   return found == all.end() ? nullptr : &*found;
 }
 
-std::string number(double value, int digits = 7) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
-std::string with_unit(double value, const CheckRow& row) {
-  return number(value) + (row.unit.empty() ? "" : " " + row.unit);
-}
-
-std::string percent_or_unit(double value, const CheckRow& row) {
-  if (row.measure == CheckRow::Measure::kRelative) return number(100 * value, 3) + " %";
-  return number(value, 3) + (row.unit.empty() ? "" : " " + row.unit);
-}
-
-std::string stepping(const CheckRow& row) {
-  return number(1 / row.dt, 4) + " Hz x " + std::to_string(row.substeps);
-}
-
-void print_row(const CheckCase& check, const CheckRow& row) {
-  std::printf("%-4s %-4s %-58s %18s %18s  error %-12s of %-10s\n", row.pass() ? "ok" : "FAIL",
-              check.id.c_str(), row.title.c_str(), with_unit(row.expected, row).c_str(),
-              with_unit(row.achieved, row).c_str(), percent_or_unit(row.error(), row).c_str(),
-              percent_or_unit(row.tolerance, row).c_str());
-  std::fflush(stdout);
-}
-
-std::string to_json(const std::vector<Ran>& ran) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const auto& [check, row] : ran) {
-    list.push_back({{"id", check->id},
-                    {"case", check->title},
-                    {"title", row.title},
-                    {"unit", row.unit},
-                    {"expected", row.expected},
-                    {"achieved", row.achieved},  // null if not a number
-                    {"tolerance", row.tolerance},
-                    {"relative", row.measure == CheckRow::Measure::kRelative},
-                    {"error", row.error()},
-                    {"pass", row.pass()},
-                    {"dt", row.dt},
-                    {"substeps", row.substeps},
-                    {"solver", row.solver},
-                    {"precision", precision_name()}});
-  }
-  return nlohmann::ordered_json{{"cases", list}}.dump(2) + "\n";
-}
-
-std::string to_markdown(const std::vector<Ran>& ran) {
-  std::ostringstream out;
-  out << "# Validation\n\n"
-         "Scenes whose answer is known, and how near the engine comes to it. Written by\n"
-         "`hooke check --markdown docs/validation.md`; `hooke check` prints the same rows and says which "
-         "fail.\n"
-         "The formula and its source stand above each case in `apps/hooke/check`. An error or tolerance in\n"
-         "percent is relative to the expected value.\n\n"
-         "Precision: "
-      << precision_name()
-      << ". Step: frames per second x substeps.\n\n"
-         "| case | measured | expected | achieved | error | tolerance | step | solver | |\n"
-         "|---|---|---|---|---|---|---|---|---|\n";
-  for (const auto& [check, row] : ran) {
-    out << "| " << check->id << " " << check->title << " | " << row.title << " | "
-        << with_unit(row.expected, row) << " | " << with_unit(row.achieved, row) << " | "
-        << percent_or_unit(row.error(), row) << " | " << percent_or_unit(row.tolerance, row) << " | "
-        << stepping(row) << " | " << row.solver << " | " << (row.pass() ? "pass" : "**fail**") << " |\n";
-  }
-  return out.str();
-}
-
-bool write(const std::string& file, const std::string& text) {
-  if (file.empty()) return true;
-  if (file == "-") return std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) std::fprintf(stderr, "hooke check: cannot write %s\n", file.c_str());
-  return static_cast<bool>(out);
-}
-
-}  // namespace
-
-int check_command(const CheckOptions& options) {
+/// The cases that were asked for; none if one of them does not exist.
+std::vector<const CheckCase*> chosen_cases(const CheckOptions& options) {
   std::vector<const CheckCase*> chosen;
   for (const std::string& id : options.cases) {
     chosen.push_back(find_case(id));
     if (chosen.back() != nullptr) continue;
     std::fprintf(stderr, "hooke check: no case '%s'; --list names all\n", id.c_str());
-    return 2;
+    return {};
   }
-  if (options.cases.empty()) {
-    for (const CheckCase& check : check_cases()) chosen.push_back(&check);
+  if (!chosen.empty()) return chosen;
+  for (const CheckCase& check : check_cases()) {
+    if (options.stepper.empty() || check.laboratory_dt > 0) chosen.push_back(&check);
   }
-  if (options.list) {
-    for (const CheckCase* check : chosen) std::printf("%-4s %s\n", check->id.c_str(), check->title.c_str());
-    return 0;
-  }
+  return chosen;
+}
 
+void run_and_print(const CheckCase& check, const CheckSetting& setting, std::vector<Ran>& ran) {
+  for (const CheckRow& row : run_case(check, setting)) {
+    ran.push_back({&check, row});
+    print_row(ran.back());
+  }
+}
+
+/// The solver's rows, and below them those of the stepper if one was named.
+int check_one(const CheckOptions& options, const std::vector<const CheckCase*>& chosen) {
   std::vector<Ran> ran;
   for (const CheckCase* check : chosen) {
-    for (const CheckRow& row : run_case(*check, {.substeps = options.substeps})) {
-      print_row(*check, row);
-      ran.push_back({check, row});
-    }
+    run_and_print(*check, {.substeps = options.substeps}, ran);
+    if (options.stepper.empty() || !(check->laboratory_dt > 0)) continue;
+    run_and_print(*check, {.substeps = options.substeps, .stepper = options.stepper}, ran);
   }
   const auto failed = std::count_if(ran.begin(), ran.end(), [](const Ran& r) { return !r.row.pass(); });
   std::printf("%zu rows, %td failed (%s)\n", ran.size(), failed, precision_name());
-  const bool json = write(options.json_file, options.json_file.empty() ? "" : to_json(ran));
-  const bool markdown = write(options.markdown_file, options.markdown_file.empty() ? "" : to_markdown(ran));
-  if (!json || !markdown) return 2;
-  return failed > 0 ? 1 : 0;
+  if (!options.json_file.empty() && !write_text(options.json_file, to_json(ran))) return kBadInput;
+  if (!options.markdown_file.empty() && !write_text(options.markdown_file, to_markdown(ran)))
+    return kBadInput;
+  return failed > 0 ? kFailed : kPassed;
+}
+
+/// Every method, each with every case.
+int check_all(const CheckOptions& options, const std::vector<const CheckCase*>& chosen) {
+  std::vector<Column> columns = {{.stepper = "solver"}};
+  for (const lab::StepperInfo& info : lab::steppers()) {
+    if (info.available) columns.push_back({.stepper = std::string(info.name)});
+  }
+  std::vector<Ran> every;
+  for (Column& column : columns) {
+    const bool solver = column.stepper == "solver";
+    for (const CheckCase* check : chosen) {
+      if (!(check->laboratory_dt > 0)) continue;
+      run_and_print(*check, {.substeps = options.substeps, .stepper = solver ? "" : column.stepper},
+                    column.ran);
+    }
+    every.insert(every.end(), column.ran.begin(), column.ran.end());
+  }
+  const std::string table = goals_to_markdown(columns);
+  const std::string& file = options.markdown_file;
+  if (!options.json_file.empty() && !write_text(options.json_file, to_json(every))) return kBadInput;
+  return write_text(file.empty() ? "-" : file, table) ? kPassed : kBadInput;
+}
+
+int write_ground_truth(const std::string& file) {
+  try {
+    return write_text(file, ground_truth_markdown()) ? kPassed : kBadInput;
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "hooke check: %s\n", failure.what());
+    return kBadInput;
+  }
+}
+
+}  // namespace
+
+int check_command(const CheckOptions& options) {
+  if (options.ground_truth) {
+    return write_ground_truth(options.markdown_file.empty() ? "-" : options.markdown_file);
+  }
+  const bool every_stepper = options.stepper == kAllSteppers;
+  if (!options.stepper.empty() && !every_stepper && options.stepper != "auto") {
+    if (const auto found = lab::find_stepper(options.stepper); !found) {
+      std::fprintf(stderr, "hooke check: %s\n", found.error().message.c_str());
+      return kBadInput;
+    }
+  }
+  const std::vector<const CheckCase*> chosen = chosen_cases(options);
+  if (chosen.empty()) return kBadInput;
+  if (options.list) {
+    for (const CheckCase* check : chosen) std::printf("%-4s %s\n", check->id.c_str(), check->title.c_str());
+    return kPassed;
+  }
+  return every_stepper ? check_all(options, chosen) : check_one(options, chosen);
 }
 
 }  // namespace hooke::check

@@ -1,6 +1,7 @@
 #include "rig.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -16,22 +17,49 @@ World make_world(const CheckSetting& setting, WorldDesc desc) {
 
 }  // namespace
 
+CheckSetting finer(CheckSetting setting) {
+  if (setting.laboratory()) {
+    setting.dt /= 2;
+  } else {
+    setting.substeps *= 2;
+  }
+  return setting;
+}
+
 Rig::Rig(const CheckSetting& setting, const WorldDesc& desc)
-    : world_(make_world(setting, desc)), dt_(setting.dt), friction_scale_(setting.friction_scale) {}
+    : world_(make_world(setting, desc)), setting_(setting) {}
 
 BodyId Rig::add(BodyDesc desc) {
   // A contact uses the geometric mean of two coefficients, so the body's takes the square of the scale.
-  desc.contact.friction *= real(friction_scale_ * friction_scale_);
+  desc.contact.friction *= real(setting_.friction_scale * setting_.friction_scale);
   return must(world_.add_body(desc));
 }
 
 bool Rig::step() {
-  healthy_ = world_.step(real(dt_)).healthy() && healthy_;
+  if (setting_.laboratory()) {
+    if (!run_) run_ = must(lab::Run::create(world_, {.stepper = setting_.stepper, .dt = setting_.dt}));
+    must(run_->advance());
+    return true;
+  }
+  healthy_ = world_.step(real(setting_.dt)).healthy() && healthy_;
   return healthy_;
 }
 
+std::uint64_t Rig::state_hash() const {
+  if (!run_) return world_.state_hash();
+  std::uint64_t hash = 14695981039346656037U;  // FNV-1a, over whole numbers
+  for (const auto& points : {run_->positions(), run_->velocities()}) {
+    for (const DVec3 p : points) {
+      for (const double coordinate : {p.x, p.y, p.z}) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(coordinate)) * 1099511628211U;
+      }
+    }
+  }
+  return hash;
+}
+
 bool Rig::run(double seconds, const std::function<void()>& after_each) {
-  const auto frames = static_cast<long>(std::lround(seconds / dt_));
+  const auto frames = static_cast<long>(std::lround(seconds / setting_.dt));
   for (long i = 0; i < frames; ++i) {
     step();
     if (after_each) after_each();
@@ -76,6 +104,12 @@ std::vector<double> Curve::zero_crossings() const {
     times.push_back(0.5 * (low + high));
   }
   return times;
+}
+
+double Curve::at(double time) const {
+  const auto after = std::find_if(samples_.begin(), samples_.end(), [&](Sample s) { return s.time > time; });
+  const auto left = std::distance(samples_.begin(), after);
+  return cubic(static_cast<std::size_t>(std::max<std::ptrdiff_t>(left, 1) - 1), time);
 }
 
 std::vector<double> Curve::peaks() const {

@@ -1,11 +1,15 @@
 #pragma once
 
+#include "hooke/clock.h"
 #include "hooke/hooke.h"
+#include "hooke/lab.h"
 
 #include "check.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,21 +23,38 @@ namespace hooke::check {
 inline constexpr double kGravity = 9.81;  ///< [m/s^2]
 inline constexpr double kTau = 6.283185307179586;
 
+/// An Error on its way to run_case.
+struct Failure : std::runtime_error {
+  explicit Failure(const Error& error)
+      : runtime_error(error.where + ": " + error.message), code(error.code) {}
+  ErrorCode code;
+};
+
 /// The value, or an exception that run_case turns into a failed row.
 template <class T>
 T must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().where + ": " + result.error().message);
+  if (!result) throw Failure(result.error());
   return std::move(result).value();
 }
 inline void must(const Result<void>& result) {
-  if (!result) throw std::runtime_error(result.error().where + ": " + result.error().message);
+  if (!result) throw Failure(result.error());
 }
 
 constexpr Real real(double value) {
   return static_cast<Real>(value);
 }
 
-/// A world stepped as the setting says. Friction of bodies and gravity are scaled by the setting.
+/// Of what does not stretch: kRigid for the solver. The laboratory, which has forces only, takes `finite`
+/// [N/m], or [N] of an axial stiffness.
+inline Real stiff(const CheckSetting& setting, double finite) {
+  return setting.laboratory() ? real(finite) : kRigid;
+}
+
+/// Half the step: twice the substeps of the solver, half the dt of the laboratory.
+CheckSetting finer(CheckSetting setting);
+
+/// A world moved as the setting says: by its own steps, or by a method of the laboratory, which takes over
+/// the world as it stands at the first step. Friction of bodies and gravity are scaled by the setting.
 class Rig {
  public:
   explicit Rig(const CheckSetting& setting, const WorldDesc& desc = {});
@@ -46,18 +67,31 @@ class Rig {
   ParticlesId add(const ParticlesDesc& desc) { return must(world_.add_particles(desc)); }
   BodyId add(BodyDesc desc);
 
-  /// One frame. False once a particle was not finite.
+  /// One frame. False once a particle was not finite. Throws when the laboratory's method diverges.
   bool step();
   /// Whole frames until `seconds` have passed; `after_each` sees the world after each of them.
   bool run(double seconds, const std::function<void()>& after_each = {});
 
-  [[nodiscard]] double time() const { return world_.time(); }
+  /// Of a rope, a cloth or particles, in the order their maker gave them.
+  template <class IdType>
+  [[nodiscard]] std::vector<DVec3> positions(IdType id) const {
+    return run_ ? run_->positions(id) : copy_points(world_.positions(id));
+  }
+  template <class IdType>
+  [[nodiscard]] std::vector<DVec3> velocities(IdType id) const {
+    return run_ ? run_->velocities(id) : copy_points(world_.velocities(id));
+  }
+  [[nodiscard]] Energy energy() const { return run_ ? run_->energy() : world_.measure().energy; }
+  /// Equal numbers mean the same bits of every position and velocity.
+  [[nodiscard]] std::uint64_t state_hash() const;
+
+  [[nodiscard]] double time() const { return run_ ? run_->time() : world_.time(); }
   [[nodiscard]] bool healthy() const { return healthy_; }
 
  private:
   World world_;
-  double dt_;
-  double friction_scale_;
+  std::optional<lab::Run> run_;  ///< From the first step on, if the setting names a stepper.
+  CheckSetting setting_;
   bool healthy_ = true;
 };
 
@@ -71,6 +105,8 @@ class Curve {
 
   /// Times where the value passes zero, by the cubic through the two samples on each side.
   [[nodiscard]] std::vector<double> zero_crossings() const;
+  /// The value at a time between the samples, by the cubic through the two on each side.
+  [[nodiscard]] double at(double time) const;
   /// Local maxima of |value|, by the parabola through three samples.
   [[nodiscard]] std::vector<double> peaks() const;
   [[nodiscard]] double last() const { return samples_.empty() ? 0.0 : samples_.back().value; }

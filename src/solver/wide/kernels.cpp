@@ -1,7 +1,6 @@
 /// The kernels in one source for every instruction set, then their dispatch.
 ///
-/// A particle is one 16-byte line {x, y, z, w}. Lines are loaded whole and transposed in registers: hardware
-/// gathers are slower than this on every machine measured. Of positions a row needs only differences, which
+/// A particle is one 16-byte line {x, y, z, w}; see lines.h. Of positions a row needs only differences, which
 /// are taken before the transposition.
 
 #include "math/trig.h"
@@ -16,6 +15,9 @@
 #define HWY_TARGET_INCLUDE "solver/wide/kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+// After Highway, which includes this file anew for each instruction set.
+#include "solver/wide/lines.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
@@ -42,73 +44,7 @@ void move_here(float h, parallel::Range rows, state::Particles& particles) {
 
 #else
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Lanes = hn::CappedTag<float, kLanes>;
-using Vector = hn::Vec<Lanes>;
-using Line = hn::FixedTag<float, 4>;
-
-constexpr Lanes kTag;
-constexpr int kWidth = hn::MaxLanes(Lanes());
-constexpr int kLineCount = kWidth / 4;  // lines in one vector
 constexpr float kPi = std::numbers::pi_v<float>;
-
-/// A vector whose k-th line is line index[4 k] of `base`.
-template <class D>
-HWY_INLINE hn::Vec<D> load_lines(D tag, const float* base, const std::uint32_t* index) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    return hn::Load(tag, base + *index);
-  } else {
-    const hn::Half<D> half;
-    constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    return hn::Combine(tag, load_lines(half, base, index + kHalf), load_lines(half, base, index));
-  }
-}
-
-/// Four vectors of lines to four of components, and back: the transposition is its own inverse.
-HWY_INLINE void transpose(Vector& r0, Vector& r1, Vector& r2, Vector& r3) {
-  const hn::Repartition<double, Lanes> pairs;
-  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r0, r1));
-  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r2, r3));
-  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r0, r1));
-  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r2, r3));
-  r0 = hn::BitCast(kTag, hn::InterleaveLower(pairs, low01, low23));
-  r1 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, low01, low23));
-  r2 = hn::BitCast(kTag, hn::InterleaveLower(pairs, high01, high23));
-  r3 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, high01, high23));
-}
-
-template <class D>
-HWY_INLINE void store_lines(D tag, hn::Vec<D> lines, float* base, const std::uint32_t* index) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    hn::Store(lines, tag, base + *index);
-  } else {
-    const hn::Half<D> half;
-    constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    store_lines(half, hn::LowerHalf(half, lines), base, index);
-    store_lines(half, hn::UpperHalf(half, lines), base, index + kHalf);
-  }
-}
-
-/// Components of kWidth lines.
-struct Columns {
-  Vector x, y, z, w;
-};
-
-HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
-  Columns c = {load_lines(kTag, base, index), load_lines(kTag, base, index + 1),
-               load_lines(kTag, base, index + 2), load_lines(kTag, base, index + 3)};
-  transpose(c.x, c.y, c.z, c.w);
-  return c;
-}
-
-HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index) {
-  transpose(c.x, c.y, c.z, c.w);
-  store_lines(kTag, c.x, base, index);
-  store_lines(kTag, c.y, base, index + 1);
-  store_lines(kTag, c.z, base, index + 2);
-  store_lines(kTag, c.w, base, index + 3);
-}
 
 /// A vector in space per row.
 struct Vectors {
@@ -475,6 +411,10 @@ std::vector<std::string> targets() {
   return names;
 }
 
+bool is_scalar() {
+  return scalar_only;
+}
+
 bool use_target(const std::string& name) {
   if (name == "scalar") {
     scalar_only = true;
@@ -519,6 +459,10 @@ void move(Real h, parallel::Range rows, state::Particles& particles) {
 
 std::vector<std::string> targets() {
   return {"scalar"};
+}
+
+bool is_scalar() {
+  return true;
 }
 
 bool use_target(const std::string& name) {

@@ -56,4 +56,7 @@ void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
 /// it.
 bool use_target(const std::string& name);
 
+/// Whether the scalar twins run.
+[[nodiscard]] bool is_scalar();
+
 }  // namespace hooke::solver::wide

@@ -1,0 +1,326 @@
+#include "build/build.h"
+#include "build/checks.h"
+#include "geometry/mass_properties.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace hooke::build {
+
+namespace {
+
+using geometry::MassProperties;
+using state::ColliderShape;
+using state::Tables;
+
+struct Part {
+  PartDesc desc;
+  ColliderShape shape;
+  MassProperties solid;  // of density 1, in the body's frame
+};
+
+bool is_rotation(Quat q) {
+  const Real squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  return std::isfinite(squared) && squared > Real(0);
+}
+
+void check_surface(const ContactDesc& contact, const std::string& prefix, Checks& checks) {
+  const auto number = [](Real value) { return static_cast<double>(value); };
+  checks.in_range(prefix + "friction", number(contact.friction), 0, 100)
+      .in_range(prefix + "restitution", number(contact.restitution), 0, 1)
+      .not_negative(prefix + "rolling_friction", number(contact.rolling_friction))
+      .not_negative(prefix + "spinning_friction", number(contact.spinning_friction))
+      .finite(prefix + "surface_velocity", contact.surface_velocity);
+  if (!contact.static_friction) return;
+  checks.in_range(prefix + "static_friction", number(*contact.static_friction), number(contact.friction),
+                  100);
+}
+
+void check_shape(const Shape& shape, const std::string& prefix, Checks& checks) {
+  const auto size = [&](const char* field, Real value) {
+    checks.in_range(prefix + field, static_cast<double>(value), 1e-6, 1e6);
+  };
+  switch (shape.kind) {
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kMesh:
+    case ShapeKind::kHull:
+      break;
+    case ShapeKind::kCompound:
+      checks.require(false, prefix + "kind", "a part must not be a compound itself");
+      break;
+    case ShapeKind::kSphere:
+      size("radius", shape.radius);
+      break;
+    case ShapeKind::kBox:
+      size("half_extents.x", shape.half_extents.x);
+      size("half_extents.y", shape.half_extents.y);
+      size("half_extents.z", shape.half_extents.z);
+      break;
+    case ShapeKind::kCapsule:
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCone:
+      size("radius", shape.radius);
+      size("half_height", shape.half_height);
+      break;
+  }
+}
+
+/// A body of one shape is a body of one part at its origin.
+std::vector<PartDesc> parts_of(const BodyDesc& desc) {
+  if (desc.shape.kind == ShapeKind::kCompound) return desc.parts;
+  return {{.shape = desc.shape, .density = desc.density, .contact = desc.contact}};
+}
+
+std::string prefix_of(const BodyDesc& desc, std::size_t part) {
+  return desc.shape.kind != ShapeKind::kCompound ? std::string() : indexed("parts", part) + ".";
+}
+
+/// Meshes and hulls are made from the mesh that the shape names.
+Result<ColliderShape> find_shape(const Shape& shape, const std::string& where, const Tables& t) {
+  ColliderShape result = {shape, nullptr, nullptr};
+  if (shape.kind == ShapeKind::kBox) {
+    result.hull = std::make_shared<geometry::ConvexHull>(geometry::make_box_hull(shape.half_extents));
+  }
+  if (shape.kind != ShapeKind::kMesh && shape.kind != ShapeKind::kHull) return result;
+  const std::uint32_t row = t.mesh_slots.find(shape.mesh);
+  if (row == t.mesh_slots.kNone || !t.meshes[row]) {
+    return Error{ErrorCode::kStaleId, where + "shape.mesh", "refers to nothing that is in the world"};
+  }
+  result.mesh = t.meshes[row];
+  if (shape.kind == ShapeKind::kMesh) return result;
+  Result<geometry::ConvexHull> hull = geometry::make_convex_hull(result.mesh->desc.positions);
+  if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
+  result.hull = std::make_shared<geometry::ConvexHull>(std::move(hull.value()));
+  return result;
+}
+
+MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
+  MassProperties solid =
+      shape.shape.kind == ShapeKind::kHull ? geometry::mass_of(*shape.hull) : geometry::mass_of(shape.shape);
+  return geometry::moved(solid, part.rotation, vector_cast<double>(part.position));
+}
+
+Result<std::vector<Part>> make_parts(const BodyDesc& desc, const Tables& t) {
+  std::vector<Part> parts;
+  const std::vector<PartDesc> descs = parts_of(desc);
+  for (std::size_t i = 0; i < descs.size(); ++i) {
+    Part part = {.desc = descs[i], .shape = {}, .solid = {}};
+    part.desc.rotation = normalize(part.desc.rotation);
+    const std::string where = "body." + prefix_of(desc, i);
+    Result<ColliderShape> shape = find_shape(part.desc.shape, where, t);
+    if (!shape) return shape.error();
+    part.shape = std::move(shape.value());
+    const ShapeKind kind = part.desc.shape.kind;
+    const bool solid = kind != ShapeKind::kMesh && kind != ShapeKind::kHalfSpace;
+    if (desc.kind == BodyKind::kDynamic && !solid) {
+      return Error{ErrorCode::kOutOfRange, where + "shape",
+                   "a body that moves needs a solid shape: not a half-space and not a mesh (use its hull)"};
+    }
+    if (solid) part.solid = solid_of(part.shape, part.desc);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// Mass, center and principal inertia of all parts; only the center for a body that nothing moves.
+state::BodyMass mass_of_parts(const BodyDesc& desc, const std::vector<Part>& parts) {
+  if (desc.kind != BodyKind::kDynamic) return {};
+  MassProperties whole;
+  for (const Part& part : parts) {
+    whole = geometry::joined(whole, 1.0, part.solid, static_cast<double>(part.desc.density));
+  }
+  const double mass = desc.mass ? static_cast<double>(*desc.mass) : whole.volume;
+  const geometry::PrincipalAxes axes = geometry::principal_axes(whole.inertia);
+  const double scale = mass / whole.volume;
+  const auto quaternion = axes.rotation;
+  return {.center = vector_cast<Real>(whole.center),
+          .principal = {static_cast<Real>(quaternion.x), static_cast<Real>(quaternion.y),
+                        static_cast<Real>(quaternion.z), static_cast<Real>(quaternion.w)},
+          .inertia = vector_cast<Real>(scale * axes.moments),
+          .mass = static_cast<Real>(mass),
+          .inverse_mass = static_cast<Real>(1.0 / mass)};
+}
+
+/// Distance from the center of mass to the farthest point of a part, and the radius of a ball inside it.
+struct Extent {
+  Real outer = Real(0), inner = Real(0);
+};
+
+Extent extent_of(const Part& part, Vec3 center) {
+  const Shape& s = part.shape.shape;
+  const Real distance = length(part.desc.position - center);
+  switch (s.kind) {
+    case ShapeKind::kSphere:
+      return {distance + s.radius, s.radius};
+    case ShapeKind::kCapsule:
+      return {distance + s.half_height + s.radius, s.radius};
+    case ShapeKind::kBox:
+      return {distance + length(s.half_extents),
+              std::min({s.half_extents.x, s.half_extents.y, s.half_extents.z})};
+    case ShapeKind::kCylinder:
+      return {distance + length(Vec3{s.radius, s.half_height, Real(0)}), std::min(s.radius, s.half_height)};
+    case ShapeKind::kCone: {
+      // The ball that touches the base and the side: r h / (r + sqrt(r^2 + h^2)).
+      const Real height = Real(2) * s.half_height;
+      const Real slant = std::sqrt(s.radius * s.radius + height * height);
+      return {distance + length(Vec3{s.radius, s.half_height, Real(0)}),
+              s.radius * height / (s.radius + slant)};
+    }
+    case ShapeKind::kHull:
+      return {length(part.desc.position + rotate(part.desc.rotation, part.shape.hull->center) - center) +
+                  part.shape.hull->outer_radius,
+              part.shape.hull->inner_radius};
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kMesh:
+    case ShapeKind::kCompound:
+      break;
+  }
+  return {};
+}
+
+template <class Table>
+void grow(Table& table, std::size_t size) {
+  Table::for_each_column(table, [&](auto& column) { column.resize(size); });
+}
+
+std::uint32_t take_body_row(Tables& t) {
+  if (t.free_bodies.empty()) {
+    grow(t.bodies, t.bodies.motion.size() + 1);
+    return static_cast<std::uint32_t>(t.bodies.motion.size()) - 1;
+  }
+  const std::uint32_t row = t.free_bodies.back();
+  t.free_bodies.pop_back();
+  return row;
+}
+
+std::uint32_t take_collider_rows(Tables& t, std::uint32_t count) {
+  const auto fits = [&](const state::Rows& rows) { return rows.count == count; };
+  const auto hole = std::find_if(t.free_colliders.begin(), t.free_colliders.end(), fits);
+  if (hole != t.free_colliders.end()) {
+    const std::uint32_t first = hole->first;
+    t.free_colliders.erase(hole);
+    return first;
+  }
+  const auto first = static_cast<std::uint32_t>(t.colliders.body.size());
+  grow(t.colliders, first + count);
+  return first;
+}
+
+void add_colliders(const std::vector<Part>& parts, Vec3 center, std::uint32_t body, Tables& t) {
+  const auto count = static_cast<std::uint32_t>(parts.size());
+  const std::uint32_t first = take_collider_rows(t, count);
+  t.bodies.first_collider[body] = first;
+  t.bodies.collider_count[body] = count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Part& part = parts[i];
+    const std::uint32_t row = first + i;
+    t.colliders.body[row] = body;
+    t.colliders.shape[row] = part.shape;
+    t.colliders.position[row] = part.desc.position - center;
+    t.colliders.rotation[row] = part.desc.rotation;
+    t.colliders.surface[row] = part.desc.contact;
+    t.colliders.bounds[row] = {};
+  }
+}
+
+state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts, Vec3 center) {
+  state::BodyTraits traits = {.kind = desc.kind,
+                              .alive = true,
+                              .collides = desc.collides,
+                              .sensor = desc.sensor,
+                              .bullet = desc.bullet,
+                              .can_sleep = desc.can_sleep,
+                              .linear_damping = desc.linear_damping,
+                              .angular_damping = desc.angular_damping,
+                              .gravity_scale = desc.gravity_scale,
+                              .filter = desc.filter};
+  for (const Part& part : parts) {
+    const Extent extent = extent_of(part, center);
+    traits.radius = std::max(traits.radius, extent.outer);
+    traits.inner_radius = std::max(traits.inner_radius, extent.inner);
+  }
+  return traits;
+}
+
+/// L = R I R^T omega.
+Vec3 momentum_of(const state::BodyMass& mass, Quat rotation, Vec3 omega) {
+  const Quat axes = rotation * mass.principal;
+  const Vec3 local = rotate(conjugate(axes), omega);
+  return rotate(axes, {mass.inertia.x * local.x, mass.inertia.y * local.y, mass.inertia.z * local.z});
+}
+
+}  // namespace
+
+Result<void> validate(const BodyDesc& body) {
+  Checks checks("body");
+  checks.place("position", body.position)
+      .require(is_rotation(body.rotation), "rotation", "must be finite and not zero")
+      .finite("velocity", body.velocity)
+      .finite("angular_velocity", body.angular_velocity)
+      .in_range("linear_damping", static_cast<double>(body.linear_damping), 0, 1e6)
+      .in_range("angular_damping", static_cast<double>(body.angular_damping), 0, 1e6)
+      .finite("gravity_scale", static_cast<double>(body.gravity_scale));
+  if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);
+  const std::vector<PartDesc> parts = parts_of(body);
+  checks.require(!parts.empty(), "parts", "needs at least one part");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string prefix = prefix_of(body, i);
+    checks.finite(prefix + "position", parts[i].position)
+        .require(is_rotation(parts[i].rotation), prefix + "rotation", "must be finite and not zero")
+        .in_range(prefix + "density", static_cast<double>(parts[i].density), 1e-6, 1e9);
+    check_shape(parts[i].shape, prefix + "shape.", checks);
+    check_surface(parts[i].contact, prefix + "contact.", checks);
+  }
+  if (!checks.good()) return checks.result();
+  Result<void> motion = validate(body.motion, "body.motion");
+  return motion;
+}
+
+Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
+  const Result<void> good = validate(desc);
+  if (!good) return good.error();
+  Result<std::vector<Part>> made = make_parts(desc, t);
+  if (!made) return made.error();
+  const std::vector<Part>& parts = made.value();
+  const state::BodyMass mass = mass_of_parts(desc, parts);
+
+  const std::uint32_t row = take_body_row(t);
+  const Quat rotation = normalize(desc.rotation);
+  state::Bodies& b = t.bodies;
+  b.mass[row] = mass;
+  b.rotation[row] = rotation;
+  b.center[row] = desc.position + vector_cast<double>(rotate(rotation, mass.center));
+  b.motion[row] = {.inverse_mass = mass.inverse_mass};
+  const bool moves = desc.kind != BodyKind::kStatic;
+  b.motion[row].v = moves ? desc.velocity : Vec3{};
+  b.angular_momentum[row] = momentum_of(mass, rotation, desc.angular_velocity);
+  b.angular_velocity[row] = moves ? desc.angular_velocity : Vec3{};
+  b.traits[row] = traits_of(desc, parts, mass.center);
+  b.path[row] = desc.motion;
+  b.path_start[row] = b.center[row];
+  b.path_time[row] = t.time;
+  add_colliders(parts, mass.center, row, t);
+  if (moves)
+    t.moving_bodies.insert(std::lower_bound(t.moving_bodies.begin(), t.moving_bodies.end(), row), row);
+  return row;
+}
+
+void remove_body(std::uint32_t row, Tables& t) {
+  const state::Rows rows = {t.bodies.first_collider[row], t.bodies.collider_count[row]};
+  for (std::uint32_t i = rows.first; i < rows.end(); ++i) {
+    t.colliders.body[i] = state::Colliders::kNoBody;
+    t.colliders.shape[i] = {};
+  }
+  std::erase(t.moving_bodies, row);
+  t.free_colliders.push_back(rows);
+  t.free_bodies.push_back(row);
+  state::Bodies::for_each_column(t.bodies, [&](auto& column) { column[row] = {}; });
+  std::erase_if(t.pairs.pair, [&](const state::Pair& pair) {
+    const auto gone = [&](std::uint32_t c) { return c >= rows.first && c < rows.end(); };
+    return gone(pair.collider_a) || gone(pair.collider_b);
+  });
+}
+
+}  // namespace hooke::build

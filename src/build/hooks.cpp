@@ -1,0 +1,224 @@
+#include "build/build.h"
+#include "build/checks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::build {
+
+namespace {
+
+using state::Hook;
+using state::HookPlace;
+using state::Tables;
+
+using DMat3 = Matrix3<double>;
+using DQuat = Quaternion<double>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+double number(Real value) {
+  return static_cast<double>(value);
+}
+
+void check_limits(const HookLimits& limits, const std::string& field, Checks& checks) {
+  checks.require(limits.lower <= limits.upper, field, "must have lower not above upper")
+      .require(number(limits.lower) < HUGE_VAL && number(limits.upper) > -HUGE_VAL, field,
+               "must leave some value in between");
+}
+
+void check_spring(const HookSpring& spring, const std::string& field, Checks& checks) {
+  checks.not_negative(field + ".stiffness", number(spring.stiffness))
+      .not_negative(field + ".damping", number(spring.damping))
+      .finite(field + ".target", number(spring.target));
+}
+
+void check_motor(const HookMotor& motor, const std::string& field, Checks& checks) {
+  checks.finite(field + ".speed", number(motor.speed))
+      .not_negative(field + ".max_force", number(motor.max_force));
+}
+
+void check_freedom(const HookFreedom& freedom, const std::string& field, Checks& checks) {
+  check_limits(freedom.limits, field + ".limits", checks);
+  check_spring(freedom.spring, field + ".spring", checks);
+  check_motor(freedom.motor, field + ".motor", checks);
+}
+
+/// True if `second` says which way the second axis points.
+bool is_across(Vec3 axis, Vec3 second) {
+  const DVec3 a = normalize(vector_cast<double>(axis));
+  const DVec3 b = normalize(vector_cast<double>(second));
+  return length(cross(a, b)) > 1e-3;
+}
+
+/// Any direction across x: along the coordinate axis that is least along it.
+DVec3 some_direction_across(DVec3 x) {
+  const DVec3 size = {std::abs(x.x), std::abs(x.y), std::abs(x.z)};
+  if (size.x <= size.y && size.x <= size.z) return {1, 0, 0};
+  return size.y <= size.z ? DVec3{0, 1, 0} : DVec3{0, 0, 1};
+}
+
+/// The hook's axes in the world: x along `axis`, y or z (wheels) along what `second_axis` has across it.
+DMat3 axes_of(const HookDesc& desc) {
+  const DVec3 x = normalize(vector_cast<double>(desc.axis));
+  const DVec3 second = desc.second_axis ? vector_cast<double>(*desc.second_axis) : some_direction_across(x);
+  const DVec3 across = normalize(second - dot(second, x) * x);
+  if (desc.kind == HookKind::kWheel) return {x, cross(across, x), across};
+  return {x, across, cross(x, across)};
+}
+
+/// The unit quaternion of a rotation matrix, by the largest of its four components.
+DQuat quaternion_of(const DMat3& m) {
+  const double trace = m.x.x + m.y.y + m.z.z;
+  if (trace > 0) {
+    return normalize(DQuat{m.y.z - m.z.y, m.z.x - m.x.z, m.x.y - m.y.x, 1 + trace});
+  }
+  if (m.x.x >= m.y.y && m.x.x >= m.z.z) {
+    return normalize(DQuat{1 + m.x.x - m.y.y - m.z.z, m.y.x + m.x.y, m.z.x + m.x.z, m.y.z - m.z.y});
+  }
+  if (m.y.y >= m.z.z) {
+    return normalize(DQuat{m.y.x + m.x.y, 1 - m.x.x + m.y.y - m.z.z, m.z.y + m.y.z, m.z.x - m.x.z});
+  }
+  return normalize(DQuat{m.z.x + m.x.z, m.z.y + m.y.z, 1 - m.x.x - m.y.y + m.z.z, m.x.y - m.y.x});
+}
+
+template <class To, class From>
+Quaternion<To> quaternion_cast(Quaternion<From> q) {
+  return {static_cast<To>(q.x), static_cast<To>(q.y), static_cast<To>(q.z), static_cast<To>(q.w)};
+}
+
+HookPlace place_on(const state::Bodies& bodies, std::uint32_t body, DVec3 anchor, DQuat axes) {
+  if (body == HookPlace::kWorld) return {.anchor = anchor, .axes = quaternion_cast<Real>(axes)};
+  const DQuat inverse = conjugate(normalize(quaternion_cast<double>(bodies.rotation[body])));
+  return {.body = body,
+          .anchor = rotate(inverse, anchor - bodies.center[body]),
+          .axes = quaternion_cast<Real>(inverse * axes)};
+}
+
+constexpr HookFreedom kLocked = {.locked = true};
+
+/// What a kind leaves free. `distance` is that of the two anchors [m].
+std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
+  const HookFreedom moving = {.limits = desc.limits, .spring = desc.spring, .motor = desc.motor};
+  switch (desc.kind) {
+    case HookKind::kBall: {
+      const HookFreedom turn = {.spring = {desc.spring.stiffness, desc.spring.damping},
+                                .motor = {Real(0), desc.motor.max_force}};
+      HookFreedom twist = turn;
+      twist.limits = desc.limits;
+      twist.motor.speed = desc.motor.speed;
+      return {kLocked, kLocked, kLocked, twist, turn, turn};
+    }
+    case HookKind::kHinge:
+      return {kLocked, kLocked, kLocked, moving, kLocked, kLocked};
+    case HookKind::kSlider:
+      return {moving, kLocked, kLocked, kLocked, kLocked, kLocked};
+    case HookKind::kFixed:
+      return {kLocked, kLocked, kLocked, kLocked, kLocked, kLocked};
+    case HookKind::kDistance: {
+      HookFreedom line = moving;
+      line.spring.target += static_cast<Real>(distance);
+      line.locked = line == HookFreedom{.spring = {.target = line.spring.target}};
+      return {line, {}, {}, {}, {}, {}};
+    }
+    case HookKind::kWheel: {
+      HookFreedom suspension = moving;
+      suspension.motor = {};
+      return {suspension, kLocked, kLocked, desc.steering, kLocked, {.motor = desc.motor}};
+    }
+    case HookKind::kSixDegrees:
+      break;
+  }
+  return desc.freedoms;
+}
+
+/// Bounds that leave one value only are a lock.
+void lock_closed_limits(HookFreedom& freedom) {
+  if (freedom.limits.lower != freedom.limits.upper) return;
+  freedom = {.locked = true, .spring = {.target = freedom.limits.lower}};
+}
+
+Result<std::uint32_t> find_end(const HookEnd& end, const char* where, const Tables& t) {
+  if (end.body == BodyId{}) return HookPlace::kWorld;
+  const std::uint32_t row = t.body_slots.find(end.body);
+  if (row != t.body_slots.kNone) return row;
+  return Error{ErrorCode::kStaleId, where, "refers to nothing that is in the world"};
+}
+
+bool is_dynamic(const Tables& t, std::uint32_t body) {
+  return body != HookPlace::kWorld && t.bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
+}  // namespace
+
+Result<void> validate(const HookMotor& motor) {
+  Checks checks("motor");
+  checks.finite("speed", number(motor.speed)).not_negative("max_force", number(motor.max_force));
+  return checks.result();
+}
+
+Result<void> validate(const HookSpring& spring) {
+  Checks checks("spring");
+  checks.not_negative("stiffness", number(spring.stiffness))
+      .not_negative("damping", number(spring.damping))
+      .finite("target", number(spring.target));
+  return checks.result();
+}
+
+Result<void> validate(const HookDesc& desc) {
+  Checks checks("hook");
+  checks.require(desc.kind <= HookKind::kSixDegrees, "kind", "must be one of HookKind")
+      .place("anchor", desc.anchor)
+      .finite("axis", desc.axis)
+      .require(length(vector_cast<double>(desc.axis)) > 0, "axis", "must not be zero");
+  if (desc.anchor_b) checks.place("anchor_b", *desc.anchor_b);
+  if (desc.second_axis) {
+    checks.finite("second_axis", *desc.second_axis)
+        .require(is_across(desc.axis, *desc.second_axis), "second_axis", "must not be zero or along `axis`");
+  }
+  check_limits(desc.limits, "limits", checks);
+  check_spring(desc.spring, "spring", checks);
+  check_motor(desc.motor, "motor", checks);
+  if (desc.cone) checks.in_range("cone", number(*desc.cone), 1e-6, kPi + 1e-6);
+  check_freedom(desc.steering, "steering", checks);
+  for (std::size_t i = 0; i < desc.freedoms.size(); ++i)
+    check_freedom(desc.freedoms[i], indexed("freedoms", i), checks);
+  if (desc.kind == HookKind::kDistance) {
+    checks.require(desc.limits.upper > Real(0), "limits", "must allow some distance");
+  }
+  checks.require(desc.break_force > Real(0), "break_force", number(desc.break_force), "must be positive")
+      .require(desc.break_torque > Real(0), "break_torque", number(desc.break_torque), "must be positive");
+  return checks.result();
+}
+
+Result<void> add_hook(const HookDesc& desc, Tables& t) {
+  const Result<void> good = validate(desc);
+  if (!good) return good.error();
+  const Result<std::uint32_t> a = find_end(desc.a, "hook.a", t);
+  if (!a) return a.error();
+  const Result<std::uint32_t> b = find_end(desc.b, "hook.b", t);
+  if (!b) return b.error();
+  if (a.value() == b.value()) {
+    return Error{ErrorCode::kOutOfRange, "hook.b", "must be another body than `a`, or the world"};
+  }
+  if (!is_dynamic(t, a.value()) && !is_dynamic(t, b.value())) {
+    return Error{ErrorCode::kOutOfRange, "hook", "needs a dynamic body at one end at least"};
+  }
+  const DVec3 anchor_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
+  const DQuat axes = quaternion_of(axes_of(desc));
+  Hook hook = {.kind = desc.kind,
+               .a = place_on(t.bodies, a.value(), desc.anchor, axes),
+               .b = place_on(t.bodies, b.value(), anchor_b, axes),
+               .freedom = freedoms_of(desc, length(anchor_b - desc.anchor)),
+               .cone = desc.kind == HookKind::kBall ? desc.cone.value_or(kRigid) : kRigid,
+               .break_force = desc.break_force,
+               .break_torque = desc.break_torque,
+               .collide = desc.collide};
+  std::for_each(hook.freedom.begin(), hook.freedom.end(), lock_closed_limits);
+  if (desc.kind == HookKind::kDistance) hook.value[0] = length(anchor_b - desc.anchor);
+  t.hooks.push_back(hook);
+  ++t.hook_revision;
+  return {};
+}
+
+}  // namespace hooke::build

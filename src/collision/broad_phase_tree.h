@@ -1,0 +1,173 @@
+#pragma once
+
+#include "base/assert.h"
+#include "geometry/box.h"
+#include "geometry/ray_slabs.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hooke::collision {
+
+/// A tree of boxes, eight children to a node, so that one test asks eight boxes at once. A leaf is a lane of
+/// a node and holds a value below 2^31. All boxes are finite; which node holds a leaf depends on history and
+/// must never show in a result.
+///
+/// New leaves are loose until `update` puts them into nodes: queries are always right, but ask every loose
+/// leaf. `update` costs nothing where nothing changed.
+class BroadPhaseTree {
+ public:
+  struct Leaf {
+    geometry::Box box = {};
+    std::uint32_t value = 0;
+  };
+
+  /// `value` must not be in the tree.
+  void insert(std::uint32_t value, const geometry::Box& box);
+  /// `value` must be in the tree.
+  void erase(std::uint32_t value);
+  /// A new box for a `value` that is in the tree.
+  void move(std::uint32_t value, const geometry::Box& box);
+  void clear();
+
+  /// Puts loose leaves into nodes, fits nodes to their leaves where many changed, and builds the tree anew
+  /// where that has made it poor.
+  void update();
+
+  /// How many leaves there are, loose ones included.
+  [[nodiscard]] std::size_t count() const { return leaf_count_; }
+  /// Sum of the half surfaces of all inner boxes: how often random queries enter a node, up to a factor.
+  [[nodiscard]] double cost() const;
+
+  /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order.
+  template <class Visit>
+  void visit_overlaps(const geometry::Box& box, Visit&& visit) const;
+
+  /// Calls `visit(value)` for each leaf whose box, grown by `radius`, the segment origin + s direction enters
+  /// at an s in [0, limit], nodes from near to far. `visit` returns the new limit, at most the old one.
+  template <class Visit>
+  void visit_ray(const geometry::RaySlabs& ray, double radius, double limit, Visit&& visit) const;
+
+ private:
+  static constexpr int kLanes = 8;
+  static constexpr std::uint32_t kLeafBit = 0x80000000;   // in Node::child: the rest is the leaf's value
+  static constexpr std::uint32_t kLooseBit = 0x80000000;  // in place_: the rest is a row of loose_
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  // Insertion goes no deeper; a build ends well before.
+  static constexpr int kMaxDepth = 40;
+  static constexpr int kStackSize = (kLanes - 1) * kMaxDepth + kLanes;
+
+  /// Lanes [0, count) are children; the others are empty. A parent stands before its children in nodes_.
+  struct alignas(64) Node {
+    std::array<Real, kLanes> lower_x, lower_y, lower_z;
+    std::array<Real, kLanes> upper_x, upper_y, upper_z;
+    std::array<std::uint32_t, kLanes> child;  // a node, or kLeafBit and a value
+    std::uint32_t parent = kNone;             // node * kLanes + lane; kNone for the root
+    std::int32_t count = 0;
+
+    Node();
+    [[nodiscard]] geometry::Box box(int lane) const;
+    void set_box(int lane, const geometry::Box& box);
+    /// The smallest box around all children.
+    [[nodiscard]] geometry::Box bounds() const;
+    /// Bit i is set if child i overlaps `box`.
+    [[nodiscard]] unsigned overlaps(const geometry::Box& box) const;
+  };
+  /// A node that waits for its turn.
+  struct Waiting {
+    std::uint32_t node = 0;
+    double bound = 0;  // no leaf below is entered before
+  };
+  struct Task;
+
+  void set_child(std::uint32_t node, int lane, std::uint32_t child, const geometry::Box& box);
+  void add_lane(std::uint32_t node, std::uint32_t child, const geometry::Box& box);
+  void remove_lane(std::uint32_t node, int lane);
+  void grow_ancestors(std::uint32_t node, const geometry::Box& box);
+  bool insert_into_nodes(const Leaf& leaf);
+  void fit();
+  void rebuild();
+  void build(std::span<Leaf> leaves);
+  void build_node(const Task& task, std::vector<Task>& tasks);
+
+  std::vector<Node> nodes_ = std::vector<Node>(1);  // the root is always there
+  std::vector<Leaf> loose_;
+  std::vector<std::uint32_t> place_;  // of each value: node * kLanes + lane, or kLooseBit and a row, or kNone
+  std::size_t leaf_count_ = 0;
+  std::size_t change_count_ = 0;  // since the nodes were fitted
+  double built_cost_ = 0;
+};
+
+inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box) const {
+  // Written so that compilers make four or eight lanes of it, which they do not of comparisons.
+  const auto greater = [](Real a, Real b) { return a > b ? a : b; };
+  const Vec3 lower = box.lower;
+  const Vec3 upper = box.upper;
+  std::array<Real, kLanes> gap;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const Real gap_x = greater(lower_x[i] - upper.x, lower.x - upper_x[i]);
+    const Real gap_y = greater(lower_y[i] - upper.y, lower.y - upper_y[i]);
+    const Real gap_z = greater(lower_z[i] - upper.z, lower.z - upper_z[i]);
+    gap[i] = greater(gap_x, greater(gap_y, gap_z));
+  }
+  unsigned mask = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) mask |= gap[i] <= Real(0) ? 1u << i : 0u;
+  return mask & ((1u << count) - 1);  // an infinite box overlaps empty lanes too
+}
+
+template <class Visit>
+void BroadPhaseTree::visit_overlaps(const geometry::Box& box, Visit&& visit) const {
+  for (const Leaf& leaf : loose_) {
+    if (geometry::overlap(leaf.box, box)) visit(leaf.value);
+  }
+  std::uint32_t stack[kStackSize];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const Node& node = nodes_[stack[--size]];
+    for (unsigned mask = node.overlaps(box); mask != 0; mask &= mask - 1) {
+      const std::uint32_t child = node.child[static_cast<std::size_t>(std::countr_zero(mask))];
+      if ((child & kLeafBit) != 0) {
+        visit(child & ~kLeafBit);
+      } else {
+        HOOKE_ASSERT(size < kStackSize);
+        stack[size++] = child;
+      }
+    }
+  }
+}
+
+template <class Visit>
+void BroadPhaseTree::visit_ray(const geometry::RaySlabs& ray, double radius, double limit,
+                               Visit&& visit) const {
+  for (const Leaf& leaf : loose_) {
+    if (ray.enter(leaf.box, radius) <= limit) limit = visit(leaf.value);
+  }
+  Waiting stack[kStackSize];
+  int size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0) {
+    const Waiting top = stack[--size];
+    if (top.bound > limit) continue;
+    const Node& node = nodes_[top.node];
+    const int first = size;
+    for (int lane = 0; lane < node.count; ++lane) {
+      const double bound = ray.enter(node.box(lane), radius);
+      const std::uint32_t child = node.child[static_cast<std::size_t>(lane)];
+      if (bound > limit) continue;
+      if ((child & kLeafBit) != 0) {
+        limit = visit(child & ~kLeafBit);
+        continue;
+      }
+      HOOKE_ASSERT(size < kStackSize);
+      int at = size++;
+      for (; at > first && stack[at - 1].bound < bound; --at) stack[at] = stack[at - 1];
+      stack[at] = {child, bound};
+    }
+  }
+}
+
+}  // namespace hooke::collision

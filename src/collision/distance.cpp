@@ -1,0 +1,250 @@
+#include "collision/distance.h"
+
+#include "geometry/closest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hooke::collision {
+
+namespace {
+
+constexpr int kMaxIterations = 64;
+
+Vec3 support_of_box(const Convex& c, Vec3 d) {
+  const auto along = [d](Vec3 axis, Real half) { return (dot(axis, d) < Real(0) ? -half : half) * axis; };
+  const Vec3 h = c.shape.half_extents;
+  return c.center + along(c.axes.x, h.x) + along(c.axes.y, h.y) + along(c.axes.z, h.z);
+}
+
+/// Of the disc of `radius` across the unit vector `axis`.
+Vec3 support_of_disc(Vec3 axis, Real radius, Vec3 d) {
+  return radius * direction_across(axis, d, {});
+}
+
+Vec3 support_of_cylinder(const Convex& c, Vec3 d) {
+  const Real end = dot(c.axes.y, d) < Real(0) ? -c.shape.half_height : c.shape.half_height;
+  return c.center + end * c.axes.y + support_of_disc(c.axes.y, c.shape.radius, d);
+}
+
+Vec3 support_of_cone(const Convex& c, Vec3 d) {
+  const Vec3 tip = c.shape.half_height * c.axes.y;
+  const Vec3 rim = support_of_disc(c.axes.y, c.shape.radius, d) - tip;
+  return c.center + (dot(tip, d) >= dot(rim, d) ? tip : rim);
+}
+
+Vec3 support_of_hull(const Convex& c, Vec3 d) {
+  const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
+  std::size_t best = 0;
+  Real farthest = -std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < c.hull->vertices.size(); ++i) {
+    const Real along = dot(local, c.hull->vertices[i]);
+    best = along > farthest ? i : best;
+    farthest = along > farthest ? along : farthest;
+  }
+  return c.center + c.axes * c.hull->vertices[best];
+}
+
+Vec3 support_of_triangle(const Convex& c, Vec3 d) {
+  const auto& [p, q, r] = c.corners;
+  const Vec3 pq = dot(q - p, d) > Real(0) ? q : p;
+  return dot(r - pq, d) > Real(0) ? r : pq;
+}
+
+/// A corner of the simplex: a point of the difference of the cores, and where it comes from.
+struct Corner {
+  DVec3 w = {};
+  DVec3 on_a = {};
+  DVec3 on_b = {};
+};
+
+struct Simplex {
+  std::array<Corner, 4> corner = {};
+  std::array<double, 4> weight = {};
+  int count = 0;
+
+  [[nodiscard]] DVec3 combine(DVec3 Corner::*member) const {
+    DVec3 sum = {};
+    for (int i = 0; i < count; ++i) sum += weight[i] * (corner[i].*member);
+    return sum;
+  }
+};
+
+void weigh(Simplex& s, const std::array<int, 3>& of, const DVec3& weights) {
+  const std::array<double, 3> w = {weights.x, weights.y, weights.z};
+  Simplex kept;
+  for (int i = 0; i < 3; ++i) {
+    if (!(w[i] > 0)) continue;
+    kept.corner[kept.count] = s.corner[of[i]];
+    kept.weight[kept.count++] = w[i];
+  }
+  s = kept;
+}
+
+void reduce_segment(Simplex& s) {
+  const auto near = geometry::closest_on_segment(DVec3{}, s.corner[0].w, s.corner[1].w);
+  weigh(s, {0, 1, 1}, {1 - near.fraction, near.fraction, 0});
+}
+
+void reduce_triangle(Simplex& s, const std::array<int, 3>& of) {
+  const auto near =
+      geometry::closest_on_triangle(DVec3{}, s.corner[of[0]].w, s.corner[of[1]].w, s.corner[of[2]].w);
+  weigh(s, of, near.weights);
+}
+
+/// False if the origin is inside. A flat tetrahedron has all faces outside; `is_outside` says that the origin
+/// is known to be outside, whatever rounding makes of a tetrahedron that is nearly flat.
+bool reduce_tetrahedron(Simplex& s, bool is_outside) {
+  constexpr std::array<std::array<int, 4>, 4> kFaces = {
+      {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}};
+  double least = std::numeric_limits<double>::infinity();
+  Simplex best = s;
+  for (const auto& [i, j, k, opposite] : kFaces) {
+    const DVec3 p = s.corner[i].w;
+    const DVec3 normal = cross(s.corner[j].w - p, s.corner[k].w - p);
+    if (!is_outside && dot(normal, -p) * dot(normal, s.corner[opposite].w - p) > 0) continue;
+    Simplex face = s;
+    reduce_triangle(face, {i, j, k});
+    const double size = length_squared(face.combine(&Corner::w));
+    if (size < least) best = face;
+    least = std::min(least, size);
+  }
+  s = best;
+  return least < std::numeric_limits<double>::infinity();
+}
+
+/// Keeps the corners that the point nearest to the origin needs. False if the origin is inside.
+bool reduce(Simplex& s, bool is_outside) {
+  if (s.count == 4) return reduce_tetrahedron(s, is_outside);
+  if (s.count == 3) reduce_triangle(s, {0, 1, 2});
+  if (s.count == 2) reduce_segment(s);
+  if (s.count == 1) s.weight[0] = 1;
+  return true;
+}
+
+Corner corner_along(const Convex& a, const Convex& b, DVec3 direction) {
+  // The direction shrinks with the distance: its length must not underflow in Real.
+  const Vec3 d = vector_cast<Real>(geometry::direction_or(direction, DVec3{0, 1, 0}));
+  Corner corner;
+  corner.on_a = vector_cast<double>(support_of(a, d));
+  corner.on_b = vector_cast<double>(support_of(b, -d));
+  corner.w = corner.on_a - corner.on_b;
+  return corner;
+}
+
+bool holds(const Simplex& s, DVec3 w) {
+  return std::any_of(s.corner.begin(), s.corner.begin() + s.count,
+                     [w](const Corner& corner) { return corner.w == w; });
+}
+
+}  // namespace
+
+Vec3 direction_across(Vec3 axis, Vec3 d, Vec3 otherwise) {
+  const Vec3 across = d - dot(axis, d) * axis;
+  const Real size = length(across);
+  if (!(size > Real(1e-6) * length(d))) return otherwise;
+  // What rounding left along the axis has grown with the rest.
+  const Vec3 scaled = Real(1) / size * across;
+  return scaled - dot(axis, scaled) * axis;
+}
+
+Real skin_of(const Convex& convex) {
+  const ShapeKind kind = convex.shape.kind;
+  return kind == ShapeKind::kSphere || kind == ShapeKind::kCapsule ? convex.shape.radius : Real(0);
+}
+
+Vec3 middle_of(const Convex& c) {
+  if (c.shape.kind == ShapeKind::kMesh)
+    return Real(1) / Real(3) * (c.corners[0] + c.corners[1] + c.corners[2]);
+  return c.shape.kind == ShapeKind::kHull ? c.center + c.axes * c.hull->center : c.center;
+}
+
+Real thinness_of(const Convex& c) {
+  switch (c.shape.kind) {
+    case ShapeKind::kSphere:
+    case ShapeKind::kCapsule:
+      return c.shape.radius;
+    case ShapeKind::kBox:
+      return std::min({c.shape.half_extents.x, c.shape.half_extents.y, c.shape.half_extents.z});
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCone:
+      return std::min(c.shape.radius, c.shape.half_height);
+    case ShapeKind::kHull:
+      return c.hull->inner_radius;
+    case ShapeKind::kMesh:
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
+      break;
+  }
+  return Real(0);
+}
+
+Vec3 support_of(const Convex& convex, Vec3 direction) {
+  switch (convex.shape.kind) {
+    case ShapeKind::kCapsule: {
+      const Real h = convex.shape.half_height;
+      return convex.center + (dot(convex.axes.y, direction) < Real(0) ? -h : h) * convex.axes.y;
+    }
+    case ShapeKind::kBox:
+      return support_of_box(convex, direction);
+    case ShapeKind::kCylinder:
+      return support_of_cylinder(convex, direction);
+    case ShapeKind::kCone:
+      return support_of_cone(convex, direction);
+    case ShapeKind::kHull:
+      return support_of_hull(convex, direction);
+    case ShapeKind::kMesh:
+      return support_of_triangle(convex, direction);
+    case ShapeKind::kSphere:
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kCompound:
+      break;
+  }
+  return convex.center;
+}
+
+Real separation_along(const Convex& a, const Convex& b, Vec3 n) {
+  return dot(n, support_of(b, -n) - support_of(a, n)) - skin_of(a) - skin_of(b);
+}
+
+Distance distance_between(const Convex& a, const Convex& b) {
+  Simplex s;
+  s.corner[0] = corner_along(a, b, vector_cast<double>(middle_of(b) - middle_of(a)));
+  s.weight[0] = 1;
+  s.count = 1;
+  DVec3 v = s.corner[0].w;
+  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
+  double scale = 0;
+  bool apart = true;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const Corner next = corner_along(a, b, -v);
+    scale = std::max({scale, length(next.on_a), length(next.on_b)});
+    const double size = length(v);
+    apart = size > rounding * scale;
+    // v.w / |v| is a lower bound of the distance: stop when it has met the upper one, |v|.
+    if (!apart || size * size - dot(v, next.w) <= size * rounding * scale || holds(s, next.w)) break;
+    const Simplex before = s;
+    s.corner[s.count++] = next;
+    apart = reduce(s, dot(v, next.w) > 0);
+    if (!apart) break;
+    v = s.combine(&Corner::w);
+    if (length_squared(v) >= size * size) {
+      s = before;
+      break;
+    }
+  }
+  const Real skin_a = skin_of(a);
+  const Real skin_b = skin_of(b);
+  Distance result = {.distance = -(skin_a + skin_b), .cores_overlap = !apart};
+  if (!apart) return result;
+  v = s.combine(&Corner::w);
+  const double size = length(v);
+  result.normal = vector_cast<Real>(geometry::direction_or(-v, DVec3{}));
+  result.distance += static_cast<Real>(size);
+  result.point_a = vector_cast<Real>(s.combine(&Corner::on_a)) + skin_a * result.normal;
+  result.point_b = vector_cast<Real>(s.combine(&Corner::on_b)) - skin_b * result.normal;
+  return result;
+}
+
+}  // namespace hooke::collision

@@ -1,0 +1,208 @@
+#include "collision/manifold_axes.h"
+#include "collision/manifold_features.h"
+#include "collision/manifold_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hooke::collision {
+
+namespace {
+
+using geometry::ConvexHull;
+
+constexpr std::uint32_t kAxisOfEdges = 0x40000000;
+constexpr std::uint32_t kEdgeBits = 12;
+
+// Edges less than this apart in direction (squared sine) have no axis that a face does not have.
+constexpr Real kParallel = Real(1e-4);
+
+/// Two hulls and the best axis so far. Scores are separations with preferences.
+struct HullPair {
+  const Convex& a;
+  const Convex& b;
+  std::uint32_t last_axis;
+  Real keep;
+  Real prefer_faces;
+  Axis best = {{}, -std::numeric_limits<Real>::infinity(), 0};
+  Real score = -std::numeric_limits<Real>::infinity();
+
+  void offer(const Axis& axis, Real bias) {
+    const Real s = axis.separation - bias + (axis.code == last_axis ? keep : Real(0));
+    if (!(s > score)) return;
+    best = axis;
+    score = s;
+  }
+};
+
+Vec3 vertex_of(const Convex& c, std::size_t i) {
+  return c.center + c.axes * c.hull->vertices[i];
+}
+
+Vec3 farthest_vertex(const Convex& c, Vec3 d) {
+  const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
+  std::size_t best = 0;
+  Real farthest = -std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < c.hull->vertices.size(); ++i) {
+    const Real along = dot(local, c.hull->vertices[i]);
+    best = along > farthest ? i : best;
+    farthest = along > farthest ? along : farthest;
+  }
+  return vertex_of(c, best);
+}
+
+Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::uint32_t side) {
+  const ConvexHull::Face& f = own.hull->faces[face];
+  const Vec3 n = own.axes * f.normal;
+  const Real separation = dot(n, farthest_vertex(other, -n) - own.center) - f.offset;
+  return {side == kAxisOfA ? n : -n, separation, side + static_cast<std::uint32_t>(face)};
+}
+
+void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, HullPair& pair) {
+  const Vec3 to_other = middle_of(other) - own.center;
+  const Vec3 local = {dot(own.axes.x, to_other), dot(own.axes.y, to_other), dot(own.axes.z, to_other)};
+  for (std::size_t i = 0; i < own.hull->faces.size(); ++i) {
+    const ConvexHull::Face& f = own.hull->faces[i];
+    // The other's center is inside it by its inner radius.
+    const Real bound = dot(f.normal, local) - f.offset - other.hull->inner_radius;
+    if (bound + pair.keep > pair.score) pair.offer(face_axis(own, other, i, side), Real(0));
+  }
+}
+
+/// An edge in place, with the normals of its faces.
+struct PlacedEdge {
+  Vec3 start, along, normal_a, normal_b;
+  std::uint32_t index;
+};
+
+PlacedEdge place_edge(const Convex& c, std::size_t i) {
+  const ConvexHull::Edge& e = c.hull->edges[i];
+  const Vec3 start = vertex_of(c, e.vertex_a);
+  return {start, vertex_of(c, e.vertex_b) - start, c.axes * c.hull->faces[e.face_a].normal,
+          c.axes * c.hull->faces[e.face_b].normal, static_cast<std::uint32_t>(i)};
+}
+
+/// The edges of `own` that may hold `other` off by more than `least`. Normals of an edge lie between those of
+/// its faces; none of them is farther along than the whole of the part across the edge.
+std::vector<PlacedEdge> edges_toward(const Convex& own, const Convex& other, Real least) {
+  std::vector<PlacedEdge> edges;
+  const Vec3 middle = middle_of(other);
+  const Real inner = other.hull->inner_radius;
+  for (std::size_t i = 0; i < own.hull->edges.size(); ++i) {
+    const PlacedEdge e = place_edge(own, i);
+    const Vec3 d = middle - e.start;
+    const Real along = dot(d, e.along);
+    const Real squared = length_squared(d) - along * along / length_squared(e.along);
+    const bool behind = dot(e.normal_a, d) <= Real(0) && dot(e.normal_b, d) <= Real(0);
+    const Real bound = behind ? Real(0) : std::sqrt(std::max(Real(0), squared));
+    if (bound - inner > least) edges.push_back(e);
+  }
+  return edges;
+}
+
+/// Whether the normals of edge p of A and the opposite ones of edge q of B cross on the sphere of directions:
+/// only then the two edges span a face of the difference of the hulls (Gregorius, 2013, The separating axis
+/// test between convex polyhedra).
+bool arcs_cross(const PlacedEdge& p, const PlacedEdge& q) {
+  // normal_a x normal_b points along the edge. With the normals of q turned:
+  const Real cba = dot(q.normal_a, p.along);
+  const Real dba = dot(q.normal_b, p.along);
+  const Real adc = -dot(p.normal_a, q.along);
+  const Real bdc = -dot(p.normal_b, q.along);
+  return cba * dba < Real(0) && adc * bdc < Real(0) && cba * bdc > Real(0);
+}
+
+void offer_edges(HullPair& pair) {
+  const Real least = pair.score + pair.prefer_faces - pair.keep;
+  const std::vector<PlacedEdge> edges_a = edges_toward(pair.a, pair.b, least);
+  const std::vector<PlacedEdge> edges_b = edges_toward(pair.b, pair.a, least);
+  const Vec3 middle = middle_of(pair.a);
+  for (const PlacedEdge& p : edges_a) {
+    for (const PlacedEdge& q : edges_b) {
+      if (!arcs_cross(p, q)) continue;
+      const Vec3 across = cross(p.along, q.along);
+      const Real squared = length_squared(across);
+      if (squared < kParallel * length_squared(p.along) * length_squared(q.along)) continue;
+      const Vec3 unit = Real(1) / std::sqrt(squared) * across;
+      const Vec3 n = dot(unit, p.start - middle) < Real(0) ? -unit : unit;
+      pair.offer({n, dot(n, q.start - p.start), kAxisOfEdges | p.index << kEdgeBits | q.index},
+                 pair.prefer_faces);
+    }
+  }
+}
+
+/// Offers what held the hulls apart in the last step.
+void offer_last(HullPair& pair) {
+  const std::uint32_t code = pair.last_axis;
+  const std::size_t face = code & 0xFFFF;
+  if ((code & kAxisOfEdges) != 0) {
+    const std::size_t edge_a = code >> kEdgeBits & ((1u << kEdgeBits) - 1);
+    const std::size_t edge_b = code & ((1u << kEdgeBits) - 1);
+    if (edge_a >= pair.a.hull->edges.size() || edge_b >= pair.b.hull->edges.size()) return;
+    const PlacedEdge p = place_edge(pair.a, edge_a);
+    const PlacedEdge q = place_edge(pair.b, edge_b);
+    const Vec3 unit = normalize(cross(p.along, q.along));
+    const Vec3 n = dot(unit, p.start - middle_of(pair.a)) < Real(0) ? -unit : unit;
+    // They may span no face of the difference any more.
+    const Real separation = dot(n, farthest_vertex(pair.b, -n) - farthest_vertex(pair.a, n));
+    if (!(unit == Vec3{})) pair.offer({n, separation, code}, pair.prefer_faces);
+  } else if ((code & kAxisOfA) != 0 && face < pair.a.hull->faces.size()) {
+    pair.offer(face_axis(pair.a, pair.b, face, kAxisOfA), Real(0));
+  } else if ((code & kAxisOfB) != 0 && face < pair.b.hull->faces.size()) {
+    pair.offer(face_axis(pair.b, pair.a, face, kAxisOfB), Real(0));
+  }
+}
+
+Feature edge_feature(const Convex& c, std::size_t index) {
+  const ConvexHull::Edge& e = c.hull->edges[index];
+  Feature f;
+  f.kind = Feature::Kind::kSegment;
+  f.add(vertex_of(c, e.vertex_a), e.vertex_a, 0);
+  f.add(vertex_of(c, e.vertex_b), e.vertex_b, 0);
+  return f;
+}
+
+void add_points(const HullPair& pair, Meeting& meeting) {
+  const std::uint32_t code = pair.best.code;
+  if ((code & kAxisOfEdges) != 0) {
+    const std::uint32_t mask = (1u << kEdgeBits) - 1;
+    overlap_features(edge_feature(pair.a, code >> kEdgeBits & mask), edge_feature(pair.b, code & mask),
+                     Real(0), Real(0), meeting);
+    if (meeting.count > 0) meeting.point[0].key = kCrossing | (code & (kAxisOfEdges - 1));
+    return;
+  }
+  const std::size_t face = code & 0xFFFF;
+  const bool of_a = (code & kAxisOfA) != 0;
+  const Feature a = of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, meeting.normal, kSteep);
+  const Feature b = of_a ? feature_of_hull(pair.b, -meeting.normal, kSteep) : face_of_hull(pair.b, face);
+  overlap_features(a, b, Real(0), Real(0), meeting);
+  if (meeting.count > 0 || meeting.separation > Real(0)) return;
+  // Two faces that miss each other although the hulls overlap: a corner is inside.
+  const Vec3 corner =
+      of_a ? farthest_vertex(pair.b, -meeting.normal) : farthest_vertex(pair.a, meeting.normal);
+  complete_points({corner, corner, true}, Real(0), meeting);
+}
+
+}  // namespace
+
+void meet_hulls(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+  HullPair pair = {a, b, query.last_axis, preference(kKeepAxis, a, b), preference(kPreferFaces, a, b)};
+  offer_last(pair);
+  const auto apart = [&] {
+    meeting.separation = pair.best.separation;
+    meeting.axis = pair.best.code;
+    return pair.best.separation > query.margin;
+  };
+  if (apart()) return;
+  offer_faces(a, b, kAxisOfA, pair);
+  offer_faces(b, a, kAxisOfB, pair);
+  if (apart()) return;
+  offer_edges(pair);
+  if (apart()) return;
+  meeting.normal = pair.best.n;
+  add_points(pair, meeting);
+}
+
+}  // namespace hooke::collision

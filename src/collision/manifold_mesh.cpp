@@ -1,0 +1,189 @@
+#include "collision/manifold_mesh.h"
+
+#include "collision/manifold_axes.h"
+#include "collision/manifold_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace hooke::collision {
+
+namespace {
+
+constexpr std::size_t kMaxPatches = 6;
+
+/// The box of the shape in the frame of the mesh.
+geometry::Box bounds_in(const PlacedMesh& mesh, const Convex& b, Real margin) {
+  const auto reach = [&](Vec3 axis) { return dot(axis, support_of(b, axis)) + skin_of(b) + margin; };
+  const Vec3 upper = {reach(mesh.axes.x), reach(mesh.axes.y), reach(mesh.axes.z)};
+  const Vec3 lower = {-reach(-mesh.axes.x), -reach(-mesh.axes.y), -reach(-mesh.axes.z)};
+  return {mesh.origin + lower, mesh.origin + upper};
+}
+
+Vec3 front_of(const Convex& triangle) {
+  const auto& [p, q, r] = triangle.corners;
+  return normalize(cross(q - p, r - p));
+}
+
+Real deepest_of(const Meeting& meeting) {
+  Real deepest = std::numeric_limits<Real>::infinity();
+  for (int i = 0; i < meeting.count; ++i) {
+    deepest = std::min(deepest, meeting.point[static_cast<std::size_t>(i)].separation);
+  }
+  return deepest;
+}
+
+/// Points of the shape over the face.
+void meet_face(const Convex& triangle, const Convex& b, Meeting& meeting) {
+  Feature face;
+  face.kind = Feature::Kind::kPolygon;
+  face.normal = meeting.normal;
+  for (std::uint32_t i = 0; i < 3; ++i) face.add(triangle.corners[i], i, i);
+  overlap_features(face, feature_along(b, -meeting.normal, kSteep), Real(0), skin_of(b), meeting);
+}
+
+/// False if they are farther apart than the margin, or the shape is behind the triangle.
+bool meet_triangle(const Convex& triangle, const Convex& b, Real margin, Meeting& meeting) {
+  const Vec3 front = front_of(triangle);
+  meeting.count = 0;
+  meeting.normal = front;
+  meeting.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
+  const bool in_front = dot(front, middle_of(b) - triangle.corners[0]) > Real(0);
+  if (!in_front || !(meeting.separation <= margin)) return false;
+  const Real tolerance = axis_tolerance(triangle, b);
+  meet_face(triangle, b, meeting);
+  if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;
+  // The shape is deepest beside the face.
+  Axis axis = {front, meeting.separation, kAxisOfA};
+  const Nearest nearest = improve_axis(triangle, b, tolerance, axis);
+  if (!(axis.separation <= margin) || !(dot(axis.n, front) > Real(0))) return false;
+  if (axis.code == kFreeAxis) {
+    meeting.count = 0;
+    meeting.normal = axis.n;
+    meeting.separation = axis.separation;
+    overlap_features(feature_along(triangle, axis.n), feature_along(b, -axis.n), Real(0), skin_of(b),
+                     meeting);
+  }
+  complete_points(nearest, Real(4) * tolerance, meeting);
+  return meeting.count > 0;
+}
+
+/// Vertices of the shape keep their key from triangle to triangle, other places do not.
+std::uint32_t key_on(std::uint32_t triangle, std::uint32_t key) {
+  const std::uint32_t kind = key & kNearest;
+  if (kind == kVertexOfB) return key;
+  return kind | ((key + (triangle + 1) * 0x9E3779B1u) & ~kNearest);
+}
+
+void append_contact(const Convex& triangle, std::uint32_t index, const Meeting& meeting,
+                    MeshScratch& scratch) {
+  const auto points = std::span(meeting.point.data(), static_cast<std::size_t>(meeting.count));
+  const auto deepest = std::min_element(
+      points.begin(), points.end(), [](const auto& p, const auto& q) { return p.separation < q.separation; });
+  scratch.contacts.push_back({triangle, index, meeting.normal, deepest->on_a, meeting.separation});
+  for (MeetingPoint p : points) {
+    p.key = key_on(index, p.key);
+    scratch.points.push_back(p);
+  }
+  scratch.first_point.push_back(scratch.points.size());
+}
+
+/// The patch's points are cut down when there is no room for more: those farthest out stay.
+void add_point(const MeetingPoint& point, Meeting& meeting) {
+  const auto points = std::span(meeting.point.data(), static_cast<std::size_t>(meeting.count));
+  const bool known =
+      (point.key & kNearest) == kVertexOfB &&
+      std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.key == point.key; });
+  if (known) return;
+  if (meeting.count == Meeting::kMaxPoints) reduce_points(meeting, std::numeric_limits<Real>::infinity(), {});
+  meeting.add(point);
+}
+
+void join(const Meeting& from, PatchMeeting& patch) {
+  Meeting& to = patch.meeting;
+  for (int i = 0; i < from.count; ++i) {
+    MeetingPoint p = from.point[static_cast<std::size_t>(i)];
+    p.separation = dot(to.normal, p.on_b - p.on_a);
+    add_point(p, to);
+  }
+  to.separation = std::min(to.separation, from.separation);
+}
+
+/// Puts a contact into the patch of its plane.
+void add_to_patches(const SurfaceContact& contact, std::span<const MeetingPoint> points,
+                    std::vector<PatchMeeting>& patches) {
+  const auto is_same_plane = [&](const PatchMeeting& patch) {
+    const MeetingPoint& p = patch.meeting.point[0];
+    return is_same_direction(patch.meeting.normal, contact.normal) &&
+           std::fabs(dot(contact.normal, contact.place - p.on_a)) <= kFlush;
+  };
+  auto patch = std::find_if(patches.begin(), patches.end(), is_same_plane);
+  if (patch == patches.end()) {
+    patches.push_back({.patch = contact.index});
+    patch = patches.end() - 1;
+    patch->meeting.normal = contact.normal;
+    patch->meeting.separation = contact.separation;
+  }
+  for (const MeetingPoint& p : points) add_point(p, patch->meeting);
+  patch->meeting.separation = std::min(patch->meeting.separation, contact.separation);
+}
+
+/// Joins patches whose normals are less than the angle with this cosine apart to the deepest of them.
+void join_patches(Real cosine, std::vector<PatchMeeting>& patches) {
+  std::vector<PatchMeeting> order = std::move(patches);
+  std::stable_sort(order.begin(), order.end(), [](const PatchMeeting& p, const PatchMeeting& q) {
+    return p.meeting.separation < q.meeting.separation;
+  });
+  patches.clear();
+  for (const PatchMeeting& patch : order) {
+    const auto near = std::find_if(patches.begin(), patches.end(), [&](const PatchMeeting& p) {
+      return dot(p.meeting.normal, patch.meeting.normal) >= cosine;
+    });
+    if (near == patches.end()) {
+      patches.push_back(patch);
+    } else {
+      near->patch = std::min(near->patch, patch.patch);
+      join(patch.meeting, *near);
+    }
+  }
+}
+
+}  // namespace
+
+Convex PlacedMesh::triangle(std::uint32_t index) const {
+  Convex convex = {.shape = {.kind = ShapeKind::kMesh}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    convex.corners[i] = axes * (mesh.desc.positions[mesh.desc.triangles[index][i]] - origin);
+  }
+  return convex;
+}
+
+Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch) {
+  scratch.contacts.clear();
+  scratch.points.clear();
+  scratch.first_point.assign(1, 0);
+  scratch.patches.clear();
+  geometry::find_triangles(a.mesh.bvh, bounds_in(a, b, margin), scratch.triangles);
+  Meeting meeting;
+  for (const std::uint32_t index : scratch.triangles) {
+    const Convex triangle = a.triangle(index);
+    if (meet_triangle(triangle, b, margin, meeting)) append_contact(triangle, index, meeting, scratch);
+  }
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
+    if (is_ghost(scratch.contacts[i], scratch.contacts)) continue;
+    const std::size_t first = scratch.first_point[i];
+    add_to_patches(scratch.contacts[i],
+                   std::span(scratch.points).subspan(first, scratch.first_point[i + 1] - first),
+                   scratch.patches);
+  }
+  for (const Real cosine : {Real(0.999), Real(0.99), Real(0.9), Real(0.5), Real(-1)}) {
+    if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch.patches);
+  }
+  std::sort(scratch.patches.begin(), scratch.patches.end(),
+            [](const PatchMeeting& p, const PatchMeeting& q) { return p.patch < q.patch; });
+  return scratch.triangles.empty() ? margin : Real(0);
+}
+
+}  // namespace hooke::collision

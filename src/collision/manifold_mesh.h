@@ -1,0 +1,47 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "collision/distance.h"
+#include "collision/manifold_points.h"
+#include "collision/narrow_phase_ghosts.h"
+#include "state/mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace hooke::collision {
+
+/// A mesh in place, seen from `origin`, the place that offsets of a meeting are from.
+struct PlacedMesh {
+  const state::Mesh& mesh;
+  Mat3 axes = {};
+  Vec3 origin = {};  ///< In the mesh's frame.
+
+  /// The triangle as a convex shape.
+  [[nodiscard]] Convex triangle(std::uint32_t index) const;
+};
+
+/// Points of a mesh with one normal, and the lowest of their triangles.
+struct PatchMeeting {
+  std::uint32_t patch = 0;
+  Meeting meeting = {};
+};
+
+/// Memory for meet_mesh.
+struct MeshScratch {
+  std::vector<std::uint32_t> triangles = {};
+  std::vector<SurfaceContact> contacts = {};
+  std::vector<MeetingPoint> points = {};      // of all contacts, one after the other
+  std::vector<std::size_t> first_point = {};  // of each contact, and the number of all
+  std::vector<PatchMeeting> patches = {};
+};
+
+/// A is a mesh, one-sided: only what is in front of a triangle meets it. Replaces scratch.patches, in
+/// ascending order. Coplanar triangles are one patch; of more than a few patches those that look in similar
+/// directions are joined. Triangles that others cover (is_ghost) are left out: a mesh
+/// feels the same however its faces are cut. Returns a distance that they are at least apart if there are no
+/// patches [m].
+Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch);
+
+}  // namespace hooke::collision

@@ -1,0 +1,388 @@
+#include "collision/narrow_phase.h"
+
+#include "collision/distance.h"
+#include "collision/manifold_match.h"
+#include "collision/manifold_mesh.h"
+#include "collision/manifold_points.h"
+#include "collision/narrow_phase_ghosts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace hooke::collision {
+
+namespace {
+
+using parallel::for_ranges;
+using parallel::Range;
+using state::Manifold;
+using state::Pair;
+
+constexpr Real kMargin = Real(0.02);  // from which points are kept, at rest [m]
+constexpr int kChunk = 128;           // pairs of one buffer
+constexpr int kColliderGrain = 512;
+constexpr int kChunkGrain = 1;
+
+/// All that a step's pairs read.
+struct Scene {
+  const state::Bodies& bodies;
+  const state::Colliders& colliders;
+  std::span<const MaterialPairDesc> materials;
+  Real dt;
+  std::vector<Convex> placed = {};  ///< Of each collider, from its body's center of mass.
+  std::vector<Manifold> old = {};
+};
+
+/// What the pairs of a chunk produced, in their order.
+struct Chunk {
+  std::vector<Manifold> manifolds = {};
+  NarrowPhaseCounts counts = {};
+  Real margin = Real(0);  // of the pair at hand
+  Meeting meeting = {};   // of the pair at hand
+  MeshScratch mesh = {};
+};
+
+Convex place(const state::Bodies& bodies, const state::Colliders& colliders, std::size_t row) {
+  const Quat turn = bodies.rotation[colliders.body[row]];
+  const state::ColliderShape& shape = colliders.shape[row];
+  return {.shape = shape.shape,
+          .center = rotate(turn, colliders.position[row]),
+          .axes = matrix_of(normalize(turn * colliders.rotation[row])),
+          .hull = shape.hull.get()};
+}
+
+/// Whether the body stays where it is in this step.
+bool stands(const state::Bodies& bodies, std::uint32_t body) {
+  if (bodies.asleep[body] != 0 || bodies.traits[body].kind == BodyKind::kStatic) return true;
+  return bodies.traits[body].kind == BodyKind::kKinematic && bodies.motion[body].v == Vec3{} &&
+         bodies.angular_velocity[body] == Vec3{};
+}
+
+/// 2 cm and the way two points of the bodies can come together in a step.
+Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  const state::Bodies& bodies = scene.bodies;
+  // No point of a body turns farther than its diameter.
+  const auto turn = [&](std::uint32_t body) {
+    return std::min(scene.dt * length(bodies.angular_velocity[body]), Real(2)) * bodies.traits[body].radius;
+  };
+  return kMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
+}
+
+struct Surface {
+  Real friction, static_friction, restitution;
+};
+
+Surface surface_of(const ContactDesc& a, const ContactDesc& b, std::span<const MaterialPairDesc> materials) {
+  for (const MaterialPairDesc& m : materials) {
+    if ((m.a == a.material && m.b == b.material) || (m.a == b.material && m.b == a.material)) {
+      return {m.friction, std::max(m.friction, m.static_friction.value_or(m.friction)), m.restitution};
+    }
+  }
+  const Real friction = std::sqrt(a.friction * b.friction);
+  const Real at_rest =
+      std::sqrt(a.static_friction.value_or(a.friction) * b.static_friction.value_or(b.friction));
+  return {friction, std::max(friction, at_rest), std::max(a.restitution, b.restitution)};
+}
+
+Vec3 turned(Quat rotation, Vec3 v) {
+  return v == Vec3{} ? v : rotate(rotation, v);
+}
+
+/// Fills in all but the points.
+void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifold& m) {
+  const ContactDesc& a = scene.colliders.surface[pair.collider_a];
+  const ContactDesc& b = scene.colliders.surface[pair.collider_b];
+  const Surface surface = surface_of(a, b, scene.materials);
+  m.collider_a = pair.collider_a;
+  m.collider_b = pair.collider_b;
+  m.body_a = scene.colliders.body[pair.collider_a];
+  m.body_b = scene.colliders.body[pair.collider_b];
+  m.patch = patch;
+  m.friction = surface.friction;
+  m.static_friction = surface.static_friction;
+  m.restitution = surface.restitution;
+  m.rolling_friction = std::max(a.rolling_friction, b.rolling_friction);
+  m.spinning_friction = std::max(a.spinning_friction, b.spinning_friction);
+  m.surface_velocity = turned(scene.bodies.rotation[m.body_b], b.surface_velocity) -
+                       turned(scene.bodies.rotation[m.body_a], a.surface_velocity);
+}
+
+/// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
+/// that are near: when that changes, the normal tells.
+const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t patch, Vec3 normal) {
+  const Manifold* best = nullptr;
+  Real closest = Real(0.99);
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    const Manifold& old = scene.old[i];
+    if (old.patch == patch) return &old;
+    const Real cosine = dot(old.normal, normal);
+    best = cosine > closest ? &old : best;
+    closest = std::max(closest, cosine);
+  }
+  return best;
+}
+
+void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
+            Meeting& meeting, Chunk& chunk) {
+  if (meeting.count == 0) return;
+  Manifold& m = chunk.manifolds.emplace_back();
+  make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
+  if (m.point_count == 0) {
+    chunk.manifolds.pop_back();
+  } else {
+    describe(scene, pair, patch, m);
+  }
+}
+
+Vec3 offset_between(const Scene& scene, std::uint32_t from, std::uint32_t to) {
+  return vector_cast<Real>(scene.bodies.center[to] - scene.bodies.center[from]);
+}
+
+/// Two convex shapes, in the neighborhood of A.
+void test_convex(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const Vec3 apart =
+      offset_between(scene, scene.colliders.body[pair.collider_a], scene.colliders.body[pair.collider_b]);
+  Convex b = scene.placed[pair.collider_b];
+  b.center += apart;
+  meet(scene.placed[pair.collider_a], b, {chunk.margin, pair.axis}, chunk.meeting);
+  append(scene, pair, 0, {{}, apart}, chunk.meeting, chunk);
+}
+
+/// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
+/// over it is asked, in double.
+void test_half_space(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kHalfSpace;
+  const Convex& plane = scene.placed[is_a ? pair.collider_a : pair.collider_b];
+  const Convex& shape = scene.placed[is_a ? pair.collider_b : pair.collider_a];
+  const std::uint32_t plane_body = scene.colliders.body[is_a ? pair.collider_a : pair.collider_b];
+  const std::uint32_t shape_body = scene.colliders.body[is_a ? pair.collider_b : pair.collider_a];
+  const Vec3 n = plane.axes.y;
+  const DVec3 from_plane =
+      scene.bodies.center[shape_body] - scene.bodies.center[plane_body] - vector_cast<double>(plane.center);
+  const auto height = static_cast<Real>(dot(vector_cast<double>(n), from_plane));
+  meet_half_space(-height * n, n, shape, {chunk.margin, pair.axis}, chunk.meeting);
+  const Vec3 plane_center = offset_between(scene, shape_body, plane_body);
+  if (!is_a) swap_sides(chunk.meeting);
+  append(scene, pair, 0, is_a ? MeetingFrame{plane_center, {}} : MeetingFrame{{}, plane_center},
+         chunk.meeting, chunk);
+}
+
+/// A mesh collider, seen from the center of a body. The offset is taken in double: meshes may be wide.
+PlacedMesh place_mesh(const Scene& scene, std::uint32_t mesh, std::uint32_t from_body) {
+  const Convex& place = scene.placed[mesh];
+  const DVec3 d = scene.bodies.center[from_body] - scene.bodies.center[scene.colliders.body[mesh]] -
+                  vector_cast<double>(place.center);
+  const auto along = [&d](Vec3 axis) { return static_cast<Real>(dot(vector_cast<double>(axis), d)); };
+  return {*scene.colliders.shape[mesh].mesh,
+          place.axes,
+          {along(place.axes.x), along(place.axes.y), along(place.axes.z)}};
+}
+
+/// A mesh and a convex shape, in the neighborhood of the shape.
+void test_mesh(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kMesh;
+  const std::uint32_t mesh = is_a ? pair.collider_a : pair.collider_b;
+  const std::uint32_t shape = is_a ? pair.collider_b : pair.collider_a;
+  const std::uint32_t mesh_body = scene.colliders.body[mesh];
+  const std::uint32_t shape_body = scene.colliders.body[shape];
+  const PlacedMesh placed = place_mesh(scene, mesh, shape_body);
+  chunk.meeting.separation = meet_mesh(placed, scene.placed[shape], chunk.margin, chunk.mesh);
+  const Vec3 mesh_center = offset_between(scene, shape_body, mesh_body);
+  for (PatchMeeting& patch : chunk.mesh.patches) {
+    if (!is_a) swap_sides(patch.meeting);
+    append(scene, pair, patch.patch, is_a ? MeetingFrame{mesh_center, {}} : MeetingFrame{{}, mesh_center},
+           patch.meeting, chunk);
+  }
+}
+
+void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const ShapeKind kind_a = scene.placed[pair.collider_a].shape.kind;
+  const ShapeKind kind_b = scene.placed[pair.collider_b].shape.kind;
+  const auto either = [&](ShapeKind kind) { return kind_a == kind || kind_b == kind; };
+  Meeting& meeting = chunk.meeting;
+  meeting.count = 0;
+  if (either(ShapeKind::kMesh)) {
+    test_mesh(scene, pair, chunk);
+  } else if (either(ShapeKind::kHalfSpace)) {
+    test_half_space(scene, pair, chunk);
+  } else {
+    test_convex(scene, pair, chunk);
+  }
+  pair.gap = meeting.separation;
+  pair.axis = meeting.axis;
+}
+
+/// Makes the pair's manifolds at the end of the chunk's; `first_manifold` counts from the chunk's begin.
+void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
+  const Real odometer = scene.bodies.odometer[a] + scene.bodies.odometer[b];
+  if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
+    ++chunk.counts.skipped;
+    const auto old = scene.old.begin() + pair.first_manifold;
+    chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
+  } else {
+    const Real margin = margin_of(scene, a, b);
+    // The sum of odometers is rounded, more so after a long way.
+    const Real way = odometer - pair.odometer + Real(4) * std::numeric_limits<Real>::epsilon() * odometer;
+    if (pair.tested && pair.manifold_count == 0 && pair.gap - way > margin) {
+      ++chunk.counts.skipped;
+    } else {
+      ++chunk.counts.tested;
+      chunk.margin = margin;
+      test_pair(scene, pair, chunk);
+      pair.odometer = odometer;
+      pair.tested = true;
+    }
+  }
+  pair.first_manifold = begin;
+  pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
+}
+
+/// A manifold with something that nothing moves, seen from the collider that it holds.
+struct Support {
+  std::uint32_t held = 0;  ///< Collider.
+  std::uint32_t manifold = 0;
+};
+
+std::vector<Support> find_supports(const Scene& scene, const state::Pairs& pairs) {
+  std::vector<Support> supports;
+  for (std::uint32_t i = 0; i < pairs.manifold.size(); ++i) {
+    const Manifold& m = pairs.manifold[i];
+    const bool a_held = scene.bodies.mass[m.body_a].inverse_mass > Real(0);
+    const bool b_held = scene.bodies.mass[m.body_b].inverse_mass > Real(0);
+    if (a_held != b_held) supports.push_back({a_held ? m.collider_a : m.collider_b, i});
+  }
+  std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
+    return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
+  });
+  return supports;
+}
+
+/// The manifold as a contact with a piece of surface, in the neighborhood of the held body.
+SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& support) {
+  const bool a_held = support.held == m.collider_a;
+  const std::uint32_t piece = a_held ? m.collider_b : m.collider_a;
+  const std::uint32_t body = a_held ? m.body_a : m.body_b;
+  SurfaceContact contact = {scene.placed[piece], support.manifold, a_held ? -m.normal : m.normal};
+  if (contact.piece.shape.kind == ShapeKind::kMesh) {
+    contact.piece = place_mesh(scene, piece, body).triangle(m.patch);
+  } else {
+    contact.piece.center += offset_between(scene, body, scene.colliders.body[piece]);
+  }
+  const auto* deepest = std::min_element(
+      m.point.data(), m.point.data() + m.point_count,
+      [](const state::ContactPoint& p, const state::ContactPoint& q) { return p.separation < q.separation; });
+  contact.separation = deepest->separation;
+  contact.place = (a_held ? deepest->anchor_a : deepest->anchor_b) - deepest->separation * contact.normal;
+  return contact;
+}
+
+/// Empties the manifolds that others of the same collider cover. Returns how many.
+std::uint32_t empty_ghosts(const Scene& scene, state::Pairs& pairs) {
+  const std::vector<Support> supports = find_supports(scene, pairs);
+  std::vector<SurfaceContact> contacts;
+  std::vector<std::uint32_t> ghosts;
+  for (std::size_t begin = 0, end = 0; begin < supports.size(); begin = end) {
+    while (end < supports.size() && supports[end].held == supports[begin].held) ++end;
+    if (end - begin < 2) continue;
+    contacts.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      contacts.push_back(contact_of(scene, pairs.manifold[supports[i].manifold], supports[i]));
+    }
+    for (const SurfaceContact& contact : contacts) {
+      if (is_ghost(contact, contacts)) ghosts.push_back(contact.index);
+    }
+  }
+  for (const std::uint32_t i : ghosts) pairs.manifold[i].point_count = 0;
+  return static_cast<std::uint32_t>(ghosts.size());
+}
+
+/// Closes the gaps that manifolds without points leave.
+void remove_empty(state::Pairs& pairs) {
+  std::uint32_t kept = 0;
+  for (Pair& pair : pairs.pair) {
+    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
+    const std::uint32_t first = kept;
+    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
+      if (pairs.manifold[i].point_count > 0) pairs.manifold[kept++] = pairs.manifold[i];
+    }
+    pair.first_manifold = first;
+    pair.manifold_count = kept - first;
+  }
+  pairs.manifold.resize(kept);
+}
+
+std::vector<Convex> place_all(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                              const state::Colliders& colliders) {
+  std::vector<Convex> placed(colliders.body.size());
+  for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      if (colliders.body[row] != state::Colliders::kNoBody) placed[row] = place(bodies, colliders, row);
+    }
+  });
+  return placed;
+}
+
+Range pairs_of(std::size_t chunk, std::size_t pair_count) {
+  const int begin = static_cast<int>(chunk) * kChunk;
+  return {begin, std::min(begin + kChunk, static_cast<int>(pair_count))};
+}
+
+/// Puts the chunks' manifolds behind each other. Returns the sum of their counts.
+NarrowPhaseCounts join(parallel::ThreadPool& pool, const std::vector<Chunk>& chunks, state::Pairs& pairs) {
+  NarrowPhaseCounts counts;
+  std::vector<std::size_t> first = {0};
+  for (const Chunk& chunk : chunks) {
+    first.push_back(first.back() + chunk.manifolds.size());
+    counts.tested += chunk.counts.tested;
+    counts.skipped += chunk.counts.skipped;
+  }
+  pairs.manifold.resize(first.back());
+  for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
+    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
+      std::copy(chunks[c].manifolds.begin(), chunks[c].manifolds.end(),
+                pairs.manifold.begin() + static_cast<std::ptrdiff_t>(first[c]));
+      const Range of = pairs_of(c, pairs.pair.size());
+      for (int i = of.begin; i < of.end; ++i) {
+        pairs.pair[static_cast<std::size_t>(i)].first_manifold += static_cast<std::uint32_t>(first[c]);
+      }
+    }
+  });
+  return counts;
+}
+
+}  // namespace
+
+NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                   const state::Colliders& colliders,
+                                   std::span<const MaterialPairDesc> materials, Real dt,
+                                   state::Pairs& pairs) {
+  const Scene scene = {bodies,
+                       colliders,
+                       materials,
+                       dt,
+                       place_all(pool, bodies, colliders),
+                       std::exchange(pairs.manifold, {})};
+  std::vector<Chunk> chunks((pairs.pair.size() + kChunk - 1) / kChunk);
+  for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
+    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
+      const Range of = pairs_of(c, pairs.pair.size());
+      chunks[c].manifolds.reserve(kChunk);
+      for (int i = of.begin; i < of.end; ++i) {
+        update_pair(scene, pairs.pair[static_cast<std::size_t>(i)], chunks[c]);
+      }
+    }
+  });
+  NarrowPhaseCounts counts = join(pool, chunks, pairs);
+  counts.ghosts = empty_ghosts(scene, pairs);
+  if (counts.ghosts > 0) remove_empty(pairs);
+  return counts;
+}
+
+}  // namespace hooke::collision

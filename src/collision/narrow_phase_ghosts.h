@@ -1,0 +1,36 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "collision/distance.h"
+
+#include <cstdint>
+#include <span>
+
+/// \file
+/// Bumps of inner edges: a body that slides over a floor of several pieces must not feel where they meet.
+
+namespace hooke::collision {
+
+/// Where a shape meets one piece of the surfaces around it.
+struct SurfaceContact {
+  Convex piece = {};
+  std::uint32_t index = 0;  ///< Of two contacts alike the lower one counts.
+  Vec3 normal = {};         ///< Out of the piece, unit.
+  Vec3 place = {};          ///< Of the deepest point, on the piece.
+  Real separation = Real(0);
+};
+
+/// How far a piece may stand out over a plane and still count as behind it: what lies flush is one floor [m].
+inline constexpr Real kFlush = Real(5e-4);
+
+/// Normals that differ by less than 1e-4 hold in the same direction.
+[[nodiscard]] bool is_same_direction(Vec3 a, Vec3 b);
+
+/// Whether another contact covers this one: the whole piece is behind the plane of that contact, so that what
+/// touches the front of the plane can feel no more of the piece than its rim, which is no obstacle. Of two
+/// that cover each other (both sides of an edge), the one that holds the shape farther off stays. Needs no
+/// neighborhood: pieces may be triangles with or without common vertices, T-junctions, or whole bodies.
+[[nodiscard]] bool is_ghost(const SurfaceContact& contact, std::span<const SurfaceContact> all);
+
+}  // namespace hooke::collision

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "geometry/triangle_mesh.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+/// \file
+/// Solids cut by planes, without lids on the cuts.
+
+namespace hooke::geometry {
+
+struct Plane {
+  DVec3 normal = {};  ///< Unit.
+  double offset = 0;  ///< dot(normal, x) = offset on the plane [m].
+};
+
+inline double height_over(const Plane& plane, DVec3 p) {
+  return dot(plane.normal, p) - plane.offset;
+}
+
+using Corners = std::array<Vec3, 3>;  ///< Of a triangle, counter-clockwise seen from outside.
+
+/// Unit; zero for a triangle of no area.
+DVec3 normal_of(const Corners& triangle);
+
+/// What is left of a solid between planes. Its convex hull is that of the surface and the corners.
+struct SolidPiece {
+  std::vector<Corners> surface;  ///< The pieces of the solid's own surface.
+  std::vector<Plane> planes;     ///< The piece is below them.
+  std::vector<Vec3> corners;     ///< Points in the solid where three of the planes meet.
+};
+
+struct SolidHalves {
+  SolidPiece below, above;
+  double cut_length = 0;  ///< Of the curve in which the plane meets the surface [m].
+};
+
+/// Whether the point is inside the closed surface: whether the solid angle around it is full (Van Oosterom
+/// and Strackee 1983, The solid angle of a plane triangle). Either answer on the surface.
+[[nodiscard]] bool contains(std::span<const Corners> surface, DVec3 p);
+
+/// The two sides of a plane of a piece of `solid`. What is at most `on_plane` [m] away from the plane counts
+/// as on it; triangles that lie in it belong to the solid on their inner side.
+[[nodiscard]] SolidHalves cut(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane,
+                              double on_plane);
+
+}  // namespace hooke::geometry

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "math/trig.h"
+
+namespace hooke::math {
+
+/// The rotation by |phi| [rad] about phi, of unit length to rounding; made of + - * / only. Up to a quarter
+/// radian by the first terms of the series of sine and cosine, which are exact there to 3e-16.
+template <class T>
+Quaternion<T> quaternion_of(Vector3<T> phi) {
+  const Vector3<T> half = T(0.5) * phi;
+  const T x2 = length_squared(half);
+  if (x2 < T(1) / T(64)) {
+    const T sine = T(1) - x2 / T(6) * (T(1) - x2 / T(20) * (T(1) - x2 / T(42) * (T(1) - x2 / T(72))));
+    const T cosine = T(1) - x2 / T(2) * (T(1) - x2 / T(12) * (T(1) - x2 / T(30) * (T(1) - x2 / T(56))));
+    return {sine * half.x, sine * half.y, sine * half.z, cosine};
+  }
+  const T x = std::sqrt(x2);
+  const SinCos<T> angle = sin_cos(x);
+  const T s = angle.sin / x;
+  return {s * half.x, s * half.y, s * half.z, angle.cos};
+}
+
+}  // namespace hooke::math

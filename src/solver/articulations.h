@@ -1,0 +1,95 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "math/symmetric.h"
+#include "solver/block_matrix.h"
+#include "solver/joint_rows.h"
+#include "state/bodies.h"
+#include "state/hooks.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace hooke::solver {
+
+/// One end of a joint while its articulation is solved.
+struct Link {
+  JointBody body;                      ///< Velocities: before the joints.
+  math::Symmetric3<double> stiffness;  ///< h^2 S K S, the geometric stiffness in scaled coordinates.
+  math::Symmetric3<double> excess;     ///< What of it is implicit.
+  math::Symmetric3<double> response;   ///< Change of omega~ per scaled angular impulse.
+  DVec3 v = {};                        ///< With the impulses found so far.
+  DVec3 omega_scaled = {};
+};
+
+/// Bodies that hooks join to each other, solved as a whole in each substep: velocities such that every row of
+/// every joint holds at the end of it.
+///
+/// With all rows J, impulses lambda obey (J M^-1 J^T + gamma) lambda = target - J v, in blocks of one hook
+/// each, which are joined where hooks share a body that forces move. Chains and trees have no fill, so the
+/// cost grows with their length only. Motors and limits have bounds: rows that are at one drop out, those
+/// that pull away from it come back, eight times; then rows only drop out, until none is beyond its bounds. A
+/// compliance of 1e-9 of each diagonal, 1e-5 in loops, decides what loops and doubled hooks leave
+/// undetermined.
+///
+/// A joint's force F on a body at lever r turns the body back by K theta when it has turned by theta, with
+/// the geometric stiffness K = F.r - (r F^T + F r^T) / 2. Where h^2 K exceeds the inertia, that is a spring
+/// too stiff for the substep, and chains under load fly apart. So K acts implicitly: with its positive part
+/// taken as |r| |F| (|s|^2 - s s^T) / 4, s = r/|r| + F/|F|, and G = h^2 S K S as far as its trace exceeds
+/// 1/2,
+///
+///   (1 + G) (omega~ - omega~_before) + 0.2 G omega~ = impulses.
+///
+/// The first term keeps the energy of a swing, the second takes that of the waves that the changing G feeds.
+/// A body under moderate load has no G and keeps its angular momentum to rounding. F is the larger of the
+/// last substep's force and this one's: a joint that snaps taut is solved again with what it has found.
+///
+/// Where a body turns by more than 0.03 rad in the substep, the rows are made anew about its end until locks
+/// err by less than 2e-4 of their levers: a Newton step each, four solutions at most in all.
+///
+/// Sources: Baraff 1996, "Linear-time dynamics using Lagrange multipliers"; geometric stiffness after
+/// Tournier et al. 2015, "Stable constrained dynamics".
+struct Articulation {
+  std::vector<std::uint32_t> bodies;  ///< Rows; HookPlace::kWorld for the world.
+  std::vector<std::uint32_t> hooks;   ///< Rows, in order of elimination.
+  bool has_loops = false;
+
+  struct Joint {
+    std::uint32_t a = 0, b = 0;  ///< Links.
+    int first = 0;               ///< Of its rows.
+    int count = 0;
+  };
+  /// A link that two joints (or a joint with itself) share, and the block of the matrix it enters.
+  struct Coupling {
+    std::uint32_t block = 0;
+    std::uint32_t link = 0;
+  };
+  std::vector<Joint> joints;  ///< As hooks.
+  std::vector<Coupling> couplings;
+  BlockPattern pattern;
+
+  // Lives for one substep.
+  std::vector<Link> links;  ///< As bodies.
+  std::vector<JointRow> rows;
+  std::vector<double> lambda;
+  std::vector<std::int8_t> bound;  ///< Of each row: -1 at low, 1 at high, 0 between.
+  std::vector<double> matrix;
+  std::vector<double> factors;
+  std::vector<double> right_side;
+};
+
+/// The articulation of hooks that hang together, in any order. Nothing if one solution takes more than
+/// `budget` multiplications.
+[[nodiscard]] std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
+                                                            const std::vector<state::Hook>& hooks,
+                                                            const state::Bodies& bodies, double budget);
+
+/// Velocities of all its bodies for a substep of length h [s], and the impulses of its hooks. Writes nothing
+/// that another articulation reads.
+void solve_articulation(double h, Articulation& articulation, std::vector<state::Hook>& hooks,
+                        state::Bodies& bodies);
+
+}  // namespace hooke::solver

@@ -1,0 +1,212 @@
+#include "solver/block_matrix.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace hooke::solver {
+
+namespace {
+
+using Neighbors = std::vector<std::vector<std::uint32_t>>;
+
+/// The nodes that are left when a node is eliminated and adjacent to it by then: its column of the factor.
+struct Elimination {
+  std::vector<std::uint32_t> order;
+  Neighbors below;  ///< Of each node, by its old number.
+  double operations = 0;
+};
+
+double cost_of(int own, double below) {
+  return own * own * own / 6.0 + own * own * below + 0.5 * own * below * below;
+}
+
+std::optional<Elimination> eliminate(Neighbors graph, const std::vector<int>& sizes, double budget) {
+  Elimination e;
+  std::set<std::pair<std::size_t, std::uint32_t>> queue;
+  for (std::uint32_t i = 0; i < graph.size(); ++i) queue.insert({graph[i].size(), i});
+  e.below.resize(graph.size());
+  while (!queue.empty()) {
+    const std::uint32_t node = queue.begin()->second;
+    queue.erase(queue.begin());
+    std::vector<std::uint32_t> clique = std::move(graph[node]);
+    double below = 0;
+    for (const std::uint32_t i : clique) below += sizes[i];
+    e.operations += cost_of(sizes[node], below);
+    if (e.operations > budget) return std::nullopt;
+    for (const std::uint32_t i : clique) {
+      queue.erase({graph[i].size(), i});
+      std::vector<std::uint32_t> joined;
+      std::set_union(graph[i].begin(), graph[i].end(), clique.begin(), clique.end(),
+                     std::back_inserter(joined));
+      std::erase_if(joined, [&](std::uint32_t k) { return k == i || k == node; });
+      graph[i] = std::move(joined);
+      queue.insert({graph[i].size(), i});
+    }
+    e.order.push_back(node);
+    e.below[node] = std::move(clique);
+  }
+  return e;
+}
+
+/// The block (row, column), which exists.
+std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
+  const auto begin = p.block.begin() + p.column_begin[column];
+  const auto end = p.block.begin() + p.column_begin[column + 1];
+  const auto found = std::lower_bound(
+      begin, end, row, [](const BlockPattern::Block& block, std::uint32_t r) { return block.row < r; });
+  return static_cast<std::uint32_t>(found - p.block.begin());
+}
+
+void list_blocks(const Elimination& e, BlockPattern& p) {
+  std::vector<std::uint32_t> place(e.order.size());
+  for (std::uint32_t i = 0; i < e.order.size(); ++i) place[e.order[i]] = i;
+  p.column_begin.push_back(0);
+  for (std::uint32_t j = 0; j < e.order.size(); ++j) {
+    std::vector<std::uint32_t> rows = {j};
+    for (const std::uint32_t node : e.below[e.order[j]]) rows.push_back(place[node]);
+    std::sort(rows.begin(), rows.end());
+    for (const std::uint32_t i : rows) {
+      p.block.push_back({i, j, p.number_count});
+      p.number_count += static_cast<std::uint32_t>(p.size[i] * p.size[j]);
+    }
+    p.column_begin.push_back(static_cast<std::uint32_t>(p.block.size()));
+  }
+}
+
+void list_updates(BlockPattern& p) {
+  p.update_begin.push_back(0);
+  for (std::uint32_t j = 0; j < p.order.size(); ++j) {
+    for (std::uint32_t left = p.column_begin[j] + 1; left < p.column_begin[j + 1]; ++left) {
+      for (std::uint32_t right = p.column_begin[j] + 1; right <= left; ++right) {
+        p.update.push_back({left, right, find_block(p, p.block[left].row, p.block[right].row)});
+      }
+    }
+    p.update_begin.push_back(static_cast<std::uint32_t>(p.update.size()));
+  }
+}
+
+/// L D L^T of one dense block in place.
+void factor_diagonal(double* a, int n) {
+  for (int j = 0; j < n; ++j) {
+    double pivot = a[j * n + j];
+    for (int k = 0; k < j; ++k) pivot -= a[j * n + k] * a[j * n + k] * a[k * n + k];
+    if (!(pivot > 0)) pivot = std::numeric_limits<double>::max();
+    a[j * n + j] = pivot;
+    for (int i = j + 1; i < n; ++i) {
+      double sum = a[i * n + j];
+      for (int k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k] * a[k * n + k];
+      a[i * n + j] = sum / pivot;
+    }
+  }
+}
+
+/// B := B L^-T D^-1 for a block of m rows below the diagonal block of n.
+void factor_below(const double* diagonal, int n, double* b, int m) {
+  for (int r = 0; r < m; ++r) {
+    double* x = b + static_cast<std::ptrdiff_t>(r) * n;
+    for (int j = 0; j < n; ++j) {
+      for (int k = 0; k < j; ++k) x[j] -= x[k] * diagonal[j * n + k];
+    }
+    for (int j = 0; j < n; ++j) x[j] /= diagonal[j * n + j];
+  }
+}
+
+void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, std::span<double> numbers) {
+  const BlockPattern::Block& left = p.block[u.left];
+  const BlockPattern::Block& right = p.block[u.right];
+  const int n = p.size[left.column];
+  const int columns = p.size[right.row];
+  const double* d = &numbers[p.block[p.column_begin[left.column]].offset];
+  double* target = &numbers[p.block[u.target].offset];
+  for (int r = 0; r < p.size[left.row]; ++r) {
+    const double* x = &numbers[left.offset + static_cast<std::size_t>(r) * n];
+    for (int c = 0; c < columns; ++c) {
+      const double* y = &numbers[right.offset + static_cast<std::size_t>(c) * n];
+      double sum = 0;
+      for (int k = 0; k < n; ++k) sum += x[k] * d[k * n + k] * y[k];
+      target[r * columns + c] -= sum;
+    }
+  }
+}
+
+/// x := L^-1 x.
+void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = 0; j < p.node_count(); ++j) {
+    const int n = p.size[j];
+    double* own = &x[p.first[j]];
+    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    for (int i = 1; i < n; ++i) {
+      for (int k = 0; k < i; ++k) own[i] -= diagonal[i * n + k] * own[k];
+    }
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      double* below = &x[p.first[p.block[b].row]];
+      const double* l = &numbers[p.block[b].offset];
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
+      }
+    }
+  }
+}
+
+/// x := L^-T D^-1 x.
+void substitute_back(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = p.node_count() - 1; j >= 0; --j) {
+    const int n = p.size[j];
+    double* own = &x[p.first[j]];
+    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    for (int i = 0; i < n; ++i) own[i] /= diagonal[i * n + i];
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      const double* below = &x[p.first[p.block[b].row]];
+      const double* l = &numbers[p.block[b].offset];
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
+      }
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      for (int k = i + 1; k < n; ++k) own[i] -= diagonal[k * n + i] * own[k];
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<BlockPattern> make_block_pattern(const Neighbors& neighbors, const std::vector<int>& sizes,
+                                               double budget) {
+  std::optional<Elimination> e = eliminate(neighbors, sizes, budget);
+  if (!e) return std::nullopt;
+  BlockPattern p;
+  p.operations = e->operations;
+  p.first.push_back(0);
+  for (const std::uint32_t node : e->order) {
+    p.size.push_back(sizes[node]);
+    p.first.push_back(p.first.back() + sizes[node]);
+  }
+  list_blocks(*e, p);
+  p.order = std::move(e->order);
+  list_updates(p);
+  return p;
+}
+
+void factor(const BlockPattern& p, std::span<double> numbers) {
+  for (int j = 0; j < p.node_count(); ++j) {
+    double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    factor_diagonal(diagonal, p.size[j]);
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      factor_below(diagonal, p.size[j], &numbers[p.block[b].offset], p.size[p.block[b].row]);
+    }
+    for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u) {
+      subtract_product(p, p.update[u], numbers);
+    }
+  }
+}
+
+void solve(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  substitute_forward(p, numbers, x);
+  substitute_back(p, numbers, x);
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,161 @@
+#include "solver/bodies.h"
+
+#include "math/rotation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Bodies;
+using state::BodyMass;
+using state::MotionLine;
+
+/// D x with the diagonal matrix D in principal axes.
+Vec3 in_axes(Quat axes, Vec3 diagonal, Vec3 x) {
+  const Vec3 local = rotate(conjugate(axes), x);
+  return rotate(axes, {diagonal.x * local.x, diagonal.y * local.y, diagonal.z * local.z});
+}
+
+/// 1/I, and zero where nothing turns.
+Vec3 inverse_inertia(const BodyMass& mass) {
+  const auto inverse = [](Real i) { return i > Real(0) ? Real(1) / i : Real(0); };
+  return {inverse(mass.inertia.x), inverse(mass.inertia.y), inverse(mass.inertia.z)};
+}
+
+/// I^(-1/2) in world axes.
+math::Symmetric3<Real> scale_of(Quat axes, const BodyMass& mass) {
+  const Vec3 inverse = inverse_inertia(mass);
+  const Real x = std::sqrt(inverse.x);
+  const Real y = std::sqrt(inverse.y);
+  const Real z = std::sqrt(inverse.z);
+  const Mat3 r = matrix_of(axes);
+  const auto entry = [&](Real Vec3::*i, Real Vec3::*j) {
+    return x * (r.x.*i * r.x.*j) + y * (r.y.*i * r.y.*j) + z * (r.z.*i * r.z.*j);
+  };
+  return {entry(&Vec3::x, &Vec3::x), entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z),
+          entry(&Vec3::y, &Vec3::y), entry(&Vec3::y, &Vec3::z), entry(&Vec3::z, &Vec3::z)};
+}
+
+/// S^(-1) x: from a change of omega_scaled to one of L. Zero if S has no inverse.
+Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
+  if (x == Vec3{} || !(scale.xx > Real(0))) return {};
+  return math::inverse(scale) * x;
+}
+
+/// Mean angular velocity of a free body over h, from L; see accelerate_bodies.
+Vec3 midpoint_velocity(Quat axes, const BodyMass& mass, Vec3 momentum, Real h) {
+  constexpr int kIterations = 3;
+  const Vec3 inverse = inverse_inertia(mass);
+  Vec3 omega = in_axes(axes, inverse, momentum);
+  for (int i = 0; i < kIterations; ++i)
+    omega = in_axes(math::quaternion_of(Real(0.5) * h * omega) * axes, inverse, momentum);
+  return omega;
+}
+
+/// Too small a speed to keep: nothing may decay into denormals.
+Vec3 settled(Vec3 v) {
+  const auto settle = [](Real x) { return std::abs(x) < Real(1e-20) ? Real(0) : x; };
+  return {settle(v.x), settle(v.y), settle(v.z)};
+}
+
+/// omega_scaled after external torque, damping and the free motion of the substep.
+Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bodies) {
+  const math::Symmetric3<Real>& scale = bodies.scale[i];
+  const Real damping = Real(1) / (Real(1) + step.h * bodies.traits[i].angular_damping);
+  if (!tumbles(bodies.mass[i])) {
+    const Vec3 omega_scaled = bodies.motion[i].omega_scaled;
+    return damping * (omega_scaled + scale * (step.h * bodies.torque[i]));
+  }
+  Vec3& momentum = bodies.angular_momentum[i];
+  if (!step.first) momentum += momentum_of(scale, by_contacts);
+  momentum = damping * (momentum + step.h * bodies.torque[i]);
+  const Quat axes = bodies.rotation[i] * bodies.mass[i].principal;
+  return momentum_of(scale, midpoint_velocity(axes, bodies.mass[i], momentum, step.h));
+}
+
+void finish_rotation(std::uint32_t i, Bodies& bodies) {
+  const MotionLine& m = bodies.motion[i];
+  const math::Symmetric3<Real>& scale = bodies.scale[i];
+  if (!(m.inverse_mass > Real(0))) {
+    bodies.rotation[i] = normalize(math::quaternion_of(m.theta_scaled) * bodies.rotation[i]);
+    return;
+  }
+  Vec3& momentum = bodies.angular_momentum[i];
+  if (tumbles(bodies.mass[i])) {
+    momentum += momentum_of(scale, m.omega_scaled - bodies.free_motion[i].omega_scaled);
+  } else {
+    momentum += momentum_of(scale, m.omega_scaled - scale * momentum);
+    bodies.rotation[i] = normalize(math::quaternion_of(scale * m.theta_scaled) * bodies.rotation[i]);
+  }
+  const Quat axes = bodies.rotation[i] * bodies.mass[i].principal;
+  bodies.angular_velocity[i] = in_axes(axes, inverse_inertia(bodies.mass[i]), momentum);
+}
+
+}  // namespace
+
+bool tumbles(const BodyMass& mass) {
+  const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
+  return most > Real(1.02) * least;
+}
+
+void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
+  for (const std::uint32_t i : rows) {
+    MotionLine& m = bodies.motion[i];
+    m.dx = {};
+    m.theta_scaled = {};
+    if (m.inverse_mass > Real(0)) {
+      bodies.scale[i] = scale_of(bodies.rotation[i] * bodies.mass[i].principal, bodies.mass[i]);
+      m.omega_scaled = bodies.scale[i] * bodies.angular_momentum[i];
+    } else {
+      bodies.scale[i] = math::Symmetric3<Real>::diagonal(Real(1));
+      m.omega_scaled = bodies.angular_velocity[i];
+    }
+    bodies.free_motion[i] = {.v = m.v, .omega_scaled = m.omega_scaled};
+  }
+}
+
+void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step, Bodies& bodies) {
+  for (const std::uint32_t i : rows) {
+    MotionLine& m = bodies.motion[i];
+    if (!(m.inverse_mass > Real(0))) continue;
+    state::FreeLine& free = bodies.free_motion[i];
+    const Vec3 by_contacts = m.v - free.v;
+    const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
+
+    const state::BodyTraits& traits = bodies.traits[i];
+    const Vec3 a = traits.gravity_scale * step.gravity + m.inverse_mass * bodies.force[i];
+    free.v = settled((Real(1) / (Real(1) + step.h * traits.linear_damping)) * (m.v + step.h * a));
+    free.omega_scaled = settled(turned(i, step, turn_by_contacts, bodies));
+    m.v = free.v + by_contacts;
+    m.omega_scaled = free.omega_scaled + turn_by_contacts;
+  }
+}
+
+void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
+  for (const std::uint32_t i : rows) {
+    MotionLine& m = bodies.motion[i];
+    m.dx += h * m.v;
+    m.theta_scaled += h * m.omega_scaled;
+    if (!(m.inverse_mass > Real(0)) || !tumbles(bodies.mass[i])) continue;
+    const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
+    bodies.rotation[i] = normalize(math::quaternion_of(turn) * bodies.rotation[i]);
+  }
+}
+
+void finish_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
+  for (const std::uint32_t i : rows) {
+    MotionLine& m = bodies.motion[i];
+    const Vec3 theta = bodies.scale[i] * m.theta_scaled;
+    bodies.center[i] = bodies.center[i] + vector_cast<double>(m.dx);
+    bodies.odometer[i] += length(m.dx) + length(theta) * bodies.traits[i].radius;
+    finish_rotation(i, bodies);
+    m = {.v = m.v, .inverse_mass = m.inverse_mass};
+    bodies.force[i] = {};
+    bodies.torque[i] = {};
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "state/bodies.h"
+#include "state/manifolds.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace hooke::solver {
+
+/// Which manifolds are solved together. No two of a color share a body that moves.
+struct ContactColors {
+  struct Member {
+    std::uint32_t manifold = 0;
+    bool anchored = false;  ///< Only one of its bodies moves.
+  };
+
+  std::vector<Member> members;   ///< Color after color; in each, pairs that both move come first, then more
+                                 ///< points before fewer, then the order of the manifolds.
+  std::vector<int> begin = {0};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
+  std::vector<std::uint8_t> moves;  ///< Whether contacts move a body, by body row.
+  std::vector<std::uint64_t> used;  ///< Colors of a body, by body row.
+  std::vector<int> color;           ///< Of each manifold, as taken; -1: has no rows.
+  std::vector<int> place;           ///< Where the next member of each kind goes.
+};
+
+/// Takes the manifolds in order. One with two bodies that move takes the lowest color free in both, below 56;
+/// one with a single such body the highest that is free: it is solved last and so holds best. What finds no
+/// free color is alone in its own, between the two. Made anew from nothing each time: it depends on the
+/// manifolds alone.
+void color_contacts(const std::vector<state::Manifold>& manifolds, const state::Bodies& bodies,
+                    ContactColors& colors);
+
+}  // namespace hooke::solver

@@ -1,0 +1,205 @@
+#include "solver/joint_nets.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using parallel::Range;
+using state::Hook;
+using state::HookPlace;
+
+constexpr int kMaskColors = 64;
+constexpr int kGrain = 32;
+constexpr double kHertz = 60;
+constexpr double kDampingRatio = 5;
+constexpr double kTwoPi = 6.283185307179586;
+
+/// Factors of a soft row; see JointNet.
+struct Softness {
+  double bias = 0;   ///< b [1/s]
+  double mass = 1;   ///< mu
+  double decay = 0;  ///< gamma
+};
+
+Softness softness_of(double h) {
+  const double omega = kTwoPi * std::min(kHertz, 0.25 / h);
+  const double a = 2 * kDampingRatio + h * omega;
+  const double mass = h * omega * a / (1 + h * omega * a);
+  return {omega / a, mass, 1 - mass};
+}
+
+bool is_dynamic(const state::Bodies& bodies, std::uint32_t row) {
+  return row != HookPlace::kWorld && bodies.motion[row].inverse_mass > Real(0);
+}
+
+/// The first color that no hook of either body has.
+int choose_color(const Hook& hook, const state::Bodies& bodies, std::vector<std::uint64_t>& used,
+                 int& next_own_color) {
+  std::uint64_t mask = 0;
+  for (const std::uint32_t body : {hook.a.body, hook.b.body})
+    mask |= is_dynamic(bodies, body) ? used[body] : 0;
+  if (~mask == 0) return next_own_color++;
+  const int color = std::countr_one(mask);
+  for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+    if (is_dynamic(bodies, body)) used[body] |= std::uint64_t{1} << color;
+  }
+  return color;
+}
+
+/// The velocities of a joint's ends, from the columns and back.
+struct Ends {
+  JointBody a;
+  JointBody b;
+};
+
+void load_velocity(const state::Bodies& bodies, std::uint32_t row, JointBody& body) {
+  if (row == HookPlace::kWorld) return;
+  body.v = vector_cast<double>(bodies.motion[row].v);
+  body.omega_scaled = vector_cast<double>(bodies.motion[row].omega_scaled);
+  body.inverse_mass = static_cast<double>(bodies.motion[row].inverse_mass);
+}
+
+void store_velocity(const JointBody& body, std::uint32_t row, state::Bodies& bodies) {
+  if (!is_dynamic(bodies, row)) return;
+  bodies.motion[row].v = vector_cast<Real>(body.v);
+  bodies.motion[row].omega_scaled = vector_cast<Real>(body.omega_scaled);
+}
+
+void apply(const JointImpulse& p, Ends& ends) {
+  ends.a.v -= ends.a.inverse_mass * p.linear;
+  ends.b.v += ends.b.inverse_mass * p.linear;
+  if (ends.a.inverse_mass > 0) ends.a.omega_scaled -= p.angular_a;
+  if (ends.b.inverse_mass > 0) ends.b.omega_scaled += p.angular_b;
+}
+
+JointImpulse impulse_of(const JointRow& row, double lambda) {
+  return {lambda * row.n, lambda * row.j_a, lambda * row.j_b};
+}
+
+void add(const JointImpulse& p, JointImpulse& sum) {
+  sum.linear += p.linear;
+  sum.angular_a += p.angular_a;
+  sum.angular_b += p.angular_b;
+}
+
+/// n.n / m + |j|^2 of both ends.
+double diagonal_of(const JointRow& row, const Ends& ends) {
+  double sum = (ends.a.inverse_mass + ends.b.inverse_mass) * dot(row.n, row.n);
+  if (ends.a.inverse_mass > 0) sum += dot(row.j_a, row.j_a);
+  if (ends.b.inverse_mass > 0) sum += dot(row.j_b, row.j_b);
+  return sum;
+}
+
+/// The change of a row's impulse.
+double solve_row(const JointRow& row, const Ends& ends, double lambda, double h, const Softness& soft) {
+  const double diagonal = diagonal_of(row, ends);
+  if (!(diagonal > 0)) return 0;
+  const double v =
+      dot(row.n, ends.b.v - ends.a.v) + dot(row.j_b, ends.b.omega_scaled) - dot(row.j_a, ends.a.omega_scaled);
+  const bool is_free = row.role == RowRole::kSpring || row.role == RowRole::kMotor;
+  double change = 0;
+  if (is_free) {
+    change = (row.target - v - row.gamma * lambda) / (diagonal + row.gamma);
+  } else if (row.role == RowRole::kLimit && row.c > 0) {
+    change = (-row.c / h - v) / diagonal;
+  } else {
+    change = -soft.mass * (v + soft.bias * row.c) / diagonal - soft.decay * lambda;
+  }
+  return std::clamp(lambda + change, row.low, row.high) - lambda;
+}
+
+/// Calls visit(i) for every hook of the net, color after color.
+template <class Visit>
+void for_each_joint(parallel::ThreadPool& pool, const JointNet& net, Visit&& visit) {
+  for (std::size_t color = 0; color + 1 < net.color_begin.size(); ++color) {
+    const int first = net.color_begin[color];
+    parallel::for_ranges(pool, net.color_begin[color + 1] - first, kGrain, [&](Range range) {
+      for (int i = first + range.begin; i < first + range.end; ++i) visit(i);
+    });
+  }
+}
+
+/// Rows of now, and the impulses that carry over along them.
+void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, JointNet& net) {
+  Ends ends = {joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body)};
+  std::array<JointRow, Hook::kMaxRows> rows;
+  const int count = make_joint_rows(hook, ends.a, ends.b, h, rows);
+  std::copy_n(rows.begin(), count, net.rows.begin() + net.first_row[i]);
+  JointImpulse warm;
+  for (int k = 0; k < count; ++k) add(impulse_of(rows[k], static_cast<double>(hook.row_impulse[k])), warm);
+  const JointImpulse& done = net.done[i];
+  apply({warm.linear - done.linear, warm.angular_a - done.angular_a, warm.angular_b - done.angular_b}, ends);
+  net.done[i] = warm;
+  store_velocity(ends.a, hook.a.body, bodies);
+  store_velocity(ends.b, hook.b.body, bodies);
+}
+
+void solve_joint(int i, double h, const Softness& soft, Hook& hook, state::Bodies& bodies, JointNet& net) {
+  Ends ends;
+  load_velocity(bodies, hook.a.body, ends.a);
+  load_velocity(bodies, hook.b.body, ends.b);
+  for (int k = net.first_row[i]; k < net.first_row[i + 1]; ++k) {
+    const JointRow& row = net.rows[k];
+    Real& lambda = hook.row_impulse[k - net.first_row[i]];
+    const double change = solve_row(row, ends, static_cast<double>(lambda), h, soft);
+    lambda += static_cast<Real>(change);
+    const JointImpulse p = impulse_of(row, change);
+    apply(p, ends);
+    add(p, net.done[i]);
+  }
+  store_velocity(ends.a, hook.a.body, bodies);
+  store_velocity(ends.b, hook.b.body, bodies);
+}
+
+}  // namespace
+
+void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
+               const state::Bodies& bodies, JointNet& net) {
+  net = {};
+  std::vector<std::uint64_t> used(bodies.motion.size());
+  std::vector<std::pair<int, std::uint32_t>> colored;
+  colored.reserve(hook_rows.size());
+  int next_own_color = kMaskColors;
+  for (const std::uint32_t row : hook_rows)
+    colored.emplace_back(choose_color(hooks[row], bodies, used, next_own_color), row);
+  std::sort(colored.begin(), colored.end());
+  for (std::size_t i = 0; i < colored.size(); ++i) {
+    if (i > 0 && colored[i].first != colored[i - 1].first) net.color_begin.push_back(static_cast<int>(i));
+    net.hooks.push_back(colored[i].second);
+    net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[colored[i].second]));
+  }
+  if (!colored.empty()) net.color_begin.push_back(static_cast<int>(colored.size()));
+  net.rows.resize(static_cast<std::size_t>(net.first_row.back()));
+  net.done.resize(net.hooks.size());
+}
+
+void prepare_net(JointNet& net) {
+  std::fill(net.done.begin(), net.done.end(), JointImpulse{});
+}
+
+void solve_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
+               JointNet& net) {
+  const Softness soft = softness_of(h);
+  for_each_joint(pool, net, [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
+  for_each_joint(pool, net, [&](int i) { solve_joint(i, h, soft, hooks[net.hooks[i]], bodies, net); });
+}
+
+void relax_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
+               JointNet& net) {
+  for_each_joint(pool, net, [&](int i) {
+    Hook& hook = hooks[net.hooks[i]];
+    solve_joint(i, h, {}, hook, bodies, net);
+    std::array<double, Hook::kMaxRows> lambda = {};
+    std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());
+    const auto first = static_cast<std::size_t>(net.first_row[i]);
+    const auto count = static_cast<std::size_t>(net.first_row[i + 1]) - first;
+    store_joint_impulses({&net.rows[first], count}, {lambda.data(), count}, hook);
+  });
+}
+
+}  // namespace hooke::solver

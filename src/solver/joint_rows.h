@@ -1,0 +1,83 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "math/symmetric.h"
+#include "state/bodies.h"
+#include "state/hooks.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+/// \file
+/// From a hook between bodies to rows: what its freedoms are worth now, and along what they change.
+
+namespace hooke::solver {
+
+/// An end of a hook in the middle of a step, in double: errors of joints are small differences.
+struct JointBody {
+  DVec3 center = {};  ///< Of mass, now [m].
+  DVec3 ahead = {};   ///< From where impulses act on it to `center`, where it will be; zero for now [m].
+  Quaternion<double> rotation = {};
+  DVec3 v = {};
+  DVec3 omega_scaled = {};
+  math::Symmetric3<double> scale = math::Symmetric3<double>::diagonal(1);  ///< S; 1 where nothing moves it.
+  double inverse_mass = 0;                                                 ///< 0: nothing moves it.
+};
+
+/// The body in `row` after the part of the step that is done; HookPlace::kWorld gives the world at rest.
+[[nodiscard]] JointBody joint_body(const state::Bodies& bodies, std::uint32_t row);
+
+/// Gives the body in `row` the velocity that joints want. What they changed counts as free motion, not as
+/// the doing of contacts: it is not repeated as their warm start.
+void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
+                        state::Bodies& bodies);
+
+enum class RowRole : std::uint8_t {
+  kLock,
+  kSpring,
+  kMotor,
+  kLimit,
+};
+
+/// One row: find an impulse lambda in [low, high] such that
+///
+///   n.(v_b - v_a) + j_b.omega~_b - j_a.omega~_a + gamma lambda = target,
+///
+/// or lambda is at a bound and the left side is beyond the target on that side.
+struct JointRow {
+  DVec3 n = {};     ///< Zero for angles.
+  DVec3 axis = {};  ///< Of an angle; zero for ways.
+  DVec3 j_a = {};   ///< S_a (r_a x n), or S_a axis.
+  DVec3 j_b = {};
+  double c = 0;     ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
+  double rate = 0;  ///< b: share of c that the target takes back, per time [1/s].
+  double target = 0;
+  double gamma = 0;
+  double low = 0;
+  double high = 0;
+  RowRole role = RowRole::kLock;
+};
+
+/// How many rows a hook has. It depends on its settings only, not on how its ends stand.
+[[nodiscard]] int count_joint_rows(const state::Hook& hook);
+
+/// The rows of a hook for a substep of length h [s], as many as count_joint_rows says; notes the values of
+/// its freedoms in the hook.
+///
+/// Impulses of ways act on both ends at b's anchor, so that the hook's total moment is zero to rounding even
+/// while the anchors are apart. Errors are removed within the substep (b = 1/h), at 10 m/s or 10 rad/s more
+/// than the ends move already, at most. Limits stop within the substep what would cross them; what is beyond
+/// one comes back by a fifth in each substep, at 2 m/s or 2 rad/s at most, as the speed stays with the
+/// bodies. Springs as in solver/springs.h. Angles are those of the rotation taken apart about a's x, then y,
+/// then b's z; their rates are the dual basis of these axes, which ends where the second angle comes to 87
+/// degrees. A ball's spring and friction act on the rotation vector, its cone on the angle between the x
+/// axes, its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b).
+int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
+                    std::span<JointRow, state::Hook::kMaxRows> rows);
+
+/// Notes the impulses of a substep in the hook.
+void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, state::Hook& hook);
+
+}  // namespace hooke::solver

@@ -1,0 +1,122 @@
+#include "solver/joints.h"
+
+#include "base/disjoint_sets.h"
+
+#include <algorithm>
+
+namespace hooke::solver {
+
+namespace {
+
+using parallel::Range;
+using state::Hook;
+using state::HookPlace;
+
+constexpr int kArticulationGrain = 1;
+constexpr int kHookGrain = 1024;
+
+bool is_dynamic(const state::Bodies& bodies, std::uint32_t row) {
+  return row != HookPlace::kWorld && bodies.motion[row].inverse_mass > Real(0);
+}
+
+/// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
+std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hooks,
+                                                    const state::Bodies& bodies) {
+  base::DisjointSets sets(bodies.motion.size());
+  for (const Hook& hook : hooks) {
+    if (is_dynamic(bodies, hook.a.body) && is_dynamic(bodies, hook.b.body))
+      sets.merge(hook.a.body, hook.b.body);
+  }
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> group_of(bodies.motion.size(), kNone);
+  std::vector<std::vector<std::uint32_t>> groups;
+  for (std::uint32_t i = 0; i < hooks.size(); ++i) {
+    const std::uint32_t body = is_dynamic(bodies, hooks[i].a.body) ? hooks[i].a.body : hooks[i].b.body;
+    if (!is_dynamic(bodies, body)) continue;
+    std::uint32_t& group = group_of[sets.root(body)];
+    if (group == kNone) {
+      group = static_cast<std::uint32_t>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group].push_back(i);
+  }
+  return groups;
+}
+
+bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
+  return std::any_of(articulation.bodies.begin(), articulation.bodies.end(), [&](std::uint32_t body) {
+    return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
+  });
+}
+
+/// Beyond `most` in this substep and in the last.
+bool breaks(Real now, Real last, Real h, Real most) {
+  return std::min(now, last) > most * h;
+}
+
+void add_up(Real h, Hook& hook) {
+  const Real force = length(hook.impulse);
+  const Real torque = length(hook.angular_impulse);
+  hook.impulse_sum += hook.impulse;
+  hook.angular_impulse_sum += hook.angular_impulse;
+  if (breaks(force, hook.last_impulse, h, hook.break_force) ||
+      breaks(torque, hook.last_angular_impulse, h, hook.break_torque)) {
+    hook.broken = true;
+  }
+  hook.last_impulse = force;
+  hook.last_angular_impulse = torque;
+}
+
+}  // namespace
+
+void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+                  Joints& joints) {
+  joints.articulations.clear();
+  std::vector<std::uint32_t> rest;
+  for (const std::vector<std::uint32_t>& group : find_groups(hooks, bodies)) {
+    std::optional<Articulation> art = make_articulation(group, hooks, bodies, budget);
+    if (art) {
+      joints.articulations.push_back(std::move(*art));
+    } else {
+      rest.insert(rest.end(), group.begin(), group.end());
+    }
+  }
+  build_net(rest, hooks, bodies, joints.net);
+}
+
+void prepare_joints(std::vector<Hook>& hooks, Joints& joints) {
+  prepare_net(joints.net);
+  for (Hook& hook : hooks) {
+    hook.impulse_sum = {};
+    hook.angular_impulse_sum = {};
+  }
+}
+
+void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
+                  Joints& joints) {
+  const auto count = static_cast<int>(joints.articulations.size());
+  parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      Articulation& art = joints.articulations[i];
+      if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
+    }
+  });
+  solve_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
+}
+
+void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
+                  Joints& joints) {
+  relax_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
+  parallel::for_ranges(pool, static_cast<int>(hooks.size()), kHookGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) add_up(h, hooks[i]);
+  });
+}
+
+void finish_joints(Real dt, std::vector<Hook>& hooks) {
+  for (Hook& hook : hooks) {
+    hook.force = (Real(1) / dt) * hook.impulse_sum;
+    hook.torque = (Real(1) / dt) * hook.angular_impulse_sum;
+  }
+}
+
+}  // namespace hooke::solver

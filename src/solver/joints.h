@@ -1,0 +1,54 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "parallel/thread_pool.h"
+#include "solver/articulations.h"
+#include "solver/joint_nets.h"
+#include "state/bodies.h"
+#include "state/hooks.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Hooks between bodies. Groups that can be solved exactly within a budget are articulations; larger nets are
+/// rows in colors.
+///
+/// The order of calls:
+///   build_joints                                            when hooks or bodies came or went
+///   prepare_joints                                          once a step
+///   [solve_joints, then bodies move, then relax_joints]     each substep
+///   finish_joints                                           once a step
+
+namespace hooke::solver {
+
+struct Joints {
+  std::vector<Articulation> articulations;
+  JointNet net;  ///< All hooks that are in none of them.
+};
+
+/// Multiplications for one solution of a group; about a millisecond.
+inline constexpr double kArticulationBudget = 2e6;
+
+/// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
+/// Groups that cost more than `budget` multiplications go into the net.
+void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
+                  Joints& joints);
+
+/// Start of a step: no impulse yet.
+void prepare_joints(std::vector<state::Hook>& hooks, Joints& joints);
+
+/// The rows of a substep of length h [s], with their errors removed. Groups asleep are left alone.
+void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
+                  Joints& joints);
+
+/// After bodies have moved: takes back the velocity that removing errors has added. Only nets need it.
+/// Adds up the impulses of the substep and marks hooks that break.
+void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
+                  Joints& joints);
+
+/// End of a step of length dt [s]: mean forces.
+void finish_joints(Real dt, std::vector<state::Hook>& hooks);
+
+}  // namespace hooke::solver

@@ -1,0 +1,117 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/math.h"
+
+#include "math/symmetric.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Rigid bodies in columns. A row keeps its number as long as its body lives; a removed body leaves a hole
+/// that the next one fills.
+
+namespace hooke::state {
+
+/// How a body moves within a step: what the solver reads and writes, in one cache line.
+///
+/// Angular columns are scaled by the root of the inertia, which is constant within a step: with world inertia
+/// I and S = I^(-1/2), omega_scaled = S^(-1) omega and theta_scaled = S^(-1) theta, where theta is the
+/// rotation since the start of the step. Then a row with direction n at lever r has the angular Jacobian
+/// j = S (r x n), an impulse lambda changes omega_scaled by lambda j, and the effective mass needs only
+/// |j|^2. (docs/notation.md)
+struct alignas(16 * sizeof(Real)) MotionLine {
+  Vec3 v = {};                  ///< Velocity of the center of mass [m/s].
+  Vec3 omega_scaled = {};       ///< [sqrt(J)]
+  Vec3 dx = {};                 ///< Of the center of mass, since the start of the step [m].
+  Vec3 theta_scaled = {};       ///< [sqrt(kg) m]
+  Real inverse_mass = Real(0);  ///< [1/kg]; 0: nothing moves the body, and no kernel writes its line.
+  Real padding[3] = {};
+};
+
+/// Mass of a body about its center, in its own frame. All zero for bodies that nothing moves.
+struct BodyMass {
+  Vec3 center = {};             ///< Center of mass in the body's frame [m].
+  Quat principal = {};          ///< From the principal axes of inertia to the body's frame.
+  Vec3 inertia = {};            ///< About the principal axes [kg m^2].
+  Real mass = Real(0);          ///< [kg]
+  Real inverse_mass = Real(0);  ///< [1/kg]
+};
+
+/// The velocities a body would have, had the contact rows of this substep done nothing. The difference to its
+/// line is what they did, and the warm start of the next substep. Laid out as the first half of a MotionLine.
+struct alignas(8 * sizeof(Real)) FreeLine {
+  Vec3 v = {};             ///< [m/s]
+  Vec3 omega_scaled = {};  ///< [sqrt(J)]
+  Real padding[2] = {};
+};
+
+/// What the step asks about a body once.
+struct BodyTraits {
+  BodyKind kind = BodyKind::kStatic;
+  bool alive = false;  ///< False: a hole.
+  bool collides = true;
+  bool sensor = false;
+  bool bullet = false;
+  bool can_sleep = true;
+  Real linear_damping = Real(0);
+  Real angular_damping = Real(0);
+  Real gravity_scale = Real(1);
+  Real radius = Real(0);        ///< Of the smallest sphere about the center of mass around all shapes [m].
+  Real inner_radius = Real(0);  ///< Of a sphere that fits into the largest shape [m]: how thin it is.
+  FilterDesc filter = {};
+};
+
+/// Columns of equal length; row i describes body i.
+struct Bodies {
+  std::vector<MotionLine> motion;
+  std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
+  std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
+                                       ///< that tumble, now (solver/bodies.h).
+  std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
+  std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
+  std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
+  std::vector<BodyMass> mass;
+  std::vector<BodyTraits> traits;
+  std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.
+  std::vector<Vec3> torque;           ///< External, for the current step [N m]; cleared by finish.
+  std::vector<FreeLine> free_motion;  ///< Lives for one substep; written by the solver.
+  std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
+  std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
+  std::vector<std::uint8_t> asleep;
+  std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
+  std::vector<std::uint32_t> collider_count;
+  std::vector<std::uint32_t> slot;  ///< Of its id.
+  std::vector<MotionDesc> path;     ///< Of kinematic bodies.
+  std::vector<DVec3> path_start;    ///< Where the center was when the path began [m].
+  std::vector<double> path_time;    ///< When it began [s].
+
+  [[nodiscard]] int count() const { return static_cast<int>(motion.size()); }
+
+  template <class Self, class Visit>
+  static void for_each_column(Self& self, Visit&& visit) {
+    visit(self.motion);
+    visit(self.center);
+    visit(self.rotation);
+    visit(self.angular_momentum);
+    visit(self.angular_velocity);
+    visit(self.scale);
+    visit(self.mass);
+    visit(self.traits);
+    visit(self.force);
+    visit(self.torque);
+    visit(self.free_motion);
+    visit(self.odometer);
+    visit(self.rest_time);
+    visit(self.asleep);
+    visit(self.first_collider);
+    visit(self.collider_count);
+    visit(self.slot);
+    visit(self.path);
+    visit(self.path_start);
+    visit(self.path_time);
+  }
+};
+
+}  // namespace hooke::state

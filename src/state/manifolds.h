@@ -1,0 +1,68 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Contacts between bodies: pairs of colliders that are near each other, and the points where they touch.
+
+namespace hooke::state {
+
+/// Where two colliders are closest or overlap.
+struct ContactPoint {
+  Vec3 anchor_a = {};             ///< On A, from A's center of mass, in world axes [m].
+  Vec3 anchor_b = {};             ///< On B, from B's center of mass, in world axes [m].
+  Real separation = Real(0);      ///< Along the normal; negative: overlap [m].
+  Real normal_impulse = Real(0);  ///< Of the last substep [N s], 0 or more.
+  std::uint32_t key = 0;          ///< Features of A and B that meet here: the same from step to step.
+};
+
+/// Up to four points with one normal. A convex pair has one at most; a body on a mesh has one per patch.
+struct Manifold {
+  static constexpr int kMaxPoints = 4;
+
+  std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
+  std::uint32_t collider_b = 0;
+  std::uint32_t body_a = 0;
+  std::uint32_t body_b = 0;
+  std::uint32_t patch = 0;  ///< 0, or the lowest triangle of the patch of a mesh.
+  std::int32_t point_count = 0;
+  Vec3 normal = {};  ///< From A to B, unit.
+  std::array<ContactPoint, kMaxPoints> point = {};
+  // Impulses of the last substep, carried over for the next step's warm start.
+  Vec3 friction_impulse = {};    ///< On B, across the normal [N s].
+  Real twist_impulse = Real(0);  ///< About the normal [N m s].
+  Vec3 rolling_impulse = {};     ///< [N m s]
+  // Surface of the pair, from its materials.
+  Real friction = Real(0);
+  Real static_friction = Real(0);
+  Real restitution = Real(0);
+  Real rolling_friction = Real(0);   ///< [m]
+  Real spinning_friction = Real(0);  ///< [m]
+  Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
+  bool touching = false;             ///< Some point pushed in the last step; written by the solver.
+};
+
+/// Two colliders whose boxes overlap. Rows stand in order of (collider_a, collider_b).
+struct Pair {
+  std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
+  std::uint32_t collider_b = 0;
+  // What the last exact test found, so that the next can be skipped or begin where it ended.
+  Real gap = Real(0);       ///< Separation then; negative: overlap [m].
+  Real odometer = Real(0);  ///< Sum of the two bodies' odometers then [m].
+  std::uint32_t axis = 0;   ///< Features that separated or touched: narrow phase's own code.
+  bool tested = false;      ///< False until the first exact test.
+  // Its manifolds of this step.
+  std::uint32_t first_manifold = 0;
+  std::uint32_t manifold_count = 0;
+};
+
+struct Pairs {
+  std::vector<Pair> pair;
+  std::vector<Manifold> manifold;  ///< In order of pair, then patch.
+};
+
+}  // namespace hooke::state

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "hooke/world.h"
+
+#include "parallel/thread_pool.h"
+#include "world/world_data.h"
+
+#include <cstdint>
+#include <span>
+
+/// \file
+/// The stages of the step that concern bodies as a whole.
+
+namespace hooke::world {
+
+// Sizes below which a job stays on one thread.
+inline constexpr int kBodyGrain = 128;
+inline constexpr int kContactBlockGrain = 4;
+
+/// Calls `kernel(rows)` for parts of the list of awake bodies.
+template <class Kernel>
+void for_bodies(WorldData& w, Kernel&& kernel) {
+  parallel::for_ranges(*w.pool, static_cast<int>(w.awake.size()), kBodyGrain, [&](parallel::Range part) {
+    kernel(std::span<const std::uint32_t>(w.awake).subspan(part.begin, part.count()));
+  });
+}
+
+/// Calls `kernel(blocks)` for each color of the contacts; blocks of one color share no body that moves.
+template <class Kernel>
+void for_contact_colors(WorldData& w, Kernel&& kernel) {
+  for (int c = 0; c < w.body_contacts.color_count(); ++c) {
+    const int first = w.body_contacts.color_begin[c];
+    parallel::for_ranges(*w.pool, w.body_contacts.color_begin[c + 1] - first, kContactBlockGrain,
+                         [&](parallel::Range blocks) {
+                           kernel(parallel::Range{first + blocks.begin, first + blocks.end});
+                         });
+  }
+}
+
+/// Fills `awake`.
+void list_awake_bodies(WorldData& world);
+
+/// Boxes of all colliders that move, the pairs they make, and their manifolds.
+void find_body_contacts(WorldData& world, Real dt);
+
+/// How contacts are solved in this step, with substeps of length `h`.
+void begin_contacts(WorldData& world, Real h);
+
+/// Velocities that bring kinematic bodies to where their paths want them at `time`, `h` from now.
+void drive_kinematic_bodies(WorldData& world, double time, Real h);
+
+/// Puts bodies whose state is not finite back to where the step began, at rest. Returns their number.
+std::uint32_t quarantine_bodies(WorldData& world);
+
+}  // namespace hooke::world

@@ -1,0 +1,73 @@
+#include "world/hooks.h"
+
+#include "world/objects.h"
+
+#include <algorithm>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Hook;
+using state::HookPlace;
+
+std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
+void refresh_hooks(WorldData& world) {
+  const state::Tables& t = world.tables;
+  if (world.joints_revision == t.hook_revision) return;
+  world.joints_revision = t.hook_revision;
+  solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
+  world.hooked_pairs.clear();
+  for (const Hook& hook : t.hooks) {
+    if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
+  }
+  std::sort(world.hooked_pairs.begin(), world.hooked_pairs.end());
+}
+
+bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b) {
+  return std::binary_search(world.hooked_pairs.begin(), world.hooked_pairs.end(), pair_of(body_a, body_b));
+}
+
+void drop_broken_hooks(WorldData& world) {
+  state::Tables& t = world.tables;
+  world.broken_hooks.clear();
+  for (const Hook& hook : t.hooks) {
+    if (hook.broken) world.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
+  }
+  for (const HookId id : world.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
+  if (!world.broken_hooks.empty()) ++t.hook_revision;
+}
+
+void remove_hooks_of(std::uint32_t body, state::Tables& t) {
+  for (std::size_t i = t.hooks.size(); i-- > 0;) {
+    const Hook& hook = t.hooks[i];
+    if (hook.a.body != body && hook.b.body != body) continue;
+    wake_ends(hook, t.bodies);
+    remove_row(t.hook_slots, t.hook_slots.id_of(hook.slot), t.hooks);
+    ++t.hook_revision;
+  }
+}
+
+void wake_ends(const Hook& hook, state::Bodies& bodies) {
+  for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+    if (body == HookPlace::kWorld) continue;
+    bodies.asleep[body] = 0;
+    bodies.rest_time[body] = Real(0);
+  }
+}
+
+void hash_hooks(const state::Tables& t, base::StateHash& hash) {
+  for (const Hook& hook : t.hooks) {
+    hash.add(hook.a.body);
+    hash.add(hook.b.body);
+    for (const Real impulse : hook.row_impulse) hash.add(impulse);
+    for (const double value : hook.value) hash.add(value);
+  }
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "base/hash.h"
+#include "state/tables.h"
+#include "world/world_data.h"
+
+#include <cstdint>
+
+/// \file
+/// The stages of the step that concern hooks as a whole, and what happens to hooks when bodies go.
+
+namespace hooke::world {
+
+/// Groups of hooks for the solver, and the pairs that do not collide, if hooks or their bodies changed.
+void refresh_hooks(WorldData& world);
+
+/// Whether a hook that keeps them apart joins two bodies. Valid after refresh_hooks.
+[[nodiscard]] bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b);
+
+/// Takes the hooks that broke in this step out of the world and lists them.
+void drop_broken_hooks(WorldData& world);
+
+/// Takes the hooks of a body out of the world, before the body goes.
+void remove_hooks_of(std::uint32_t body, state::Tables& tables);
+
+/// Wakes the bodies at both ends.
+void wake_ends(const state::Hook& hook, state::Bodies& bodies);
+
+/// Adds the state of hooks.
+void hash_hooks(const state::Tables& tables, base::StateHash& hash);
+
+}  // namespace hooke::world

@@ -1,0 +1,130 @@
+#include "world/sleep.h"
+
+#include "base/disjoint_sets.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Bodies;
+using state::Manifold;
+
+constexpr Real kRestSpeed = Real(0.05);  ///< Of the fastest point [m/s].
+constexpr Real kRestTime = Real(0.5);    ///< [s]
+
+bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
+  return body != state::HookPlace::kWorld && bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
+/// Pushes, or overlaps: what is only near does not wake.
+bool touches(const Manifold& manifold) {
+  if (manifold.touching) return true;
+  return std::any_of(manifold.point.begin(), manifold.point.begin() + manifold.point_count,
+                     [](const state::ContactPoint& p) { return p.separation < Real(0); });
+}
+
+/// Will overlap within `dt` at the bodies' present speeds: a sleeper that is hit must be awake in that step,
+/// or it takes the hit like a wall.
+bool meets(const Bodies& bodies, const Manifold& manifold, Real dt) {
+  const auto speed = [&](std::uint32_t body, Vec3 anchor) {
+    return dot(manifold.normal, bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor));
+  };
+  return std::any_of(manifold.point.begin(), manifold.point.begin() + manifold.point_count,
+                     [&](const state::ContactPoint& p) {
+                       const Real parting =
+                           speed(manifold.body_b, p.anchor_b) - speed(manifold.body_a, p.anchor_a);
+                       return p.separation + dt * parting < Real(0);
+                     });
+}
+
+bool sleeps(const Bodies& bodies, std::uint32_t body) {
+  return body != state::HookPlace::kWorld && bodies.asleep[body] != 0;
+}
+
+/// Awake and in motion: a kinematic body that stands still wakes nobody.
+bool disturbs(const Bodies& bodies, std::uint32_t body) {
+  if (body == state::HookPlace::kWorld || bodies.traits[body].kind == BodyKind::kStatic ||
+      bodies.asleep[body] != 0)
+    return false;
+  return is_dynamic(bodies, body) || bodies.motion[body].v != Vec3{} ||
+         bodies.angular_velocity[body] != Vec3{};
+}
+
+void wake(Bodies& bodies, std::uint32_t body) {
+  bodies.asleep[body] = 0;
+  bodies.rest_time[body] = Real(0);
+}
+
+/// For how long each island has been at rest: the least over its members, at its root.
+std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSets& islands) {
+  const Bodies& bodies = world.tables.bodies;
+  std::vector<Real> rest(bodies.motion.size(), std::numeric_limits<Real>::infinity());
+  for (const std::uint32_t body : world.awake) {
+    if (!is_dynamic(bodies, body)) continue;
+    const Real own = bodies.traits[body].can_sleep ? bodies.rest_time[body] : Real(0);
+    Real& least = rest[islands.root(body)];
+    least = std::min(least, own);
+  }
+  return rest;
+}
+
+}  // namespace
+
+bool wake_touched(WorldData& world, Real dt) {
+  Bodies& bodies = world.tables.bodies;
+  bool any = false;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Manifold& m : world.tables.pairs.manifold) {
+      const bool sleeper_a = bodies.asleep[m.body_a] != 0;
+      const bool sleeper_b = bodies.asleep[m.body_b] != 0;
+      if (sleeper_a == sleeper_b || !(touches(m) || meets(bodies, m, dt))) continue;
+      if (!disturbs(bodies, sleeper_a ? m.body_b : m.body_a)) continue;
+      wake(bodies, sleeper_a ? m.body_a : m.body_b);
+      changed = any = true;
+    }
+    for (const state::Hook& hook : world.tables.hooks) {
+      const bool sleeper_a = sleeps(bodies, hook.a.body);
+      const bool sleeper_b = sleeps(bodies, hook.b.body);
+      if (sleeper_a == sleeper_b || !disturbs(bodies, sleeper_a ? hook.b.body : hook.a.body)) continue;
+      wake(bodies, sleeper_a ? hook.a.body : hook.b.body);
+      changed = any = true;
+    }
+  }
+  return any;
+}
+
+void put_to_sleep(WorldData& world, Real dt) {
+  state::Tables& t = world.tables;
+  Bodies& bodies = t.bodies;
+  if (!t.desc.sleeping || world.awake.empty()) return;
+  for (const std::uint32_t body : world.awake) {
+    const Real speed =
+        length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
+    bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
+  }
+  base::DisjointSets islands(bodies.motion.size());
+  for (const Manifold& m : t.pairs.manifold) {
+    if (touches(m) && is_dynamic(bodies, m.body_a) && is_dynamic(bodies, m.body_b))
+      islands.merge(m.body_a, m.body_b);
+  }
+  for (const state::Hook& hook : t.hooks) {
+    if (is_dynamic(bodies, hook.a.body) && is_dynamic(bodies, hook.b.body))
+      islands.merge(hook.a.body, hook.b.body);
+  }
+  const std::vector<Real> rest = rest_time_of_islands(world, islands);
+  for (const std::uint32_t body : world.awake) {
+    if (!is_dynamic(bodies, body) || rest[islands.root(body)] < kRestTime) continue;
+    bodies.asleep[body] = 1;
+    bodies.motion[body].v = {};
+    bodies.angular_momentum[body] = {};
+    bodies.angular_velocity[body] = {};
+    bodies.free_motion[body] = {};
+  }
+}
+
+}  // namespace hooke::world

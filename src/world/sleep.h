@@ -1,0 +1,17 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "world/world_data.h"
+
+namespace hooke::world {
+
+/// Wakes the bodies that sleep and are touched, or will be within `dt`, by one that moves, and with each all
+/// that it touches. Returns whether any woke; `awake` is then out of date.
+bool wake_touched(WorldData& world, Real dt);
+
+/// Puts to sleep the islands (bodies that touch each other or are hooked to each other) all of whose bodies
+/// have been slower than 5 cm/s for half a second.
+void put_to_sleep(WorldData& world, Real dt);
+
+}  // namespace hooke::world

@@ -1,0 +1,136 @@
+/// The public API over hooks: adding, removing, reading, driving.
+
+#include "hooke/world.h"
+
+#include "build/build.h"
+#include "world/hooks.h"
+#include "world/objects.h"
+#include "world/world_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hooke {
+
+namespace {
+
+using state::Hook;
+using state::Tables;
+
+const Hook* find_hook(const Tables& t, HookId id) {
+  const std::uint32_t row = t.hook_slots.find(id);
+  return row == t.hook_slots.kNone ? nullptr : &t.hooks[row];
+}
+
+/// The freedom that a hook's kind is about; nothing where there is none or more than one.
+int main_freedom(HookKind kind) {
+  switch (kind) {
+    case HookKind::kHinge:
+      return 3;
+    case HookKind::kSlider:
+    case HookKind::kDistance:
+    case HookKind::kWheel:
+      return 0;
+    case HookKind::kBall:
+    case HookKind::kFixed:
+    case HookKind::kSixDegrees:
+      break;
+  }
+  return -1;
+}
+
+Error no_such_freedom(const char* what) {
+  return {ErrorCode::kUnsupported, what, "does not exist on a hook of this kind"};
+}
+
+/// Changes a hook and wakes what it holds. Its rows may be others than before.
+template <class Change>
+Result<void> change_hook(Tables& t, HookId id, Change&& change) {
+  const std::uint32_t row = t.hook_slots.find(id);
+  if (row == t.hook_slots.kNone) return world::stale("hook");
+  Hook& hook = t.hooks[row];
+  const Result<void> done = change(hook);
+  if (!done) return done.error();
+  world::wake_ends(hook, t.bodies);
+  ++t.hook_revision;
+  return {};
+}
+
+}  // namespace
+
+Result<HookId> World::add_hook(const HookDesc& desc) {
+  Tables& t = data_->tables;
+  const Result<void> added = build::add_hook(desc, t);
+  if (!added) return added.error();
+  Hook& hook = t.hooks.back();
+  const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(t.hooks.size()) - 1);
+  hook.slot = id.slot;
+  world::wake_ends(hook, t.bodies);
+  return id;
+}
+
+bool World::remove(HookId id) {
+  Tables& t = data_->tables;
+  const Hook* hook = find_hook(t, id);
+  if (hook == nullptr) return false;
+  world::wake_ends(*hook, t.bodies);
+  ++t.hook_revision;
+  return world::remove_row(t.hook_slots, id, t.hooks);
+}
+
+HookForce World::hook_force(HookId id) const {
+  const Hook* hook = find_hook(data_->tables, id);
+  return hook == nullptr ? HookForce{} : HookForce{hook->force, hook->torque};
+}
+
+Real World::hook_value(HookId id) const {
+  const Hook* hook = find_hook(data_->tables, id);
+  if (hook == nullptr || main_freedom(hook->kind) < 0) return Real(0);
+  return static_cast<Real>(hook->value[main_freedom(hook->kind)]);
+}
+
+const std::vector<HookId>& World::broken_hooks() const {
+  return data_->broken_hooks;
+}
+
+Result<void> World::set_motor(HookId id, const HookMotor& motor) {
+  const Result<void> good = build::validate(motor);
+  if (!good) return good.error();
+  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+    if (hook.kind == HookKind::kBall) {
+      for (int i = 3; i < 6; ++i) hook.freedom[i].motor = {Real(0), motor.max_force};
+      hook.freedom[3].motor.speed = motor.speed;
+      return {};
+    }
+    const int i = hook.kind == HookKind::kWheel ? 5 : main_freedom(hook.kind);
+    if (i < 0) return no_such_freedom("motor");
+    hook.freedom[i].motor = motor;
+    return {};
+  });
+}
+
+Result<void> World::set_spring(HookId id, const HookSpring& spring) {
+  const Result<void> good = build::validate(spring);
+  if (!good) return good.error();
+  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+    if (hook.kind == HookKind::kBall) {
+      for (int i = 3; i < 6; ++i) hook.freedom[i].spring = {spring.stiffness, spring.damping};
+      return {};
+    }
+    if (main_freedom(hook.kind) < 0) return no_such_freedom("spring");
+    hook.freedom[main_freedom(hook.kind)].spring = spring;
+    return {};
+  });
+}
+
+Result<void> World::set_steering(HookId id, Real angle) {
+  if (!std::isfinite(angle)) return world::not_finite("angle");
+  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+    if (hook.kind != HookKind::kWheel) return no_such_freedom("steering");
+    hook.freedom[3].spring.target = angle;
+    return {};
+  });
+}
+
+}  // namespace hooke

@@ -1,0 +1,234 @@
+#include "collision/narrow_phase.h"
+
+#include "collision/scene.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <vector>
+
+using hooke::DVec3;
+using hooke::Quat;
+using hooke::Real;
+using hooke::Shape;
+using hooke::Vec3;
+using hooke::state::Manifold;
+using hooke::test::PairScene;
+
+namespace {
+
+const Shape kCube = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
+
+}  // namespace
+
+TEST_SUITE("collision/narrow_phase") {
+  TEST_CASE("a cube on a half-space rests on its four lower corners") {
+    PairScene scene;
+    scene.add_static(Shape::half_space(), {0, 0, 0});
+    scene.add_dynamic(kCube, {3, 0.499, 0});
+    scene.update();
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    const Manifold& m = scene.pairs.manifold[0];
+    CHECK(m.point_count == 4);
+    CHECK(m.normal == Vec3{Real(0), Real(1), Real(0)});
+    for (int i = 0; i < m.point_count; ++i) {
+      const auto& p = m.point[static_cast<std::size_t>(i)];
+      CHECK(p.separation == doctest::Approx(-0.001).epsilon(1e-3));
+      CHECK(p.anchor_b.y == doctest::Approx(-0.5));
+      CHECK(p.anchor_a.y == doctest::Approx(0).epsilon(1e-6));
+      CHECK(std::fabs(p.anchor_b.x) == doctest::Approx(0.5));
+      CHECK(p.anchor_a.x == doctest::Approx(p.anchor_b.x + 3));
+    }
+  }
+
+  TEST_CASE("far from the world's origin contacts are as precise as near it") {
+    PairScene near;
+    PairScene far;
+    const DVec3 away = {1e6, 3e5, -2e6};
+    for (PairScene* scene : {&near, &far}) {
+      const DVec3 shift = scene == &far ? away : DVec3{};
+      scene->add_static(Shape::half_space(), shift + DVec3{-40, 0, 0});
+      scene->add_dynamic(kCube, shift + DVec3{0, 0.5 - 1e-3, 0});
+      scene->add_dynamic(kCube, shift + DVec3{0.25, 1.5 - 2e-3, 0});
+      scene->update();
+      REQUIRE(scene->pairs.manifold.size() == 2);
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& a = near.pairs.manifold[i].point[0];
+      const auto& b = far.pairs.manifold[i].point[0];
+      CHECK(std::fabs(a.separation - b.separation) < 1e-6);
+      CHECK(length(a.anchor_b - b.anchor_b) < 1e-6);
+    }
+  }
+
+  TEST_CASE("impulses follow their points while aligned cubes shiver") {
+    PairScene scene;
+    scene.add_dynamic(kCube, {0, 0, 0});
+    const std::uint32_t upper = scene.add_dynamic(kCube, {0, 0.9999, 0});
+    scene.update();
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    // Rounding decides which clip makes a corner: a vertex, or a crossing of edges.
+    for (int step = 0; step < 50; ++step) {
+      Manifold& m = scene.pairs.manifold[0];
+      REQUIRE(m.point_count == 4);
+      for (auto& p : m.point) p.normal_impulse = p.anchor_a.x + Real(2) * p.anchor_a.z + Real(3);
+      m.friction_impulse = {Real(1), Real(2), Real(3)};
+      m.twist_impulse = Real(4);
+      m.touching = true;
+      scene.move(upper, {1e-5 * (step % 3 - 1), 0, 1e-5 * (step % 5 - 2)});
+      scene.bodies.rotation[upper] =
+          hooke::quaternion_about(Vec3{Real(0), Real(1), Real(0)}, Real(1e-5) * Real(step % 7 - 3));
+      scene.update();
+      const Manifold& now = scene.pairs.manifold[0];
+      REQUIRE(now.point_count == 4);
+      for (const auto& p : now.point) {
+        CHECK(std::fabs(p.normal_impulse - (p.anchor_a.x + Real(2) * p.anchor_a.z + Real(3))) < Real(1e-3));
+      }
+      CHECK(length(now.friction_impulse - Vec3{Real(1), Real(0), Real(3)}) < Real(1e-3));
+      CHECK(now.twist_impulse == Real(4));
+      CHECK(now.touching);
+    }
+  }
+
+  TEST_CASE("an axis that is hardly better than the last one is not taken") {
+    // A cube with its edge on another's: two faces hold them off equally well.
+    PairScene scene;
+    scene.add_dynamic(kCube, {0, 0, 0});
+    const std::uint32_t other = scene.add_dynamic(kCube, {0.9991, 0.9990, 0});
+    scene.update();
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    CHECK(scene.pairs.manifold[0].normal.y == doctest::Approx(0));
+    scene.move(other, {-0.0003, 0, 0});
+    scene.update();
+    CHECK(scene.pairs.manifold[0].normal.x == doctest::Approx(1));
+    scene.move(other, {-0.0006, 0, 0});
+    scene.update();
+    CHECK(scene.pairs.manifold[0].normal.y == doctest::Approx(1));
+  }
+
+  TEST_CASE("a pair that is apart is tested again only when it may have met") {
+    PairScene scene;
+    scene.add_static(kCube, {0, 0, 0});
+    const std::uint32_t moving = scene.add_dynamic(kCube, {3, 0, 0});
+    scene.update();
+    CHECK(scene.counts.tested == 1);
+    int tested = 0;
+    int first_manifold = 0;
+    for (int step = 1; step <= 200; ++step) {
+      scene.move(moving, {-0.01, 0, 0});
+      scene.update();
+      tested += int(scene.counts.tested);
+      CHECK(scene.counts.tested + scene.counts.skipped == 1);
+      if (scene.pairs.manifold.empty()) continue;
+      first_manifold = step;
+      break;
+    }
+    // Two meters apart, seen from two centimeters on.
+    CHECK(first_manifold >= 198);
+    CHECK(first_manifold <= 199);
+    CHECK(tested < 10);
+  }
+
+  TEST_CASE("what stands or sleeps keeps its manifold and is not tested") {
+    PairScene scene;
+    scene.add_static(Shape::half_space(), {0, 0, 0});
+    const std::uint32_t cube = scene.add_dynamic(kCube, {0, 0.5, 0});
+    scene.update();
+    scene.pairs.manifold[0].point[2].normal_impulse = Real(7);
+    scene.bodies.asleep[cube] = 1;
+    scene.update();
+    CHECK(scene.counts.skipped == 1);
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    CHECK(scene.pairs.manifold[0].point[2].normal_impulse == Real(7));
+    scene.bodies.asleep[cube] = 0;
+    scene.update();
+    CHECK(scene.counts.tested == 1);
+  }
+
+  TEST_CASE("points are kept as far apart as the bodies' speeds can close in a step") {
+    PairScene scene;
+    scene.add_static(Shape::half_space(), {0, 0, 0});
+    const std::uint32_t ball = scene.add_dynamic(Shape::sphere(Real(0.5)), {0, 0.55, 0});
+    scene.update();
+    CHECK(scene.pairs.manifold.empty());
+    scene.bodies.motion[ball].v = {Real(0), Real(-3), Real(0)};
+    scene.update();
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    CHECK(double(scene.pairs.manifold[0].point[0].separation) == doctest::Approx(0.05));
+  }
+
+  TEST_CASE("the surface of a pair follows the rule, and the table of materials") {
+    PairScene scene;
+    const std::uint32_t floor = scene.add_static(Shape::half_space(), {0, 0, 0});
+    const std::uint32_t cube = scene.add_dynamic(kCube, {0, 0.5, 0});
+    scene.colliders.surface[floor] = {.friction = Real(0.9),
+                                      .static_friction = Real(1.6),
+                                      .restitution = Real(0.2),
+                                      .rolling_friction = Real(0.01),
+                                      .surface_velocity = {Real(1), Real(0), Real(0)},
+                                      .material = 3};
+    scene.colliders.surface[cube] = {.friction = Real(0.4), .restitution = Real(0.5), .material = 5};
+    scene.update();
+    const Manifold m = scene.pairs.manifold.at(0);
+    CHECK(double(m.friction) == doctest::Approx(0.6));
+    CHECK(double(m.static_friction) == doctest::Approx(0.8));
+    CHECK(m.restitution == Real(0.5));
+    CHECK(m.rolling_friction == Real(0.01));
+    CHECK(m.surface_velocity == Vec3{Real(-1), Real(0), Real(0)});
+    scene.materials = {{.a = 5, .b = 3, .friction = Real(0.1), .restitution = Real(1)}};
+    scene.update();
+    CHECK(scene.pairs.manifold.at(0).friction == Real(0.1));
+    CHECK(scene.pairs.manifold.at(0).static_friction == Real(0.1));
+    CHECK(scene.pairs.manifold.at(0).restitution == Real(1));
+  }
+
+  TEST_CASE("merged pairs keep what they remember, in order") {
+    hooke::state::Pairs pairs;
+    merge_pairs(std::vector<hooke::collision::ColliderPair>{{1, 2}, {1, 4}, {3, 4}}, pairs);
+    pairs.pair[1].gap = Real(5);
+    merge_pairs(std::vector<hooke::collision::ColliderPair>{{0, 9}, {1, 4}, {2, 4}}, pairs);
+    REQUIRE(pairs.pair.size() == 3);
+    CHECK(pairs.pair[0].collider_b == 9);
+    CHECK(pairs.pair[1].gap == Real(5));
+    CHECK(pairs.pair[2].collider_a == 2);
+    CHECK_FALSE(pairs.pair[2].tested);
+  }
+
+  TEST_CASE("any number of workers makes the same manifolds") {
+    const auto run = [](int workers) {
+      PairScene scene;
+      hooke::parallel::ThreadPool pool(workers);
+      scene.add_static(Shape::half_space(), {0, 0, 0});
+      for (int i = 0; i < 40; ++i) {
+        const Quat turn = hooke::quaternion_about(Vec3{Real(1), Real(2), Real(3)}, Real(0.1) * Real(i));
+        const DVec3 place = {0.7 * (i % 5), 0.4 + 0.65 * (i / 10), 0.6 * (i % 10 / 5)};
+        scene.add_dynamic(i % 3 == 0 ? Shape::cylinder(Real(0.3), Real(0.4)) : kCube, place, turn);
+      }
+      for (int step = 0; step < 3; ++step) {
+        std::vector<hooke::collision::ColliderPair> found;
+        for (std::uint32_t a = 0; a < 41; ++a) {
+          for (std::uint32_t b = a + 1; b < 41; ++b) found.push_back({a, b});
+        }
+        merge_pairs(found, scene.pairs);
+        hooke::collision::update_manifolds(pool, scene.bodies, scene.colliders, {}, Real(0.01), scene.pairs);
+        for (std::uint32_t body = 1; body < 41; ++body) scene.move(body, {0.001 * body, -0.002, 0});
+      }
+      return scene.pairs;
+    };
+    const hooke::state::Pairs one = run(1);
+    const hooke::state::Pairs five = run(5);
+    REQUIRE(one.manifold.size() > 40);
+    REQUIRE(one.manifold.size() == five.manifold.size());
+    for (std::size_t i = 0; i < one.manifold.size(); ++i) {
+      const Manifold& a = one.manifold[i];
+      const Manifold& b = five.manifold[i];
+      REQUIRE(a.point_count == b.point_count);
+      CHECK(a.collider_a == b.collider_a);
+      CHECK(a.normal == b.normal);
+      for (std::size_t k = 0; k < std::size_t(a.point_count); ++k) {
+        CHECK(a.point[k].anchor_a == b.point[k].anchor_a);
+        CHECK(a.point[k].separation == b.point[k].separation);
+        CHECK(a.point[k].key == b.point[k].key);
+      }
+    }
+  }
+}

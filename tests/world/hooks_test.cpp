@@ -1,0 +1,154 @@
+#include "hooke/hooke.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <string>
+#include <vector>
+
+namespace hooke {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+double d(Real x) {
+  return static_cast<double>(x);
+}
+
+void run(World& world, double seconds) {
+  for (int i = 0; i < static_cast<int>(std::lround(60 * seconds)); ++i) world.step(Real(1) / Real(60));
+}
+
+BodyId add_ball(World& world, DVec3 position, Real radius = Real(0.2)) {
+  return world
+      .add_body({.kind = BodyKind::kDynamic,
+                 .shape = {.kind = ShapeKind::kSphere, .radius = radius},
+                 .position = position,
+                 .mass = Real(2)})
+      .value();
+}
+
+void add_ground(World& world) {
+  (void)world.add_body({.shape = {.kind = ShapeKind::kHalfSpace}}).value();
+}
+
+TEST_SUITE("world/hooks") {
+  TEST_CASE("a weight hangs on its hook, which says its force") {
+    World world = World::create().value();
+    const BodyId ball = add_ball(world, {0, 1, 0});
+    const HookId hook = world.add_hook({.b = {ball}, .anchor = {0, 2, 0}}).value();
+    run(world, 1);
+    CHECK(world.center_of_mass(ball).y == doctest::Approx(1).epsilon(1e-5));
+    CHECK(d(world.hook_force(hook).force.y) == doctest::Approx(2 * kGravity).epsilon(1e-4));
+  }
+
+  TEST_CASE("a hook that breaks is listed once and is gone") {
+    World world = World::create().value();
+    const BodyId ball = add_ball(world, {0, 1, 0});
+    const HookId kept = world.add_hook({.b = {add_ball(world, {5, 1, 0})}, .anchor = {5, 2, 0}}).value();
+    const HookId hook = world.add_hook({.b = {ball}, .anchor = {0, 2, 0}, .break_force = Real(19)}).value();
+    world.step(Real(1) / Real(60));
+    REQUIRE(world.broken_hooks() == std::vector<HookId>{hook});
+    CHECK_FALSE(world.remove(hook));
+    CHECK(world.set_motor(hook, {}).error().code == ErrorCode::kStaleId);
+    run(world, 0.5);
+    CHECK(world.broken_hooks().empty());
+    CHECK(world.center_of_mass(ball).y < 0);
+    CHECK(world.remove(kept));
+  }
+
+  TEST_CASE("a driven wheel rolls with v = omega r") {
+    World world = World::create().value();
+    add_ground(world);
+    const BodyId car =
+        world
+            .add_body({.kind = BodyKind::kDynamic,
+                       .shape = {.kind = ShapeKind::kBox, .half_extents = {1, Real(0.1), Real(0.5)}},
+                       .position = {0, 0.6, 0},
+                       .mass = Real(20)})
+            .value();
+    for (const double x : {-0.8, 0.8}) {
+      for (const double z : {-0.8, 0.8}) {
+        const BodyId wheel = add_ball(world, {x, 0.3, z}, Real(0.3));
+        (void)world
+            .add_hook({.kind = HookKind::kWheel,
+                       .a = {car},
+                       .b = {wheel},
+                       .anchor = {x, 0.3, z},
+                       .second_axis = Vec3{Real(0), Real(0), Real(1)},
+                       .limits = {.lower = Real(-0.1), .upper = Real(0.1)},
+                       .spring = {.stiffness = Real(2000), .damping = Real(200)},
+                       .motor = {.speed = Real(-10), .max_force = Real(5)}})
+            .value();
+      }
+    }
+    run(world, 5);
+    CHECK(d(world.velocity(car).x) == doctest::Approx(10 * 0.3).epsilon(0.02));
+    CHECK(std::abs(world.center_of_mass(car).z) < 0.01);
+    CHECK(world.center_of_mass(car).y == doctest::Approx(0.6 - 20 * kGravity / 4 / 2000).epsilon(0.02));
+  }
+
+  TEST_CASE("hooked bodies do not touch each other unless asked to") {
+    for (const bool collide : {false, true}) {
+      World world = World::create({.gravity = {}}).value();
+      const BodyId a = add_ball(world, {0, 0, 0});
+      const BodyId b = add_ball(world, {0.3, 0, 0});
+      (void)world
+          .add_hook({.kind = HookKind::kSlider,
+                     .a = {a},
+                     .b = {b},
+                     .axis = {Real(1), Real(0), Real(0)},
+                     .collide = collide})
+          .value();
+      run(world, 1);
+      CHECK((length(world.center_of_mass(b) - world.center_of_mass(a)) > 0.35) == collide);
+    }
+  }
+
+  TEST_CASE("a chain falls asleep as a whole, and wakes as a whole") {
+    World world = World::create().value();
+    std::vector<BodyId> ball;
+    for (int i = 0; i < 4; ++i) {
+      ball.push_back(add_ball(world, {0, -1.0 * i, 0}));
+      (void)world
+          .add_hook({.a = {i == 0 ? BodyId{} : ball[i - 1]}, .b = {ball[i]}, .anchor = {0, 0.5 - i, 0}})
+          .value();
+    }
+    run(world, 2);
+    for (const BodyId id : ball) CHECK(world.asleep(id));
+    REQUIRE(world.apply_impulse(ball[3], {Real(1), Real(0), Real(0)}));
+    run(world, 0.05);
+    for (const BodyId id : ball) CHECK_FALSE(world.asleep(id));
+  }
+
+  TEST_CASE("the hooks of a body go with it, and others keep their ids") {
+    World world = World::create().value();
+    const BodyId a = add_ball(world, {0, 0, 0});
+    const BodyId b = add_ball(world, {1, 0, 0});
+    const HookId first = world.add_hook({.a = {a}, .b = {b}}).value();
+    const HookId second = world.add_hook({.kind = HookKind::kHinge, .b = {b}}).value();
+    CHECK(world.remove(a));
+    CHECK_FALSE(world.remove(first));
+    CHECK(world.set_motor(second, {.speed = Real(1), .max_force = Real(1)}));
+    CHECK(world.set_steering(second, Real(0.1)).error().code == ErrorCode::kUnsupported);
+    run(world, 0.2);
+    CHECK(world.remove(second));
+  }
+
+  TEST_CASE("a snapshot brings hooks back, and the bits with them") {
+    World world = World::create().value();
+    const BodyId ball = add_ball(world, {1, 0, 0});
+    const HookId hook =
+        world.add_hook({.kind = HookKind::kHinge, .b = {ball}, .axis = {Real(0), Real(0), Real(1)}}).value();
+    run(world, 0.5);
+    const Snapshot snapshot = world.snapshot();
+    run(world, 0.5);
+    const std::uint64_t hash = world.state_hash();
+    CHECK(world.remove(hook));
+    REQUIRE(world.restore(snapshot));
+    run(world, 0.5);
+    CHECK(world.state_hash() == hash);
+  }
+}
+
+}  // namespace
+}  // namespace hooke
