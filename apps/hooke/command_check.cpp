@@ -23,7 +23,7 @@ int command_check(Arguments arguments) {
       "  hooke check\n"
       "  hooke check V7 V17 --json check.json\n"
       "  hooke check --stepper rk4\n"
-      "  hooke check --stepper all --markdown goals.md\n"
+      "  hooke check V1 V4 --stepper all --markdown goals.md\n"
       "  hooke check --list");
   if (const auto code = parse(app, arguments)) return *code;
   return check::check_command(options);
