@@ -177,6 +177,14 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
                                                              tables.contacts.normal_force.end(),
                                                              [](Real n) { return n > Real(0); }));
+  for (const state::Manifold& manifold : tables.pairs.manifold) {
+    for (int i = 0; i < manifold.point_count; ++i)
+      report.contacts += manifold.point[i].normal_impulse > Real(0) ? 1 : 0;
+  }
+  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size());
+  report.bodies_awake = static_cast<std::uint32_t>(
+      std::count_if(world.awake.begin(), world.awake.end(),
+                    [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
   if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
   tables.any_force = false;
   tables.time += dt;

@@ -172,7 +172,16 @@ TEST_SUITE("world/bodies") {
     const Measurement at_rest = world.measure();
     CHECK(at_rest.energy.kinetic < 1e-6);
     CHECK(at_rest.largest_penetration < 0.02);
-    CHECK(world.step(Real(1) / Real(60)).bodies_awake == 0);
+    const StepReport asleep = world.step(Real(1) / Real(60));
+    CHECK(asleep.bodies_awake == 0);
+    CHECK(asleep.contacts >= 60);  // each touches something
+    CHECK(asleep.pairs >= 60);
+
+    take(world.add_body(cube({0, 6, 0})));
+    CHECK(world.step(Real(1) / Real(60)).bodies_awake == 1);
+    std::uint32_t most = 0;
+    for (int i = 0; i < 90; ++i) most = std::max(most, world.step(Real(1) / Real(60)).bodies_awake);
+    CHECK(most > 3);  // what it falls on, and what that touches
   }
 
   TEST_CASE("the same bits for any number of workers, on any instruction set, and after a restoration") {
