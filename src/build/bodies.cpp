@@ -1,6 +1,7 @@
 #include "build/build.h"
 #include "build/checks.h"
 #include "geometry/mass_properties.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +79,7 @@ std::string prefix_of(const BodyDesc& desc, std::size_t part) {
 }
 
 /// Meshes and hulls are made from the mesh that the shape names.
-Result<ColliderShape> find_shape(const Shape& shape, const std::string& where, const Tables& t) {
+Result<ColliderShape> find_shape(const Shape& shape, const std::string& where, Tables& t) {
   ColliderShape result = {shape, nullptr, nullptr};
   if (shape.kind == ShapeKind::kBox) {
     result.hull = std::make_shared<geometry::ConvexHull>(geometry::make_box_hull(shape.half_extents));
@@ -90,9 +91,12 @@ Result<ColliderShape> find_shape(const Shape& shape, const std::string& where, c
   }
   result.mesh = t.meshes[row];
   if (shape.kind == ShapeKind::kMesh) return result;
-  Result<geometry::ConvexHull> hull = geometry::make_convex_hull(result.mesh->desc.positions);
-  if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
-  result.hull = std::make_shared<geometry::ConvexHull>(std::move(hull.value()));
+  if (!t.hulls[row]) {
+    Result<geometry::ConvexHull> hull = geometry::make_convex_hull(result.mesh->desc.positions);
+    if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
+    t.hulls[row] = std::make_shared<geometry::ConvexHull>(std::move(hull.value()));
+  }
+  result.hull = t.hulls[row];
   return result;
 }
 
@@ -102,7 +106,7 @@ MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
   return geometry::moved(solid, part.rotation, vector_cast<double>(part.position));
 }
 
-Result<std::vector<Part>> make_parts(const BodyDesc& desc, const Tables& t) {
+Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
   std::vector<Part> parts;
   const std::vector<PartDesc> descs = parts_of(desc);
   for (std::size_t i = 0; i < descs.size(); ++i) {
@@ -244,13 +248,6 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
   return traits;
 }
 
-/// L = R I R^T omega.
-Vec3 momentum_of(const state::BodyMass& mass, Quat rotation, Vec3 omega) {
-  const Quat axes = rotation * mass.principal;
-  const Vec3 local = rotate(conjugate(axes), omega);
-  return rotate(axes, {mass.inertia.x * local.x, mass.inertia.y * local.y, mass.inertia.z * local.z});
-}
-
 }  // namespace
 
 Result<void> validate(const BodyDesc& body) {
@@ -295,7 +292,7 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.motion[row] = {.inverse_mass = mass.inverse_mass};
   const bool moves = desc.kind != BodyKind::kStatic;
   b.motion[row].v = moves ? desc.velocity : Vec3{};
-  b.angular_momentum[row] = momentum_of(mass, rotation, desc.angular_velocity);
+  b.angular_momentum[row] = state::angular_momentum_of(mass, rotation, desc.angular_velocity);
   b.angular_velocity[row] = moves ? desc.angular_velocity : Vec3{};
   b.traits[row] = traits_of(desc, parts, mass.center);
   b.path[row] = desc.motion;

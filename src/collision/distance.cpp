@@ -36,14 +36,7 @@ Vec3 support_of_cone(const Convex& c, Vec3 d) {
 
 Vec3 support_of_hull(const Convex& c, Vec3 d) {
   const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
-  std::size_t best = 0;
-  Real farthest = -std::numeric_limits<Real>::infinity();
-  for (std::size_t i = 0; i < c.hull->vertices.size(); ++i) {
-    const Real along = dot(local, c.hull->vertices[i]);
-    best = along > farthest ? i : best;
-    farthest = along > farthest ? along : farthest;
-  }
-  return c.center + c.axes * c.hull->vertices[best];
+  return c.center + c.axes * c.hull->vertices[geometry::support(*c.hull, local)];
 }
 
 Vec3 support_of_triangle(const Convex& c, Vec3 d) {

@@ -43,14 +43,7 @@ Vec3 vertex_of(const Convex& c, std::size_t i) {
 
 Vec3 farthest_vertex(const Convex& c, Vec3 d) {
   const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
-  std::size_t best = 0;
-  Real farthest = -std::numeric_limits<Real>::infinity();
-  for (std::size_t i = 0; i < c.hull->vertices.size(); ++i) {
-    const Real along = dot(local, c.hull->vertices[i]);
-    best = along > farthest ? i : best;
-    farthest = along > farthest ? along : farthest;
-  }
-  return vertex_of(c, best);
+  return vertex_of(c, geometry::support(*c.hull, local));
 }
 
 Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::uint32_t side) {

@@ -42,6 +42,14 @@ std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
   return rows;
 }
 
+/// The frames of `colliders` as one object sees them: made once for all of its particles.
+std::vector<Frame> frames_of(const state::Tables& t, const std::vector<std::uint32_t>& colliders,
+                             const state::Deformable& object) {
+  std::vector<Frame> frames;
+  for (const std::uint32_t c : colliders) frames.push_back(frame_of(t, c, object));
+  return frames;
+}
+
 struct Key {
   std::uint32_t particle, collider, feature;
 
@@ -70,13 +78,14 @@ struct Finder {
   std::vector<std::uint32_t> triangles;  // of one query
 };
 
-/// Appends the rows of one particle against one body.
-void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, Real way, Finder& finder) {
-  const state::Deformable& object = t.objects[object_row];
-  const state::ColliderShape& shape = t.colliders.shape[pair.collider];
-  const Vec3 x = frame_of(t, pair.collider, object).to_shape(t.particles.position[pair.particle].x);
+/// Appends the rows of one particle against one shape.
+void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame, Real way,
+               Finder& finder) {
+  const state::ColliderShape& shape = *frame.shape;
+  const Vec3 x = frame.to_shape(t.particles.position[pair.particle].x);
   const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
-  const Real friction = std::sqrt(object.friction * t.colliders.surface[pair.collider].friction);
+  const Real friction =
+      std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {
     if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
     return;
@@ -140,9 +149,11 @@ void find_contacts(state::Tables& t, double dt) {
   Finder finder;
   const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
+    const std::vector<Frame> frames = frames_of(t, colliders, t.objects[o]);
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
-      for (const std::uint32_t c : colliders) find_pair(t, {p, c, 0}, o, way, finder);
+      for (std::size_t i = 0; i < colliders.size(); ++i)
+        find_pair(t, {p, colliders[i], 0}, o, frames[i], way, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);
@@ -181,10 +192,10 @@ double largest_penetration(const state::Tables& t) {
   double deepest = 0;
   const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (const state::Deformable& object : t.objects) {
+    const std::vector<Frame> frames = frames_of(t, colliders, object);
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
-      for (const std::uint32_t c : colliders) {
-        const Frame frame = frame_of(t, c, object);
+      for (const Frame& frame : frames) {
         const Vec3 x = frame.to_shape(t.particles.position[p].x);
         const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
         const Real distance =

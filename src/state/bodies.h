@@ -114,4 +114,10 @@ struct Bodies {
   }
 };
 
+/// Ends a body's sleep, and its rest before that.
+inline void wake(Bodies& bodies, std::uint32_t body) {
+  bodies.asleep[body] = 0;
+  bodies.rest_time[body] = Real(0);
+}
+
 }  // namespace hooke::state

@@ -27,4 +27,11 @@ inline Pose frame_of_collider(const Bodies& bodies, const Colliders& colliders, 
           rotation * colliders.rotation[row]};
 }
 
+/// L = R I R^T omega, of a body whose frame is turned by `rotation`.
+inline Vec3 angular_momentum_of(const BodyMass& mass, Quat rotation, Vec3 omega) {
+  const Quat axes = rotation * mass.principal;
+  const Vec3 local = rotate(conjugate(axes), omega);
+  return rotate(axes, {mass.inertia.x * local.x, mass.inertia.y * local.y, mass.inertia.z * local.z});
+}
+
 }  // namespace hooke::state

@@ -46,6 +46,8 @@ struct Tables {
   std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
   std::vector<Rows> free_colliders;          ///< Holes of the collider table.
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
+  /// Convex hulls of the same meshes' points; null until a body asks for one.
+  std::vector<std::shared_ptr<const geometry::ConvexHull>> hulls;
   std::vector<Field> fields;
   std::vector<ForceLawEntry> force_laws;
   bool any_force = false;  ///< Some particle has an external force for the coming step.

@@ -12,8 +12,6 @@ namespace hooke::world {
 
 namespace {
 
-using parallel::for_ranges;
-using parallel::Range;
 using state::BodyTraits;
 using state::Tables;
 
@@ -37,16 +35,21 @@ bool may_collide(const WorldData& world, collision::ColliderPair pair) {
          !are_hooked(world, a, b);
 }
 
-/// Colliders of bodies that were added, or put elsewhere by hand, since the last step.
-void place_colliders(WorldData& world, std::uint32_t body, Real dt) {
-  Tables& t = world.tables;
+/// What the colliders of a body can reach in this step.
+void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   const std::uint32_t first = t.bodies.first_collider[body];
-  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c) {
+  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
-    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
-  }
 }
 
+void enter_broad_phase(WorldData& world, std::uint32_t body) {
+  const Tables& t = world.tables;
+  const std::uint32_t first = t.bodies.first_collider[body];
+  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
+}
+
+/// Bodies that were added, or put elsewhere by hand, since the last step.
 void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
   if (world.broad_phase_stale) {
@@ -58,7 +61,9 @@ void refresh_broad_phase(WorldData& world, Real dt) {
     world.broad_phase_stale = false;
   }
   for (const std::uint32_t body : world.bodies_placed) {
-    if (t.bodies.traits[body].alive) place_colliders(world, body, dt);
+    if (!t.bodies.traits[body].alive) continue;
+    update_bounds(t, body, dt);
+    enter_broad_phase(world, body);
   }
   world.bodies_placed.clear();
 }
@@ -76,19 +81,10 @@ void list_awake_bodies(WorldData& world) {
 void find_body_contacts(WorldData& world, Real dt) {
   Tables& t = world.tables;
   refresh_broad_phase(world, dt);
-  for_ranges(*world.pool, static_cast<int>(world.awake.size()), kBodyGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i) {
-      const std::uint32_t body = world.awake[i];
-      const std::uint32_t first = t.bodies.first_collider[body];
-      for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
-        t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
-    }
+  for_bodies(world, [&](auto rows) {
+    for (const std::uint32_t body : rows) update_bounds(t, body, dt);
   });
-  for (const std::uint32_t body : world.awake) {
-    const std::uint32_t first = t.bodies.first_collider[body];
-    for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
-      world.broad_phase.set(c, t.colliders.bounds[c], true);
-  }
+  for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
   collision::merge_pairs(world.pairs_found, t.pairs);

@@ -55,9 +55,7 @@ void remove_hooks_of(std::uint32_t body, state::Tables& t) {
 
 void wake_ends(const Hook& hook, state::Bodies& bodies) {
   for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
-    if (body == HookPlace::kWorld) continue;
-    bodies.asleep[body] = 0;
-    bodies.rest_time[body] = Real(0);
+    if (body != HookPlace::kWorld) state::wake(bodies, body);
   }
 }
 

@@ -128,10 +128,7 @@ void wake_neighbors(Tables& t, std::uint32_t body) {
     const std::uint32_t a = t.colliders.body[pair.collider_a];
     const std::uint32_t b = t.colliders.body[pair.collider_b];
     if (a != body && b != body) continue;
-    for (const std::uint32_t near : {a, b}) {
-      t.bodies.asleep[near] = 0;
-      t.bodies.rest_time[near] = Real(0);
-    }
+    for (const std::uint32_t near : {a, b}) state::wake(t.bodies, near);
   }
 }
 

@@ -54,11 +54,6 @@ bool disturbs(const Bodies& bodies, std::uint32_t body) {
          bodies.angular_velocity[body] != Vec3{};
 }
 
-void wake(Bodies& bodies, std::uint32_t body) {
-  bodies.asleep[body] = 0;
-  bodies.rest_time[body] = Real(0);
-}
-
 /// For how long each island has been at rest: the least over its members, at its root.
 std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSets& islands) {
   const Bodies& bodies = world.tables.bodies;
@@ -75,6 +70,7 @@ std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSet
 }  // namespace
 
 bool wake_touched(WorldData& world, Real dt) {
+  if (world.awake.empty()) return false;
   Bodies& bodies = world.tables.bodies;
   bool any = false;
   for (bool changed = true; changed;) {
@@ -84,14 +80,14 @@ bool wake_touched(WorldData& world, Real dt) {
       const bool sleeper_b = bodies.asleep[m.body_b] != 0;
       if (sleeper_a == sleeper_b || !(touches(m) || meets(bodies, m, dt))) continue;
       if (!disturbs(bodies, sleeper_a ? m.body_b : m.body_a)) continue;
-      wake(bodies, sleeper_a ? m.body_a : m.body_b);
+      state::wake(bodies, sleeper_a ? m.body_a : m.body_b);
       changed = any = true;
     }
     for (const state::Hook& hook : world.tables.hooks) {
       const bool sleeper_a = sleeps(bodies, hook.a.body);
       const bool sleeper_b = sleeps(bodies, hook.b.body);
       if (sleeper_a == sleeper_b || !disturbs(bodies, sleeper_a ? hook.b.body : hook.a.body)) continue;
-      wake(bodies, sleeper_a ? hook.a.body : hook.b.body);
+      state::wake(bodies, sleeper_a ? hook.a.body : hook.b.body);
       changed = any = true;
     }
   }
@@ -102,11 +98,14 @@ void put_to_sleep(WorldData& world, Real dt) {
   state::Tables& t = world.tables;
   Bodies& bodies = t.bodies;
   if (!t.desc.sleeping || world.awake.empty()) return;
+  bool any_rests = false;
   for (const std::uint32_t body : world.awake) {
     const Real speed =
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
+    any_rests = any_rests || !(bodies.rest_time[body] < kRestTime);
   }
+  if (!any_rests) return;
   base::DisjointSets islands(bodies.motion.size());
   for (const Manifold& m : t.pairs.manifold) {
     if (touches(m) && is_dynamic(bodies, m.body_a) && is_dynamic(bodies, m.body_b))

@@ -85,6 +85,7 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc) {
   mesh->bvh = geometry::build_bvh(desc.positions, desc.triangles);
   state::Tables& t = data_->tables;
   t.meshes.push_back(std::move(mesh));
+  t.hulls.push_back(nullptr);
   return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
 }
 
@@ -126,6 +127,7 @@ bool World::remove(MeshId id) {
   const std::uint32_t row = t.mesh_slots.find(id);
   if (row == t.mesh_slots.kNone || !t.meshes[row]) return false;
   t.meshes[row] = nullptr;  // bodies that use it share it
+  t.hulls[row] = nullptr;
   t.mesh_slots.move(id.slot, t.mesh_slots.kNone);
   return true;
 }

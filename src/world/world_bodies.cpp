@@ -23,29 +23,12 @@ bool is_dynamic(const Bodies& bodies, std::uint32_t row) {
   return bodies.traits[row].kind == BodyKind::kDynamic;
 }
 
-/// Pushing or moving a body wakes it.
-void wake(Bodies& bodies, std::uint32_t row) {
-  bodies.asleep[row] = 0;
-  bodies.rest_time[row] = Real(0);
-}
-
-Quat principal_axes_of(const Bodies& bodies, std::uint32_t row) {
-  return bodies.rotation[row] * bodies.mass[row].principal;
-}
-
 Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
   if (!is_dynamic(bodies, row)) return bodies.angular_velocity[row];
-  const Quat axes = principal_axes_of(bodies, row);
+  const Quat axes = bodies.rotation[row] * bodies.mass[row].principal;
   const Vec3 inertia = bodies.mass[row].inertia;
   const Vec3 l = rotate(conjugate(axes), bodies.angular_momentum[row]);
   return rotate(axes, {l.x / inertia.x, l.y / inertia.y, l.z / inertia.z});
-}
-
-Vec3 angular_momentum_of(const Bodies& bodies, std::uint32_t row, Vec3 omega) {
-  const Quat axes = principal_axes_of(bodies, row);
-  const Vec3 inertia = bodies.mass[row].inertia;
-  const Vec3 local = rotate(conjugate(axes), omega);
-  return rotate(axes, {inertia.x * local.x, inertia.y * local.y, inertia.z * local.z});
 }
 
 /// From the center of mass to a place in the world.
@@ -145,7 +128,7 @@ Result<void> World::apply_force(BodyId body, Vec3 force, DVec3 at) {
   if (!is_finite(at)) return world::not_finite("at");
   bodies.force[row] += force;
   bodies.torque[row] += cross(lever(bodies, row, at), force);
-  wake(bodies, row);
+  state::wake(bodies, row);
   return {};
 }
 
@@ -155,7 +138,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 torque) {
   if (row == kNone) return world::stale("body");
   if (!is_finite(torque)) return world::not_finite("torque");
   bodies.torque[row] += torque;
-  wake(bodies, row);
+  state::wake(bodies, row);
   return {};
 }
 
@@ -174,7 +157,7 @@ Result<void> World::apply_impulse(BodyId body, Vec3 impulse, DVec3 at) {
   if (!is_dynamic(bodies, row)) return {};
   bodies.motion[row].v += bodies.mass[row].inverse_mass * impulse;
   bodies.angular_momentum[row] += cross(lever(bodies, row, at), impulse);
-  wake(bodies, row);
+  state::wake(bodies, row);
   return {};
 }
 
@@ -184,7 +167,7 @@ Result<void> World::set_velocity(BodyId body, Vec3 velocity) {
   if (row == kNone) return world::stale("body");
   if (!is_finite(velocity)) return world::not_finite("velocity");
   if (bodies.traits[row].kind != BodyKind::kStatic) bodies.motion[row].v = velocity;
-  wake(bodies, row);
+  state::wake(bodies, row);
   return {};
 }
 
@@ -195,8 +178,9 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
   if (!is_finite(angular_velocity)) return world::not_finite("angular_velocity");
   if (bodies.traits[row].kind == BodyKind::kStatic) return {};
   bodies.angular_velocity[row] = angular_velocity;
-  bodies.angular_momentum[row] = angular_momentum_of(bodies, row, angular_velocity);
-  wake(bodies, row);
+  bodies.angular_momentum[row] =
+      state::angular_momentum_of(bodies.mass[row], bodies.rotation[row], angular_velocity);
+  state::wake(bodies, row);
   return {};
 }
 
@@ -212,13 +196,13 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   const Vec3 omega = angular_velocity_of(bodies, row);
   bodies.rotation[row] = rotation;
   bodies.center[row] = pose.position + vector_cast<double>(rotate(rotation, bodies.mass[row].center));
-  bodies.angular_momentum[row] = angular_momentum_of(bodies, row, omega);
+  bodies.angular_momentum[row] = state::angular_momentum_of(bodies.mass[row], rotation, omega);
   bodies.path_start[row] = bodies.center[row];
   bodies.path_time[row] = data_->tables.time;
   bodies.odometer[row] += Real(1e6);  // farther than any gap: every pair is tested anew
   data_->bodies_placed.push_back(row);
   world::wake_neighbors(data_->tables, row);
-  wake(bodies, row);
+  state::wake(bodies, row);
   return {};
 }
 
