@@ -1,12 +1,12 @@
 #include "hooke/run_laboratory.h"
 
 #include "hooke/compare/stage.h"
+#include "hooke/json_of.h"
 #include "hooke/lab.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
 #include "hooke/text_of.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -47,10 +47,6 @@ Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t
   }
   if (csv) return csv->finish();
   return {};
-}
-
-Json json_of(const Energy& energy) {
-  return {{"kinetic", energy.kinetic}, {"potential", energy.potential}, {"elastic", energy.elastic}};
 }
 
 std::string json_text(const Simulation& simulation, const lab::Run& run, const LaboratoryRun& options,

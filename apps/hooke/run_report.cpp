@@ -1,10 +1,10 @@
 #include "hooke/run_report.h"
 
+#include "hooke/json_of.h"
 #include "hooke/text_of.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace hooke::app {
@@ -12,10 +12,6 @@ namespace hooke::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Energy& energy) {
-  return {{"kinetic", energy.kinetic}, {"potential", energy.potential}, {"elastic", energy.elastic}};
-}
 
 Json verdicts_of(const Simulation& simulation) {
   Json list = Json::array();

@@ -38,10 +38,6 @@ Box grown(const Box& box, Real margin) {
   return {box.lower - m, box.upper + m};
 }
 
-bool contains(const Box& outer, const Box& inner) {
-  return merge(outer, inner) == outer;
-}
-
 /// The box with its margin, and drawn out along its `way` of one step.
 Box fattened(const Box& box, Vec3 way) {
   const Real side = mean_side(box);

@@ -19,10 +19,6 @@ double surface_of(const Box& box) {
   return static_cast<double>(half_surface(box));
 }
 
-bool contains(const Box& outer, const Box& inner) {
-  return merge(outer, inner) == outer;
-}
-
 }  // namespace
 
 BroadPhaseTree::Node::Node() : child{} {

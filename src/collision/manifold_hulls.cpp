@@ -17,7 +17,7 @@ constexpr std::uint32_t kAxisOfEdges = 0x40000000;
 constexpr std::uint32_t kEdgeBits = 12;
 
 // Edges less than this apart in direction (squared sine) have no axis that a face does not have.
-constexpr Real kParallel = Real(1e-4);
+constexpr Real kParallelEdges = Real(1e-4);
 
 /// Two hulls and the best axis so far. Scores are separations with preferences.
 struct HullPair {
@@ -117,7 +117,7 @@ void offer_edges(HullPair& pair) {
       if (!arcs_cross(p, q)) continue;
       const Vec3 across = cross(p.along, q.along);
       const Real squared = length_squared(across);
-      if (squared < kParallel * length_squared(p.along) * length_squared(q.along)) continue;
+      if (squared < kParallelEdges * length_squared(p.along) * length_squared(q.along)) continue;
       const Vec3 unit = Real(1) / std::sqrt(squared) * across;
       const Vec3 n = dot(unit, p.start - middle) < Real(0) ? -unit : unit;
       pair.offer({n, dot(n, q.start - p.start), kAxisOfEdges | p.index << kEdgeBits | q.index},

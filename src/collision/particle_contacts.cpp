@@ -13,8 +13,8 @@ namespace hooke::collision {
 
 namespace {
 
-constexpr Real kMargin = Real(0.02);    ///< [m]
-constexpr Real kNoContact = Real(1e9);  ///< Distance of a row that does not hold now [m].
+constexpr Real kParticleMargin = Real(0.02);  ///< [m]
+constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not hold now [m].
 
 /// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
@@ -83,7 +83,7 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const
                Finder& finder) {
   const state::ColliderShape& shape = *frame.shape;
   const Vec3 x = frame.to_shape(t.particles.position[pair.particle].x);
-  const Real reach = t.particles.position[pair.particle].radius + way + kMargin;
+  const Real reach = t.particles.position[pair.particle].radius + way + kParticleMargin;
   const Real friction =
       std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {

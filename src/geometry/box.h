@@ -41,6 +41,10 @@ constexpr bool overlap(const Box3<T>& a, const Box3<T>& b) {
   return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
          b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
+template <class T>
+constexpr bool contains(const Box3<T>& outer, const Box3<T>& inner) {
+  return merge(outer, inner) == outer;
+}
 /// Half of the surface; 0 for the empty box.
 template <class T>
 constexpr T half_surface(const Box3<T>& box) {

@@ -29,7 +29,7 @@ std::array<std::uint32_t, 2> children(const Bvh& bvh, std::uint32_t node) {
   return {first, bvh.nodes[first].count > 0 ? first + 1 : bvh.nodes[first].next};
 }
 
-Box box_of(const BvhNode& node) {
+Box box_of_node(const BvhNode& node) {
   return {node.lower, node.upper};
 }
 
@@ -84,10 +84,10 @@ void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& 
   for (std::uint32_t i = 0; i < bvh.nodes.size();) {
     const BvhNode& node = bvh.nodes[i];
     const bool is_leaf = node.count > 0;
-    const bool is_near = overlap(box_of(node), box);
+    const bool is_near = overlap(box_of_node(node), box);
     for (std::uint32_t k = node.next; is_leaf && is_near && k < node.next + node.count; ++k) {
       const auto& [a, b, c] = bvh.corners[k];
-      if (overlap(geometry::box_of(a, b, c), box)) found.push_back(bvh.order[k]);
+      if (overlap(box_of(a, b, c), box)) found.push_back(bvh.order[k]);
     }
     i = is_leaf || is_near ? i + 1 : node.next;
   }
@@ -112,7 +112,7 @@ std::optional<BvhClosest> find_closest(const Bvh& bvh, Vec3 p, Real distance_max
     return static_cast<double>(limit);
   };
   const auto bound = [&](const BvhNode& node) {
-    return static_cast<double>(slack * distance_squared(box_of(node), p));
+    return static_cast<double>(slack * distance_squared(box_of_node(node), p));
   };
   visit_near_to_far(bvh, static_cast<double>(limit), bound, visit);
   return best;
@@ -136,7 +136,7 @@ std::optional<BvhHit> cast_ray(const Bvh& bvh, DVec3 origin, DVec3 direction, do
     return limit;
   };
   visit_near_to_far(
-      bvh, limit, [&](const BvhNode& node) { return ray.enter(box_of(node)); }, visit);
+      bvh, limit, [&](const BvhNode& node) { return ray.enter(box_of_node(node)); }, visit);
   return best;
 }
 

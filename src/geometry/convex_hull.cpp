@@ -156,14 +156,14 @@ void fit_plane(const ConvexHull& hull, ConvexHull::Face& face) {
 }
 
 /// A side of an edge.
-struct Side {
+struct HullSide {
   std::uint16_t low = 0, high = 0;
   bool is_backward = false;  // its face runs from the higher to the lower vertex
   std::uint16_t face = 0;
 };
 
 std::vector<ConvexHull::Edge> edges_of(const ConvexHull& hull) {
-  std::vector<Side> sides;
+  std::vector<HullSide> sides;
   sides.reserve(hull.loop.size());
   for (std::size_t f = 0; f < hull.faces.size(); ++f) {
     const ConvexHull::Face& face = hull.faces[f];
@@ -173,7 +173,7 @@ std::vector<ConvexHull::Edge> edges_of(const ConvexHull& hull) {
       sides.push_back({std::min(a, b), std::max(a, b), a > b, static_cast<std::uint16_t>(f)});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const HullSide& a, const HullSide& b) {
     return std::tie(a.low, a.high, a.is_backward) < std::tie(b.low, b.high, b.is_backward);
   });
   std::vector<ConvexHull::Edge> edges;

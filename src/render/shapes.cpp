@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kRoundSides = 32;
-constexpr int kCapRings = 10;
+constexpr int kShapeCapRings = 10;
 
 /// A closed outline turned about the y axis: radius and height, normal in the same plane, v.
 struct ProfilePoint {
@@ -124,9 +124,9 @@ MeshGeometry make_capsule(float radius, float half_height) {
   std::vector<ProfilePoint> profile;
   for (int end = 0; end < 2; ++end) {
     const float shift = end == 0 ? half_height : -half_height;
-    for (int i = 0; i <= kCapRings; ++i) {
+    for (int i = 0; i <= kShapeCapRings; ++i) {
       // Zero at the upper pole, pi at the lower one.
-      const float angle = 0.5F * kPi * (static_cast<float>(i) / kCapRings + static_cast<float>(end));
+      const float angle = 0.5F * kPi * (static_cast<float>(i) / kShapeCapRings + static_cast<float>(end));
       // Exactly zero at both poles, or the triangles there would have an area, and it could face inward.
       const float s = std::max(std::sin(angle), 0.0F);
       const float c = std::cos(angle);

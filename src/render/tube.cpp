@@ -9,7 +9,7 @@ namespace hooke::render {
 namespace {
 
 constexpr int kSides = 14;
-constexpr int kCapRings = 4;
+constexpr int kTubeCapRings = 4;
 
 /// A point of the curve and the direction in which it runs (unit length).
 struct Station {
@@ -109,16 +109,16 @@ void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry
   const Vec3 aside = std::abs(start.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
   Mat3 frame = carried_frame({cross(aside, start), aside, start}, start);
   const auto lean_of = [](int ring) {
-    return std::sin(0.5F * std::numbers::pi_v<float> * static_cast<float>(ring) / kCapRings);
+    return std::sin(0.5F * std::numbers::pi_v<float> * static_cast<float>(ring) / kTubeCapRings);
   };
-  for (int ring = kCapRings; ring > 0; --ring) {
+  for (int ring = kTubeCapRings; ring > 0; --ring) {
     add_ring(stations.front().point, ring_radius, frame, -lean_of(ring), geometry);
   }
   for (const Station& station : stations) {
     if (station.tangent != Vec3{}) frame = carried_frame(frame, station.tangent);
     add_ring(station.point, ring_radius, frame, 0, geometry);
   }
-  for (int ring = 1; ring <= kCapRings; ++ring) {
+  for (int ring = 1; ring <= kTubeCapRings; ++ring) {
     add_ring(stations.back().point, ring_radius, frame, lean_of(ring), geometry);
   }
   const auto rings = (static_cast<std::uint32_t>(geometry.vertices.size()) - first) / kSides;

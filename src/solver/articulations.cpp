@@ -25,10 +25,6 @@ constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left 
 constexpr double kStiffnessDamping = 0.2;  ///< Share of the rest that acts on the velocity too.
 constexpr double kStiffnessGrowth = 1.5;
 
-bool is_dynamic(const state::Bodies& bodies, std::uint32_t row) {
-  return row != HookPlace::kWorld && bodies.motion[row].inverse_mass > Real(0);
-}
-
 double sign_at(const Articulation::Joint& joint, std::uint32_t link) {
   return link == joint.a ? -1 : 1;
 }

@@ -4,6 +4,7 @@
 #include "solver/chains.h"
 
 #include "math/symmetric.h"
+#include "solver/contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,6 @@ constexpr double kLengthTolerance = 1e-3;      ///< The next substep takes back 
 constexpr double kReportedError = 0.01;
 constexpr double kLimitTolerance = 1e-4;
 constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
-constexpr double kPushOutSpeed = 1.0;      ///< Overlap leaves no faster than this [m/s].
 constexpr double kSlidingShare = 0.9999;   ///< Of mu N: a node whose friction was this large was sliding.
 constexpr int kMostSolves = 8;
 constexpr int kLeastContactSolves = 2;

@@ -6,8 +6,6 @@ namespace hooke::solver {
 
 namespace {
 
-constexpr Real kPushOutSpeed = Real(1);  ///< [m/s]
-
 void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Particles& particles) {
   const std::uint32_t p = contacts.particle[row];
   Vec3& v = particles.velocity[p].v;
@@ -27,7 +25,8 @@ void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Partic
 void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
   const Real overlap = -contacts.separation[row];
   if (!(overlap > Real(0))) return;
-  particles.position[contacts.particle[row]].x += std::min(overlap, kPushOutSpeed * h) * contacts.normal[row];
+  particles.position[contacts.particle[row]].x +=
+      std::min(overlap, Real(kPushOutSpeed) * h) * contacts.normal[row];
 }
 
 }  // namespace

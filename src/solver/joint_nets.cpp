@@ -33,10 +33,6 @@ Softness softness_of(double h) {
   return {omega / a, mass, 1 - mass};
 }
 
-bool is_dynamic(const state::Bodies& bodies, std::uint32_t row) {
-  return row != HookPlace::kWorld && bodies.motion[row].inverse_mass > Real(0);
-}
-
 /// The first color that no hook of either body has.
 int choose_color(const Hook& hook, const state::Bodies& bodies, std::vector<std::uint64_t>& used,
                  int& next_own_color) {

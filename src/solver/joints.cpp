@@ -15,10 +15,6 @@ using state::HookPlace;
 constexpr int kArticulationGrain = 1;
 constexpr int kHookGrain = 1024;
 
-bool is_dynamic(const state::Bodies& bodies, std::uint32_t row) {
-  return row != HookPlace::kWorld && bodies.motion[row].inverse_mass > Real(0);
-}
-
 /// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
 std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hooks,
                                                     const state::Bodies& bodies) {

@@ -114,6 +114,11 @@ struct Bodies {
   }
 };
 
+/// Whether forces move the body; never the world (HookPlace::kWorld).
+inline bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
+  return body < bodies.traits.size() && bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
 /// Ends a body's sleep, and its rest before that.
 inline void wake(Bodies& bodies, std::uint32_t body) {
   bodies.asleep[body] = 0;

@@ -16,10 +16,6 @@ using state::Manifold;
 constexpr Real kRestSpeed = Real(0.05);  ///< Of the fastest point [m/s].
 constexpr Real kRestTime = Real(0.5);    ///< [s]
 
-bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
-  return body != state::HookPlace::kWorld && bodies.traits[body].kind == BodyKind::kDynamic;
-}
-
 /// Pushes, or overlaps: what is only near does not wake.
 bool touches(const Manifold& manifold) {
   if (manifold.touching) return true;

@@ -19,10 +19,6 @@ using state::Tables;
 
 constexpr std::uint32_t kNone = state::SlotTable<BodyId>::kNone;
 
-bool is_dynamic(const Bodies& bodies, std::uint32_t row) {
-  return bodies.traits[row].kind == BodyKind::kDynamic;
-}
-
 Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
   if (!is_dynamic(bodies, row)) return bodies.angular_velocity[row];
   const Quat axes = bodies.rotation[row] * bodies.mass[row].principal;

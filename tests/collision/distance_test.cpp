@@ -23,8 +23,8 @@ using hooke::test::uniform;
 
 namespace {
 
-constexpr ShapeKind kKinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox,
-                                ShapeKind::kCylinder, ShapeKind::kCone};
+constexpr ShapeKind kRoundedKinds[] = {ShapeKind::kSphere, ShapeKind::kCapsule, ShapeKind::kBox,
+                                       ShapeKind::kCylinder, ShapeKind::kCone};
 
 }  // namespace
 
@@ -64,8 +64,8 @@ TEST_SUITE("collision/distance") {
 
   TEST_CASE("the distance is what the planes across the normal hold apart, and symmetric, for all shapes") {
     std::mt19937 random(3);
-    for (const ShapeKind kind_a : kKinds) {
-      for (const ShapeKind kind_b : kKinds) {
+    for (const ShapeKind kind_a : kRoundedKinds) {
+      for (const ShapeKind kind_b : kRoundedKinds) {
         for (int i = 0; i < 60; ++i) {
           const Convex a = placed(random_shape(kind_a, random), {}, random_turn(random));
           const Vec3 place = uniform(random, 0.5, 4) * random_unit(random);
@@ -85,8 +85,8 @@ TEST_SUITE("collision/distance") {
 
   TEST_CASE("shapes in the same place overlap, and nothing is ever not a number") {
     std::mt19937 random(4);
-    for (const ShapeKind kind_a : kKinds) {
-      for (const ShapeKind kind_b : kKinds) {
+    for (const ShapeKind kind_a : kRoundedKinds) {
+      for (const ShapeKind kind_b : kRoundedKinds) {
         const Convex a = placed(random_shape(kind_a, random), {}, {});
         const Convex b = placed(random_shape(kind_b, random), {}, {});
         const Distance d = distance_between(a, b);

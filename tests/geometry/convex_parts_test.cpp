@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "constants.h"
 #include "geometry/convex_hull.h"
 #include "geometry/mass_properties.h"
 #include "geometry/meshes.h"
@@ -17,8 +18,6 @@ using hooke::Real;
 using hooke::Vec3;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::vector<MeshDesc> parts_of(const MeshDesc& mesh, double concavity_max, int parts_max = 64) {
   auto parts = decompose_convex(mesh, Real(concavity_max), parts_max);
@@ -61,8 +60,8 @@ MeshDesc make_torus(double major, double minor, std::uint32_t around, std::uint3
   MeshDesc mesh;
   for (std::uint32_t i = 0; i < around; ++i) {
     for (std::uint32_t k = 0; k < across; ++k) {
-      const double u = 2 * kPi * i / around;
-      const double v = 2 * kPi * k / across;
+      const double u = 2 * hooke::test::kPi * i / around;
+      const double v = 2 * hooke::test::kPi * k / across;
       const double r = major + minor * std::cos(v);
       mesh.positions.push_back({Real(r * std::cos(u)), Real(minor * std::sin(v)), Real(r * std::sin(u))});
       const std::uint32_t next_i = (i + 1) % around * across;
@@ -120,7 +119,7 @@ TEST_SUITE("geometry/convex_parts") {
   TEST_CASE("a torus is about a dozen parts of its volume to a few percent") {
     const MeshDesc torus = make_torus(1, 0.3, 32, 12);
     const double volume = volume_of(torus);
-    CHECK(volume == doctest::Approx(2 * kPi * kPi * 0.09).epsilon(0.06));
+    CHECK(volume == doctest::Approx(2 * hooke::test::kPi * hooke::test::kPi * 0.09).epsilon(0.06));
     const std::vector<MeshDesc> parts = parts_of(torus, 0.05);
     CAPTURE(volume_of(parts) / volume);
     CHECK(parts.size() >= 8);

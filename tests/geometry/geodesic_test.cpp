@@ -25,7 +25,7 @@ double straight_distance(const MeshDesc& mesh, std::uint32_t a, std::uint32_t b)
   return hooke::length(hooke::vector_cast<double>(mesh.positions[a] - mesh.positions[b]));
 }
 
-double signed_unit(std::mt19937& random) {
+double offset_of_one(std::mt19937& random) {
   return static_cast<double>(random()) / 2147483648.0 - 1.0;
 }
 
@@ -35,8 +35,8 @@ MeshDesc make_uneven_grid(std::uint32_t size, double amount) {
   std::mt19937 random(1);
   for (std::uint32_t row = 1; row + 1 < size; ++row) {
     for (std::uint32_t column = 1; column + 1 < size; ++column) {
-      const Real x = static_cast<Real>(amount * signed_unit(random));
-      const Real y = static_cast<Real>(amount * signed_unit(random));
+      const Real x = static_cast<Real>(amount * offset_of_one(random));
+      const Real y = static_cast<Real>(amount * offset_of_one(random));
       mesh.positions[row * size + column] += Vec3{x, y, Real(0)};
     }
   }

@@ -1,5 +1,6 @@
 #include "geometry/mass_properties.h"
 
+#include "constants.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>
@@ -19,9 +20,9 @@ using hooke::geometry::MassProperties;
 using hooke::geometry::moved;
 using Inertia = hooke::math::Symmetric3<double>;
 
-namespace {
+using hooke::test::kPi;
 
-constexpr double kPi = 3.14159265358979323846;
+namespace {
 
 MassProperties mass_of_mesh(const MeshDesc& mesh) {
   return mass_of(mesh.positions, mesh.triangles);

@@ -8,6 +8,7 @@ namespace hooke {
 
 using test::advance;
 using test::empty_space;
+using test::has_sundials;
 using test::make_pendulum;
 using test::make_planet;
 using test::make_run;
@@ -18,10 +19,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 const double kGravity = static_cast<double>(Real(9.81));
-
-bool has_sundials() {
-  return take(lab::find_stepper("dormand_prince")).available;
-}
 
 /// The most exact method there is.
 lab::Options reference(double dt, double tolerance) {

@@ -8,6 +8,7 @@ namespace hooke {
 
 using test::advance;
 using test::empty_space;
+using test::has_sundials;
 using test::make_pendulum;
 using test::make_planet;
 using test::make_run;
@@ -15,10 +16,6 @@ using test::make_world;
 using test::take;
 
 namespace {
-
-bool has_sundials() {
-  return take(lab::find_stepper("dormand_prince")).available;
-}
 
 std::string refusal(const World& world, const lab::Options& options) {
   const Result<lab::Run> run = lab::Run::create(world, options);

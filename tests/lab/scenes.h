@@ -6,6 +6,10 @@
 
 namespace hooke::test {
 
+inline bool has_sundials() {
+  return take(lab::find_stepper("dormand_prince")).available;
+}
+
 inline lab::Run make_run(const World& world, const lab::Options& options) {
   return take(lab::Run::create(world, options));
 }

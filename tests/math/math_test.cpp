@@ -1,5 +1,7 @@
 #include "hooke/math.h"
 
+#include "math/random.h"
+
 #include <cmath>
 #include <cstdint>
 #include <doctest/doctest.h>
@@ -11,13 +13,12 @@ using DMat3 = hooke::Matrix3<double>;
 using DMat4 = hooke::Matrix4<double>;
 using DQuat = hooke::Quaternion<double>;
 
+using hooke::test::signed_unit;
+
 namespace {
 
 constexpr double kTolerance = 1e-12;  // a few hundred roundings of numbers near one
 
-double signed_unit(std::mt19937_64& random) {
-  return static_cast<double>(static_cast<std::int64_t>(random()) >> 11) * 0x1p-52;
-}
 DVec3 random_vector(std::mt19937_64& random) {
   const double x = signed_unit(random);
   const double y = signed_unit(random);

@@ -1,6 +1,7 @@
 #include "math/trig.h"
 
 #include "base/hash.h"
+#include "math/random.h"
 
 #include <cmath>
 #include <cstdint>
@@ -11,15 +12,12 @@
 
 using hooke::math::sin_cos;
 
+using hooke::test::signed_unit;
+
 namespace {
 
 constexpr double kPi = 3.141592653589793;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Uniform in [-1, 1) from the engine's bits alone, so that the samples are the same with every library.
-double signed_unit(std::mt19937_64& random) {
-  return static_cast<double>(static_cast<std::int64_t>(random()) >> 11) * 0x1p-52;
-}
 
 double worst_sin_cos_error(double range, int samples) {
   std::mt19937_64 random(1);

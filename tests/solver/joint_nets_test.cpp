@@ -1,5 +1,6 @@
 #include "solver/joint_nets.h"
 
+#include "constants.h"
 #include "solver/joint_rig.h"
 
 #include <cmath>
@@ -7,9 +8,9 @@
 #include <vector>
 
 namespace hooke::solver {
-namespace {
+using test::kGravity;
 
-constexpr double kGravity = 9.81;  // [m/s^2]
+namespace {
 
 /// A hanging net of balls, 1 m apart; the top row is held.
 struct HangingNet {

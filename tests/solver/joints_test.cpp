@@ -1,5 +1,6 @@
 #include "solver/joints.h"
 
+#include "constants.h"
 #include "solver/joint_rig.h"
 
 #include <cmath>
@@ -7,10 +8,10 @@
 #include <limits>
 
 namespace hooke::solver {
-namespace {
+using test::kGravity;
+using test::kPi;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;  // [m/s^2]
+namespace {
 
 /// Time between two rises of `value` through zero, by straight lines between steps [s].
 template <class Value>

@@ -1,3 +1,4 @@
+#include "constants.h"
 #include "solver/joint_rig.h"
 #include "solver/joints.h"
 
@@ -7,10 +8,11 @@
 #include <vector>
 
 namespace hooke::solver {
+using test::kGravity;
+using test::kPi;
+
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr Vec3 kZ = {Real(0), Real(0), Real(1)};
 
 /// A body of a planar mechanism: its center and its angle about z.

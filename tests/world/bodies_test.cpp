@@ -1,3 +1,4 @@
+#include "constants.h"
 #include "solver/wide/wide.h"
 #include "world/make.h"
 
@@ -7,13 +8,12 @@
 
 namespace hooke {
 
+using test::kGravity;
 using test::make_world;
 using test::run;
 using test::take;
 
 namespace {
-
-constexpr double kGravity = 9.81;
 
 BodyDesc cube(DVec3 position, double half = 0.5) {
   const auto h = static_cast<Real>(half);

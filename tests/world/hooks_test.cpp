@@ -1,14 +1,16 @@
 #include "hooke/hooke.h"
 
+#include "constants.h"
+
 #include <cmath>
 #include <doctest/doctest.h>
 #include <string>
 #include <vector>
 
 namespace hooke {
-namespace {
+using test::kGravity;
 
-constexpr double kGravity = 9.81;  // [m/s^2]
+namespace {
 
 double d(Real x) {
   return static_cast<double>(x);

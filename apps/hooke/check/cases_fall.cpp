@@ -10,7 +10,7 @@ namespace hooke::check {
 
 namespace {
 
-constexpr const char* kSolver = "particles";
+constexpr const char* kParticleSolver = "particles";
 
 double fallen(const CheckSetting& setting, double seconds) {
   Rig rig(setting);
@@ -45,7 +45,7 @@ CheckRow speed_row(const char* title, double expected, double achieved, double g
           .achieved = achieved,
           .tolerance = 0.005,
           .goal = goal,
-          .solver = kSolver};
+          .solver = kParticleSolver};
 }
 
 }  // namespace
@@ -63,14 +63,14 @@ Rows free_fall(const CheckSetting& setting) {
                 .achieved = coarse,
                 .tolerance = 0.005,
                 .goal = 1e-4,
-                .solver = kSolver}};
+                .solver = kParticleSolver}};
   if (!setting.laboratory()) {
     rows.push_back({.title = "excess over the exact distance",
                     .unit = "m",
                     .expected = 0.5 * kGravity * t * setting.dt / setting.substeps,
                     .achieved = coarse - exact,
                     .tolerance = 0.005,
-                    .solver = kSolver});
+                    .solver = kParticleSolver});
   }
   if (std::abs(coarse - exact) < 1e-5 * exact) return rows;
   rows.push_back({.title = "order of convergence",
@@ -78,7 +78,7 @@ Rows free_fall(const CheckSetting& setting) {
                   .achieved = std::log2((coarse - exact) / (fine - exact)),
                   .tolerance = 0.05,
                   .measure = CheckRow::Measure::kAbsolute,
-                  .solver = kSolver});
+                  .solver = kParticleSolver});
   return rows;
 }
 
@@ -140,21 +140,21 @@ Rows kepler_orbit(const CheckSetting& setting) {
            .expected = period,
            .achieved = height.period(),
            .tolerance = 0.001,
-           .solver = kSolver},
+           .solver = kParticleSolver},
           {.title = "change of energy in " + many + ", share of it",
            .expected = 0,
            .achieved = (last - first) / std::abs(exact),
            .tolerance = 0.001,
            .goal = 1e-6,
            .measure = CheckRow::Measure::kAbsolute,
-           .solver = kSolver},
+           .solver = kParticleSolver},
           {.title = "turn of the axis in " + many,
            .unit = "rad",
            .expected = 0,
            .achieved = std::atan2(runge.y, runge.x),
            .tolerance = 0.005 * kTau,
            .measure = CheckRow::Measure::kAbsolute,
-           .solver = kSolver}};
+           .solver = kParticleSolver}};
 }
 
 /// w = q B / m, the speed stays (textbook).
@@ -174,14 +174,14 @@ Rows charge_in_magnetic_field(const CheckSetting& setting) {
            .achieved = side.period(),
            .tolerance = 1e-4,
            .goal = 1e-6,
-           .solver = kSolver},
+           .solver = kParticleSolver},
           {.title = "speed after 60 s",
            .unit = "m/s",
            .expected = 1,
            .achieved = length(rig.velocities(id)[0]),
            .tolerance = 1e-4,
            .goal = 1e-6,
-           .solver = kSolver}};
+           .solver = kParticleSolver}};
 }
 
 }  // namespace hooke::check

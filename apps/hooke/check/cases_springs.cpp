@@ -12,7 +12,7 @@ namespace hooke::check {
 
 namespace {
 
-constexpr const char* kSolver = "springs";
+constexpr const char* kSpringSolver = "springs";
 
 struct Oscillator {
   double mass = 1;       ///< [kg]
@@ -93,7 +93,7 @@ Rows simple_oscillator(const CheckSetting& setting) {
                     .expected = kTau / std::sqrt(1000.0),
                     .achieved = released(stepping, {.stiffness = 1000}, 1.5).period(),
                     .tolerance = tolerance,
-                    .solver = kSolver,
+                    .solver = kSpringSolver,
                     .dt = stepping.dt});
   };
   CheckSetting fine = setting;
@@ -121,17 +121,17 @@ Rows damped_oscillator(const CheckSetting& setting) {
            .expected = 0.2,
            .achieved = damping_ratio(released(setting, with(0.2), 40)),
            .tolerance = 0.005,
-           .solver = kSolver},
+           .solver = kSpringSolver},
           {.title = "critical damping: share left after 6 s",
            .expected = (1 + w * t) * std::exp(-w * t),
            .achieved = at_end(1),
            .tolerance = 0.005,
-           .solver = kSolver},
+           .solver = kSpringSolver},
           {.title = "overdamped, zeta = 2: share left after 6 s",
            .expected = (fast * std::exp(-slow * t) - slow * std::exp(-fast * t)) / (fast - slow),
            .achieved = at_end(2),
            .tolerance = 0.005,
-           .solver = kSolver}};
+           .solver = kSpringSolver}};
 }
 
 /// w_j = 2 sqrt(k / m) sin(j pi / (2 (N + 1))) for N masses between fixed ends (textbook).
@@ -147,7 +147,7 @@ Rows chain_modes(const CheckSetting& setting) {
                     .achieved = mode_period(setting, count, mode, stiffness),
                     .tolerance = 0.005,
                     .goal = 0.002,
-                    .solver = kSolver});
+                    .solver = kSpringSolver});
   }
   return rows;
 }
@@ -161,12 +161,12 @@ Rows dumbbell(const CheckSetting& setting) {
            .expected = 1,
            .achieved = spin_left(setting, spinning_pair(2, Damping::kCentral), 60),
            .tolerance = 1e-5,
-           .solver = kSolver},
+           .solver = kSpringSolver},
           {.title = "isotropic damping: angular momentum left after 1 s",
            .expected = std::exp(-1.0),
            .achieved = spin_left(setting, spinning_pair(0.5, Damping::kIsotropic), 1),
            .tolerance = 0.005,
-           .solver = kSolver}};
+           .solver = kSpringSolver}};
 }
 
 }  // namespace hooke::check

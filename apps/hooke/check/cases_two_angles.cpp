@@ -11,7 +11,7 @@ namespace hooke::check {
 
 namespace {
 
-constexpr const char* kSolver = "springs";
+constexpr const char* kPlaneSolver = "springs";
 constexpr double kStiff = 1e6;  ///< Of rods in the laboratory [N/m].
 
 /// Angles from straight down of two rods of 1 m with 1 kg each at its end, and their rates [rad/s].
@@ -72,14 +72,14 @@ void add_double_pendulum(const CheckSetting& setting, double degrees, double tol
                   .tolerance = tolerance,
                   .goal = 1e-3,
                   .measure = CheckRow::Measure::kAbsolute,
-                  .solver = kSolver});
+                  .solver = kPlaneSolver});
   rows.push_back({.title = from + ": change of energy in 3 s / energy of the swing",
                   .expected = 0,
                   .achieved = (rig.energy().total() - start) / (3 * kGravity * (1 - std::cos(a))),
                   .tolerance = 0.005,
                   .goal = 1e-3,
                   .measure = CheckRow::Measure::kAbsolute,
-                  .solver = kSolver});
+                  .solver = kPlaneSolver});
 }
 
 /// A pendulum of 1 m at `angle` from straight down that starts across with `speed`. Its rod is stretched from
@@ -171,7 +171,7 @@ Rows conical_pendulum(const CheckSetting& setting) {
                     .achieved = side.period(),
                     .tolerance = 0.005,
                     .goal = 1e-3,
-                    .solver = kSolver});
+                    .solver = kPlaneSolver});
   }
   const double angle = 40 * kTau / 360;
   rows.push_back({.title = "angle from one highest place to the next, from 40 deg at 1 m/s",
@@ -180,7 +180,7 @@ Rows conical_pendulum(const CheckSetting& setting) {
                   .achieved = achieved_apsidal_angle(setting, angle, 1),
                   .tolerance = 0.005,
                   .goal = 1e-3,
-                  .solver = kSolver});
+                  .solver = kPlaneSolver});
   return rows;
 }
 
