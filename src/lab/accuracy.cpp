@@ -12,6 +12,7 @@ namespace {
 constexpr int kMostCuts = 14;             ///< dt / 16384 at least.
 constexpr double kMostEvaluations = 1e6;  ///< Of one trial.
 constexpr double kImplicitCost = 10;      ///< Of a Newton step, in evaluations.
+constexpr double kReserve = 0.5;          ///< Share of the error allowed that the estimate may use up.
 constexpr int kStiffCuts = 6;             ///< Implicit methods are tried if rk4 needs more than 2^6.
 
 struct Trial {
@@ -75,7 +76,7 @@ std::optional<Choice> try_method(const Part& part, const Method& method, const A
     std::optional<Trial> fine = try_run(part, method, steps, outputs);
     if (coarse && fine) {
       const double error = largest_difference(*coarse, *fine) / share;
-      if (error <= accuracy.max_error) return Choice{&method, steps, error, fine->cost};
+      if (error <= kReserve * accuracy.max_error) return Choice{&method, steps, error, fine->cost};
     }
     coarse = std::move(fine);
   }

@@ -10,7 +10,8 @@ namespace hooke::lab {
 ///     r(v) = v - V - gamma a(t, X + gamma v, v) = 0,   r' = 1 - gamma da/dv - gamma^2 da/dx
 ///
 /// Newton with this exact sparse matrix (Eigen's SparseLU; drag in wind makes it unsymmetric), halving a step
-/// until |r| falls. Without convergence in 60 steps work.error is set.
+/// until |r| falls, or taking it whole where no part of it lets |r| fall. Without convergence in 60 steps
+/// work.error is set.
 void solve_implicit(const System& f, double t, double gamma, const State& known, State& y, Workspace& work);
 
 /// One step of rk4, in as many parts as keep it stable: what multistep methods begin with.
