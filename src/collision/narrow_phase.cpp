@@ -5,6 +5,7 @@
 #include "collision/manifold_mesh.h"
 #include "collision/manifold_points.h"
 #include "collision/narrow_phase_ghosts.h"
+#include "collision/narrow_phase_keep.h"
 
 #include <algorithm>
 #include <array>
@@ -34,6 +35,7 @@ struct Scene {
   Real dt;
   std::vector<Convex> placed = {};  ///< Of each collider, from its body's center of mass.
   std::vector<Manifold> old = {};
+  std::vector<SmallMotion> motions = {};  ///< Of each body, since the last step.
 };
 
 /// What the pairs of a chunk produced, in their order.
@@ -215,12 +217,38 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   pair.axis = meeting.axis;
 }
 
+bool is_mesh(const Scene& scene, std::uint32_t collider) {
+  return scene.placed[collider].shape.kind == ShapeKind::kMesh;
+}
+
+/// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
+/// the last test, and will not come as far as to points that were too far apart to be kept.
+bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
+  if (!pair.tested || pair.manifold_count == 0 || margin > Real(1.5) * kMargin) return false;
+  if (is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b)) return false;
+  const auto tolerance = [&scene](std::uint32_t body) {
+    return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
+  };
+  return pair.drift < std::min(tolerance(a), tolerance(b));
+}
+
+void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    Manifold& manifold = chunk.manifolds.emplace_back(scene.old[i]);
+    carry_along(scene.motions[a], scene.motions[b], is_dynamic(scene.bodies, b), manifold);
+    describe(scene, pair, manifold.patch, manifold);
+  }
+}
+
 /// Makes the pair's manifolds at the end of the chunk's; `first_manifold` counts from the chunk's begin.
 void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const std::uint32_t a = scene.colliders.body[pair.collider_a];
   const std::uint32_t b = scene.colliders.body[pair.collider_b];
   const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
   const Real odometer = scene.bodies.odometer[a] + scene.bodies.odometer[b];
+  pair.drift += drift_of(scene.motions[a], scene.motions[b]);
   if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
     ++chunk.counts.skipped;
     const auto old = scene.old.begin() + pair.first_manifold;
@@ -231,11 +259,15 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     const Real way = odometer - pair.odometer + Real(4) * std::numeric_limits<Real>::epsilon() * odometer;
     if (pair.tested && pair.manifold_count == 0 && pair.gap - way > margin) {
       ++chunk.counts.skipped;
+    } else if (holds(scene, pair, a, b, margin)) {
+      ++chunk.counts.kept;
+      keep_manifolds(scene, pair, chunk);
     } else {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
       pair.odometer = odometer;
+      pair.drift = Real(0);
       pair.tested = true;
     }
   }
@@ -341,6 +373,7 @@ NarrowPhaseCounts join(parallel::ThreadPool& pool, const std::vector<Chunk>& chu
   for (const Chunk& chunk : chunks) {
     first.push_back(first.back() + chunk.manifolds.size());
     counts.tested += chunk.counts.tested;
+    counts.kept += chunk.counts.kept;
     counts.skipped += chunk.counts.skipped;
   }
   pairs.manifold.resize(first.back());
@@ -368,7 +401,8 @@ NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodi
                        materials,
                        dt,
                        place_all(pool, bodies, colliders),
-                       std::exchange(pairs.manifold, {})};
+                       std::exchange(pairs.manifold, {}),
+                       motions_since(pool, bodies, pairs.seen)};
   std::vector<Chunk> chunks((pairs.pair.size() + kChunk - 1) / kChunk);
   for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
     for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {

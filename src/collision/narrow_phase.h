@@ -16,6 +16,7 @@ namespace hooke::collision {
 /// What the narrow phase did in a step.
 struct NarrowPhaseCounts {
   std::uint32_t tested = 0;  ///< Pairs tested exactly.
+  std::uint32_t kept = 0;    ///< Pairs that hardly moved, whose manifolds were carried along.
   std::uint32_t skipped =
       0;  ///< Pairs at rest, and those that cannot have come together since their last test.
   std::uint32_t ghosts = 0;  ///< Manifolds that were left out because another surface covers them.
@@ -31,7 +32,8 @@ void merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs);
 ///
 /// Points up to 2 cm + (|v| + |omega| r) dt apart are kept: the solver lets them come together and no
 /// farther. A pair whose bodies both sleep or stand keeps its manifolds as they are. A pair that was apart is
-/// tested again when the odometers of its bodies say that they may have met.
+/// tested again when the odometers of its bodies say that they may have met. Manifolds of convex shapes that
+/// hardly moved against each other are carried along.
 NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                    const state::Colliders& colliders,
                                    std::span<const MaterialPairDesc> materials, Real dt, state::Pairs& pairs);

@@ -53,6 +53,7 @@ struct Pair {
   // What the last exact test found, so that the next can be skipped or begin where it ended.
   Real gap = Real(0);       ///< Separation then; negative: overlap [m].
   Real odometer = Real(0);  ///< Sum of the two bodies' odometers then [m].
+  Real drift = Real(0);     ///< What the bodies may have moved against each other since then [m].
   std::uint32_t axis = 0;   ///< Features that separated or touched: narrow phase's own code.
   bool tested = false;      ///< False until the first exact test.
   // Its manifolds of this step.
@@ -60,9 +61,16 @@ struct Pair {
   std::uint32_t manifold_count = 0;
 };
 
+/// Where the narrow phase saw a body last.
+struct SeenPose {
+  DVec3 center = {};
+  Quat rotation = {};
+};
+
 struct Pairs {
   std::vector<Pair> pair;
   std::vector<Manifold> manifold;  ///< In order of pair, then patch.
+  std::vector<SeenPose> seen;      ///< Of each body.
 };
 
 }  // namespace hooke::state
