@@ -1,9 +1,12 @@
 #include "solver/joint_nets.h"
 
+#include "solver/hook_colors.h"
+#include "solver/soft_locks.h"
+
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace hooke::solver {
 
@@ -13,39 +16,7 @@ using parallel::Range;
 using state::Hook;
 using state::HookPlace;
 
-constexpr int kMaskColors = 64;
 constexpr int kGrain = 32;
-constexpr double kHertz = 60;
-constexpr double kDampingRatio = 5;
-constexpr double kTwoPi = 6.283185307179586;
-
-/// Factors of a soft row; see JointNet.
-struct Softness {
-  double bias = 0;   ///< b [1/s]
-  double mass = 1;   ///< mu
-  double decay = 0;  ///< gamma
-};
-
-Softness softness_of(double h) {
-  const double omega = kTwoPi * std::min(kHertz, 0.25 / h);
-  const double a = 2 * kDampingRatio + h * omega;
-  const double mass = h * omega * a / (1 + h * omega * a);
-  return {omega / a, mass, 1 - mass};
-}
-
-/// The first color that no hook of either body has.
-int choose_color(const Hook& hook, const state::Bodies& bodies, std::vector<std::uint64_t>& used,
-                 int& next_own_color) {
-  std::uint64_t mask = 0;
-  for (const std::uint32_t body : {hook.a.body, hook.b.body})
-    mask |= is_dynamic(bodies, body) ? used[body] : 0;
-  if (~mask == 0) return next_own_color++;
-  const int color = std::countr_one(mask);
-  for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
-    if (is_dynamic(bodies, body)) used[body] |= std::uint64_t{1} << color;
-  }
-  return color;
-}
 
 /// The velocities of a joint's ends, from the columns and back.
 struct Ends {
@@ -92,7 +63,7 @@ double diagonal_of(const JointRow& row, const Ends& ends) {
 }
 
 /// The change of a row's impulse.
-double solve_row(const JointRow& row, const Ends& ends, double lambda, double h, const Softness& soft) {
+double solve_row(const JointRow& row, const Ends& ends, double lambda, double h, const LockSoftness& soft) {
   const double diagonal = diagonal_of(row, ends);
   if (!(diagonal > 0)) return 0;
   const double v =
@@ -104,7 +75,7 @@ double solve_row(const JointRow& row, const Ends& ends, double lambda, double h,
   } else if (row.role == RowRole::kLimit && row.c > 0) {
     change = (-row.c / h - v) / diagonal;
   } else {
-    change = -soft.mass * (v + soft.bias * row.c) / diagonal - soft.decay * lambda;
+    change = -soft.mass_scale * (v + soft.rate * row.c) / diagonal - soft.impulse_scale * lambda;
   }
   return std::clamp(lambda + change, row.low, row.high) - lambda;
 }
@@ -135,7 +106,8 @@ void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, JointNet& n
   store_velocity(ends.b, hook.b.body, bodies);
 }
 
-void solve_joint(int i, double h, const Softness& soft, Hook& hook, state::Bodies& bodies, JointNet& net) {
+void solve_joint(int i, double h, const LockSoftness& soft, Hook& hook, state::Bodies& bodies,
+                 JointNet& net) {
   Ends ends;
   load_velocity(bodies, hook.a.body, ends.a);
   load_velocity(bodies, hook.b.body, ends.b);
@@ -156,20 +128,12 @@ void solve_joint(int i, double h, const Softness& soft, Hook& hook, state::Bodie
 
 void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
                const state::Bodies& bodies, JointNet& net) {
+  HookColors colors = color_hooks(hook_rows, hooks, bodies);
   net = {};
-  std::vector<std::uint64_t> used(bodies.motion.size());
-  std::vector<std::pair<int, std::uint32_t>> colored;
-  colored.reserve(hook_rows.size());
-  int next_own_color = kMaskColors;
-  for (const std::uint32_t row : hook_rows)
-    colored.emplace_back(choose_color(hooks[row], bodies, used, next_own_color), row);
-  std::sort(colored.begin(), colored.end());
-  for (std::size_t i = 0; i < colored.size(); ++i) {
-    if (i > 0 && colored[i].first != colored[i - 1].first) net.color_begin.push_back(static_cast<int>(i));
-    net.hooks.push_back(colored[i].second);
-    net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[colored[i].second]));
-  }
-  if (!colored.empty()) net.color_begin.push_back(static_cast<int>(colored.size()));
+  net.hooks = std::move(colors.hooks);
+  net.color_begin = std::move(colors.begin);
+  for (const std::uint32_t row : net.hooks)
+    net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[row]));
   net.rows.resize(static_cast<std::size_t>(net.first_row.back()));
   net.done.resize(net.hooks.size());
 }
@@ -180,7 +144,7 @@ void prepare_net(JointNet& net) {
 
 void solve_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
                JointNet& net) {
-  const Softness soft = softness_of(h);
+  const LockSoftness soft = lock_softness(h);
   for_each_joint(pool, net, [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
   for_each_joint(pool, net, [&](int i) { solve_joint(i, h, soft, hooks[net.hooks[i]], bodies, net); });
 }

@@ -42,7 +42,7 @@ struct JointNet {
   std::vector<JointImpulse> done;  ///< Of each hook.
 };
 
-/// Colors hooks in the order they come. Where a body has more than 64, the rest are a color each.
+/// Colors hooks in the order they come.
 void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,
                const state::Bodies& bodies, JointNet& net);
 

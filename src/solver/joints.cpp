@@ -13,7 +13,6 @@ using state::Hook;
 using state::HookPlace;
 
 constexpr int kArticulationGrain = 1;
-constexpr int kHookGrain = 1024;
 
 /// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
 std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hooks,
@@ -77,11 +76,16 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
       rest.insert(rest.end(), group.begin(), group.end());
     }
   }
-  build_net(rest, hooks, bodies, joints.net);
+  const auto others = std::stable_partition(
+      rest.begin(), rest.end(), [&](std::uint32_t row) { return is_plain_ball(hooks[row], bodies); });
+  build_ball_joints({rest.begin(), others}, hooks, bodies, joints.balls);
+  build_net({others, rest.end()}, hooks, bodies, joints.net);
 }
 
-void prepare_joints(std::vector<Hook>& hooks, Joints& joints) {
+void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
+                    Joints& joints) {
   prepare_net(joints.net);
+  prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for (Hook& hook : hooks) {
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
@@ -95,20 +99,23 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
     for (int i = range.begin; i < range.end; ++i) {
       Articulation& art = joints.articulations[i];
       if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
+      for (const std::uint32_t row : art.hooks) add_up(h, hooks[row]);
     }
   });
+  solve_ball_joints(pool, h, bodies, joints.balls);
   solve_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
 }
 
 void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
+  relax_ball_joints(pool, bodies, joints.balls);
   relax_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
-  parallel::for_ranges(pool, static_cast<int>(hooks.size()), kHookGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i) add_up(h, hooks[i]);
-  });
+  for (const std::uint32_t row : joints.net.hooks) add_up(h, hooks[row]);
 }
 
-void finish_joints(Real dt, std::vector<Hook>& hooks) {
+void finish_joints(Real dt, int substeps, const state::Bodies& bodies, const Joints& joints,
+                   std::vector<Hook>& hooks) {
+  store_ball_joints(substeps, bodies, joints.balls, hooks);
   for (Hook& hook : hooks) {
     hook.force = (Real(1) / dt) * hook.impulse_sum;
     hook.torque = (Real(1) / dt) * hook.angular_impulse_sum;

@@ -4,6 +4,7 @@
 
 #include "parallel/thread_pool.h"
 #include "solver/articulations.h"
+#include "solver/ball_joints.h"
 #include "solver/joint_nets.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
@@ -25,7 +26,8 @@ namespace hooke::solver {
 
 struct Joints {
   std::vector<Articulation> articulations;
-  JointNet net;  ///< All hooks that are in none of them.
+  BallJoints balls;  ///< The plain balls that are in none of them.
+  JointNet net;      ///< All others that are in none of them.
 };
 
 /// Multiplications for one solution of a group; about a millisecond.
@@ -36,8 +38,9 @@ inline constexpr double kArticulationBudget = 2e6;
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints);
 
-/// Start of a step: no impulse yet.
-void prepare_joints(std::vector<state::Hook>& hooks, Joints& joints);
+/// Start of a step of substeps of length h [s]: no impulse yet.
+void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,
+                    const state::Bodies& bodies, Joints& joints);
 
 /// The rows of a substep of length h [s], with their errors removed. Groups asleep are left alone.
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
@@ -48,7 +51,8 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& 
 void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
                   Joints& joints);
 
-/// End of a step of length dt [s]: mean forces.
-void finish_joints(Real dt, std::vector<state::Hook>& hooks);
+/// End of a step of length dt [s] in `substeps`: mean forces.
+void finish_joints(Real dt, int substeps, const state::Bodies& bodies, const Joints& joints,
+                   std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

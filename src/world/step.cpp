@@ -62,7 +62,7 @@ void prepare(WorldData& w, double dt, Real h) {
   solver::prepare_springs(w.spring_blocks, particle_h);
   solver::prepare_bends(w.bend_blocks, particle_h);
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
-  solver::prepare_joints(t.hooks, w.joints);
+  solver::prepare_joints(*w.pool, h, t.hooks, t.bodies, w.joints);
   world::begin_contacts(w, h);
   solver::prepare_body_contacts(*w.pool, t.pairs.manifold, t.bodies, w.contact_step, w.body_contacts);
   world::begin_step(w, dt);
@@ -156,7 +156,7 @@ void finish_bodies(WorldData& w, double dt) {
       *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
       [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
-  solver::finish_joints(static_cast<Real>(dt), w.tables.hooks);
+  solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);
   world::drop_broken_hooks(w);
   world::put_to_sleep(w, static_cast<Real>(dt));
 }

@@ -73,15 +73,15 @@ struct JointRig {
     built = t.hook_revision;
     const Real h = dt / static_cast<Real>(substeps);
     prepare_bodies(rows, t.bodies);
-    prepare_joints(t.hooks, joints);
+    prepare_joints(pool, h, t.hooks, t.bodies, joints);
     for (int i = 0; i < substeps; ++i) {
       accelerate_bodies(rows, {.gravity = gravity, .h = h, .first = i == 0}, t.bodies);
       solve_joints(pool, h, t.hooks, t.bodies, joints);
       move_bodies(rows, h, t.bodies);
       relax_joints(pool, h, t.hooks, t.bodies, joints);
     }
-    finish_joints(dt, t.hooks);
     finish_bodies(rows, t.bodies);
+    finish_joints(dt, substeps, t.bodies, joints, t.hooks);
   }
 
   void run(double seconds, int substeps = 8, Real dt = Real(1) / Real(60)) {

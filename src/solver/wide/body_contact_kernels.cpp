@@ -1,7 +1,4 @@
 /// Contact rows over lanes, then the dispatch. The arithmetic stands in body_contact_rows.h.
-///
-/// A body is one line of 16 numbers; the three quarters that rows read are loaded and transposed one after
-/// the other, as lines of four.
 
 #include "solver/wide/body_contacts.h"
 #include "solver/wide/wide.h"
@@ -15,7 +12,7 @@
 
 // After Highway, which includes this file anew for each instruction set.
 #include "solver/wide/body_contact_rows.h"
-#include "solver/wide/lines.h"
+#include "solver/wide/vectors.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
@@ -37,85 +34,6 @@ void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeL
 #else
 
 static_assert(kContactLanes == kLanes);
-
-/// Two vectors in flight as one number, where a block has as many: the processor works on one while it waits
-/// for the other.
-constexpr int kVectors = kWidth < kContactLanes ? 2 : 1;
-constexpr int kStride = kVectors * kWidth;
-
-struct Wide {
-  Vector raw[kVectors];
-
-  Wide() = default;
-  HWY_INLINE explicit Wide(float x) {
-    for (Vector& v : raw) v = hn::Set(kTag, x);
-  }
-
-  friend HWY_INLINE Wide operator+(const Wide& a, const Wide& b) {
-    Wide r;
-    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Add(a.raw[i], b.raw[i]);
-    return r;
-  }
-  friend HWY_INLINE Wide operator-(const Wide& a, const Wide& b) {
-    Wide r;
-    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Sub(a.raw[i], b.raw[i]);
-    return r;
-  }
-  friend HWY_INLINE Wide operator*(const Wide& a, const Wide& b) {
-    Wide r;
-    for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Mul(a.raw[i], b.raw[i]);
-    return r;
-  }
-};
-
-struct Mask {
-  hn::Mask<Lanes> raw[kVectors];
-};
-
-HWY_INLINE void read(const float* from, Wide& to) {
-  for (int i = 0; i < kVectors; ++i) to.raw[i] = hn::Load(kTag, from + i * kWidth);
-}
-HWY_INLINE void write(const Wide& value, float* to) {
-  for (int i = 0; i < kVectors; ++i) hn::Store(value.raw[i], kTag, to + i * kWidth);
-}
-HWY_INLINE Mask above(const Wide& a, const Wide& b) {
-  Mask r;
-  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Gt(a.raw[i], b.raw[i]);
-  return r;
-}
-HWY_INLINE Wide choose(const Mask& condition, const Wide& yes, const Wide& no) {
-  Wide r;
-  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::IfThenElse(condition.raw[i], yes.raw[i], no.raw[i]);
-  return r;
-}
-HWY_INLINE Wide quotient(const Wide& a, const Wide& b) {
-  Wide r;
-  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Div(a.raw[i], b.raw[i]);
-  return r;
-}
-HWY_INLINE Wide root(const Wide& a) {
-  Wide r;
-  for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Sqrt(a.raw[i]);
-  return r;
-}
-
-template <>
-constexpr int kLanesOf<Wide> = kStride;
-
-HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
-  for (int i = 0; i < kVectors; ++i) {
-    const Columns c = load_columns(base, line + i * kWidth);
-    q.x.raw[i] = c.x;
-    q.y.raw[i] = c.y;
-    q.z.raw[i] = c.z;
-    q.w.raw[i] = c.w;
-  }
-}
-
-HWY_INLINE void write_quad(const Quad<Wide>& q, float* base, const std::uint32_t* line) {
-  for (int i = 0; i < kVectors; ++i)
-    store_columns({q.x.raw[i], q.y.raw[i], q.z.raw[i], q.w.raw[i]}, base, line + i * kWidth);
-}
 
 void compute_contact_rows_here(const ContactSource& source, ContactBlock& block) {
   for (int lane = 0; lane < kContactLanes; lane += kStride) {

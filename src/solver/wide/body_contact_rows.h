@@ -1,12 +1,4 @@
-/// The arithmetic of contact rows, once for one lane (Number is Real) and for a vector of lanes. Included
-/// anew for each instruction set: Highway compiles what stands between its two macros for the set in turn.
-///
-/// A Number has + - *, Number(Real), and these functions, given below for Real:
-///   read, write      from and to consecutive lanes
-///   above, choose    a comparison and a choice by it
-///   quotient, root   exact division and square root
-///   read_quad, write_quad   four numbers of each lane from and to different places
-///   kLanesOf         how many lanes it stands for
+/// The arithmetic of contact rows in numbers.h's Numbers. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_WIDE_BODY_CONTACT_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_WIDE_BODY_CONTACT_ROWS_H
@@ -16,185 +8,13 @@
 #endif
 
 #include "solver/wide/body_contacts.h"
+#include "solver/wide/numbers.h"
 
-#include <cmath>
 #include <cstddef>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
-
-template <class Number>
-struct Triple {
-  Number x, y, z;
-};
-
-template <class Number>
-struct Quad {
-  Number x, y, z, w;
-};
-
-/// The half of a line that rows write, and the half they only read.
-template <class Number>
-struct Velocity {
-  Triple<Number> v, omega;
-};
-template <class Number>
-struct Displacement {
-  Triple<Number> dx, theta;
-};
-
-HWY_INLINE void read(const Real* from, Real& to) {
-  to = *from;
-}
-HWY_INLINE void write(Real value, Real* to) {
-  *to = value;
-}
-HWY_INLINE bool above(Real a, Real b) {
-  return a > b;
-}
-HWY_INLINE Real choose(bool condition, Real yes, Real no) {
-  return condition ? yes : no;
-}
-HWY_INLINE Real quotient(Real a, Real b) {
-  return a / b;
-}
-HWY_INLINE Real root(Real a) {
-  return std::sqrt(a);
-}
-HWY_INLINE void read_quad(const Real* base, const std::uint32_t* line, Quad<Real>& q) {
-  const Real* from = base + *line;
-  q = {from[0], from[1], from[2], from[3]};
-}
-HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t* line) {
-  Real* to = base + *line;
-  to[0] = q.x;
-  to[1] = q.y;
-  to[2] = q.z;
-  to[3] = q.w;
-}
-
-template <class Number>
-constexpr int kLanesOf = 1;
-
-template <class Number>
-HWY_INLINE Number get(const Real* from) {
-  Number value;
-  read(from, value);
-  return value;
-}
-
-/// Lanes of a vector quantity, from lane `i` on.
-template <class Number>
-HWY_INLINE Triple<Number> get3(const ContactBlock::Lane (&from)[3], int i) {
-  return {get<Number>(from[0] + i), get<Number>(from[1] + i), get<Number>(from[2] + i)};
-}
-template <class Number>
-HWY_INLINE void put3(const Triple<Number>& value, ContactBlock::Lane (&to)[3], int i) {
-  write(value.x, to[0] + i);
-  write(value.y, to[1] + i);
-  write(value.z, to[2] + i);
-}
-
-template <class Number>
-HWY_INLINE Number larger(Number a, Number b) {
-  return choose(above(a, b), a, b);
-}
-template <class Number>
-HWY_INLINE Number smaller(Number a, Number b) {
-  return choose(above(b, a), a, b);
-}
-template <class Number>
-HWY_INLINE Number dot(const Triple<Number>& a, const Triple<Number>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class Number>
-HWY_INLINE Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-template <class Number>
-HWY_INLINE Triple<Number> difference(const Triple<Number>& a, const Triple<Number>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class Number>
-HWY_INLINE Triple<Number> scaled(Number s, const Triple<Number>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-/// to += s a
-template <class Number>
-HWY_INLINE void add(Number s, const Triple<Number>& a, Triple<Number>& to) {
-  to = {to.x + s * a.x, to.y + s * a.y, to.z + s * a.z};
-}
-/// to -= s a
-template <class Number>
-HWY_INLINE void take(Number s, const Triple<Number>& a, Triple<Number>& to) {
-  to = {to.x - s * a.x, to.y - s * a.y, to.z - s * a.z};
-}
-
-/// Reads the bodies' lines, the three quarters of each that rows look at.
-template <class Number>
-HWY_INLINE void read_motion(const Real* base, const std::uint32_t* line, Velocity<Number>& motion,
-                            Displacement<Number>& moved) {
-  Quad<Number> first, second, third;
-  read_quad(base, line, first);
-  read_quad(base + 4, line, second);
-  read_quad(base + 8, line, third);
-  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
-  moved = {{second.z, second.w, third.x}, {third.y, third.z, third.w}};
-}
-
-template <class Number>
-HWY_INLINE void write_motion(const Velocity<Number>& motion, const Displacement<Number>& moved, Real* base,
-                             const std::uint32_t* line) {
-  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, line);
-  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, line);
-}
-
-/// Where free lines begin, from where motion lines do.
-template <class Number>
-struct FreeLines {
-  std::uint32_t at[kLanesOf<Number>];
-
-  HWY_INLINE explicit FreeLines(const std::uint32_t* line) {
-    for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = line[i] / 2;
-  }
-};
-
-template <class Number>
-HWY_INLINE void read_free(const Real* base, const std::uint32_t* line, Velocity<Number>& motion) {
-  const FreeLines<Number> free(line);
-  Quad<Number> first, second;
-  read_quad(base, free.at, first);
-  read_quad(base + 4, free.at, second);
-  motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
-}
-
-template <class Number>
-HWY_INLINE void write_free(const Velocity<Number>& motion, Real* base, const std::uint32_t* line) {
-  const FreeLines<Number> free(line);
-  const Number zero(Real(0));
-  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, free.at);
-  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, zero, zero}, base + 4, free.at);
-}
-
-/// Two bodies of the lanes from `lane` on, and how rows push them. B of an anchored block is only read.
-template <class Number, bool kAnchored>
-struct Bodies {
-  Velocity<Number> a, b;
-
-  /// Relative velocity along a row of Jacobians j_a, j_b, its linear part given.
-  HWY_INLINE Number rate(Number linear, const Triple<Number>& j_a, const Triple<Number>& j_b) const {
-    return linear + (dot(j_b, b.omega) - dot(j_a, a.omega));
-  }
-  HWY_INLINE void turn(Number impulse, const Triple<Number>& j_a, const Triple<Number>& j_b) {
-    take(impulse, j_a, a.omega);
-    if constexpr (!kAnchored) add(impulse, j_b, b.omega);
-  }
-  HWY_INLINE void push(Number impulse, const Triple<Number>& direction, Number w_a, Number w_b) {
-    take(w_a * impulse, direction, a.v);
-    if constexpr (!kAnchored) add(w_b * impulse, direction, b.v);
-  }
-};
 
 /// The rows of points.
 template <class Number, bool kAnchored>
@@ -341,16 +161,6 @@ HWY_INLINE void warm_start_lanes(const ContactBlock& block, int lane, Real* free
   if constexpr (!kAnchored) write_free(bodies.b, free_motion, block.line_b + lane);
 }
 
-/// A symmetric matrix.
-template <class Number>
-struct Scale {
-  Number xx, xy, xz, yy, yz, zz;
-
-  HWY_INLINE Triple<Number> times(const Triple<Number>& x) const {
-    return {xx * x.x + xy * x.y + xz * x.z, xy * x.x + yy * x.y + yz * x.z, xz * x.x + yz * x.y + zz * x.z};
-  }
-};
-
 /// What rows are made of, A and B in the order of the block.
 template <class Number>
 struct Inputs {
@@ -363,17 +173,6 @@ struct Inputs {
   Triple<Number> surface_velocity;
   Number spinning_friction;
 };
-
-template <class Number>
-HWY_INLINE Scale<Number> read_scale(const math::Symmetric3<Real>* scale, const std::uint32_t* motion_line) {
-  std::uint32_t at[kLanesOf<Number>];
-  for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = motion_line[i] / 16 * 6;
-  const auto* base = reinterpret_cast<const Real*>(scale);
-  Quad<Number> first, last;
-  read_quad(base, at, first);
-  read_quad(base + 2, at, last);
-  return {first.x, first.y, first.z, first.w, last.z, last.w};
-}
 
 // The quarters of a manifold that are read begin at these numbers.
 constexpr std::size_t kNormalAt = offsetof(state::Manifold, normal) / sizeof(Real);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "state/bodies.h"
+#include "state/hooks.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace hooke::solver {
+
+/// Hooks that are solved together: those of one color share no body that forces move.
+struct HookColors {
+  std::vector<std::uint32_t> hooks;  ///< Rows, color after color; in each, as they came.
+  std::vector<int> begin = {0};      ///< Color c is [begin[c], begin[c + 1]). No color is empty.
+};
+
+/// Takes hooks in the order they come; each gets the first color that is free in both bodies. Where a body
+/// has more than 64, the rest are a color each.
+[[nodiscard]] HookColors color_hooks(const std::vector<std::uint32_t>& hook_rows,
+                                     const std::vector<state::Hook>& hooks, const state::Bodies& bodies);
+
+}  // namespace hooke::solver
