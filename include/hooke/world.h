@@ -178,7 +178,7 @@ class BodyForceView {
 /// Owns every object and advances them in time.
 ///
 /// Total: every function accepts every argument. What is out of range comes back as an Error that names it,
-/// and the world is then unchanged. Not thread-safe: one thread uses a World at a time. Two Worlds are
+/// and the world is then unchanged. One thread uses a World at a time, but for queries. Two Worlds are
 /// independent. Two Worlds built by the same calls hold bit-identical state after the same steps, whatever
 /// the number of workers.
 class World {

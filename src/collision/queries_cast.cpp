@@ -69,8 +69,8 @@ Convex seen_from(const Placed& b, const Placed& a, DVec3 place) {
 }
 
 /// How far a sweep ends in front of what it meets, at most [m].
-double sweep_tolerance(const Placed& a, const Placed& b) {
-  return 1e-5 * std::min(a.size, 1.0) + 16 * kRounding * (a.size + b.size);
+double sweep_tolerance(double size_a, double size_b) {
+  return 1e-5 * std::min(size_a, 1.0) + 16 * kRounding * (size_a + size_b);
 }
 
 /// Where the swept shape A meets B.
@@ -98,7 +98,7 @@ Contact overlap_contact(const Convex& a, const Placed& b, DVec3 motion) {
 /// normal, and that normal goes on holding them apart for d / speed. What is not met before `limit` may be
 /// left out.
 std::optional<Contact> sweep(const Placed& a, DVec3 motion, const Placed& b, double limit) {
-  const double tolerance = sweep_tolerance(a, b);
+  const double tolerance = sweep_tolerance(a.size, b.size);
   const double rounding = 8 * kRounding * length(motion);
   Contact contact;
   double t = 0;
@@ -128,7 +128,8 @@ std::optional<Contact> sweep_to_half_space(const Placed& a, DVec3 motion, const 
   const double height = dot(n, lowest - plane.position);
   const double speed = dot(n, motion);
   if (height > 0 && height + speed > 0) return {};
-  const double t = height > 0 ? -height / speed : 0.0;
+  const double stop = 0.5 * sweep_tolerance(a.size, 0);
+  const double t = height > stop ? (stop - height) / speed : 0.0;
   const DVec3 place = lowest + t * motion;
   return Contact{t, place - dot(n, place - plane.position) * n, vector_cast<Real>(n)};
 }

@@ -1,9 +1,11 @@
+#include "collision/pairs.h"
 #include "geometry/meshes.h"
 #include "world/make.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -169,6 +171,51 @@ TEST_SUITE("world/queries") {
       CHECK(length(center - hit->point - 0.5 * vector_cast<double>(hit->normal)) < 1e-3);
       world.remove(body);
     }
+  }
+
+  TEST_CASE("a swept shape of any kind overlaps nothing before its hit, and all but touches there") {
+    World world = make_world();
+    const MeshId mesh = take(world.add_mesh(test::make_sphere(1)));
+    const Shape shapes[] = {Shape::box({Real(0.5), Real(0.3), Real(0.7)}),
+                            kBall,
+                            Shape::capsule(Real(0.3), Real(0.4)),
+                            Shape::cylinder(Real(0.4), Real(0.5)),
+                            Shape::cone(Real(0.4), Real(0.5)),
+                            Shape::hull_of(mesh),
+                            Shape::of_mesh(mesh),
+                            Shape::half_space()};
+    std::mt19937 random(5);
+    const auto place = [&](double size) {
+      const double x = d(test::uniform(random, -size, size));
+      const double y = d(test::uniform(random, -size, size));
+      return DVec3{x, y, d(test::uniform(random, -size, size))};
+    };
+    int hits = 0;
+    int misses = 0;
+    for (int i = 0; i < 600; ++i) {
+      const Shape& target = shapes[i % 8];
+      const Shape& moved = shapes[i / 8 % 6];
+      const BodyId body = take(
+          world.add_body({.shape = target, .position = place(1), .rotation = test::random_turn(random)}));
+      const Pose start = {place(4), test::random_turn(random)};
+      const DVec3 motion = place(1) - 1.5 * start.position;
+      const auto overlaps = [&](DVec3 position) {
+        return !take(world.find_overlaps(moved, {position, start.rotation})).empty();
+      };
+      const auto hit = take(world.cast_shape(moved, start, motion));
+      const double end = hit ? hit->fraction : 1.0;
+      CAPTURE(i);
+      for (int k = 0; k <= 40 && end > 0; ++k)
+        REQUIRE_FALSE(overlaps(start.position + k / 40.0 * end * motion));
+      if (hit) {
+        const DVec3 in = -1e-3 * vector_cast<double>(hit->normal);
+        CHECK(overlaps(start.position + end * motion + in));
+      }
+      ++(hit ? hits : misses);
+      world.remove(body);
+    }
+    CHECK(hits > 200);
+    CHECK(misses > 50);
   }
 
   TEST_CASE("a swept box meets corners, and passes what its way only grazes") {
