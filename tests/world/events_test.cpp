@@ -251,7 +251,7 @@ TEST_SUITE("world/events") {
     floor.shape = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
     floor.position = {0, -0.5, 0};
     take(world.add_body(floor));
-    const BodyId sensor = add_sensor(world, {0.9, 0.4, 0}, {1, 1, 1});  // the floor is wholly on one side
+    const BodyId sensor = add_sensor(world, {4.45, 0.4, 0}, {5, 6, 6});  // the floor is behind its near face
     BodyDesc desc = ball_at({0, 0.5, 0});
     desc.shape = Shape::box({Real(0.4), Real(0.4), Real(0.4)});
     desc.position.y = 0.4;
@@ -266,7 +266,7 @@ TEST_SUITE("world/events") {
     REQUIRE(log.asleep.size() == 1);
     CHECK(log.asleep[0].second == box);
     CHECK(log.awake.empty());
-    REQUIRE(world.set_pose(sensor, {{5, 0, 0}}));
+    REQUIRE(world.set_pose(sensor, {{50, 0, 0}}));
     log.watch(world, 1);
     CHECK(log.leaves.size() == 1);
     REQUIRE(log.awake.size() == 1);  // what was near wakes

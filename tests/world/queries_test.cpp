@@ -330,6 +330,13 @@ TEST_SUITE("world/queries") {
     CHECK(distance() == doctest::Approx(4.5));
     CHECK(world.remove(body));
     CHECK(distance() == -1.0);
+    // What stands is entered when it is placed, not in each step.
+    run(world, 1);
+    const BodyId wall = add(world, kCube, {9, 0, 0});
+    CHECK(distance() == doctest::Approx(8.5));
+    run(world, 1);
+    REQUIRE(world.set_pose(wall, {{90, 0, 0}}));
+    CHECK(distance() == doctest::Approx(89.5));
   }
 
   TEST_CASE("asking changes nothing: a world that is asked in every step makes the same steps") {
