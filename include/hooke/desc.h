@@ -154,10 +154,13 @@ struct BodyDesc {
   ContactDesc contact = {};
   FilterDesc filter = {};
   bool collides = true;  ///< False: only drawn.
-  bool sensor = false;   ///< Reports what overlaps it and pushes nothing.
+  bool sensor = false;   ///< Pushes nothing; lists who comes and goes (Events, World::visitors).
   bool bullet = false;   ///< Swept against moving bodies too, not only against those that stand.
   bool can_sleep = true;
-  MotionDesc motion = {};  ///< kKinematic: its path from the start; rotation by `angular_velocity`.
+  bool reports_contacts = false;  ///< Begins and ends of its contacts are listed (Events).
+  Real hit_speed = kRigid;        ///< What meets it faster than this [m/s] is listed (Events). Not negative;
+                                  ///< infinite: nothing. Of two bodies the lower one counts.
+  MotionDesc motion = {};         ///< kKinematic: its path from the start; rotation by `angular_velocity`.
 };
 
 /// What a hook holds on one side.
@@ -362,5 +365,11 @@ class ForceView;
 
 /// Called once per particle substep for each object, in order of creation, on the thread that called step().
 using ForceLaw = std::function<void(ForceView&)>;
+
+/// The bodies that forces move and that are awake, as a force law sees them, in the same order in every run.
+class BodyForceView;
+
+/// Called once per substep, on the thread that called step().
+using BodyForceLaw = std::function<void(BodyForceView&)>;
 
 }  // namespace hooke

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/event.h"
 #include "hooke/id.h"
 #include "hooke/math.h"
+#include "hooke/query.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"
 #include "hooke/world.h"

@@ -46,4 +46,12 @@ constexpr PointRef point(ClothId id, std::uint32_t index) {
   return {PointRef::Kind::kCloth, id.slot, id.generation, index};
 }
 
+/// One shape of a body.
+struct BodyPart {
+  BodyId body = {};
+  std::uint32_t part = 0;  ///< Index into BodyDesc::parts; 0 for a body of one shape.
+
+  friend constexpr bool operator==(BodyPart, BodyPart) = default;
+};
+
 }  // namespace hooke

@@ -1,14 +1,19 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/event.h"
 #include "hooke/id.h"
 #include "hooke/math.h"
+#include "hooke/query.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 /// \file
 /// The simulation. Start reading here, then open src/world/step.cpp.
@@ -53,14 +58,17 @@ struct Pose {
   Quat rotation = {};
 };
 
-/// Where two bodies touched in the last step. Contacts stand in order of the bodies' creation.
+/// Where two bodies touched in the last step. Contacts stand in order of the bodies' creation, first of a.
 struct BodyContact {
-  BodyId a;
-  BodyId b;
+  BodyId a = {};  ///< Created before `b`.
+  BodyId b = {};
+  std::uint32_t part_a = 0;  ///< Index into BodyDesc::parts.
+  std::uint32_t part_b = 0;
   DVec3 point = {};             ///< Midway between the two surfaces [m].
   Vec3 normal = {};             ///< From a to b.
-  Real separation = Real(0);    ///< Negative: overlap [m].
+  Real separation = Real(0);    ///< At the start of the step; negative: overlap [m].
   Real normal_force = Real(0);  ///< Mean over the last substep [N].
+  Vec3 friction_force = {};     ///< On b; points with one normal share it evenly [N].
 };
 
 /// What a hook did to b, and the opposite to a: mean over the last step.
@@ -144,10 +152,33 @@ class ForceView {
   double time_ = 0;
 };
 
+/// What a force law sees of the bodies. Valid during the call only.
+class BodyForceView {
+ public:
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  [[nodiscard]] double time() const { return time_; }  ///< [s]
+  [[nodiscard]] BodyId id(std::size_t i) const;
+  [[nodiscard]] Real mass(std::size_t i) const;              ///< [kg]
+  [[nodiscard]] DVec3 center_of_mass(std::size_t i) const;   ///< [m]
+  [[nodiscard]] Quat rotation(std::size_t i) const;          ///< Of the body's frame.
+  [[nodiscard]] Vec3 velocity(std::size_t i) const;          ///< Of the center of mass [m/s].
+  [[nodiscard]] Vec3 angular_velocity(std::size_t i) const;  ///< [rad/s], in the world's axes.
+  /// Adds a force [N] at the center for this substep. An index beyond size() is ignored.
+  void add_force(std::size_t i, Vec3 force);
+  /// Adds a torque [N m] for this substep, likewise.
+  void add_torque(std::size_t i, Vec3 torque);
+
+ private:
+  friend struct ForceViewAccess;
+  WorldData* world_ = nullptr;
+  std::span<const std::uint32_t> rows_;
+  double time_ = 0;
+};
+
 /// Owns every object and advances them in time.
 ///
 /// Total: every function accepts every argument. What is out of range comes back as an Error that names it,
-/// and the world is then unchanged. Not thread-safe: one thread uses a World at a time. Two Worlds are
+/// and the world is then unchanged. One thread uses a World at a time, but for queries. Two Worlds are
 /// independent. Two Worlds built by the same calls hold bit-identical state after the same steps, whatever
 /// the number of workers.
 class World {
@@ -167,6 +198,7 @@ class World {
   [[nodiscard]] Result<ParticlesId> add_particles(const ParticlesDesc& desc);
   [[nodiscard]] Result<FieldId> add_field(const FieldDesc& desc);
   [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
+  [[nodiscard]] Result<ForceLawId> add_force_law(BodyForceLaw law);
 
   // A stale or null id is ignored and returns false. A mesh in use stays with those that use it; the hooks of
   // a body go with it.
@@ -194,6 +226,12 @@ class World {
   [[nodiscard]] bool asleep(BodyId id) const;
   /// Where bodies touched each other in the last step.
   [[nodiscard]] std::vector<BodyContact> body_contacts() const;
+  /// The same of one body. Looks at all contacts.
+  [[nodiscard]] std::vector<BodyContact> body_contacts(BodyId id) const;
+  /// What happened in the last step. Valid until the next one; empty after restore().
+  [[nodiscard]] const Events& events() const;
+  /// Who is in a sensor, in order of creation, as of the end of the last step.
+  [[nodiscard]] std::vector<BodyId> visitors(BodyId sensor) const;
   [[nodiscard]] HookForce hook_force(HookId id) const;
   /// How far b has moved from where it was hooked: the angle of a hinge [rad], also beyond whole turns; the
   /// way of a slider or of a wheel's suspension [m]; the length of a distance [m]; 0 for other kinds.
@@ -204,6 +242,40 @@ class World {
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
+
+  // Asking where bodies are now; not points of ropes, cloths and particles. Any number of threads may ask at
+  // once while none calls anything else. The first query after bodies moved brings the tree of boxes up to
+  // date, about 0.1 us per awake body. Of equally near parts the one that was created first counts. A mesh is
+  // its surface, met from both sides; all other shapes are solid.
+  //
+  // Errors: places beyond 1e9 m or not finite, motions of no length, stale ids, and any query during a step.
+
+  /// What the way from `origin` over `motion` [m] meets first. A ray that begins in a solid meets it at once,
+  /// with a normal that leads back.
+  [[nodiscard]] Result<std::optional<CastHit>> cast_ray(DVec3 origin, DVec3 motion,
+                                                        const QueryFilter& filter = {}) const;
+  /// All that the ray meets, each part once where it enters it, in order of distance.
+  [[nodiscard]] Result<std::vector<CastHit>> cast_ray_through(DVec3 origin, DVec3 motion,
+                                                              const QueryFilter& filter = {}) const;
+  /// Whether the ray meets anything: the cheapest of the three.
+  [[nodiscard]] Result<bool> is_ray_blocked(DVec3 origin, DVec3 motion, const QueryFilter& filter = {}) const;
+  /// What a convex shape (not a half-space, mesh or compound) meets first on its way from `start` over
+  /// `motion` [m], without turning. It stops within 1e-5 of its size (at most of 1 m) in front of what it
+  /// meets; float may add 2e-6 of the sizes of both. What overlaps at the start is met at once, with the
+  /// normal that leads out the shortest way.
+  [[nodiscard]] Result<std::optional<CastHit>> cast_shape(const Shape& shape, const Pose& start, DVec3 motion,
+                                                          const QueryFilter& filter = {}) const;
+  /// All parts that a convex shape overlaps, in order of creation.
+  [[nodiscard]] Result<std::vector<BodyPart>> find_overlaps(const Shape& shape, const Pose& pose,
+                                                            const QueryFilter& filter = {}) const;
+  /// All parts whose boxes along the axes overlap a box, in order of creation: cheaper, and a little too
+  /// many.
+  [[nodiscard]] Result<std::vector<BodyPart>> find_in_box(DVec3 lower, DVec3 upper,
+                                                          const QueryFilter& filter = {}) const;
+  /// The nearest point of any surface that is at most `reach` [m] from `point` or whose solid holds it; the
+  /// deepest, of several solids that do. `reach` is not negative and may be infinite.
+  [[nodiscard]] Result<std::optional<ClosestPoint>> find_closest(DVec3 point, Real reach,
+                                                                 const QueryFilter& filter = {}) const;
 
   // Pushing. Values must be finite.
   Result<void> apply_force(PointRef point, Vec3 force);         ///< [N], during the next step.

@@ -78,28 +78,6 @@ std::string prefix_of(const BodyDesc& desc, std::size_t part) {
   return desc.shape.kind != ShapeKind::kCompound ? std::string() : indexed("parts", part) + ".";
 }
 
-/// Meshes and hulls are made from the mesh that the shape names.
-Result<ColliderShape> find_shape(const Shape& shape, const std::string& where, Tables& t) {
-  ColliderShape result = {shape, nullptr, nullptr};
-  if (shape.kind == ShapeKind::kBox) {
-    result.hull = std::make_shared<geometry::ConvexHull>(geometry::make_box_hull(shape.half_extents));
-  }
-  if (shape.kind != ShapeKind::kMesh && shape.kind != ShapeKind::kHull) return result;
-  const std::uint32_t row = t.mesh_slots.find(shape.mesh);
-  if (row == t.mesh_slots.kNone || !t.meshes[row]) {
-    return Error{ErrorCode::kStaleId, where + "shape.mesh", "refers to nothing that is in the world"};
-  }
-  result.mesh = t.meshes[row];
-  if (shape.kind == ShapeKind::kMesh) return result;
-  if (!t.hulls[row]) {
-    Result<geometry::ConvexHull> hull = geometry::make_convex_hull(result.mesh->desc.positions);
-    if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
-    t.hulls[row] = std::make_shared<geometry::ConvexHull>(std::move(hull.value()));
-  }
-  result.hull = t.hulls[row];
-  return result;
-}
-
 MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
   MassProperties solid =
       shape.shape.kind == ShapeKind::kHull ? geometry::mass_of(*shape.hull) : geometry::mass_of(shape.shape);
@@ -113,10 +91,11 @@ Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
     Part part = {.desc = descs[i], .shape = {}, .solid = {}};
     part.desc.rotation = normalize(part.desc.rotation);
     const std::string where = "body." + prefix_of(desc, i);
-    Result<ColliderShape> shape = find_shape(part.desc.shape, where, t);
+    Result<ColliderShape> shape = make_shape(part.desc.shape, where, t);
     if (!shape) return shape.error();
     part.shape = std::move(shape.value());
     const ShapeKind kind = part.desc.shape.kind;
+    if (kind == ShapeKind::kHull) t.hulls[t.mesh_slots.find(part.desc.shape.mesh)] = part.shape.hull;
     const bool solid = kind != ShapeKind::kMesh && kind != ShapeKind::kHalfSpace;
     if (desc.kind == BodyKind::kDynamic && !solid) {
       return Error{ErrorCode::kOutOfRange, where + "shape",
@@ -236,6 +215,8 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
                               .sensor = desc.sensor,
                               .bullet = desc.bullet,
                               .can_sleep = desc.can_sleep,
+                              .reports_contacts = desc.reports_contacts,
+                              .hit_speed = desc.hit_speed,
                               .linear_damping = desc.linear_damping,
                               .angular_damping = desc.angular_damping,
                               .gravity_scale = desc.gravity_scale,
@@ -250,6 +231,32 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
 
 }  // namespace
 
+Result<ColliderShape> make_shape(const Shape& shape, const std::string& where, const Tables& t) {
+  ColliderShape result = {shape, nullptr, nullptr};
+  if (shape.kind == ShapeKind::kBox) {
+    result.hull = std::make_shared<geometry::ConvexHull>(geometry::make_box_hull(shape.half_extents));
+  }
+  if (shape.kind != ShapeKind::kMesh && shape.kind != ShapeKind::kHull) return result;
+  const std::uint32_t row = t.mesh_slots.find(shape.mesh);
+  if (row == t.mesh_slots.kNone || !t.meshes[row]) {
+    return Error{ErrorCode::kStaleId, where + "shape.mesh", "refers to nothing that is in the world"};
+  }
+  result.mesh = t.meshes[row];
+  if (shape.kind == ShapeKind::kMesh) return result;
+  result.hull = t.hulls[row];
+  if (result.hull) return result;
+  Result<geometry::ConvexHull> hull = geometry::make_convex_hull(result.mesh->desc.positions);
+  if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
+  result.hull = std::make_shared<geometry::ConvexHull>(std::move(hull.value()));
+  return result;
+}
+
+Result<void> validate(const Shape& shape) {
+  Checks checks("shape");
+  check_shape(shape, "", checks);
+  return checks.result();
+}
+
 Result<void> validate(const BodyDesc& body) {
   Checks checks("body");
   checks.place("position", body.position)
@@ -258,7 +265,9 @@ Result<void> validate(const BodyDesc& body) {
       .finite("angular_velocity", body.angular_velocity)
       .in_range("linear_damping", static_cast<double>(body.linear_damping), 0, 1e6)
       .in_range("angular_damping", static_cast<double>(body.angular_damping), 0, 1e6)
-      .finite("gravity_scale", static_cast<double>(body.gravity_scale));
+      .finite("gravity_scale", static_cast<double>(body.gravity_scale))
+      .require(body.hit_speed >= Real(0), "hit_speed", static_cast<double>(body.hit_speed),
+               "must be zero, positive or infinite");
   if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);
   const std::vector<PartDesc> parts = parts_of(body);
   checks.require(!parts.empty(), "parts", "needs at least one part");
@@ -299,6 +308,7 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.path_start[row] = b.center[row];
   b.path_time[row] = t.time;
   add_colliders(parts, mass.center, row, t);
+  t.any_reports = t.any_reports || desc.sensor || desc.reports_contacts || std::isfinite(desc.hit_speed);
   if (moves)
     t.moving_bodies.insert(std::lower_bound(t.moving_bodies.begin(), t.moving_bodies.end(), row), row);
   return row;

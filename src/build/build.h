@@ -21,6 +21,10 @@ Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
 
 /// The row of the new body; its slot is not set.
 Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
+/// What colliders keep of a shape; the hull of a mesh is made where the tables have none. `where` begins the
+/// place of an Error, like "body.".
+[[nodiscard]] Result<state::ColliderShape> make_shape(const Shape& shape, const std::string& where,
+                                                      const state::Tables& tables);
 /// Leaves holes in the tables of bodies and colliders, and forgets the pairs of its colliders.
 void remove_body(std::uint32_t row, state::Tables& tables);
 
@@ -30,6 +34,7 @@ Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
 [[nodiscard]] Result<void> validate(const WorldDesc& desc);
 [[nodiscard]] Result<void> validate(const WindDesc& wind);
 [[nodiscard]] Result<void> validate(const FieldDesc& field);
+[[nodiscard]] Result<void> validate(const Shape& shape);
 [[nodiscard]] Result<void> validate(const BodyDesc& body);
 [[nodiscard]] Result<void> validate(const HookDesc& desc);
 [[nodiscard]] Result<void> validate(const HookMotor& motor);

@@ -4,8 +4,10 @@
 
 #include "collision/broad_phase_tree.h"
 #include "geometry/box.h"
+#include "geometry/ray_slabs.h"
 #include "parallel/thread_pool.h"
 
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <vector>
@@ -61,6 +63,11 @@ class BroadPhase {
   template <class Visit>
   void visit_sweep(DVec3 origin, DVec3 motion, Real radius, Visit&& visit) const;
 
+  /// Calls `visit(collider)` for the colliders whose boxes are at most `reach` from `point` [m], roughly from
+  /// near to far. `visit` returns the distance beyond which nothing matters any more.
+  template <class Visit>
+  void visit_near(DVec3 point, double reach, Visit&& visit) const;
+
  private:
   /// Where a collider's box is kept.
   enum class Home : std::uint8_t { kNone, kStanding, kMoving, kUnbounded };
@@ -69,6 +76,10 @@ class BroadPhase {
     bool moves = false;
     bool changed = false;  // since the last find_pairs: its candidates are void
   };
+
+  /// Both trees and what is outside of them; see BroadPhaseTree::visit_near.
+  template <class Bound, class Visit>
+  void visit_bounded(double limit, const Bound& bound, Visit&& visit) const;
 
   void enter_home(std::uint32_t collider);
   void leave_home(std::uint32_t collider);
@@ -99,14 +110,28 @@ template <class Visit>
 void BroadPhase::visit_sweep(DVec3 origin, DVec3 motion, Real radius, Visit&& visit) const {
   const auto ray = geometry::RaySlabs::of(origin, motion);
   const auto grown = static_cast<double>(radius);
-  double limit = 1;
+  visit_bounded(
+      1.0, [&](const geometry::Box& box) { return ray.enter(box, grown); }, visit);
+}
+
+template <class Visit>
+void BroadPhase::visit_near(DVec3 point, double reach, Visit&& visit) const {
+  const auto distance = [point](const geometry::Box& box) {
+    const geometry::Box3<double> b = {vector_cast<double>(box.lower), vector_cast<double>(box.upper)};
+    return std::sqrt(geometry::distance_squared(b, point));
+  };
+  visit_bounded(reach, distance, visit);
+}
+
+template <class Bound, class Visit>
+void BroadPhase::visit_bounded(double limit, const Bound& bound, Visit&& visit) const {
   const auto visit_tight = [&](std::uint32_t collider) {
-    if (ray.enter(tight_[collider], grown) <= limit) limit = visit(collider);
+    if (bound(tight_[collider]) <= limit) limit = visit(collider);
     return limit;
   };
   for (const std::uint32_t collider : unbounded_) visit_tight(collider);
-  standing_.visit_ray(ray, grown, limit, visit_tight);
-  moving_.visit_ray(ray, grown, limit, visit_tight);
+  standing_.visit_near(limit, bound, visit_tight);
+  moving_.visit_near(limit, bound, visit_tight);
 }
 
 }  // namespace hooke::collision

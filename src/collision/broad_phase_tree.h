@@ -2,7 +2,6 @@
 
 #include "base/assert.h"
 #include "geometry/box.h"
-#include "geometry/ray_slabs.h"
 
 #include <array>
 #include <bit>
@@ -46,10 +45,10 @@ class BroadPhaseTree {
   template <class Visit>
   void visit_overlaps(const geometry::Box& box, Visit&& visit) const;
 
-  /// Calls `visit(value)` for each leaf whose box, grown by `radius`, the segment origin + s direction enters
-  /// at an s in [0, limit], nodes from near to far. `visit` returns the new limit, at most the old one.
-  template <class Visit>
-  void visit_ray(const geometry::RaySlabs& ray, double radius, double limit, Visit&& visit) const;
+  /// Calls `visit(value)` for each leaf with a `bound(box)` of at most `limit`, nodes from near to far. A box
+  /// inside another has no lower bound. `visit` returns the new limit, at most the old one.
+  template <class Bound, class Visit>
+  void visit_near(double limit, const Bound& bound, Visit&& visit) const;
 
  private:
   static constexpr int kLanes = 8;
@@ -140,11 +139,10 @@ void BroadPhaseTree::visit_overlaps(const geometry::Box& box, Visit&& visit) con
   }
 }
 
-template <class Visit>
-void BroadPhaseTree::visit_ray(const geometry::RaySlabs& ray, double radius, double limit,
-                               Visit&& visit) const {
+template <class Bound, class Visit>
+void BroadPhaseTree::visit_near(double limit, const Bound& bound, Visit&& visit) const {
   for (const Leaf& leaf : loose_) {
-    if (ray.enter(leaf.box, radius) <= limit) limit = visit(leaf.value);
+    if (bound(leaf.box) <= limit) limit = visit(leaf.value);
   }
   Waiting stack[kStackSize];
   int size = 0;
@@ -155,17 +153,17 @@ void BroadPhaseTree::visit_ray(const geometry::RaySlabs& ray, double radius, dou
     const Node& node = nodes_[top.node];
     const int first = size;
     for (int lane = 0; lane < node.count; ++lane) {
-      const double bound = ray.enter(node.box(lane), radius);
+      const double near = bound(node.box(lane));
       const std::uint32_t child = node.child[static_cast<std::size_t>(lane)];
-      if (bound > limit) continue;
+      if (near > limit) continue;
       if ((child & kLeafBit) != 0) {
         limit = visit(child & ~kLeafBit);
         continue;
       }
       HOOKE_ASSERT(size < kStackSize);
       int at = size++;
-      for (; at > first && stack[at - 1].bound < bound; --at) stack[at] = stack[at - 1];
-      stack[at] = {child, bound};
+      for (; at > first && stack[at - 1].bound < near; --at) stack[at] = stack[at - 1];
+      stack[at] = {child, near};
     }
   }
 }

@@ -249,7 +249,9 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
   const Real odometer = scene.bodies.odometer[a] + scene.bodies.odometer[b];
   pair.drift += drift_of(scene.motions[a], scene.motions[b]);
-  if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
+  if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
+    // Nothing pushes here; who overlaps is found at the end of the step.
+  } else if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
     ++chunk.counts.skipped;
     const auto old = scene.old.begin() + pair.first_manifold;
     chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);

@@ -94,6 +94,26 @@ void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& 
   std::sort(found.begin(), found.end());
 }
 
+void find_triangles_on_way(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
+                           std::vector<BvhEntry>& found) {
+  found.clear();
+  const RaySlabs ray = RaySlabs::of(origin, motion);
+  for (std::uint32_t i = 0; i < bvh.nodes.size();) {
+    const BvhNode& node = bvh.nodes[i];
+    const bool is_leaf = node.count > 0;
+    const bool is_near = ray.enter(box_of_node(node), radius) <= 1.0;
+    for (std::uint32_t k = node.next; is_leaf && is_near && k < node.next + node.count; ++k) {
+      const auto& [a, b, c] = bvh.corners[k];
+      const double fraction = ray.enter(box_of(a, b, c), radius);
+      if (fraction <= 1.0) found.push_back({bvh.order[k], fraction});
+    }
+    i = is_leaf || is_near ? i + 1 : node.next;
+  }
+  std::sort(found.begin(), found.end(), [](const BvhEntry& p, const BvhEntry& q) {
+    return p.fraction != q.fraction ? p.fraction < q.fraction : p.triangle < q.triangle;
+  });
+}
+
 std::optional<BvhClosest> find_closest(const Bvh& bvh, Vec3 p, Real distance_max) {
   // The bound of a box and the distance of a triangle in it are rounded differently.
   const Real slack = Real(1) - Real(16) * std::numeric_limits<Real>::epsilon();

@@ -33,6 +33,16 @@ Bvh build_bvh(std::span<const Vec3> positions, std::span<const Triangle> triangl
 /// Replaces `found` by the triangles whose own boxes overlap `box`, in ascending order.
 void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& found);
 
+struct BvhEntry {
+  std::uint32_t triangle = 0;
+  double fraction = 0.0;  ///< Of the motion, in [0, 1].
+};
+
+/// Replaces `found` by the triangles whose boxes, grown by `radius` on every side, the segment from `origin`
+/// over `motion` enters, and where; in order of (fraction, triangle). The motion may be zero.
+void find_triangles_on_way(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
+                           std::vector<BvhEntry>& found);
+
 struct BvhClosest {
   std::uint32_t triangle = 0;
   Vec3 point = {};

@@ -23,7 +23,7 @@ class Laws {
     }
     for (const state::ForceLawEntry& entry : tables_.force_laws) {
       ForceView view = ForceViewAccess::make(tables_, object, time, forces_.data());
-      entry.law(view);
+      if (entry.law) entry.law(view);
     }
     for (std::size_t i = 0; i < x.size(); ++i) force[i] += vector_cast<double>(forces_[first + i]);
   }

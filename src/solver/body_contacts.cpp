@@ -258,10 +258,15 @@ void store_body_contacts(Range blocks, const BodyContacts& contacts, std::vector
     for (int lane = 0; lane < block.count; ++lane) {
       Manifold& m = manifolds[contacts.manifold_of[first + lane]];
       bool any_bounced = false;
+      m.largest_impulse = block.pushed[lane];
       for (int k = 0; k < m.point_count; ++k) {
         const bool has_bounced = bounced(contacts, block, k, lane);
         m.point[k].normal_impulse = has_bounced ? Real(0) : block.point[k].impulse[lane];
         any_bounced = any_bounced || has_bounced;
+        if (has_bounced) {
+          m.largest_impulse +=
+              contacts.bounces[block.bounces].impulse[k][lane] - block.point[k].impulse[lane];
+        }
       }
       m.touching = block.pushed[lane] > Real(0);
       const Vec3 t_1 = vector_of(block.tangent, lane);

@@ -55,6 +55,8 @@ struct BodyTraits {
   bool sensor = false;
   bool bullet = false;
   bool can_sleep = true;
+  bool reports_contacts = false;
+  Real hit_speed = kRigid;  ///< From which on hits are reported [m/s].
   Real linear_damping = Real(0);
   Real angular_damping = Real(0);
   Real gravity_scale = Real(1);
@@ -80,6 +82,7 @@ struct Bodies {
   std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
   std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
+  std::vector<std::uint8_t> slept;  ///< `asleep` at the end of the last step; written by gather_events.
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.
@@ -105,6 +108,7 @@ struct Bodies {
     visit(self.odometer);
     visit(self.rest_time);
     visit(self.asleep);
+    visit(self.slept);
     visit(self.first_collider);
     visit(self.collider_count);
     visit(self.slot);
@@ -117,6 +121,12 @@ struct Bodies {
 /// Whether forces move the body; never the world (HookPlace::kWorld).
 inline bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
   return body < bodies.traits.size() && bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
+/// What FilterDesc says of two bodies.
+inline bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
+  if (a.group == b.group && a.group != 0) return a.group > 0;
+  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
 /// Ends a body's sleep, and its rest before that.

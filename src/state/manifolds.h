@@ -43,6 +43,7 @@ struct Manifold {
   Real rolling_friction = Real(0);   ///< [m]
   Real spinning_friction = Real(0);  ///< [m]
   Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
+  Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
 };
 

@@ -50,8 +50,10 @@ struct Field {
   std::uint32_t slot = 0;
 };
 
+/// One of the two is a function.
 struct ForceLawEntry {
-  ForceLaw law;
+  ForceLaw law = {};
+  BodyForceLaw body_law = {};
   std::uint32_t slot = 0;
 };
 

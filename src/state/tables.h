@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/event.h"
 
 #include "state/bodies.h"
 #include "state/colliders.h"
@@ -40,8 +41,11 @@ struct Tables {
   Bodies bodies;
   Colliders colliders;
   Pairs pairs;
-  std::vector<Hook> hooks;                   ///< In order of creation.
-  std::uint64_t hook_revision = 0;           ///< Grows when hooks come, go or change their rows.
+  bool any_reports = false;           ///< Some body was added that asks for contacts, hits or visitors.
+  std::vector<ContactEvent> touches;  ///< As of the last step, of those that ask; in order of creation.
+  std::vector<SensorEvent> visits;    ///< Who is in which sensor; in order of creation.
+  std::vector<Hook> hooks;            ///< In order of creation.
+  std::uint64_t hook_revision = 0;    ///< Grows when hooks come, go or change their rows.
   std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
   std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
   std::vector<Rows> free_colliders;          ///< Holes of the collider table.

@@ -34,6 +34,15 @@ struct ForceViewAccess {
     view.time_ = time;
     return view;
   }
+
+  /// Of the bodies in `law_bodies`.
+  static BodyForceView make(WorldData& world, double time) {
+    BodyForceView view;
+    view.world_ = &world;
+    view.rows_ = world.law_bodies;
+    view.time_ = time;
+    return view;
+  }
 };
 
 }  // namespace hooke

@@ -3,6 +3,7 @@
 #include "collision/narrow_phase.h"
 #include "collision/shape_bounds.h"
 #include "solver/forces.h"
+#include "world/events.h"
 #include "world/hooks.h"
 
 #include <algorithm>
@@ -19,9 +20,11 @@ bool moves(const BodyTraits& traits) {
   return traits.kind != BodyKind::kStatic;
 }
 
-bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
-  if (a.group == b.group && a.group != 0) return a.group > 0;
-  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+/// Who can push, and who is seen by sensors: all that moves, but no other sensor.
+bool may_meet(const BodyTraits& a, const BodyTraits& b) {
+  if (a.sensor && b.sensor) return false;
+  if (a.kind == BodyKind::kDynamic || b.kind == BodyKind::kDynamic) return true;
+  return (a.sensor && moves(b)) || (b.sensor && moves(a));
 }
 
 bool may_collide(const WorldData& world, collision::ColliderPair pair) {
@@ -30,9 +33,8 @@ bool may_collide(const WorldData& world, collision::ColliderPair pair) {
   const std::uint32_t b = t.colliders.body[pair.second];
   const BodyTraits& ta = t.bodies.traits[a];
   const BodyTraits& tb = t.bodies.traits[b];
-  const bool one_moves = ta.kind == BodyKind::kDynamic || tb.kind == BodyKind::kDynamic;
-  return a != b && one_moves && ta.collides && tb.collides && filters_agree(ta.filter, tb.filter) &&
-         !are_hooked(world, a, b);
+  return a != b && may_meet(ta, tb) && ta.collides && tb.collides &&
+         state::filters_agree(ta.filter, tb.filter) && !are_hooked(world, a, b);
 }
 
 /// What the colliders of a body can reach in this step.
@@ -40,6 +42,14 @@ void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   const std::uint32_t first = t.bodies.first_collider[body];
   for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
+}
+
+std::vector<std::uint32_t> all_bodies(const state::Bodies& bodies) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t body = 0; body < bodies.traits.size(); ++body) {
+    if (bodies.traits[body].alive) rows.push_back(body);
+  }
+  return rows;
 }
 
 void enter_broad_phase(WorldData& world, std::uint32_t body) {
@@ -54,10 +64,7 @@ void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
   if (world.broad_phase_stale) {
     world.broad_phase.clear();
-    world.bodies_placed.clear();
-    for (std::uint32_t body = 0; body < t.bodies.motion.size(); ++body) {
-      if (t.bodies.traits[body].alive) world.bodies_placed.push_back(body);
-    }
+    world.bodies_placed = all_bodies(t.bodies);
     world.broad_phase_stale = false;
   }
   for (const std::uint32_t body : world.bodies_placed) {
@@ -70,6 +77,33 @@ void refresh_broad_phase(WorldData& world, Real dt) {
 
 }  // namespace
 
+const collision::BroadPhase& boxes_for_queries(WorldData& world) {
+  if (world.boxes_are_current.load(std::memory_order_acquire)) return world.broad_phase;
+  const std::lock_guard lock(world.boxes_mutex);
+  if (world.boxes_are_current.load(std::memory_order_relaxed)) return world.broad_phase;
+  const Tables& t = world.tables;
+  // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
+  const auto enter = [&](std::uint32_t body) {
+    const std::uint32_t first = t.bodies.first_collider[body];
+    for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c) {
+      world.broad_phase.set(c, collision::reach_of(t.bodies, t.colliders, c, Real(0)),
+                            moves(t.bodies.traits[body]));
+    }
+  };
+  if (world.broad_phase_stale) {
+    world.broad_phase.clear();
+    for (const std::uint32_t body : all_bodies(t.bodies)) enter(body);
+  } else {
+    for (const std::uint32_t body : world.bodies_placed) enter(body);
+    for (const std::uint32_t body : t.moving_bodies) {
+      if (t.bodies.asleep[body] == 0) enter(body);
+    }
+  }
+  world.broad_phase.update();
+  world.boxes_are_current.store(true, std::memory_order_release);
+  return world.broad_phase;
+}
+
 void list_awake_bodies(WorldData& world) {
   const state::Bodies& bodies = world.tables.bodies;
   world.awake.clear();
@@ -80,6 +114,7 @@ void list_awake_bodies(WorldData& world) {
 
 void find_body_contacts(WorldData& world, Real dt) {
   Tables& t = world.tables;
+  world.boxes_are_current = false;  // from now on they are those of the step
   refresh_broad_phase(world, dt);
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) update_bounds(t, body, dt);
@@ -101,6 +136,7 @@ void begin_contacts(WorldData& world, Real h) {
                         .sweeps = desc.bias_sweeps,
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
   world.tables.body_substep = static_cast<double>(h);
+  note_approaches(world, h * static_cast<Real>(desc.substeps));
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {

@@ -43,6 +43,10 @@ void list_awake_bodies(WorldData& world);
 /// Boxes of all colliders that move, the pairs they make, and their manifolds.
 void find_body_contacts(WorldData& world, Real dt);
 
+/// The broad phase with the boxes of all bodies where they are now, for queries between steps. Any number of
+/// threads may ask for it at once: the first brings it up to date.
+[[nodiscard]] const collision::BroadPhase& boxes_for_queries(WorldData& world);
+
 /// How contacts are solved in this step, with substeps of length `h`.
 void begin_contacts(WorldData& world, Real h);
 

@@ -115,6 +115,7 @@ void put_to_sleep(WorldData& world, Real dt) {
   for (const std::uint32_t body : world.awake) {
     if (!is_dynamic(bodies, body) || rest[islands.root(body)] < kRestTime) continue;
     bodies.asleep[body] = 1;
+    world.bodies_placed.push_back(body);  // its box is still that of its last way
     bodies.motion[body].v = {};
     bodies.angular_momentum[body] = {};
     bodies.angular_velocity[body] = {};

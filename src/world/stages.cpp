@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace hooke::world {
 
@@ -39,6 +40,18 @@ void read_wind(WorldData& world, double time) {
   }
 }
 
+/// Who is pushed by force laws over bodies, and what else pushes them.
+void begin_body_laws(WorldData& world) {
+  const state::Tables& tables = world.tables;
+  const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };
+  world.law_bodies.clear();
+  if (std::none_of(tables.force_laws.begin(), tables.force_laws.end(), asks)) return;
+  std::copy_if(world.awake.begin(), world.awake.end(), std::back_inserter(world.law_bodies),
+               [&](std::uint32_t body) { return is_dynamic(tables.bodies, body); });
+  world.given_force = tables.bodies.force;
+  world.given_torque = tables.bodies.torque;
+}
+
 }  // namespace
 
 void refresh_derived(WorldData& world) {
@@ -67,6 +80,7 @@ void begin_step(WorldData& world, double dt) {
   world.start_origin.clear();
   for (const state::Deformable& object : tables.objects) world.start_origin.push_back(object.origin);
   read_wind(world, tables.time + 0.5 * dt);
+  begin_body_laws(world);
 
   std::fill(tables.segments.mean_tension.begin(), tables.segments.mean_tension.end(), Real(0));
   std::size_t row = 0;
@@ -128,6 +142,7 @@ void call_force_laws(WorldData& world, double time, Real h) {
   if (tables.force_laws.empty()) return;
   std::fill(world.law_force.begin(), world.law_force.end(), Vec3{});
   for (const state::ForceLawEntry& entry : tables.force_laws) {
+    if (!entry.law) continue;
     for (const state::Deformable& object : tables.objects) {
       ForceView view = ForceViewAccess::make(tables, object, time, world.law_force.data());
       entry.law(view);
@@ -135,6 +150,16 @@ void call_force_laws(WorldData& world, double time, Real h) {
   }
   for (std::size_t p = 0; p < world.law_force.size(); ++p) {
     tables.particles.velocity[p].v += (h * tables.particles.velocity[p].inverse_mass) * world.law_force[p];
+  }
+}
+
+void call_body_laws(WorldData& world, double time) {
+  if (world.law_bodies.empty()) return;
+  world.tables.bodies.force = world.given_force;
+  world.tables.bodies.torque = world.given_torque;
+  BodyForceView view = ForceViewAccess::make(world, time);
+  for (const state::ForceLawEntry& entry : world.tables.force_laws) {
+    if (entry.body_law) entry.body_law(view);
   }
 }
 

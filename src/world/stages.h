@@ -22,6 +22,10 @@ void apply_wind(WorldData& world, Real h);
 void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
 
+/// The force and torque on bodies for the substep that begins at `time`: what was given for the step, and
+/// what the user's laws over bodies ask for.
+void call_body_laws(WorldData& world, double time);
+
 /// Puts rows that are not finite back to where they began the step, at rest. Returns how many.
 std::uint32_t quarantine_non_finite(WorldData& world);
 

@@ -23,6 +23,7 @@
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
+#include "world/events.h"
 #include "world/hooks.h"
 #include "world/sleep.h"
 #include "world/stages.h"
@@ -128,6 +129,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
   world::drive_kinematic_bodies(w, time + static_cast<double>(h), h);
+  world::call_body_laws(w, time);
   const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
   for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
   for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {
@@ -159,6 +161,7 @@ void finish_bodies(WorldData& w, double dt) {
   solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);
   world::drop_broken_hooks(w);
   world::put_to_sleep(w, static_cast<Real>(dt));
+  world::gather_events(w);
 }
 
 void finish(WorldData& w, double dt, StepReport& report) {

@@ -42,6 +42,19 @@ PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& s
           object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
 }
 
+Error no_function() {
+  return {ErrorCode::kOutOfRange, "force_law", "must be a function"};
+}
+
+Result<ForceLawId> add_law(WorldData& w, state::ForceLawEntry entry) {
+  if (w.stepping) return Error{ErrorCode::kUnsupported, "force_law", "cannot be added during a step"};
+  state::Tables& t = w.tables;
+  const ForceLawId id = t.force_law_slots.add(static_cast<std::uint32_t>(t.force_laws.size()));
+  entry.slot = id.slot;
+  t.force_laws.push_back(std::move(entry));
+  return id;
+}
+
 }  // namespace
 
 Vec3 PointView::offset(std::size_t i) const {
@@ -114,12 +127,13 @@ Result<FieldId> World::add_field(const FieldDesc& desc) {
 }
 
 Result<ForceLawId> World::add_force_law(ForceLaw law) {
-  if (!law) return Error{ErrorCode::kOutOfRange, "force_law", "must be a function"};
-  if (data_->stepping) return Error{ErrorCode::kUnsupported, "force_law", "cannot be added during a step"};
-  state::Tables& t = data_->tables;
-  const ForceLawId id = t.force_law_slots.add(static_cast<std::uint32_t>(t.force_laws.size()));
-  t.force_laws.push_back({std::move(law), id.slot});
-  return id;
+  if (!law) return no_function();
+  return add_law(*data_, {.law = std::move(law)});
+}
+
+Result<ForceLawId> World::add_force_law(BodyForceLaw law) {
+  if (!law) return no_function();
+  return add_law(*data_, {.body_law = std::move(law)});
 }
 
 bool World::remove(MeshId id) {
@@ -316,6 +330,9 @@ Result<void> World::restore(const Snapshot& snapshot) {
   if (data_->stepping) return Error{ErrorCode::kUnsupported, "snapshot", "cannot be restored during a step"};
   world::restore_tables(snapshot.data_->tables, data_->tables);
   data_->broad_phase_stale = true;
+  data_->boxes_are_current = false;
+  data_->events = {};
+  data_->broken_hooks.clear();
   return {};
 }
 

@@ -3,12 +3,17 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "math/rotation.h"
+#include "solver/bodies.h"
 #include "state/body_frames.h"
 #include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace hooke {
 
@@ -32,7 +37,89 @@ Vec3 lever(const Bodies& bodies, std::uint32_t row, DVec3 at) {
   return vector_cast<Real>(at - bodies.center[row]);
 }
 
+/// Appends the points of a manifold that touched, seen from the body that was created first.
+void append_contacts(const Tables& t, const state::Manifold& m, std::vector<BodyContact>& contacts) {
+  const auto h = static_cast<Real>(t.body_substep);
+  if (!m.touching || !(h > Real(0)) || m.point_count == 0) return;
+  const std::uint32_t slot_a = t.bodies.slot[m.body_a];
+  const std::uint32_t slot_b = t.bodies.slot[m.body_b];
+  BodyContact contact = {
+      .a = t.body_slots.id_of(slot_a),
+      .b = t.body_slots.id_of(slot_b),
+      .part_a = m.collider_a - t.bodies.first_collider[m.body_a],
+      .part_b = m.collider_b - t.bodies.first_collider[m.body_b],
+      .normal = m.normal,
+      .friction_force = Real(1) / (h * static_cast<Real>(m.point_count)) * m.friction_impulse};
+  if (slot_b < slot_a) {
+    std::swap(contact.a, contact.b);
+    std::swap(contact.part_a, contact.part_b);
+    contact.normal = -contact.normal;
+    contact.friction_force = -contact.friction_force;
+  }
+  for (int i = 0; i < m.point_count; ++i) {
+    const state::ContactPoint& p = m.point[i];
+    const DVec3 on_a = t.bodies.center[m.body_a] + vector_cast<double>(p.anchor_a);
+    const DVec3 on_b = t.bodies.center[m.body_b] + vector_cast<double>(p.anchor_b);
+    contact.point = 0.5 * (on_a + on_b);
+    contact.separation = p.separation;
+    contact.normal_force = p.normal_impulse / h;
+    contacts.push_back(contact);
+  }
+}
+
+void sort_contacts(std::vector<BodyContact>& contacts) {
+  const auto order = [](const BodyContact& c) { return std::tuple(c.a.slot, c.part_a, c.b.slot, c.part_b); };
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [&](const BodyContact& p, const BodyContact& q) { return order(p) < order(q); });
+}
+
+/// How far a body has turned in the step so far, and has its rotation not yet.
+Quat turn_of(const Bodies& bodies, std::uint32_t row) {
+  if (solver::tumbles(bodies.mass[row])) return {};
+  return math::quaternion_of(bodies.scale[row] * bodies.motion[row].theta_scaled);
+}
+
 }  // namespace
+
+BodyId BodyForceView::id(std::size_t i) const {
+  if (i >= size()) return {};
+  const Tables& t = world_->tables;
+  return t.body_slots.id_of(t.bodies.slot[rows_[i]]);
+}
+
+Real BodyForceView::mass(std::size_t i) const {
+  return i < size() ? world_->tables.bodies.mass[rows_[i]].mass : Real(0);
+}
+
+DVec3 BodyForceView::center_of_mass(std::size_t i) const {
+  if (i >= size()) return {};
+  const Bodies& b = world_->tables.bodies;
+  return b.center[rows_[i]] + vector_cast<double>(b.motion[rows_[i]].dx);
+}
+
+Quat BodyForceView::rotation(std::size_t i) const {
+  if (i >= size()) return {};
+  const Bodies& b = world_->tables.bodies;
+  return normalize(turn_of(b, rows_[i]) * b.rotation[rows_[i]]);
+}
+
+Vec3 BodyForceView::velocity(std::size_t i) const {
+  return i < size() ? world_->tables.bodies.motion[rows_[i]].v : Vec3{};
+}
+
+Vec3 BodyForceView::angular_velocity(std::size_t i) const {
+  if (i >= size()) return {};
+  const Bodies& b = world_->tables.bodies;
+  return b.scale[rows_[i]] * b.motion[rows_[i]].omega_scaled;
+}
+
+void BodyForceView::add_force(std::size_t i, Vec3 force) {
+  if (i < size()) world_->tables.bodies.force[rows_[i]] += force;
+}
+
+void BodyForceView::add_torque(std::size_t i, Vec3 torque) {
+  if (i < size()) world_->tables.bodies.torque[rows_[i]] += torque;
+}
 
 Result<BodyId> World::add_body(const BodyDesc& desc) {
   Tables& t = data_->tables;
@@ -41,6 +128,7 @@ Result<BodyId> World::add_body(const BodyDesc& desc) {
   const BodyId id = t.body_slots.add(row.value());
   t.bodies.slot[row.value()] = id.slot;
   data_->bodies_placed.push_back(row.value());
+  data_->boxes_are_current = false;
   return id;
 }
 
@@ -90,24 +178,34 @@ bool World::asleep(BodyId id) const {
 }
 
 std::vector<BodyContact> World::body_contacts() const {
-  const Tables& t = data_->tables;
-  const auto id_of = [&](std::uint32_t body) { return t.body_slots.id_of(t.bodies.slot[body]); };
-  const auto h = static_cast<Real>(t.body_substep);
   std::vector<BodyContact> contacts;
-  for (const state::Manifold& m : t.pairs.manifold) {
-    for (int i = 0; m.touching && i < m.point_count; ++i) {
-      const state::ContactPoint& p = m.point[i];
-      const DVec3 on_a = t.bodies.center[m.body_a] + vector_cast<double>(p.anchor_a);
-      const DVec3 on_b = t.bodies.center[m.body_b] + vector_cast<double>(p.anchor_b);
-      contacts.push_back({.a = id_of(m.body_a),
-                          .b = id_of(m.body_b),
-                          .point = 0.5 * (on_a + on_b),
-                          .normal = m.normal,
-                          .separation = p.separation,
-                          .normal_force = h > Real(0) ? p.normal_impulse / h : Real(0)});
-    }
-  }
+  for (const state::Manifold& m : data_->tables.pairs.manifold) append_contacts(data_->tables, m, contacts);
+  sort_contacts(contacts);
   return contacts;
+}
+
+std::vector<BodyContact> World::body_contacts(BodyId id) const {
+  const Tables& t = data_->tables;
+  const std::uint32_t row = t.body_slots.find(id);
+  std::vector<BodyContact> contacts;
+  if (row == kNone) return contacts;
+  for (const state::Manifold& m : t.pairs.manifold) {
+    if (m.body_a == row || m.body_b == row) append_contacts(t, m, contacts);
+  }
+  sort_contacts(contacts);
+  return contacts;
+}
+
+const Events& World::events() const {
+  return data_->events;
+}
+
+std::vector<BodyId> World::visitors(BodyId sensor) const {
+  std::vector<BodyId> visitors;
+  for (const SensorEvent& visit : data_->tables.visits) {
+    if (visit.sensor == sensor) visitors.push_back(visit.visitor);
+  }
+  return visitors;
 }
 
 Result<void> World::apply_force(BodyId body, Vec3 force) {
@@ -197,6 +295,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.path_time[row] = data_->tables.time;
   bodies.odometer[row] += Real(1e6);  // farther than any gap: every pair is tested anew
   data_->bodies_placed.push_back(row);
+  data_->boxes_are_current = false;
   world::wake_neighbors(data_->tables, row);
   state::wake(bodies, row);
   return {};

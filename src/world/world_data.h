@@ -12,12 +12,21 @@
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 namespace hooke {
+
+/// Bodies about to meet faster than one of them asked for; see world::note_approaches.
+struct Approach {
+  std::uint32_t manifold = 0;
+  Real speed = Real(0);  ///< [m/s]
+  DVec3 point = {};      ///< Where they will meet [m].
+};
 
 /// A World's inside: the tables, what is derived from them, and what lasts one step.
 struct WorldData {
@@ -38,20 +47,28 @@ struct WorldData {
 
   // Bodies. Derived from the tables; what it holds does not change what a step does.
   collision::BroadPhase broad_phase;
-  bool broad_phase_stale = true;             ///< Everything must be put into it anew.
-  std::vector<std::uint32_t> bodies_placed;  ///< Added or moved by hand since the last step.
+  bool broad_phase_stale = true;                ///< Everything must be put into it anew.
+  std::vector<std::uint32_t> bodies_placed;     ///< Added, moved by hand or asleep since the last step.
+  std::atomic<bool> boxes_are_current = false;  ///< Of all bodies, where they are now; see boxes_for_queries.
+  std::mutex boxes_mutex;
+
+  Events events;  ///< Of the last step.
 
   // Lives for one step.
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<collision::ColliderPair> pairs_found;
+  std::vector<Approach> approaches;  ///< In order of manifolds.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
-  std::vector<Vec3> velocity_before;  ///< Of rope nodes, before the substep's forces.
-  std::vector<Vec3> wind;             ///< At each particle [m/s].
-  std::vector<Vec3> law_force;        ///< What force laws ask for [N].
+  std::vector<Vec3> velocity_before;      ///< Of rope nodes, before the substep's forces.
+  std::vector<Vec3> wind;                 ///< At each particle [m/s].
+  std::vector<Vec3> law_force;            ///< What force laws ask for [N].
+  std::vector<std::uint32_t> law_bodies;  ///< What force laws see: rows in ascending order.
+  std::vector<Vec3> given_force;          ///< On bodies, without what force laws ask for [N].
+  std::vector<Vec3> given_torque;         ///< [N m]
 
   std::unique_ptr<parallel::ThreadPool> pool;
   bool stepping = false;

@@ -210,13 +210,14 @@ TEST_SUITE("collision/queries") {
       const DVec3 origin = 9.0 * random_vector(random);
       const DVec3 motion = 9.0 * random_vector(random) - origin;
       QueryScene view = world.view();
-      view.mask = i % 3 == 0 ? 1 : 3;
+      view.filter.mask = i % 3 == 0 ? 1 : 3;
       view.sensors = i % 2 == 0;
       std::vector<std::pair<double, std::uint32_t>> expected;
       for (std::uint32_t row = 0; row < 60; ++row) {
         const DVec3 way = world.seen_by(row, origin + motion) - world.seen_by(row, origin);
         const auto hit = cast_ray_on_shape(world.scene.colliders.shape[row], world.seen_by(row, origin), way);
-        if (hit && world.is_found(row, view.mask, view.sensors)) expected.emplace_back(hit->fraction, row);
+        if (hit && world.is_found(row, view.filter.mask, view.sensors))
+          expected.emplace_back(hit->fraction, row);
       }
       std::sort(expected.begin(), expected.end());
       cast_ray_through(view, origin, motion, hits);
@@ -262,7 +263,7 @@ TEST_SUITE("collision/queries") {
         const DVec3 x = world.seen_by(row, point);
         // Of a ball of triangles the distance is known roughly: those near the limit are left out.
         const bool is_ball = shape.shape.kind == ShapeKind::kMesh;
-        const double distance = is_ball ? length(x) - 0.99 : distance_to(shape, x);
+        const double distance = is_ball ? std::fabs(length(x) - 0.99) : distance_to(shape, x);
         const auto is_it = [&](const ClosestHit& hit) { return hit.collider == row; };
         find_near(view, point, reach, hits);
         const bool is_near = std::any_of(hits.begin(), hits.end(), is_it);

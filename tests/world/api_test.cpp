@@ -102,7 +102,7 @@ TEST_SUITE("world/api") {
     CHECK(world.add_mesh({}).has_value() == false);
     CHECK(world.add_mesh({.positions = {{}, {}, {}}, .triangles = {{0, 1, 3}}}).error().where ==
           "mesh.triangles[0]");
-    CHECK(world.add_force_law({}).error().where == "force_law");
+    CHECK(world.add_force_law(ForceLaw{}).error().where == "force_law");
     WindDesc wind;
     wind.correlation_time = Real(0);
     CHECK(world.set_wind(wind).error().where == "wind.correlation_time");

@@ -1,0 +1,215 @@
+#include "world/events.h"
+
+#include "collision/queries.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Bodies;
+using state::Manifold;
+using state::Tables;
+
+auto order_of(BodyPart p) {
+  return std::tuple(p.body.slot, p.part);
+}
+auto order_of(const ContactEvent& e) {
+  return std::tuple_cat(order_of(e.a), order_of(e.b));
+}
+auto order_of(const SensorEvent& e) {
+  return std::tuple(e.sensor.slot, e.visitor.slot);
+}
+auto order_of(const HitEvent& e) {
+  return std::tuple_cat(order_of(e.a), order_of(e.b), std::tuple(e.normal.x, e.normal.y, e.normal.z));
+}
+auto order_of(BodyId id) {
+  return id.slot;
+}
+
+constexpr auto comes_first = [](const auto& p, const auto& q) { return order_of(p) < order_of(q); };
+
+template <class Event>
+void sort_events(std::vector<Event>& events) {
+  std::sort(events.begin(), events.end(), comes_first);
+}
+
+/// Sorts `now`, lists what is new in it and what is gone, and keeps it.
+template <class Event>
+void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Event>& begins,
+             std::vector<Event>& ends) {
+  sort_events(now);
+  now.erase(std::unique(now.begin(), now.end()), now.end());
+  begins.clear();
+  ends.clear();
+  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(begins),
+                      comes_first);
+  std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(ends),
+                      comes_first);
+  before.swap(now);
+}
+
+BodyId id_of(const Tables& t, std::uint32_t body) {
+  return t.body_slots.id_of(t.bodies.slot[body]);
+}
+
+BodyPart part_of(const Tables& t, std::uint32_t collider) {
+  const std::uint32_t body = t.colliders.body[collider];
+  return {id_of(t, body), collider - t.bodies.first_collider[body]};
+}
+
+/// Whether b's body was created before a's.
+bool is_swapped(const Tables& t, const Manifold& m) {
+  return t.bodies.slot[m.body_b] < t.bodies.slot[m.body_a];
+}
+
+ContactEvent parts_of(const Tables& t, const Manifold& m) {
+  ContactEvent parts = {part_of(t, m.collider_a), part_of(t, m.collider_b)};
+  if (is_swapped(t, m)) std::swap(parts.a, parts.b);
+  return parts;
+}
+
+void gather_contacts(Tables& t, Events& events) {
+  std::vector<ContactEvent> now;
+  const auto asks = [&](std::uint32_t body) { return t.bodies.traits[body].reports_contacts; };
+  for (const Manifold& m : t.pairs.manifold) {
+    if (m.touching && (asks(m.body_a) || asks(m.body_b))) now.push_back(parts_of(t, m));
+  }
+  compare(now, t.touches, events.contact_begins, events.contact_ends);
+}
+
+void gather_hits(const WorldData& world, Events& events) {
+  const Tables& t = world.tables;
+  events.hits.clear();
+  for (const Approach& approach : world.approaches) {
+    const Manifold& m = t.pairs.manifold[approach.manifold];
+    if (!m.touching) continue;
+    const auto [a, b] = parts_of(t, m);
+    const Vec3 normal = is_swapped(t, m) ? -m.normal : m.normal;
+    events.hits.push_back({a, b, approach.point, normal, approach.speed, m.largest_impulse});
+  }
+  sort_events(events.hits);
+}
+
+/// Neither moved in this step.
+bool both_stood(const Bodies& bodies, std::uint32_t a, std::uint32_t b) {
+  const auto stood = [&](std::uint32_t body) {
+    return bodies.traits[body].kind == BodyKind::kStatic ||
+           (bodies.asleep[body] != 0 && bodies.slept[body] != 0);
+  };
+  return stood(a) && stood(b);
+}
+
+/// The pair's memory is the sensor's to use: such a pair has no manifolds.
+bool overlap(const Tables& t, state::Pair& pair) {
+  const std::uint32_t a = t.colliders.body[pair.collider_a];
+  const std::uint32_t b = t.colliders.body[pair.collider_b];
+  if (!(pair.tested && both_stood(t.bodies, a, b))) {
+    const bool overlap = collision::shapes_overlap(
+        t.colliders.shape[pair.collider_a], state::frame_of_collider(t.bodies, t.colliders, pair.collider_a),
+        t.colliders.shape[pair.collider_b], state::frame_of_collider(t.bodies, t.colliders, pair.collider_b));
+    pair.gap = overlap ? Real(-1) : Real(1);
+    pair.tested = true;
+  }
+  return pair.gap < Real(0);
+}
+
+void gather_visits(Tables& t, Events& events) {
+  std::vector<SensorEvent> now;
+  for (state::Pair& pair : t.pairs.pair) {
+    const std::uint32_t a = t.colliders.body[pair.collider_a];
+    const std::uint32_t b = t.colliders.body[pair.collider_b];
+    const bool senses_a = t.bodies.traits[a].sensor;
+    if (!(senses_a || t.bodies.traits[b].sensor) || !overlap(t, pair)) continue;
+    now.push_back(senses_a ? SensorEvent{id_of(t, a), id_of(t, b)} : SensorEvent{id_of(t, b), id_of(t, a)});
+  }
+  compare(now, t.visits, events.sensor_enters, events.sensor_leaves);
+}
+
+void gather_sleep(WorldData& world) {
+  Bodies& bodies = world.tables.bodies;
+  Events& events = world.events;
+  events.fell_asleep.clear();
+  events.woke_up.clear();
+  for (const std::uint32_t body : world.awake) {
+    if (bodies.asleep[body] == bodies.slept[body]) continue;
+    (bodies.asleep[body] != 0 ? events.fell_asleep : events.woke_up).push_back(id_of(world.tables, body));
+    bodies.slept[body] = bodies.asleep[body];
+  }
+  sort_events(events.fell_asleep);
+  sort_events(events.woke_up);
+}
+
+/// Of a point of the body, along `n`.
+Real speed_along(const Bodies& bodies, std::uint32_t body, Vec3 anchor, Vec3 n) {
+  return dot(n, bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor));
+}
+
+/// Acceleration of free bodies towards each other, along the normal.
+Real pull_of(const Tables& t, const Manifold& m) {
+  const auto pull = [&](std::uint32_t body) {
+    return is_dynamic(t.bodies, body) ? t.bodies.traits[body].gravity_scale : Real(0);
+  };
+  return (pull(m.body_a) - pull(m.body_b)) * dot(m.normal, t.desc.gravity);
+}
+
+/// The fastest point of those that meet within `dt`; speed zero if none does.
+///
+/// With the closing speed v and the closing acceleration g, both now, a gap s is closed with
+/// sqrt(v^2 + 2 g s); the semi-implicit step of gravity is half a substep ahead.
+Approach fastest_of(const Tables& t, std::uint32_t row, Real dt) {
+  const Manifold& m = t.pairs.manifold[row];
+  const Real pull = pull_of(t, m);
+  const Real ahead = Real(0.5) * pull * dt / static_cast<Real>(t.desc.substeps);
+  Approach fastest = {.manifold = row};
+  for (int i = 0; i < m.point_count; ++i) {
+    const state::ContactPoint& p = m.point[i];
+    const Real v_a = speed_along(t.bodies, m.body_a, p.anchor_a, m.normal);
+    const Real v_b = speed_along(t.bodies, m.body_b, p.anchor_b, m.normal);
+    const Real closing = v_a - v_b + ahead;
+    if (!(closing > Real(0)) || p.separation > dt * (closing + std::max(pull, Real(0)) * dt)) continue;
+    const Real squared = closing * closing + Real(2) * pull * p.separation;
+    const Real speed = std::sqrt(std::max(squared, Real(0)));
+    if (!(speed > fastest.speed)) continue;
+    const double time = static_cast<double>(std::max(p.separation, Real(0)) / speed);
+    const auto met = [&](std::uint32_t body, Vec3 anchor) {
+      const Vec3 v = t.bodies.motion[body].v + cross(t.bodies.angular_velocity[body], anchor);
+      return t.bodies.center[body] + vector_cast<double>(anchor) + time * vector_cast<double>(v);
+    };
+    fastest.speed = speed;
+    fastest.point = 0.5 * (met(m.body_a, p.anchor_a) + met(m.body_b, p.anchor_b));
+  }
+  return fastest;
+}
+
+}  // namespace
+
+void note_approaches(WorldData& world, Real dt) {
+  const Tables& t = world.tables;
+  world.approaches.clear();
+  if (!t.any_reports) return;
+  for (std::uint32_t row = 0; row < t.pairs.manifold.size(); ++row) {
+    const Manifold& m = t.pairs.manifold[row];
+    const Real least = std::min(t.bodies.traits[m.body_a].hit_speed, t.bodies.traits[m.body_b].hit_speed);
+    if (!std::isfinite(least)) continue;
+    const Approach approach = fastest_of(t, row, dt);
+    if (approach.speed > least) world.approaches.push_back(approach);
+  }
+}
+
+void gather_events(WorldData& world) {
+  if (world.tables.any_reports) {
+    gather_contacts(world.tables, world.events);
+    gather_hits(world, world.events);
+    gather_visits(world.tables, world.events);
+  }
+  gather_sleep(world);
+}
+
+}  // namespace hooke::world
