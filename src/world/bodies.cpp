@@ -24,29 +24,11 @@ bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-bool may_collide(const WorldData& world, collision::ColliderPair pair) {
-  const Tables& t = world.tables;
-  const std::uint32_t a = t.colliders.body[pair.first];
-  const std::uint32_t b = t.colliders.body[pair.second];
-  const BodyTraits& ta = t.bodies.traits[a];
-  const BodyTraits& tb = t.bodies.traits[b];
-  const bool one_moves = ta.kind == BodyKind::kDynamic || tb.kind == BodyKind::kDynamic;
-  return a != b && one_moves && ta.collides && tb.collides && filters_agree(ta.filter, tb.filter) &&
-         !are_hooked(world, a, b);
-}
-
 /// What the colliders of a body can reach in this step.
 void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   const std::uint32_t first = t.bodies.first_collider[body];
   for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
-}
-
-void enter_broad_phase(WorldData& world, std::uint32_t body) {
-  const Tables& t = world.tables;
-  const std::uint32_t first = t.bodies.first_collider[body];
-  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
-    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
 }
 
 /// Bodies that were added, or put elsewhere by hand, since the last step.
@@ -69,6 +51,24 @@ void refresh_broad_phase(WorldData& world, Real dt) {
 }
 
 }  // namespace
+
+bool may_collide(const WorldData& world, collision::ColliderPair pair) {
+  const Tables& t = world.tables;
+  const std::uint32_t a = t.colliders.body[pair.first];
+  const std::uint32_t b = t.colliders.body[pair.second];
+  const BodyTraits& ta = t.bodies.traits[a];
+  const BodyTraits& tb = t.bodies.traits[b];
+  const bool one_moves = ta.kind == BodyKind::kDynamic || tb.kind == BodyKind::kDynamic;
+  return a != b && one_moves && ta.collides && tb.collides && filters_agree(ta.filter, tb.filter) &&
+         !are_hooked(world, a, b);
+}
+
+void enter_broad_phase(WorldData& world, std::uint32_t body) {
+  const Tables& t = world.tables;
+  const std::uint32_t first = t.bodies.first_collider[body];
+  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
+}
 
 void list_awake_bodies(WorldData& world) {
   const state::Bodies& bodies = world.tables.bodies;
