@@ -160,12 +160,17 @@ Convex PlacedMesh::triangle(std::uint32_t index) const {
   return convex;
 }
 
+void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach,
+                         std::vector<std::uint32_t>& found) {
+  geometry::find_triangles(a.mesh.bvh, bounds_in(a, b, reach), found);
+}
+
 Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch) {
   scratch.contacts.clear();
   scratch.points.clear();
   scratch.first_point.assign(1, 0);
   scratch.patches.clear();
-  geometry::find_triangles(a.mesh.bvh, bounds_in(a, b, margin), scratch.triangles);
+  find_triangles_near(a, b, margin, scratch.triangles);
   Meeting meeting;
   for (const std::uint32_t index : scratch.triangles) {
     const Convex triangle = a.triangle(index);

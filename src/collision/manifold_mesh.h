@@ -22,6 +22,9 @@ struct PlacedMesh {
   [[nodiscard]] Convex triangle(std::uint32_t index) const;
 };
 
+/// Replaces `found` by the triangles whose boxes come within `reach` [m] of the shape's, in ascending order.
+void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach, std::vector<std::uint32_t>& found);
+
 /// Points of a mesh with one normal, and the lowest of their triangles.
 struct PatchMeeting {
   std::uint32_t patch = 0;

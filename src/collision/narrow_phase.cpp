@@ -1,11 +1,13 @@
 #include "collision/narrow_phase.h"
 
+#include "collision/continuous_sweep.h"
 #include "collision/distance.h"
 #include "collision/manifold_match.h"
 #include "collision/manifold_mesh.h"
 #include "collision/manifold_points.h"
 #include "collision/narrow_phase_ghosts.h"
 #include "collision/narrow_phase_keep.h"
+#include "collision/placement.h"
 
 #include <algorithm>
 #include <array>
@@ -22,8 +24,9 @@ using parallel::Range;
 using state::Manifold;
 using state::Pair;
 
-constexpr Real kMargin = Real(0.02);  // from which points are kept, at rest [m]
-constexpr int kChunk = 128;           // pairs of one buffer
+constexpr Real kMargin = Real(0.02);           // from which points are kept, at rest [m]
+constexpr Real kForeseenOverlap = Real(1e-4);  // at which fast shapes are looked at [m]
+constexpr int kChunk = 128;                    // pairs of one buffer
 constexpr int kColliderGrain = 512;
 constexpr int kChunkGrain = 1;
 
@@ -42,19 +45,13 @@ struct Scene {
 struct Chunk {
   std::vector<Manifold> manifolds = {};
   NarrowPhaseCounts counts = {};
-  Real margin = Real(0);  // of the pair at hand
-  Meeting meeting = {};   // of the pair at hand
+  // Of the pair at hand.
+  Real margin = Real(0);
+  Real time = Real(0);  // part of the step after which it is looked at
+  Meeting meeting = {};
   MeshScratch mesh = {};
+  SweepScratch sweep = {};
 };
-
-Convex place(const state::Bodies& bodies, const state::Colliders& colliders, std::size_t row) {
-  const Quat turn = bodies.rotation[colliders.body[row]];
-  const state::ColliderShape& shape = colliders.shape[row];
-  return {.shape = shape.shape,
-          .center = rotate(turn, colliders.position[row]),
-          .axes = matrix_of(normalize(turn * colliders.rotation[row])),
-          .hull = shape.hull.get()};
-}
 
 /// Whether the body stays where it is in this step.
 bool stands(const state::Bodies& bodies, std::uint32_t body) {
@@ -127,94 +124,141 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
   return best;
 }
 
+/// How a body will move if nothing changes its velocity.
+Path path_of(const Scene& scene, std::uint32_t body) {
+  const state::Bodies& bodies = scene.bodies;
+  return {.center = bodies.center[body],
+          .rotation = bodies.rotation[body],
+          .way = scene.dt * bodies.motion[body].v,
+          .turn = scene.dt * bodies.angular_velocity[body],
+          .radius = bodies.traits[body].radius};
+}
+
+/// From separations at `time` to those at the start of the step, from which rows go on evenly: they are what
+/// they should be at `time`. Points that part have no such past.
+void bring_to_start(const Scene& scene, Real time, Manifold& m) {
+  const Path a = path_of(scene, m.body_a);
+  const Path b = path_of(scene, m.body_b);
+  std::int32_t kept = 0;
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
+    const Vec3 way = b.way + cross(b.turn, p.anchor_b) - a.way - cross(a.turn, p.anchor_a);
+    const Real before = p.separation - time * dot(m.normal, way);
+    if (before < Real(0) && p.separation > Real(0)) continue;
+    p.separation = before < Real(0) ? std::max(before, p.separation) : before;
+    m.point[static_cast<std::size_t>(kept++)] = p;
+  }
+  m.point_count = kept;
+}
+
 void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
             Meeting& meeting, Chunk& chunk) {
   if (meeting.count == 0) return;
   Manifold& m = chunk.manifolds.emplace_back();
   make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
-  if (m.point_count == 0) {
-    chunk.manifolds.pop_back();
-  } else {
-    describe(scene, pair, patch, m);
-  }
+  describe(scene, pair, patch, m);
+  if (chunk.time > Real(0)) bring_to_start(scene, chunk.time, m);
+  if (m.point_count == 0) chunk.manifolds.pop_back();
 }
 
-Vec3 offset_between(const Scene& scene, std::uint32_t from, std::uint32_t to) {
-  return vector_cast<Real>(scene.bodies.center[to] - scene.bodies.center[from]);
-}
+/// The shapes of a pair, each from the center of mass of its body.
+struct View {
+  const Convex& a;
+  const Convex& b;
+  DVec3 center_a;
+  DVec3 center_b;
+
+  [[nodiscard]] Vec3 apart() const { return vector_cast<Real>(center_b - center_a); }
+};
 
 /// Two convex shapes, in the neighborhood of A.
-void test_convex(const Scene& scene, Pair& pair, Chunk& chunk) {
-  const Vec3 apart =
-      offset_between(scene, scene.colliders.body[pair.collider_a], scene.colliders.body[pair.collider_b]);
-  Convex b = scene.placed[pair.collider_b];
+void test_convex(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const Vec3 apart = view.apart();
+  Convex b = view.b;
   b.center += apart;
-  meet(scene.placed[pair.collider_a], b, {chunk.margin, pair.axis}, chunk.meeting);
+  meet(view.a, b, {chunk.margin, pair.axis}, chunk.meeting);
   append(scene, pair, 0, {{}, apart}, chunk.meeting, chunk);
 }
 
 /// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
 /// over it is asked, in double.
-void test_half_space(const Scene& scene, Pair& pair, Chunk& chunk) {
-  const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kHalfSpace;
-  const Convex& plane = scene.placed[is_a ? pair.collider_a : pair.collider_b];
-  const Convex& shape = scene.placed[is_a ? pair.collider_b : pair.collider_a];
-  const std::uint32_t plane_body = scene.colliders.body[is_a ? pair.collider_a : pair.collider_b];
-  const std::uint32_t shape_body = scene.colliders.body[is_a ? pair.collider_b : pair.collider_a];
+void test_half_space(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const bool is_a = view.a.shape.kind == ShapeKind::kHalfSpace;
+  const Convex& plane = is_a ? view.a : view.b;
+  const DVec3 from_plane = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
   const Vec3 n = plane.axes.y;
-  const DVec3 from_plane =
-      scene.bodies.center[shape_body] - scene.bodies.center[plane_body] - vector_cast<double>(plane.center);
-  const auto height = static_cast<Real>(dot(vector_cast<double>(n), from_plane));
-  meet_half_space(-height * n, n, shape, {chunk.margin, pair.axis}, chunk.meeting);
-  const Vec3 plane_center = offset_between(scene, shape_body, plane_body);
+  const Real height = height_over(plane, from_plane);
+  meet_half_space(-height * n, n, is_a ? view.b : view.a, {chunk.margin, pair.axis}, chunk.meeting);
   if (!is_a) swap_sides(chunk.meeting);
-  append(scene, pair, 0, is_a ? MeetingFrame{plane_center, {}} : MeetingFrame{{}, plane_center},
+  append(scene, pair, 0, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
          chunk.meeting, chunk);
 }
 
-/// A mesh collider, seen from the center of a body. The offset is taken in double: meshes may be wide.
-PlacedMesh place_mesh(const Scene& scene, std::uint32_t mesh, std::uint32_t from_body) {
-  const Convex& place = scene.placed[mesh];
-  const DVec3 d = scene.bodies.center[from_body] - scene.bodies.center[scene.colliders.body[mesh]] -
-                  vector_cast<double>(place.center);
-  const auto along = [&d](Vec3 axis) { return static_cast<Real>(dot(vector_cast<double>(axis), d)); };
-  return {*scene.colliders.shape[mesh].mesh,
-          place.axes,
-          {along(place.axes.x), along(place.axes.y), along(place.axes.z)}};
-}
-
 /// A mesh and a convex shape, in the neighborhood of the shape.
-void test_mesh(const Scene& scene, Pair& pair, Chunk& chunk) {
-  const bool is_a = scene.placed[pair.collider_a].shape.kind == ShapeKind::kMesh;
-  const std::uint32_t mesh = is_a ? pair.collider_a : pair.collider_b;
-  const std::uint32_t shape = is_a ? pair.collider_b : pair.collider_a;
-  const std::uint32_t mesh_body = scene.colliders.body[mesh];
-  const std::uint32_t shape_body = scene.colliders.body[shape];
-  const PlacedMesh placed = place_mesh(scene, mesh, shape_body);
-  chunk.meeting.separation = meet_mesh(placed, scene.placed[shape], chunk.margin, chunk.mesh);
-  const Vec3 mesh_center = offset_between(scene, shape_body, mesh_body);
+void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const bool is_a = view.a.shape.kind == ShapeKind::kMesh;
+  const state::ColliderShape& mesh = scene.colliders.shape[is_a ? pair.collider_a : pair.collider_b];
+  const DVec3 from_mesh = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
+  const PlacedMesh placed = place_mesh(mesh, is_a ? view.a : view.b, from_mesh);
+  chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, chunk.margin, chunk.mesh);
   for (PatchMeeting& patch : chunk.mesh.patches) {
     if (!is_a) swap_sides(patch.meeting);
-    append(scene, pair, patch.patch, is_a ? MeetingFrame{mesh_center, {}} : MeetingFrame{{}, mesh_center},
+    append(scene, pair, patch.patch, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
            patch.meeting, chunk);
   }
 }
 
-void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
-  const ShapeKind kind_a = scene.placed[pair.collider_a].shape.kind;
-  const ShapeKind kind_b = scene.placed[pair.collider_b].shape.kind;
-  const auto either = [&](ShapeKind kind) { return kind_a == kind || kind_b == kind; };
+void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const auto either = [&](ShapeKind kind) { return view.a.shape.kind == kind || view.b.shape.kind == kind; };
   Meeting& meeting = chunk.meeting;
   meeting.count = 0;
   if (either(ShapeKind::kMesh)) {
-    test_mesh(scene, pair, chunk);
+    test_mesh(scene, view, pair, chunk);
   } else if (either(ShapeKind::kHalfSpace)) {
-    test_half_space(scene, pair, chunk);
+    test_half_space(scene, view, pair, chunk);
   } else {
-    test_convex(scene, pair, chunk);
+    test_convex(scene, view, pair, chunk);
   }
   pair.gap = meeting.separation;
   pair.axis = meeting.axis;
+}
+
+/// Whether what is near at the start of the step may say nothing of where the shapes will meet: they come or
+/// turn farther than they are thick. Half-spaces have the same normal everywhere.
+bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape_a, const Convex& shape_b) {
+  const bool flat =
+      shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
+  const Real way = flat ? Real(0) : length(b.path.way - a.path.way);
+  return way + turning_reach(a) + turning_reach(b) > kMargin + thinness_of(shape_a) + thinness_of(shape_b);
+}
+
+/// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
+void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const Convex& now_a = scene.placed[pair.collider_a];
+  const Convex& now_b = scene.placed[pair.collider_b];
+  const Path path_a = path_of(scene, scene.colliders.body[pair.collider_a]);
+  const Path path_b = path_of(scene, scene.colliders.body[pair.collider_b]);
+  const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
+  const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
+  chunk.time = Real(0);
+  if (is_fast(a, b, now_a, now_b)) {
+    const auto impact =
+        find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
+    chunk.time = impact ? impact->time : Real(0);
+    const Real beyond =
+        std::min((Real(1) - chunk.time) * (chunk.margin - kMargin), thinness_of(now_a) + thinness_of(now_b));
+    chunk.margin = impact ? kMargin + beyond : kMargin;
+  }
+  pair.time = chunk.time;
+  if (!(pair.time > Real(0))) {
+    test_view(scene, {now_a, now_b, path_a.center, path_b.center}, pair, chunk);
+    return;
+  }
+  const Pose pose_a = pose_at(path_a, chunk.time);
+  const Pose pose_b = pose_at(path_b, chunk.time);
+  const Convex then_a = place(scene.colliders, pair.collider_a, pose_a.rotation);
+  const Convex then_b = place(scene.colliders, pair.collider_b, pose_b.rotation);
+  test_view(scene, {then_a, then_b, pose_a.position, pose_b.position}, pair, chunk);
 }
 
 bool is_mesh(const Scene& scene, std::uint32_t collider) {
@@ -224,7 +268,8 @@ bool is_mesh(const Scene& scene, std::uint32_t collider) {
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
 /// the last test, and will not come as far as to points that were too far apart to be kept.
 bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
-  if (!pair.tested || pair.manifold_count == 0 || margin > Real(1.5) * kMargin) return false;
+  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0)) return false;
+  if (margin > Real(1.5) * kMargin) return false;
   if (is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b)) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
     return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
@@ -283,13 +328,18 @@ struct Support {
   std::uint32_t manifold = 0;
 };
 
+bool is_held(const Scene& scene, std::uint32_t collider) {
+  return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
+}
+
+/// Not those of later in the step: only places of one time can be compared.
 std::vector<Support> find_supports(const Scene& scene, const state::Pairs& pairs) {
   std::vector<Support> supports;
-  for (std::uint32_t i = 0; i < pairs.manifold.size(); ++i) {
-    const Manifold& m = pairs.manifold[i];
-    const bool a_held = scene.bodies.mass[m.body_a].inverse_mass > Real(0);
-    const bool b_held = scene.bodies.mass[m.body_b].inverse_mass > Real(0);
-    if (a_held != b_held) supports.push_back({a_held ? m.collider_a : m.collider_b, i});
+  for (const Pair& pair : pairs.pair) {
+    const bool a_held = is_held(scene, pair.collider_a);
+    if (pair.time > Real(0) || a_held == is_held(scene, pair.collider_b)) continue;
+    for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
+      supports.push_back({a_held ? pair.collider_a : pair.collider_b, i});
   }
   std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
     return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
@@ -302,11 +352,12 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   const bool a_held = support.held == m.collider_a;
   const std::uint32_t piece = a_held ? m.collider_b : m.collider_a;
   const std::uint32_t body = a_held ? m.body_a : m.body_b;
+  const DVec3 piece_from = scene.bodies.center[scene.colliders.body[piece]] - scene.bodies.center[body];
   SurfaceContact contact = {scene.placed[piece], support.manifold, a_held ? -m.normal : m.normal};
   if (contact.piece.shape.kind == ShapeKind::kMesh) {
-    contact.piece = place_mesh(scene, piece, body).triangle(m.patch);
+    contact.piece = place_mesh(scene.colliders.shape[piece], contact.piece, -piece_from).triangle(m.patch);
   } else {
-    contact.piece.center += offset_between(scene, body, scene.colliders.body[piece]);
+    contact.piece.center += vector_cast<Real>(piece_from);
   }
   const auto* deepest = std::min_element(
       m.point.data(), m.point.data() + m.point_count,
@@ -357,7 +408,8 @@ std::vector<Convex> place_all(parallel::ThreadPool& pool, const state::Bodies& b
   for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto row = static_cast<std::size_t>(i);
-      if (colliders.body[row] != state::Colliders::kNoBody) placed[row] = place(bodies, colliders, row);
+      if (colliders.body[row] != state::Colliders::kNoBody)
+        placed[row] = place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
     }
   });
   return placed;

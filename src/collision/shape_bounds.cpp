@@ -1,7 +1,5 @@
 #include "collision/shape_bounds.h"
 
-#include "state/body_frames.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,14 +94,23 @@ Box bounds_of(const state::ColliderShape& shape, const Pose& pose) {
 Box reach_of(const state::Bodies& bodies, const state::Colliders& colliders, std::uint32_t collider,
              Real dt) {
   const std::uint32_t body = colliders.body[collider];
-  const Box now = bounds_of(colliders.shape[collider], state::frame_of_collider(bodies, colliders, collider));
-  const Vec3 way = dt * bodies.motion[body].v;
+  return reach_of(colliders, collider,
+                  {.center = bodies.center[body],
+                   .rotation = bodies.rotation[body],
+                   .way = dt * bodies.motion[body].v,
+                   .turn = dt * bodies.angular_velocity[body],
+                   .radius = bodies.traits[body].radius});
+}
+
+Box reach_of(const state::Colliders& colliders, std::uint32_t collider, const Path& path) {
+  const Pose pose = {path.center + vector_cast<double>(rotate(path.rotation, colliders.position[collider])),
+                     path.rotation * colliders.rotation[collider]};
+  const Box now = bounds_of(colliders.shape[collider], pose);
   // No point of the body turns farther than its diameter.
-  const Real radius = bodies.traits[body].radius;
-  const Real turn = std::min(dt * length(bodies.angular_velocity[body]), Real(2)) * radius;
+  const Real turn = std::min(length(path.turn), Real(2)) * path.radius;
   const Vec3 pad = {kHalfMargin + turn, kHalfMargin + turn, kHalfMargin + turn};
-  return {geometry::min_of(now.lower, now.lower + way) - pad,
-          geometry::max_of(now.upper, now.upper + way) + pad};
+  return {geometry::min_of(now.lower, now.lower + path.way) - pad,
+          geometry::max_of(now.upper, now.upper + path.way) + pad};
 }
 
 }  // namespace hooke::collision

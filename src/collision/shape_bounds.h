@@ -2,6 +2,7 @@
 
 #include "hooke/world.h"
 
+#include "collision/continuous_sweep.h"
 #include "geometry/box.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
@@ -18,5 +19,9 @@ namespace hooke::collision {
 /// whose reaches do not overlap are more than 2 cm apart at the end of the step.
 [[nodiscard]] geometry::Box reach_of(const state::Bodies& bodies, const state::Colliders& colliders,
                                      std::uint32_t collider, Real dt);
+
+/// What it does reach on a path, and 1 cm around it.
+[[nodiscard]] geometry::Box reach_of(const state::Colliders& colliders, std::uint32_t collider,
+                                     const Path& path);
 
 }  // namespace hooke::collision

@@ -1,6 +1,7 @@
 #include "solver/bodies.h"
 
 #include "math/rotation.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,20 +24,6 @@ Vec3 in_axes(Quat axes, Vec3 diagonal, Vec3 x) {
 Vec3 inverse_inertia(const BodyMass& mass) {
   const auto inverse = [](Real i) { return i > Real(0) ? Real(1) / i : Real(0); };
   return {inverse(mass.inertia.x), inverse(mass.inertia.y), inverse(mass.inertia.z)};
-}
-
-/// I^(-1/2) in world axes.
-math::Symmetric3<Real> scale_of(Quat axes, const BodyMass& mass) {
-  const Vec3 inverse = inverse_inertia(mass);
-  const Real x = std::sqrt(inverse.x);
-  const Real y = std::sqrt(inverse.y);
-  const Real z = std::sqrt(inverse.z);
-  const Mat3 r = matrix_of(axes);
-  const auto entry = [&](Real Vec3::*i, Real Vec3::*j) {
-    return x * (r.x.*i * r.x.*j) + y * (r.y.*i * r.y.*j) + z * (r.z.*i * r.z.*j);
-  };
-  return {entry(&Vec3::x, &Vec3::x), entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z),
-          entry(&Vec3::y, &Vec3::y), entry(&Vec3::y, &Vec3::z), entry(&Vec3::z, &Vec3::z)};
 }
 
 /// S^(-1) x: from a change of omega_scaled to one of L. Zero if S has no inverse.
@@ -65,7 +52,7 @@ Vec3 settled(Vec3 v) {
 Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bodies) {
   const math::Symmetric3<Real>& scale = bodies.scale[i];
   const Real damping = Real(1) / (Real(1) + step.h * bodies.traits[i].angular_damping);
-  if (!tumbles(bodies.mass[i])) {
+  if (!tumbles_now(bodies, i)) {
     const Vec3 omega_scaled = bodies.motion[i].omega_scaled;
     return damping * (omega_scaled + scale * (step.h * bodies.torque[i]));
   }
@@ -76,11 +63,27 @@ Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bod
   return momentum_of(scale, midpoint_velocity(axes, bodies.mass[i], momentum, step.h));
 }
 
+/// The inertia is not turned exactly as the body is: the rotational energy decides how fast it is.
+void finish_steady_turn(std::uint32_t i, Bodies& bodies) {
+  const MotionLine& m = bodies.motion[i];
+  bodies.rotation[i] = normalize(math::quaternion_of(bodies.scale[i] * m.theta_scaled) * bodies.rotation[i]);
+  const Vec3 omega = bodies.scale[i] * m.omega_scaled;
+  const Vec3 momentum = state::angular_momentum_of(bodies.mass[i], bodies.rotation[i], omega);
+  const Real energy = dot(omega, momentum);
+  const Real share = energy > Real(0) ? std::sqrt(length_squared(m.omega_scaled) / energy) : Real(0);
+  bodies.angular_velocity[i] = share * omega;
+  bodies.angular_momentum[i] = share * momentum;
+}
+
 void finish_rotation(std::uint32_t i, Bodies& bodies) {
   const MotionLine& m = bodies.motion[i];
   const math::Symmetric3<Real>& scale = bodies.scale[i];
   if (!(m.inverse_mass > Real(0))) {
     bodies.rotation[i] = normalize(math::quaternion_of(m.theta_scaled) * bodies.rotation[i]);
+    return;
+  }
+  if (bodies.steady_turn[i].on) {
+    finish_steady_turn(i, bodies);
     return;
   }
   Vec3& momentum = bodies.angular_momentum[i];
@@ -101,14 +104,35 @@ bool tumbles(const BodyMass& mass) {
   return most > Real(1.02) * least;
 }
 
+bool tumbles_now(const Bodies& bodies, std::uint32_t body) {
+  return tumbles(bodies.mass[body]) && !bodies.steady_turn[body].on;
+}
+
+math::Symmetric3<Real> inertia_scale(const BodyMass& mass, Quat rotation) {
+  const Vec3 inverse = inverse_inertia(mass);
+  const Real x = std::sqrt(inverse.x);
+  const Real y = std::sqrt(inverse.y);
+  const Real z = std::sqrt(inverse.z);
+  const Mat3 r = matrix_of(rotation * mass.principal);
+  const auto entry = [&](Real Vec3::*i, Real Vec3::*j) {
+    return x * (r.x.*i * r.x.*j) + y * (r.y.*i * r.y.*j) + z * (r.z.*i * r.z.*j);
+  };
+  return {entry(&Vec3::x, &Vec3::x), entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z),
+          entry(&Vec3::y, &Vec3::y), entry(&Vec3::y, &Vec3::z), entry(&Vec3::z, &Vec3::z)};
+}
+
 void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
   for (const std::uint32_t i : rows) {
     MotionLine& m = bodies.motion[i];
     m.dx = {};
     m.theta_scaled = {};
     if (m.inverse_mass > Real(0)) {
-      bodies.scale[i] = scale_of(bodies.rotation[i] * bodies.mass[i].principal, bodies.mass[i]);
-      m.omega_scaled = bodies.scale[i] * bodies.angular_momentum[i];
+      const state::SteadyTurn& steady = bodies.steady_turn[i];
+      const Quat turned =
+          steady.on ? math::quaternion_of(steady.until_impact) * bodies.rotation[i] : bodies.rotation[i];
+      bodies.scale[i] = inertia_scale(bodies.mass[i], turned);
+      m.omega_scaled = steady.on ? momentum_of(bodies.scale[i], bodies.angular_velocity[i])
+                                 : bodies.scale[i] * bodies.angular_momentum[i];
     } else {
       bodies.scale[i] = math::Symmetric3<Real>::diagonal(Real(1));
       m.omega_scaled = bodies.angular_velocity[i];
@@ -139,7 +163,7 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
     MotionLine& m = bodies.motion[i];
     m.dx += h * m.v;
     m.theta_scaled += h * m.omega_scaled;
-    if (!(m.inverse_mass > Real(0)) || !tumbles(bodies.mass[i])) continue;
+    if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * bodies.rotation[i]);
   }

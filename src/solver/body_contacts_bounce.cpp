@@ -9,6 +9,8 @@ namespace {
 
 using state::MotionLine;
 
+constexpr Real kLargestFall = Real(0.5);  // [m]
+
 bool was_hit(const BounceBlock& bounce, int k, int lane) {
   return bounce.impact_speed[k][lane] > Real(0) && bounce.largest_impulse[k][lane] > Real(0);
 }
@@ -47,7 +49,9 @@ struct BouncingLane {
         (dot(vector_of(p.j_b, lane), b.theta_scaled) - dot(vector_of(p.j_a, lane), a.theta_scaled));
     const Real e = bounce.restitution[lane];
     const Real acceleration = bounce.acceleration[lane];
-    const Real speed_squared = e * e * bounce.impact_speed[k][lane] + Real(2) * acceleration * s;
+    // What a body that turns by radians makes of the separation is no height to fall from.
+    const Real fall = std::clamp(s, -kLargestFall, kLargestFall);
+    const Real speed_squared = e * e * bounce.impact_speed[k][lane] + Real(2) * acceleration * fall;
     return std::sqrt(std::max(Real(0), speed_squared)) - Real(0.5) * h * acceleration;
   }
 

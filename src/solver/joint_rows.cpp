@@ -206,7 +206,7 @@ JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
   if (m.inverse_mass > Real(0)) body.scale = to_double(bodies.scale[row]);
   body.center = bodies.center[row] + vector_cast<double>(m.dx);
   body.rotation = to_double(bodies.rotation[row]);
-  if (!(m.inverse_mass > Real(0)) || !tumbles(bodies.mass[row])) {
+  if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, row)) {
     const DVec3 theta = body.scale * vector_cast<double>(m.theta_scaled);
     body.rotation = math::quaternion_of(theta) * body.rotation;
   }

@@ -47,6 +47,14 @@ struct alignas(8 * sizeof(Real)) FreeLine {
   Real padding[2] = {};
 };
 
+/// A body that turns so far within the step that its inertia in world axes changes, and touches something in
+/// it: its contacts are solved with the inertia at the time of the first of them, and between contacts its
+/// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum.
+struct SteadyTurn {
+  bool on = false;
+  Vec3 until_impact = {};  ///< [rad]
+};
+
 /// What the step asks about a body once.
 struct BodyTraits {
   BodyKind kind = BodyKind::kStatic;
@@ -74,6 +82,7 @@ struct Bodies {
   std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
   std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
+  std::vector<SteadyTurn> steady_turn;        ///< Written by detect.
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
   std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.
@@ -100,6 +109,7 @@ struct Bodies {
     visit(self.angular_momentum);
     visit(self.angular_velocity);
     visit(self.scale);
+    visit(self.steady_turn);
     visit(self.mass);
     visit(self.traits);
     visit(self.force);

@@ -60,6 +60,7 @@ struct Pair {
   // Its manifolds of this step.
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
+  Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
 };
 
 /// Where the narrow phase saw a body last.

@@ -27,16 +27,6 @@ bool may_meet(const BodyTraits& a, const BodyTraits& b) {
   return (a.sensor && moves(b)) || (b.sensor && moves(a));
 }
 
-bool may_collide(const WorldData& world, collision::ColliderPair pair) {
-  const Tables& t = world.tables;
-  const std::uint32_t a = t.colliders.body[pair.first];
-  const std::uint32_t b = t.colliders.body[pair.second];
-  const BodyTraits& ta = t.bodies.traits[a];
-  const BodyTraits& tb = t.bodies.traits[b];
-  return a != b && may_meet(ta, tb) && ta.collides && tb.collides &&
-         state::filters_agree(ta.filter, tb.filter) && !are_hooked(world, a, b);
-}
-
 /// What the colliders of a body can reach in this step.
 void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   const std::uint32_t first = t.bodies.first_collider[body];
@@ -50,13 +40,6 @@ std::vector<std::uint32_t> all_bodies(const state::Bodies& bodies) {
     if (bodies.traits[body].alive) rows.push_back(body);
   }
   return rows;
-}
-
-void enter_broad_phase(WorldData& world, std::uint32_t body) {
-  const Tables& t = world.tables;
-  const std::uint32_t first = t.bodies.first_collider[body];
-  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
-    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
 }
 
 /// Bodies that were added, or put elsewhere by hand, since the last step.
@@ -76,6 +59,23 @@ void refresh_broad_phase(WorldData& world, Real dt) {
 }
 
 }  // namespace
+
+bool may_collide(const WorldData& world, collision::ColliderPair pair) {
+  const Tables& t = world.tables;
+  const std::uint32_t a = t.colliders.body[pair.first];
+  const std::uint32_t b = t.colliders.body[pair.second];
+  const BodyTraits& ta = t.bodies.traits[a];
+  const BodyTraits& tb = t.bodies.traits[b];
+  return a != b && may_meet(ta, tb) && ta.collides && tb.collides &&
+         state::filters_agree(ta.filter, tb.filter) && !are_hooked(world, a, b);
+}
+
+void enter_broad_phase(WorldData& world, std::uint32_t body) {
+  const Tables& t = world.tables;
+  const std::uint32_t first = t.bodies.first_collider[body];
+  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
+}
 
 const collision::BroadPhase& boxes_for_queries(WorldData& world) {
   if (world.boxes_are_current.load(std::memory_order_acquire)) return world.broad_phase;

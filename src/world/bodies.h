@@ -40,6 +40,12 @@ void for_contact_colors(WorldData& w, Kernel&& kernel) {
 /// Fills `awake`.
 void list_awake_bodies(WorldData& world);
 
+/// Whether the bodies of two colliders may push each other, or report each other.
+[[nodiscard]] bool may_collide(const WorldData& world, collision::ColliderPair pair);
+
+/// Tells the broad phase the bounds of a body's colliders.
+void enter_broad_phase(WorldData& world, std::uint32_t body);
+
 /// Boxes of all colliders that move, the pairs they make, and their manifolds.
 void find_body_contacts(WorldData& world, Real dt);
 

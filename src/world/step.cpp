@@ -25,6 +25,7 @@
 #include "world/bodies.h"
 #include "world/events.h"
 #include "world/hooks.h"
+#include "world/impacts.h"
 #include "world/sleep.h"
 #include "world/stages.h"
 #include "world/stopwatch.h"
@@ -62,6 +63,7 @@ void prepare(WorldData& w, double dt, Real h) {
   const Real particle_h = h / static_cast<Real>(t.desc.particle_substeps);
   solver::prepare_springs(w.spring_blocks, particle_h);
   solver::prepare_bends(w.bend_blocks, particle_h);
+  world::begin_motion(w, static_cast<Real>(dt));
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
   solver::prepare_joints(*w.pool, h, t.hooks, t.bodies, w.joints);
   world::begin_contacts(w, h);
@@ -157,6 +159,7 @@ void finish_bodies(WorldData& w, double dt) {
   for_ranges(
       *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
       [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
+  world::stop_at_impacts(w);
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
   solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);
   world::drop_broken_hooks(w);

@@ -58,6 +58,7 @@ struct WorldData {
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<collision::ColliderPair> pairs_found;
   std::vector<Approach> approaches;  ///< In order of manifolds.
+  std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
   std::vector<state::PositionLine>

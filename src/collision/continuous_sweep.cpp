@@ -1,0 +1,265 @@
+#include "collision/continuous_sweep.h"
+
+#include "collision/manifold_axes.h"
+#include "collision/placement.h"
+#include "math/rotation.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace hooke::collision {
+
+namespace {
+
+constexpr int kMaxRounds = 256;
+constexpr Real kLargestAllowance = Real(5e-3);  // [m]
+
+/// How a collider can turn.
+struct Spin {
+  Vec3 turn = {};        // [rad per step]
+  Vec3 axis = {};        // of a shape that is round about it, through the center of mass; else zero
+  Real reach = Real(0);  // of the core from the center of mass [m]
+  bool is_round = false;
+
+  /// How fast the core's extent along n can change [m per step].
+  [[nodiscard]] Real rate(Vec3 n) const {
+    const Real any = length(cross(n, turn));
+    return reach * (is_round ? std::min(any, length(cross(axis, turn))) : any);
+  }
+  [[nodiscard]] Real largest_rate() const { return reach * length(is_round ? cross(axis, turn) : turn); }
+};
+
+Spin spin_of(const SweptCollider& c) {
+  const Shape& shape = c.colliders.shape[c.row].shape;
+  const Real aside = length(c.colliders.position[c.row]);
+  Spin spin = {.turn = c.path.turn, .reach = c.path.radius};
+  if (shape.kind == ShapeKind::kSphere) spin.reach = aside;
+  if (shape.kind == ShapeKind::kCapsule) spin.reach = aside + shape.half_height;
+  spin.is_round =
+      aside == Real(0) && (shape.kind == ShapeKind::kCapsule || shape.kind == ShapeKind::kCylinder);
+  const Quat rotation = c.path.rotation * c.colliders.rotation[c.row];
+  if (spin.is_round) spin.axis = rotate(rotation, Vec3{Real(0), Real(1), Real(0)});
+  return spin;
+}
+
+Vec3 speed_at(const Path& path, Real time) {
+  if (time < path.stop) return path.way;
+  return time < path.release ? path.carry : Vec3{};
+}
+
+/// How fast two shapes can come together, while neither begins or ceases to move.
+struct Closing {
+  Vec3 parting = {};  // of B's center from A's [m per step]
+  Spin a = {};
+  Spin b = {};
+
+  [[nodiscard]] Real along(Vec3 n) const { return a.rate(n) + b.rate(n) - dot(n, parting); }
+  [[nodiscard]] Real fastest() const { return a.largest_rate() + b.largest_rate() + length(parting); }
+};
+
+Closing closing_at(const SweptCollider& a, const SweptCollider& b, Real time) {
+  Closing closing = {speed_at(b.path, time) - speed_at(a.path, time), spin_of(a), spin_of(b)};
+  if (time >= a.path.stop) closing.a.turn = {};
+  if (time >= b.path.stop) closing.b.turn = {};
+  return closing;
+}
+
+/// How far two shapes are held apart, and by which direction.
+struct Hold {
+  Real gap = Real(0);
+  Vec3 n = {};  // from A to B
+};
+
+void take_better(Hold other, Hold& hold) {
+  if (other.gap > hold.gap) hold = other;
+}
+
+/// By the nearest points, if those tell the direction well; false if not.
+bool hold_by_distance(const Convex& a, const Convex& b, Hold& hold) {
+  const Distance d = distance_between(a, b);
+  if (d.cores_overlap) return false;
+  take_better({separation_along(a, b, d.normal), d.normal}, hold);
+  return d.distance + skin_of(a) + skin_of(b) > Real(16) * axis_tolerance(a, b);
+}
+
+Hold hold_convex(const Convex& a, const Convex& b, Meeting& meeting) {
+  Hold hold = {-std::numeric_limits<Real>::infinity(), {}};
+  if (hold_by_distance(a, b, hold)) return hold;
+  meeting.count = 0;
+  meet(a, b, {.margin = std::numeric_limits<Real>::infinity()}, meeting);
+  take_better({meeting.separation, meeting.normal}, hold);
+  return hold;
+}
+
+Vec3 front_of_triangle(const Convex& triangle) {
+  const auto& [p, q, r] = triangle.corners;
+  return normalize(cross(q - p, r - p));
+}
+
+Hold hold_triangle(const Convex& triangle, const Convex& b) {
+  Hold hold = {-std::numeric_limits<Real>::infinity(), {}};
+  if (hold_by_distance(triangle, b, hold)) return hold;
+  const Vec3 front = front_of_triangle(triangle);
+  Axis axis = {front, separation_along(triangle, b, front), kAxisOfA};
+  improve_axis(triangle, b, axis_tolerance(triangle, b), axis);
+  take_better({axis.separation, axis.n}, hold);
+  return hold;
+}
+
+/// Advances from `begin` to `end`, a time in which neither path changes.
+template <class Look>
+std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin, Real end, Look&& look) {
+  const Real tolerance = Real(0.05) * allowance;
+  Real target = -allowance;
+  Real time = begin;
+  Hold hold;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    hold = look(time);
+    if (round == 0) target = std::min(target, hold.gap - Real(2) * tolerance);
+    const Real slack = hold.gap - target;
+    if (!(slack > tolerance)) break;
+    const Real rate = closing.along(hold.n);
+    if (!(rate * (end - time) > slack)) return std::nullopt;
+    time += slack / rate;
+  }
+  return Impact{time, hold.n};
+}
+
+/// A pair of which A is the half-space or the mesh, if there is one.
+class PairSweep {
+ public:
+  PairSweep(const SweptCollider& a, const SweptCollider& b, Real allowance, SweepScratch& scratch)
+      : a_(a), b_(b), allowance_(allowance), scratch_(scratch) {}
+
+  /// Between `begin` and `end`, a time in which neither path changes.
+  std::optional<Impact> run(Real begin, Real end) {
+    const Closing closing = closing_at(a_, b_, begin);
+    const ShapeKind kind = a_.colliders.shape[a_.row].shape.kind;
+    if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, end);
+    if (kind == ShapeKind::kHalfSpace) {
+      return advance(closing, allowance_, begin, end, [this](Real time) { return hold_half_space(time); });
+    }
+    return advance(closing, allowance_, begin, end, [this](Real time) {
+      const auto [pose_a, pose_b] = poses(time);
+      Convex b = place(b_.colliders, b_.row, pose_b.rotation);
+      b.center += vector_cast<Real>(pose_b.position - pose_a.position);
+      return hold_convex(place(a_.colliders, a_.row, pose_a.rotation), b, scratch_.meeting);
+    });
+  }
+
+ private:
+  [[nodiscard]] std::pair<Pose, Pose> poses(Real time) const {
+    return {pose_at(a_.path, time), pose_at(b_.path, time)};
+  }
+
+  [[nodiscard]] Hold hold_half_space(Real time) const {
+    const auto [pose_a, pose_b] = poses(time);
+    const Convex plane = place(a_.colliders, a_.row, pose_a.rotation);
+    const Convex b = place(b_.colliders, b_.row, pose_b.rotation);
+    const Vec3 n = plane.axes.y;
+    const Real height = height_over(plane, pose_b.position - pose_a.position);
+    return {height + dot(n, support_of(b, -n)) - skin_of(b), n};
+  }
+
+  [[nodiscard]] PlacedMesh mesh_at(Real time) const {
+    const auto [pose_a, pose_b] = poses(time);
+    return place_mesh(a_.colliders.shape[a_.row], place(a_.colliders, a_.row, pose_a.rotation),
+                      pose_b.position - pose_a.position);
+  }
+  [[nodiscard]] Convex shape_at(Real time) const {
+    return place(b_.colliders, b_.row, pose_at(b_.path, time).rotation);
+  }
+
+  /// In stretches in which the shape goes no farther than its size or a part of its way: those triangles that
+  /// it can reach in a stretch are swept, each only up to the earliest impact so far.
+  std::optional<Impact> sweep_mesh(const Closing& closing, Real begin, Real end) {
+    constexpr Real kParts = Real(16);
+    const Real way = closing.fastest() * (end - begin);
+    const Real reach = std::max(b_.path.radius, way / kParts);
+    const Real stretch = way > reach ? (end - begin) * (reach / way) : end - begin;
+    for (Real time = begin; time < end; time += stretch) {
+      const Real until = std::min(time + stretch, end);
+      if (const auto impact = sweep_triangles(closing, time, until, reach)) return impact;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Impact> sweep_triangles(const Closing& closing, Real begin, Real end, Real reach) {
+    const PlacedMesh mesh = mesh_at(begin);
+    find_triangles_near(mesh, shape_at(begin), Real(1.01) * reach, scratch_.triangles);
+    std::optional<Impact> first;
+    for (const std::uint32_t index : scratch_.triangles) {
+      const Real until = first ? first->time : end;
+      const auto impact = advance(closing, allowance_, begin, until, [&](Real time) {
+        return hold_triangle(mesh_at(time).triangle(index), shape_at(time));
+      });
+      if (impact && (!first || impact->time < first->time) && is_from_front(*impact, index)) first = impact;
+    }
+    return first;
+  }
+
+  /// What comes to a triangle from behind, or past its plane, goes on.
+  [[nodiscard]] bool is_from_front(const Impact& impact, std::uint32_t index) const {
+    const Convex triangle = mesh_at(impact.time).triangle(index);
+    const Vec3 front = front_of_triangle(triangle);
+    const Vec3 middle = middle_of(shape_at(impact.time));
+    return dot(front, middle - triangle.corners[0]) > Real(0) && dot(front, impact.normal) > Real(0);
+  }
+
+  const SweptCollider& a_;
+  const SweptCollider& b_;
+  Real allowance_;
+  SweepScratch& scratch_;
+};
+
+bool is_wide(ShapeKind kind) {
+  return kind == ShapeKind::kMesh || kind == ShapeKind::kHalfSpace;
+}
+
+}  // namespace
+
+Pose pose_at(const Path& path, Real time) {
+  const Real moving = std::min(time, path.stop);
+  const Real carried = std::max(Real(0), std::min(time, path.release) - path.stop);
+  return {path.center + vector_cast<double>(moving * path.way) + vector_cast<double>(carried * path.carry),
+          path.turn == Vec3{} ? path.rotation
+                              : normalize(math::quaternion_of(moving * path.turn) * path.rotation)};
+}
+
+Real turning_reach(const SweptCollider& collider) {
+  const Spin spin = spin_of(collider);
+  return std::min(spin.largest_rate(), Real(2) * spin.reach);
+}
+
+Real overlap_allowance(const SweptCollider& a, const SweptCollider& b) {
+  const auto thinness = [](const SweptCollider& c) {
+    const state::ColliderShape& s = c.colliders.shape[c.row];
+    return thinness_of({.shape = s.shape, .hull = s.hull.get()});
+  };
+  return std::min(Real(0.25) * (thinness(a) + thinness(b)), kLargestAllowance);
+}
+
+std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b, Real allowance, Real begin,
+                                  SweepScratch& scratch) {
+  const ShapeKind kind_a = a.colliders.shape[a.row].shape.kind;
+  const ShapeKind kind_b = b.colliders.shape[b.row].shape.kind;
+  if (is_wide(kind_a) && is_wide(kind_b)) return std::nullopt;
+  const bool swapped = is_wide(kind_b);
+  PairSweep sweep = swapped ? PairSweep(b, a, allowance, scratch) : PairSweep(a, b, allowance, scratch);
+  std::array<Real, 5> breaks = {a.path.stop, a.path.release, b.path.stop, b.path.release, Real(1)};
+  std::sort(breaks.begin(), breaks.end());
+  Real from = begin;
+  for (const Real to : breaks) {
+    if (!(to > from)) continue;
+    if (auto impact = sweep.run(from, to)) {
+      if (swapped) impact->normal = -impact->normal;
+      return impact;
+    }
+    from = to;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hooke::collision
