@@ -80,6 +80,8 @@ struct Bodies {
   std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
   std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
+  std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
+                                      ///< (solver/hard_islands.h).
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.
@@ -105,6 +107,7 @@ struct Bodies {
     visit(self.odometer);
     visit(self.rest_time);
     visit(self.asleep);
+    visit(self.hardness);
     visit(self.first_collider);
     visit(self.collider_count);
     visit(self.slot);

@@ -43,8 +43,8 @@ void list_awake_bodies(WorldData& world);
 /// Boxes of all colliders that move, the pairs they make, and their manifolds.
 void find_body_contacts(WorldData& world, Real dt);
 
-/// How contacts are solved in this step, with substeps of length `h`.
-void begin_contacts(WorldData& world, Real h);
+/// How contacts are solved in this step, with substeps of length `h`; their rows, soft or of hard islands.
+void prepare_body_contacts(WorldData& world, Real h);
 
 /// Velocities that bring kinematic bodies to where their paths want them at `time`, `h` from now.
 void drive_kinematic_bodies(WorldData& world, double time, Real h);

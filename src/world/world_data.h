@@ -8,6 +8,7 @@
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
 #include "solver/chains.h"
+#include "solver/hard_islands.h"
 #include "solver/joints.h"
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
@@ -46,6 +47,7 @@ struct WorldData {
   std::vector<collision::ColliderPair> pairs_found;
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
+  solver::HardIslands hard_islands;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
