@@ -11,7 +11,12 @@ namespace hooke::base {
 /// Sets that merge. The root of a set is its smallest member, so that the result does not depend on order.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
+  DisjointSets() = default;
+  explicit DisjointSets(std::size_t count) { reset(count); }
+
+  /// `count` sets of one member each.
+  void reset(std::size_t count) {
+    parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
 

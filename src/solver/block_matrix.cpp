@@ -52,15 +52,6 @@ std::optional<Elimination> eliminate(Neighbors graph, const std::vector<int>& si
   return e;
 }
 
-/// The block (row, column), which exists.
-std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
-  const auto begin = p.block.begin() + p.column_begin[column];
-  const auto end = p.block.begin() + p.column_begin[column + 1];
-  const auto found = std::lower_bound(
-      begin, end, row, [](const BlockPattern::Block& block, std::uint32_t r) { return block.row < r; });
-  return static_cast<std::uint32_t>(found - p.block.begin());
-}
-
 void list_blocks(const Elimination& e, BlockPattern& p) {
   std::vector<std::uint32_t> place(e.order.size());
   for (std::uint32_t i = 0; i < e.order.size(); ++i) place[e.order[i]] = i;
@@ -189,6 +180,14 @@ std::optional<BlockPattern> make_block_pattern(const Neighbors& neighbors, const
   p.order = std::move(e->order);
   list_updates(p);
   return p;
+}
+
+std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
+  const auto begin = p.block.begin() + p.column_begin[column];
+  const auto end = p.block.begin() + p.column_begin[column + 1];
+  const auto found = std::lower_bound(
+      begin, end, row, [](const BlockPattern::Block& block, std::uint32_t r) { return block.row < r; });
+  return static_cast<std::uint32_t>(found - p.block.begin());
 }
 
 void factor(const BlockPattern& p, std::span<double> numbers) {

@@ -43,6 +43,9 @@ struct BlockPattern {
 [[nodiscard]] std::optional<BlockPattern> make_block_pattern(
     const std::vector<std::vector<std::uint32_t>>& neighbors, const std::vector<int>& sizes, double budget);
 
+/// The block (row, column), which exists; row >= column.
+[[nodiscard]] std::uint32_t find_block(const BlockPattern& pattern, std::uint32_t row, std::uint32_t column);
+
 /// A = L D L^T in place: L below the diagonals (unit lower triangles), D on them. A pivot that is not
 /// positive counts as infinite, so that its row gets zero.
 void factor(const BlockPattern& pattern, std::span<double> numbers);

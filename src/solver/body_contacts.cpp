@@ -101,13 +101,15 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
     while (i < colors.begin[color + 1]) {
       if (contacts.blocks.size() == block_count) contacts.blocks.emplace_back();
       ContactBlock& block = contacts.blocks[block_count++];
-      block.anchored = colors.members[i].anchored;
-      block.point_count = manifolds[colors.members[i].manifold].point_count;
+      const auto [first_manifold, anchored, hard] = colors.members[i];
+      block.anchored = anchored;
+      block.hard = hard;
+      block.point_count = manifolds[first_manifold].point_count;
       block.first_rolling = static_cast<int>(contacts.rolling.size());
       block.count = 0;
       bool bounces = false;
       const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
-      for (; i < end && colors.members[i].anchored == block.anchored; ++i) {
+      for (; i < end && colors.members[i].anchored == anchored && colors.members[i].hard == hard; ++i) {
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
         bounces = bounces || m.restitution > Real(0);
@@ -188,6 +190,14 @@ std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
   return {contacts.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())};
 }
 
+/// Blocks of hard islands are the last of their color.
+std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
+  const std::span<ContactBlock> all = blocks_of(contacts, blocks);
+  const auto hard =
+      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.hard; });
+  return all.first(static_cast<std::size_t>(hard - all.begin()));
+}
+
 void note_impulses(std::span<const ContactBlock> blocks, BodyContacts& contacts) {
   for (const ContactBlock& block : blocks) {
     if (block.bounces >= 0) note_largest(block, contacts.bounces[block.bounces]);
@@ -226,7 +236,7 @@ void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<Manifol
 }
 
 void solve_body_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
-  const std::span<ContactBlock> all = blocks_of(contacts, blocks);
+  const std::span<ContactBlock> all = soft_blocks_of(contacts, blocks);
   const auto middle =
       std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.anchored; });
   const auto pairs = static_cast<std::size_t>(middle - all.begin());
@@ -247,7 +257,7 @@ void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
       roll(block, contacts.rolling[block.first_rolling + i], bodies);
   }
   const wide::ContactPass pass = {.softness = {}, .inverse_h = Real(1) / step.h, .friction = true};
-  wide::solve_contacts(all, pass, bodies.motion.data());
+  wide::solve_contacts(soft_blocks_of(contacts, blocks), pass, bodies.motion.data());
   note_impulses(all, contacts);
 }
 

@@ -85,6 +85,7 @@ struct alignas(64) ContactBlock {
   int count = 0;          ///< Lanes with a manifold of their own.
   int point_count = 0;    ///< The largest of the lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
+  bool hard = false;      ///< Its manifolds are of hard islands: only rolling is solved here.
   int bounces = -1;       ///< Its BounceBlock, if some lane has restitution.
   int first_rolling = 0;  ///< Its rolling rows.
   int rolling_count = 0;

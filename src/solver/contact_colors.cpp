@@ -14,8 +14,7 @@ constexpr int kColors = 64;  // bits of a mask; what finds none free is numbered
 
 void find_moving(const state::Bodies& bodies, std::vector<std::uint8_t>& moves) {
   moves.resize(bodies.motion.size());
-  for (std::size_t i = 0; i < moves.size(); ++i)
-    moves[i] = bodies.motion[i].inverse_mass > Real(0) && bodies.asleep[i] == 0 ? 1 : 0;
+  for (std::uint32_t i = 0; i < moves.size(); ++i) moves[i] = is_moved(bodies, i) ? 1 : 0;
 }
 
 /// The color of one manifold, marked as used by its bodies that move; kColors if none is free.
@@ -39,12 +38,16 @@ int take_color(const Manifold& m, ContactColors& colors) {
   return color;
 }
 
-bool has_rows(const Manifold& m, const state::Bodies& bodies, const ContactColors& colors) {
-  if (m.point_count == 0 || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor) return false;
-  return colors.moves[m.body_a] != 0 || colors.moves[m.body_b] != 0;
+}  // namespace
+
+bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
+  return bodies.motion[row].inverse_mass > Real(0) && bodies.asleep[row] == 0;
 }
 
-}  // namespace
+bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
+  if (m.point_count == 0 || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor) return false;
+  return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
+}
 
 void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies& bodies,
                     ContactColors& colors) {
@@ -53,7 +56,7 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
   colors.color.resize(manifolds.size());
   int lone = 0;
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    colors.color[i] = has_rows(manifolds[i], bodies, colors) ? take_color(manifolds[i], colors) : -1;
+    colors.color[i] = has_contact_rows(manifolds[i], bodies) ? take_color(manifolds[i], colors) : -1;
     if (colors.color[i] == kColors) colors.color[i] += lone++;
   }
 
@@ -66,10 +69,14 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     if (color < kPairColors) return color;
     return color < kColors ? color + lone : color - kColors + kPairColors;
   };
-  constexpr int kKinds = 2 * Manifold::kMaxPoints;
+  const auto is_hard = [&](const Manifold& m) {
+    return !colors.hard.empty() && (colors.hard[m.body_a] != 0 || colors.hard[m.body_b] != 0);
+  };
+  constexpr int kKinds = 4 * Manifold::kMaxPoints;
   const auto key = [&](std::size_t i) {
-    const int fewer = Manifold::kMaxPoints - manifolds[i].point_count;
-    return kKinds * rank(i) + (is_anchored(manifolds[i]) ? Manifold::kMaxPoints : 0) + fewer;
+    const Manifold& m = manifolds[i];
+    const int kind = (is_hard(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
+    return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - m.point_count;
   };
   colors.place.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
@@ -83,7 +90,8 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
   colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
     if (colors.color[i] < 0) continue;
-    colors.members[colors.place[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(manifolds[i])};
+    const Manifold& m = manifolds[i];
+    colors.members[colors.place[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(m), is_hard(m)};
   }
 }
 

@@ -13,16 +13,25 @@ struct ContactColors {
   struct Member {
     std::uint32_t manifold = 0;
     bool anchored = false;  ///< Only one of its bodies moves.
+    bool hard = false;      ///< Of a hard island (hard_islands.h).
   };
 
-  std::vector<Member> members;   ///< Color after color; in each, pairs that both move come first, then more
-                                 ///< points before fewer, then the order of the manifolds.
+  std::vector<Member> members;   ///< Color after color; in each, those of hard islands come last, before that
+                                 ///< pairs that both move first, then more points before fewer, then the
+                                 ///< order of the manifolds.
   std::vector<int> begin = {0};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
   std::vector<std::uint8_t> moves;  ///< Whether contacts move a body, by body row.
+  std::vector<std::uint8_t> hard;   ///< Whether it is in a hard island; empty: none is. Given.
   std::vector<std::uint64_t> used;  ///< Colors of a body, by body row.
   std::vector<int> color;           ///< Of each manifold, as taken; -1: has no rows.
   std::vector<int> place;           ///< Where the next member of each kind goes.
 };
+
+/// Whether contacts move the body in `row`.
+[[nodiscard]] bool is_moved(const state::Bodies& bodies, std::uint32_t row);
+
+/// Whether the manifold has points that push, and a body they move.
+[[nodiscard]] bool has_contact_rows(const state::Manifold& manifold, const state::Bodies& bodies);
 
 /// Takes the manifolds in order. One with two bodies that move takes the lowest color free in both, below 56;
 /// one with a single such body the highest that is free: it is solved last and so holds best. What finds no

@@ -92,6 +92,8 @@ struct Bodies {
   std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint8_t> slept;  ///< `asleep` at the end of the last step; written by gather_events.
+  std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
+                                      ///< (solver/hard_islands.h).
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.
@@ -119,6 +121,7 @@ struct Bodies {
     visit(self.rest_time);
     visit(self.asleep);
     visit(self.slept);
+    visit(self.hardness);
     visit(self.first_collider);
     visit(self.collider_count);
     visit(self.slot);

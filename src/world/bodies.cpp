@@ -126,17 +126,36 @@ void find_body_contacts(WorldData& world, Real dt) {
   collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
 }
 
-void begin_contacts(WorldData& world, Real h) {
-  const WorldDesc& desc = world.tables.desc;
-  const auto before = static_cast<Real>(world.tables.body_substep);
+void prepare_body_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  const WorldDesc& desc = t.desc;
+  const auto before = static_cast<Real>(t.body_substep);
   world.contact_step = {.gravity = desc.gravity,
                         .h = h,
                         .hz = desc.contact_hz,
                         .damping_ratio = desc.contact_damping_ratio,
                         .sweeps = desc.bias_sweeps,
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
-  world.tables.body_substep = static_cast<double>(h);
+  t.body_substep = static_cast<double>(h);
+  solver::find_hard_islands(world.awake, t.pairs.manifold, t.bodies, world.body_contacts, world.hard_islands);
+  solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
+                                world.body_contacts);
+  solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);
   note_approaches(world, h * static_cast<Real>(desc.substeps));
+}
+
+void finish_body_contacts(WorldData& world) {
+  Tables& t = world.tables;
+  for (int pass = 0; world.body_contacts.any_bounce() && pass < solver::kRestitutionPasses; ++pass) {
+    for_contact_colors(world, [&](parallel::Range blocks) {
+      solver::restitute_body_contacts(blocks, pass, world.contact_step, world.body_contacts, t.bodies);
+    });
+  }
+  parallel::for_ranges(*world.pool, static_cast<int>(world.body_contacts.blocks.size()), kContactBlockGrain,
+                       [&](parallel::Range blocks) {
+                         solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
+                       });
+  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.hard_islands, t.bodies);
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {

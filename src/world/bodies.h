@@ -53,8 +53,11 @@ void find_body_contacts(WorldData& world, Real dt);
 /// threads may ask for it at once: the first brings it up to date.
 [[nodiscard]] const collision::BroadPhase& boxes_for_queries(WorldData& world);
 
-/// How contacts are solved in this step, with substeps of length `h`.
-void begin_contacts(WorldData& world, Real h);
+/// How contacts are solved in this step, with substeps of length `h`; their rows, soft or of hard islands.
+void prepare_body_contacts(WorldData& world, Real h);
+
+/// After the last substep: rebounds, and what contacts did, for the next step and for those who ask.
+void finish_body_contacts(WorldData& world);
 
 /// Velocities that bring kinematic bodies to where their paths want them at `time`, `h` from now.
 void drive_kinematic_bodies(WorldData& world, double time, Real h);

@@ -139,6 +139,7 @@ void hash_bodies(const Tables& t, base::StateHash& hash) {
     hash.add(t.bodies.motion[body].v);
     hash.add(t.bodies.angular_momentum[body]);
     hash.add(t.bodies.asleep[body]);
+    hash.add(t.bodies.hardness[body]);
   }
   for (const state::Manifold& manifold : t.pairs.manifold) {
     hash.add(manifold.collider_a);

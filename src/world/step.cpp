@@ -19,6 +19,7 @@
 #include "solver/chains.h"
 #include "solver/contacts.h"
 #include "solver/forces.h"
+#include "solver/hard_islands.h"
 #include "solver/joints.h"
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
@@ -66,8 +67,7 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_motion(w, static_cast<Real>(dt));
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
   solver::prepare_joints(*w.pool, h, t.hooks, t.bodies, w.joints);
-  world::begin_contacts(w, h);
-  solver::prepare_body_contacts(*w.pool, t.pairs.manifold, t.bodies, w.contact_step, w.body_contacts);
+  world::prepare_body_contacts(w, h);
   world::begin_step(w, dt);
 }
 
@@ -124,8 +124,9 @@ void substep_particles(WorldData& w, double time, Real h) {
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
 }
 
-/// Bodies: contacts with bias, hooks, then everything that is tied to them, then poses; last the contacts
-/// again without bias, which takes out the speed that pushed overlaps apart, and friction.
+/// Bodies: contacts with bias, or as a whole in hard islands; hooks, then everything that is tied to them;
+/// poses; last the contacts again without bias, which takes out the speed that pushed overlaps apart, and
+/// friction.
 void substep(WorldData& w, int i, double time, Real h) {
   state::Bodies& bodies = w.tables.bodies;
   const int particle_substeps = w.tables.desc.particle_substeps;
@@ -139,6 +140,7 @@ void substep(WorldData& w, int i, double time, Real h) {
       solver::solve_body_contacts(blocks, w.contact_step, w.body_contacts, bodies);
     });
   }
+  solver::solve_hard_islands(*w.pool, step, w.hard_islands, w.body_contacts, bodies);
   solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for (int k = 1; k <= particle_substeps; ++k) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h);
@@ -151,14 +153,7 @@ void substep(WorldData& w, int i, double time, Real h) {
 
 void finish_bodies(WorldData& w, double dt) {
   state::Bodies& bodies = w.tables.bodies;
-  for (int pass = 0; w.body_contacts.any_bounce() && pass < solver::kRestitutionPasses; ++pass) {
-    for_contact_colors(w, [&](Range blocks) {
-      solver::restitute_body_contacts(blocks, pass, w.contact_step, w.body_contacts, bodies);
-    });
-  }
-  for_ranges(
-      *w.pool, static_cast<int>(w.body_contacts.blocks.size()), world::kContactBlockGrain,
-      [&](Range blocks) { solver::store_body_contacts(blocks, w.body_contacts, w.tables.pairs.manifold); });
+  world::finish_body_contacts(w);
   world::stop_at_impacts(w);
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
   solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);

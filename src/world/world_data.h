@@ -8,6 +8,7 @@
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
 #include "solver/chains.h"
+#include "solver/hard_islands.h"
 #include "solver/joints.h"
 #include "solver/spring_blocks.h"
 #include "state/tables.h"
@@ -61,6 +62,7 @@ struct WorldData {
   std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
+  solver::HardIslands hard_islands;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;

@@ -1,0 +1,242 @@
+#include "solver/hard_islands.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace hooke::solver {
+
+namespace {
+
+using parallel::Range;
+using state::Bodies;
+using state::Manifold;
+
+constexpr std::uint32_t kNoIsland = 0xFFFFFFFF;
+constexpr Real kLargestSag = Real(0.005);  ///< Of the size of a body.
+constexpr Real kLargestLean = Real(0.3);   ///< sag H^2 / a^3
+constexpr Real kReleased = Real(0.6);      ///< Of both, below which an island may become soft again.
+constexpr Real kGross = Real(5);           ///< Of both: hard at once.
+constexpr std::int8_t kStaysHard = 30;     ///< Steps.
+constexpr std::int8_t kNotJudged = -60;    ///< Steps after a refusal.
+
+/// Hardness of an island after a step in which it asked for `excess` of what soft contacts may do.
+std::int8_t next_hardness(std::int8_t least, std::int8_t most, Real excess) {
+  if (most >= kHard) {
+    if (excess > kReleased) return kHard + kStaysHard;
+    return most > kHard ? static_cast<std::int8_t>(most - 1) : std::int8_t{0};
+  }
+  if (least < 0) return static_cast<std::int8_t>(least + 1);
+  if (!(excess > Real(1))) return 0;
+  if (excess > kGross) return kHard + kStaysHard;
+  return most + 1 < kHard ? static_cast<std::int8_t>(most + 1) : std::int8_t{kHard + kStaysHard};
+}
+
+/// Twice the radius of a sphere within the smaller body.
+Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
+  const Real a = bodies.traits[block.line_a[lane] / 16].inner_radius;
+  return Real(2) * (block.anchored ? a : std::min(a, bodies.traits[block.line_b[lane] / 16].inner_radius));
+}
+
+/// Overlap that each lane of a soft contact needs to carry what it carries.
+void find_sags(const ContactBlock& block, const ContactStep& step, ContactBlock::Lane& sag) {
+  const ContactSoftness soft = contact_softness(step, block.anchored);
+  const Real scale = soft.impulse_scale / soft.rate;
+  for (int lane = 0; lane < kContactLanes; ++lane) sag[lane] = Real(0);
+  for (int k = 0; k < block.point_count; ++k) {
+    const ContactBlock::Point& p = block.point[k];
+    for (int lane = 0; lane < kContactLanes; ++lane) {
+      const bool present = p.mass[lane] > Real(0);
+      const Real needed = scale * p.impulse[lane] / (present ? p.mass[lane] : Real(1));
+      sag[lane] = present && needed > sag[lane] ? needed : sag[lane];
+    }
+  }
+}
+
+void judge_contacts(const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies,
+                    base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
+  for (const ContactBlock& block : contacts.blocks) {
+    ContactBlock::Lane sag;
+    find_sags(block, step, sag);
+    for (int lane = 0; lane < block.count; ++lane) {
+      const std::uint32_t a = block.line_a[lane] / 16;
+      if (!block.anchored) sets.merge(a, block.line_b[lane] / 16);
+      if (!(sag[lane] > Real(0))) continue;
+      const Real size = size_of(block, lane, bodies);
+      if (!(size > Real(0))) continue;
+      demands[a].sag = std::max(demands[a].sag, sag[lane] / size);
+      demands[a].lean = std::max(demands[a].lean, sag[lane] / (size * size * size));
+    }
+  }
+}
+
+void add_demand(const IslandDemand& of, IslandDemand& to) {
+  to.sag = std::max(to.sag, of.sag);
+  to.lean = std::max(to.lean, of.lean);
+  to.low = std::min(to.low, of.low);
+  to.high = std::max(to.high, of.high);
+  to.count += of.count;
+  to.least = std::min(to.least, of.least);
+  to.most = std::max(to.most, of.most);
+}
+
+std::int8_t judge(const IslandDemand& island) {
+  if (island.count < 2 || island.count > kMaxHardBodies) return 0;
+  const Real height = island.high - island.low;
+  const Real excess = std::max(island.sag / kLargestSag, height * height * island.lean / kLargestLean);
+  return next_hardness(island.least, island.most, excess);
+}
+
+/// Numbers the islands with hard bodies by their lowest body, and lists their bodies.
+void number_islands(std::span<const std::uint32_t> awake, const Bodies& bodies, HardIslands& hard) {
+  std::vector<std::uint32_t>& island_of = hard.island_of;
+  island_of.assign(bodies.motion.size(), kNoIsland);
+  for (const std::uint32_t body : awake) {
+    if (bodies.hardness[body] >= kHard) island_of[hard.sets.root(body)] = 0;
+  }
+  hard.count = 0;
+  for (const std::uint32_t body : awake) {
+    const std::uint32_t root = hard.sets.root(body);
+    if (!is_moved(bodies, body) || island_of[root] == kNoIsland) continue;
+    if (root == body) {
+      island_of[body] = static_cast<std::uint32_t>(hard.count++);
+      if (static_cast<int>(hard.found.size()) < hard.count) hard.found.emplace_back();
+      hard.found[hard.count - 1].bodies.clear();
+      hard.found[hard.count - 1].edges.clear();
+    }
+    island_of[body] = island_of[root];
+    hard.found[island_of[body]].bodies.push_back(body);
+  }
+}
+
+void list_edges(const std::vector<Manifold>& manifolds, const Bodies& bodies, HardIslands& hard) {
+  for (const Manifold& m : manifolds) {
+    if (!has_contact_rows(m, bodies) || !is_moved(bodies, m.body_a) || !is_moved(bodies, m.body_b)) continue;
+    const std::uint32_t island = hard.island_of[m.body_a];
+    if (island == kNoIsland) continue;
+    const std::uint32_t a = node_of(hard.found[island].bodies, m.body_a);
+    const std::uint32_t b = node_of(hard.found[island].bodies, m.body_b);
+    hard.found[island].edges.push_back({std::min(a, b), std::max(a, b)});
+  }
+  for (int i = 0; i < hard.count; ++i) {
+    auto& edges = hard.found[i].edges;
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  }
+}
+
+/// The pattern of an island's matrix; false if it costs too much.
+bool make_pattern(const HardGraph& graph, HardIsland& island) {
+  std::vector<std::vector<std::uint32_t>> neighbors(graph.bodies.size());
+  for (const auto& [a, b] : graph.edges) {
+    neighbors[a].push_back(b);
+    neighbors[b].push_back(a);
+  }
+  for (std::vector<std::uint32_t>& of : neighbors) std::sort(of.begin(), of.end());
+  std::optional<BlockPattern> pattern =
+      make_block_pattern(neighbors, std::vector<int>(graph.bodies.size(), 6), kHardIslandBudget);
+  if (!pattern) return false;
+  island.graph = graph;
+  island.pattern = std::move(*pattern);
+  island.place.resize(graph.bodies.size());
+  for (std::uint32_t i = 0; i < island.place.size(); ++i) island.place[island.pattern.order[i]] = i;
+  return true;
+}
+
+/// Keeps what is within the budget and not too large. An island whose bodies and contacts are those of the
+/// step before keeps its matrix.
+void take_islands(Bodies& bodies, HardIslands& hard) {
+  int taken = 0;
+  double cost = 0;
+  hard.refused = 0;
+  for (int i = 0; i < hard.count; ++i) {
+    const HardGraph& graph = hard.found[i];
+    if (static_cast<int>(hard.islands.size()) == taken) hard.islands.emplace_back();
+    HardIsland& island = hard.islands[taken];
+    const bool fits = graph.bodies.size() <= kMaxHardBodies &&
+                      (island.graph == graph || make_pattern(graph, island)) &&
+                      cost + island.pattern.operations <= kHardBudget;
+    for (const std::uint32_t body : graph.bodies) {
+      hard.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
+      if (!fits) bodies.hardness[body] = kNotJudged;
+    }
+    if (fits) {
+      cost += island.pattern.operations;
+      ++taken;
+    } else {
+      ++hard.refused;
+    }
+  }
+  hard.count = taken;
+}
+
+}  // namespace
+
+void find_hard_islands(std::span<const std::uint32_t> awake, const std::vector<Manifold>& manifolds,
+                       Bodies& bodies, BodyContacts& contacts, HardIslands& hard) {
+  contacts.colors.hard.clear();
+  hard.count = 0;
+  hard.refused = 0;
+  const bool any = std::any_of(awake.begin(), awake.end(),
+                               [&](std::uint32_t body) { return bodies.hardness[body] >= kHard; });
+  if (!any) return;
+  hard.sets.reset(bodies.motion.size());
+  for (const Manifold& m : manifolds) {
+    if (has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b))
+      hard.sets.merge(m.body_a, m.body_b);
+  }
+  number_islands(awake, bodies, hard);
+  list_edges(manifolds, bodies, hard);
+  take_islands(bodies, hard);
+  contacts.colors.hard.assign(bodies.motion.size(), 0);
+  for (const std::uint32_t body : awake)
+    contacts.colors.hard[body] = is_moved(bodies, body) && hard.island_of[body] != kNoIsland ? 1 : 0;
+}
+
+void prepare_hard_islands(parallel::ThreadPool& pool, const BodyContacts& contacts, const Bodies& bodies,
+                          HardIslands& hard) {
+  if (hard.count == 0) return;
+  for (HardIsland& island : hard.live()) island.contacts.clear();
+  for (int i = 0; i < static_cast<int>(contacts.blocks.size()); ++i) {
+    const ContactBlock& block = contacts.blocks[i];
+    if (!block.hard) continue;
+    for (int lane = 0; lane < block.count; ++lane) {
+      HardIsland& island = hard.islands[hard.island_of[block.line_a[lane] / 16]];
+      int points = 0;
+      while (points < block.point_count && block.point[points].mass[lane] > Real(0)) ++points;
+      island.contacts.push_back({.block = i, .lane = lane, .points = points});
+    }
+  }
+  parallel::for_ranges(pool, hard.count, 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) prepare_hard_rows(contacts, bodies, hard.islands[i]);
+  });
+}
+
+void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIslands& hard,
+                        BodyContacts& contacts, Bodies& bodies) {
+  parallel::for_ranges(pool, hard.count, 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) solve_hard_island(step, hard.islands[i], contacts, bodies);
+  });
+}
+
+void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
+                    const BodyContacts& contacts, HardIslands& hard, Bodies& bodies) {
+  hard.demands.assign(bodies.motion.size(), {});
+  hard.sets.reset(bodies.motion.size());
+  judge_contacts(step, contacts, bodies, hard.sets, hard.demands);
+  const Vec3 down = step.gravity == Vec3{} ? Vec3{} : normalize(step.gravity);
+  for (const std::uint32_t body : awake) {
+    if (!is_moved(bodies, body)) continue;
+    IslandDemand own = hard.demands[body];
+    own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
+    own.least = own.most = bodies.hardness[body];
+    own.count = 1;
+    const std::uint32_t root = hard.sets.root(body);
+    if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};
+    add_demand(own, hard.demands[root]);
+  }
+  for (const std::uint32_t body : awake) {
+    if (is_moved(bodies, body)) bodies.hardness[body] = judge(hard.demands[hard.sets.root(body)]);
+  }
+}
+
+}  // namespace hooke::solver

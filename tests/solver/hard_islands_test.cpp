@@ -1,0 +1,193 @@
+#include "solver/hard_islands.h"
+
+#include "constants.h"
+#include "world/access.h"
+#include "world/make.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace hooke {
+namespace {
+
+using test::kGravity;
+using test::make_world;
+using test::run;
+using test::take;
+
+constexpr double kDensity = 1000;
+
+struct Column {
+  World world;
+  std::vector<BodyId> boxes;
+};
+
+WorldDesc restless(int workers = 1) {
+  WorldDesc desc;
+  desc.sleeping = false;
+  desc.workers = workers;
+  return desc;
+}
+
+BodyDesc box(DVec3 center, double half, double density = kDensity) {
+  const auto h = static_cast<Real>(half);
+  BodyDesc desc;
+  desc.kind = BodyKind::kDynamic;
+  desc.shape = Shape::box({h, h, h});
+  desc.position = center;
+  desc.density = static_cast<Real>(density);
+  desc.contact.friction = Real(0.6);
+  return desc;
+}
+
+void add_ground(World& world, double friction = 0.6) {
+  BodyDesc ground;
+  ground.shape = Shape::half_space();
+  ground.contact.friction = static_cast<Real>(friction);
+  take(world.add_body(ground));
+}
+
+/// `count` cubes on the ground, each `shift` farther along x than the one below.
+Column make_column(int count, double half, double shift = 0, const WorldDesc& desc = restless()) {
+  Column column = {make_world(desc), {}};
+  add_ground(column.world);
+  for (int i = 0; i < count; ++i)
+    column.boxes.push_back(take(column.world.add_body(box({shift * i, half * (2 * i + 1), 0}, half))));
+  return column;
+}
+
+bool is_hard(const World& world) {
+  const std::vector<std::int8_t>& hardness = WorldAccess::tables(world).bodies.hardness;
+  return std::any_of(hardness.begin(), hardness.end(), [](int h) { return h >= solver::kHard; });
+}
+
+double force_between(const World& world, BodyId a, BodyId b) {
+  double sum = 0;
+  for (const BodyContact& contact : world.body_contacts()) {
+    if ((contact.a == a && contact.b == b) || (contact.a == b && contact.b == a))
+      sum += static_cast<double>(contact.normal_force);
+  }
+  return sum;
+}
+
+DVec3 place_of(const Column& column, std::size_t i) {
+  return column.world.pose(column.boxes[i]).position;
+}
+
+/// Three seconds of ten cubes of 0.1 m in a flight of stairs: how far the top sinks [m].
+double fall_of_stairs(double shift) {
+  Column column = make_column(10, 0.05, shift);
+  run(column.world, 180);
+  return 0.95 - place_of(column, 9).y;
+}
+
+}  // namespace
+
+TEST_SUITE("solver/hard_islands") {
+  TEST_CASE(
+      "a column above the buckling height of soft contacts stands, and each contact bears what is on it") {
+    constexpr int kCount = 40;
+    Column column = make_column(kCount, 0.5);
+    run(column.world, 240);
+    CHECK(is_hard(column.world));
+    for (std::size_t i = 0; i < kCount; ++i) {
+      CAPTURE(i);
+      const DVec3 at = place_of(column, i);
+      CHECK(std::abs(at.y - (0.5 + static_cast<double>(i))) < 1e-3);
+      CHECK(std::hypot(at.x, at.z) < 1e-3);
+      if (i == 0) continue;
+      const double weight = kDensity * kGravity * static_cast<double>(kCount - i);
+      CHECK(force_between(column.world, column.boxes[i - 1], column.boxes[i]) ==
+            doctest::Approx(weight).epsilon(1e-3));
+    }
+  }
+
+  TEST_CASE("a top ten thousand times as heavy is held") {
+    Column column = make_column(5, 0.5);
+    column.boxes.push_back(take(column.world.add_body(box({0, 5.5, 0}, 0.5, 1e4 * kDensity))));
+    run(column.world, 300);
+    for (std::size_t i = 0; i < 6; ++i)
+      CHECK(std::abs(place_of(column, i).y - (0.5 + static_cast<double>(i))) < 1e-3);
+    CHECK(column.world.measure().energy.kinetic < 1e-2);  // 1e7 kg at 0.05 mm/s
+  }
+
+  TEST_CASE("a flight of stairs falls when the middle of the upper boxes is beyond the edge of the lowest") {
+    // The upper 9 of 10 are 5 steps off on average; the edge is half a box, 0.05 m, off. Soft contacts give
+    // way in the first steps: that takes a tenth of the room.
+    CHECK(std::abs(fall_of_stairs(0.009)) < 1e-3);
+    CHECK(fall_of_stairs(0.0105) > 0.1);
+  }
+
+  TEST_CASE("a small box slides under a load of a thousand times its weight as one body does") {
+    // Gravity aslant is a slope of tangent 0.3.
+    WorldDesc desc = restless();
+    desc.gravity = {Real(3), Real(-10), Real(0)};
+    for (const double friction : {0.2, 0.4}) {
+      CAPTURE(friction);
+      World world = make_world(desc);
+      add_ground(world, friction);
+      BodyDesc lower = box({0, 0.5, 0}, 0.5);
+      lower.contact.friction = static_cast<Real>(friction);
+      BodyDesc load = box({0, 1.5, 0}, 0.5, 1000 * kDensity);
+      load.contact.friction = Real(5);
+      take(world.add_body(lower));
+      const BodyId top = take(world.add_body(load));
+      run(world, 60);
+      CHECK(is_hard(world));
+      const double before = static_cast<double>(world.velocity(top).x);
+      run(world, 60);
+      const double gained = static_cast<double>(world.velocity(top).x) - before;
+      CHECK(gained == doctest::Approx(std::max(0.0, 3 - friction * 10)).epsilon(5e-3));
+    }
+  }
+
+  TEST_CASE("a box that falls on a hard column adds no energy") {
+    Column column = make_column(12, 0.05);
+    column.boxes.push_back(take(column.world.add_body(box({0.01, 1.75, 0.02}, 0.05, 5 * kDensity))));
+    const double start = column.world.measure().energy.total();
+    bool was_hard = false;
+    for (int i = 0; i < 120; ++i) {
+      run(column.world, 1);
+      was_hard = was_hard || is_hard(column.world);
+      CHECK(column.world.measure().energy.total() < start * (1 + 1e-4));
+    }
+    CHECK(was_hard);
+  }
+
+  TEST_CASE("what soft contacts hold stays soft, and a column becomes soft again when it is taken apart") {
+    Column low = make_column(4, 0.5);
+    run(low.world, 120);
+    CHECK(!is_hard(low.world));
+    Column high = make_column(16, 0.5);
+    run(high.world, 60);
+    CHECK(is_hard(high.world));
+    for (std::size_t i = 3; i < high.boxes.size(); ++i) REQUIRE(high.world.remove(high.boxes[i]));
+    run(high.world, 60);
+    CHECK(!is_hard(high.world));
+  }
+
+  TEST_CASE("hard islands give the same bits with any number of workers, and after a restoration") {
+    const auto build = [](int workers) {
+      Column column = make_column(14, 0.05, 0.001, restless(workers));
+      for (int k = 1; k < 4; ++k) {
+        for (int i = 0; i < 12 + k; ++i) take(column.world.add_body(box({1.0 * k, 0.1 * i + 0.05, 0}, 0.05)));
+      }
+      return column;
+    };
+    Column one = build(1);
+    Column three = build(3);
+    run(one.world, 40);
+    run(three.world, 40);
+    REQUIRE(is_hard(one.world));
+    CHECK(one.world.state_hash() == three.world.state_hash());
+    const Snapshot snapshot = one.world.snapshot();
+    run(one.world, 20);
+    const std::uint64_t once = one.world.state_hash();
+    REQUIRE(one.world.restore(snapshot).has_value());
+    run(one.world, 20);
+    CHECK(one.world.state_hash() == once);
+  }
+}
+
+}  // namespace hooke
