@@ -18,8 +18,9 @@ constexpr float kLeastRopeRadius = 1.2F;  ///< [px], half the least width of a r
 /// [px]: larger spheres are drawn by the finest level, smaller ones by the next; below the second by the
 /// coarsest. None is more than half a pixel off.
 constexpr std::array<float, 2> kLevelRadius = {40, 10};
-constexpr float kSlabWidth = 20;      ///< Slabs are wider than so many times their thickness.
-constexpr float kIronDensity = 7800;  ///< [kg/m^3]
+constexpr float kSlabWidth = 20;       ///< Slabs are wider than so many times their thickness.
+constexpr float kIronDensity = 7800;   ///< [kg/m^3]
+constexpr float kHookRadius = 0.008F;  ///< Of a distance as it is drawn [m].
 const render::Color kIron = {0.30F, 0.31F, 0.33F};
 
 float srgb_of(float linear) {
@@ -35,6 +36,7 @@ render::Color color_of(const std::array<float, 3>& linear) {
 render::Color usual_color(SceneObject::Kind kind) {
   switch (kind) {
     case SceneObject::Kind::kRope:
+    case SceneObject::Kind::kHook:
       return {0.80F, 0.68F, 0.48F};
     case SceneObject::Kind::kCloth:
       return {0.30F, 0.50F, 0.72F};
@@ -285,7 +287,7 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
                    BodyGeometries& geometries) {
   Figure figure;
   figure.kind = object.kind;
-  figure.radius = static_cast<float>(object.radius);
+  figure.radius = object.kind == SceneObject::Kind::kHook ? kHookRadius : static_cast<float>(object.radius);
   if (object.kind == SceneObject::Kind::kBody) {
     figure.solids = solids_of(simulation.scene(), object, textures, geometries);
     figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;
@@ -309,6 +311,7 @@ void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list
       add_body(figure, place, list);
       break;
     case SceneObject::Kind::kRope:
+    case SceneObject::Kind::kHook:
       add_rope(figure, place, list);
       break;
     case SceneObject::Kind::kCloth:

@@ -63,6 +63,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"largest_stretch", end.largest_stretch},
       {"mean_stretch", end.mean_stretch},
       {"largest_penetration", end.largest_penetration},
+      {"largest_gap", end.largest_gap},
       {"contacts", record.contacts},
       {"state_hash", hash_text(world.state_hash())},
       {"expect", verdicts_of(simulation)},
@@ -103,15 +104,15 @@ std::string run_summary(const Simulation& simulation, const RunRecord& record) {
 
 std::string csv_header() {
   return "step,time,kinetic,potential,elastic,momentum_x,momentum_y,momentum_z,largest_stretch,"
-         "largest_penetration,contacts,state_hash\n";
+         "largest_penetration,largest_gap,contacts,state_hash\n";
 }
 
 std::string csv_line(const World& world, std::uint32_t contacts) {
   const Measurement m = world.measure();
-  return text_of("%llu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%u,",
+  return text_of("%llu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%u,",
                  static_cast<unsigned long long>(world.step_count()), world.time(), m.energy.kinetic,
                  m.energy.potential, m.energy.elastic, m.momentum.x, m.momentum.y, m.momentum.z,
-                 m.largest_stretch, m.largest_penetration, contacts) +
+                 m.largest_stretch, m.largest_penetration, m.largest_gap, contacts) +
          hash_text(world.state_hash()) + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include "render/image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -18,6 +19,14 @@ namespace {
 /// not.
 constexpr double kOriginStep = 64;
 constexpr double kFar = 1e30;  ///< [m], beyond everything.
+
+/// Fields are nowhere, and of hooks only distances can be seen: others lie within what they hold.
+bool is_drawn(const SceneObject& object) {
+  if (object.kind == SceneObject::Kind::kHook) {
+    return object.hook_kind == HookKind::kDistance && !object.broken;
+  }
+  return object.kind != SceneObject::Kind::kField;
+}
 
 DVec3 origin_near(DVec3 place) {
   const auto snap = [](double x) { return kOriginStep * std::round(x / kOriginStep); };
@@ -39,9 +48,11 @@ std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::strin
 }
 
 std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, const SceneObject& object) {
-  const std::uint32_t slot = object.body.slot + object.rope.slot + object.cloth.slot + object.particles.slot;
-  const std::uint32_t generation =
-      object.body.generation + object.rope.generation + object.cloth.generation + object.particles.generation;
+  // The ids of other kinds are null.
+  const std::uint32_t slot =
+      object.body.slot + object.rope.slot + object.cloth.slot + object.particles.slot + object.hook.slot;
+  const std::uint32_t generation = object.body.generation + object.rope.generation + object.cloth.generation +
+                                   object.particles.generation + object.hook.generation;
   std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
   if (figure == nullptr) {
     figure = std::make_shared<Figure>(make_figure(
@@ -55,10 +66,15 @@ void SceneDrawing::record(const Simulation& simulation, double time) {
   current_.time = time;
   current_.objects.clear();
   for (const SceneObject& object : simulation.objects()) {
-    if (object.kind == SceneObject::Kind::kField) continue;
+    if (!is_drawn(object)) continue;
     ObjectState& state = current_.objects.emplace_back();
     state.figure = find_figure(simulation, object);
     if (object.kind == SceneObject::Kind::kBody) state.pose = simulation.world().pose(object.body);
+    if (object.kind == SceneObject::Kind::kHook) {
+      const std::array<DVec3, 2> anchors = simulation.world().hook_anchors(object.hook);
+      state.points.assign(anchors.begin(), anchors.end());
+      continue;
+    }
     const PointView points = positions_of(simulation.world(), object);
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];

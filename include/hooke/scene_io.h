@@ -152,6 +152,15 @@ struct SceneParticles {
   ParticlesDesc desc = {};
   std::vector<ScenePin> pins = {};
 };
+/// A hook. In an array, copy i holds copy i of `a` and of `b` where they are arrays, counted from the copy
+/// that is named: with "link[1]", copy i holds link[1 + i].
+struct SceneHook {
+  std::string name = {};  ///< As SceneTag::name.
+  HookDesc desc = {};     ///< All but `a` and `b`.
+  std::string a = {};     ///< Name of a body; empty for the world.
+  std::string b = {};     ///< Name of a body.
+  SceneArray array = {};  ///< Offsets of the anchors.
+};
 struct SceneField {
   std::string name = {};
   FieldDesc desc = {};
@@ -163,6 +172,7 @@ struct SceneObjects {
   std::vector<SceneCloth> cloths = {};
   std::vector<SceneParticles> particles = {};
   std::vector<SceneField> fields = {};
+  std::vector<SceneHook> hooks = {};
 };
 
 /// Something that happens just before a step.
@@ -233,6 +243,12 @@ struct SceneExpectation {
     kPenetration,
     kContacts,
     kAsleep,  ///< Number of bodies that sleep.
+    kForce,   ///< Size of what a hook does to b, mean over the last step [N].
+    kTorque,  ///< [N m]
+    kAngle,   ///< World::hook_value of a hinge [rad].
+    kWay,     ///< World::hook_value of a slider, a wheel or a distance [m].
+    kGap,     ///< World::hook_gap; of the world, the largest [m].
+    kBroken,  ///< 1 for a hook that has broken; of the world, their number.
   };
   enum class Op : std::uint8_t {
     kLess,
@@ -320,7 +336,7 @@ struct Loaded {
 
 /// One object of a running simulation: what to draw and how.
 struct SceneObject {
-  enum class Kind : std::uint8_t { kBody, kRope, kCloth, kParticles, kField };
+  enum class Kind : std::uint8_t { kBody, kRope, kCloth, kParticles, kField, kHook };
 
   std::string name = {};
   Kind kind = Kind::kBody;
@@ -329,6 +345,7 @@ struct SceneObject {
   ClothId cloth = {};
   ParticlesId particles = {};
   FieldId field = {};
+  HookId hook = {};
   SceneMaterial look = {};
   std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
   std::string path = {};      ///< In the file, as "ropes[0]".
@@ -349,6 +366,9 @@ struct SceneObject {
   double rest_length = 0;        ///< Of a rope [m].
   std::uint32_t columns = 0;     ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
+  HookKind hook_kind = HookKind::kBall;
+  std::array<BodyId, 2> hooked = {};        ///< What a hook holds; null for the world.
+  bool broken = false;                      ///< Of a hook: its id is stale.
   std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth; of a hull, its faces.
 };
 

@@ -113,6 +113,7 @@ struct Measurement {
   double largest_stretch = 0;  ///< Largest |length / rest length - 1| over rope segments and stretch springs.
   double mean_stretch = 0;     ///< Mean of the same.
   double largest_penetration = 0;  ///< Deepest overlap of a particle with a shape, or of two bodies [m].
+  double largest_gap = 0;          ///< Of any hook, as World::hook_gap has it [m].
 };
 
 /// Everything that changes with time, and everything that was added, as it was. Copying is cheap; see
@@ -236,6 +237,10 @@ class World {
   /// How far b has moved from where it was hooked: the angle of a hinge [rad], also beyond whole turns; the
   /// way of a slider or of a wheel's suspension [m]; the length of a distance [m]; 0 for other kinds.
   [[nodiscard]] Real hook_value(HookId id) const;
+  /// Where a hook holds a and b now [m].
+  [[nodiscard]] std::array<DVec3, 2> hook_anchors(HookId id) const;
+  /// How far b is from the nearest place at which the hook holds it [m]; a spring holds nothing.
+  [[nodiscard]] Real hook_gap(HookId id) const;
   /// The hooks that broke in the last step, in order of creation. They are gone.
   [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.

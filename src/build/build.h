@@ -31,6 +31,12 @@ void remove_body(std::uint32_t row, state::Tables& tables);
 /// The new hook is the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
 
+/// The one freedom of a kDistance hook whose anchors were `distance` apart [m]: its target becomes a length,
+/// and where nothing is said it is a rod.
+[[nodiscard]] HookFreedom line_freedom(HookFreedom line, Real distance);
+/// Whether bounds leave one value only.
+[[nodiscard]] bool is_closed(const HookLimits& limits);
+
 [[nodiscard]] Result<void> validate(const WorldDesc& desc);
 [[nodiscard]] Result<void> validate(const WindDesc& wind);
 [[nodiscard]] Result<void> validate(const FieldDesc& field);

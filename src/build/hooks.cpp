@@ -115,12 +115,8 @@ std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
       return {moving, kLocked, kLocked, kLocked, kLocked, kLocked};
     case HookKind::kFixed:
       return {kLocked, kLocked, kLocked, kLocked, kLocked, kLocked};
-    case HookKind::kDistance: {
-      HookFreedom line = moving;
-      line.spring.target += static_cast<Real>(distance);
-      line.locked = line == HookFreedom{.spring = {.target = line.spring.target}};
-      return {line, {}, {}, {}, {}, {}};
-    }
+    case HookKind::kDistance:
+      return {line_freedom(moving, static_cast<Real>(distance)), {}, {}, {}, {}, {}};
     case HookKind::kWheel: {
       HookFreedom suspension = moving;
       suspension.motor = {};
@@ -134,8 +130,8 @@ std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
 
 /// Bounds that leave one value only are a lock.
 void lock_closed_limits(HookFreedom& freedom) {
-  if (freedom.limits.lower != freedom.limits.upper) return;
-  freedom = {.locked = true, .spring = {.target = freedom.limits.lower}};
+  if (!is_closed(freedom.limits)) return;
+  freedom = {.locked = true, .limits = freedom.limits, .spring = {.target = freedom.limits.lower}};
 }
 
 Result<std::uint32_t> find_end(const HookEnd& end, const char* where, const Tables& t) {
@@ -163,6 +159,16 @@ Result<void> validate(const HookSpring& spring) {
       .not_negative("damping", number(spring.damping))
       .finite("target", number(spring.target));
   return checks.result();
+}
+
+HookFreedom line_freedom(HookFreedom line, Real distance) {
+  line.spring.target += distance;
+  line.locked = line == HookFreedom{.spring = {.target = line.spring.target}};
+  return line;
+}
+
+bool is_closed(const HookLimits& limits) {
+  return limits.lower == limits.upper;
 }
 
 Result<void> validate(const HookDesc& desc) {
@@ -215,7 +221,10 @@ Result<void> add_hook(const HookDesc& desc, Tables& t) {
                .break_torque = desc.break_torque,
                .collide = desc.collide};
   std::for_each(hook.freedom.begin(), hook.freedom.end(), lock_closed_limits);
-  if (desc.kind == HookKind::kDistance) hook.value[0] = length(anchor_b - desc.anchor);
+  if (desc.kind == HookKind::kDistance) {
+    hook.value[0] = length(anchor_b - desc.anchor);
+    hook.rest_distance = static_cast<Real>(hook.value[0]);
+  }
   t.hooks.push_back(hook);
   ++t.hook_revision;
   return {};

@@ -19,6 +19,7 @@ class Builder {
   void build(const SceneCloth& cloth, const std::string& path);
   void build(const SceneParticles& particles, const std::string& path);
   void build(const SceneField& field, const std::string& path);
+  void build(const SceneHook& hook, const std::string& path);
 
  private:
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
@@ -36,6 +37,8 @@ class Builder {
   std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
+  /// The body that copy `i` of a hook names; null for the world.
+  Result<BodyId> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
   template <class IdType>
   bool keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added);
   /// Points of one instance that a pin holds.
@@ -339,6 +342,46 @@ void Builder::build(const SceneField& field, const std::string& path) {
   keep(object, &SceneObject::field, data_.world.add_field(field.desc));
 }
 
+Result<BodyId> Builder::find_end(const std::string& name, const SceneArray& array, std::size_t i) const {
+  if (name.empty()) return BodyId{};
+  auto found = data_.row_of.find(name);
+  if (array.kind != SceneArray::Kind::kSingle) {
+    // A body without a name is called by its path, which looks like that of a copy.
+    const bool is_path = found != data_.row_of.end() && data_.objects[found->second].path == name;
+    const std::optional<CopyName> first = is_path ? std::nullopt : take_copy_name(name);
+    if (found == data_.row_of.end()) {
+      found = data_.row_of.find(indexed(name, i));
+    } else if (first) {
+      found = data_.row_of.find(indexed(first->array, first->copy + i));
+    }
+  }
+  if (found != data_.row_of.end()) return data_.objects[found->second].body;
+  return Error{ErrorCode::kStaleId, "", "there is no object " + in_quotes(name) + " any more"};
+}
+
+void Builder::build(const SceneHook& hook, const std::string& path) {
+  HookDesc desc = hook.desc;
+  for (std::size_t i = 0; i < hook.array.count() && !full(); ++i) {
+    if (!reserve(1, path)) return;
+    const Result<BodyId> a = find_end(hook.a, hook.array, i);
+    const Result<BodyId> b = find_end(hook.b, hook.array, i);
+    if (!a || !b) {
+      const Error& error = a ? b.error() : a.error();
+      return fail(path + (a ? ".b" : ".a"), error.code, error.message);
+    }
+    desc.a = {a.value()};
+    desc.b = {b.value()};
+    const DVec3 offset = hook.array.offset(i);
+    desc.anchor = hook.desc.anchor + offset;
+    if (hook.desc.anchor_b) desc.anchor_b = *hook.desc.anchor_b + offset;
+    SceneObject object =
+        make_object({.name = hook.name, .array = hook.array}, SceneObject::Kind::kHook, path, i);
+    object.hook_kind = desc.kind;
+    object.hooked = {a.value(), b.value()};
+    if (!keep(object, &SceneObject::hook, data_.world.add_hook(desc))) return;
+  }
+}
+
 Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
   if (mesh.file.empty()) return model_of(mesh.mesh);
   const Result<std::string> file = locate_file(scene.path, mesh.file);
@@ -396,6 +439,7 @@ void build_objects(const SceneObjects& objects, const std::string& prefix, Simul
   build_list(builder, objects.cloths, prefix + "cloths");
   build_list(builder, objects.particles, prefix + "particles");
   build_list(builder, objects.fields, prefix + "fields");
+  build_list(builder, objects.hooks, prefix + "hooks");
 }
 
 void index_objects(SimulationData& data) {

@@ -21,6 +21,9 @@ struct NamedObject {
   std::size_t points = 0;  ///< Of each instance; 0 if not known.
 };
 
+/// What a quantity is measured on.
+enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kHookOrWorld };
+
 class Checker {
  public:
   Checker(const Scene& scene, const JsonDocument& document, std::vector<JsonError>& errors)
@@ -50,8 +53,14 @@ class Checker {
   void check_material(const std::string& name, const std::string& path);
   void check_mesh_name(const std::string& name, const std::string& path);
   void check_references(const SceneObjects& objects, const std::string& prefix);
+  void check_hook(const SceneHook& hook, const std::string& path);
+  void check_hook_end(const SceneHook& hook, const std::string& name, const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
+  void check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
+                     const std::string& path);
+  /// The object of a name or of the name of its array, whatever its copy; null after an error.
+  const NamedObject* find_named(const std::string& name, const std::string& path);
   const NamedObject* find_object(const std::string& name, const std::string& path);
   void check_point(ScenePoint point, std::size_t count, const std::string& path);
   void check_pins(const std::vector<ScenePin>& pins, std::size_t count, const ClothDesc* grid,
@@ -71,6 +80,11 @@ class Checker {
   std::size_t total_ = 0;
   bool names_damaged_ = false;  ///< A name was not read: what refers to it would seem to refer to nothing.
 };
+
+bool has_points(SceneObject::Kind kind) {
+  return kind == SceneObject::Kind::kRope || kind == SceneObject::Kind::kCloth ||
+         kind == SceneObject::Kind::kParticles;
+}
 
 std::size_t saturated_product(std::size_t a, std::size_t b) {
   constexpr std::size_t far = std::size_t{1} << 40U;
@@ -120,6 +134,11 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
   for (std::size_t i = 0; i < objects.fields.size(); ++i) {
     add_name(objects.fields[i].name,
              {.path = indexed(prefix + "fields", i), .kind = SceneObject::Kind::kField});
+  }
+  for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
+    const SceneHook& hook = objects.hooks[i];
+    add_name(hook.name, {indexed(prefix + "hooks", i), SceneObject::Kind::kHook,
+                         hook.array.kind != SceneArray::Kind::kSingle, hook.array.count()});
   }
 }
 
@@ -175,45 +194,71 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     check_tag(objects.particles[i].tag, indexed(prefix + "particles", i));
   }
+  for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
+    check_hook(objects.hooks[i], indexed(prefix + "hooks", i));
+  }
+}
+
+const NamedObject* Checker::find_named(const std::string& name, const std::string& path) {
+  if (full() || names_damaged_) return nullptr;
+  auto found = objects_.find(name);
+  const std::optional<CopyName> copy = take_copy_name(name);
+  if (found == objects_.end() && copy) found = objects_.find(copy->array);
+  if (found != objects_.end()) return &found->second;
+  std::string hint;
+  for (const auto& [known, object] : objects_) {
+    const bool better = hint.empty() || known < hint;
+    if (better && edit_distance_up_to_2(known, copy ? copy->array : name) <= 2) hint = known;
+  }
+  hint = hint.empty() ? "" : ", did you mean " + in_quotes(hint) + "?";
+  fail(path, ErrorCode::kOutOfRange, "there is no object " + in_quotes(name) + hint);
+  return nullptr;
 }
 
 const NamedObject* Checker::find_object(const std::string& name, const std::string& path) {
-  if (full() || names_damaged_) return nullptr;
-  std::string base = name;
-  std::optional<std::size_t> instance;
-  auto found = objects_.find(base);
-  const std::size_t bracket = name.rfind('[');
-  if (found == objects_.end() && bracket != std::string::npos && name.ends_with(']')) {
-    std::size_t index = 0;
-    const char* end = name.data() + name.size() - 1;
-    const auto parsed = std::from_chars(name.data() + bracket + 1, end, index);
-    if (parsed.ec == std::errc() && parsed.ptr == end) instance = index;
-    found = objects_.find(base = name.substr(0, bracket));
-  }
-  if (found == objects_.end()) {
-    std::string hint;
-    for (const auto& [known, object] : objects_) {
-      const bool better = hint.empty() || known < hint;
-      if (better && edit_distance_up_to_2(known, base) <= 2) hint = known;
-    }
-    hint = hint.empty() ? "" : ", did you mean " + in_quotes(hint) + "?";
-    fail(path, ErrorCode::kOutOfRange, "there is no object " + in_quotes(name) + hint);
-    return nullptr;
-  }
-  const NamedObject& object = found->second;
-  if (object.is_array != instance.has_value()) {
+  const NamedObject* object = find_named(name, path);
+  if (object == nullptr) return nullptr;
+  const std::optional<CopyName> copy =
+      objects_.contains(name) ? std::optional<CopyName>{} : take_copy_name(name);
+  const std::string base = copy ? copy->array : name;
+  if (object->is_array != copy.has_value()) {
     fail(path, ErrorCode::kOutOfRange,
-         in_quotes(base) + (object.is_array
+         in_quotes(base) + (object->is_array
                                 ? " is an array, name one of its objects as " + in_quotes(base + "[0]")
                                 : " is not an array"));
     return nullptr;
   }
-  if (instance.has_value() && *instance >= object.instances) {
+  if (copy && copy->copy >= object->instances) {
     fail(path, ErrorCode::kOutOfRange,
-         in_quotes(base) + " has " + std::to_string(object.instances) + " objects");
+         in_quotes(base) + " has " + std::to_string(object->instances) + " objects");
     return nullptr;
   }
-  return &object;
+  return object;
+}
+
+void Checker::check_hook_end(const SceneHook& hook, const std::string& name, const std::string& path) {
+  const bool single = hook.array.kind == SceneArray::Kind::kSingle;
+  const NamedObject* object = single ? find_object(name, path) : find_named(name, path);
+  if (object == nullptr) return;
+  if (object->kind != SceneObject::Kind::kBody) {
+    fail(path, ErrorCode::kOutOfRange, in_quotes(name) + " is not a body");
+    return;
+  }
+  if (single || !object->is_array) return;
+  const std::optional<CopyName> first =
+      objects_.contains(name) ? std::optional<CopyName>{} : take_copy_name(name);
+  const std::size_t needed = hook.array.count() + (first ? first->copy : 0);
+  if (needed > object->instances) {
+    fail(path, ErrorCode::kOutOfRange,
+         in_quotes(name) + " is one of " + std::to_string(object->instances) + " objects, the hooks need " +
+             std::to_string(needed));
+  }
+}
+
+void Checker::check_hook(const SceneHook& hook, const std::string& path) {
+  if (is_damaged(path)) return;
+  if (!hook.a.empty()) check_hook_end(hook, hook.a, path + ".a");
+  check_hook_end(hook, hook.b, path + ".b");
 }
 
 void Checker::check_point(ScenePoint point, std::size_t count, const std::string& path) {
@@ -240,7 +285,9 @@ const char* key_of(SceneEvent::Kind kind) {
 void Checker::check_event(const SceneEvent& event, const std::string& path) {
   if (is_damaged(path)) return;
   if (event.kind == SceneEvent::Kind::kRemove) {
-    find_object(event.object, path + ".remove");
+    const auto found = objects_.find(event.object);
+    const bool whole_array = found != objects_.end() && found->second.is_array;
+    if (!whole_array) find_object(event.object, path + ".remove");
     return;
   }
   const std::string inner = path + key_of(event.kind);
@@ -249,15 +296,12 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   if (object == nullptr) return;
   const bool pushes = event.kind == SceneEvent::Kind::kForce || event.kind == SceneEvent::Kind::kImpulse;
   if (object->kind == SceneObject::Kind::kBody && pushes) return;
-  if (object->kind == SceneObject::Kind::kBody || object->kind == SceneObject::Kind::kField) {
+  if (!has_points(object->kind)) {
     fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
     return;
   }
   check_point(event.point, object->points, inner + ".point");
 }
-
-/// What a quantity is measured on.
-enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody };
 
 Subject subject_of(SceneExpectation::Quantity quantity) {
   using Quantity = SceneExpectation::Quantity;
@@ -277,8 +321,39 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
     case Quantity::kExtension:
     case Quantity::kTension:
       return Subject::kRope;
+    case Quantity::kForce:
+    case Quantity::kTorque:
+    case Quantity::kAngle:
+    case Quantity::kWay:
+      return Subject::kHook;
+    case Quantity::kGap:
+    case Quantity::kBroken:
+      return Subject::kHookOrWorld;
     default:
       return Subject::kWorld;
+  }
+}
+
+void Checker::check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
+                            const std::string& path) {
+  using Kind = SceneObject::Kind;
+  const auto wrong = [&](const char* reason) {
+    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + reason);
+  };
+  const bool body = object.kind == Kind::kBody;
+  if (subject == Subject::kHook || subject == Subject::kHookOrWorld) {
+    if (object.kind != Kind::kHook) wrong(" is not a hook");
+  } else if (subject == Subject::kBody) {
+    if (!body) wrong(" is not a body");
+  } else if (!has_points(object.kind) && !(body && subject == Subject::kPoint)) {
+    wrong(" has no points");
+  } else if (subject == Subject::kRope && object.kind != Kind::kRope) {
+    wrong(" is not a rope");
+  } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
+    fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
+  } else if (expectation.point.has_value() && object.points > 0) {
+    const bool segment = expectation.quantity == SceneExpectation::Quantity::kTension;
+    check_point(*expectation.point, object.points - (segment ? 1 : 0), path + ".point");
   }
 }
 
@@ -299,24 +374,12 @@ void Checker::check_expectation(const SceneExpectation& expectation, const std::
     return;
   }
   if (expectation.of.empty()) {
+    if (subject == Subject::kHookOrWorld) return;
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'of', the name of an object");
     return;
   }
   const NamedObject* object = find_object(expectation.of, path + ".of");
-  if (object == nullptr) return;
-  const bool body = object->kind == SceneObject::Kind::kBody;
-  if (subject == Subject::kBody) {
-    if (!body) fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " is not a body");
-  } else if (object->kind == SceneObject::Kind::kField || (body && subject != Subject::kPoint)) {
-    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " has no points");
-  } else if (subject == Subject::kRope && object->kind != SceneObject::Kind::kRope) {
-    fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + " is not a rope");
-  } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
-    fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
-  } else if (expectation.point.has_value() && object->points > 0) {
-    const bool segment = expectation.quantity == SceneExpectation::Quantity::kTension;
-    check_point(*expectation.point, object->points - (segment ? 1 : 0), path + ".point");
-  }
+  if (object != nullptr) check_subject(expectation, subject, *object, path);
 }
 
 void Checker::check_pairs() {
@@ -433,25 +496,28 @@ void Checker::check_points() {
 }
 
 void Checker::count_points(const SceneObjects& objects, const std::string& prefix) {
-  const auto count = [&](const SceneTag& tag, std::size_t points, const std::string& path) {
+  const auto count = [&](const SceneArray& array, std::size_t points, const std::string& path) {
     if (total_ > kMostScenePoints) return;
-    total_ += saturated_product(tag.array.count(), std::max<std::size_t>(points, 1));
+    total_ += saturated_product(array.count(), std::max<std::size_t>(points, 1));
     if (total_ <= kMostScenePoints) return;
     fail(path, ErrorCode::kLimitExceeded,
          "with this object the scene has more than " + std::to_string(kMostScenePoints) + " points");
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    count(objects.bodies[i].tag, objects.bodies[i].parts.size(), indexed(prefix + "bodies", i));
+    count(objects.bodies[i].tag.array, objects.bodies[i].parts.size(), indexed(prefix + "bodies", i));
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
-    count(objects.ropes[i].tag, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));
+    count(objects.ropes[i].tag.array, point_count(objects.ropes[i]), indexed(prefix + "ropes", i));
   }
   for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
-    count(objects.cloths[i].tag, point_count(objects.cloths[i]), indexed(prefix + "cloths", i));
+    count(objects.cloths[i].tag.array, point_count(objects.cloths[i]), indexed(prefix + "cloths", i));
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     const SceneParticles& particles = objects.particles[i];
-    count(particles.tag, point_count(particles), indexed(prefix + "particles", i));
+    count(particles.tag.array, point_count(particles), indexed(prefix + "particles", i));
+  }
+  for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
+    count(objects.hooks[i].array, 1, indexed(prefix + "hooks", i));
   }
 }
 
@@ -463,6 +529,16 @@ void Checker::check_total() {
 }
 
 }  // namespace
+
+std::optional<CopyName> take_copy_name(const std::string& name) {
+  const std::size_t bracket = name.rfind('[');
+  if (bracket == std::string::npos || !name.ends_with(']')) return std::nullopt;
+  std::size_t copy = 0;
+  const char* end = name.data() + name.size() - 1;
+  const auto parsed = std::from_chars(name.data() + bracket + 1, end, copy);
+  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  return CopyName{name.substr(0, bracket), copy};
+}
 
 std::size_t point_count(const SceneRope& rope) {
   return rope.desc.points.empty() ? static_cast<std::size_t>(std::max(rope.desc.masses, 0))

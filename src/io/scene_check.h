@@ -11,6 +11,13 @@ namespace hooke::io {
 void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
                  std::vector<JsonError>& errors);
 
+/// "ball[3]" taken apart: the name of an array and the number of a copy. Nothing for another name.
+struct CopyName {
+  std::string array = {};
+  std::size_t copy = 0;
+};
+[[nodiscard]] std::optional<CopyName> take_copy_name(const std::string& name);
+
 /// Number of points of one instance; 0 for the cloth of a mesh, which is known once the mesh is read.
 [[nodiscard]] std::size_t point_count(const SceneRope& rope);
 [[nodiscard]] std::size_t point_count(const SceneCloth& cloth);

@@ -87,7 +87,23 @@ double extreme_height(const World& world, const SceneObject& object, bool highes
   return extreme;
 }
 
+double hook_figure(const World& world, const SceneObject& object, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kForce:
+      return length(vector_cast<double>(world.hook_force(object.hook).force));
+    case Quantity::kTorque:
+      return length(vector_cast<double>(world.hook_force(object.hook).torque));
+    case Quantity::kGap:
+      return static_cast<double>(world.hook_gap(object.hook));
+    case Quantity::kBroken:
+      return object.broken ? 1 : 0;
+    default:
+      return static_cast<double>(world.hook_value(object.hook));
+  }
+}
+
 double object_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+  if (object.kind == SceneObject::Kind::kHook) return hook_figure(world, object, wanted.quantity);
   switch (wanted.quantity) {
     case Quantity::kLowest:
     case Quantity::kHighest:
@@ -126,6 +142,11 @@ double world_figure(const SimulationData& data, Quantity quantity) {
           std::count_if(data.objects.begin(), data.objects.end(), [&](const SceneObject& object) {
             return object.kind == SceneObject::Kind::kBody && data.world.asleep(object.body);
           }));
+    case Quantity::kGap:
+      return measured.largest_gap;
+    case Quantity::kBroken:
+      return static_cast<double>(std::count_if(data.objects.begin(), data.objects.end(),
+                                               [](const SceneObject& object) { return object.broken; }));
     default:
       return kNothing;
   }

@@ -16,8 +16,9 @@ std::string help_with_unit(const Field& field) {
 JsonNode default_of(const Kind& kind, const Field& field) {
   const bool shown = field.use == Field::Use::kOptional && field.write != nullptr;
   JsonNode value = shown ? field.write(kind.defaults()) : JsonNode{};
-  const bool empty =
-      value.kind == JsonNode::Kind::kObject || (value.kind == JsonNode::Kind::kString && value.text.empty());
+  const bool unsayable = value.text == "rigid" && !field.rule.rigid;  // a bound that is not there
+  const bool empty = value.kind == JsonNode::Kind::kObject || unsayable ||
+                     (value.kind == JsonNode::Kind::kString && value.text.empty());
   return empty ? JsonNode{} : value;
 }
 

@@ -23,19 +23,34 @@ void record(SimulationData& data, std::size_t event, const Result<void>& done) {
   data.errors.push_back(io::scene_error(data.scene, io::indexed("timeline", event), done.error()));
 }
 
-Result<void> remove_object(SimulationData& data, const std::string& name) {
-  const auto found = data.row_of.find(name);
-  if (found == data.row_of.end()) {
+/// The object of this name, or all copies of an array.
+Result<void> remove_objects(SimulationData& data, const std::string& name) {
+  const auto named = [&](const SceneObject& object) {
+    const std::optional<io::CopyName> copy = io::take_copy_name(object.name);
+    return object.name == name || (copy && copy->array == name);
+  };
+  std::vector<BodyId> bodies = {};
+  for (const SceneObject& object : data.objects) {
+    if (!named(object)) continue;
+    if (object.body) bodies.push_back(object.body);
+    // Ids of other kinds are null, and removing nothing does nothing.
+    data.world.remove(object.body);
+    data.world.remove(object.rope);
+    data.world.remove(object.cloth);
+    data.world.remove(object.particles);
+    data.world.remove(object.field);
+    data.world.remove(object.hook);
+  }
+  const auto gone = [&](BodyId body) {
+    return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+  };
+  const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
+    // The hooks of a body go with it.
+    return named(object) || gone(object.hooked[0]) || gone(object.hooked[1]);
+  });
+  if (removed == 0) {
     return Error{ErrorCode::kStaleId, "", "there is no object " + io::in_quotes(name) + " any more"};
   }
-  const SceneObject& object = data.objects[found->second];
-  // Ids of other kinds are null, and removing nothing does nothing.
-  data.world.remove(object.body);
-  data.world.remove(object.rope);
-  data.world.remove(object.cloth);
-  data.world.remove(object.particles);
-  data.world.remove(object.field);
-  data.objects.erase(data.objects.begin() + static_cast<std::ptrdiff_t>(found->second));
   io::index_objects(data);
   std::erase_if(data.forces,
                 [&](const ActiveForce& force) { return data.scene.timeline[force.event].object == name; });
@@ -75,7 +90,7 @@ Result<void> apply_event(SimulationData& data, std::size_t index) {
       io::build_objects(event.add, io::indexed("timeline", index) + ".add.", data, data.errors);
       return {};
     case SceneEvent::Kind::kRemove:
-      return remove_object(data, event.object);
+      return remove_objects(data, event.object);
     case SceneEvent::Kind::kForce:
       data.forces.push_back({.event = index, .steps_left = event.steps});
       return {};
@@ -138,6 +153,14 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
   return {.value = std::move(data)};
 }
 
+void note_broken_hooks(SimulationData& data) {
+  const std::vector<HookId>& broken = data.world.broken_hooks();
+  if (broken.empty()) return;
+  for (SceneObject& object : data.objects) {
+    if (std::find(broken.begin(), broken.end(), object.hook) != broken.end()) object.broken = true;
+  }
+}
+
 std::string verdict_line(const Scene& scene, const SceneVerdict& verdict) {
   const std::string path = io::indexed("expect", verdict.index);
   const Error error = io::error_at(scene.source.get(), path, ErrorCode::kOutOfRange, verdict.text);
@@ -165,6 +188,7 @@ Loaded<Simulation> Simulation::create(Scene scene) {
 StepReport Simulation::step() {
   apply_due_events(*data_);
   const StepReport report = data_->world.step(data_->scene.dt);
+  note_broken_hooks(*data_);
   data_->contacts = report.contacts;
   if (report.moved) evaluate_due(*data_);
   return report;

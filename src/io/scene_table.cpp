@@ -61,6 +61,7 @@ std::vector<Field> object_rows() {
       field<Prefix..., &SceneObjects::cloths>("cloths", "", kAny, "Cloths, flags, soft shells."),
       field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
       field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle."),
+      field<Prefix..., &SceneObjects::hooks>("hooks", "", kAny, "What holds bodies together."),
   };
 }
 
@@ -250,7 +251,7 @@ const Kind& kind_of<SceneEvent>() {
                  choice<EventKind::kAdd, &SceneEvent::kind>(
                      field<&SceneEvent::add>("add", "", kAny, "New objects.")),
                  choice<EventKind::kRemove, &SceneEvent::kind>(field<&SceneEvent::object>(
-                     "remove", "", kNotEmpty, "Name of an object that disappears.")),
+                     "remove", "", kNotEmpty, "Name of an object that disappears, or of an array.")),
                  choice<EventKind::kMotion, &SceneEvent::kind>(
                      group("motion", motion_event_kind, "Holds and moves a point.")),
                  choice<EventKind::kUnpin, &SceneEvent::kind>(
@@ -347,6 +348,7 @@ std::span<const Kind* const> all_kinds() {
                                      &kind_of<WindDesc>(),  &kind_of<SceneAccuracy>(),
                                      &kind_of<SceneMesh>(), &kind_of<SceneMaterial>()};
     list.insert(list.end(), body_kinds().begin(), body_kinds().end());
+    list.insert(list.end(), hook_kinds().begin(), hook_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());
     const std::initializer_list<const Kind*> last = {
         &kind_of<SceneEvent>(),  &kind_of<SceneObjects>(),  &motion_event_kind(),
@@ -407,7 +409,13 @@ std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
                                        {"momentum", static_cast<int>(Quantity::kMomentum)},
                                        {"penetration", static_cast<int>(Quantity::kPenetration)},
                                        {"contacts", static_cast<int>(Quantity::kContacts)},
-                                       {"asleep", static_cast<int>(Quantity::kAsleep)}};
+                                       {"asleep", static_cast<int>(Quantity::kAsleep)},
+                                       {"force", static_cast<int>(Quantity::kForce)},
+                                       {"torque", static_cast<int>(Quantity::kTorque)},
+                                       {"angle", static_cast<int>(Quantity::kAngle)},
+                                       {"way", static_cast<int>(Quantity::kWay)},
+                                       {"gap", static_cast<int>(Quantity::kGap)},
+                                       {"broken", static_cast<int>(Quantity::kBroken)}};
   return names;
 }
 

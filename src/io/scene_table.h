@@ -6,8 +6,8 @@
 
 /// \file
 /// The tables of the scene format: one Kind for each JSON object. scene_table.cpp has the scene, world,
-/// timeline, camera and expectations; scene_table_bodies.cpp has bodies, scene_table_objects.cpp what else a
-/// world holds.
+/// timeline, camera and expectations; scene_table_bodies.cpp has bodies, scene_table_hooks.cpp what joins
+/// them, scene_table_objects.cpp what else a world holds.
 
 namespace hooke::io {
 
@@ -40,6 +40,8 @@ struct Codec<ScenePin> {
 [[nodiscard]] std::span<const Kind* const> all_kinds();
 /// Those of scene_table_bodies.cpp.
 [[nodiscard]] std::span<const Kind* const> body_kinds();
+/// Those of scene_table_hooks.cpp.
+[[nodiscard]] std::span<const Kind* const> hook_kinds();
 /// Those of scene_table_objects.cpp.
 [[nodiscard]] std::span<const Kind* const> object_kinds();
 
@@ -61,6 +63,16 @@ template <>
 const Kind& kind_of<ScenePart>();
 template <>
 const Kind& kind_of<ScenePair>();
+template <>
+const Kind& kind_of<SceneHook>();
+template <>
+const Kind& kind_of<HookLimits>();
+template <>
+const Kind& kind_of<HookSpring>();
+template <>
+const Kind& kind_of<HookMotor>();
+template <>
+const Kind& kind_of<HookFreedom>();
 template <>
 const Kind& kind_of<SceneRope>();
 template <>
@@ -102,6 +114,8 @@ template <>
 std::span<const EnumName> names_of<UpAxis>();
 template <>
 std::span<const EnumName> names_of<BodyKind>();
+template <>
+std::span<const EnumName> names_of<HookKind>();
 template <>
 std::span<const EnumName> names_of<RopeDesc::StiffnessOf>();
 template <>

@@ -80,13 +80,21 @@ double solve_row(const JointRow& row, const Ends& ends, double lambda, double h,
   return std::clamp(lambda + change, row.low, row.high) - lambda;
 }
 
-/// Calls visit(i) for every hook of the net, color after color.
+bool is_awake(const Hook& hook, const state::Bodies& bodies) {
+  const auto awake = [&](std::uint32_t body) { return is_dynamic(bodies, body) && bodies.asleep[body] == 0; };
+  return awake(hook.a.body) || awake(hook.b.body);
+}
+
+/// Calls visit(i) for every hook of the net that holds a body awake, color after color.
 template <class Visit>
-void for_each_joint(parallel::ThreadPool& pool, const JointNet& net, Visit&& visit) {
+void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
+                    const JointNet& net, Visit&& visit) {
   for (std::size_t color = 0; color + 1 < net.color_begin.size(); ++color) {
     const int first = net.color_begin[color];
     parallel::for_ranges(pool, net.color_begin[color + 1] - first, kGrain, [&](Range range) {
-      for (int i = first + range.begin; i < first + range.end; ++i) visit(i);
+      for (int i = first + range.begin; i < first + range.end; ++i) {
+        if (is_awake(hooks[net.hooks[i]], bodies)) visit(i);
+      }
     });
   }
 }
@@ -145,13 +153,15 @@ void prepare_net(JointNet& net) {
 void solve_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
                JointNet& net) {
   const LockSoftness soft = lock_softness(h);
-  for_each_joint(pool, net, [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
-  for_each_joint(pool, net, [&](int i) { solve_joint(i, h, soft, hooks[net.hooks[i]], bodies, net); });
+  for_each_joint(pool, hooks, bodies, net,
+                 [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
+  for_each_joint(pool, hooks, bodies, net,
+                 [&](int i) { solve_joint(i, h, soft, hooks[net.hooks[i]], bodies, net); });
 }
 
 void relax_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
                JointNet& net) {
-  for_each_joint(pool, net, [&](int i) {
+  for_each_joint(pool, hooks, bodies, net, [&](int i) {
     Hook& hook = hooks[net.hooks[i]];
     solve_joint(i, h, {}, hook, bodies, net);
     std::array<double, Hook::kMaxRows> lambda = {};

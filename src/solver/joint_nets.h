@@ -49,7 +49,7 @@ void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<st
 /// Start of a step: bodies carry nothing over.
 void prepare_net(JointNet& net);
 
-/// The rows of a substep of length h [s], with their errors removed.
+/// The rows of a substep of length h [s], with their errors removed. Hooks between sleepers are left alone.
 void solve_net(parallel::ThreadPool& pool, double h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
                JointNet& net);
 

@@ -277,6 +277,20 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
   return count;
 }
 
+double joint_gap(const Hook& hook, const JointBody& a, const JointBody& b) {
+  const Freedoms f = find_freedoms(hook, a, b);
+  DVec3 gap;
+  for (int i = 0; i < 3; ++i) {
+    const HookFreedom& freedom = hook.freedom[i];
+    const auto target = static_cast<double>(freedom.spring.target);
+    const double nearest = freedom.locked ? target
+                                          : std::clamp(f.value[i], static_cast<double>(freedom.limits.lower),
+                                                       static_cast<double>(freedom.limits.upper));
+    gap += (f.value[i] - nearest) * f.axis[i];
+  }
+  return length(gap);
+}
+
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, Hook& hook) {
   DVec3 linear;
   DVec3 angular;

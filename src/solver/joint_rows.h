@@ -77,6 +77,9 @@ struct JointRow {
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
+/// How far b's anchor is from the nearest place that locks and limits leave to it [m].
+[[nodiscard]] double joint_gap(const state::Hook& hook, const JointBody& a, const JointBody& b);
+
 /// Notes the impulses of a substep in the hook.
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, state::Hook& hook);
 

@@ -33,6 +33,7 @@ struct Hook {
   Real break_force = kRigid;
   Real break_torque = kRigid;
   bool collide = false;
+  Real rest_distance = Real(0);  ///< kDistance: of the anchors when they were hooked [m].
 
   // Written by the solver.
   bool broken = false;

@@ -59,6 +59,11 @@ void wake_ends(const Hook& hook, state::Bodies& bodies) {
   }
 }
 
+double gap_of(const Hook& hook, const state::Bodies& bodies) {
+  return solver::joint_gap(hook, solver::joint_body(bodies, hook.a.body),
+                           solver::joint_body(bodies, hook.b.body));
+}
+
 void hash_hooks(const state::Tables& t, base::StateHash& hash) {
   for (const Hook& hook : t.hooks) {
     hash.add(hook.a.body);

@@ -1,5 +1,6 @@
 #include "collision/particle_contacts.h"
 #include "elements/dihedral.h"
+#include "world/hooks.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -150,6 +151,8 @@ Measurement World::measure() const {
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
+  for (const state::Hook& hook : t.hooks)
+    m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t.bodies));
   m.largest_penetration = std::max(collision::largest_penetration(t), deepest_of_bodies(t));
   return m;
 }

@@ -3,6 +3,7 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "solver/joint_rows.h"
 #include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
@@ -44,14 +45,17 @@ Error no_such_freedom(const char* what) {
   return {ErrorCode::kUnsupported, what, "does not exist on a hook of this kind"};
 }
 
-/// Changes a hook and wakes what it holds. Its rows may be others than before.
+/// Changes a hook and wakes what it holds. Its rows may be others than before; their impulses then start
+/// anew.
 template <class Change>
 Result<void> change_hook(Tables& t, HookId id, Change&& change) {
   const std::uint32_t row = t.hook_slots.find(id);
   if (row == t.hook_slots.kNone) return world::stale("hook");
   Hook& hook = t.hooks[row];
+  const int rows_before = solver::count_joint_rows(hook);
   const Result<void> done = change(hook);
   if (!done) return done.error();
+  if (solver::count_joint_rows(hook) != rows_before) hook.row_impulse = {};
   world::wake_ends(hook, t.bodies);
   ++t.hook_revision;
   return {};
@@ -90,6 +94,23 @@ Real World::hook_value(HookId id) const {
   return static_cast<Real>(hook->value[main_freedom(hook->kind)]);
 }
 
+std::array<DVec3, 2> World::hook_anchors(HookId id) const {
+  const Tables& t = data_->tables;
+  const Hook* hook = find_hook(t, id);
+  if (hook == nullptr) return {};
+  const auto place = [&](const state::HookPlace& end) {
+    const solver::JointBody body = solver::joint_body(t.bodies, end.body);
+    return body.center + rotate(body.rotation, end.anchor);
+  };
+  return {place(hook->a), place(hook->b)};
+}
+
+Real World::hook_gap(HookId id) const {
+  const Tables& t = data_->tables;
+  const Hook* hook = find_hook(t, id);
+  return hook == nullptr ? Real(0) : static_cast<Real>(world::gap_of(*hook, t.bodies));
+}
+
 const std::vector<HookId>& World::broken_hooks() const {
   return data_->broken_hooks;
 }
@@ -105,7 +126,12 @@ Result<void> World::set_motor(HookId id, const HookMotor& motor) {
     }
     const int i = hook.kind == HookKind::kWheel ? 5 : main_freedom(hook.kind);
     if (i < 0) return no_such_freedom("motor");
-    hook.freedom[i].motor = motor;
+    HookFreedom& freedom = hook.freedom[i];
+    freedom.motor = motor;
+    if (hook.kind == HookKind::kDistance && !build::is_closed(freedom.limits)) {
+      freedom.locked = false;  // a rod that is driven is none
+      freedom = build::line_freedom(freedom, Real(0));
+    }
     return {};
   });
 }
@@ -119,7 +145,14 @@ Result<void> World::set_spring(HookId id, const HookSpring& spring) {
       return {};
     }
     if (main_freedom(hook.kind) < 0) return no_such_freedom("spring");
-    hook.freedom[main_freedom(hook.kind)].spring = spring;
+    HookFreedom& freedom = hook.freedom[main_freedom(hook.kind)];
+    if (build::is_closed(freedom.limits)) return {};  // stays where its limits hold it
+    if (hook.kind == HookKind::kDistance) {
+      freedom = build::line_freedom({.limits = freedom.limits, .spring = spring, .motor = freedom.motor},
+                                    hook.rest_distance);
+    } else {
+      freedom.spring = spring;
+    }
     return {};
   });
 }

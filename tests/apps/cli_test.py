@@ -110,7 +110,7 @@ class Run(Program):
         self.assertEqual([int(row["step"]) for row in rows], list(range(1, 61)))
         self.assertEqual(list(rows[0]), [
             "step", "time", "kinetic", "potential", "elastic", "momentum_x", "momentum_y", "momentum_z",
-            "largest_stretch", "largest_penetration", "contacts", "state_hash"])
+            "largest_stretch", "largest_penetration", "largest_gap", "contacts", "state_hash"])
         self.assertEqual(rows[-1]["state_hash"], report["state_hash"])
         self.assertEqual(float(rows[-1]["potential"]), report["energy"]["end"]["potential"])
         self.assertAlmostEqual(float(rows[29]["momentum_y"]), -9.81 / 2, places=2)

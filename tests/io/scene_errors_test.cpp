@@ -189,7 +189,37 @@ const BadScene kBadScenes[] = {
      {"1:40: expect[0].quantity: 'weight' is not one of 'x', 'y', 'z', 'height', 'speed', "
       "'angular_speed', 'tilt', 'extension', 'largest_stretch', 'mean_stretch', 'tension', 'lowest', "
       "'highest', 'total_energy', 'kinetic_energy', "
-      "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts', 'asleep'"}},
+      "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts', 'asleep', 'force', "
+      "'torque', 'angle', 'way', 'gap', 'broken'"}},
+    {R"({"version": 1, "hooks": [{"b": "x"}]})", {"1:26: hooks[0]: needs 'anchor'"}},
+    {R"({"version": 1, "hooks": [{"b": "ball", "anchor": [0, 0, 0]}]})",
+     {"1:32: hooks[0].b: there is no object 'ball'"}},
+    {R"({"version": 1, "ropes": [{"name": "rope"}], "hooks": [{"b": "rope", "anchor": [0, 0, 0]}]})",
+     {"1:61: hooks[0].b: 'rope' is not a body"}},
+    {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}],)"
+     R"( "hooks": [{"kind": "joint", "b": "bal", "anchor": [0, 0, 0]}]})",
+     {"1:90: hooks[0].kind: 'joint' is not one of 'ball', 'hinge', 'slider', 'fixed', 'distance', 'wheel', "
+      "'six_degrees'"}},
+    {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}],)"
+     R"( "hooks": [{"a": "bal", "b": "ball", "anchor": [0, 0, 0]}]})",
+     {"1:87: hooks[0].a: there is no object 'bal', did you mean 'ball'?"}},
+    {R"({"version": 1, "hooks": [{"b": "x", "anchor": [0, 0, 0], "cone": -1}]})",
+     {"1:66: hooks[0].cone: -1 is out of range, must be greater than 0 and at most 3.15"}},
+    {R"({"version": 1, "hooks": [{"b": "x", "anchor": [0, 0, 0], "spring": {"stiffness": -2}}]})",
+     {"1:82: hooks[0].spring.stiffness: -2 is out of range, must be at least 0"}},
+    {R"({"version": 1, "hooks": [{"b": "x", "anchor": [0, 0, 0], "break_force": 0}]})",
+     {R"(1:73: hooks[0].break_force: 0 is out of range, must be greater than 0 or "rigid")"}},
+    {R"({"version": 1, "hooks": [{"b": "x", "anchor": [0, 0, 0], "freedoms": [{}]}]})",
+     {"1:70: hooks[0].freedoms: has 1 element, must have 6"}},
+    {R"({"version": 1, "bodies": [{"name": "link", "shape": {"sphere": {}}, "array": {"grid": [1, 3, 1]}}],)"
+     R"( "hooks": [{"b": "link", "anchor": [0, 0, 0]}]})",
+     {"1:117: hooks[0].b: 'link' is an array, name one of its objects as 'link[0]'"}},
+    {R"({"version": 1, "bodies": [{"name": "link", "shape": {"sphere": {}}, "array": {"grid": [1, 3, 1]}}],)"
+     R"( "hooks": [{"a": "link", "b": "link[1]", "anchor": [0, 0, 0], "array": {"grid": [1, 3, 1]}}]})",
+     {"1:130: hooks[0].b: 'link[1]' is one of 3 objects, the hooks need 4"}},
+    {R"({"version": 1, "ropes": [{"name": "rope"}],)"
+     R"( "expect": [{"quantity": "force", "of": "rope", "op": "<", "value": 1}]})",
+     {"1:84: expect[0].of: 'rope' is not a hook"}},
     {"\xEF\xBB\xBF{\"version\": 1, \"title\": \"\xC3\xA9\xC3\xA9\", \"x\": 1}", {"1:31: x: unknown key"}},
 };
 

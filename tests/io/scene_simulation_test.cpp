@@ -127,6 +127,103 @@ TEST_SUITE("io/scene_simulation") {
           doctest::Approx(1000));
   }
 
+  TEST_CASE("what the world says against a hook stands at its place in the file") {
+    const auto complaint = [](const std::string& hook) {
+      auto scene = hooke::parse_scene(
+          R"({"version": 1, "bodies": [
+  {"name": "ball", "kind": "dynamic", "shape": {"sphere": {}}}, {"name": "wall", "shape": {"box": {}}}],
+  "hooks": [{)" +
+              hook + R"(, "anchor": [0, 0, 0]}]})",
+          "demo.json");
+      REQUIRE(scene);
+      const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+      REQUIRE(simulation.errors.size() == 1);
+      return hooke::to_line(simulation.errors.front());
+    };
+    CHECK(complaint(R"("b": "wall")") ==
+          "demo.json:3:13: hooks[0]: needs a dynamic body at one end at least");
+    CHECK(complaint(R"("a": "ball", "b": "ball")") ==
+          "demo.json:3:32: hooks[0].b: must be another body than `a`, or the world");
+    CHECK(complaint(R"("b": "ball", "axis": [0, 0, 0])") ==
+          "demo.json:3:35: hooks[0].axis: must not be zero");
+    CHECK(complaint(R"("b": "ball", "limits": {"lower": 1, "upper": 0})") ==
+          "demo.json:3:37: hooks[0].limits: must have lower not above upper");
+    CHECK(complaint(R"("b": "ball", "kind": "distance", "limits": {"upper": -1})") ==
+          "demo.json:3:57: hooks[0].limits: must allow some distance");
+  }
+
+  TEST_CASE("an array of hooks counts through arrays of bodies, from the copy that is named") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "bodies": [{"kind": "dynamic", "shape": {"box": {}}, "position": [9, 0, 0]},
+                 {"name": "link", "kind": "dynamic", "shape": {"sphere": {"radius": 0.1}},
+                  "array": {"grid": [1, 4, 1], "spacing": [1, -1, 1]}}],
+      "hooks": [{"name": "top", "b": "link[0]", "anchor": [0, 0.5, 0]},
+                {"name": "joint", "a": "link", "b": "link[1]", "anchor": [0, -0.5, 0],
+                 "array": {"grid": [1, 3, 1], "spacing": [1, -1, 1]}},
+                {"name": "spoke", "kind": "distance", "a": "bodies[0]", "b": "link[2]", "anchor": [9, 0, 0],
+                 "anchor_b": [0, -2, 0], "array": {"list": [[0, 0, 0], [0, -1, 0]]}}]
+    })");
+    const auto holds = [&](const char* hook, const char* a, const char* b) {
+      const hooke::SceneObject* object = simulation.find(hook);
+      REQUIRE(object != nullptr);
+      const hooke::BodyId body_a = *a == '\0' ? hooke::BodyId{} : simulation.find(a)->body;
+      CHECK(object->hooked == std::array{body_a, simulation.find(b)->body});
+      return simulation.world().hook_anchors(object->hook);
+    };
+    CHECK(holds("top", "", "link[0]")[0] == hooke::DVec3{0, 0.5, 0});
+    CHECK(holds("joint[0]", "link[0]", "link[1]")[1] == hooke::DVec3{0, -0.5, 0});
+    CHECK(holds("joint[2]", "link[2]", "link[3]")[1] == hooke::DVec3{0, -2.5, 0});
+    CHECK(holds("spoke[1]", "bodies[0]", "link[3]")[1] == hooke::DVec3{0, -3, 0});
+  }
+
+  TEST_CASE("an array is removed as a whole, and its hooks with it") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "bodies": [{"name": "hub", "kind": "dynamic", "shape": {"sphere": {}}},
+                 {"name": "leaf", "kind": "dynamic", "shape": {"sphere": {}}, "array": {"grid": [3, 1, 1]}}],
+      "hooks": [{"a": "hub", "b": "leaf", "anchor": [0, 0, 0], "array": {"grid": [3, 1, 1]}}],
+      "timeline": [{"at_step": 1, "remove": "leaf[1]"}, {"at_step": 2, "remove": "leaf"}]
+    })");
+    REQUIRE(simulation.objects().size() == 7);
+    step(simulation, 2);
+    CHECK(simulation.objects().size() == 5);
+    step(simulation, 1);
+    REQUIRE(simulation.objects().size() == 1);
+    CHECK(simulation.objects()[0].name == "hub");
+    CHECK(simulation.errors().empty());
+  }
+
+  TEST_CASE("hooks are measured, break, and go with their bodies") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1, "seconds": 2,
+      "bodies": [{"name": "heavy", "kind": "dynamic", "shape": {"sphere": {}}, "mass": 10},
+                 {"name": "light", "kind": "dynamic", "shape": {"sphere": {}}, "mass": 1, "position": [3, 0, 0]},
+                 {"name": "arm", "kind": "dynamic", "shape": {"sphere": {}}, "mass": 1, "position": [6, 0, 0]},
+                 {"name": "bead", "kind": "dynamic", "shape": {"sphere": {}}, "position": [9, 0, 0]}],
+      "hooks": [{"name": "weak", "b": "heavy", "anchor": [0, 1, 0], "break_force": 98},
+                {"name": "strong", "b": "light", "anchor": [3, 1, 0], "break_force": 98},
+                {"name": "beam", "kind": "fixed", "b": "arm", "anchor": [5, 0, 0]},
+                {"name": "slider", "kind": "slider", "b": "bead", "anchor": [9, 0, 0], "limits": {"lower": -0.25}}],
+      "timeline": [{"at_step": 100, "remove": "light"}],
+      "expect": [{"quantity": "broken", "of": "weak", "op": "==", "value": 1, "at_step": 1},
+                 {"quantity": "broken", "op": "==", "value": 1, "at_step": 60},
+                 {"quantity": "broken", "of": "strong", "op": "==", "value": 0, "at_step": 60},
+                 {"quantity": "force", "of": "strong", "op": "within", "value": 9.81, "tolerance": 1e-4,
+                  "at_step": 60},
+                 {"quantity": "torque", "of": "beam", "op": "within", "value": 9.81, "tolerance": 1e-2,
+                  "at_step": 60},
+                 {"quantity": "way", "of": "slider", "op": "==", "value": -0.25, "tolerance": 1e-3, "at_step": 60},
+                 {"quantity": "gap", "op": "<", "value": 1e-3, "at_step": 60},
+                 {"quantity": "y", "of": "heavy", "op": "<", "value": -4, "at_step": 60}]
+    })");
+    simulation.run();
+    INFO(simulation.report());
+    CHECK(simulation.passed());
+    CHECK(simulation.find("strong") == nullptr);
+    CHECK(simulation.find("beam") != nullptr);
+  }
+
   TEST_CASE("parts have looks of their own, or that of the body") {
     const hooke::Simulation simulation = simulate(R"({
       "version": 1,

@@ -110,6 +110,16 @@ constexpr const char* kEverything = R"({
      "direction": "predicted", "damping": "isotropic", "air_friction": 0.1, "drag_coefficient": 0.4, "pins": [1]}],
   "fields": [{"name": "up", "uniform": {"acceleration": [0, 1, 0]}},
              {"inverse_square": {"center": [0, 1, 0], "strength": 2}}, {"magnetic": {"flux_density": [0, 0, 1]}}],
+  "hooks": [
+    {"name": "hook", "kind": "wheel", "a": "ground", "b": "top[0]", "anchor": [1, 2, 3], "axis": [0, 0, 1],
+     "second_axis": [1, 0, 0], "limits": {"lower": -0.5}, "cone": 1.5, "spring": {"stiffness": 5, "damping": 2,
+     "target": 0.5}, "motor": {"speed": 3, "max_force": 4}, "break_force": 9, "break_torque": 8, "collide": true,
+     "steering": {"locked": false, "limits": {"lower": -1, "upper": 1}, "motor": {"max_force": 0.5}}},
+    {"kind": "distance", "b": "top", "anchor": [0, 0, 0], "anchor_b": [0, 1, 0], "limits": {"upper": 2},
+     "array": {"grid": [2, 1, 1], "spacing": [1, 2, 1]}},
+    {"kind": "six_degrees", "b": "top[1]", "anchor": [0, 0, 0], "freedoms": [{"locked": true}, {"locked": false},
+     {"locked": false, "limits": {"upper": 1}}, {"locked": true, "spring": {"target": 0.25}}, {"locked": false},
+     {"locked": false, "spring": {"stiffness": 2}}]}],
   "timeline": [
     {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},
     {"at_step": 2, "remove": "late"},
@@ -128,6 +138,7 @@ constexpr const char* kEverything = R"({
     {"quantity": "tension", "of": "rope", "op": "within", "value": 10, "tolerance": 0.1, "at_step": 5},
     {"quantity": "tilt", "of": "top[0]", "op": "<", "value": 5},
     {"quantity": "angular_speed", "of": "top[1]", "op": ">", "value": 1}, {"quantity": "asleep", "op": ">=", "value": 1},
+    {"quantity": "force", "of": "hook", "op": "<", "value": 2}, {"quantity": "gap", "op": "<", "value": 1},
     {"quantity": "total_energy", "op": "<=", "value": 12}]
 })";
 

@@ -116,6 +116,23 @@ TEST_SUITE("solver/joint_nets") {
     CHECK(one.rig.t.bodies.center == three.rig.t.bodies.center);
   }
 
+  TEST_CASE("what sleeps is left alone, and its hooks keep their force") {
+    HangingNet net(5, 0);
+    net.rig.run(2);
+    const Vec3 force = net.rig.t.hooks[0].force;
+    REQUIRE(length(force) > Real(9));
+    net.rig.rows.resize(5);  // those awake: the row that is held
+    for (std::size_t i = 5; i < net.ball.size(); ++i) {
+      net.rig.t.bodies.asleep[i] = 1;
+      net.rig.t.bodies.motion[i].v = {};
+    }
+    const std::vector<DVec3> centers = net.rig.t.bodies.center;
+    net.rig.run(0.5);
+    for (std::size_t i = 5; i < net.ball.size(); ++i) CHECK(net.rig.velocity(net.ball[i]) == Vec3{});
+    CHECK(net.rig.t.bodies.center == centers);
+    CHECK(length(net.rig.t.hooks[0].force - force) < Real(1e-2) * length(force));
+  }
+
   TEST_CASE("a body with a hundred hooks is solved") {
     JointRig rig;
     rig.budget = 0;

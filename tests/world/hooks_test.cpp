@@ -58,6 +58,52 @@ TEST_SUITE("world/hooks") {
     CHECK(world.remove(kept));
   }
 
+  TEST_CASE("a spring that is set acts as one that was there from the start") {
+    // A rod of 1 m becomes a spring: m g / k = 0.0981 m longer at rest, from 1 m or from where it is set to.
+    const auto hanging_at = [](const HookSpring& spring, const HookLimits& limits) {
+      World world = World::create({.sleeping = false}).value();
+      const BodyId ball = add_ball(world, {0, -1, 0});
+      const HookId hook =
+          world
+              .add_hook(
+                  {.kind = HookKind::kDistance, .b = {ball}, .anchor_b = DVec3{0, -1, 0}, .limits = limits})
+              .value();
+      REQUIRE(world.set_spring(hook, spring));
+      run(world, 5);
+      CHECK(d(world.hook_value(hook)) == doctest::Approx(-world.center_of_mass(ball).y).epsilon(1e-5));
+      CHECK(d(world.hook_gap(hook)) < 1e-5);
+      return world.center_of_mass(ball).y;
+    };
+    const HookSpring spring = {.stiffness = Real(200), .damping = Real(20)};
+    HookSpring longer = spring;
+    longer.target = Real(0.5);
+    CHECK(hanging_at(spring, {}) == doctest::Approx(-1 - 2 * kGravity / 200).epsilon(1e-4));
+    CHECK(hanging_at(longer, {}) == doctest::Approx(-1.5 - 2 * kGravity / 200).epsilon(1e-4));
+    CHECK(hanging_at(spring, {.upper = Real(1.05)}) == doctest::Approx(-1.05).epsilon(1e-3));
+    CHECK(hanging_at(longer, {.lower = Real(1), .upper = Real(1)}) == doctest::Approx(-1).epsilon(1e-4));
+    // Nothing said, nothing but the rod is left.
+    CHECK(hanging_at({}, {}) == doctest::Approx(-1).epsilon(1e-4));
+  }
+
+  TEST_CASE("the gap of a hook is what its ends are off") {
+    World world = World::create().value();
+    const BodyId ball = add_ball(world, {1, 0, 0});
+    const HookId rope = world
+                            .add_hook({.kind = HookKind::kDistance,
+                                       .b = {ball},
+                                       .anchor_b = DVec3{1, 0, 0},
+                                       .limits = {.upper = Real(2)}})
+                            .value();
+    const HookId slider =
+        world.add_hook({.kind = HookKind::kSlider, .b = {ball}, .axis = {Real(1), Real(0), Real(0)}}).value();
+    CHECK(d(world.hook_gap(rope)) == doctest::Approx(0));
+    REQUIRE(world.set_pose(ball, {.position = {3, 0.5, 0}}));
+    CHECK(world.hook_anchors(rope)[1] == DVec3{3, 0.5, 0});
+    CHECK(d(world.hook_gap(rope)) == doctest::Approx(std::sqrt(9.25) - 2));
+    CHECK(d(world.hook_gap(slider)) == doctest::Approx(0.5));
+    CHECK(world.measure().largest_gap == doctest::Approx(std::sqrt(9.25) - 2));
+  }
+
   TEST_CASE("a driven wheel rolls with v = omega r") {
     World world = World::create().value();
     add_ground(world);
