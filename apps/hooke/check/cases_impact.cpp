@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hooke::check {
 
@@ -54,8 +53,9 @@ Bounces bounce_ball(const CheckSetting& setting, double height, double restituti
   return bounce(rig, ball, kBall, seconds);
 }
 
-double at(const std::vector<double>& list, std::size_t i) {
-  return i < list.size() ? list[i] : std::numeric_limits<double>::quiet_NaN();
+/// Zero for a bounce that did not come.
+double at(const std::vector<double>& tops, std::size_t i) {
+  return i < tops.size() ? tops[i] : 0;
 }
 
 /// Two balls on one line.
