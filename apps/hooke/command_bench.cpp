@@ -70,10 +70,7 @@ int command_bench(Arguments arguments) {
       ->check(CLI::Range(1, 64));
   app.add_option("--csv", options.csv, "Where the rows go; printed by default");
   app.add_flag("--peers", options.peers, "Also by Bullet and ODE, with one thread each; bodies only");
-  app.footer(
-      "Examples:\n"
-      "  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv\n"
-      "  hooke bench scenes/pile.json --peers --substeps 4");
+  app.footer("Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv");
   if (const auto code = parse(app, arguments)) return *code;
   if (options.peers) {
     return bench_peers({.scenes = options.scenes,

@@ -311,7 +311,8 @@ Rows rolling_test(const CheckSetting& setting) {
   rig.add(level_ground(0.16));  // sqrt(0.16 x 1) = 0.4 below the balls, sqrt(1 x 0.64) = 0.8 above
   std::vector<BodyId> balls;
   for (int i = 0; i < 25; ++i) {
-    BodyDesc ball = moving(Shape::sphere(real(radius)), {0.5 * (i % 5 - 2), radius, 0.5 * (i / 5 - 2)});
+    const int row = i / 5;
+    BodyDesc ball = moving(Shape::sphere(real(radius)), {0.5 * (i % 5 - 2), radius, 0.5 * (row - 2)});
     ball.mass = real(1);
     ball.contact.friction = real(1);
     balls.push_back(rig.add(ball));

@@ -69,9 +69,10 @@ Rows seam_rows(const CheckSetting& setting, const std::string& floor,
   turned.rotation = quaternion_about(Vec3{Real(0), Real(1), Real(0)}, real(0.3));
   const BodyDesc ball = moving(Shape::sphere(real(0.1)), {1, 0.1, 0.07});
   Rows rows;
-  for (const auto& [name, desc] : {std::pair{"box", box}, {"turned box", turned}, {"ball", ball}})
+  for (const auto& [name, desc] : {std::pair{"box", box}, {"turned box", turned}, {"ball", ball}}) {
     rows.push_back(absolute_row(std::string("change of velocity of a ") + name + " over " + floor, "m/s", 0,
                                 bump(setting, add_floor, desc), 1e-4));
+  }
   return rows;
 }
 
