@@ -1,3 +1,4 @@
+#include "hooke/bench_peers.h"
 #include "hooke/command_line.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
@@ -15,8 +16,10 @@ namespace {
 struct BenchOptions {
   std::vector<std::string> scenes;
   std::vector<int> workers = {1};
-  int steps = 300;
-  std::string csv = "-";
+  std::optional<int> steps = {};
+  std::optional<int> substeps = {};
+  std::string csv = {};
+  bool peers = false;
 };
 
 struct BenchRow {
@@ -25,6 +28,8 @@ struct BenchRow {
   std::uint64_t hash = 0;
   Measurement figures;
 };
+
+constexpr int kSteps = 300;
 
 /// The first tenth of the steps warms up and is not timed.
 BenchRow measure(Simulation& simulation, int steps) {
@@ -55,14 +60,29 @@ std::string line(const std::string& scene, int workers, const BenchRow& row) {
 int command_bench(Arguments arguments) {
   CLI::App app("Times scenes. A hash that depends on the number of workers fails.", "hooke bench");
   BenchOptions options;
-  app.add_option("SCENE", options.scenes, "Scene files")->required();
+  app.add_option("SCENE", options.scenes, "Scene files; with --peers rigid ones by default");
   app.add_option("--workers", options.workers, "Numbers of threads to try")
       ->delimiter(',')
       ->check(CLI::Range(1, 64));
-  app.add_option("--steps", options.steps, "Steps of each run")->check(CLI::Range(10, 1000000));
-  app.add_option("--csv", options.csv, "Where the table goes; printed by default");
+  app.add_option("--steps", options.steps, "Steps of each run; 300 by default, with --peers the scene's")
+      ->check(CLI::Range(10, 1000000));
+  app.add_option("--substeps", options.substeps, "Of Hooke; the scene's by default")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--csv", options.csv, "Where the rows go; printed by default");
+  app.add_flag("--peers", options.peers, "Also by Bullet and ODE, with one thread each; bodies only");
   app.footer("Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv");
   if (const auto code = parse(app, arguments)) return *code;
+  if (options.peers) {
+    return bench_peers({.scenes = options.scenes,
+                        .workers = options.workers,
+                        .steps = options.steps,
+                        .substeps = options.substeps,
+                        .csv = options.csv});
+  }
+  if (options.scenes.empty()) {
+    std::fputs("hooke bench: name a scene, or say --peers\n", stderr);
+    return kBadInput;
+  }
 
   std::string table =
       "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,mean_stretch,max_penetration,"
@@ -76,16 +96,17 @@ int command_bench(Arguments arguments) {
       std::optional<Scene> scene = read_scene(path);
       if (!scene) return kBadInput;
       scene->world.workers = workers;
+      scene->world.substeps = options.substeps.value_or(scene->world.substeps);
       std::optional<Simulation> simulation = build_simulation(std::move(*scene));
       if (!simulation) return kBadInput;
-      const BenchRow row = measure(*simulation, options.steps);
+      const BenchRow row = measure(*simulation, options.steps.value_or(kSteps));
       same = same && (!hash || *hash == row.hash);
       hash = row.hash;
       table += line(path, workers, row);
       progress.show(++done);
     }
   }
-  const auto written = write_file(options.csv, table);
+  const auto written = write_file(options.csv.empty() ? "-" : options.csv, table);
   if (!written) return report(written.error());
   if (!same) std::fputs("hooke bench: the state hash depends on the number of workers\n", stderr);
   return same ? kGood : kFailed;

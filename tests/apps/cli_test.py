@@ -309,6 +309,35 @@ class Render(Program):
         self.assertEqual(self.files(), [])
 
 
+class Bench(Program):
+    def test_without_a_scene_it_says_what_it_wants(self):
+        _, err = self.hooke("bench", code=2)
+        self.assert_one_line(err, "name a scene, or say --peers")
+
+    def test_peers_run_the_same_scene_or_it_says_how_to_get_them(self):
+        words = ("bench", "scenes/stack_10.json", "--peers", "--steps", "40", "--csv", "peers.csv")
+        if not (pathlib.Path(PROGRAM).parent / "hooke-peers").exists():
+            _, err = self.hooke(*words, code=3)
+            self.assert_one_line(err, "-DHOOKE_BENCH=ON")
+            return
+        self.hooke(*words)
+        rows = list(csv.DictReader((self.folder / "peers.csv").read_text().splitlines()))
+        self.assertEqual([row["engine"] for row in rows], ["hooke", "bullet", "ode"])
+        for row in rows:
+            self.assertGreaterEqual(float(row["ms_step_median"]), float(row["ms_step_min"]))
+            # Ten boxes that touch at the start sink a little and stay: an overlap that another engine hands over
+            # wrongly would be a whole box, or none at all.
+            self.assertGreater(float(row["max_penetration"]), 1e-5)
+            self.assertLess(float(row["max_penetration"]), 0.02)
+
+    def test_peers_are_not_given_cloth(self):
+        if not (pathlib.Path(PROGRAM).parent / "hooke-peers").exists():
+            self.skipTest("hooke-peers was not built")
+        out, err = self.hooke("bench", "scenes/flag.json", "--peers")
+        self.assertEqual(out.count("\n"), 1)
+        self.assertIn("has cloths", err)
+
+
 class View(Program):
     def test_without_a_display_it_says_so(self):
         environment = {key: value for key, value in os.environ.items()

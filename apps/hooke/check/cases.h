@@ -60,4 +60,50 @@ Rows gusts(const CheckSetting& setting);
 Rows orders(const CheckSetting& setting);
 Rows stability(const CheckSetting& setting);
 
+// cases_bodies_free.cpp: rigid bodies that turn freely
+Rows turning_over(const CheckSetting& setting);
+Rows free_precession(const CheckSetting& setting);
+Rows sleeping_top(const CheckSetting& setting);
+Rows isolated_bodies(const CheckSetting& setting);
+
+// cases_impact.cpp: hits
+Rows bouncing_ball(const CheckSetting& setting);
+Rows bouncing_box(const CheckSetting& setting);
+Rows two_body_impact(const CheckSetting& setting);
+Rows oblique_impact(const CheckSetting& setting);
+Rows newtons_cradle(const CheckSetting& setting);
+
+// cases_bodies_friction.cpp: sliding, sticking, rolling, toppling
+Rows yo_yo(const CheckSetting& setting);
+Rows slide_to_roll(const CheckSetting& setting);
+Rows box_on_slope(const CheckSetting& setting);
+Rows stopping_distance(const CheckSetting& setting);
+Rows toppling_box(const CheckSetting& setting);
+Rows rolling_down(const CheckSetting& setting);
+Rows rolling_test(const CheckSetting& setting);
+Rows loop_the_loop(const CheckSetting& setting);
+Rows painleve_rod(const CheckSetting& setting);
+Rows leaning_ladder(const CheckSetting& setting);
+Rows resisted_balls(const CheckSetting& setting);
+
+// cases_stacks.cpp
+Rows stack_force(const CheckSetting& setting);
+Rows tall_stacks(const CheckSetting& setting);
+Rows heavy_tops(const CheckSetting& setting);
+Rows card_house(const CheckSetting& setting);
+Rows domino_scaling(const CheckSetting& setting);
+
+// cases_edges.cpp
+Rows fast_bodies(const CheckSetting& setting);
+Rows degenerate_pairs(const CheckSetting& setting);
+Rows seams_in_floors(const CheckSetting& setting);
+
+// cases_joints.cpp: hooks between bodies
+Rows swinging_bar(const CheckSetting& setting);
+Rows mechanisms(const CheckSetting& setting);
+Rows loaded_chain(const CheckSetting& setting);
+Rows hook_limits(const CheckSetting& setting);
+Rows hook_motors(const CheckSetting& setting);
+Rows hook_springs(const CheckSetting& setting);
+
 }  // namespace hooke::check

@@ -30,8 +30,10 @@ Rig::Rig(const CheckSetting& setting, const WorldDesc& desc)
     : world_(make_world(setting, desc)), setting_(setting) {}
 
 BodyId Rig::add(BodyDesc desc) {
-  // A contact uses the geometric mean of two coefficients, so the body's takes the square of the scale.
-  desc.contact.friction *= real(setting_.friction_scale * setting_.friction_scale);
+  // A contact uses the geometric mean of two coefficients: the square of the scale in one of them.
+  if (desc.kind != BodyKind::kDynamic) {
+    desc.contact.friction *= real(setting_.friction_scale * setting_.friction_scale);
+  }
   return must(world_.add_body(desc));
 }
 
@@ -43,6 +45,10 @@ bool Rig::step() {
   }
   healthy_ = world_.step(real(setting_.dt)).healthy() && healthy_;
   return healthy_;
+}
+
+DVec3 Rig::direction(BodyId id, DVec3 own) const {
+  return vector_cast<double>(rotate(world_.pose(id).rotation, real(own)));
 }
 
 std::uint64_t Rig::state_hash() const {
@@ -71,6 +77,47 @@ WorldDesc weightless() {
   WorldDesc desc;
   desc.gravity = {};
   return desc;
+}
+
+WorldDesc sleepless() {
+  WorldDesc desc;
+  desc.sleeping = false;
+  return desc;
+}
+
+BodyDesc moving(const Shape& shape, DVec3 position) {
+  return {.kind = BodyKind::kDynamic, .shape = shape, .position = position};
+}
+
+BodyDesc level_ground(double friction, double restitution) {
+  return {.shape = Shape::half_space(),
+          .contact = {.friction = real(friction), .restitution = real(restitution)}};
+}
+
+Shape box_of(DVec3 half_extents) {
+  return Shape::box(real(half_extents));
+}
+
+CheckRow relative_row(std::string title, std::string unit, double expected, double achieved,
+                      double tolerance) {
+  return {.title = std::move(title),
+          .unit = std::move(unit),
+          .expected = expected,
+          .achieved = achieved,
+          .tolerance = tolerance,
+          .solver = "bodies"};
+}
+
+CheckRow absolute_row(std::string title, std::string unit, double expected, double achieved,
+                      double tolerance) {
+  CheckRow row = relative_row(std::move(title), std::move(unit), expected, achieved, tolerance);
+  row.measure = CheckRow::Measure::kAbsolute;
+  return row;
+}
+
+CheckRow known_miss(CheckRow row, std::string reason) {
+  row.known_miss = std::move(reason);
+  return row;
 }
 
 double Curve::cubic(std::size_t left, double time) const {

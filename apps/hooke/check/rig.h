@@ -44,6 +44,10 @@ constexpr Real real(double value) {
   return static_cast<Real>(value);
 }
 
+constexpr Vec3 real(DVec3 value) {
+  return vector_cast<Real>(value);
+}
+
 /// Of what does not stretch: kRigid for the solver. The laboratory, which has forces only, takes `finite`
 /// [N/m], or [N] of an axial stiffness.
 inline Real stiff(const CheckSetting& setting, double finite) {
@@ -54,7 +58,8 @@ inline Real stiff(const CheckSetting& setting, double finite) {
 CheckSetting finer(CheckSetting setting);
 
 /// A world moved as the setting says: by its own steps, or by a method of the laboratory, which takes over
-/// the world as it stands at the first step. Friction of bodies and gravity are scaled by the setting.
+/// the world as it stands at the first step. Gravity is scaled by the setting, and friction with bodies that
+/// forces do not move.
 class Rig {
  public:
   explicit Rig(const CheckSetting& setting, const WorldDesc& desc = {});
@@ -81,6 +86,11 @@ class Rig {
   [[nodiscard]] std::vector<DVec3> velocities(IdType id) const {
     return run_ ? run_->velocities(id) : copy_points(world_.velocities(id));
   }
+  [[nodiscard]] DVec3 center(BodyId id) const { return world_.center_of_mass(id); }
+  [[nodiscard]] DVec3 velocity(BodyId id) const { return vector_cast<double>(world_.velocity(id)); }
+  [[nodiscard]] DVec3 spin(BodyId id) const { return vector_cast<double>(world_.angular_velocity(id)); }
+  /// A direction of the body's frame, in the world.
+  [[nodiscard]] DVec3 direction(BodyId id, DVec3 own) const;
   [[nodiscard]] Energy energy() const { return run_ ? run_->energy() : world_.measure().energy; }
   /// Equal numbers mean the same bits of every position and velocity.
   [[nodiscard]] std::uint64_t state_hash() const;
@@ -97,6 +107,23 @@ class Rig {
 
 /// No gravity.
 WorldDesc weightless();
+
+/// Bodies that have come to rest are watched on.
+WorldDesc sleepless();
+
+/// A body that forces move; 1000 kg/m^3.
+BodyDesc moving(const Shape& shape, DVec3 position);
+/// The half-space below y = 0.
+BodyDesc level_ground(double friction, double restitution = 0);
+Shape box_of(DVec3 half_extents);
+
+/// A row of the real-time solver, which is asked for 0.5 % where a case asks for less.
+CheckRow relative_row(std::string title, std::string unit, double expected, double achieved,
+                      double tolerance = 0.005);
+/// One whose tolerance is in `unit`.
+CheckRow absolute_row(std::string title, std::string unit, double expected, double achieved,
+                      double tolerance);
+CheckRow known_miss(CheckRow row, std::string reason);
 
 /// A curve sampled once a frame.
 class Curve {

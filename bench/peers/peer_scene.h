@@ -1,0 +1,64 @@
+#pragma once
+
+#include "hooke/scene_io.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+/// \file
+/// A scene of rigid bodies in the words that every engine has, so that Hooke and its peers run the same.
+
+namespace hooke::bench {
+
+using DQuat = Quaternion<double>;
+
+struct PeerPose {
+  DVec3 position = {};  ///< [m]
+  DQuat rotation = {};
+};
+
+/// Where a body is and how it moves, about its center of mass and along its principal axes.
+struct PeerMotion {
+  PeerPose pose = {};
+  DVec3 velocity = {};          ///< [m/s]
+  DVec3 angular_velocity = {};  ///< [rad/s], in the world's axes.
+};
+
+/// One shape of a body. `pose` is in the body's principal frame.
+struct PeerShape {
+  Shape shape = {};
+  PeerPose pose = {};
+  std::vector<DVec3> points = {};           ///< Of a hull, in the shape's frame.
+  std::shared_ptr<const Model> model = {};  ///< Of a mesh.
+};
+
+struct PeerBody {
+  BodyKind kind = BodyKind::kStatic;
+  double mass = 0;     ///< [kg]; 0 for a body that nothing moves.
+  DVec3 inertia = {};  ///< About the principal axes [kg m^2].
+  PeerMotion start = {};
+  PeerPose own = {};  ///< The principal frame in the frame that Hooke gives the body.
+  std::vector<PeerShape> shapes = {};
+  double friction = 0.5;  ///< Of a pair: the geometric mean.
+  double restitution = 0;
+};
+
+struct PeerScene {
+  std::vector<PeerBody> bodies = {};
+  DVec3 gravity = {};  ///< [m/s^2]
+  bool sleeping = true;
+  double dt = 1.0 / 60;  ///< [s]
+};
+
+/// Errors (kUnsupported) name what is not a rigid body alone: ropes, cloths, pairs of materials, events.
+[[nodiscard]] Result<PeerScene> make_peer_scene(const Scene& scene, const Simulation& simulation);
+
+/// The deepest overlap of two bodies of the scene, in these poses, by Hooke's own geometry [m].
+[[nodiscard]] Result<double> deepest_overlap(const Scene& scene, const PeerScene& peer,
+                                             const std::vector<PeerMotion>& now);
+
+/// [J]
+[[nodiscard]] double kinetic_energy(const PeerScene& peer, const std::vector<PeerMotion>& now);
+
+}  // namespace hooke::bench
