@@ -26,11 +26,6 @@ bool may_be_in_block(const Bodies& bodies, std::uint32_t body) {
   return body != HookPlace::kWorld && (!is_dynamic(bodies, body) || !tumbles(bodies.mass[body]));
 }
 
-bool rests(const Bodies& bodies, const Hook& hook) {
-  const auto awake = [&](std::uint32_t body) { return is_dynamic(bodies, body) && bodies.asleep[body] == 0; };
-  return !awake(hook.a.body) && !awake(hook.b.body);
-}
-
 /// A hook as the block sees it.
 struct BallEnds {
   const HookPlace& a;
@@ -127,7 +122,7 @@ void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies,
     for (int i = joints.color_begin[color]; i < joints.color_begin[color + 1]; ++i) {
       const std::uint32_t row = joints.hooks[i];
       if (ends_of(hooks[row], bodies).anchored != anchored) continue;
-      if (rests(bodies, hooks[row])) {
+      if (!is_awake(hooks[row], bodies)) {
         joints.resting.push_back(row);
         continue;
       }

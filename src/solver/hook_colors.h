@@ -14,6 +14,9 @@ struct HookColors {
   std::vector<int> begin = {0};      ///< Color c is [begin[c], begin[c + 1]). No color is empty.
 };
 
+/// Whether a hook holds a body that moves.
+[[nodiscard]] bool is_awake(const state::Hook& hook, const state::Bodies& bodies);
+
 /// Takes hooks in the order they come; each gets the first color that is free in both bodies. Where a body
 /// has more than 64, the rest are a color each.
 [[nodiscard]] HookColors color_hooks(const std::vector<std::uint32_t>& hook_rows,

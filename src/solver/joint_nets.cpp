@@ -80,11 +80,6 @@ double solve_row(const JointRow& row, const Ends& ends, double lambda, double h,
   return std::clamp(lambda + change, row.low, row.high) - lambda;
 }
 
-bool is_awake(const Hook& hook, const state::Bodies& bodies) {
-  const auto awake = [&](std::uint32_t body) { return is_dynamic(bodies, body) && bodies.asleep[body] == 0; };
-  return awake(hook.a.body) || awake(hook.b.body);
-}
-
 /// Calls visit(i) for every hook of the net that holds a body awake, color after color.
 template <class Visit>
 void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
