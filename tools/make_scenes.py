@@ -13,6 +13,7 @@ import pathlib
 import struct
 import sys
 
+from hook_scenes import HOOK_SCENES
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot, fall, fibonacci_points,
                        ground, hull_of, prism, product, promise, rotated, scaled, scene, sector, slab,
                        solid_mass, solid_moments, text_of, turn, weight_energy)
@@ -20,7 +21,7 @@ from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 # Written when asked for by name: above 300 kB, or not held by the solver yet. docs/decisions/0005-bodies.md
 # says what is missing.
-ON_REQUEST = {"mixpile", "gyroscope"}
+ON_REQUEST = {"mixpile", "gyroscope", "rain"}
 
 # ---- Slopes -----------------------------------------------------------------------------------------------
 
@@ -742,7 +743,7 @@ def tilts_of(rotation, moments, omega):
 SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
-    convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle
+    convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES
 ]
 
 

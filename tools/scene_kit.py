@@ -206,7 +206,8 @@ def scene(title, description, seconds, eye, target, materials, bodies, expect, w
         made["world"] = world
     made |= {key: more.pop(key) for key in ("meshes",) if key in more}
     made["materials"] = {name: PALETTE[name] | changes for name, changes in materials.items()}
-    return made | more | {"bodies": bodies, "camera": {"eye": eye, "target": target}, "expect": expect}
+    hooks = {"hooks": more.pop("hooks")} if "hooks" in more else {}
+    return made | more | {"bodies": bodies} | hooks | {"camera": {"eye": eye, "target": target}, "expect": expect}
 
 
 def box(x, y, z):
@@ -218,6 +219,11 @@ def body(name, material, shape, position=None, kind="dynamic", **more):
     if kind == "static":
         del made["kind"]
     return made | ({"position": position} if position else {}) | more
+
+
+def hook(name, kind, b, anchor, a=None, **more):
+    """Holds b to a, or to the world."""
+    return {"name": name, "kind": kind} | ({"a": a} if a else {}) | {"b": b, "anchor": anchor} | more
 
 
 def ground(material="ground"):
