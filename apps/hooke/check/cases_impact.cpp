@@ -155,7 +155,7 @@ Rows bouncing_ball(const CheckSetting& setting) {
   rows.push_back(relative_row("at rest, e = 0.8", "s", std::sqrt(10 / kGravity) * 9, most.stop));
   rows.push_back(relative_row("last top of 70 bounces, 1 m, e = 1", "m", 1,
                               full.tops.size() < 60 ? 0.0 : full.tops.back(), 0.001));
-  // The start itself lies g t h / 2 off: rounding of the first step, not of bounces.
+  // Never above the start: what is allowed is 0.01 % of the height.
   rows.push_back(
       absolute_row("rise above the start in 70 bounces", "m", 0, std::max(0.0, full.highest - 1), 1e-4));
   return rows;

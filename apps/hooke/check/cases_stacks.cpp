@@ -109,9 +109,11 @@ struct CardHouse {
   }
 };
 
-/// Sideways way of the worst box of a pyramid of 30 rows [mm].
-double pyramid_drift(const CheckSetting& setting, double seconds) {
-  Rig rig(setting, sleepless());
+/// Sideways way of the worst box of a pyramid of 30 rows in 60 s, by the damping ratio of contacts [mm].
+double pyramid_drift(const CheckSetting& setting, double damping_ratio) {
+  WorldDesc desc = sleepless();
+  desc.contact_damping_ratio = real(damping_ratio);
+  Rig rig(setting, desc);
   rig.add(level_ground(0.6));
   std::vector<BodyId> boxes;
   std::vector<DVec3> start;
@@ -123,7 +125,7 @@ double pyramid_drift(const CheckSetting& setting, double seconds) {
       boxes.push_back(rig.add(box));
     }
   }
-  rig.run(seconds);
+  rig.run(60);
   double worst = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const DVec3 way = rig.center(boxes[i]) - start[i];
@@ -183,9 +185,12 @@ Rows tall_stacks(const CheckSetting& setting) {
   Rows rows = stack_rows(setting, "stack of 10", 10, 1);
   append_missed(rows, stack_rows(setting, "stack of 50", 50, 1));
   append_missed(rows, stack_rows(setting, "stack of 100", 100, 1));
+  const double usual = static_cast<double>(WorldDesc{}.contact_damping_ratio);
   rows.push_back(known_miss(
-      absolute_row("pyramid of 30 rows: sideways in 60 s", "mm", 0, pyramid_drift(setting, 60), 20),
-      kBuckles));
+      absolute_row("pyramid of 30 rows: sideways in 60 s", "mm", 0, pyramid_drift(setting, usual), 20),
+      "it shivers: contacts are damped too much for 8 substeps"));
+  rows.push_back(
+      absolute_row("the same with a damping ratio of contacts of 5", "mm", 0, pyramid_drift(setting, 5), 20));
   return rows;
 }
 
