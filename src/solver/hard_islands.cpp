@@ -16,6 +16,7 @@ constexpr Real kLargestSag = Real(0.005);  ///< Of the size of a body.
 constexpr Real kLargestLean = Real(0.3);   ///< sag H^2 / a^3
 constexpr Real kReleased = Real(0.6);      ///< Of both, below which an island may become soft again.
 constexpr Real kGross = Real(5);           ///< Of both: hard at once.
+constexpr Real kFast = Real(0.5);          ///< An island with a faster body does not become hard [m/s].
 constexpr std::int8_t kStaysHard = 30;     ///< Steps.
 constexpr std::int8_t kNotJudged = -60;    ///< Steps after a refusal, or if it is too large.
 
@@ -88,8 +89,8 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
 }
 
 std::int8_t judge(const IslandDemand& island) {
-  if (island.least < 0 && island.most < kHard) return static_cast<std::int8_t>(island.least + 1);
   if (island.count > kMaxHardBodies) return kNotJudged;
+  if (island.least < 0 && island.most < kHard) return static_cast<std::int8_t>(island.least + 1);
   if (island.count < 2) return 0;
   const Real height = island.high - island.low;
   const Real excess = std::max(island.sag / kLargestSag, height * height * island.lean / kLargestLean);
@@ -239,6 +240,8 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
     IslandDemand own = hard.demands[body];
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
+    // What moves fast falls anyway: as if it were not to be judged in this step.
+    if (length(bodies.motion[body].v) > kFast) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};
