@@ -16,16 +16,16 @@ constexpr Real kLargestSag = Real(0.005);  ///< Of the size of a body.
 constexpr Real kLargestLean = Real(0.3);   ///< sag H^2 / a^3
 constexpr Real kReleased = Real(0.6);      ///< Of both, below which an island may become soft again.
 constexpr Real kGross = Real(5);           ///< Of both: hard at once.
+constexpr Real kFast = Real(0.5);          ///< An island with a faster body does not become hard [m/s].
 constexpr std::int8_t kStaysHard = 30;     ///< Steps.
-constexpr std::int8_t kNotJudged = -60;    ///< Steps after a refusal.
+constexpr std::int8_t kNotJudged = -60;    ///< Steps after a refusal, or if it is too large.
 
 /// Hardness of an island after a step in which it asked for `excess` of what soft contacts may do.
-std::int8_t next_hardness(std::int8_t least, std::int8_t most, Real excess) {
+std::int8_t next_hardness(std::int8_t most, Real excess) {
   if (most >= kHard) {
     if (excess > kReleased) return kHard + kStaysHard;
     return most > kHard ? static_cast<std::int8_t>(most - 1) : std::int8_t{0};
   }
-  if (least < 0) return static_cast<std::int8_t>(least + 1);
   if (!(excess > Real(1))) return 0;
   if (excess > kGross) return kHard + kStaysHard;
   return most + 1 < kHard ? static_cast<std::int8_t>(most + 1) : std::int8_t{kHard + kStaysHard};
@@ -52,9 +52,18 @@ void find_sags(const ContactBlock& block, const ContactStep& step, ContactBlock:
   }
 }
 
+/// Islands that were refused, or are too large, cost nothing until they are judged again.
+bool is_judged(const ContactBlock& block, const Bodies& bodies) {
+  for (int lane = 0; lane < block.count; ++lane) {
+    if (bodies.hardness[block.line_a[lane] / 16] >= 0) return true;
+  }
+  return false;
+}
+
 void judge_contacts(const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies,
                     base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
   for (const ContactBlock& block : contacts.blocks) {
+    if (!is_judged(block, bodies)) continue;
     ContactBlock::Lane sag;
     find_sags(block, step, sag);
     for (int lane = 0; lane < block.count; ++lane) {
@@ -80,10 +89,12 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
 }
 
 std::int8_t judge(const IslandDemand& island) {
-  if (island.count < 2 || island.count > kMaxHardBodies) return 0;
+  if (island.count > kMaxHardBodies) return kNotJudged;
+  if (island.least < 0 && island.most < kHard) return static_cast<std::int8_t>(island.least + 1);
+  if (island.count < 2) return 0;
   const Real height = island.high - island.low;
   const Real excess = std::max(island.sag / kLargestSag, height * height * island.lean / kLargestLean);
-  return next_hardness(island.least, island.most, excess);
+  return next_hardness(island.most, excess);
 }
 
 /// Numbers the islands with hard bodies by their lowest body, and lists their bodies.
@@ -229,6 +240,8 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
     IslandDemand own = hard.demands[body];
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
+    // What moves fast falls anyway: as if it were not to be judged in this step.
+    if (length(bodies.motion[body].v) > kFast) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};
