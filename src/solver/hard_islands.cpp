@@ -90,7 +90,9 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
 
 std::int8_t judge(const IslandDemand& island) {
   if (island.count > kMaxHardBodies) return kNotJudged;
-  if (island.least < 0 && island.most < kHard) return static_cast<std::int8_t>(island.least + 1);
+  // A wave of falling dominoes takes in calm heaps one after the other: hard ones become soft with it.
+  if (island.least < 0)
+    return island.most >= kHard ? std::int8_t{0} : static_cast<std::int8_t>(island.least + 1);
   if (island.count < 2) return 0;
   const Real height = island.high - island.low;
   const Real excess = std::max(island.sag / kLargestSag, height * height * island.lean / kLargestLean);
