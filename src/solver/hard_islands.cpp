@@ -232,7 +232,8 @@ void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIs
 }
 
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
-                    const BodyContacts& contacts, HardIslands& hard, Bodies& bodies) {
+                    const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
+                    Bodies& bodies) {
   hard.demands.assign(bodies.motion.size(), {});
   hard.sets.reset(bodies.motion.size());
   judge_contacts(step, contacts, bodies, hard.sets, hard.demands);
@@ -242,8 +243,10 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
     IslandDemand own = hard.demands[body];
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
-    // What moves fast falls anyway: as if it were not to be judged in this step.
-    if (length(bodies.motion[body].v) > kFast) own.least = std::min(own.least, std::int8_t{-1});
+    // What moves fast falls anyway, and hooks take turns with soft contacts only: as if it were not to be
+    // judged in this step.
+    const bool is_hooked = body < hooked.size() && hooked[body] != 0;
+    if (is_hooked || length(bodies.motion[body].v) > kFast) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};

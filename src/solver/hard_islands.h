@@ -36,8 +36,8 @@
 namespace hooke::solver {
 
 /// Multiplications of one factorization, of one island and of all: some milliseconds a step.
-inline constexpr double kHardIslandBudget = 3e5;
-inline constexpr double kHardBudget = 1e6;
+inline constexpr double kHardIslandBudget = 4e4;
+inline constexpr double kHardBudget = 4e4;
 inline constexpr std::uint32_t kMaxHardBodies = 256;
 
 /// hardness of a body: below 0 its island was refused and is not judged for as many steps, then steps in
@@ -82,8 +82,10 @@ void prepare_hard_islands(parallel::ThreadPool& pool, const BodyContacts& contac
 void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIslands& hard,
                         BodyContacts& contacts, state::Bodies& bodies);
 
-/// Updates the hardness of bodies by the impulses of the last substep.
+/// Updates the hardness of bodies by the impulses of the last substep. Islands with a body that a hook holds
+/// (`hooked`, by body row) stay soft.
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
-                    const BodyContacts& contacts, HardIslands& hard, state::Bodies& bodies);
+                    const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
+                    state::Bodies& bodies);
 
 }  // namespace hooke::solver

@@ -155,7 +155,8 @@ void finish_body_contacts(WorldData& world) {
                        [&](parallel::Range blocks) {
                          solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
                        });
-  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.hard_islands, t.bodies);
+  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.hooked,
+                         world.hard_islands, t.bodies);
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {

@@ -22,6 +22,12 @@ void refresh_hooks(WorldData& world) {
   if (world.joints_revision == t.hook_revision) return;
   world.joints_revision = t.hook_revision;
   solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
+  world.hooked.assign(t.bodies.motion.size(), 0);
+  for (const Hook& hook : t.hooks) {
+    for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+      if (body != HookPlace::kWorld) world.hooked[body] = 1;
+    }
+  }
   world.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {
     if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));

@@ -60,7 +60,10 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
   return length(m.dx) + length(turn) * traits.radius > kOfThickness * traits.inner_radius;
 }
 
-Stoppable stoppable(const Bodies& bodies, std::uint32_t body, bool fast) {
+/// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
+Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
+  const Bodies& bodies = world.tables.bodies;
+  if (body < world.hooked.size() && world.hooked[body] != 0) return Stoppable::kNever;
   if (bodies.traits[body].kind != BodyKind::kDynamic || bodies.asleep[body] != 0) return Stoppable::kNever;
   return fast ? Stoppable::kAlways : Stoppable::kSlow;
 }
@@ -179,7 +182,7 @@ void stop_at_impacts(WorldData& world) {
   }
   for (const std::uint32_t body : world.awake) {
     swept.path[body] = path_of(world, body);
-    swept.stoppable[body] = stoppable(bodies, body, std::binary_search(fast.begin(), fast.end(), body));
+    swept.stoppable[body] = stoppable(world, body, std::binary_search(fast.begin(), fast.end(), body));
   }
   if (collision::stop_at_impacts(*world.pool, world.tables.colliders, pairs, swept) == 0) return;
   for (const std::uint32_t body : world.awake) {

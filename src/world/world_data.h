@@ -43,6 +43,7 @@ struct WorldData {
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
   solver::Joints joints;
+  std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
   std::vector<HookId> broken_hooks;                                   ///< In the last step.
 
