@@ -234,19 +234,24 @@ void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIs
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
                     const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
                     Bodies& bodies) {
+  // Without weight there are hits, but no loads.
+  if (step.gravity == Vec3{}) {
+    for (const std::uint32_t body : awake) bodies.hardness[body] = 0;
+    return;
+  }
   hard.demands.assign(bodies.motion.size(), {});
   hard.sets.reset(bodies.motion.size());
   judge_contacts(step, contacts, bodies, hard.sets, hard.demands);
-  const Vec3 down = step.gravity == Vec3{} ? Vec3{} : normalize(step.gravity);
+  const Vec3 down = normalize(step.gravity);
   for (const std::uint32_t body : awake) {
     if (!is_moved(bodies, body)) continue;
     IslandDemand own = hard.demands[body];
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
-    // What moves fast falls anyway, and hooks take turns with soft contacts only: as if it were not to be
-    // judged in this step.
+    // Hooks take turns with soft contacts only, and what is soft and fast falls anyway.
     const bool is_hooked = body < hooked.size() && hooked[body] != 0;
-    if (is_hooked || length(bodies.motion[body].v) > kFast) own.least = std::min(own.least, std::int8_t{-1});
+    const bool falls = own.most < kHard && length(bodies.motion[body].v) > kFast;
+    if (is_hooked || falls) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};

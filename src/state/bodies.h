@@ -91,7 +91,7 @@ struct Bodies {
   std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
   std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
-  std::vector<std::uint8_t> slept;  ///< `asleep` at the end of the last step; written by gather_events.
+  std::vector<std::uint8_t> slept;    ///< `asleep` at the end of the last step; written by gather_events.
   std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
                                       ///< (solver/hard_islands.h).
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
