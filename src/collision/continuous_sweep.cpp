@@ -220,6 +220,14 @@ bool is_wide(ShapeKind kind) {
 
 }  // namespace
 
+Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt) {
+  return {.center = bodies.center[body],
+          .rotation = bodies.rotation[body],
+          .way = dt * bodies.motion[body].v,
+          .turn = dt * bodies.angular_velocity[body],
+          .radius = bodies.traits[body].radius};
+}
+
 Pose pose_at(const Path& path, Real time) {
   const Real moving = std::min(time, path.stop);
   const Real carried = std::max(Real(0), std::min(time, path.release) - path.stop);

@@ -4,6 +4,7 @@
 #include "hooke/world.h"
 
 #include "collision/manifold_points.h"
+#include "state/bodies.h"
 #include "state/colliders.h"
 
 #include <cstdint>
@@ -27,6 +28,9 @@ struct Path {
   Vec3 carry = {};         ///< Way while it is carried, per whole step [m].
   Real release = Real(1);  ///< When that ends.
 };
+
+/// How a body will move in the next `dt` [s] if nothing changes its velocity.
+[[nodiscard]] Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt);
 
 /// Where the center of mass is, and how the body is turned.
 [[nodiscard]] Pose pose_at(const Path& path, Real time);

@@ -124,21 +124,11 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
   return best;
 }
 
-/// How a body will move if nothing changes its velocity.
-Path path_of(const Scene& scene, std::uint32_t body) {
-  const state::Bodies& bodies = scene.bodies;
-  return {.center = bodies.center[body],
-          .rotation = bodies.rotation[body],
-          .way = scene.dt * bodies.motion[body].v,
-          .turn = scene.dt * bodies.angular_velocity[body],
-          .radius = bodies.traits[body].radius};
-}
-
 /// From separations at `time` to those at the start of the step, from which rows go on evenly: they are what
 /// they should be at `time`. Points that part have no such past.
 void bring_to_start(const Scene& scene, Real time, Manifold& m) {
-  const Path a = path_of(scene, m.body_a);
-  const Path b = path_of(scene, m.body_b);
+  const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
+  const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
   std::int32_t kept = 0;
   for (std::int32_t i = 0; i < m.point_count; ++i) {
     state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
@@ -236,8 +226,8 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
 void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const Convex& now_a = scene.placed[pair.collider_a];
   const Convex& now_b = scene.placed[pair.collider_b];
-  const Path path_a = path_of(scene, scene.colliders.body[pair.collider_a]);
-  const Path path_b = path_of(scene, scene.colliders.body[pair.collider_b]);
+  const Path path_a = path_ahead(scene.bodies, scene.colliders.body[pair.collider_a], scene.dt);
+  const Path path_b = path_ahead(scene.bodies, scene.colliders.body[pair.collider_b], scene.dt);
   const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
   const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
   chunk.time = Real(0);

@@ -2,6 +2,7 @@
 
 #include "collision/queries_ray.h"
 #include "collision/shape_gap.h"
+#include "math/rotation.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -15,9 +16,7 @@ std::optional<RayHit> cast_ray_on_collider(const QueryScene& scene, std::uint32_
                                            DVec3 motion) {
   if (!can_be_found(scene, collider)) return {};
   const Pose pose = state::frame_of_collider(scene.bodies, scene.colliders, collider);
-  const Quat q = pose.rotation;
-  // Of length one in double too: the hit may be far from the origin.
-  const auto rotation = normalize(Quaternion<double>{q.x, q.y, q.z, q.w});
+  const auto rotation = math::in_double(pose.rotation);
   const auto back = conjugate(rotation);
   const auto hit = cast_ray_on_shape(scene.colliders.shape[collider], rotate(back, origin - pose.position),
                                      rotate(back, motion));

@@ -4,6 +4,7 @@
 #include "collision/queries.h"
 #include "collision/shape_bounds.h"
 #include "geometry/closest.h"
+#include "math/rotation.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -30,11 +31,6 @@ bool is_convex(const state::ColliderShape& shape) {
   return kind != ShapeKind::kHalfSpace && kind != ShapeKind::kMesh && kind != ShapeKind::kCompound;
 }
 
-Quaternion<double> in_double(Quat q) {
-  // Of length one in double too: what it turns may be far away.
-  return normalize(Quaternion<double>{q.x, q.y, q.z, q.w});
-}
-
 Placed place_convex(const state::ColliderShape& shape, const Pose& pose) {
   const geometry::Box box = bounds_of(shape, {{}, pose.rotation});
   const Vec3 farthest = geometry::max_of(-box.lower, box.upper);
@@ -48,13 +44,13 @@ struct StandingMesh {
   const state::Mesh& mesh;
   Pose pose;
 
-  [[nodiscard]] DVec3 to_mesh(DVec3 v) const { return rotate(conjugate(in_double(pose.rotation)), v); }
+  [[nodiscard]] DVec3 to_mesh(DVec3 v) const { return rotate(conjugate(math::in_double(pose.rotation)), v); }
 
   /// About its first corner: offsets from there are as small as they can be.
   [[nodiscard]] Placed triangle(std::uint32_t index) const {
     const Vec3 origin = mesh.desc.positions[mesh.desc.triangles[index][0]];
     const PlacedMesh placed = {mesh, matrix_of(normalize(pose.rotation)), origin};
-    const DVec3 offset = rotate(in_double(pose.rotation), vector_cast<double>(origin));
+    const DVec3 offset = rotate(math::in_double(pose.rotation), vector_cast<double>(origin));
     const Convex convex = placed.triangle(index);
     const Real size = std::max(length(convex.corners[1]), length(convex.corners[2]));
     return {convex, pose.position + offset, static_cast<double>(size)};
@@ -122,7 +118,7 @@ std::optional<Contact> sweep(const Placed& a, DVec3 motion, const Placed& b, dou
 }
 
 std::optional<Contact> sweep_to_half_space(const Placed& a, DVec3 motion, const Pose& plane) {
-  const DVec3 n = rotate(in_double(plane.rotation), DVec3{0, 1, 0});
+  const DVec3 n = rotate(math::in_double(plane.rotation), DVec3{0, 1, 0});
   const Vec3 down = vector_cast<Real>(-n);
   const DVec3 lowest = a.place + vector_cast<double>(support_of(a.convex, down) + skin_of(a.convex) * down);
   const double height = dot(n, lowest - plane.position);

@@ -93,13 +93,7 @@ Box bounds_of(const state::ColliderShape& shape, const Pose& pose) {
 
 Box reach_of(const state::Bodies& bodies, const state::Colliders& colliders, std::uint32_t collider,
              Real dt) {
-  const std::uint32_t body = colliders.body[collider];
-  return reach_of(colliders, collider,
-                  {.center = bodies.center[body],
-                   .rotation = bodies.rotation[body],
-                   .way = dt * bodies.motion[body].v,
-                   .turn = dt * bodies.angular_velocity[body],
-                   .radius = bodies.traits[body].radius});
+  return reach_of(colliders, collider, path_ahead(bodies, colliders.body[collider], dt));
 }
 
 Box reach_of(const state::Colliders& colliders, std::uint32_t collider, const Path& path) {

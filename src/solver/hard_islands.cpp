@@ -249,9 +249,8 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
     // Hooks take turns with soft contacts only, and what is soft and fast falls anyway.
-    const bool is_hooked = body < hooked.size() && hooked[body] != 0;
     const bool falls = own.most < kHard && length(bodies.motion[body].v) > kFast;
-    if (is_hooked || falls) own.least = std::min(own.least, std::int8_t{-1});
+    if (hooked[body] != 0 || falls) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};

@@ -6,6 +6,7 @@
 #include "math/symmetric.h"
 
 #include <cstdint>
+#include <ranges>
 #include <vector>
 
 /// \file
@@ -134,6 +135,17 @@ struct Bodies {
 /// Whether forces move the body; never the world (HookPlace::kWorld).
 inline bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
   return body < bodies.traits.size() && bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
+/// The rows of a body's colliders.
+inline auto colliders_of(const Bodies& bodies, std::uint32_t body) {
+  const std::uint32_t first = bodies.first_collider[body];
+  return std::views::iota(first, first + bodies.collider_count[body]);
+}
+
+/// Velocity of the point at `anchor` from the center of mass, at the start of the step [m/s].
+inline Vec3 velocity_at(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
+  return bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor);
 }
 
 /// What FilterDesc says of two bodies.

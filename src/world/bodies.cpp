@@ -29,8 +29,7 @@ bool may_meet(const BodyTraits& a, const BodyTraits& b) {
 
 /// What the colliders of a body can reach in this step.
 void update_bounds(Tables& t, std::uint32_t body, Real dt) {
-  const std::uint32_t first = t.bodies.first_collider[body];
-  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+  for (const std::uint32_t c : colliders_of(t.bodies, body))
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
 }
 
@@ -72,8 +71,7 @@ bool may_collide(const WorldData& world, collision::ColliderPair pair) {
 
 void enter_broad_phase(WorldData& world, std::uint32_t body) {
   const Tables& t = world.tables;
-  const std::uint32_t first = t.bodies.first_collider[body];
-  for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+  for (const std::uint32_t c : colliders_of(t.bodies, body))
     world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
 }
 
@@ -84,8 +82,7 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
   const Tables& t = world.tables;
   // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
   const auto enter = [&](std::uint32_t body) {
-    const std::uint32_t first = t.bodies.first_collider[body];
-    for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c) {
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) {
       world.broad_phase.set(c, collision::reach_of(t.bodies, t.colliders, c, Real(0)),
                             moves(t.bodies.traits[body]));
     }

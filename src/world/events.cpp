@@ -2,6 +2,7 @@
 
 #include "collision/queries.h"
 #include "state/body_frames.h"
+#include "world/objects.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,20 +54,6 @@ void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Ev
   std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(ends),
                       comes_first);
   before.swap(now);
-}
-
-BodyId id_of(const Tables& t, std::uint32_t body) {
-  return t.body_slots.id_of(t.bodies.slot[body]);
-}
-
-BodyPart part_of(const Tables& t, std::uint32_t collider) {
-  const std::uint32_t body = t.colliders.body[collider];
-  return {id_of(t, body), collider - t.bodies.first_collider[body]};
-}
-
-/// Whether b's body was created before a's.
-bool is_swapped(const Tables& t, const Manifold& m) {
-  return t.bodies.slot[m.body_b] < t.bodies.slot[m.body_a];
 }
 
 ContactEvent parts_of(const Tables& t, const Manifold& m) {
@@ -146,11 +133,6 @@ void gather_sleep(WorldData& world) {
   sort_events(events.woke_up);
 }
 
-/// Of a point of the body, along `n`.
-Real speed_along(const Bodies& bodies, std::uint32_t body, Vec3 anchor, Vec3 n) {
-  return dot(n, bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor));
-}
-
 /// Acceleration of free bodies towards each other, along the normal.
 Real pull_of(const Tables& t, const Manifold& m) {
   const auto pull = [&](std::uint32_t body) {
@@ -170,8 +152,8 @@ Approach fastest_of(const Tables& t, std::uint32_t row, Real dt) {
   Approach fastest = {.manifold = row};
   for (int i = 0; i < m.point_count; ++i) {
     const state::ContactPoint& p = m.point[i];
-    const Real v_a = speed_along(t.bodies, m.body_a, p.anchor_a, m.normal);
-    const Real v_b = speed_along(t.bodies, m.body_b, p.anchor_b, m.normal);
+    const Real v_a = dot(m.normal, velocity_at(t.bodies, m.body_a, p.anchor_a));
+    const Real v_b = dot(m.normal, velocity_at(t.bodies, m.body_b, p.anchor_b));
     const Real closing = v_a - v_b + ahead;
     if (!(closing > Real(0)) || p.separation > dt * (closing + std::max(pull, Real(0)) * dt)) continue;
     const Real squared = closing * closing + Real(2) * pull * p.separation;
@@ -179,7 +161,7 @@ Approach fastest_of(const Tables& t, std::uint32_t row, Real dt) {
     if (!(speed > fastest.speed)) continue;
     const double time = static_cast<double>(std::max(p.separation, Real(0)) / speed);
     const auto met = [&](std::uint32_t body, Vec3 anchor) {
-      const Vec3 v = t.bodies.motion[body].v + cross(t.bodies.angular_velocity[body], anchor);
+      const Vec3 v = velocity_at(t.bodies, body, anchor);
       return t.bodies.center[body] + vector_cast<double>(anchor) + time * vector_cast<double>(v);
     };
     fastest.speed = speed;

@@ -19,17 +19,16 @@ std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b
 
 void refresh_hooks(WorldData& world) {
   const state::Tables& t = world.tables;
+  world.hooked.resize(t.bodies.motion.size());
   if (world.joints_revision == t.hook_revision) return;
   world.joints_revision = t.hook_revision;
   solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
-  world.hooked.assign(t.bodies.motion.size(), 0);
+  std::fill(world.hooked.begin(), world.hooked.end(), std::uint8_t{0});
+  world.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {
     for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
       if (body != HookPlace::kWorld) world.hooked[body] = 1;
     }
-  }
-  world.hooked_pairs.clear();
-  for (const Hook& hook : t.hooks) {
     if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
   }
   std::sort(world.hooked_pairs.begin(), world.hooked_pairs.end());

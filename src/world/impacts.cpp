@@ -35,6 +35,12 @@ Vec3 turn_between(Quat before, Quat after, Vec3 about) {
   return (angle + whole * std::round((dot(axis, about) - angle) / whole)) * axis;
 }
 
+/// By how much a body turned in this step, as far as its line tells [rad].
+Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
+  const MotionLine& m = bodies.motion[body];
+  return m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled;
+}
+
 /// The way that the solver has found for a body in this step.
 Path path_of(const WorldData& world, std::uint32_t body) {
   const Bodies& bodies = world.tables.bodies;
@@ -42,7 +48,7 @@ Path path_of(const WorldData& world, std::uint32_t body) {
   Path path = {.center = bodies.center[body],
                .rotation = bodies.rotation[body],
                .way = m.dx,
-               .turn = m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled,
+               .turn = turn_of(bodies, body),
                .radius = bodies.traits[body].radius};
   if (m.inverse_mass > Real(0) && solver::tumbles_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
@@ -53,17 +59,16 @@ Path path_of(const WorldData& world, std::uint32_t body) {
 
 /// Whether the body goes or turns far for its thickness.
 bool is_fast(const Bodies& bodies, std::uint32_t body) {
-  const MotionLine& m = bodies.motion[body];
   const state::BodyTraits& traits = bodies.traits[body];
   if (!traits.collides || traits.sensor) return false;
-  const Vec3 turn = m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled;
-  return length(m.dx) + length(turn) * traits.radius > kOfThickness * traits.inner_radius;
+  const Real way = length(bodies.motion[body].dx) + length(turn_of(bodies, body)) * traits.radius;
+  return way > kOfThickness * traits.inner_radius;
 }
 
 /// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
 Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
   const Bodies& bodies = world.tables.bodies;
-  if (body < world.hooked.size() && world.hooked[body] != 0) return Stoppable::kNever;
+  if (world.hooked[body] != 0) return Stoppable::kNever;
   if (bodies.traits[body].kind != BodyKind::kDynamic || bodies.asleep[body] != 0) return Stoppable::kNever;
   return fast ? Stoppable::kAlways : Stoppable::kSlow;
 }
@@ -98,8 +103,7 @@ void enter_ways(WorldData& world) {
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
       const Path path = path_of(world, body);
-      const std::uint32_t first = t.bodies.first_collider[body];
-      for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c)
+      for (const std::uint32_t c : colliders_of(t.bodies, body))
         t.colliders.bounds[c] = collision::reach_of(t.colliders, c, path);
     }
   });
@@ -116,8 +120,7 @@ std::vector<ColliderPair> find_swept_pairs(const WorldData& world, const std::ve
   std::vector<ColliderPair> pairs;
   std::vector<std::uint32_t> found;
   for (const std::uint32_t body : fast) {
-    const std::uint32_t first = t.bodies.first_collider[body];
-    for (std::uint32_t c = first; c < first + t.bodies.collider_count[body]; ++c) {
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) {
       world.broad_phase.query(t.colliders.bounds[c], found);
       for (const std::uint32_t other : found) {
         const ColliderPair pair = {std::min(c, other), std::max(c, other)};
@@ -128,6 +131,17 @@ std::vector<ColliderPair> find_swept_pairs(const WorldData& world, const std::ve
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
+}
+
+/// Rows of the bodies that have a part in some pair, each once.
+std::vector<std::uint32_t> bodies_of(const std::vector<ColliderPair>& pairs,
+                                     const state::Colliders& colliders) {
+  std::vector<std::uint32_t> rows;
+  for (const ColliderPair& pair : pairs)
+    rows.insert(rows.end(), {colliders.body[pair.first], colliders.body[pair.second]});
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
 }
 
 /// Cuts what the body did short at where its path ends.
@@ -175,13 +189,9 @@ void stop_at_impacts(WorldData& world) {
   collision::SweptBodies swept;
   swept.path.resize(bodies.motion.size());
   swept.stoppable.resize(bodies.motion.size(), Stoppable::kNever);
-  for (std::uint32_t body = 0; body < swept.path.size(); ++body) {
-    swept.path[body] = {.center = bodies.center[body],
-                        .rotation = bodies.rotation[body],
-                        .radius = bodies.traits[body].radius};
-  }
-  for (const std::uint32_t body : world.awake) {
-    swept.path[body] = path_of(world, body);
+  for (const std::uint32_t body : bodies_of(pairs, world.tables.colliders)) {
+    const bool awake = std::binary_search(world.awake.begin(), world.awake.end(), body);
+    swept.path[body] = awake ? path_of(world, body) : collision::path_ahead(bodies, body, Real(0));
     swept.stoppable[body] = stoppable(world, body, std::binary_search(fast.begin(), fast.end(), body));
   }
   if (collision::stop_at_impacts(*world.pool, world.tables.colliders, pairs, swept) == 0) return;

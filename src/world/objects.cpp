@@ -123,6 +123,19 @@ void unpin_particle(Tables& t, ParticleRow row) {
   ++t.revision;
 }
 
+BodyId id_of(const Tables& t, std::uint32_t body) {
+  return t.body_slots.id_of(t.bodies.slot[body]);
+}
+
+BodyPart part_of(const Tables& t, std::uint32_t collider) {
+  const std::uint32_t body = t.colliders.body[collider];
+  return {id_of(t, body), collider - t.bodies.first_collider[body]};
+}
+
+bool is_swapped(const Tables& t, const state::Manifold& m) {
+  return t.bodies.slot[m.body_b] < t.bodies.slot[m.body_a];
+}
+
 void wake_neighbors(Tables& t, std::uint32_t body) {
   for (const state::Pair& pair : t.pairs.pair) {
     const std::uint32_t a = t.colliders.body[pair.collider_a];

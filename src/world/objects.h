@@ -36,6 +36,12 @@ void unpin_particle(state::Tables& tables, ParticleRow row);
 /// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers.
 void restore_tables(const state::Tables& from, state::Tables& to);
 
+[[nodiscard]] BodyId id_of(const state::Tables& tables, std::uint32_t body);
+/// The body of a collider, and which of its parts that is.
+[[nodiscard]] BodyPart part_of(const state::Tables& tables, std::uint32_t collider);
+/// Whether b's body was created before a's.
+[[nodiscard]] bool is_swapped(const state::Tables& tables, const state::Manifold& manifold);
+
 /// Wakes every body that is near `body`, before it goes or is moved by hand.
 void wake_neighbors(state::Tables& tables, std::uint32_t body);
 

@@ -27,7 +27,7 @@ bool touches(const Manifold& manifold) {
 /// or it takes the hit like a wall.
 bool meets(const Bodies& bodies, const Manifold& manifold, Real dt) {
   const auto speed = [&](std::uint32_t body, Vec3 anchor) {
-    return dot(manifold.normal, bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor));
+    return dot(manifold.normal, state::velocity_at(bodies, body, anchor));
   };
   return std::any_of(manifold.point.begin(), manifold.point.begin() + manifold.point_count,
                      [&](const state::ContactPoint& p) {

@@ -41,16 +41,16 @@ Vec3 lever(const Bodies& bodies, std::uint32_t row, DVec3 at) {
 void append_contacts(const Tables& t, const state::Manifold& m, std::vector<BodyContact>& contacts) {
   const auto h = static_cast<Real>(t.body_substep);
   if (!m.touching || !(h > Real(0)) || m.point_count == 0) return;
-  const std::uint32_t slot_a = t.bodies.slot[m.body_a];
-  const std::uint32_t slot_b = t.bodies.slot[m.body_b];
+  const BodyPart a = world::part_of(t, m.collider_a);
+  const BodyPart b = world::part_of(t, m.collider_b);
   BodyContact contact = {
-      .a = t.body_slots.id_of(slot_a),
-      .b = t.body_slots.id_of(slot_b),
-      .part_a = m.collider_a - t.bodies.first_collider[m.body_a],
-      .part_b = m.collider_b - t.bodies.first_collider[m.body_b],
+      .a = a.body,
+      .b = b.body,
+      .part_a = a.part,
+      .part_b = b.part,
       .normal = m.normal,
       .friction_force = Real(1) / (h * static_cast<Real>(m.point_count)) * m.friction_impulse};
-  if (slot_b < slot_a) {
+  if (world::is_swapped(t, m)) {
     std::swap(contact.a, contact.b);
     std::swap(contact.part_a, contact.part_b);
     contact.normal = -contact.normal;
@@ -82,9 +82,7 @@ Quat turn_of(const Bodies& bodies, std::uint32_t row) {
 }  // namespace
 
 BodyId BodyForceView::id(std::size_t i) const {
-  if (i >= size()) return {};
-  const Tables& t = world_->tables;
-  return t.body_slots.id_of(t.bodies.slot[rows_[i]]);
+  return i < size() ? world::id_of(world_->tables, rows_[i]) : BodyId{};
 }
 
 Real BodyForceView::mass(std::size_t i) const {
@@ -137,8 +135,7 @@ bool World::remove(BodyId id) {
   const std::uint32_t row = t.body_slots.find(id);
   if (row == kNone) return false;
   world::wake_neighbors(t, row);
-  const std::uint32_t first = t.bodies.first_collider[row];
-  for (std::uint32_t i = 0; i < t.bodies.collider_count[row]; ++i) data_->broad_phase.remove(first + i);
+  for (const std::uint32_t collider : state::colliders_of(t.bodies, row)) data_->broad_phase.remove(collider);
   std::erase(data_->bodies_placed, row);
   world::remove_hooks_of(row, t);
   build::remove_body(row, t);

@@ -72,13 +72,8 @@ Result<QueryShape> make_query_shape(const Shape& shape, const Pose& pose, const 
   return QueryShape{std::move(made).value(), {pose.position, normalize(q)}};
 }
 
-BodyPart part_of(const Tables& t, std::uint32_t collider) {
-  const std::uint32_t body = t.colliders.body[collider];
-  return {t.body_slots.id_of(t.bodies.slot[body]), collider - t.bodies.first_collider[body]};
-}
-
 CastHit hit_of(const Tables& t, const RayHit& hit, DVec3 motion) {
-  const auto [body, part] = part_of(t, hit.collider);
+  const auto [body, part] = world::part_of(t, hit.collider);
   return {.body = body,
           .part = part,
           .triangle = hit.triangle,
@@ -95,7 +90,7 @@ std::optional<CastHit> hit_of(const Tables& t, const std::optional<RayHit>& hit,
 std::vector<BodyPart> parts_of(const Tables& t, const std::vector<std::uint32_t>& colliders) {
   std::vector<BodyPart> parts;
   parts.reserve(colliders.size());
-  for (const std::uint32_t collider : colliders) parts.push_back(part_of(t, collider));
+  for (const std::uint32_t collider : colliders) parts.push_back(world::part_of(t, collider));
   return parts;
 }
 
@@ -177,7 +172,7 @@ Result<std::optional<ClosestPoint>> World::find_closest(DVec3 point, Real reach,
   if (!scene) return scene.error();
   const auto hit = collision::find_closest(scene.value(), point, reach);
   if (!hit) return std::optional<ClosestPoint>();
-  const auto [body, part] = part_of(data_->tables, hit->collider);
+  const auto [body, part] = world::part_of(data_->tables, hit->collider);
   return std::optional(ClosestPoint{.body = body,
                                     .part = part,
                                     .triangle = hit->triangle,
