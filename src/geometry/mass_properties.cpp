@@ -1,5 +1,7 @@
 #include "geometry/mass_properties.h"
 
+#include "math/rotation.h"
+
 #include <cmath>
 
 namespace hooke::geometry {
@@ -178,9 +180,7 @@ MassProperties mass_of(std::span<const Vec3> positions,
 }
 
 MassProperties moved(const MassProperties& solid, Quat rotation, DVec3 shift) {
-  const Quaternion<double> q =
-      normalize(Quaternion<double>{static_cast<double>(rotation.x), static_cast<double>(rotation.y),
-                                   static_cast<double>(rotation.z), static_cast<double>(rotation.w)});
+  const Quaternion<double> q = math::in_double(rotation);
   return {.volume = solid.volume,
           .center = rotate(q, solid.center) + shift,
           .inertia = rotated(solid.inertia, q)};

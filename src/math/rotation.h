@@ -6,6 +6,13 @@
 
 namespace hooke::math {
 
+/// The same rotation, of unit length in double too: what it turns may be far away.
+template <class T>
+Quaternion<double> in_double(Quaternion<T> q) {
+  return normalize(Quaternion<double>{static_cast<double>(q.x), static_cast<double>(q.y),
+                                      static_cast<double>(q.z), static_cast<double>(q.w)});
+}
+
 /// The rotation by |phi| [rad] about phi, of unit length to rounding; made of + - * / only. Up to a quarter
 /// radian by the first terms of the series of sine and cosine, which are exact there to 3e-16.
 template <class T>

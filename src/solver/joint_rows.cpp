@@ -31,11 +31,6 @@ constexpr int kTwist = 3;
 constexpr int kCone = 6;
 constexpr int kFreedoms = 7;
 
-DQuat to_double(Quat q) {
-  return normalize(DQuat{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z),
-                         static_cast<double>(q.w)});
-}
-
 Symmetric3<double> to_double(const Symmetric3<Real>& m) {
   return {static_cast<double>(m.xx), static_cast<double>(m.xy), static_cast<double>(m.xz),
           static_cast<double>(m.yy), static_cast<double>(m.yz), static_cast<double>(m.zz)};
@@ -149,8 +144,8 @@ Freedoms find_freedoms(const Hook& hook, const JointBody& a, const JointBody& b)
   const DVec3 d = f.r_a - arm_a;
   f.r_a += a.ahead;
   f.r_b += b.ahead;
-  const DQuat q_a = a.rotation * to_double(hook.a.axes);
-  const DQuat q_b = b.rotation * to_double(hook.b.axes);
+  const DQuat q_a = a.rotation * math::in_double(hook.a.axes);
+  const DQuat q_b = b.rotation * math::in_double(hook.b.axes);
   const DMat3 axes_a = matrix_of(q_a);
   f.axis[0] = axes_a.x;
   f.axis[1] = axes_a.y;
@@ -205,7 +200,7 @@ JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
   body.inverse_mass = static_cast<double>(m.inverse_mass);
   if (m.inverse_mass > Real(0)) body.scale = to_double(bodies.scale[row]);
   body.center = bodies.center[row] + vector_cast<double>(m.dx);
-  body.rotation = to_double(bodies.rotation[row]);
+  body.rotation = math::in_double(bodies.rotation[row]);
   if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, row)) {
     const DVec3 theta = body.scale * vector_cast<double>(m.theta_scaled);
     body.rotation = math::quaternion_of(theta) * body.rotation;
@@ -245,7 +240,8 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
   for_each_row(hook, [&](int i, RowRole role) {
     const bool is_way = i < 3;
     const bool is_twist = hook.kind == HookKind::kBall && i == kTwist && role == RowRole::kLimit;
-    if (is_twist) take_twist(a.rotation * to_double(hook.a.axes), b.rotation * to_double(hook.b.axes), f);
+    if (is_twist)
+      take_twist(a.rotation * math::in_double(hook.a.axes), b.rotation * math::in_double(hook.b.axes), f);
     JointRow& row = rows[count++];
     row = {.low = -kInfinite, .high = kInfinite, .role = role};
     (is_way ? row.n : row.axis) = f.axis[i];

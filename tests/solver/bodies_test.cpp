@@ -1,5 +1,6 @@
 #include "solver/bodies.h"
 
+#include "math/rotation.h"
 #include "solver/body_scene.h"
 
 #include <doctest/doctest.h>
@@ -12,11 +13,7 @@ using testing::BodyScene;
 using testing::solid_box;
 
 double energy_of_rotation(const BodyScene& scene, std::uint32_t row) {
-  const Quaternion<double> axes = [&] {
-    const Quat q = scene.bodies.rotation[row] * scene.bodies.mass[row].principal;
-    return normalize(Quaternion<double>{static_cast<double>(q.x), static_cast<double>(q.y),
-                                        static_cast<double>(q.z), static_cast<double>(q.w)});
-  }();
+  const auto axes = math::in_double(scene.bodies.rotation[row] * scene.bodies.mass[row].principal);
   const DVec3 l = rotate(conjugate(axes), vector_cast<double>(scene.bodies.angular_momentum[row]));
   const DVec3 i = vector_cast<double>(scene.bodies.mass[row].inertia);
   return 0.5 * (l.x * l.x / i.x + l.y * l.y / i.y + l.z * l.z / i.z);

@@ -147,11 +147,8 @@ HWY_INLINE Triple<Number> parting(const BallRows<Number>& a, const BallRows<Numb
 /// Start of a step, in which bodies carry nothing over yet: the impulses of the last substep.
 template <class Number, bool kAnchored>
 HWY_INLINE void warm_start_ball_lanes(BallBlock& block, int lane, Real* motion) {
-  Bodies<Number, kAnchored> bodies;
-  Displacement<Number> moved_a;
-  Displacement<Number> moved_b;
-  read_motion(motion, block.line_a + lane, bodies.a, moved_a);
-  read_motion(motion, block.line_b + lane, bodies.b, moved_b);
+  MovingBodies<Number, kAnchored> pair(block, lane, motion);
+  Bodies<Number, kAnchored>& bodies = pair.velocity;
   const Triple<Number> gap = get3<Number>(block.gap, lane);
   const BallRows<Number> a =
       rows_of(get6<Number>(block.scale_a, lane), sum(get3<Number>(block.arm_a, lane), gap));
@@ -161,25 +158,22 @@ HWY_INLINE void warm_start_ball_lanes(BallBlock& block, int lane, Real* motion) 
   const Triple<Number> impulse = get3<Number>(block.impulse, lane);
   turn(impulse, a, b, bodies);
   push(impulse, block, lane, bodies);
-  write_motion(bodies.a, moved_a, motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_motion(bodies.b, moved_b, motion, block.line_b + lane);
+  pair.write_back(block, lane, motion);
 }
 
 template <class Number, bool kAnchored>
 HWY_INLINE void solve_ball_lanes(BallBlock& block, int lane, const BallPass& pass, Real* motion) {
-  Bodies<Number, kAnchored> bodies;
-  Displacement<Number> moved_a;
-  Displacement<Number> moved_b;
-  read_motion(motion, block.line_a + lane, bodies.a, moved_a);
-  read_motion(motion, block.line_b + lane, bodies.b, moved_b);
+  MovingBodies<Number, kAnchored> pair(block, lane, motion);
+  Bodies<Number, kAnchored>& bodies = pair.velocity;
   const Scale<Number> scale_a = get6<Number>(block.scale_a, lane);
   const Scale<Number> scale_b = get6<Number>(block.scale_b, lane);
   const Triple<Number> arm_a = get3<Number>(block.arm_a, lane);
   const Triple<Number> arm_b = get3<Number>(block.arm_b, lane);
-  const Triple<Number> by_turn_a = turned_by(scale_a.times(moved_a.theta), arm_a);
-  const Triple<Number> by_turn_b = turned_by(scale_b.times(moved_b.theta), arm_b);
-  const Triple<Number> gap = sum(get3<Number>(block.gap, lane),
-                                 sum(difference(moved_b.dx, moved_a.dx), difference(by_turn_b, by_turn_a)));
+  const Triple<Number> by_turn_a = turned_by(scale_a.times(pair.moved_a.theta), arm_a);
+  const Triple<Number> by_turn_b = turned_by(scale_b.times(pair.moved_b.theta), arm_b);
+  const Triple<Number> gap =
+      sum(get3<Number>(block.gap, lane),
+          sum(difference(pair.moved_b.dx, pair.moved_a.dx), difference(by_turn_b, by_turn_a)));
 
   // Both bodies are pushed at B's anchor, so that no moment arises from nothing while the anchors are apart.
   const BallRows<Number> a = rows_of(scale_a, sum(sum(arm_a, by_turn_a), gap));
@@ -204,25 +198,20 @@ HWY_INLINE void solve_ball_lanes(BallBlock& block, int lane, const BallPass& pas
   put3(sum(before, change), block.impulse, lane);
   turn(change, a, b, bodies);
   push(change, block, lane, bodies);
-  write_motion(bodies.a, moved_a, motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_motion(bodies.b, moved_b, motion, block.line_b + lane);
+  pair.write_back(block, lane, motion);
 }
 
 template <class Number, bool kAnchored>
 HWY_INLINE void relax_ball_lanes(BallBlock& block, int lane, Real* motion) {
-  Bodies<Number, kAnchored> bodies;
-  Displacement<Number> moved_a;
-  Displacement<Number> moved_b;
-  read_motion(motion, block.line_a + lane, bodies.a, moved_a);
-  read_motion(motion, block.line_b + lane, bodies.b, moved_b);
+  MovingBodies<Number, kAnchored> pair(block, lane, motion);
+  Bodies<Number, kAnchored>& bodies = pair.velocity;
   const BallRows<Number> a = get_rows<Number>(block.j_a, lane);
   const BallRows<Number> b = get_rows<Number>(block.j_b, lane);
   const Triple<Number> solved = get6<Number>(block.mass, lane).times(parting(a, b, bodies));
   const Triple<Number> change = scaled(Number(Real(-1)), solved);
   turn(change, a, b, bodies);
   push(change, block, lane, bodies);
-  write_motion(bodies.a, moved_a, motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_motion(bodies.b, moved_b, motion, block.line_b + lane);
+  pair.write_back(block, lane, motion);
 
   const Triple<Number> impulse = sum(get3<Number>(block.impulse, lane), change);
   put3(impulse, block.impulse, lane);

@@ -114,15 +114,11 @@ HWY_INLINE void solve_friction(ContactBlock& block, int lane, Bodies<Number, kAn
 
 template <class Number, bool kAnchored>
 HWY_INLINE void solve_lanes(ContactBlock& block, int lane, const ContactPass& pass, Real* motion) {
-  Bodies<Number, kAnchored> bodies;
-  Displacement<Number> moved_a;
-  Displacement<Number> moved_b;
-  read_motion(motion, block.line_a + lane, bodies.a, moved_a);
-  read_motion(motion, block.line_b + lane, bodies.b, moved_b);
-  solve_points(block, lane, pass, moved_a, moved_b, bodies);
+  MovingBodies<Number, kAnchored> pair(block, lane, motion);
+  Bodies<Number, kAnchored>& bodies = pair.velocity;
+  solve_points(block, lane, pass, pair.moved_a, pair.moved_b, bodies);
   if (pass.friction) solve_friction(block, lane, bodies);
-  write_motion(bodies.a, moved_a, motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_motion(bodies.b, moved_b, motion, block.line_b + lane);
+  pair.write_back(block, lane, motion);
 }
 
 /// Applies what the block holds to the bodies, with the opposite sign.

@@ -200,6 +200,24 @@ struct Bodies {
   }
 };
 
+/// What the lines of two bodies say, and how it gets back there.
+template <class Number, bool kAnchored>
+struct MovingBodies {
+  Bodies<Number, kAnchored> velocity;
+  Displacement<Number> moved_a, moved_b;
+
+  template <class Block>
+  HWY_INLINE MovingBodies(const Block& block, int lane, const Real* motion) {
+    read_motion(motion, block.line_a + lane, velocity.a, moved_a);
+    read_motion(motion, block.line_b + lane, velocity.b, moved_b);
+  }
+  template <class Block>
+  HWY_INLINE void write_back(const Block& block, int lane, Real* motion) const {
+    write_motion(velocity.a, moved_a, motion, block.line_a + lane);
+    if constexpr (!kAnchored) write_motion(velocity.b, moved_b, motion, block.line_b + lane);
+  }
+};
+
 /// A symmetric matrix.
 template <class Number>
 struct Scale {
