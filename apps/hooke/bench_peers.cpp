@@ -9,8 +9,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <fcntl.h>
-#include <filesystem>
 #include <sstream>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,9 +16,6 @@
 namespace hooke::app {
 
 namespace {
-
-namespace fs = std::filesystem;
-using process::Descriptor;
 
 constexpr const char* kColumns =
     "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,max_penetration,kinetic_energy,"
@@ -33,13 +28,6 @@ struct PeerRow {
 
   [[nodiscard]] double number(std::size_t i) const { return std::strtod(fields[i].c_str(), nullptr); }
 };
-
-/// The program beside this one; empty if it was not built.
-std::string find_peers() {
-  std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "hooke-peers";
-  return fs::exists(beside, error) ? beside.string() : std::string();
-}
 
 std::string read_all(int descriptor) {
   std::string text;
@@ -69,14 +57,13 @@ std::vector<std::string> words_of(const std::string& program, const PeerBench& o
 
 /// Its status, and what it wrote to standard output; standard error is ours.
 Result<std::string> run_program(std::vector<std::string> words, int& status) {
-  std::array<int, 2> ends = {-1, -1};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return Error{ErrorCode::kLimitExceeded, words[0], "no pipe"};
-  const Descriptor read(ends[0]);
-  Descriptor write(ends[1]);
-  auto child = process::Child::start(std::move(words), {.output = write.number(), .error = STDERR_FILENO});
+  auto pipe = process::make_pipe();
+  if (!pipe) return Error{ErrorCode::kLimitExceeded, words[0], "no pipe"};
+  auto child =
+      process::Child::start(std::move(words), {.output = pipe->write.number(), .error = STDERR_FILENO});
   if (!child) return child.error();
-  write.close();
-  std::string text = read_all(read.number());
+  pipe->write.close();
+  std::string text = read_all(pipe->read.number());
   status = child.value().wait();
   return text;
 }
@@ -111,7 +98,7 @@ std::vector<PeerRow> runs_of(const std::string& scene, const std::vector<int>& w
 }  // namespace
 
 int bench_peers(const PeerBench& options) {
-  const std::string program = find_peers();
+  const std::string program = process::find_beside("hooke-peers");
   if (program.empty()) {
     std::fputs(
         "hooke bench: --peers needs hooke-peers beside hooke: ./dev setup bench, then build with "

@@ -28,24 +28,11 @@ using Clock = std::chrono::steady_clock;
 using process::Descriptor;
 
 constexpr std::size_t kMaxReason = 400;  // bytes of a refusal that are shown
-constexpr std::string_view kProgram = "hooke-import";
-
-struct Pipe {
-  Descriptor read;
-  Descriptor write;
-};
-
-std::optional<Pipe> make_pipe() {
-  std::array<int, 2> ends = {-1, -1};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
-  return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
-}
+constexpr const char* kProgram = "hooke-import";
 
 std::string find_program() {
   if (const char* chosen = std::getenv("HOOKE_IMPORT"); chosen != nullptr && *chosen != '\0') return chosen;
-  std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
-  if (!error && ::access(beside.c_str(), X_OK) == 0) return beside.string();
+  if (std::string beside = process::find_beside(kProgram); !beside.empty()) return beside;
 #ifdef HOOKE_IMPORT_FOLDER
   const fs::path installed = fs::path(HOOKE_IMPORT_FOLDER) / kProgram;
   if (::access(installed.c_str(), X_OK) == 0) return installed.string();
@@ -156,8 +143,8 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
     return Error{ErrorCode::kUnsupported, path,
                  "the program hooke-import is missing: put it beside this one or name it in HOOKE_IMPORT"};
   }
-  auto output = make_pipe();
-  auto reason = make_pipe();
+  auto output = process::make_pipe();
+  auto reason = process::make_pipe();
   if (!output || !reason) return Error{ErrorCode::kLimitExceeded, path, "no pipe for the importer"};
   auto child = process::Child::start(arguments(program, path, options),
                                      {.output = output->write.number(), .error = reason->write.number()});

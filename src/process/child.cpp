@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
+#include <filesystem>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <system_error>
@@ -63,6 +64,18 @@ Descriptor copy_above_standard(int number) {
 }
 
 }  // namespace
+
+std::optional<Pipe> make_pipe() {
+  std::array<int, 2> ends = {-1, -1};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
+  return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
+}
+
+std::string find_beside(const std::string& name) {
+  std::error_code error;
+  const auto beside = std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+  return !error && ::access(beside.c_str(), X_OK) == 0 ? beside.string() : std::string();
+}
 
 void Descriptor::close() {
   if (number_ >= 0) ::close(number_);

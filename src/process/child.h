@@ -35,6 +35,17 @@ class Descriptor {
   int number_ = -1;
 };
 
+struct Pipe {
+  Descriptor read;
+  Descriptor write;
+};
+
+/// Closed in programs that are started. Nothing when the system has none left.
+std::optional<Pipe> make_pipe();
+
+/// The path of the program `name` in the folder of the running one; empty if there is none.
+std::string find_beside(const std::string& name);
+
 /// What a program gets as its three standard streams; -1 is /dev/null.
 struct Streams {
   int input = -1;
