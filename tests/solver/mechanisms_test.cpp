@@ -1,13 +1,15 @@
 #include "constants.h"
+#include "planar_mechanism.h"
 #include "solver/joint_rig.h"
 #include "solver/joints.h"
 
-#include <array>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <vector>
 
 namespace hooke::solver {
+using check::PlanarMechanism;
+using check::PlanarPose;
 using test::kGravity;
 using test::kPi;
 
@@ -15,91 +17,16 @@ namespace {
 
 constexpr Vec3 kZ = {Real(0), Real(0), Real(1)};
 
-/// A body of a planar mechanism: its center and its angle about z.
-struct PlanarPose {
-  double x = 0;
-  double y = 0;
-  double angle = 0;
-};
-
-struct PlanarBody {
-  double mass = 1;
-  double inertia = 1;  ///< About z [kg m^2].
-};
-
-/// A mechanism with one degree of freedom q: T = J(q) q'^2 / 2 and V(q) give
-/// q'' = -(J'(q) q'^2 / 2 + V'(q)) / J(q), integrated by the classical Runge-Kutta method.
-template <class PoseOf>
-class ReducedMechanism {
- public:
-  ReducedMechanism(std::vector<PlanarBody> bodies, PoseOf pose_of)
-      : bodies_(std::move(bodies)), pose_of_(std::move(pose_of)) {}
-
-  [[nodiscard]] PlanarPose pose(double q, std::size_t i) const { return pose_of_(q)[i]; }
-
-  /// Change of pose per q.
-  [[nodiscard]] PlanarPose slope(double q, std::size_t i) const {
-    const double e = 1e-5;
-    const PlanarPose a = pose(q - e, i);
-    const PlanarPose b = pose(q + e, i);
-    return {(b.x - a.x) / (2 * e), (b.y - a.y) / (2 * e), (b.angle - a.angle) / (2 * e)};
-  }
-
-  [[nodiscard]] double acceleration(double q, double speed) const {
-    const double e = 1e-4;
-    const double inertia_slope = (inertia(q + e) - inertia(q - e)) / (2 * e);
-    const double force = -(potential(q + e) - potential(q - e)) / (2 * e);
-    return (force - 0.5 * inertia_slope * speed * speed) / inertia(q);
-  }
-
-  /// q after `seconds`.
-  [[nodiscard]] double run(double q, double speed, double seconds) const {
-    const int steps = static_cast<int>(seconds * 2000);
-    const double h = seconds / steps;
-    for (int i = 0; i < steps; ++i) {
-      const double v1 = speed;
-      const double a1 = acceleration(q, v1);
-      const double v2 = speed + 0.5 * h * a1;
-      const double a2 = acceleration(q + 0.5 * h * v1, v2);
-      const double v3 = speed + 0.5 * h * a2;
-      const double a3 = acceleration(q + 0.5 * h * v2, v3);
-      const double v4 = speed + h * a3;
-      const double a4 = acceleration(q + h * v3, v4);
-      q += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
-      speed += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    }
-    return q;
-  }
-
- private:
-  [[nodiscard]] double inertia(double q) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const PlanarPose s = slope(q, i);
-      sum += bodies_[i].mass * (s.x * s.x + s.y * s.y) + bodies_[i].inertia * s.angle * s.angle;
-    }
-    return sum;
-  }
-  [[nodiscard]] double potential(double q) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) sum += bodies_[i].mass * kGravity * pose(q, i).y;
-    return sum;
-  }
-
-  std::vector<PlanarBody> bodies_;
-  PoseOf pose_of_;
-};
-
 constexpr double kDt = 1.0 / 240;
 constexpr int kSubsteps = 16;
 
 /// Adds body `i` of the mechanism at q, moving at q'. The stored velocity is that of half a substep before:
 /// v += h a comes first.
-template <class Mechanism>
-BodyId add_body(JointRig& rig, const Mechanism& m, const PlanarBody& body, double q, std::size_t i) {
+BodyId add_body(JointRig& rig, const PlanarMechanism& m, const PlanarMechanism::Body& body, double q,
+                std::size_t i) {
   const double speed = -0.5 * kDt / kSubsteps * m.acceleration(q, 0);
-  const PlanarPose p = m.pose(q, i);
-  const PlanarPose s = m.slope(q, i);
+  const PlanarPose p = m.poses(q)[i];
+  const PlanarPose s = m.slopes(q)[i];
   const auto mass = static_cast<Real>(body.mass);
   return rig.add({.center = {p.x, p.y, 0},
                   .mass = mass,
@@ -220,71 +147,41 @@ struct Chain {
 
 TEST_SUITE("solver/mechanisms") {
   TEST_CASE("a four-bar linkage moves as its equation of motion says") {
-    // Crank 0.5 m at the origin, coupler 1.2 m, rocker 0.9 m at (1.1, 0).
-    const double crank = 0.5;
-    const double coupler = 1.2;
-    const double rocker = 0.9;
-    const double ground = 1.1;
-    const std::vector<PlanarBody> bodies = {{1, 0.03}, {2, 0.25}, {1.5, 0.1}};
-    const auto pin = [=](double q) {  // where coupler and rocker meet
-      const double x = crank * std::cos(q) - ground;
-      const double y = crank * std::sin(q);
-      const double r2 = x * x + y * y;
-      const double r = std::sqrt(r2);
-      const double along = (rocker * rocker - coupler * coupler + r2) / (2 * r);
-      const double across = std::sqrt(rocker * rocker - along * along);
-      return std::array<double, 2>{ground + (along * x + across * y) / r, (along * y - across * x) / r};
-    };
-    const auto pose_of = [=](double q) {
-      const double x = crank * std::cos(q);
-      const double y = crank * std::sin(q);
-      const auto [px, py] = pin(q);
-      return std::array<PlanarPose, 3>{
-          PlanarPose{0.5 * x, 0.5 * y, q},
-          PlanarPose{0.5 * (x + px), 0.5 * (y + py), std::atan2(py - y, px - x)},
-          PlanarPose{0.5 * (ground + px), 0.5 * py, std::atan2(py, px - ground)}};
-    };
-    const ReducedMechanism mechanism(bodies, pose_of);
+    const check::FourBar shape;
+    const std::vector<PlanarMechanism::Body> bodies = {{1, 0.03}, {2, 0.25}, {1.5, 0.1}};
+    const PlanarMechanism mechanism(bodies, [&](double q) { return shape.poses(q); });
     const double start = 1.0;
     JointRig rig;
     std::vector<BodyId> ids;
     for (std::size_t i = 0; i < 3; ++i) ids.push_back(add_body(rig, mechanism, bodies[i], start, i));
-    const auto [px, py] = pin(start);
+    const DVec3 pin = shape.pin(start);
     add_hinge(rig, {}, ids[0], 0, 0);
-    add_hinge(rig, ids[0], ids[1], crank * std::cos(start), crank * std::sin(start));
-    add_hinge(rig, ids[1], ids[2], px, py);
-    add_hinge(rig, {}, ids[2], ground, 0);
+    add_hinge(rig, ids[0], ids[1], shape.crank * std::cos(start), shape.crank * std::sin(start));
+    add_hinge(rig, ids[1], ids[2], pin.x, pin.y);
+    add_hinge(rig, {}, ids[2], shape.ground, 0);
     for (int i = 0; i < 240; ++i) {
       rig.step(static_cast<Real>(kDt), kSubsteps);
       if (i % 48 != 47) continue;
-      const double q = mechanism.run(start, 0, (i + 1) * kDt);
+      const double q = mechanism.run(start, (i + 1) * kDt);
+      const std::vector<PlanarPose> poses = mechanism.poses(q);
       for (std::size_t k = 0; k < 3; ++k) {
-        const PlanarPose p = mechanism.pose(q, k);
+        const PlanarPose& p = poses[k];
         CHECK(length(rig.center(ids[k]) - DVec3{p.x, p.y, 0}) < 1e-4);
       }
     }
   }
 
   TEST_CASE("a slider-crank moves as its equation of motion says") {
-    const double crank = 0.4;
-    const double rod = 1.0;
-    const std::vector<PlanarBody> bodies = {{1, 0.02}, {1, 0.08}, {3, 0.1}};
-    const auto pose_of = [=](double q) {
-      const double x = crank * std::cos(q);
-      const double y = crank * std::sin(q);
-      const double end = x + std::sqrt(rod * rod - y * y);
-      return std::array<PlanarPose, 3>{PlanarPose{0.5 * x, 0.5 * y, q},
-                                       PlanarPose{0.5 * (x + end), 0.5 * y, std::atan2(-y, end - x)},
-                                       PlanarPose{end, 0, 0}};
-    };
-    const ReducedMechanism mechanism(bodies, pose_of);
+    const check::SliderCrank shape;
+    const std::vector<PlanarMechanism::Body> bodies = {{1, 0.02}, {1, 0.08}, {3, 0.1}};
+    const PlanarMechanism mechanism(bodies, [&](double q) { return shape.poses(q); });
     const double start = 1.3;
     JointRig rig;
     std::vector<BodyId> ids;
     for (std::size_t i = 0; i < 3; ++i) ids.push_back(add_body(rig, mechanism, bodies[i], start, i));
-    const double end = mechanism.pose(start, 2).x;
+    const double end = mechanism.poses(start)[2].x;
     add_hinge(rig, {}, ids[0], 0, 0);
-    add_hinge(rig, ids[0], ids[1], crank * std::cos(start), crank * std::sin(start));
+    add_hinge(rig, ids[0], ids[1], shape.crank * std::cos(start), shape.crank * std::sin(start));
     add_hinge(rig, ids[1], ids[2], end, 0);
     rig.hook({.kind = HookKind::kSlider,
               .b = {ids[2]},
@@ -293,9 +190,10 @@ TEST_SUITE("solver/mechanisms") {
     for (int i = 0; i < 240; ++i) {
       rig.step(static_cast<Real>(kDt), kSubsteps);
       if (i % 48 != 47) continue;
-      const double q = mechanism.run(start, 0, (i + 1) * kDt);
+      const double q = mechanism.run(start, (i + 1) * kDt);
+      const std::vector<PlanarPose> poses = mechanism.poses(q);
       for (std::size_t k = 0; k < 3; ++k) {
-        const PlanarPose p = mechanism.pose(q, k);
+        const PlanarPose& p = poses[k];
         CHECK(length(rig.center(ids[k]) - DVec3{p.x, p.y, 0}) < 1e-4);
       }
     }

@@ -6,16 +6,23 @@
 
 namespace hooke::check {
 
-double PlanarMechanism::inertia(double q) const {
+std::vector<PlanarPose> PlanarMechanism::slopes(double q) const {
   const double e = 1e-5;
   const std::vector<PlanarPose> before = poses_(q - e);
-  const std::vector<PlanarPose> after = poses_(q + e);
+  std::vector<PlanarPose> slopes = poses_(q + e);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = {(slopes[i].x - before[i].x) / (2 * e), (slopes[i].y - before[i].y) / (2 * e),
+                 (slopes[i].angle - before[i].angle) / (2 * e)};
+  }
+  return slopes;
+}
+
+double PlanarMechanism::inertia(double q) const {
+  const std::vector<PlanarPose> slope = slopes(q);
   double sum = 0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const double x = (after[i].x - before[i].x) / (2 * e);
-    const double y = (after[i].y - before[i].y) / (2 * e);
-    const double turn = (after[i].angle - before[i].angle) / (2 * e);
-    sum += bodies_[i].mass * (x * x + y * y) + bodies_[i].inertia * turn * turn;
+    const PlanarPose& s = slope[i];
+    sum += bodies_[i].mass * (s.x * s.x + s.y * s.y) + bodies_[i].inertia * s.angle * s.angle;
   }
   return sum;
 }

@@ -32,13 +32,15 @@ class PlanarMechanism {
       : bodies_(std::move(bodies)), poses_(std::move(poses)) {}
 
   [[nodiscard]] std::vector<PlanarPose> poses(double q) const { return poses_(q); }
+  /// Their change per q.
+  [[nodiscard]] std::vector<PlanarPose> slopes(double q) const;
+  [[nodiscard]] double acceleration(double q, double speed) const;
   /// q, `seconds` after rest at `start`.
   [[nodiscard]] double run(double start, double seconds) const;
 
  private:
   [[nodiscard]] double inertia(double q) const;
   [[nodiscard]] double potential(double q) const;
-  [[nodiscard]] double acceleration(double q, double speed) const;
 
   std::vector<Body> bodies_;
   PosesOf poses_;
