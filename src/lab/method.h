@@ -11,19 +11,23 @@
 
 namespace hooke::lab {
 
+class ImplicitMatrix;
+
 /// What a method keeps from step to step.
 struct Workspace {
-  double tolerance = 1e-8;           ///< For adaptive methods.
-  std::vector<State> history;        ///< Multistep methods: earlier slopes or states, the newest first.
-  std::optional<State> carried;      ///< Verlet: the acceleration at the end of the last step.
-  std::shared_ptr<void> integrator;  ///< SUNDIALS' own memory.
-  std::uint64_t inner_steps = 0;     ///< Of adaptive methods.
-  std::optional<Error> error;        ///< Set by a step that could not be made.
+  double tolerance = 1e-8;                 ///< For adaptive methods.
+  std::vector<State> history;              ///< Multistep methods: earlier slopes or states, the newest first.
+  std::optional<State> carried;            ///< Verlet: the acceleration at the end of the last step.
+  std::shared_ptr<ImplicitMatrix> matrix;  ///< Implicit methods: of an earlier step.
+  std::shared_ptr<void> integrator;        ///< SUNDIALS' own memory.
+  std::uint64_t inner_steps = 0;           ///< Of adaptive methods.
+  std::optional<Error> error;              ///< Set by a step that could not be made.
 
   /// After y was changed from outside: what was kept describes another motion.
   void forget() {
     history.clear();
     carried.reset();
+    matrix.reset();
     integrator.reset();
   }
 };

@@ -1,6 +1,8 @@
+#include "lab/implicit.h"
 #include "lab/methods/methods.h"
 
 #include <arkode/arkode_erkstep.h>
+#include <cmath>
 #include <cstdio>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -19,6 +21,7 @@ namespace {
 
 constexpr long kMostSteps = 1000000;  ///< Of theirs in one of ours.
 constexpr int kKrylovDimension = 60;
+constexpr double kGammaMayChange = 0.3;  ///< By this share, before the preconditioner is made anew.
 
 /// SUNDIALS' memory for one system, from the first step to the next change of y from outside.
 struct Integrator {
@@ -29,6 +32,7 @@ struct Integrator {
   void* cvode = nullptr;
   void* erk = nullptr;
   const System* system = nullptr;
+  ImplicitMatrix matrix;
   long steps_before = 0;
 
   Integrator() = default;
@@ -63,6 +67,27 @@ int jacobian_times(N_Vector direction, N_Vector result, realtype t, N_Vector y, 
   return 0;
 }
 
+// GMRES solves CVODE's linear equations in a few rounds, instead of hundreds where springs are stiff, when
+// the matrix of an earlier step prepares them.
+
+// NOLINTNEXTLINE(readability-function-size): the signature is CVODE's
+int factor_preconditioner(realtype t, N_Vector y, N_Vector, booleantype may_keep, booleantype* is_new,
+                          realtype gamma, void* user) {
+  auto& i = *static_cast<Integrator*>(user);
+  const bool near = std::abs(i.matrix.gamma() - gamma) <= kGammaMayChange * gamma;
+  *is_new = may_keep != 0 && near ? SUNFALSE : SUNTRUE;
+  if (*is_new == SUNFALSE) return 0;
+  return i.matrix.factor(*i.system, t, map_of(y), gamma) ? 0 : 1;
+}
+
+// NOLINTNEXTLINE(readability-function-size): the signature is CVODE's
+int precondition(realtype, N_Vector, N_Vector, N_Vector right, N_Vector result, realtype, realtype, int,
+                 void* user) {
+  const auto& i = *static_cast<Integrator*>(user);
+  map_of(result) = i.matrix.solve_whole(*i.system, map_of(right));
+  return 0;
+}
+
 using Begin = bool (*)(Integrator& i, double t, const Workspace& work);
 
 bool begin_adams_moulton(Integrator& i, double t, const Workspace& work) {
@@ -76,12 +101,13 @@ bool begin_adams_moulton(Integrator& i, double t, const Workspace& work) {
 
 bool begin_bdf(Integrator& i, double t, const Workspace& work) {
   i.cvode = CVodeCreate(CV_BDF, i.context);
-  i.krylov = SUNLinSol_SPGMR(i.y, SUN_PREC_NONE, kKrylovDimension, i.context);
+  i.krylov = SUNLinSol_SPGMR(i.y, SUN_PREC_LEFT, kKrylovDimension, i.context);
   return i.cvode != nullptr && i.krylov != nullptr && CVodeInit(i.cvode, slope, t, i.y) == 0 &&
          CVodeSStolerances(i.cvode, work.tolerance, work.tolerance) == 0 &&
          CVodeSetUserData(i.cvode, &i) == 0 && CVodeSetMaxNumSteps(i.cvode, kMostSteps) == 0 &&
          CVodeSetLinearSolver(i.cvode, i.krylov, nullptr) == 0 &&
-         CVodeSetJacTimes(i.cvode, nullptr, jacobian_times) == 0;
+         CVodeSetJacTimes(i.cvode, nullptr, jacobian_times) == 0 &&
+         CVodeSetPreconditioner(i.cvode, factor_preconditioner, precondition) == 0;
 }
 
 bool begin_dormand_prince(Integrator& i, double t, const Workspace& work) {
