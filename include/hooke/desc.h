@@ -60,8 +60,8 @@ struct WorldDesc {
   int workers = 1;  ///< Threads used by step(). The result does not depend on it. [1, 64]
   WindDesc wind = {};
   std::vector<MaterialPairDesc> materials = {};
-  Real contact_hz = Real(60);             ///< Stiffness of contacts between bodies, as a frequency. (0, 1000]
-  Real contact_damping_ratio = Real(10);  ///< Of the same. (0, 100]
+  Real contact_hz = Real(60);            ///< Stiffness of contacts between bodies, as a frequency. (0, 1000]
+  Real contact_damping_ratio = Real(5);  ///< Of the same. (0, 100]
   int bias_sweeps =
       1;  ///< Passes over contacts in each substep; 2 is cheaper than twice the substeps. [1, 8]
   bool sleeping = true;  ///< Bodies that have come to rest are skipped until something wakes them.

@@ -134,7 +134,7 @@ struct ContactStep {
   Vec3 gravity = {};              ///< [m/s^2]
   Real h = Real(0);               ///< Length of a substep [s].
   Real hz = Real(60);             ///< Frequency of the spring that undoes overlap.
-  Real damping_ratio = Real(10);  ///< Of that spring.
+  Real damping_ratio = Real(5);   ///< Of that spring.
   int sweeps = 1;                 ///< Calls of solve_body_contacts in a substep.
   bool friction_in_bias = false;  ///< Friction also in solve_body_contacts: quieter at rest, and slower.
   Real impulse_scale = Real(1);   ///< Of the impulses carried over: h now over h then.

@@ -1,6 +1,7 @@
 #include "solver/hard_islands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace hooke::solver {
@@ -37,17 +38,24 @@ Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
   return Real(2) * (block.anchored ? a : std::min(a, bodies.traits[block.line_b[lane] / 16].inner_radius));
 }
 
-/// Overlap that each lane of a soft contact needs to carry what it carries.
-void find_sags(const ContactBlock& block, const ContactStep& step, ContactBlock::Lane& sag) {
+/// Impulse in a substep that would sink a soft contact by 1 m, over its effective mass [1/m].
+Real stiffness_of(const ContactBlock& block, const ContactStep& step) {
   const ContactSoftness soft = contact_softness(step, block.anchored);
-  const Real scale = soft.impulse_scale / soft.rate;
-  for (int lane = 0; lane < kContactLanes; ++lane) sag[lane] = Real(0);
+  return soft.rate / soft.impulse_scale;
+}
+
+/// Overlap that each lane of a soft contact needs to carry what it carries, and the effective mass of those
+/// points that carry something.
+void find_sags(const ContactBlock& block, Real stiffness, ContactBlock::Lane& sag,
+               ContactBlock::Lane& bearing) {
+  for (int lane = 0; lane < kContactLanes; ++lane) sag[lane] = bearing[lane] = Real(0);
   for (int k = 0; k < block.point_count; ++k) {
     const ContactBlock::Point& p = block.point[k];
     for (int lane = 0; lane < kContactLanes; ++lane) {
-      const bool present = p.mass[lane] > Real(0);
-      const Real needed = scale * p.impulse[lane] / (present ? p.mass[lane] : Real(1));
-      sag[lane] = present && needed > sag[lane] ? needed : sag[lane];
+      const bool bears = p.mass[lane] > Real(0) && p.impulse[lane] > Real(0);
+      const Real needed = p.impulse[lane] / (stiffness * (bears ? p.mass[lane] : Real(1)));
+      sag[lane] = bears && needed > sag[lane] ? needed : sag[lane];
+      bearing[lane] += bears ? p.mass[lane] : Real(0);
     }
   }
 }
@@ -64,18 +72,36 @@ void judge_contacts(const ContactStep& step, const BodyContacts& contacts, const
                     base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
   for (const ContactBlock& block : contacts.blocks) {
     if (!is_judged(block, bodies)) continue;
+    const Real stiffness = stiffness_of(block, step);
     ContactBlock::Lane sag;
-    find_sags(block, step, sag);
+    ContactBlock::Lane bearing;
+    find_sags(block, stiffness, sag, bearing);
     for (int lane = 0; lane < block.count; ++lane) {
       const std::uint32_t a = block.line_a[lane] / 16;
-      if (!block.anchored) sets.merge(a, block.line_b[lane] / 16);
+      const std::uint32_t b = block.line_b[lane] / 16;
+      if (!block.anchored) sets.merge(a, b);
       if (!(sag[lane] > Real(0))) continue;
       const Real size = size_of(block, lane, bodies);
       if (!(size > Real(0))) continue;
       demands[a].sag = std::max(demands[a].sag, sag[lane] / size);
       demands[a].lean = std::max(demands[a].lean, sag[lane] / (size * size * size));
+      const Real down = dot(step.gravity, vector_of(block.normal, lane));
+      if (block.anchored && !(down > Real(0))) continue;
+      IslandDemand& upper = demands[down > Real(0) ? a : b];
+      upper.bearing += stiffness * bearing[lane] * std::abs(down);
+      upper.thinnest = std::min(upper.thinnest, size);
     }
   }
+}
+
+/// A weight that is only just arriving has yet to show in impulses, and falls meanwhile: what a body rests on
+/// must carry at least the body itself. With bearing = sum of stiffness mass |g.n|, the contacts of a body of
+/// mass M sink by (M h g / bearing) g.
+void add_own_weight(Real inverse_mass, const ContactStep& step, IslandDemand& own) {
+  if (!(own.bearing > Real(0))) return;
+  const Real sag = step.h * length_squared(step.gravity) / (inverse_mass * own.bearing);
+  own.sag = std::max(own.sag, sag / own.thinnest);
+  own.lean = std::max(own.lean, sag / (own.thinnest * own.thinnest * own.thinnest));
 }
 
 void add_demand(const IslandDemand& of, IslandDemand& to) {
@@ -246,6 +272,7 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
   for (const std::uint32_t body : awake) {
     if (!is_moved(bodies, body)) continue;
     IslandDemand own = hard.demands[body];
+    add_own_weight(bodies.motion[body].inverse_mass, step, own);
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
     // Hooks take turns with soft contacts only, and what is soft and fast falls anyway.

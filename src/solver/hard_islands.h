@@ -31,7 +31,7 @@
 ///
 /// An island that exceeds one of them in two steps on end, or five times in one, is hard until it has kept
 /// both by 0.6 for 30 steps. The sag follows from the impulse, which the direct solution knows too, so an
-/// island is judged alike in both.
+/// island is judged alike in both. It is at least what a body's own weight needs, shared by what it rests on.
 
 namespace hooke::solver {
 
@@ -46,9 +46,11 @@ inline constexpr std::int8_t kHard = 2;
 
 /// What an island asks for; of each body at first, then of all at its root.
 struct IslandDemand {
-  Real sag = Real(0);                                ///< Over the size.
-  Real lean = Real(0);                               ///< sag / size^3 [1/m^2]
-  Real low = std::numeric_limits<Real>::infinity();  ///< Along gravity [m].
+  Real sag = Real(0);                                     ///< Over the size.
+  Real lean = Real(0);                                    ///< sag / size^3 [1/m^2]
+  Real bearing = Real(0);                                 ///< Of what it rests on; see add_own_weight.
+  Real thinnest = std::numeric_limits<Real>::infinity();  ///< Size at these [m].
+  Real low = std::numeric_limits<Real>::infinity();       ///< Along gravity [m].
   Real high = -std::numeric_limits<Real>::infinity();
   std::uint32_t count = 0;
   std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Hardness.

@@ -376,6 +376,32 @@ TEST_SUITE("world/events") {
     CHECK_FALSE(world.add_force_law(BodyForceLaw{}));
   }
 
+  TEST_CASE("a force law over bodies sees them turn from substep to substep") {
+    // Whose inertia in world axes changes much in a step turns steadily while it touches something.
+    for (const bool touching : {false, true}) {
+      CAPTURE(touching);
+      World world = make_world(test::empty_space());
+      BodyDesc plank;
+      plank.kind = BodyKind::kDynamic;
+      plank.shape = Shape::box({Real(0.05), Real(0.5), Real(0.3)});
+      plank.angular_velocity = {Real(0), Real(0), Real(30)};
+      plank.contact.friction = Real(0);
+      take(world.add_body(plank));
+      BodyDesc wall = {.shape = Shape::box({Real(1), Real(1), Real(0.1)}), .position = {0, 0, 0.4}};
+      wall.contact.friction = Real(0);
+      if (touching) take(world.add_body(wall));
+      std::vector<double> angles;
+      take(world.add_force_law([&](BodyForceView& bodies) {
+        const Quat q = bodies.rotation(0);
+        angles.push_back(2 * std::atan2(d(q.z), d(q.w)));
+      }));
+      run(world, 3);
+      REQUIRE(angles.size() > 10);
+      for (std::size_t i = 1; i < angles.size(); ++i)
+        CHECK(angles[i] - angles[i - 1] == doctest::Approx(0.5 / 8).epsilon(0.02));
+    }
+  }
+
   TEST_CASE("a hit speed that is no speed is refused by name") {
     World world = make_world();
     for (const Real bad : {Real(-1), std::numeric_limits<Real>::quiet_NaN()}) {
