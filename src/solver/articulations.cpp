@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hooke::solver {
 
@@ -24,6 +25,10 @@ constexpr double kComplianceOfLoops = 1e-5;
 constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left explicit.
 constexpr double kStiffnessDamping = 0.2;  ///< Share of the rest that acts on the velocity too.
 constexpr double kStiffnessGrowth = 1.5;
+constexpr int kMostHooks = 8;  ///< Of a body that is not divided.
+constexpr int kHooksOfPart = 4;
+constexpr int kWeldRows = 6;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 double sign_at(const Articulation::Joint& joint, std::uint32_t link) {
   return link == joint.a ? -1 : 1;
@@ -37,30 +42,65 @@ std::uint32_t link_of(const std::vector<std::uint32_t>& bodies, std::uint32_t bo
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
 }
 
-/// Hooks of each link that moves, by their place in `hook_rows`.
-std::vector<std::vector<std::uint32_t>> hooks_of_links(const std::vector<std::uint32_t>& hook_rows,
-                                                       const std::vector<Hook>& hooks,
-                                                       const state::Bodies& bodies,
-                                                       const std::vector<std::uint32_t>& links) {
-  std::vector<std::vector<std::uint32_t>> of(links.size());
-  for (std::uint32_t i = 0; i < hook_rows.size(); ++i) {
-    const Hook& hook = hooks[hook_rows[i]];
-    for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
-      if (is_dynamic(bodies, body)) of[link_of(links, body)].push_back(i);
+/// What is to be joined by rows: links, and the two of each joint.
+struct Frame {
+  std::vector<std::uint32_t> bodies;
+  std::vector<double> parts;
+  std::vector<Articulation::Joint> joints;  ///< Hooks as they come, then welds.
+};
+
+/// Links of all bodies of the hooks; divides those of many hooks.
+Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
+                 const state::Bodies& bodies) {
+  std::vector<std::uint32_t> body_of;
+  for (const std::uint32_t i : hook_rows) body_of.insert(body_of.end(), {hooks[i].a.body, hooks[i].b.body});
+  std::sort(body_of.begin(), body_of.end());
+  Frame frame;
+  for (auto at = body_of.begin(); at != body_of.end();) {
+    const auto next = std::upper_bound(at, body_of.end(), *at);
+    const auto count = static_cast<int>(next - at);
+    const bool divided = is_dynamic(bodies, *at) && count > kMostHooks;
+    const int parts = divided ? (count + kHooksOfPart - 1) / kHooksOfPart : 1;
+    frame.bodies.insert(frame.bodies.end(), static_cast<std::size_t>(parts), *at);
+    frame.parts.insert(frame.parts.end(), static_cast<std::size_t>(parts), parts);
+    at = next;
+  }
+  std::vector<int> taken(frame.bodies.size(), 0);
+  const auto next_link = [&](std::uint32_t body) {
+    const std::uint32_t first = link_of(frame.bodies, body);
+    if (frame.parts[first] == 1) return first;
+    return first + static_cast<std::uint32_t>(taken[first]++ / kHooksOfPart);
+  };
+  for (const std::uint32_t i : hook_rows) {
+    const std::uint32_t a = next_link(hooks[i].a.body);
+    frame.joints.push_back({.hook = i, .a = a, .b = next_link(hooks[i].b.body)});
+  }
+  for (std::uint32_t link = 1; link < frame.bodies.size(); ++link) {
+    if (frame.bodies[link] == frame.bodies[link - 1])
+      frame.joints.push_back({.hook = Articulation::kWeld, .a = link - 1, .b = link});
+  }
+  return frame;
+}
+
+/// Joints of each link that moves.
+std::vector<std::vector<std::uint32_t>> joints_of_links(const Frame& frame, const state::Bodies& bodies) {
+  std::vector<std::vector<std::uint32_t>> of(frame.bodies.size());
+  for (std::uint32_t i = 0; i < frame.joints.size(); ++i) {
+    for (const std::uint32_t link : {frame.joints[i].a, frame.joints[i].b}) {
+      if (is_dynamic(bodies, frame.bodies[link])) of[link].push_back(i);
     }
   }
   return of;
 }
 
-/// More hooks than a tree of these links can have.
-bool count_loops(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-                 const state::Bodies& bodies, const std::vector<std::uint32_t>& links) {
-  const auto moving =
-      std::count_if(links.begin(), links.end(), [&](std::uint32_t body) { return is_dynamic(bodies, body); });
-  const bool grounded = std::any_of(hook_rows.begin(), hook_rows.end(), [&](std::uint32_t i) {
-    return !is_dynamic(bodies, hooks[i].a.body) || !is_dynamic(bodies, hooks[i].b.body);
-  });
-  return static_cast<std::ptrdiff_t>(hook_rows.size()) > moving - (grounded ? 0 : 1);
+/// More joints than a tree of these links can have.
+bool has_loops(const Frame& frame, const state::Bodies& bodies) {
+  const auto moves = [&](std::uint32_t link) { return is_dynamic(bodies, frame.bodies[link]); };
+  std::ptrdiff_t moving = 0;
+  for (std::uint32_t link = 0; link < frame.bodies.size(); ++link) moving += moves(link) ? 1 : 0;
+  const bool grounded = std::any_of(frame.joints.begin(), frame.joints.end(),
+                                    [&](const auto& joint) { return !moves(joint.a) || !moves(joint.b); });
+  return static_cast<std::ptrdiff_t>(frame.joints.size()) > moving - (grounded ? 0 : 1);
 }
 
 void list_couplings(const state::Bodies& bodies, Articulation& art) {
@@ -99,10 +139,36 @@ Symmetric3<double> excess_of(const Symmetric3<double>& stiffness) {
   return size > kStiffnessLeft ? scaled(1 - kStiffnessLeft / size, stiffness) : Symmetric3<double>{};
 }
 
+/// An equal part of a body moves as the body does.
+void divide(double parts, JointBody& body) {
+  if (parts == 1) return;
+  const double root = std::sqrt(parts);
+  body.inverse_mass *= parts;
+  body.scale = scaled(root, body.scale);
+  body.omega_scaled = (1 / root) * body.omega_scaled;
+}
+
+/// Both links have one velocity.
+void make_weld(const Articulation::Joint& joint, Articulation& art) {
+  const std::array<DVec3, 3> axes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
+  for (int k = 0; k < kWeldRows; ++k) {
+    JointRow row = {.low = -kUnbounded, .high = kUnbounded};
+    const DVec3& axis = axes[k % 3];
+    (k < 3 ? row.n : row.axis) = axis;
+    if (k >= 3) {
+      row.j_a = art.links[joint.a].body.scale * axis;
+      row.j_b = art.links[joint.b].body.scale * axis;
+    }
+    art.rows[joint.first + k] = row;
+    art.bound[joint.first + k] = 0;
+  }
+}
+
 void load_links(const state::Bodies& bodies, Articulation& art) {
   for (std::size_t i = 0; i < art.bodies.size(); ++i) {
     Link& link = art.links[i];
-    link.body = joint_body(bodies, art.bodies[i]);
+    link.body = joint_body_now(bodies, art.bodies[i]);
+    divide(art.parts[i], link.body);
     link.stiffness = {};
     link.excess = {};
     link.response = link.body.inverse_mass > 0 ? Symmetric3<double>::diagonal(1) : Symmetric3<double>{};
@@ -125,9 +191,12 @@ std::int8_t first_bound(const JointRow& row, double last) {
 
 void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
   std::array<JointRow, Hook::kMaxRows> rows;
-  for (std::size_t i = 0; i < art.hooks.size(); ++i) {
-    const Articulation::Joint& joint = art.joints[i];
-    Hook& hook = hooks[art.hooks[i]];
+  for (const Articulation::Joint& joint : art.joints) {
+    if (joint.hook == Articulation::kWeld) {
+      make_weld(joint, art);
+      continue;
+    }
+    Hook& hook = hooks[joint.hook];
     const int count = make_joint_rows(hook, art.links[joint.a].body, art.links[joint.b].body, h, rows);
     HOOKE_ASSERT(count == joint.count);
     for (int k = 0; k < count; ++k) {
@@ -160,12 +229,12 @@ double size_of(const Hook& hook, const Link& a, const Link& b) {
 double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
   std::array<JointRow, Hook::kMaxRows> rows;
   double worst = 0;
-  for (std::size_t i = 0; i < art.hooks.size(); ++i) {
-    const Articulation::Joint& joint = art.joints[i];
+  for (const Articulation::Joint& joint : art.joints) {
+    if (joint.hook == Articulation::kWeld) continue;
     const Link& a = art.links[joint.a];
     const Link& b = art.links[joint.b];
-    const double size = size_of(hooks[art.hooks[i]], a, b);
-    make_joint_rows(hooks[art.hooks[i]], moved(a, h), moved(b, h), h, rows);
+    const double size = size_of(hooks[joint.hook], a, b);
+    make_joint_rows(hooks[joint.hook], moved(a, h), moved(b, h), h, rows);
     for (int k = 0; k < joint.count; ++k) {
       JointRow row = rows[k];
       // An error beyond the speed limit comes back along the row it has.
@@ -192,9 +261,9 @@ bool turns_fast(const Articulation& art, double h) {
 /// much that a solution found without it is not to be trusted.
 bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
   std::vector<Symmetric3<double>> found(art.links.size());
-  for (std::size_t i = 0; i < art.joints.size(); ++i) {
-    const Articulation::Joint& joint = art.joints[i];
-    const Hook& hook = hooks[art.hooks[i]];
+  for (const Articulation::Joint& joint : art.joints) {
+    if (joint.hook == Articulation::kWeld) continue;
+    const Hook& hook = hooks[joint.hook];
     const DVec3 force = (1 / h) * vector_cast<double>(hook.impulse);
     if (force == DVec3{}) continue;
     Link& a = art.links[joint.a];
@@ -363,19 +432,34 @@ void solve_with_bounds(Articulation& art) {
 }
 
 void store_impulses(const Articulation& art, std::vector<Hook>& hooks) {
-  for (std::size_t i = 0; i < art.joints.size(); ++i) {
-    const auto first = static_cast<std::size_t>(art.joints[i].first);
-    const auto count = static_cast<std::size_t>(art.joints[i].count);
+  for (const Articulation::Joint& joint : art.joints) {
+    if (joint.hook == Articulation::kWeld) continue;
+    const auto first = static_cast<std::size_t>(joint.first);
+    const auto count = static_cast<std::size_t>(joint.count);
     store_joint_impulses(std::span(art.rows).subspan(first, count),
-                         std::span(art.lambda).subspan(first, count), hooks[art.hooks[i]]);
+                         std::span(art.lambda).subspan(first, count), hooks[joint.hook]);
   }
 }
 
+/// The parts of a body differ by rounding: their mean has all of its momentum.
 void store_velocities(const Articulation& art, state::Bodies& bodies) {
-  for (std::size_t i = 0; i < art.links.size(); ++i) {
-    const Link& link = art.links[i];
-    if (link.body.inverse_mass > 0)
-      set_joint_velocity(link.body, link.v, link.omega_scaled, art.bodies[i], bodies);
+  for (std::size_t i = 0; i < art.links.size();) {
+    const auto parts = static_cast<std::size_t>(art.parts[i]);
+    JointBody before = art.links[i].body;
+    if (before.inverse_mass > 0) {
+      DVec3 v;
+      DVec3 omega_scaled;
+      for (std::size_t k = 0; k < parts; ++k) {
+        v += art.links[i + k].v;
+        omega_scaled += art.links[i + k].omega_scaled;
+      }
+      // omega~ of the whole body is sqrt(parts) times that of each.
+      const double root = std::sqrt(art.parts[i]);
+      before.scale = scaled(1 / root, before.scale);
+      before.omega_scaled = root * before.omega_scaled;
+      set_joint_velocity(before, (1 / art.parts[i]) * v, (1 / root) * omega_scaled, art.bodies[i], bodies);
+    }
+    i += parts;
   }
 }
 
@@ -384,18 +468,13 @@ void store_velocities(const Articulation& art, state::Bodies& bodies) {
 std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
                                               const std::vector<Hook>& hooks, const state::Bodies& bodies,
                                               double budget) {
-  Articulation art;
+  Frame frame = make_frame(hook_rows, hooks, bodies);
   std::vector<int> sizes;
-  for (const std::uint32_t i : hook_rows) {
-    art.bodies.insert(art.bodies.end(), {hooks[i].a.body, hooks[i].b.body});
-    sizes.push_back(count_joint_rows(hooks[i]));
-  }
-  std::sort(art.bodies.begin(), art.bodies.end());
-  art.bodies.erase(std::unique(art.bodies.begin(), art.bodies.end()), art.bodies.end());
+  for (const Articulation::Joint& joint : frame.joints)
+    sizes.push_back(joint.hook == Articulation::kWeld ? kWeldRows : count_joint_rows(hooks[joint.hook]));
 
-  std::vector<std::vector<std::uint32_t>> neighbors(hook_rows.size());
-  for (const std::vector<std::uint32_t>& group : hooks_of_links(hook_rows, hooks, bodies, art.bodies)) {
-    if (static_cast<double>(group.size()) * static_cast<double>(group.size()) > budget) return std::nullopt;
+  std::vector<std::vector<std::uint32_t>> neighbors(frame.joints.size());
+  for (const std::vector<std::uint32_t>& group : joints_of_links(frame, bodies)) {
     for (const std::uint32_t i : group) neighbors[i].insert(neighbors[i].end(), group.begin(), group.end());
   }
   for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
@@ -403,16 +482,20 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
     neighbors[i].erase(std::unique(neighbors[i].begin(), neighbors[i].end()), neighbors[i].end());
     std::erase(neighbors[i], i);
   }
-  std::optional<BlockPattern> pattern = make_block_pattern(neighbors, sizes, budget);
+  Articulation art;
+  art.has_loops = has_loops(frame, bodies);
+  std::optional<BlockPattern> pattern =
+      make_block_pattern(neighbors, sizes, art.has_loops ? budget : kTreesMayTake * budget);
   if (!pattern) return std::nullopt;
   art.pattern = std::move(*pattern);
-  art.has_loops = count_loops(hook_rows, hooks, bodies, art.bodies);
   for (int i = 0; i < art.pattern.node_count(); ++i) {
-    const std::uint32_t hook = hook_rows[art.pattern.order[i]];
-    art.hooks.push_back(hook);
-    art.joints.push_back({link_of(art.bodies, hooks[hook].a.body), link_of(art.bodies, hooks[hook].b.body),
-                          art.pattern.first[i], art.pattern.size[i]});
+    Articulation::Joint joint = frame.joints[art.pattern.order[i]];
+    joint.first = art.pattern.first[i];
+    joint.count = art.pattern.size[i];
+    art.joints.push_back(joint);
   }
+  art.bodies = std::move(frame.bodies);
+  art.parts = std::move(frame.parts);
   list_couplings(bodies, art);
   art.links.resize(art.bodies.size());
   const auto row_count = static_cast<std::size_t>(art.pattern.first.back());

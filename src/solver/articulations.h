@@ -47,17 +47,24 @@ struct Link {
 /// A body under moderate load has no G and keeps its angular momentum to rounding. F is the larger of the
 /// last substep's force and this one's: a joint that snaps taut is solved again with what it has found.
 ///
+/// All hooks of one body are joined to each other, so that a hub of n hooks would cost n^3. A body of more
+/// than 8 hooks enters as several links, of an equal share of it and 4 hooks each, that are welded in a row:
+/// exact, and the cost grows with n.
+///
 /// Where a body turns by more than 0.03 rad in the substep, the rows are made anew about its end until locks
 /// err by less than 2e-4 of their levers: a Newton step each, four solutions at most in all.
 ///
 /// Sources: Baraff 1996, "Linear-time dynamics using Lagrange multipliers"; geometric stiffness after
 /// Tournier et al. 2015, "Stable constrained dynamics".
 struct Articulation {
-  std::vector<std::uint32_t> bodies;  ///< Rows; HookPlace::kWorld for the world.
-  std::vector<std::uint32_t> hooks;   ///< Rows, in order of elimination.
+  static constexpr std::uint32_t kWeld = 0xFFFFFFFF;
+
+  std::vector<std::uint32_t> bodies;  ///< Rows in order; HookPlace::kWorld for the world. One for each link.
+  std::vector<double> parts;          ///< Into how many links the body of each link is divided.
   bool has_loops = false;
 
   struct Joint {
+    std::uint32_t hook = 0;      ///< Row; kWeld between links of one body.
     std::uint32_t a = 0, b = 0;  ///< Links.
     int first = 0;               ///< Of its rows.
     int count = 0;
@@ -67,7 +74,7 @@ struct Articulation {
     std::uint32_t block = 0;
     std::uint32_t link = 0;
   };
-  std::vector<Joint> joints;  ///< As hooks.
+  std::vector<Joint> joints;  ///< In order of elimination.
   std::vector<Coupling> couplings;
   BlockPattern pattern;
 
@@ -81,8 +88,11 @@ struct Articulation {
   std::vector<double> right_side;
 };
 
+/// How much more a tree may take: it costs in proportion to its hooks, and nets do worst on large stars.
+inline constexpr double kTreesMayTake = 10;
+
 /// The articulation of hooks that hang together, in any order. Nothing if one solution takes more than
-/// `budget` multiplications.
+/// `budget` multiplications, and a tree kTreesMayTake times as many.
 [[nodiscard]] std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
                                                             const std::vector<state::Hook>& hooks,
                                                             const state::Bodies& bodies, double budget);

@@ -4,6 +4,7 @@
 #include "solver/hook_colors.h"
 #include "solver/joint_rows.h"
 #include "solver/soft_locks.h"
+#include "solver/sweep_order.h"
 #include "solver/wide/ball_joints.h"
 
 #include <algorithm>
@@ -103,15 +104,15 @@ void fill_block(Real h, std::span<const std::uint32_t> rows, std::vector<Hook>& 
 
 /// Calls visit(blocks) for ranges of blocks, color after color.
 template <class Visit>
-void for_each_color(parallel::ThreadPool& pool, BallJoints& joints, Visit&& visit) {
-  for (std::size_t color = 0; color + 1 < joints.block_begin.size(); ++color) {
+void for_each_range(parallel::ThreadPool& pool, BallJoints& joints, SweepOrder order, Visit&& visit) {
+  for_each_color(static_cast<int>(joints.block_begin.size()) - 1, order, [&](int color) {
     const int first = joints.block_begin[color];
     parallel::for_ranges(pool, joints.block_begin[color + 1] - first, kSolveGrain, [&](Range range) {
       visit(std::span(joints.blocks)
                 .subspan(static_cast<std::size_t>(first + range.begin),
                          static_cast<std::size_t>(range.count())));
     });
-  }
+  });
 }
 
 /// Blocks of the hooks of one color that are awake: those with two bodies that move, then the others.
@@ -174,16 +175,20 @@ void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& 
 
 void solve_ball_joints(parallel::ThreadPool& pool, Real h, Bodies& bodies, BallJoints& joints) {
   const LockSoftness soft = lock_softness(static_cast<double>(h));
+  constexpr SweepOrder kForward = SweepOrder::kForward;
   const wide::BallPass pass = {static_cast<Real>(soft.rate), static_cast<Real>(soft.mass_scale),
                                static_cast<Real>(soft.impulse_scale)};
   if (joints.fresh)
-    for_each_color(pool, joints, [&](auto blocks) { wide::warm_start_balls(blocks, bodies.motion.data()); });
-  for_each_color(pool, joints, [&](auto blocks) { wide::solve_balls(blocks, pass, bodies.motion.data()); });
+    for_each_range(pool, joints, kForward,
+                   [&](auto blocks) { wide::warm_start_balls(blocks, bodies.motion.data()); });
+  for_each_range(pool, joints, kForward,
+                 [&](auto blocks) { wide::solve_balls(blocks, pass, bodies.motion.data()); });
   joints.fresh = false;
 }
 
 void relax_ball_joints(parallel::ThreadPool& pool, Bodies& bodies, BallJoints& joints) {
-  for_each_color(pool, joints, [&](auto blocks) { wide::relax_balls(blocks, bodies.motion.data()); });
+  for_each_range(pool, joints, SweepOrder::kBackward,
+                 [&](auto blocks) { wide::relax_balls(blocks, bodies.motion.data()); });
 }
 
 void store_ball_joints(int substeps, const Bodies& bodies, const BallJoints& joints,

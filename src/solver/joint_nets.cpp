@@ -2,6 +2,7 @@
 
 #include "solver/hook_colors.h"
 #include "solver/soft_locks.h"
+#include "solver/sweep_order.h"
 
 #include <algorithm>
 #include <array>
@@ -54,17 +55,19 @@ void add(const JointImpulse& p, JointImpulse& sum) {
   sum.angular_b += p.angular_b;
 }
 
-/// n.n / m + |j|^2 of both ends.
-double diagonal_of(const JointRow& row, const Ends& ends) {
-  double sum = (ends.a.inverse_mass + ends.b.inverse_mass) * dot(row.n, row.n);
-  if (ends.a.inverse_mass > 0) sum += dot(row.j_a, row.j_a);
-  if (ends.b.inverse_mass > 0) sum += dot(row.j_b, row.j_b);
-  return sum;
+/// K of joint_nets.h.
+double diagonal_of(const JointRow& row, const Ends& ends, const Crowd& crowd) {
+  const auto part = [&](const JointBody& body, DVec3 j) {
+    return body.inverse_mass > 0 ? body.inverse_mass * dot(row.n, row.n) + dot(j, j) : 0;
+  };
+  const double a = part(ends.a, row.j_a);
+  const double b = part(ends.b, row.j_b);
+  return a + b > 0 ? a + b + (crowd.a * a * a + crowd.b * b * b) / (a + b) : 0;
 }
 
 /// The change of a row's impulse.
-double solve_row(const JointRow& row, const Ends& ends, double lambda, double h, const LockSoftness& soft) {
-  const double diagonal = diagonal_of(row, ends);
+double solve_row(const JointRow& row, const Ends& ends, double diagonal, double lambda, double h,
+                 const LockSoftness& soft) {
   if (!(diagonal > 0)) return 0;
   const double v =
       dot(row.n, ends.b.v - ends.a.v) + dot(row.j_b, ends.b.omega_scaled) - dot(row.j_a, ends.a.omega_scaled);
@@ -83,15 +86,15 @@ double solve_row(const JointRow& row, const Ends& ends, double lambda, double h,
 /// Calls visit(i) for every hook of the net that holds a body awake, color after color.
 template <class Visit>
 void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                    const JointNet& net, Visit&& visit) {
-  for (std::size_t color = 0; color + 1 < net.color_begin.size(); ++color) {
+                    const JointNet& net, SweepOrder order, Visit&& visit) {
+  for_each_color(static_cast<int>(net.color_begin.size()) - 1, order, [&](int color) {
     const int first = net.color_begin[color];
     parallel::for_ranges(pool, net.color_begin[color + 1] - first, kGrain, [&](Range range) {
       for (int i = first + range.begin; i < first + range.end; ++i) {
         if (is_awake(hooks[net.hooks[i]], bodies)) visit(i);
       }
     });
-  }
+  });
 }
 
 /// Rows of now, and the impulses that carry over along them.
@@ -109,15 +112,18 @@ void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, JointNet& n
   store_velocity(ends.b, hook.b.body, bodies);
 }
 
-void solve_joint(int i, double h, const LockSoftness& soft, Hook& hook, state::Bodies& bodies,
-                 JointNet& net) {
+void solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
+                 state::Bodies& bodies, JointNet& net) {
   Ends ends;
   load_velocity(bodies, hook.a.body, ends.a);
   load_velocity(bodies, hook.b.body, ends.b);
-  for (int k = net.first_row[i]; k < net.first_row[i + 1]; ++k) {
-    const JointRow& row = net.rows[k];
-    Real& lambda = hook.row_impulse[k - net.first_row[i]];
-    const double change = solve_row(row, ends, static_cast<double>(lambda), h, soft);
+  const int count = net.first_row[i + 1] - net.first_row[i];
+  for (int step = 0; step < count; ++step) {
+    const int k = order == SweepOrder::kForward ? step : count - 1 - step;
+    const JointRow& row = net.rows[net.first_row[i] + k];
+    Real& lambda = hook.row_impulse[k];
+    const double diagonal = diagonal_of(row, ends, net.crowd[i]);
+    const double change = solve_row(row, ends, diagonal, static_cast<double>(lambda), h, soft);
     lambda += static_cast<Real>(change);
     const JointImpulse p = impulse_of(row, change);
     apply(p, ends);
@@ -129,8 +135,19 @@ void solve_joint(int i, double h, const LockSoftness& soft, Hook& hook, state::B
 
 }  // namespace
 
+std::vector<int> count_hooks(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
+                             const state::Bodies& bodies) {
+  std::vector<int> degree(bodies.motion.size(), 0);
+  for (const std::uint32_t row : hook_rows) {
+    for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
+      if (is_dynamic(bodies, body)) ++degree[body];
+    }
+  }
+  return degree;
+}
+
 void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-               const state::Bodies& bodies, JointNet& net) {
+               const state::Bodies& bodies, const std::vector<int>& degree, JointNet& net) {
   HookColors colors = color_hooks(hook_rows, hooks, bodies);
   net = {};
   net.hooks = std::move(colors.hooks);
@@ -139,6 +156,11 @@ void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Ho
     net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[row]));
   net.rows.resize(static_cast<std::size_t>(net.first_row.back()));
   net.done.resize(net.hooks.size());
+  const auto beyond = [&](std::uint32_t body) {
+    return is_dynamic(bodies, body) ? static_cast<double>(std::max(0, degree[body] - kMostFreeHooks)) : 0.0;
+  };
+  for (const std::uint32_t row : net.hooks)
+    net.crowd.push_back({beyond(hooks[row].a.body), beyond(hooks[row].b.body)});
 }
 
 void prepare_net(JointNet& net) {
@@ -148,17 +170,19 @@ void prepare_net(JointNet& net) {
 void solve_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
                JointNet& net) {
   const LockSoftness soft = lock_softness(h);
-  for_each_joint(pool, hooks, bodies, net,
+  constexpr SweepOrder kOrder = SweepOrder::kForward;
+  for_each_joint(pool, hooks, bodies, net, kOrder,
                  [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
-  for_each_joint(pool, hooks, bodies, net,
-                 [&](int i) { solve_joint(i, h, soft, hooks[net.hooks[i]], bodies, net); });
+  for_each_joint(pool, hooks, bodies, net, kOrder,
+                 [&](int i) { solve_joint(i, h, soft, kOrder, hooks[net.hooks[i]], bodies, net); });
 }
 
 void relax_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
                JointNet& net) {
-  for_each_joint(pool, hooks, bodies, net, [&](int i) {
+  constexpr SweepOrder kOrder = SweepOrder::kBackward;
+  for_each_joint(pool, hooks, bodies, net, kOrder, [&](int i) {
     Hook& hook = hooks[net.hooks[i]];
-    solve_joint(i, h, {}, hook, bodies, net);
+    solve_joint(i, h, {}, kOrder, hook, bodies, net);
     std::array<double, Hook::kMaxRows> lambda = {};
     std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());
     const auto first = static_cast<std::size_t>(net.first_row[i]);

@@ -22,6 +22,19 @@ struct JointImpulse {
   DVec3 angular_b = {};
 };
 
+inline constexpr int kMostFreeHooks = 5;
+
+/// Hooks that each end of a hook has beyond kMostFreeHooks.
+struct Crowd {
+  double a = 0;
+  double b = 0;
+};
+
+/// Hooks of each body that a net moves.
+[[nodiscard]] std::vector<int> count_hooks(const std::vector<std::uint32_t>& hook_rows,
+                                           const std::vector<state::Hook>& hooks,
+                                           const state::Bodies& bodies);
+
 /// Hooks in colors: those of one color share no body that forces move.
 ///
 /// Locks are soft, like contacts: with omega = 2 pi 60 Hz (at most 1/(4h)) and zeta = 5,
@@ -33,6 +46,12 @@ struct JointImpulse {
 /// carry over: those of the last substep are in the velocities already, as what contacts did, along the
 /// directions of then; solve_joint_net begins with the difference to those of now.
 ///
+/// K is larger where a body has more than kMostFreeHooks hooks. With a light body in the middle of many,
+/// sweeps that begin with the impulses of before overshoot more each time (solver/sweep_order.h); with k_a
+/// and k_b what the ends add to the diagonal and n_a, n_b the hooks of each beyond kMostFreeHooks,
+///
+///   K = k_a + k_b + (n_a k_a^2 + n_b k_b^2) / (k_a + k_b).
+///
 /// Source of the soft form: Catto 2023, "Solver2D".
 struct JointNet {
   std::vector<std::uint32_t> hooks;  ///< Rows, by color.
@@ -40,11 +59,13 @@ struct JointNet {
   std::vector<int> first_row = {0};  ///< Of each hook; one more at the end.
   std::vector<JointRow> rows;
   std::vector<JointImpulse> done;  ///< Of each hook.
+  std::vector<Crowd> crowd;        ///< Of each hook.
 };
 
-/// Colors hooks in the order they come.
+/// Colors hooks in the order they come. `degree` by count_hooks, of these and all others that move the
+/// bodies.
 void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,
-               const state::Bodies& bodies, JointNet& net);
+               const state::Bodies& bodies, const std::vector<int>& degree, JointNet& net);
 
 /// Start of a step: bodies carry nothing over.
 void prepare_net(JointNet& net);

@@ -210,6 +210,15 @@ JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
   return body;
 }
 
+JointBody joint_body_now(const state::Bodies& bodies, std::uint32_t row) {
+  JointBody body = joint_body(bodies, row);
+  if (!(body.inverse_mass > 0) || !tumbles_now(bodies, row)) return body;
+  const DVec3 omega = body.scale * body.omega_scaled;
+  body.scale = to_double(inertia_scale(bodies.mass[row], bodies.rotation[row]));
+  body.omega_scaled = math::inverse(body.scale) * omega;
+  return body;
+}
+
 void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
                         state::Bodies& bodies) {
   state::MotionLine& m = bodies.motion[row];
@@ -218,6 +227,10 @@ void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, st
   const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
   m.v = vector_cast<Real>(v);
   m.omega_scaled = vector_cast<Real>(omega_scaled);
+  if (tumbles_now(bodies, row)) {
+    const DVec3 omega = before.scale * omega_scaled;
+    m.omega_scaled = vector_cast<Real>(math::inverse(to_double(bodies.scale[row])) * omega);
+  }
   free.v = m.v - by_contacts;
   free.omega_scaled = m.omega_scaled - turn_by_contacts;
   const DVec3 change = math::inverse(before.scale) * (omega_scaled - before.omega_scaled);

@@ -29,8 +29,12 @@ struct JointBody {
 /// The body in `row` after the part of the step that is done; HookPlace::kWorld gives the world at rest.
 [[nodiscard]] JointBody joint_body(const state::Bodies& bodies, std::uint32_t row);
 
-/// Gives the body in `row` the velocity that joints want. What they changed counts as free motion, not as
-/// the doing of contacts: it is not repeated as their warm start.
+/// The same with S of now in place of that of the step's start: of a body that tumbles they differ, and
+/// torques upon a thin bar with its inertia of another time would make energy.
+[[nodiscard]] JointBody joint_body_now(const state::Bodies& bodies, std::uint32_t row);
+
+/// Gives the body in `row`, `before` by joint_body_now, the velocity that joints want. What they changed
+/// counts as free motion, not as the doing of contacts: it is not repeated as their warm start.
 void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
                         state::Bodies& bodies);
 

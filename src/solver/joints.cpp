@@ -76,10 +76,17 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
       rest.insert(rest.end(), group.begin(), group.end());
     }
   }
-  const auto others = std::stable_partition(
-      rest.begin(), rest.end(), [&](std::uint32_t row) { return is_plain_ball(hooks[row], bodies); });
+  const std::vector<int> degree = count_hooks(rest, hooks, bodies);
+  // Blocks know no crowds.
+  const auto is_crowded = [&](std::uint32_t body) {
+    return is_dynamic(bodies, body) && degree[body] > kMostFreeHooks;
+  };
+  const auto others = std::stable_partition(rest.begin(), rest.end(), [&](std::uint32_t row) {
+    return is_plain_ball(hooks[row], bodies) && !is_crowded(hooks[row].a.body) &&
+           !is_crowded(hooks[row].b.body);
+  });
   build_ball_joints({rest.begin(), others}, hooks, bodies, joints.balls);
-  build_net({others, rest.end()}, hooks, bodies, joints.net);
+  build_net({others, rest.end()}, hooks, bodies, degree, joints.net);
 }
 
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
@@ -99,7 +106,9 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
     for (int i = range.begin; i < range.end; ++i) {
       Articulation& art = joints.articulations[i];
       if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
-      for (const std::uint32_t row : art.hooks) add_up(h, hooks[row]);
+      for (const Articulation::Joint& joint : art.joints) {
+        if (joint.hook != Articulation::kWeld) add_up(h, hooks[joint.hook]);
+      }
     }
   });
   solve_ball_joints(pool, h, bodies, joints.balls);
