@@ -214,12 +214,15 @@ void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
 }
 
 /// Whether what is near at the start of the step may say nothing of where the shapes will meet: they come or
-/// turn farther than they are thick. Half-spaces have the same normal everywhere.
+/// turn farther than they are thick. Half-spaces have the same normal everywhere; that of two balls turns
+/// with every way aside, and to look ahead is cheap for them.
 bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape_a, const Convex& shape_b) {
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
+  const bool balls = shape_a.shape.kind == ShapeKind::kSphere && shape_b.shape.kind == ShapeKind::kSphere;
+  const Real thick = balls ? Real(0) : thinness_of(shape_a) + thinness_of(shape_b);
   const Real way = flat ? Real(0) : length(b.path.way - a.path.way);
-  return way + turning_reach(a) + turning_reach(b) > kMargin + thinness_of(shape_a) + thinness_of(shape_b);
+  return way + turning_reach(a) + turning_reach(b) > kMargin + thick;
 }
 
 /// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
