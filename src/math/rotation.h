@@ -4,6 +4,9 @@
 
 #include "math/trig.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace hooke::math {
 
 /// The same rotation, of unit length in double too: what it turns may be far away.
@@ -28,6 +31,20 @@ Quaternion<T> quaternion_of(Vector3<T> phi) {
   const SinCos<T> angle = sin_cos(x);
   const T s = angle.sin / x;
   return {s * half.x, s * half.y, s * half.z, angle.cos};
+}
+
+/// The turn about one axis that leads from `before` to `after`, of those the one nearest to `about` [rad]:
+/// there is one for each number of whole turns.
+template <class T>
+Vector3<T> turn_between(Quaternion<T> before, Quaternion<T> after, Vector3<T> about) {
+  const Quaternion<T> q = after * conjugate(before);
+  const Vector3<T> sine = {q.x, q.y, q.z};
+  const T size = length(sine);
+  if (size == T(0) && about == Vector3<T>{}) return {};
+  const Vector3<T> axis = size > T(0) ? (T(1) / size) * sine : normalize(about);
+  const T angle = T(2) * atan2(size, q.w);
+  const T whole = T(2) * std::numbers::pi_v<T>;
+  return (angle + whole * std::round((dot(axis, about) - angle) / whole)) * axis;
 }
 
 }  // namespace hooke::math

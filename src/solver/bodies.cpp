@@ -4,6 +4,7 @@
 #include "state/body_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hooke::solver {
@@ -33,13 +34,50 @@ Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
 }
 
 /// Mean angular velocity of a free body over h, from L; see accelerate_bodies.
-Vec3 midpoint_velocity(Quat axes, const BodyMass& mass, Vec3 momentum, Real h) {
+Vec3 midpoint_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
   constexpr int kIterations = 3;
-  const Vec3 inverse = inverse_inertia(mass);
   Vec3 omega = in_axes(axes, inverse, momentum);
   for (int i = 0; i < kIterations; ++i)
     omega = in_axes(math::quaternion_of(Real(0.5) * h * omega) * axes, inverse, momentum);
   return omega;
+}
+
+/// The turn about one of the principal axes by `turn_per_momentum` times the part of L along it.
+Quaternion<double> turned_about(int axis, Quaternion<double> axes, DVec3 momentum, double turn_per_momentum) {
+  const DVec3 local = rotate(conjugate(axes), momentum);
+  const std::array<DVec3, 3> turns = {DVec3{local.x, 0, 0}, DVec3{0, local.y, 0}, DVec3{0, 0, local.z}};
+  return axes * math::quaternion_of(turn_per_momentum * turns[static_cast<std::size_t>(axis)]);
+}
+
+/// The same for a fast turn, of which the midpoint rule makes energy out of nothing: as a symmetric top about
+/// the axis that is least like the others, exactly, between two halves of what sets those apart.
+Vec3 split_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
+  const DVec3 c = vector_cast<double>(inverse);
+  const DVec3 l = vector_cast<double>(momentum);
+  const std::array<double, 3> of = {c.x, c.y, c.z};
+  const auto unlike = [&](int i, int k) { return std::abs(of[i] - of[k]) / (of[i] + of[k]); };
+  const int top = unlike(0, 1) <= std::min(unlike(1, 2), unlike(2, 0))   ? 2
+                  : unlike(1, 2) <= std::min(unlike(0, 1), unlike(2, 0)) ? 0
+                                                                         : 1;
+  const int a = (top + 1) % 3;
+  const int b = (top + 2) % 3;
+  const double step = static_cast<double>(h);
+  const double rest = 0.5 * step * (of[b] - of[a]);
+  const Quaternion<double> before = math::in_double(axes);
+  Quaternion<double> q = turned_about(b, before, l, rest);
+  q = math::quaternion_of(step * of[a] * l) * turned_about(top, q, l, step * (of[top] - of[a]));
+  q = turned_about(b, q, l, rest);
+  const DVec3 now = vector_cast<double>(in_axes(axes, inverse, momentum));
+  return vector_cast<Real>((1 / step) * math::turn_between(before, q, step * now));
+}
+
+/// By the midpoint rule where its iteration converges at once.
+Vec3 free_velocity(Quat axes, const BodyMass& mass, Vec3 momentum, Real h) {
+  constexpr Real kSlow = Real(0.1);
+  const Vec3 inverse = inverse_inertia(mass);
+  const auto [least, most] = std::minmax({inverse.x, inverse.y, inverse.z});
+  const bool slow = h * length(momentum) * most * most <= kSlow * least;
+  return slow ? midpoint_velocity(axes, inverse, momentum, h) : split_velocity(axes, inverse, momentum, h);
 }
 
 /// Too small a speed to keep: nothing may decay into denormals.
@@ -60,7 +98,7 @@ Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bod
   if (!step.first) momentum += momentum_of(scale, by_contacts);
   momentum = damping * (momentum + step.h * bodies.torque[i]);
   const Quat axes = bodies.rotation[i] * bodies.mass[i].principal;
-  return momentum_of(scale, midpoint_velocity(axes, bodies.mass[i], momentum, step.h));
+  return momentum_of(scale, free_velocity(axes, bodies.mass[i], momentum, step.h));
 }
 
 /// The inertia is not turned exactly as the body is: the rotational energy decides how fast it is.
@@ -167,6 +205,20 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * bodies.rotation[i]);
   }
+}
+
+void turn_back(std::uint32_t row, Quat rotation, Bodies& bodies) {
+  const Vec3 pending =
+      momentum_of(bodies.scale[row], bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled);
+  const Vec3 momentum = bodies.angular_momentum[row] + pending;
+  const Vec3 inverse = inverse_inertia(bodies.mass[row]);
+  const auto energy = [&](Quat q) {
+    return dot(momentum, in_axes(q * bodies.mass[row].principal, inverse, momentum));
+  };
+  const Real end = energy(bodies.rotation[row]);
+  const Real stopped = energy(rotation);
+  bodies.rotation[row] = rotation;
+  if (stopped > end) bodies.angular_momentum[row] = std::sqrt(end / stopped) * momentum - pending;
 }
 
 void finish_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {

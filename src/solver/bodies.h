@@ -40,11 +40,24 @@ void prepare_bodies(std::span<const std::uint32_t> rows, state::Bodies& bodies);
 ///
 /// A body whose inertia differs by axis turns as a free body does. The state is L, which nothing but torque
 /// changes; the angular velocity of the substep is that halfway through its turn (Lie midpoint rule):
-/// omega = I(q')^(-1) L with q' = exp(h omega / 2) q, by three fixed iterations from I(q)^(-1) L.
+/// omega = I(q')^(-1) L with q' = exp(h omega / 2) q, by three fixed iterations from I(q)^(-1) L. Where those
+/// would not converge (a rod spun at 300 rad/s gained energy 20-fold in a step) the turn is made of exact
+/// ones: with 1/I = c and axes k, b, a, of which k is least like the others,
+///
+///   exp(h/2 (c_b - c_a) L_b^2/2), exp(h (c_a |L|^2 + (c_k - c_a) L_k^2)/2), and the first again,
+///
+/// each the flow of its part of the energy: two turns about an axis of the body, and one about L and k. |L|
+/// is kept, energy within 2 % at 500 rad/s, of symmetric bodies exactly. Source of the splitting: Dullweber,
+/// Leimkuhler, McLachlan 1997, "Symplectic splitting methods for rigid body molecular dynamics".
 void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step, state::Bodies& bodies);
 
 /// dx += h v, theta_scaled += h omega_scaled.
 void move_bodies(std::span<const std::uint32_t> rows, Real h, state::Bodies& bodies);
+
+/// Gives a body that tumbles, after the last substep, the rotation at which it was stopped on its way. That
+/// lies on the straight way from start to end, not quite on the body's own: with the same L it may have more
+/// rotational energy than at the end of the step, in which case L shrinks.
+void turn_back(std::uint32_t row, Quat rotation, state::Bodies& bodies);
 
 /// End of a step: centers and rotations follow dx and theta, L follows the change of omega_scaled alone (so
 /// that a free body keeps it exactly), angular_velocity follows L, odometers grow by the way of the fastest

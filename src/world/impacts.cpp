@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace hooke::world {
 
@@ -23,17 +22,6 @@ using state::Bodies;
 using state::MotionLine;
 
 constexpr Real kOfThickness = Real(0.5);  // how far a body may move unseen, in half thicknesses
-
-/// The turn about one axis that leads from `before` to `after`, of those the one nearest to `about` [rad]:
-/// there is one for each number of whole turns.
-Vec3 turn_between(Quat before, Quat after, Vec3 about) {
-  const Quat q = after * conjugate(before);
-  const Vec3 sine = {q.x, q.y, q.z};
-  const Vec3 axis = geometry::direction_or(sine, geometry::direction_or(about, Vec3{Real(1)}));
-  const Real angle = Real(2) * math::atan2(length(sine), q.w);
-  const Real whole = Real(2) * std::numbers::pi_v<Real>;
-  return (angle + whole * std::round((dot(axis, about) - angle) / whole)) * axis;
-}
 
 /// By how much a body turned in this step, as far as its line tells [rad].
 Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
@@ -52,7 +40,7 @@ Path path_of(const WorldData& world, std::uint32_t body) {
                .radius = bodies.traits[body].radius};
   if (m.inverse_mass > Real(0) && solver::tumbles_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
-    path.turn = turn_between(path.rotation, bodies.rotation[body], path.turn);
+    path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
   }
   return path;
 }
@@ -149,7 +137,8 @@ void follow(const Path& path, std::uint32_t body, Bodies& bodies) {
   MotionLine& m = bodies.motion[body];
   m.dx = vector_cast<Real>(collision::pose_at(path, Real(1)).position - path.center);
   m.theta_scaled = path.stop * m.theta_scaled;
-  if (solver::tumbles_now(bodies, body)) bodies.rotation[body] = collision::pose_at(path, Real(1)).rotation;
+  if (solver::tumbles_now(bodies, body))
+    solver::turn_back(body, collision::pose_at(path, Real(1)).rotation, bodies);
 }
 
 }  // namespace

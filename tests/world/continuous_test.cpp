@@ -215,6 +215,22 @@ TEST_SUITE("world/continuous") {
     check_shots(100);
   }
 
+  TEST_CASE("no shot gains energy, however thin it is and however fast it spins") {
+    Random random(11);
+    for (int i = 0; i < 300; ++i) {
+      CAPTURE(i);
+      World world = make_world(empty_space());
+      if (i % 3 != 0) build_room(world, Room::kPlates);
+      const BodyDesc body = shot(world, random);
+      take(world.add_body(body));
+      const double start = world.measure().energy.kinetic;
+      for (int step = 0; step < 20; ++step) {
+        world.step(Real(1) / Real(60));
+        CHECK(world.measure().energy.kinetic < 1.03 * start);
+      }
+    }
+  }
+
   TEST_CASE("a ball shot at 300 m/s at a wall of 1 mm comes back with 300 m/s") {
     World world = make_world(empty_space());
     BodyDesc wall = plate_across_x(0);
