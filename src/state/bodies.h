@@ -6,7 +6,6 @@
 #include "math/symmetric.h"
 
 #include <cstdint>
-#include <ranges>
 #include <vector>
 
 /// \file
@@ -137,10 +136,27 @@ inline bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
   return body < bodies.traits.size() && bodies.traits[body].kind == BodyKind::kDynamic;
 }
 
+/// Consecutive rows, for range-based loops (clang 14 does not know std::views::iota of libstdc++ 12).
+struct RowRange {
+  struct Iterator {
+    std::uint32_t row = 0;
+    std::uint32_t operator*() const { return row; }
+    Iterator& operator++() {
+      ++row;
+      return *this;
+    }
+    bool operator==(const Iterator&) const = default;
+  };
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;  ///< Excluded.
+  [[nodiscard]] Iterator begin() const { return {first}; }
+  [[nodiscard]] Iterator end() const { return {last}; }
+};
+
 /// The rows of a body's colliders.
-inline auto colliders_of(const Bodies& bodies, std::uint32_t body) {
+inline RowRange colliders_of(const Bodies& bodies, std::uint32_t body) {
   const std::uint32_t first = bodies.first_collider[body];
-  return std::views::iota(first, first + bodies.collider_count[body]);
+  return {first, first + bodies.collider_count[body]};
 }
 
 /// Velocity of the point at `anchor` from the center of mass, at the start of the step [m/s].
