@@ -80,7 +80,7 @@ HWY_INLINE Wide root(const Wide& a) {
 }
 
 template <>
-constexpr int kLanesOf<Wide> = kStride;
+inline constexpr int kLanesOf<Wide> = kStride;
 
 HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
   for (int i = 0; i < kVectors; ++i) {
