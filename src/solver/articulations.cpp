@@ -192,7 +192,7 @@ std::int8_t first_bound(const JointRow& row, double last) {
 void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
   std::array<JointRow, Hook::kMaxRows> rows;
   for (const Articulation::Joint& joint : art.joints) {
-    if (joint.hook == Articulation::kWeld) {
+    if (joint.is_weld()) {
       make_weld(joint, art);
       continue;
     }
@@ -230,7 +230,7 @@ double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
   std::array<JointRow, Hook::kMaxRows> rows;
   double worst = 0;
   for (const Articulation::Joint& joint : art.joints) {
-    if (joint.hook == Articulation::kWeld) continue;
+    if (joint.is_weld()) continue;
     const Link& a = art.links[joint.a];
     const Link& b = art.links[joint.b];
     const double size = size_of(hooks[joint.hook], a, b);
@@ -262,7 +262,7 @@ bool turns_fast(const Articulation& art, double h) {
 bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
   std::vector<Symmetric3<double>> found(art.links.size());
   for (const Articulation::Joint& joint : art.joints) {
-    if (joint.hook == Articulation::kWeld) continue;
+    if (joint.is_weld()) continue;
     const Hook& hook = hooks[joint.hook];
     const DVec3 force = (1 / h) * vector_cast<double>(hook.impulse);
     if (force == DVec3{}) continue;
@@ -433,7 +433,7 @@ void solve_with_bounds(Articulation& art) {
 
 void store_impulses(const Articulation& art, std::vector<Hook>& hooks) {
   for (const Articulation::Joint& joint : art.joints) {
-    if (joint.hook == Articulation::kWeld) continue;
+    if (joint.is_weld()) continue;
     const auto first = static_cast<std::size_t>(joint.first);
     const auto count = static_cast<std::size_t>(joint.count);
     store_joint_impulses(std::span(art.rows).subspan(first, count),
@@ -471,7 +471,7 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
   Frame frame = make_frame(hook_rows, hooks, bodies);
   std::vector<int> sizes;
   for (const Articulation::Joint& joint : frame.joints)
-    sizes.push_back(joint.hook == Articulation::kWeld ? kWeldRows : count_joint_rows(hooks[joint.hook]));
+    sizes.push_back(joint.is_weld() ? kWeldRows : count_joint_rows(hooks[joint.hook]));
 
   std::vector<std::vector<std::uint32_t>> neighbors(frame.joints.size());
   for (const std::vector<std::uint32_t>& group : joints_of_links(frame, bodies)) {

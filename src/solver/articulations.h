@@ -68,6 +68,7 @@ struct Articulation {
     std::uint32_t a = 0, b = 0;  ///< Links.
     int first = 0;               ///< Of its rows.
     int count = 0;
+    [[nodiscard]] bool is_weld() const { return hook == kWeld; }
   };
   /// A link that two joints (or a joint with itself) share, and the block of the matrix it enters.
   struct Coupling {

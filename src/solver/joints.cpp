@@ -107,7 +107,7 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
       Articulation& art = joints.articulations[i];
       if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
       for (const Articulation::Joint& joint : art.joints) {
-        if (joint.hook != Articulation::kWeld) add_up(h, hooks[joint.hook]);
+        if (!joint.is_weld()) add_up(h, hooks[joint.hook]);
       }
     }
   });

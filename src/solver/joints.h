@@ -26,13 +26,13 @@ namespace hooke::solver {
 
 struct Joints {
   std::vector<Articulation> articulations;
-  BallJoints
-      balls;     ///< The plain balls that are in none of them, nor at crowded bodies (solver/joint_nets.h).
-  JointNet net;  ///< All others that are in none of them.
+  BallJoints balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint_nets.h).
+  JointNet net;      ///< All others that are in none of them.
 };
 
 /// Multiplications for one solution of a group; about a millisecond.
 inline constexpr double kArticulationBudget = 2e6;
+
 /// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
 /// Groups that cost more than `budget` multiplications go into the net.
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,

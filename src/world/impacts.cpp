@@ -2,9 +2,7 @@
 
 #include "collision/continuous.h"
 #include "collision/shape_bounds.h"
-#include "geometry/closest.h"
 #include "math/rotation.h"
-#include "math/trig.h"
 #include "solver/bodies.h"
 #include "world/bodies.h"
 
