@@ -13,13 +13,14 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 
-constexpr int kSweepGrain = 8;
+constexpr int kSweepGrain = 16;
+constexpr int kMostBends = 4;  // of a body in a step; then it stands
 
-/// An impact that was found when the bodies of its pair had been stopped `stops` times.
+/// An impact that was found when the bodies of its pair had given way `bends` times.
 struct Event {
   Impact impact = {};
-  std::uint32_t pair = 0;
-  std::uint32_t stops = 0;
+  ColliderPair pair = {};
+  int bends = 0;
 
   /// For a queue that gives the first: the last in order of time, then of pair.
   friend bool operator<(const Event& a, const Event& b) {
@@ -27,20 +28,29 @@ struct Event {
   }
 };
 
-class Stopper {
- public:
-  Stopper(const state::Colliders& colliders, std::span<const ColliderPair> pairs, SweptBodies& bodies)
-      : colliders_(colliders), pairs_(pairs), bodies_(bodies), stops_(pairs.size(), 0) {}
+/// Memory of one thread.
+struct Scratch {
+  std::vector<ColliderPair> pairs = {};
+  SweepScratch sweep = {};
+};
 
-  std::uint32_t run(parallel::ThreadPool& pool) {
-    find_first(pool);
-    if (queue_.empty()) return 0;
-    list_pairs_of_bodies();
+/// Whether two bodies cannot pass each other in what is left of the step, as long as neither gives way.
+bool go_together(const Path& a, const Path& b, Real time) {
+  return (Real(1) - time) * relative_way(a, b) <= kUnseenWay * std::min(a.inner, b.inner);
+}
+
+class ImpactQueue {
+ public:
+  ImpactQueue(const state::Colliders& colliders, const FindPairs& find_pairs, SweptBodies& bodies)
+      : colliders_(colliders), find_pairs_(find_pairs), bodies_(bodies) {}
+
+  std::uint32_t run(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
+    find_first(pool, fast);
     std::uint32_t count = 0;
     while (!queue_.empty()) {
       const Event event = queue_.top();
       queue_.pop();
-      if (event.stops == stops_[event.pair]) count += meet_at(event);
+      if (event.bends == bends_of(event.pair)) count += meet_at(event);
     }
     return count;
   }
@@ -48,90 +58,115 @@ class Stopper {
  private:
   [[nodiscard]] std::uint32_t body_of(std::uint32_t collider) const { return colliders_.body[collider]; }
 
-  [[nodiscard]] std::optional<Impact> sweep(std::uint32_t pair, Real begin, SweepScratch& scratch) const {
-    const auto [a, b] = pairs_[pair];
-    const SweptCollider swept_a = {colliders_, a, bodies_.path[body_of(a)]};
-    const SweptCollider swept_b = {colliders_, b, bodies_.path[body_of(b)]};
-    return find_impact(swept_a, swept_b, overlap_allowance(swept_a, swept_b), begin, scratch);
+  [[nodiscard]] int bends_of(ColliderPair pair) const {
+    return bodies_.bends[body_of(pair.first)].count + bodies_.bends[body_of(pair.second)].count;
   }
 
-  void find_first(parallel::ThreadPool& pool) {
-    std::vector<std::optional<Impact>> impacts(pairs_.size());
-    for_ranges(pool, static_cast<int>(pairs_.size()), kSweepGrain, [&](Range range) {
-      SweepScratch scratch;
-      for (int i = range.begin; i < range.end; ++i)
-        impacts[static_cast<std::size_t>(i)] = sweep(static_cast<std::uint32_t>(i), Real(0), scratch);
+  void sweep(ColliderPair pair, Real begin, SweepScratch& scratch, std::vector<Event>& events) const {
+    const SweptCollider a = {colliders_, pair.first, bodies_.path[body_of(pair.first)]};
+    const SweptCollider b = {colliders_, pair.second, bodies_.path[body_of(pair.second)]};
+    if (go_together(a.path, b.path, begin)) return;
+    if (const auto impact = find_impact(a, b, overlap_allowance(a, b), begin, scratch))
+      events.push_back({*impact, pair, bends_of(pair)});
+  }
+
+  /// Each pair once: from its first fast body.
+  void find_first(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
+    std::vector<std::vector<Event>> found(fast.size());
+    for_ranges(pool, static_cast<int>(fast.size()), kSweepGrain, [&](Range range) {
+      Scratch scratch;
+      for (int i = range.begin; i < range.end; ++i) {
+        const std::uint32_t body = fast[static_cast<std::size_t>(i)];
+        scratch.pairs.clear();
+        find_pairs_(body, scratch.pairs);
+        for (const ColliderPair pair : scratch.pairs) {
+          const std::uint32_t first = body_of(pair.first);
+          const std::uint32_t other = first == body ? body_of(pair.second) : first;
+          if (other < body && std::binary_search(fast.begin(), fast.end(), other)) continue;
+          sweep(pair, Real(0), scratch.sweep, found[static_cast<std::size_t>(i)]);
+        }
+      }
     });
-    for (std::uint32_t i = 0; i < impacts.size(); ++i) {
-      if (impacts[i]) queue_.push({*impacts[i], i, 0});
+    for (const std::vector<Event>& events : found) {
+      for (const Event& event : events) queue_.push(event);
     }
   }
 
-  void list_pairs_of_bodies() {
-    for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
-      pairs_of_.emplace_back(body_of(pairs_[i].first), i);
-      pairs_of_.emplace_back(body_of(pairs_[i].second), i);
-    }
-    std::sort(pairs_of_.begin(), pairs_of_.end());
-  }
-
-  /// Returns how many of the two bodies stop.
+  /// Returns how many of the two bodies give way.
   std::uint32_t meet_at(const Event& event) {
-    const std::uint32_t a = body_of(pairs_[event.pair].first);
-    const std::uint32_t b = body_of(pairs_[event.pair].second);
-    const bool stops_a = gives_way(a, b, event.impact, Real(-1));
-    const bool stops_b = gives_way(b, a, event.impact, Real(1));
-    if (stops_a) sweep_again(a, event.impact.time);
-    if (stops_b) sweep_again(b, event.impact.time);
-    return (stops_a ? 1u : 0u) + (stops_b ? 1u : 0u);
+    const std::uint32_t a = body_of(event.pair.first);
+    const std::uint32_t b = body_of(event.pair.second);
+    const Push on_a = push_of(b, a, event.impact, Real(-1));
+    const Push on_b = push_of(a, b, event.impact, Real(1));
+    const bool bends_a = gives_way(a, on_a, event.impact.time);
+    const bool bends_b = gives_way(b, on_b, event.impact.time);
+    if (bends_a) sweep_again(a, event.impact.time);
+    if (bends_b) sweep_again(b, event.impact.time);
+    return (bends_a ? 1u : 0u) + (bends_b ? 1u : 0u);
   }
 
-  /// Stops `body`, which is on the side of `sign` times the normal. False if it stood, or may go on.
-  bool gives_way(std::uint32_t body, std::uint32_t other, const Impact& impact, Real sign) {
+  /// What is in a body's way.
+  struct Push {
+    Vec3 out = {};         // away from it, unit
+    Real speed = Real(0);  // of it, along `out` [m per step]
+    bool firm = false;     // it gives no way itself
+  };
+
+  [[nodiscard]] Push push_of(std::uint32_t pusher, std::uint32_t body, const Impact& impact,
+                             Real sign) const {
+    const Path& path = bodies_.path[pusher];
+    Push push = {.out = sign * impact.normal, .firm = bodies_.stoppable[pusher] == Stoppable::kNever};
+    const DVec3 lever =
+        pose_at(bodies_.path[body], impact.time).position - pose_at(path, impact.time).position;
+    // Of two that give way, neither turns any more.
+    const Vec3 turning = push.firm ? cross(path.turn, vector_cast<Real>(lever)) : Vec3{};
+    push.speed = dot(push.out, path.way + turning);
+    return push;
+  }
+
+  /// False if the body goes on as before.
+  bool gives_way(std::uint32_t body, const Push& push, Real time) {
     Path& path = bodies_.path[body];
-    const Path& pusher = bodies_.path[other];
+    SweptBodies::Bends& bends = bodies_.bends[body];
     const Stoppable stoppable = bodies_.stoppable[body];
-    const bool pushed = bodies_.stoppable[other] == Stoppable::kNever;
-    if (stoppable == Stoppable::kNever || (stoppable == Stoppable::kSlow && !pushed)) return false;
-    if (impact.time >= path.release) return false;
-    if (impact.time >= path.stop) {
-      const bool was_carried = path.carry != Vec3{};
-      path.release = impact.time;
-      return was_carried;
-    }
-    path.stop = impact.time;
-    if (pushed) {
-      const Vec3 out = sign * impact.normal;
-      const Vec3 lever =
-          vector_cast<Real>(pose_at(path, impact.time).position - pose_at(pusher, impact.time).position);
-      path.carry = std::max(Real(0), dot(out, pusher.way + cross(pusher.turn, lever))) * out;
-    }
+    if (stoppable == Stoppable::kNever || (stoppable == Stoppable::kSlow && !push.firm)) return false;
+    if (bends.count == kMostBends) return false;
+    const Real own = dot(push.out, path.way);
+    const Real approach = std::max(Real(0), push.speed - own);
+    const Real given = push.firm ? approach : std::min(approach, std::max(Real(0), -own));
+    if (!(given > Real(0)) && path.turn == Vec3{}) return false;
+    bends.first = std::min(bends.first, time);
+    const Pose now = pose_at(path, time);
+    path.center = now.position;
+    path.rotation = now.rotation;
+    path.since = time;
+    path.way = ++bends.count < kMostBends ? path.way + given * push.out : Vec3{};
+    path.turn = {};
     return true;
   }
 
   void sweep_again(std::uint32_t body, Real time) {
-    const auto first = std::lower_bound(pairs_of_.begin(), pairs_of_.end(), std::pair{body, 0u});
-    for (auto it = first; it != pairs_of_.end() && it->first == body; ++it) {
-      const std::uint32_t pair = it->second;
-      ++stops_[pair];
-      if (const auto impact = sweep(pair, time, scratch_)) queue_.push({*impact, pair, stops_[pair]});
-    }
+    scratch_.pairs.clear();
+    events_.clear();
+    find_pairs_(body, scratch_.pairs);
+    for (const ColliderPair pair : scratch_.pairs) sweep(pair, time, scratch_.sweep, events_);
+    for (const Event& event : events_) queue_.push(event);
   }
 
   const state::Colliders& colliders_;
-  std::span<const ColliderPair> pairs_;
+  const FindPairs& find_pairs_;
   SweptBodies& bodies_;
-  std::vector<std::uint32_t> stops_;                               // of the bodies of each pair
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_of_;  // (body, pair), sorted
   std::priority_queue<Event> queue_;
-  SweepScratch scratch_;
+  Scratch scratch_;
+  std::vector<Event> events_;
 };
 
 }  // namespace
 
-std::uint32_t stop_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
-                              std::span<const ColliderPair> pairs, SweptBodies& bodies) {
-  return Stopper(colliders, pairs, bodies).run(pool);
+std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
+                                  std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
+                                  SweptBodies& bodies) {
+  return ImpactQueue(colliders, find_pairs, bodies).run(pool, fast);
 }
 
 }  // namespace hooke::collision

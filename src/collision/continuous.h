@@ -8,6 +8,7 @@
 #include "state/colliders.h"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,9 @@
 /// No body passes through another within a step, whatever the solver did.
 
 namespace hooke::collision {
+
+/// How far bodies may move unseen, in half thicknesses.
+inline constexpr Real kUnseenWay = Real(0.5);
 
 /// What a sweep may do to a body.
 enum class Stoppable : std::uint8_t {
@@ -25,15 +29,29 @@ enum class Stoppable : std::uint8_t {
 
 /// Bodies in motion, by row.
 struct SweptBodies {
+  struct Bends {
+    int count = 0;
+    Real first = Real(1);  ///< When it gave way first; from then on it does not turn.
+  };
+
   std::vector<Path> path = {};
   std::vector<Stoppable> stoppable = {};
+  std::vector<Bends> bends = {};
 };
 
-/// Sweeps the pairs (sorted) along the paths of their bodies, and lets bodies stop where they would go
-/// through each other: impacts in order of time, then of pair; whoever stops is swept again, standing. A body
-/// stopped by one that moves as told is carried in front of it. Returns the number of bodies stopped. The
-/// result does not depend on the pool's number of threads.
-std::uint32_t stop_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
-                              std::span<const ColliderPair> pairs, SweptBodies& bodies);
+/// Appends the pairs of a body's colliders with all that may be in their way.
+using FindPairs = std::function<void(std::uint32_t body, std::vector<ColliderPair>& pairs)>;
+
+/// Sweeps the `fast` bodies (rows, ascending) along their paths against what `find_pairs` finds, and lets
+/// bodies give way where they would go through each other: impacts in order of time, then of pair; whoever
+/// gives way is swept again from there.
+///
+/// A body that gives way ceases to turn, and loses that part of its own speed which takes it towards the
+/// other (so that it never leaves the ball of half its way around it); before one that moves as told it goes
+/// as that one does. What comes together slowly for its thickness is left to contacts. Returns how often
+/// bodies gave way. The result does not depend on the pool's number of threads.
+std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
+                                  std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
+                                  SweptBodies& bodies);
 
 }  // namespace hooke::collision

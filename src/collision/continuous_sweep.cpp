@@ -5,7 +5,6 @@
 #include "math/rotation.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <utility>
 
@@ -14,7 +13,7 @@ namespace hooke::collision {
 namespace {
 
 constexpr int kMaxRounds = 256;
-constexpr Real kLargestAllowance = Real(5e-3);  // [m]
+constexpr Real kAllowance = Real(5e-3);  // [m]
 
 /// How a collider can turn.
 struct Spin {
@@ -44,12 +43,7 @@ Spin spin_of(const SweptCollider& c) {
   return spin;
 }
 
-Vec3 speed_at(const Path& path, Real time) {
-  if (time < path.stop) return path.way;
-  return time < path.release ? path.carry : Vec3{};
-}
-
-/// How fast two shapes can come together, while neither begins or ceases to move.
+/// How fast two shapes can come together.
 struct Closing {
   Vec3 parting = {};  // of B's center from A's [m per step]
   Spin a = {};
@@ -58,13 +52,6 @@ struct Closing {
   [[nodiscard]] Real along(Vec3 n) const { return a.rate(n) + b.rate(n) - dot(n, parting); }
   [[nodiscard]] Real fastest() const { return a.largest_rate() + b.largest_rate() + length(parting); }
 };
-
-Closing closing_at(const SweptCollider& a, const SweptCollider& b, Real time) {
-  Closing closing = {speed_at(b.path, time) - speed_at(a.path, time), spin_of(a), spin_of(b)};
-  if (time >= a.path.stop) closing.a.turn = {};
-  if (time >= b.path.stop) closing.b.turn = {};
-  return closing;
-}
 
 /// How far two shapes are held apart, and by which direction.
 struct Hold {
@@ -108,7 +95,7 @@ Hold hold_triangle(const Convex& triangle, const Convex& b) {
   return hold;
 }
 
-/// Advances from `begin` to `end`, a time in which neither path changes.
+/// Advances from `begin` to `end`.
 template <class Look>
 std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin, Real end, Look&& look) {
   const Real tolerance = Real(0.05) * allowance;
@@ -119,9 +106,10 @@ std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin
     hold = look(time);
     if (round == 0) target = std::min(target, hold.gap - Real(2) * tolerance);
     const Real slack = hold.gap - target;
-    if (!(slack > tolerance)) break;
     const Real rate = closing.along(hold.n);
-    if (!(rate * (end - time) > slack)) return std::nullopt;
+    // Whoever slides along the other at that depth does not meet it.
+    if (!(rate * (end - time) > std::max(slack, tolerance))) return std::nullopt;
+    if (!(slack > tolerance)) break;
     time += slack / rate;
   }
   return Impact{time, hold.n};
@@ -133,9 +121,9 @@ class PairSweep {
   PairSweep(const SweptCollider& a, const SweptCollider& b, Real allowance, SweepScratch& scratch)
       : a_(a), b_(b), allowance_(allowance), scratch_(scratch) {}
 
-  /// Between `begin` and `end`, a time in which neither path changes.
-  std::optional<Impact> run(Real begin, Real end) {
-    const Closing closing = closing_at(a_, b_, begin);
+  std::optional<Impact> run(Real begin) {
+    constexpr Real end = Real(1);
+    const Closing closing = {b_.path.way - a_.path.way, spin_of(a_), spin_of(b_)};
     const ShapeKind kind = a_.colliders.shape[a_.row].shape.kind;
     if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, end);
     if (kind == ShapeKind::kHalfSpace) {
@@ -225,13 +213,24 @@ Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt) {
           .rotation = bodies.rotation[body],
           .way = dt * bodies.motion[body].v,
           .turn = dt * bodies.angular_velocity[body],
-          .radius = bodies.traits[body].radius};
+          .radius = bodies.traits[body].radius,
+          .inner = bodies.traits[body].inner_radius};
+}
+
+Real relative_way(const Path& a, const Path& b) {
+  const bool a_is_small = a.radius <= b.radius;
+  const Path& small = a_is_small ? a : b;
+  const Path& large = a_is_small ? b : a;
+  const Vec3 lever = vector_cast<Real>(small.center - large.center);
+  const Vec3 center = small.way - large.way - cross(large.turn, lever);
+  // A point that turns by an angle leaves its tangent by up to half of the angle's square.
+  const Real bend = Real(0.5) * length_squared(large.turn) * (length(lever) + small.radius);
+  return length(center) + length(small.turn - large.turn) * small.radius + bend;
 }
 
 Pose pose_at(const Path& path, Real time) {
-  const Real moving = std::min(time, path.stop);
-  const Real carried = std::max(Real(0), std::min(time, path.release) - path.stop);
-  return {path.center + vector_cast<double>(moving * path.way) + vector_cast<double>(carried * path.carry),
+  const Real moving = time - path.since;
+  return {path.center + vector_cast<double>(moving * path.way),
           path.turn == Vec3{} ? path.rotation
                               : normalize(math::quaternion_of(moving * path.turn) * path.rotation)};
 }
@@ -246,7 +245,9 @@ Real overlap_allowance(const SweptCollider& a, const SweptCollider& b) {
     const state::ColliderShape& s = c.colliders.shape[c.row];
     return thinness_of({.shape = s.shape, .hull = s.hull.get()});
   };
-  return std::min(Real(0.25) * (thinness(a) + thinness(b)), kLargestAllowance);
+  const Real of_a = thinness(a);
+  const Real of_b = thinness(b);
+  return std::min(Real(0.25) * (of_a + of_b), std::max(kAllowance, Real(0.1) * std::min(of_a, of_b)));
 }
 
 std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b, Real allowance, Real begin,
@@ -256,18 +257,9 @@ std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b
   if (is_wide(kind_a) && is_wide(kind_b)) return std::nullopt;
   const bool swapped = is_wide(kind_b);
   PairSweep sweep = swapped ? PairSweep(b, a, allowance, scratch) : PairSweep(a, b, allowance, scratch);
-  std::array<Real, 5> breaks = {a.path.stop, a.path.release, b.path.stop, b.path.release, Real(1)};
-  std::sort(breaks.begin(), breaks.end());
-  Real from = begin;
-  for (const Real to : breaks) {
-    if (!(to > from)) continue;
-    if (auto impact = sweep.run(from, to)) {
-      if (swapped) impact->normal = -impact->normal;
-      return impact;
-    }
-    from = to;
-  }
-  return std::nullopt;
+  auto impact = sweep.run(begin);
+  if (impact && swapped) impact->normal = -impact->normal;
+  return impact;
 }
 
 }  // namespace hooke::collision

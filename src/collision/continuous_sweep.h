@@ -16,23 +16,25 @@
 
 namespace hooke::collision {
 
-/// How a body moves through a step: evenly, until it stops; a body in the way of one that nothing can stop is
-/// carried from then on.
+/// How a body moves through the rest of a step, evenly.
 struct Path {
-  DVec3 center = {};       ///< Of mass, at the start of the step [m].
-  Quat rotation = {};      ///< At the start of the step.
-  Vec3 way = {};           ///< Of the center, in a whole step [m].
-  Vec3 turn = {};          ///< In a whole step, in world axes [rad].
-  Real radius = Real(0);   ///< Around the center of mass, of all its shapes [m].
-  Real stop = Real(1);     ///< When it stops, or begins to be carried.
-  Vec3 carry = {};         ///< Way while it is carried, per whole step [m].
-  Real release = Real(1);  ///< When that ends.
+  DVec3 center = {};      ///< Of mass, at `since` [m].
+  Quat rotation = {};     ///< At `since`.
+  Vec3 way = {};          ///< Of the center, in a whole step [m].
+  Vec3 turn = {};         ///< In a whole step, in world axes [rad].
+  Real radius = Real(0);  ///< Around the center of mass, of all its shapes [m].
+  Real inner = Real(0);   ///< Of a ball within its largest shape [m].
+  Real since = Real(0);
 };
 
 /// How a body will move in the next `dt` [s] if nothing changes its velocity.
 [[nodiscard]] Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt);
 
-/// Where the center of mass is, and how the body is turned.
+/// How far a point of the smaller body can get in a step as seen from the larger one, at most [m]: little for
+/// those that fall, or ride, together.
+[[nodiscard]] Real relative_way(const Path& a, const Path& b);
+
+/// Where the center of mass is, and how the body is turned. Not before `since`.
 [[nodiscard]] Pose pose_at(const Path& path, Real time);
 
 /// A collider and the path of its body.
@@ -62,7 +64,8 @@ struct SweepScratch {
 /// other do not meet.
 [[nodiscard]] Real overlap_allowance(const SweptCollider& a, const SweptCollider& b);
 
-/// When the shapes first overlap by more than `allowance` [m], positive, or by more than they do at `begin`.
+/// When the shapes first overlap by more than `allowance` [m], positive, or by more than they do at `begin`,
+/// which is not before their paths'.
 /// A mesh is met from the front only. Nothing for pairs that have no manifolds either (two meshes).
 ///
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): along the direction n that

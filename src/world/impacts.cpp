@@ -19,8 +19,6 @@ using collision::Stoppable;
 using state::Bodies;
 using state::MotionLine;
 
-constexpr Real kOfThickness = Real(0.5);  // how far a body may move unseen, in half thicknesses
-
 /// By how much a body turned in this step, as far as its line tells [rad].
 Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
   const MotionLine& m = bodies.motion[body];
@@ -35,7 +33,8 @@ Path path_of(const WorldData& world, std::uint32_t body) {
                .rotation = bodies.rotation[body],
                .way = m.dx,
                .turn = turn_of(bodies, body),
-               .radius = bodies.traits[body].radius};
+               .radius = bodies.traits[body].radius,
+               .inner = bodies.traits[body].inner_radius};
   if (m.inverse_mass > Real(0) && solver::tumbles_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
@@ -48,7 +47,7 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
   const state::BodyTraits& traits = bodies.traits[body];
   if (!traits.collides || traits.sensor) return false;
   const Real way = length(bodies.motion[body].dx) + length(turn_of(bodies, body)) * traits.radius;
-  return way > kOfThickness * traits.inner_radius;
+  return way > collision::kUnseenWay * traits.inner_radius;
 }
 
 /// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
@@ -83,60 +82,59 @@ bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt
   return false;
 }
 
-/// Boxes around what bodies really did, which may be more than detect thought they could.
-void enter_ways(WorldData& world) {
+/// How bodies go, and boxes around that, which may be more than detect thought they could, and around where
+/// fast ones may be driven.
+void enter_ways(WorldData& world, const std::vector<std::uint32_t>& fast, collision::SweptBodies& swept) {
   state::Tables& t = world.tables;
+  const std::size_t count = t.bodies.motion.size();
+  swept.path.resize(count);
+  swept.stoppable.assign(count, Stoppable::kNever);
+  swept.bends.assign(count, {});
+  parallel::for_ranges(*world.pool, static_cast<int>(count), kBodyGrain, [&](parallel::Range rows) {
+    for (int row = rows.begin; row < rows.end; ++row) {
+      const auto body = static_cast<std::uint32_t>(row);
+      swept.path[body] = collision::path_ahead(t.bodies, body, Real(0));
+    }
+  });
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
+      const bool goes_far = std::binary_search(fast.begin(), fast.end(), body);
       const Path path = path_of(world, body);
-      for (const std::uint32_t c : colliders_of(t.bodies, body))
-        t.colliders.bounds[c] = collision::reach_of(t.colliders, c, path);
+      swept.path[body] = path;
+      swept.stoppable[body] = stoppable(world, body, goes_far);
+      const Real aside = goes_far ? Real(0.5) * length(path.way) : Real(0);
+      const Vec3 pad = {aside, aside, aside};
+      for (const std::uint32_t c : colliders_of(t.bodies, body)) {
+        const geometry::Box reach = collision::reach_of(t.colliders, c, path);
+        t.colliders.bounds[c] = {reach.lower - pad, reach.upper + pad};
+      }
     }
   });
   for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
   world.broad_phase.update();
 }
 
-/// What each fast body's colliders may run into; pairs in order, each once.
-std::vector<ColliderPair> find_swept_pairs(const WorldData& world, const std::vector<std::uint32_t>& fast) {
+/// What a body's colliders may run into.
+void find_in_the_way(const WorldData& world, std::uint32_t body, std::vector<ColliderPair>& pairs) {
   const state::Tables& t = world.tables;
-  const auto solid = [&](std::uint32_t collider) {
-    return !t.bodies.traits[t.colliders.body[collider]].sensor;
-  };
-  std::vector<ColliderPair> pairs;
   std::vector<std::uint32_t> found;
-  for (const std::uint32_t body : fast) {
-    for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-      world.broad_phase.query(t.colliders.bounds[c], found);
-      for (const std::uint32_t other : found) {
-        const ColliderPair pair = {std::min(c, other), std::max(c, other)};
-        if (solid(other) && may_collide(world, pair)) pairs.push_back(pair);
-      }
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) {
+    world.broad_phase.query(t.colliders.bounds[c], found);
+    for (const std::uint32_t other : found) {
+      const ColliderPair pair = {std::min(c, other), std::max(c, other)};
+      const bool solid = !t.bodies.traits[t.colliders.body[other]].sensor;
+      if (solid && may_collide(world, pair)) pairs.push_back(pair);
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return pairs;
 }
 
-/// Rows of the bodies that have a part in some pair, each once.
-std::vector<std::uint32_t> bodies_of(const std::vector<ColliderPair>& pairs,
-                                     const state::Colliders& colliders) {
-  std::vector<std::uint32_t> rows;
-  for (const ColliderPair& pair : pairs)
-    rows.insert(rows.end(), {colliders.body[pair.first], colliders.body[pair.second]});
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-  return rows;
-}
-
-/// Cuts what the body did short at where its path ends.
-void follow(const Path& path, std::uint32_t body, Bodies& bodies) {
+/// Lets the body be where its path ends.
+void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
   MotionLine& m = bodies.motion[body];
-  m.dx = vector_cast<Real>(collision::pose_at(path, Real(1)).position - path.center);
-  m.theta_scaled = path.stop * m.theta_scaled;
-  if (solver::tumbles_now(bodies, body))
-    solver::turn_back(body, collision::pose_at(path, Real(1)).rotation, bodies);
+  const Pose end = collision::pose_at(path, Real(1));
+  m.dx = vector_cast<Real>(end.position - bodies.center[body]);
+  m.theta_scaled = turned * m.theta_scaled;
+  if (solver::tumbles_now(bodies, body)) solver::turn_back(body, end.rotation, bodies);
 }
 
 }  // namespace
@@ -163,27 +161,22 @@ void begin_motion(WorldData& world, Real dt) {
   }
 }
 
-void stop_at_impacts(WorldData& world) {
+void give_way_at_impacts(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
   std::vector<std::uint32_t> fast;
   for (const std::uint32_t body : world.awake) {
     if (is_fast(bodies, body)) fast.push_back(body);
   }
   if (fast.empty()) return;
-  enter_ways(world);
-  const std::vector<ColliderPair> pairs = find_swept_pairs(world, fast);
-  if (pairs.empty()) return;
   collision::SweptBodies swept;
-  swept.path.resize(bodies.motion.size());
-  swept.stoppable.resize(bodies.motion.size(), Stoppable::kNever);
-  for (const std::uint32_t body : bodies_of(pairs, world.tables.colliders)) {
-    const bool awake = std::binary_search(world.awake.begin(), world.awake.end(), body);
-    swept.path[body] = awake ? path_of(world, body) : collision::path_ahead(bodies, body, Real(0));
-    swept.stoppable[body] = stoppable(world, body, std::binary_search(fast.begin(), fast.end(), body));
-  }
-  if (collision::stop_at_impacts(*world.pool, world.tables.colliders, pairs, swept) == 0) return;
+  enter_ways(world, fast, swept);
+  const auto find_pairs = [&world](std::uint32_t body, std::vector<ColliderPair>& pairs) {
+    find_in_the_way(world, body, pairs);
+  };
+  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, fast, find_pairs, swept) == 0)
+    return;
   for (const std::uint32_t body : world.awake) {
-    if (swept.path[body].stop < Real(1)) follow(swept.path[body], body, bodies);
+    if (swept.bends[body].count > 0) follow(swept.path[body], swept.bends[body].first, body, bodies);
   }
 }
 

@@ -14,9 +14,9 @@ namespace hooke::world {
 void begin_motion(WorldData& world, Real dt);
 
 /// Bodies that moved farther in this step than half of their thickness, or turned as far, are swept against
-/// all that is in their way, in relative motion, and stay where they would have gone through it; velocities
-/// are not changed. What is left of their way is lost: the contact is the next step's. Does nothing in a
+/// all that is in their way, in relative motion, and give way where they would have gone through it
+/// (collision/continuous.h); velocities are not changed: the contact is the next step's. Does nothing in a
 /// world in which nothing is fast.
-void stop_at_impacts(WorldData& world);
+void give_way_at_impacts(WorldData& world);
 
 }  // namespace hooke::world

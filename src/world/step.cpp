@@ -154,7 +154,7 @@ void substep(WorldData& w, int i, double time, Real h) {
 void finish_bodies(WorldData& w, double dt) {
   state::Bodies& bodies = w.tables.bodies;
   world::finish_body_contacts(w);
-  world::stop_at_impacts(w);
+  world::give_way_at_impacts(w);
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
   solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);
   world::drop_broken_hooks(w);
