@@ -267,7 +267,7 @@ bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t 
   const auto tolerance = [&scene](std::uint32_t body) {
     return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
   };
-  return pair.drift < std::min(tolerance(a), tolerance(b));
+  return largest_drift(scene.motions[a], scene.motions[b], pair.drift) < std::min(tolerance(a), tolerance(b));
 }
 
 void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
@@ -286,7 +286,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const std::uint32_t b = scene.colliders.body[pair.collider_b];
   const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
   const Real odometer = scene.bodies.odometer[a] + scene.bodies.odometer[b];
-  pair.drift += drift_of(scene.motions[a], scene.motions[b]);
+  add_drift(scene.motions[a], scene.motions[b], pair.drift);
   if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
     // Nothing pushes here; who overlaps is found at the end of the step.
   } else if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
@@ -307,7 +307,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
       pair.odometer = odometer;
-      pair.drift = Real(0);
+      pair.drift = {};
       pair.tested = true;
     }
   }

@@ -8,27 +8,37 @@
 #include <vector>
 
 /// \file
-/// Manifolds of pairs that hardly move against each other are carried along instead of being made anew.
+/// Manifolds of pairs that hardly move against each other are kept instead of being made anew.
+///
+/// Between calm bodies of islands that are too large to be solved directly it is more than a saving of time.
+/// Levers that follow what soft contacts let a stack lean are what it buckles by; the stiff one it stands for
+/// would not lean. Rows that stay the same know only small displacements, and give a stack nothing to buckle
+/// by (docs/decisions/0004-body-contacts.md).
 
 namespace hooke::collision {
 
 /// How a body moved since the narrow phase last saw it.
 struct SmallMotion {
   Vec3 way = {};             ///< Of the center of mass [m].
+  Vec3 angle = {};           ///< [rad]
   Mat3 turn = {{}, {}, {}};  ///< How far points moved from their place about the center by turning.
-  Real reach = Real(0);      ///< No point of the body turned farther than this [m].
+  Real radius = Real(0);     ///< Of the body, around its center of mass [m].
   Real tolerance = Real(0);  ///< What two bodies may move against each other before a new test [m].
+  bool calm = false;         ///< And of a large island.
 };
 
 /// The motions of all bodies since `seen`, which becomes what is seen now.
 std::vector<SmallMotion> motions_since(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                        std::vector<state::SeenPose>& seen);
 
-/// How far points of the two can have moved against each other [m].
-[[nodiscard]] Real drift_of(const SmallMotion& a, const SmallMotion& b);
+/// Adds what the two moved.
+void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);
+
+/// How far points of the two can be from where they were against each other [m].
+[[nodiscard]] Real largest_drift(const SmallMotion& a, const SmallMotion& b, const state::Drift& drift);
 
 /// Moves points and normals along with their bodies; the normal belongs to `fixed`, A or B. Separations
-/// follow to first order in what the bodies turned against each other.
+/// follow to first order in what the bodies turned against each other. Between two calm bodies only they do.
 void carry_along(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& manifold);
 
 }  // namespace hooke::collision

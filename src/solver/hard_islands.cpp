@@ -60,10 +60,11 @@ void find_sags(const ContactBlock& block, Real stiffness, ContactBlock::Lane& sa
   }
 }
 
-/// Islands that were refused, or are too large, cost nothing until they are judged again.
+/// Islands that were refused, or are too large, cost nothing until they are judged again: in their last step,
+/// so that those that still are never count as others in between.
 bool is_judged(const ContactBlock& block, const Bodies& bodies) {
   for (int lane = 0; lane < block.count; ++lane) {
-    if (bodies.hardness[block.line_a[lane] / 16] >= 0) return true;
+    if (bodies.hardness[block.line_a[lane] / 16] >= -1) return true;
   }
   return false;
 }

@@ -47,6 +47,13 @@ struct Manifold {
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
 };
 
+/// How two bodies moved since something was looked at.
+struct Drift {
+  Vec3 way = {};      ///< Of B's center against A's [m].
+  Vec3 angle_a = {};  ///< [rad]
+  Vec3 angle_b = {};
+};
+
 /// Two colliders whose boxes overlap. Rows stand in order of (collider_a, collider_b).
 struct Pair {
   std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
@@ -54,7 +61,7 @@ struct Pair {
   // What the last exact test found, so that the next can be skipped or begin where it ended.
   Real gap = Real(0);       ///< Separation then; negative: overlap [m].
   Real odometer = Real(0);  ///< Sum of the two bodies' odometers then [m].
-  Real drift = Real(0);     ///< What the bodies may have moved against each other since then [m].
+  Drift drift = {};         ///< Since then.
   std::uint32_t axis = 0;   ///< Features that separated or touched: narrow phase's own code.
   bool tested = false;      ///< False until the first exact test.
   // Its manifolds of this step.

@@ -17,7 +17,7 @@ from png import read_png
 
 PROGRAM = ""
 PROJECT = pathlib.Path()
-LIMIT = 300  # [s], for a program that hangs
+LIMIT = 900  # of one command, in seconds; sanitizers take minutes over `hooke check`
 
 # A mass falls for one second: x = 1 m/s t, y = 10 m - 9.81 m/s^2 t^2 / 2, but for the integrator's error.
 FALLING = {

@@ -106,6 +106,35 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(kept.counts.kept == 1);
   }
 
+  TEST_CASE(
+      "calm bodies of an island that is too large keep their manifold for 1.5 cm, others for half a "
+      "millimeter") {
+    const auto first_test_after = [](std::int8_t hardness, Real speed) {
+      PairScene scene;
+      const std::uint32_t lower = scene.add_dynamic(kCube, {0, 0, 0});
+      const std::uint32_t upper = scene.add_dynamic(kCube, {0, 0.9999, 0});
+      for (const std::uint32_t body : {lower, upper}) {
+        scene.bodies.hardness[body] = hardness;
+        scene.bodies.motion[body].v = {speed, Real(0), Real(0)};
+      }
+      scene.update();
+      double way = 0;
+      do {
+        scene.move(upper, {1e-4, 0, 0});
+        scene.bodies.rotation[upper] = hooke::quaternion_about(Vec3{Real(0), Real(0), Real(1)}, Real(1e-6));
+        way += 1e-4;
+        const Vec3 normal = scene.pairs.manifold[0].normal;
+        scene.update();
+        const bool calm = hardness < 0 && speed < Real(0.2);
+        if (calm && scene.counts.kept == 1) CHECK(scene.pairs.manifold[0].normal == normal);
+      } while (scene.counts.kept == 1 && way < 1);
+      return way;
+    };
+    CHECK(std::fabs(first_test_after(-60, Real(0.1)) - 0.015) < 3e-4);
+    CHECK(first_test_after(-60, Real(0.3)) < 6e-4);
+    CHECK(first_test_after(0, Real(0.1)) < 6e-4);
+  }
+
   TEST_CASE("impulses follow their points while aligned cubes shiver") {
     PairScene scene;
     scene.add_dynamic(kCube, {0, 0, 0});
