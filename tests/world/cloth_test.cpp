@@ -161,7 +161,7 @@ TEST_SUITE("world/cloth") {
     for (int i = 0; i < 600; ++i) report = world.step(Real(1) / Real(60));
     CHECK(report.contacts > 20);
     CHECK(world.measure().largest_penetration < 1e-3);
-    CHECK(world.positions(cloth)[220].y == doctest::Approx(0.402).epsilon(1e-2));
+    CHECK(world.positions(cloth)[220].y == doctest::Approx(0.402).epsilon(1e-2).scale(0));
     CHECK(world.measure().energy.kinetic < 1e-3);
   }
 
