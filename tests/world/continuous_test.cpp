@@ -271,19 +271,25 @@ TEST_SUITE("world/continuous") {
   TEST_CASE("balls, and plates of 1 mm, that are shot at each other do not go through each other") {
     Random random(7);
     World world = make_world(empty_space());
+    // A body's center in the axes of another, a plate thin along x, and where that one's x points.
+    struct View {
+      Vec3 center = {};
+      Vec3 face = {};
+    };
     struct Duel {
       BodyId a, b;
-      DVec3 a_to_b = {}, b_to_a = {};
+      View of_b = {}, of_a = {};
     };
-    // Of the other's center, in the body's own axes; plates are thin along x.
-    const auto seen_from = [&](BodyId from, BodyId other) {
+    const auto view = [&](BodyId from, BodyId other) {
       const Quat q = world.pose(from).rotation;
       const Vec3 apart = vector_cast<Real>(world.pose(other).position - world.pose(from).position);
-      return vector_cast<double>(rotate(conjugate(q), apart));
+      return View{rotate(conjugate(q), apart), rotate(q, Vec3{1, 0, 0})};
     };
-    const auto goes_through = [](DVec3 before, DVec3 after) {
-      const auto faces = [](DVec3 p) { return std::max(std::abs(p.y), std::abs(p.z)) < 0.09; };
-      return faces(before) && faces(after) && before.x * after.x < 0;
+    const auto goes_through = [](const View& before, const View& after) {
+      const auto is_before_it = [](Vec3 p) { return std::max(std::abs(p.y), std::abs(p.z)) < Real(0.09); };
+      const bool has_turned_over = dot(before.face, after.face) < Real(0.5);
+      return is_before_it(before.center) && is_before_it(after.center) && !has_turned_over &&
+             before.center.x * after.center.x < Real(0);
     };
     std::vector<Duel> duels;
     for (int i = 0; i < 300; ++i) {
@@ -299,23 +305,24 @@ TEST_SUITE("world/continuous") {
         return take(world.add_body(body));
       };
       duels.push_back({add(-1), add(1)});
-      duels.back().a_to_b = seen_from(duels.back().a, duels.back().b);
-      duels.back().b_to_a = seen_from(duels.back().b, duels.back().a);
+    }
+    for (Duel& duel : duels) {
+      duel.of_b = view(duel.a, duel.b);
+      duel.of_a = view(duel.b, duel.a);
     }
     int through = 0;
     for (int step = 0; step < 60; ++step) {
       world.step(Real(1) / Real(60));
       for (std::size_t i = 0; i < duels.size(); ++i) {
         Duel& duel = duels[i];
-        const DVec3 a_to_b = seen_from(duel.a, duel.b);
-        const DVec3 b_to_a = seen_from(duel.b, duel.a);
+        const View of_b = view(duel.a, duel.b);
+        const View of_a = view(duel.b, duel.a);
         // Balls meet head on; a plate may turn, and go past the other's edge.
-        const bool passed = i % 2 == 0
-                                ? world.pose(duel.b).position.x < world.pose(duel.a).position.x
-                                : goes_through(duel.a_to_b, a_to_b) || goes_through(duel.b_to_a, b_to_a);
-        if (passed) ++through;
-        duel.a_to_b = a_to_b;
-        duel.b_to_a = b_to_a;
+        const bool balls = i % 2 == 0;
+        const bool swapped = world.pose(duel.b).position.x < world.pose(duel.a).position.x;
+        if (balls ? swapped : goes_through(duel.of_b, of_b) || goes_through(duel.of_a, of_a)) ++through;
+        duel.of_b = of_b;
+        duel.of_a = of_a;
       }
     }
     int still_coming = 0;
