@@ -376,8 +376,8 @@ class Help(Program):
                     self.draw(*words[1:])
                 elif words[0] == "compare" and shutil.which("gnuplot") is None:
                     continue
-                elif words == ["check"]:
-                    self.hooke("check", "V1")  # all cases are a test of their own, of minutes with a sanitizer
+                elif words[0] == "check" and not re.search(r"V\d|--list", " ".join(words)):
+                    self.hooke(*words, "V1")  # all cases are tests of their own, of minutes with a sanitizer
                 elif words[0] != "view":
                     self.hooke(*words)
 
