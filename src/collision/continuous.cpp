@@ -1,10 +1,8 @@
 #include "collision/continuous.h"
 
 #include <algorithm>
-#include <optional>
 #include <queue>
 #include <tuple>
-#include <utility>
 
 namespace hooke::collision {
 

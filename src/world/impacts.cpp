@@ -29,12 +29,9 @@ Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
 Path path_of(const WorldData& world, std::uint32_t body) {
   const Bodies& bodies = world.tables.bodies;
   const MotionLine& m = bodies.motion[body];
-  Path path = {.center = bodies.center[body],
-               .rotation = bodies.rotation[body],
-               .way = m.dx,
-               .turn = turn_of(bodies, body),
-               .radius = bodies.traits[body].radius,
-               .inner = bodies.traits[body].inner_radius};
+  Path path = collision::path_ahead(bodies, body, Real(0));
+  path.way = m.dx;
+  path.turn = turn_of(bodies, body);
   if (m.inverse_mass > Real(0) && solver::tumbles_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
