@@ -213,13 +213,13 @@ Result<void> add_hook(const HookDesc& desc, Tables& t) {
   const DVec3 anchor_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
   const DQuat axes = quaternion_of(axes_of(desc));
   Hook hook = {.kind = desc.kind,
+               .collide = desc.collide,
                .a = place_on(t.bodies, a.value(), desc.anchor, axes),
                .b = place_on(t.bodies, b.value(), anchor_b, axes),
-               .freedom = freedoms_of(desc, length(anchor_b - desc.anchor)),
-               .cone = desc.kind == HookKind::kBall ? desc.cone.value_or(kRigid) : kRigid,
                .break_force = desc.break_force,
                .break_torque = desc.break_torque,
-               .collide = desc.collide};
+               .freedom = freedoms_of(desc, length(anchor_b - desc.anchor)),
+               .cone = desc.kind == HookKind::kBall ? desc.cone.value_or(kRigid) : kRigid};
   std::for_each(hook.freedom.begin(), hook.freedom.end(), lock_closed_limits);
   if (desc.kind == HookKind::kDistance) {
     hook.value[0] = length(anchor_b - desc.anchor);

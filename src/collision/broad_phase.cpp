@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hooke::collision {
 
@@ -119,7 +120,7 @@ void for_blocks(parallel::ThreadPool& pool, std::size_t count, int size, Kernel&
 
 }  // namespace
 
-void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves) {
+void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves, std::int32_t company) {
   HOOKE_ASSERT(is_in_order(box));
   if (collider >= entries_.size()) {
     entries_.resize(collider + std::size_t{1});
@@ -141,6 +142,7 @@ void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves) {
     return;
   }
   leave_home(collider);
+  if (entry.home == Home::kNone) entry.company = number_of(company);
   entry.home = home;
   entry.moves = moves;
   enter_home(collider);
@@ -189,13 +191,24 @@ void BroadPhase::find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair
 }
 
 void BroadPhase::query(const Box& box, std::vector<std::uint32_t>& found) const {
+  query_without(0, box, found);
+}
+
+void BroadPhase::query_for(std::uint32_t collider, const Box& box, std::vector<std::uint32_t>& found) const {
+  query_without(entries_[collider].company, box, found);
+}
+
+void BroadPhase::query_without(std::uint16_t company, const Box& box,
+                               std::vector<std::uint32_t>& found) const {
   found.clear();
   const auto visit = [&](std::uint32_t collider) {
     if (overlap(tight_[collider], box)) found.push_back(collider);
   };
-  standing_.visit_overlaps(box, visit);
-  moving_.visit_overlaps(box, visit);
-  for (const std::uint32_t collider : unbounded_) visit(collider);
+  standing_.visit_overlaps(box, company, visit);
+  moving_.visit_overlaps(box, company, visit);
+  for (const std::uint32_t collider : unbounded_) {
+    if (company == 0 || entries_[collider].company != company) visit(collider);
+  }
   std::sort(found.begin(), found.end());
 }
 
@@ -209,10 +222,20 @@ void BroadPhase::query_sweep(DVec3 origin, DVec3 motion, Real radius,
   std::sort(found.begin(), found.end());
 }
 
+std::uint16_t BroadPhase::number_of(std::int32_t company) {
+  if (company == 0) return 0;
+  const std::size_t next = companies_.size() + 1;
+  if (next > std::numeric_limits<std::uint16_t>::max()) {
+    const auto known = companies_.find(company);
+    return known == companies_.end() ? std::uint16_t{0} : known->second;
+  }
+  return companies_.try_emplace(company, static_cast<std::uint16_t>(next)).first->second;
+}
+
 void BroadPhase::enter_home(std::uint32_t collider) {
-  const Home home = entries_[collider].home;
-  if (home == Home::kStanding) standing_.insert(collider, fat_[collider]);
-  if (home == Home::kMoving) moving_.insert(collider, fat_[collider]);
+  const auto& [home, moves, changed, company] = entries_[collider];
+  if (home == Home::kStanding) standing_.insert({fat_[collider], collider, company});
+  if (home == Home::kMoving) moving_.insert({fat_[collider], collider, company});
   if (home == Home::kUnbounded) unbounded_.push_back(collider);
 }
 
@@ -232,8 +255,10 @@ void BroadPhase::mark_changed(std::uint32_t collider) {
 /// Whether a collider that changed and one whose fat box overlaps its own are to be reported by the first: of
 /// two that changed the lower one reports.
 bool BroadPhase::is_candidate(std::uint32_t changed, std::uint32_t other) const {
-  const bool one_moves = entries_[changed].moves || entries_[other].moves;
-  return one_moves && other != changed && !(entries_[other].changed && other < changed);
+  const Entry& a = entries_[changed];
+  const Entry& b = entries_[other];
+  const bool may_meet = (a.moves || b.moves) && (a.company == 0 || a.company != b.company);
+  return may_meet && other != changed && !(b.changed && other < changed);
 }
 
 void BroadPhase::find_candidates_of(std::uint32_t collider, std::vector<ColliderPair>& found) const {
@@ -244,8 +269,8 @@ void BroadPhase::find_candidates_of(std::uint32_t collider, std::vector<Collider
     if (is_candidate(collider, other))
       found.push_back({std::min(collider, other), std::max(collider, other)});
   };
-  moving_.visit_overlaps(box, visit);
-  if (entry.moves) standing_.visit_overlaps(box, visit);
+  moving_.visit_overlaps(box, entry.company, visit);
+  if (entry.moves) standing_.visit_overlaps(box, entry.company, visit);
   for (const std::uint32_t other : unbounded_) {
     if (overlap(fat_[other], box)) visit(other);
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <compare>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace hooke::collision {
@@ -38,8 +39,8 @@ class BroadPhase {
   static constexpr Real kHuge = Real(1e18);
 
   /// Adds or moves a collider's box. Cheap while the box stays within its fat one. Two colliders that do not
-  /// move are never a pair.
-  void set(std::uint32_t collider, const geometry::Box& box, bool moves);
+  /// move are never a pair, nor two of the same company, which a collider joins when it is added (0: none).
+  void set(std::uint32_t collider, const geometry::Box& box, bool moves, std::int32_t company = 0);
   /// Does nothing for a collider that has no box.
   void remove(std::uint32_t collider);
   void clear();
@@ -53,6 +54,8 @@ class BroadPhase {
 
   /// Replaces `found` by the colliders whose boxes overlap `box`, in ascending order.
   void query(const geometry::Box& box, std::vector<std::uint32_t>& found) const;
+  /// The same without those of the company that `collider` is of.
+  void query_for(std::uint32_t collider, const geometry::Box& box, std::vector<std::uint32_t>& found) const;
 
   /// Replaces `found` by the colliders whose boxes, grown by `radius` on every side, the segment from
   /// `origin` over `motion` passes (all finite, may be zero); in ascending order.
@@ -75,12 +78,16 @@ class BroadPhase {
     Home home = Home::kNone;
     bool moves = false;
     bool changed = false;  // since the last find_pairs: its candidates are void
+    std::uint16_t company = 0;
   };
 
   /// Both trees and what is outside of them; see BroadPhaseTree::visit_near.
   template <class Bound, class Visit>
   void visit_bounded(double limit, const Bound& bound, Visit&& visit) const;
 
+  [[nodiscard]] std::uint16_t number_of(std::int32_t company);
+  void query_without(std::uint16_t company, const geometry::Box& box,
+                     std::vector<std::uint32_t>& found) const;
   void enter_home(std::uint32_t collider);
   void leave_home(std::uint32_t collider);
   void mark_changed(std::uint32_t collider);
@@ -93,6 +100,9 @@ class BroadPhase {
   std::vector<Entry> entries_;
   std::vector<geometry::Box> tight_;
   std::vector<geometry::Box> fat_;
+
+  // Of each company, from 1. More than there are numbers for are found as if they were none.
+  std::map<std::int32_t, std::uint16_t> companies_;
 
   BroadPhaseTree standing_;
   BroadPhaseTree moving_;

@@ -1,5 +1,7 @@
 #include "collision/broad_phase_tree.h"
 
+#include <algorithm>
+
 namespace hooke::collision {
 
 using geometry::Box;
@@ -21,7 +23,7 @@ double surface_of(const Box& box) {
 
 }  // namespace
 
-BroadPhaseTree::Node::Node() : child{} {
+BroadPhaseTree::Node::Node() : child{}, company{} {
   for (int lane = 0; lane < kLanes; ++lane) set_box(lane, {});
 }
 
@@ -46,12 +48,17 @@ Box BroadPhaseTree::Node::bounds() const {
   return whole;
 }
 
-void BroadPhaseTree::insert(std::uint32_t value, const Box& box) {
-  HOOKE_ASSERT(value < kLeafBit);
-  if (value >= place_.size()) place_.resize(value + std::size_t{1}, kNone);
-  HOOKE_ASSERT(place_[value] == kNone);
-  place_[value] = kLooseBit | static_cast<std::uint32_t>(loose_.size());
-  loose_.push_back({box, value});
+std::uint16_t BroadPhaseTree::Node::common_company() const {
+  const auto end = company.begin() + count;
+  return std::all_of(company.begin(), end, [&](std::uint16_t c) { return c == company[0]; }) ? company[0] : 0;
+}
+
+void BroadPhaseTree::insert(const Leaf& leaf) {
+  HOOKE_ASSERT(leaf.value < kLeafBit);
+  if (leaf.value >= place_.size()) place_.resize(leaf.value + std::size_t{1}, kNone);
+  HOOKE_ASSERT(place_[leaf.value] == kNone);
+  place_[leaf.value] = kLooseBit | static_cast<std::uint32_t>(loose_.size());
+  loose_.push_back(leaf);
   ++leaf_count_;
 }
 
@@ -80,8 +87,9 @@ void BroadPhaseTree::move(std::uint32_t value, const Box& box) {
     loose_[place & ~kLooseBit].box = box;
     return;
   }
-  nodes_[place / kLanes].set_box(static_cast<int>(place % kLanes), box);
-  grow_ancestors(place / kLanes, box);
+  Node& node = nodes_[place / kLanes];
+  node.set_box(static_cast<int>(place % kLanes), box);
+  grow_ancestors(place / kLanes, box, node.company[place % kLanes]);
   ++change_count_;
 }
 
@@ -114,37 +122,46 @@ double BroadPhaseTree::cost() const {
   return sum;
 }
 
-void BroadPhaseTree::set_child(std::uint32_t node, int lane, std::uint32_t child, const Box& box) {
+void BroadPhaseTree::set_child(std::uint32_t node, int lane, const Child& child) {
+  const auto i = static_cast<std::size_t>(lane);
   const std::uint32_t place = node * kLanes + static_cast<std::uint32_t>(lane);
-  nodes_[node].set_box(lane, box);
-  nodes_[node].child[static_cast<std::size_t>(lane)] = child;
-  if ((child & kLeafBit) != 0) {
-    place_[child & ~kLeafBit] = place;
+  nodes_[node].set_box(lane, child.box);
+  nodes_[node].child[i] = child.child;
+  nodes_[node].company[i] = child.company;
+  if ((child.child & kLeafBit) != 0) {
+    place_[child.child & ~kLeafBit] = place;
   } else {
-    nodes_[child].parent = place;
+    nodes_[child.child].parent = place;
   }
 }
 
-void BroadPhaseTree::add_lane(std::uint32_t node, std::uint32_t child, const Box& box) {
-  set_child(node, nodes_[node].count++, child, box);
+void BroadPhaseTree::add_lane(std::uint32_t node, const Child& child) {
+  set_child(node, nodes_[node].count++, child);
+}
+
+BroadPhaseTree::Child BroadPhaseTree::lane_of(std::uint32_t node, int lane) const {
+  const auto i = static_cast<std::size_t>(lane);
+  return {nodes_[node].child[i], nodes_[node].box(lane), nodes_[node].company[i]};
 }
 
 void BroadPhaseTree::remove_lane(std::uint32_t node, int lane) {
   const int last = --nodes_[node].count;
-  if (lane != last)
-    set_child(node, lane, nodes_[node].child[static_cast<std::size_t>(last)], nodes_[node].box(last));
+  if (lane != last) set_child(node, lane, lane_of(node, last));
   nodes_[node].set_box(last, {});
   const std::uint32_t parent = nodes_[node].parent;
   // An empty node stays behind, unused, until the next build.
   if (last == 0 && parent != kNone) remove_lane(parent / kLanes, static_cast<int>(parent % kLanes));
 }
 
-void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box) {
+void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box, std::uint16_t company) {
   for (std::uint32_t place = nodes_[node].parent; place != kNone; place = nodes_[node].parent) {
     node = place / kLanes;
     const int lane = static_cast<int>(place % kLanes);
     const Box old = nodes_[node].box(lane);
-    if (contains(old, box)) return;
+    std::uint16_t& common = nodes_[node].company[static_cast<std::size_t>(lane)];
+    const bool in_company = common == 0 || common == company;
+    if (contains(old, box) && in_company) return;
+    if (!in_company) common = 0;
     nodes_[node].set_box(lane, merge(old, box));
   }
 }
@@ -152,12 +169,11 @@ void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box) {
 /// Goes down where boxes grow least, to the first free lane: there a leaf costs nothing, since lanes are
 /// asked together. False where the way down is too long: then the tree is to be built anew.
 bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
-  const std::uint32_t child = kLeafBit | leaf.value;
   std::uint32_t node = 0;
   for (int depth = 0; depth < kMaxDepth; ++depth) {
     if (nodes_[node].count < kLanes) {
-      add_lane(node, child, leaf.box);
-      grow_ancestors(node, leaf.box);
+      add_lane(node, child_of(leaf));
+      grow_ancestors(node, leaf.box, leaf.company);
       return true;
     }
     int best = 0;
@@ -170,11 +186,11 @@ bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
     }
     const std::uint32_t next = nodes_[node].child[static_cast<std::size_t>(best)];
     if ((next & kLeafBit) != 0) {
-      const Box old = nodes_[node].box(best);
+      const Child old = lane_of(node, best);
       const auto fresh = static_cast<std::uint32_t>(nodes_.size());
       nodes_.emplace_back();
-      set_child(node, best, fresh, old);
-      add_lane(fresh, next, old);
+      set_child(node, best, {fresh, old.box, old.company});
+      add_lane(fresh, old);
       node = fresh;
     } else {
       node = next;
@@ -187,16 +203,19 @@ void BroadPhaseTree::fit() {
   for (std::size_t node = nodes_.size(); node-- > 1;) {
     const std::uint32_t place = nodes_[node].parent;
     if (nodes_[node].count == 0) continue;
-    nodes_[place / kLanes].set_box(static_cast<int>(place % kLanes), nodes_[node].bounds());
+    Node& parent = nodes_[place / kLanes];
+    parent.set_box(static_cast<int>(place % kLanes), nodes_[node].bounds());
+    parent.company[place % kLanes] = nodes_[node].common_company();
   }
   change_count_ = 0;
 }
 
 void BroadPhaseTree::rebuild() {
-  for (const Node& node : nodes_) {
-    for (int lane = 0; lane < node.count; ++lane) {
-      const std::uint32_t child = node.child[static_cast<std::size_t>(lane)];
-      if ((child & kLeafBit) != 0) loose_.push_back({node.box(lane), child & ~kLeafBit});
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    for (int lane = 0; lane < nodes_[node].count; ++lane) {
+      const Child child = lane_of(node, lane);
+      if ((child.child & kLeafBit) != 0)
+        loose_.push_back({child.box, child.child & ~kLeafBit, child.company});
     }
   }
   HOOKE_ASSERT(loose_.size() == leaf_count_);

@@ -15,6 +15,9 @@ namespace hooke::collision {
 /// a node and holds a value below 2^31. All boxes are finite; which node holds a leaf depends on history and
 /// must never show in a result.
 ///
+/// A leaf may belong to a company: then it is not found for those of the same company, and parts of the tree
+/// where all are of it are not searched for them. Company 0 is none.
+///
 /// New leaves are loose until `update` puts them into nodes: queries are always right, but ask every loose
 /// leaf. `update` costs nothing where nothing changed.
 class BroadPhaseTree {
@@ -22,10 +25,11 @@ class BroadPhaseTree {
   struct Leaf {
     geometry::Box box = {};
     std::uint32_t value = 0;
+    std::uint16_t company = 0;
   };
 
-  /// `value` must not be in the tree.
-  void insert(std::uint32_t value, const geometry::Box& box);
+  /// The value must not be in the tree.
+  void insert(const Leaf& leaf);
   /// `value` must be in the tree.
   void erase(std::uint32_t value);
   /// A new box for a `value` that is in the tree.
@@ -41,9 +45,10 @@ class BroadPhaseTree {
   /// Sum of the half surfaces of all inner boxes: how often random queries enter a node, up to a factor.
   [[nodiscard]] double cost() const;
 
-  /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order.
+  /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order, but not for those
+  /// of `company` unless that is 0.
   template <class Visit>
-  void visit_overlaps(const geometry::Box& box, Visit&& visit) const;
+  void visit_overlaps(const geometry::Box& box, std::uint16_t company, Visit&& visit) const;
 
   /// Calls `visit(value)` for each leaf with a `bound(box)` of at most `limit`, nodes from near to far. A box
   /// inside another has no lower bound. `visit` returns the new limit, at most the old one.
@@ -63,8 +68,9 @@ class BroadPhaseTree {
   struct alignas(64) Node {
     std::array<Real, kLanes> lower_x, lower_y, lower_z;
     std::array<Real, kLanes> upper_x, upper_y, upper_z;
-    std::array<std::uint32_t, kLanes> child;  // a node, or kLeafBit and a value
-    std::uint32_t parent = kNone;             // node * kLanes + lane; kNone for the root
+    std::array<std::uint32_t, kLanes> child;    // a node, or kLeafBit and a value
+    std::array<std::uint16_t, kLanes> company;  // of all leaves below; 0: of none, or not of one
+    std::uint32_t parent = kNone;               // node * kLanes + lane; kNone for the root
     std::int32_t count = 0;
 
     Node();
@@ -72,8 +78,10 @@ class BroadPhaseTree {
     void set_box(int lane, const geometry::Box& box);
     /// The smallest box around all children.
     [[nodiscard]] geometry::Box bounds() const;
-    /// Bit i is set if child i overlaps `box`.
-    [[nodiscard]] unsigned overlaps(const geometry::Box& box) const;
+    /// The company of all children, if it is one.
+    [[nodiscard]] std::uint16_t common_company() const;
+    /// Bit i is set if child i overlaps `box` and is not of the company `own`.
+    [[nodiscard]] unsigned overlaps(const geometry::Box& box, std::uint16_t own) const;
   };
   /// A node that waits for its turn.
   struct Waiting {
@@ -82,10 +90,19 @@ class BroadPhaseTree {
   };
   struct Task;
 
-  void set_child(std::uint32_t node, int lane, std::uint32_t child, const geometry::Box& box);
-  void add_lane(std::uint32_t node, std::uint32_t child, const geometry::Box& box);
+  /// What a lane of a node holds.
+  struct Child {
+    std::uint32_t child = 0;
+    geometry::Box box = {};
+    std::uint16_t company = 0;
+  };
+  static Child child_of(const Leaf& leaf) { return {kLeafBit | leaf.value, leaf.box, leaf.company}; }
+  void set_child(std::uint32_t node, int lane, const Child& child);
+  void add_lane(std::uint32_t node, const Child& child);
+  [[nodiscard]] Child lane_of(std::uint32_t node, int lane) const;
   void remove_lane(std::uint32_t node, int lane);
-  void grow_ancestors(std::uint32_t node, const geometry::Box& box);
+  /// Boxes and companies above a leaf that was put into `node`, or moved there.
+  void grow_ancestors(std::uint32_t node, const geometry::Box& box, std::uint16_t company);
   bool insert_into_nodes(const Leaf& leaf);
   void fit();
   void rebuild();
@@ -100,7 +117,7 @@ class BroadPhaseTree {
   double built_cost_ = 0;
 };
 
-inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box) const {
+inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box, std::uint16_t own) const {
   // Written so that compilers make four or eight lanes of it, which they do not of comparisons.
   const auto greater = [](Real a, Real b) { return a > b ? a : b; };
   const Vec3 lower = box.lower;
@@ -114,20 +131,24 @@ inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box) const {
   }
   unsigned mask = 0;
   for (std::size_t i = 0; i < kLanes; ++i) mask |= gap[i] <= Real(0) ? 1u << i : 0u;
-  return mask & ((1u << count) - 1);  // an infinite box overlaps empty lanes too
+  mask &= (1u << count) - 1;  // an infinite box overlaps empty lanes too
+  if (own == 0) return mask;
+  for (std::size_t i = 0; i < kLanes; ++i) mask &= ~(company[i] == own ? 1u << i : 0u);
+  return mask;
 }
 
 template <class Visit>
-void BroadPhaseTree::visit_overlaps(const geometry::Box& box, Visit&& visit) const {
+void BroadPhaseTree::visit_overlaps(const geometry::Box& box, std::uint16_t company, Visit&& visit) const {
   for (const Leaf& leaf : loose_) {
-    if (geometry::overlap(leaf.box, box)) visit(leaf.value);
+    const bool is_friend = company != 0 && leaf.company == company;
+    if (!is_friend && geometry::overlap(leaf.box, box)) visit(leaf.value);
   }
   std::uint32_t stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
-    for (unsigned mask = node.overlaps(box); mask != 0; mask &= mask - 1) {
+    for (unsigned mask = node.overlaps(box, company); mask != 0; mask &= mask - 1) {
       const std::uint32_t child = node.child[static_cast<std::size_t>(std::countr_zero(mask))];
       if ((child & kLeafBit) != 0) {
         visit(child & ~kLeafBit);

@@ -115,7 +115,7 @@ void BroadPhaseTree::build(std::span<Leaf> leaves) {
 /// Cuts the largest part in two until there are eight parts or all fit into one node each.
 void BroadPhaseTree::build_node(const Task& task, std::vector<Task>& tasks) {
   if (task.leaves.size() <= kLanes) {
-    for (const Leaf& leaf : task.leaves) add_lane(task.node, kLeafBit | leaf.value, leaf.box);
+    for (const Leaf& leaf : task.leaves) add_lane(task.node, child_of(leaf));
     return;
   }
   std::array<std::span<Leaf>, kLanes> parts = {task.leaves};
@@ -131,15 +131,17 @@ void BroadPhaseTree::build_node(const Task& task, std::vector<Task>& tasks) {
   for (const std::span<Leaf> part : parts) {
     if (part.empty()) break;
     if (part.size() == 1) {
-      add_lane(task.node, kLeafBit | part[0].value, part[0].box);
+      add_lane(task.node, child_of(part[0]));
       continue;
     }
-    Box box;
-    for (const Leaf& leaf : part) box = merge(box, leaf.box);
-    const auto child = static_cast<std::uint32_t>(nodes_.size());
+    Child child = {static_cast<std::uint32_t>(nodes_.size()), {}, part[0].company};
+    for (const Leaf& leaf : part) {
+      child.box = merge(child.box, leaf.box);
+      if (leaf.company != child.company) child.company = 0;
+    }
     nodes_.emplace_back();
-    add_lane(task.node, child, box);
-    tasks.push_back({child, part, task.depth + 1});
+    add_lane(task.node, child);
+    tasks.push_back({child.child, part, task.depth + 1});
   }
 }
 

@@ -57,33 +57,44 @@ struct Simplex {
   std::array<double, 4> weight = {};
   int count = 0;
 
-  [[nodiscard]] DVec3 combine(DVec3 Corner::*member) const {
-    DVec3 sum = {};
-    for (int i = 0; i < count; ++i) sum += weight[i] * (corner[i].*member);
+  /// The point nearest to the origin.
+  [[nodiscard]] Corner nearest() const {
+    Corner sum;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      sum.w += weight[i] * corner[i].w;
+      sum.on_a += weight[i] * corner[i].on_a;
+      sum.on_b += weight[i] * corner[i].on_b;
+    }
     return sum;
   }
 };
 
-void weigh(Simplex& s, const std::array<int, 3>& of, const DVec3& weights) {
-  const std::array<double, 3> w = {weights.x, weights.y, weights.z};
-  Simplex kept;
-  for (int i = 0; i < 3; ++i) {
-    if (!(w[i] > 0)) continue;
-    kept.corner[kept.count] = s.corner[of[i]];
-    kept.weight[kept.count++] = w[i];
-  }
-  s = kept;
-}
+/// The corners that the point of a face nearest to the origin needs, by their weights.
+struct Nearby {
+  std::array<int, 3> of = {};
+  std::array<double, 3> weight = {};
+  DVec3 point = {};  ///< The nearest.
+};
 
-void reduce_segment(Simplex& s) {
+Nearby near_on_segment(const Simplex& s) {
   const auto near = geometry::closest_on_segment(DVec3{}, s.corner[0].w, s.corner[1].w);
-  weigh(s, {0, 1, 1}, {1 - near.fraction, near.fraction, 0});
+  return {{0, 1, 1}, {1 - near.fraction, near.fraction, 0}, near.point};
 }
 
-void reduce_triangle(Simplex& s, const std::array<int, 3>& of) {
+Nearby near_on_triangle(const Simplex& s, const std::array<int, 3>& of) {
   const auto near =
       geometry::closest_on_triangle(DVec3{}, s.corner[of[0]].w, s.corner[of[1]].w, s.corner[of[2]].w);
-  weigh(s, of, near.weights);
+  return {of, {near.weights.x, near.weights.y, near.weights.z}, near.point};
+}
+
+void keep(const Nearby& near, Simplex& s) {
+  // In place: `of` ascends.
+  s.count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(near.weight[i] > 0)) continue;
+    s.corner[s.count] = s.corner[near.of[i]];
+    s.weight[s.count++] = near.weight[i];
+  }
 }
 
 /// False if the origin is inside. A flat tetrahedron has all faces outside; `is_outside` says that the origin
@@ -92,26 +103,27 @@ bool reduce_tetrahedron(Simplex& s, bool is_outside) {
   constexpr std::array<std::array<int, 4>, 4> kFaces = {
       {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}};
   double least = std::numeric_limits<double>::infinity();
-  Simplex best = s;
+  Nearby best;
   for (const auto& [i, j, k, opposite] : kFaces) {
     const DVec3 p = s.corner[i].w;
     const DVec3 normal = cross(s.corner[j].w - p, s.corner[k].w - p);
     if (!is_outside && dot(normal, -p) * dot(normal, s.corner[opposite].w - p) > 0) continue;
-    Simplex face = s;
-    reduce_triangle(face, {i, j, k});
-    const double size = length_squared(face.combine(&Corner::w));
-    if (size < least) best = face;
-    least = std::min(least, size);
+    const Nearby face = near_on_triangle(s, {i, j, k});
+    const double size = length_squared(face.point);
+    if (!(size < least)) continue;
+    least = size;
+    best = face;
   }
-  s = best;
-  return least < std::numeric_limits<double>::infinity();
+  if (!(least < std::numeric_limits<double>::infinity())) return false;
+  keep(best, s);
+  return true;
 }
 
 /// Keeps the corners that the point nearest to the origin needs. False if the origin is inside.
 bool reduce(Simplex& s, bool is_outside) {
   if (s.count == 4) return reduce_tetrahedron(s, is_outside);
-  if (s.count == 3) reduce_triangle(s, {0, 1, 2});
-  if (s.count == 2) reduce_segment(s);
+  if (s.count == 3) keep(near_on_triangle(s, {0, 1, 2}), s);
+  if (s.count == 2) keep(near_on_segment(s), s);
   if (s.count == 1) s.weight[0] = 1;
   return true;
 }
@@ -201,42 +213,37 @@ Real separation_along(const Convex& a, const Convex& b, Vec3 n) {
   return dot(n, support_of(b, -n) - support_of(a, n)) - skin_of(a) - skin_of(b);
 }
 
-Distance distance_between(const Convex& a, const Convex& b) {
+Distance distance_between(const Convex& a, const Convex& b, Real enough) {
+  const Real skins = skin_of(a) + skin_of(b);
+  const auto far = static_cast<double>(enough + skins);
+  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
   Simplex s;
   s.corner[0] = corner_along(a, b, vector_cast<double>(middle_of(b) - middle_of(a)));
   s.weight[0] = 1;
   s.count = 1;
-  DVec3 v = s.corner[0].w;
-  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
+  Corner nearest = s.corner[0];
   double scale = 0;
-  bool apart = true;
   for (int i = 0; i < kMaxIterations; ++i) {
+    const DVec3 v = nearest.w;
     const Corner next = corner_along(a, b, -v);
     scale = std::max({scale, length(next.on_a), length(next.on_b)});
     const double size = length(v);
-    apart = size > rounding * scale;
-    // v.w / |v| is a lower bound of the distance: stop when it has met the upper one, |v|.
-    if (!apart || size * size - dot(v, next.w) <= size * rounding * scale || holds(s, next.w)) break;
-    const Simplex before = s;
+    if (!(size > rounding * scale)) return {.distance = -skins, .cores_overlap = true};
+    // The distance is at least v.w / |v| and at most |v|: stop when these have met.
+    const double along = dot(v, next.w);
+    if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
+    if (size * size - along <= size * rounding * scale || holds(s, next.w)) break;
     s.corner[s.count++] = next;
-    apart = reduce(s, dot(v, next.w) > 0);
-    if (!apart) break;
-    v = s.combine(&Corner::w);
-    if (length_squared(v) >= size * size) {
-      s = before;
-      break;
-    }
+    if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
+    const Corner nearer = s.nearest();
+    if (length_squared(nearer.w) >= size * size) break;
+    nearest = nearer;
   }
-  const Real skin_a = skin_of(a);
-  const Real skin_b = skin_of(b);
-  Distance result = {.distance = -(skin_a + skin_b), .cores_overlap = !apart};
-  if (!apart) return result;
-  v = s.combine(&Corner::w);
-  const double size = length(v);
-  result.normal = vector_cast<Real>(geometry::direction_or(-v, DVec3{}));
-  result.distance += static_cast<Real>(size);
-  result.point_a = vector_cast<Real>(s.combine(&Corner::on_a)) + skin_a * result.normal;
-  result.point_b = vector_cast<Real>(s.combine(&Corner::on_b)) - skin_b * result.normal;
+  Distance result;
+  result.normal = vector_cast<Real>(geometry::direction_or(-nearest.w, DVec3{}));
+  result.distance = static_cast<Real>(length(nearest.w)) - skins;
+  result.point_a = vector_cast<Real>(nearest.on_a) + skin_of(a) * result.normal;
+  result.point_b = vector_cast<Real>(nearest.on_b) - skin_of(b) * result.normal;
   return result;
 }
 

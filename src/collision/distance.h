@@ -54,6 +54,10 @@ struct Distance {
 
 /// Distance by the method of Gilbert, Johnson and Keerthi (1988), with supports in Real and the simplex in
 /// double. Bounded number of iterations; good to about 1e-6 of the shapes' size.
-[[nodiscard]] Distance distance_between(const Convex& a, const Convex& b);
+///
+/// Shapes farther apart than `enough` [m] are not looked at closer: then the distance is a lower bound above
+/// `enough`, without points and normal.
+[[nodiscard]] Distance distance_between(const Convex& a, const Convex& b,
+                                        Real enough = std::numeric_limits<Real>::infinity());
 
 }  // namespace hooke::collision

@@ -40,6 +40,14 @@ Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axi
   return nearest;
 }
 
+Nearest improve_axis(const Convex& a, const Convex& b, const Distance& apart, Real tolerance, Axis& axis) {
+  const bool tells_direction = apart.distance + skin_of(a) + skin_of(b) > Real(16) * tolerance;
+  if (apart.cores_overlap || !tells_direction) return improve_axis(a, b, tolerance, axis);
+  const Real separation = separation_along(a, b, apart.normal);
+  if (separation > axis.separation + tolerance) axis = {apart.normal, separation, kFreeAxis};
+  return {apart.point_a, apart.point_b, true};
+}
+
 void complete_points(const Nearest& nearest, Real tolerance, Meeting& meeting) {
   const auto begin = meeting.point.begin();
   const auto end = std::remove_if(begin, begin + meeting.count, [&](const MeetingPoint& p) {

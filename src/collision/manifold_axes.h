@@ -42,6 +42,9 @@ struct Nearest {
 /// separation along m was D - p n.m, and D is at least the separation along n then.)
 Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axis);
 
+/// The same for two shapes whose distance was found: where they are clearly apart it tells the axis.
+Nearest improve_axis(const Convex& a, const Convex& b, const Distance& apart, Real tolerance, Axis& axis);
+
 /// What gains by improve_axis are above rounding [m].
 [[nodiscard]] Real axis_tolerance(const Convex& a, const Convex& b);
 

@@ -41,9 +41,13 @@ Vec3 vertex_of(const Convex& c, std::size_t i) {
   return c.center + c.axes * c.hull->vertices[i];
 }
 
+/// A direction in the axes of the shape.
+Vec3 in_frame(const Convex& c, Vec3 d) {
+  return {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
+}
+
 Vec3 farthest_vertex(const Convex& c, Vec3 d) {
-  const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
-  return vertex_of(c, geometry::support(*c.hull, local));
+  return vertex_of(c, geometry::support(*c.hull, in_frame(c, d)));
 }
 
 Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::uint32_t side) {
@@ -54,8 +58,7 @@ Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::ui
 }
 
 void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, HullPair& pair) {
-  const Vec3 to_other = middle_of(other) - own.center;
-  const Vec3 local = {dot(own.axes.x, to_other), dot(own.axes.y, to_other), dot(own.axes.z, to_other)};
+  const Vec3 local = in_frame(own, middle_of(other) - own.center);
   for (std::size_t i = 0; i < own.hull->faces.size(); ++i) {
     const ConvexHull::Face& f = own.hull->faces[i];
     // The other's center is inside it by its inner radius.
@@ -80,17 +83,19 @@ PlacedEdge place_edge(const Convex& c, std::size_t i) {
 /// The edges of `own` that may hold `other` off by more than `least`. Normals of an edge lie between those of
 /// its faces; none of them is farther along than the whole of the part across the edge.
 std::vector<PlacedEdge> edges_toward(const Convex& own, const Convex& other, Real least) {
+  const ConvexHull& hull = *own.hull;
+  const Vec3 middle = in_frame(own, middle_of(other) - own.center);
+  const Real reach = other.hull->inner_radius + least;
   std::vector<PlacedEdge> edges;
-  const Vec3 middle = middle_of(other);
-  const Real inner = other.hull->inner_radius;
-  for (std::size_t i = 0; i < own.hull->edges.size(); ++i) {
-    const PlacedEdge e = place_edge(own, i);
-    const Vec3 d = middle - e.start;
-    const Real along = dot(d, e.along);
-    const Real squared = length_squared(d) - along * along / length_squared(e.along);
-    const bool behind = dot(e.normal_a, d) <= Real(0) && dot(e.normal_b, d) <= Real(0);
-    const Real bound = behind ? Real(0) : std::sqrt(std::max(Real(0), squared));
-    if (bound - inner > least) edges.push_back(e);
+  edges.reserve(hull.edges.size());
+  for (std::size_t i = 0; i < hull.edges.size(); ++i) {
+    const ConvexHull::Edge& e = hull.edges[i];
+    const Vec3 d = middle - hull.vertices[e.vertex_a];
+    const Real along = dot(d, e.direction);
+    const bool behind =
+        dot(hull.faces[e.face_a].normal, d) <= Real(0) && dot(hull.faces[e.face_b].normal, d) <= Real(0);
+    const Real squared = behind ? Real(0) : length_squared(d) - along * along;
+    if (reach < Real(0) || squared > reach * reach) edges.push_back(place_edge(own, i));
   }
   return edges;
 }

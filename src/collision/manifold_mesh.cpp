@@ -57,7 +57,9 @@ bool meet_triangle(const Convex& triangle, const Convex& b, Real margin, Meeting
   if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;
   // The shape is deepest beside the face.
   Axis axis = {front, meeting.separation, kAxisOfA};
-  const Nearest nearest = improve_axis(triangle, b, tolerance, axis);
+  const Distance apart = distance_between(triangle, b, margin);
+  if (apart.distance > margin) return false;
+  const Nearest nearest = improve_axis(triangle, b, apart, tolerance, axis);
   if (!(axis.separation <= margin) || !(dot(axis.n, front) > Real(0))) return false;
   if (axis.code == kFreeAxis) {
     meeting.count = 0;

@@ -181,7 +181,9 @@ std::vector<ConvexHull::Edge> edges_of(const ConvexHull& hull) {
   for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
     HOOKE_ASSERT(sides[i].low == sides[i + 1].low && sides[i].high == sides[i + 1].high);
     HOOKE_ASSERT(!sides[i].is_backward && sides[i + 1].is_backward);
-    edges.push_back({sides[i].low, sides[i].high, sides[i].face, sides[i + 1].face});
+    const auto& [low, high, backward, face] = sides[i];
+    const Vec3 direction = normalize(hull.vertices[high] - hull.vertices[low]);
+    edges.push_back({low, high, face, sides[i + 1].face, direction});
   }
   return edges;
 }

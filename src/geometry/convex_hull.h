@@ -22,6 +22,7 @@ struct ConvexHull {
   struct Edge {
     std::uint16_t vertex_a = 0, vertex_b = 0;  ///< vertex_a < vertex_b.
     std::uint16_t face_a = 0, face_b = 0;      ///< face_a runs from vertex_a to vertex_b, face_b back.
+    Vec3 direction = {};                       ///< Unit, from vertex_a to vertex_b.
   };
 
   static constexpr int kMaxVertices = 256;

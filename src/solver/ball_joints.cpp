@@ -66,13 +66,16 @@ void put_scale(const Bodies& bodies, std::uint32_t body, Real (&to)[6][kLanes], 
   put<6>({s.xx, s.xy, s.xz, s.yy, s.yz, s.zz}, to, lane);
 }
 
+/// From the center of mass to the anchor at the start of the step.
+DVec3 arm_of(const HookPlace& end, const Bodies& bodies) {
+  return rotate(math::in_double(bodies.rotation[end.body]), end.anchor);
+}
+
 void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int lane) {
   const BallEnds ends = ends_of(hook, bodies);
-  const JointBody a = joint_body(bodies, ends.a.body);
-  const JointBody b = joint_body(bodies, ends.b.body);
-  const DVec3 arm_a = rotate(a.rotation, ends.a.anchor);
-  const DVec3 arm_b = rotate(b.rotation, ends.b.anchor);
-  const DVec3 gap = (b.center - a.center) + (arm_b - arm_a);
+  const DVec3 arm_a = arm_of(ends.a, bodies);
+  const DVec3 arm_b = arm_of(ends.b, bodies);
+  const DVec3 gap = (bodies.center[ends.b.body] - bodies.center[ends.a.body]) + (arm_b - arm_a);
   block.line_a[lane] = 16 * ends.a.body;
   block.line_b[lane] = 16 * ends.b.body;
   block.w_a[lane] = bodies.motion[ends.a.body].inverse_mass;
@@ -92,14 +95,29 @@ void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int l
   hook.value[2] = static_cast<double>(error.z);
 }
 
-void fill_block(Real h, std::span<const std::uint32_t> rows, std::vector<Hook>& hooks, const Bodies& bodies,
-                BallBlock& block) {
+/// The block of `count` hooks of hook_of from `begin`.
+void fill_block(Real h, const BallJoints& joints, std::size_t begin, std::size_t count,
+                std::vector<Hook>& hooks, const Bodies& bodies, BallBlock& block) {
+  const auto rows = std::span(joints.hook_of).subspan(begin, count);
   block = {};
-  block.count = static_cast<int>(rows.size());
+  block.first = begin;
+  block.count = static_cast<int>(count);
   block.anchored = ends_of(hooks[rows[0]], bodies).anchored;
   for (int lane = 0; lane < kLanes; ++lane) {
     fill_lane(h, hooks[rows[std::min<std::size_t>(lane, rows.size() - 1)]], bodies, block, lane);
   }
+}
+
+void store_lane(const BallBlock& block, int lane, const Bodies& bodies, Hook& hook) {
+  const Real sign = ends_of(hook, bodies).sign;
+  hook.impulse = sign * vector_at(block.impulse, lane);
+  hook.impulse_sum = sign * vector_at(block.impulse_sum, lane);
+  hook.last_impulse = block.size[lane];
+  hook.broken = block.broken[lane] > Real(0);
+  const Vec3 rows = transpose(row_axes(hook, bodies)) * hook.impulse;
+  hook.row_impulse[0] = rows.x;
+  hook.row_impulse[1] = rows.y;
+  hook.row_impulse[2] = rows.z;
 }
 
 /// Calls visit(blocks) for ranges of blocks, color after color.
@@ -168,7 +186,7 @@ void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& 
   parallel::for_ranges(pool, static_cast<int>(plan.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto [begin, count] = plan[i];
-      fill_block(h, std::span(joints.hook_of).subspan(begin, count), hooks, bodies, joints.blocks[i]);
+      fill_block(h, joints, begin, count, hooks, bodies, joints.blocks[i]);
     }
   });
 }
@@ -191,23 +209,15 @@ void relax_ball_joints(parallel::ThreadPool& pool, Bodies& bodies, BallJoints& j
                  [&](auto blocks) { wide::relax_balls(blocks, bodies.motion.data()); });
 }
 
-void store_ball_joints(int substeps, const Bodies& bodies, const BallJoints& joints,
-                       std::vector<Hook>& hooks) {
-  std::size_t at = 0;
-  for (const BallBlock& block : joints.blocks) {
-    for (int lane = 0; lane < block.count; ++lane) {
-      Hook& hook = hooks[joints.hook_of[at++]];
-      const Real sign = ends_of(hook, bodies).sign;
-      hook.impulse = sign * vector_at(block.impulse, lane);
-      hook.impulse_sum = sign * vector_at(block.impulse_sum, lane);
-      hook.last_impulse = block.size[lane];
-      hook.broken = block.broken[lane] > Real(0);
-      const Vec3 rows = transpose(row_axes(hook, bodies)) * hook.impulse;
-      hook.row_impulse[0] = rows.x;
-      hook.row_impulse[1] = rows.y;
-      hook.row_impulse[2] = rows.z;
+void store_ball_joints(parallel::ThreadPool& pool, int substeps, const Bodies& bodies,
+                       const BallJoints& joints, std::vector<Hook>& hooks) {
+  parallel::for_ranges(pool, static_cast<int>(joints.blocks.size()), kFillGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const BallBlock& block = joints.blocks[i];
+      for (int lane = 0; lane < block.count; ++lane)
+        store_lane(block, lane, bodies, hooks[joints.hook_of[block.first + static_cast<std::size_t>(lane)]]);
     }
-  }
+  });
   for (const std::uint32_t row : joints.resting)
     hooks[row].impulse_sum = static_cast<Real>(substeps) * hooks[row].impulse;
 }

@@ -46,6 +46,7 @@ struct alignas(64) BallBlock {
   Lane strength;                ///< Impulse at which the hook breaks if two substeps ask for more [N s].
   Lane broken;                  ///< 1 or 0.
 
+  std::size_t first = 0;  ///< Place of the first lane's hook in BallJoints::hook_of.
   int count = 0;          ///< Lanes with a hook of their own.
   bool anchored = false;  ///< B is not written: it stands or is moved by hand.
 };
@@ -81,7 +82,7 @@ void solve_ball_joints(parallel::ThreadPool& pool, Real h, state::Bodies& bodies
 void relax_ball_joints(parallel::ThreadPool& pool, state::Bodies& bodies, BallJoints& joints);
 
 /// End of a step of `substeps`: what the hooks did, in the hooks.
-void store_ball_joints(int substeps, const state::Bodies& bodies, const BallJoints& joints,
-                       std::vector<state::Hook>& hooks);
+void store_ball_joints(parallel::ThreadPool& pool, int substeps, const state::Bodies& bodies,
+                       const BallJoints& joints, std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

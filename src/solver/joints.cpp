@@ -13,6 +13,14 @@ using state::Hook;
 using state::HookPlace;
 
 constexpr int kArticulationGrain = 1;
+constexpr int kHookGrain = 256;
+
+template <class Change>
+void for_hooks(parallel::ThreadPool& pool, std::vector<Hook>& hooks, Change&& change) {
+  parallel::for_ranges(pool, static_cast<int>(hooks.size()), kHookGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) change(hooks[i]);
+  });
+}
 
 /// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
 std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hooks,
@@ -93,10 +101,10 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
                     Joints& joints) {
   prepare_net(joints.net);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
-  for (Hook& hook : hooks) {
+  for_hooks(pool, hooks, [](Hook& hook) {
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
-  }
+  });
 }
 
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
@@ -122,13 +130,13 @@ void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
   for (const std::uint32_t row : joints.net.hooks) add_up(h, hooks[row]);
 }
 
-void finish_joints(Real dt, int substeps, const state::Bodies& bodies, const Joints& joints,
-                   std::vector<Hook>& hooks) {
-  store_ball_joints(substeps, bodies, joints.balls, hooks);
-  for (Hook& hook : hooks) {
+void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,
+                   const Joints& joints, std::vector<Hook>& hooks) {
+  store_ball_joints(pool, substeps, bodies, joints.balls, hooks);
+  for_hooks(pool, hooks, [dt](Hook& hook) {
     hook.force = (Real(1) / dt) * hook.impulse_sum;
     hook.torque = (Real(1) / dt) * hook.angular_impulse_sum;
-  }
+  });
 }
 
 }  // namespace hooke::solver

@@ -52,7 +52,7 @@ void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& 
                   Joints& joints);
 
 /// End of a step of length dt [s] in `substeps`: mean forces.
-void finish_joints(Real dt, int substeps, const state::Bodies& bodies, const Joints& joints,
-                   std::vector<state::Hook>& hooks);
+void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,
+                   const Joints& joints, std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

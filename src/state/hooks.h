@@ -17,36 +17,36 @@ struct HookPlace {
   Quat axes = {};     ///< From the hook's axes to the body's frame, or to the world.
 };
 
-/// Two ends held together. What each kind leaves free is written out in `freedom` when the hook is made.
+/// Two ends held together. What each kind leaves free is written out in `freedom` when the hook is made. What
+/// every step looks at stands first, close together; impulses and values are the solver's.
 struct Hook {
   /// A freedom has three rows at most: lock or spring, motor, limit.
   static constexpr int kMaxRows = 18;
 
   std::uint32_t slot = 0;  ///< Of its id.
   HookKind kind = HookKind::kBall;
+  bool collide = false;
+  bool broken = false;
   HookPlace a = {};
   HookPlace b = {};
+  Real break_force = kRigid;
+  Real last_impulse = Real(0);                  ///< Length of `impulse` in the substep before, for breaking.
+  Vec3 impulse = {};                            ///< On b in the last substep [N s].
+  Vec3 impulse_sum = {};                        ///< Over the step so far.
+  Vec3 force = {};                              ///< On b, mean over the last step [N].
+  std::array<double, 6> value = {};             ///< Of each freedom; angles also beyond whole turns.
+  std::array<Real, kMaxRows> row_impulse = {};  ///< Of the last substep, in the order of its rows.
+
+  Vec3 angular_impulse = {};  ///< [N m s]
+  Vec3 angular_impulse_sum = {};
+  Vec3 torque = {};  ///< [N m]
+  Real last_angular_impulse = Real(0);
+  Real break_torque = kRigid;
   /// Ways along a's x, y, z, then angles. kDistance uses the first, along the line between the anchors; kBall
   /// has its twist limits in the fourth and one spring and motor for each axis.
   std::array<HookFreedom, 6> freedom = {};
-  Real cone = kRigid;  ///< kBall: largest angle between the x axes [rad].
-  Real break_force = kRigid;
-  Real break_torque = kRigid;
-  bool collide = false;
+  Real cone = kRigid;            ///< kBall: largest angle between the x axes [rad].
   Real rest_distance = Real(0);  ///< kDistance: of the anchors when they were hooked [m].
-
-  // Written by the solver.
-  bool broken = false;
-  std::array<double, 6> value = {};             ///< Of each freedom; angles also beyond whole turns.
-  std::array<Real, kMaxRows> row_impulse = {};  ///< Of the last substep, in the order of its rows.
-  Vec3 impulse = {};                            ///< On b in the last substep [N s].
-  Vec3 angular_impulse = {};                    ///< [N m s]
-  Real last_impulse = Real(0);                  ///< Its length in the substep before, for breaking.
-  Real last_angular_impulse = Real(0);
-  Vec3 impulse_sum = {};  ///< Over the step so far.
-  Vec3 angular_impulse_sum = {};
-  Vec3 force = {};   ///< On b, mean over the last step [N].
-  Vec3 torque = {};  ///< [N m]
 };
 
 }  // namespace hooke::state

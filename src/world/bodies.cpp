@@ -27,6 +27,12 @@ bool may_meet(const BodyTraits& a, const BodyTraits& b) {
   return (a.sensor && moves(b)) || (b.sensor && moves(a));
 }
 
+/// Bodies of a negative group never collide with each other: that is a company.
+void set_box(WorldData& world, std::uint32_t body, std::uint32_t collider, const geometry::Box& box) {
+  const BodyTraits& traits = world.tables.bodies.traits[body];
+  world.broad_phase.set(collider, box, moves(traits), std::min(traits.filter.group, 0));
+}
+
 /// What the colliders of a body can reach in this step.
 void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   for (const std::uint32_t c : colliders_of(t.bodies, body))
@@ -71,8 +77,7 @@ bool may_collide(const WorldData& world, collision::ColliderPair pair) {
 
 void enter_broad_phase(WorldData& world, std::uint32_t body) {
   const Tables& t = world.tables;
-  for (const std::uint32_t c : colliders_of(t.bodies, body))
-    world.broad_phase.set(c, t.colliders.bounds[c], moves(t.bodies.traits[body]));
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) set_box(world, body, c, t.colliders.bounds[c]);
 }
 
 const collision::BroadPhase& boxes_for_queries(WorldData& world) {
@@ -82,10 +87,8 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
   const Tables& t = world.tables;
   // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
   const auto enter = [&](std::uint32_t body) {
-    for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-      world.broad_phase.set(c, collision::reach_of(t.bodies, t.colliders, c, Real(0)),
-                            moves(t.bodies.traits[body]));
-    }
+    for (const std::uint32_t c : colliders_of(t.bodies, body))
+      set_box(world, body, c, collision::reach_of(t.bodies, t.colliders, c, Real(0)));
   };
   if (world.broad_phase_stale) {
     world.broad_phase.clear();

@@ -116,7 +116,7 @@ void find_in_the_way(const WorldData& world, std::uint32_t body, std::vector<Col
   const state::Tables& t = world.tables;
   std::vector<std::uint32_t> found;
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-    world.broad_phase.query(t.colliders.bounds[c], found);
+    world.broad_phase.query_for(c, t.colliders.bounds[c], found);
     for (const std::uint32_t other : found) {
       const ColliderPair pair = {std::min(c, other), std::max(c, other)};
       const bool solid = !t.bodies.traits[t.colliders.body[other]].sensor;

@@ -66,7 +66,8 @@ std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSet
 }  // namespace
 
 bool wake_touched(WorldData& world, Real dt) {
-  if (world.awake.empty()) return false;
+  const bool none_sleeps = world.awake.size() == world.tables.moving_bodies.size();
+  if (world.awake.empty() || none_sleeps) return false;
   Bodies& bodies = world.tables.bodies;
   bool any = false;
   for (bool changed = true; changed;) {

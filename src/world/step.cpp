@@ -156,7 +156,8 @@ void finish_bodies(WorldData& w, double dt) {
   world::finish_body_contacts(w);
   world::give_way_at_impacts(w);
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
-  solver::finish_joints(static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints, w.tables.hooks);
+  solver::finish_joints(*w.pool, static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints,
+                        w.tables.hooks);
   world::drop_broken_hooks(w);
   world::put_to_sleep(w, static_cast<Real>(dt));
   world::gather_events(w);

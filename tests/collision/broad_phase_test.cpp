@@ -49,13 +49,22 @@ struct Model {
     bool moves = false;
   };
   std::map<std::uint32_t, Item> items;
+  std::uint32_t companies = 0;
+
+  [[nodiscard]] std::int32_t company_of(std::uint32_t collider) const {
+    return -static_cast<std::int32_t>(collider / 3 % (companies + 1));
+  }
+  [[nodiscard]] bool are_friends(std::uint32_t a, std::uint32_t b) const {
+    return company_of(a) != 0 && company_of(a) == company_of(b);
+  }
 
   [[nodiscard]] std::vector<ColliderPair> pairs() const {
     std::vector<ColliderPair> found;
     for (auto a = items.begin(); a != items.end(); ++a) {
       for (auto b = std::next(a); b != items.end(); ++b) {
         const bool one_moves = a->second.moves || b->second.moves;
-        if (one_moves && overlap(a->second.box, b->second.box)) found.push_back({a->first, b->first});
+        if (one_moves && !are_friends(a->first, b->first) && overlap(a->second.box, b->second.box))
+          found.push_back({a->first, b->first});
       }
     }
     return found;
@@ -76,7 +85,7 @@ struct Twin {
   Model model;
 
   void set(std::uint32_t collider, const Box& box, bool moves) {
-    broad_phase.set(collider, box, moves);
+    broad_phase.set(collider, box, moves, model.company_of(collider));
     model.items[collider] = {box, moves};
   }
   void remove(std::uint32_t collider) {
@@ -93,6 +102,11 @@ struct Twin {
     const Box box = random_box(random, spread);
     broad_phase.query(box, found);
     CHECK(found == model.all_that([&](const Box& other) { return overlap(other, box); }));
+    const std::uint32_t collider = model.items.begin()->first;
+    std::erase_if(found, [&](std::uint32_t other) { return model.are_friends(collider, other); });
+    std::vector<std::uint32_t> strangers = {7};
+    broad_phase.query_for(collider, box, strangers);
+    CHECK(strangers == found);
     const DVec3 origin = hooke::vector_cast<double>(Real(2) * spread * random_vector(random));
     DVec3 motion = hooke::vector_cast<double>(Real(2) * spread * random_vector(random)) - origin;
     if (random() % 4 == 0) motion.x = 0;
@@ -133,11 +147,12 @@ void change_some(Twin& twin, std::mt19937& random, Real spread) {
 
 TEST_SUITE("collision/broad_phase") {
   TEST_CASE("pairs and queries are those that looking at every two boxes finds, however boxes change") {
-    for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    for (const std::uint32_t seed : {1u, 2u, 3u, 4u, 5u}) {
       std::mt19937 random(seed);
       ThreadPool pool(2);
       const auto spread = static_cast<Real>(4 * seed);
       Twin twin;
+      twin.model.companies = seed > 2 ? seed - 2 : 0;
       for (std::uint32_t c = 0; c < 300; ++c) twin.set(c, random_box(random, spread), c % 3 != 0);
       for (int step = 0; step < 60; ++step) {
         twin.check_queries(random, spread);  // with loose leaves
@@ -279,6 +294,22 @@ TEST_SUITE("collision/broad_phase") {
     twin.set(3, box_at({}, {Real(1), Real(1), Real(1)}), true);
     twin.set(4, box_at({}, {Real(1), Real(1), Real(1)}), false);
     twin.check_pairs(pool);
+  }
+
+  TEST_CASE("a company of a thousand boxes in one place is searched for strangers alone") {
+    ThreadPool pool(2);
+    BroadPhase broad_phase;
+    const Box box = box_at({}, {Real(1), Real(1), Real(1)});
+    for (std::uint32_t c = 0; c < 1000; ++c) broad_phase.set(c, box, true, -7);
+    broad_phase.set(1000, box, true, -8);
+    broad_phase.set(1001, box, false);
+    std::vector<ColliderPair> pairs;
+    broad_phase.find_pairs(pool, pairs);
+    CHECK(pairs.size() == 2001);
+    broad_phase.remove(5);
+    broad_phase.set(5, box, true);  // it comes back as a stranger
+    broad_phase.find_pairs(pool, pairs);
+    CHECK(pairs.size() == 2001 + 999);
   }
 
   TEST_CASE("a sweep that is cut short by its visitor comes to the nearest first of what is in its way") {

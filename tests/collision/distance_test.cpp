@@ -104,6 +104,32 @@ TEST_SUITE("collision/distance") {
     }
   }
 
+  TEST_CASE("shapes farther apart than is asked for give a lower bound, and nearer ones their distance") {
+    std::mt19937 random(7);
+    int given_up = 0;
+    for (const ShapeKind kind_a : kRoundedKinds) {
+      for (const ShapeKind kind_b : kRoundedKinds) {
+        for (int i = 0; i < 60; ++i) {
+          const Convex a = placed(random_shape(kind_a, random), {}, random_turn(random));
+          const Vec3 place = uniform(random, 0.5, 4) * random_unit(random);
+          const Convex b = placed(random_shape(kind_b, random), place, random_turn(random));
+          const Real enough = uniform(random, 0, 2);
+          const Distance whole = distance_between(a, b);
+          const Distance d = distance_between(a, b, enough);
+          CHECK(d.cores_overlap == whole.cores_overlap);
+          if (d.distance > enough) {
+            CHECK(d.distance <= whole.distance + Real(1e-5));
+            given_up += d.distance < Real(0.99) * whole.distance ? 1 : 0;
+          } else {
+            CHECK(d.distance == whole.distance);
+            CHECK(d.normal == whole.normal);
+          }
+        }
+      }
+    }
+    CHECK(given_up > 100);
+  }
+
   TEST_CASE("a triangle seen from its front, its edge and its corner") {
     Convex triangle = {.shape = {.kind = ShapeKind::kMesh}};
     triangle.corners = {Vec3{Real(0), Real(0), Real(0)}, Vec3{Real(0), Real(0), Real(1)},

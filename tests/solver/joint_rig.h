@@ -81,7 +81,7 @@ struct JointRig {
       relax_joints(pool, h, t.hooks, t.bodies, joints);
     }
     finish_bodies(rows, t.bodies);
-    finish_joints(dt, substeps, t.bodies, joints, t.hooks);
+    finish_joints(pool, dt, substeps, t.bodies, joints, t.hooks);
   }
 
   void run(double seconds, int substeps = 8, Real dt = Real(1) / Real(60)) {
