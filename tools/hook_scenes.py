@@ -281,11 +281,11 @@ def limp_doll(name, material, array, **more):
     ])
 
 
-def human(name, material, array):
-    """14 capsules, 1.75 m high, the feet at the origin; cones, hinges, springs and friction in its joints."""
+def human(name, material, array, feet=(0, 0, 0)):
+    """14 capsules, 1.75 m high; cones, hinges, springs and friction in its joints."""
     spring = {"stiffness": 10, "damping": 2.2}  # 1 Hz and a ratio of 0.7 about 0.25 kg m^2
     parts = {
-        "pelvis": (0.13, [-0.07, 0.95, 0], [0.07, 0.95, 0]), "loin": (0.12, [-0.07, 1.08, 0], [0.07, 1.08, 0]),
+        "pelvis": (0.13, [-0.07, 0.95, 0], [0.07, 0.95, 0]), "loin": (0.11, [-0.07, 1.08, 0], [0.07, 1.08, 0]),
         "waist": (0.10, [-0.08, 1.2, 0], [0.08, 1.2, 0]), "chest": (0.145, [-0.09, 1.34, 0], [0.09, 1.34, 0]),
         "neck": (0.07, [0, 1.48, 0], [0, 1.53, 0]), "head": (0.0975, [0, 1.62, 0], [0, 1.66, 0])
     }
@@ -299,7 +299,7 @@ def human(name, material, array):
         parts |= {
             f"{side}_upper_arm": (0.075, [s * 0.25, 1.4, 0], [s * 0.5, 1.4, 0]),
             f"{side}_lower_arm": (0.05, [s * 0.53, 1.4, 0], [s * 0.83, 1.4, 0]),
-            f"{side}_thigh": (0.09, [s * 0.1, 0.505, 0], [s * 0.1, 0.905, 0]),
+            f"{side}_thigh": (0.09, [s * 0.1, 0.505, 0], [s * 0.1, 0.86, 0]),
             f"{side}_calf": (0.075, [s * 0.1, 0.075, 0], [s * 0.1, 0.505, 0])
         }
         balls |= {
@@ -310,18 +310,21 @@ def human(name, material, array):
             f"{side}_elbow": (f"{side}_upper_arm", f"{side}_lower_arm", [s * 0.515, 1.4, 0], [0, -s, 0], 65),
             f"{side}_knee": (f"{side}_thigh", f"{side}_calf", [s * 0.1, 0.505, 0], X, 60)
         }
-    made = [limb(f"{name}_{part}", material, *where, array=array) for part, where in parts.items()]
+    made = [
+        limb(f"{name}_{part}", material, radius, add(feet, start), add(feet, end), array=array)
+        for part, (radius, start, end) in parts.items()
+    ]
     hooks = []
     for joint, (a, b, anchor, cone, twist) in balls.items():
         friction = {"nape": 4, "nod": 2}.get(joint, 5)
         axis = [math.copysign(1, anchor[0]), 0, 0] if joint.endswith("shoulder") else Y
         hooks.append(
-            hook(f"{name}_{joint}", "ball", f"{name}_{b}", anchor, f"{name}_{a}", axis=axis, spring=spring,
+            hook(f"{name}_{joint}", "ball", f"{name}_{b}", add(feet, anchor), f"{name}_{a}", axis=axis, spring=spring,
                  motor={"max_force": friction}, cone=math.radians(cone),
                  limits={"lower": -math.radians(twist), "upper": math.radians(twist)}, array=array))
     for joint, (a, b, anchor, axis, range_deg) in hinges.items():
         hooks.append(
-            hook(f"{name}_{joint}", "hinge", f"{name}_{b}", anchor, f"{name}_{a}", axis=axis, spring=spring,
+            hook(f"{name}_{joint}", "hinge", f"{name}_{b}", add(feet, anchor), f"{name}_{a}", axis=axis, spring=spring,
                  motor={"max_force": 5}, limits={"lower": 0, "upper": math.radians(range_deg)}, array=array))
     return made, hooks
 
@@ -438,9 +441,8 @@ def rain():
             place = removed[step]
         else:
             place = column
-        offsets = [[15 * (place - 4.5) + 0.75 * (k - 1), 20, 15 * (group - 4.5)] for group in range(10)
-                   for k in range(3)]
-        made, joints = human(name, TONES[column % 4], {"list": offsets})
+        made, joints = human(name, TONES[column % 4], {"grid": [3, 1, 10], "spacing": [2, 1, 15]},
+                             [15 * (place - 4.5) - 2, 20, -67.5])
         timeline.append({"at_step": step, "add": {"bodies": made, "hooks": joints}})
     return scene(
         "Rain of ragdolls",

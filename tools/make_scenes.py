@@ -21,7 +21,7 @@ from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 # Written when asked for by name: above 300 kB, or not held by the solver yet. docs/decisions/0005-bodies.md
 # says what is missing.
-ON_REQUEST = {"mixpile", "gyroscope", "rain"}
+ON_REQUEST = {"mixpile", "gyroscope"}
 
 # ---- Slopes -----------------------------------------------------------------------------------------------
 

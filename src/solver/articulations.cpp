@@ -286,48 +286,75 @@ bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
   return grew;
 }
 
-/// J M^-1 J^T + gamma.
-void assemble(Articulation& art) {
-  std::fill(art.matrix.begin(), art.matrix.end(), 0.0);
-  for (const Articulation::Coupling& coupling : art.couplings) {
-    const BlockPattern::Block& block = art.pattern.block[coupling.block];
-    const Articulation::Joint& left = art.joints[block.row];
-    const Articulation::Joint& right = art.joints[block.column];
-    const Link& link = art.links[coupling.link];
-    const double sign = sign_at(left, coupling.link) * sign_at(right, coupling.link);
-    double* numbers = &art.matrix[block.offset];
-    for (int c = 0; c < right.count; ++c) {
-      const JointRow& row = art.rows[right.first + c];
-      const DVec3 n = sign * link.body.inverse_mass * row.n;
-      const DVec3 j = sign * (link.response * lever_at(right, coupling.link, row));
-      for (int r = 0; r < left.count; ++r) {
-        const JointRow& other = art.rows[left.first + r];
-        numbers[r * right.count + c] += dot(other.n, n) + dot(lever_at(left, coupling.link, other), j);
-      }
-    }
-  }
-  const double compliance = art.has_loops ? kComplianceOfLoops : kComplianceOfTrees;
-  for (int i = 0; i < art.pattern.node_count(); ++i) {
-    double* diagonal = &art.matrix[art.pattern.block[art.pattern.column_begin[i]].offset];
-    const int n = art.joints[i].count;
-    for (int r = 0; r < n; ++r) {
-      double& number = diagonal[r * n + r];
-      number += art.rows[art.joints[i].first + r].gamma + compliance * number;
-    }
+/// A motor that is at no bound holds the velocity along its axis, which gives the impulse of the spring
+/// there.
+void give_springs(Articulation& art) {
+  for (std::size_t i = 0; i + 1 < art.rows.size(); ++i) {
+    const JointRow& spring = art.rows[i];
+    const JointRow& motor = art.rows[i + 1];
+    if (spring.role != RowRole::kSpring || motor.role != RowRole::kMotor) continue;
+    if (!(spring.n == motor.n) || !(spring.axis == motor.axis)) continue;
+    art.bound[i] = art.bound[i + 1] == 0 ? Articulation::kGiven : std::int8_t{0};
+    if (art.bound[i] != 0) art.lambda[i] = (spring.target - motor.target) / spring.gamma;
   }
 }
 
-/// Rows at a bound become lambda = 0: their impulse is already in the velocities.
-void drop_bound_rows(Articulation& art) {
-  for (const BlockPattern::Block& block : art.pattern.block) {
-    const Articulation::Joint& left = art.joints[block.row];
-    const Articulation::Joint& right = art.joints[block.column];
-    for (int r = 0; r < left.count; ++r) {
-      for (int c = 0; c < right.count; ++c) {
-        if (art.bound[left.first + r] == 0 && art.bound[right.first + c] == 0) continue;
-        const bool diagonal = block.row == block.column && r == c;
-        art.factors[block.offset + r * right.count + c] = diagonal ? 1 : 0;
+/// Lists the rows that are at no bound, those of a joint column by column.
+void list_free_rows(Articulation& art) {
+  art.free.clear();
+  art.free_sizes.clear();
+  art.columns.clear();
+  for (const Articulation::Joint& joint : art.joints) {
+    const std::size_t begin = art.free.size();
+    for (int i = joint.first; i < joint.first + joint.count; ++i) {
+      if (art.bound[i] == 0) art.free.push_back(i);
+    }
+    const auto rows = std::span(art.free).subspan(begin);
+    art.free_sizes.push_back(static_cast<int>(rows.size()));
+    for (const auto member : {&JointRow::n, &JointRow::j_a, &JointRow::j_b}) {
+      for (const auto axis : {&DVec3::x, &DVec3::y, &DVec3::z}) {
+        for (const int i : rows) art.columns.push_back(art.rows[i].*member.*axis);
       }
+    }
+  }
+  resize_blocks(art.free_sizes, art.free_pattern);
+}
+
+/// The part of a link in the block of two joints' rows.
+void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
+  const BlockPattern::Block& block = art.free_pattern.block[coupling.block];
+  const Articulation::Joint& left = art.joints[block.row];
+  const Articulation::Joint& right = art.joints[block.column];
+  const Link& link = art.links[coupling.link];
+  const double sign = sign_at(left, coupling.link) * sign_at(right, coupling.link);
+  const int* rows = art.free.data() + art.free_pattern.first[block.row];
+  const auto count = static_cast<std::size_t>(art.free_sizes[block.column]);
+  const double* n = art.columns.data() + 9 * static_cast<std::size_t>(art.free_pattern.first[block.column]);
+  const double* j = n + (coupling.link == right.a ? 3 : 6) * count;
+  double* to = art.factors.data() + block.offset;
+  for (int r = 0; r < art.free_sizes[block.row]; ++r) {
+    const JointRow& row = art.rows[rows[r]];
+    const DVec3 v = sign * link.body.inverse_mass * row.n;
+    const DVec3 w = sign * (link.response * lever_at(left, coupling.link, row));
+    for (std::size_t c = 0; c < count; ++c) {
+      to[c] += (v.x * n[c] + v.y * n[count + c] + v.z * n[2 * count + c]) +
+               (w.x * j[c] + w.y * j[count + c] + w.z * j[2 * count + c]);
+    }
+    to += count;
+  }
+}
+
+/// J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
+void assemble(Articulation& art) {
+  art.factors.assign(art.free_pattern.number_count, 0.0);
+  for (const Articulation::Coupling& coupling : art.couplings) add_coupling(coupling, art);
+  const double compliance = art.has_loops ? kComplianceOfLoops : kComplianceOfTrees;
+  for (int i = 0; i < art.free_pattern.node_count(); ++i) {
+    const BlockPattern::Block& block = art.free_pattern.block[art.free_pattern.column_begin[i]];
+    const int n = art.free_sizes[i];
+    for (int r = 0; r < n; ++r) {
+      double& number = art.factors[block.offset + static_cast<std::size_t>(r * (n + 1))];
+      number += art.rows[art.free[art.free_pattern.first[i] + r]].gamma + compliance * number;
     }
   }
 }
@@ -372,25 +399,23 @@ double shortfall(const Articulation& art, const Articulation::Joint& joint, cons
 }
 
 void solve_free_rows(Articulation& art) {
-  art.factors = art.matrix;
   for (std::size_t i = 0; i < art.rows.size(); ++i) {
     art.lambda[i] = art.bound[i] < 0 ? art.rows[i].low : art.bound[i] > 0 ? art.rows[i].high : 0;
   }
+  give_springs(art);
   reset_velocities(art);
-  const bool any_bound = std::any_of(art.bound.begin(), art.bound.end(), [](int b) { return b != 0; });
-  if (any_bound) {
-    apply_rows([&](int i) { return art.bound[i] != 0; }, art);
-    drop_bound_rows(art);
-  }
+  apply_rows([&](int i) { return art.bound[i] != 0; }, art);
+  list_free_rows(art);
+  assemble(art);
+  art.right_side.clear();
   for (const Articulation::Joint& joint : art.joints) {
-    for (int i = joint.first; i < joint.first + joint.count; ++i)
-      art.right_side[i] = art.bound[i] == 0 ? shortfall(art, joint, art.rows[i]) : 0;
+    for (int i = joint.first; i < joint.first + joint.count; ++i) {
+      if (art.bound[i] == 0) art.right_side.push_back(shortfall(art, joint, art.rows[i]));
+    }
   }
-  factor(art.pattern, art.factors);
-  solve(art.pattern, art.factors, art.right_side);
-  for (std::size_t i = 0; i < art.rows.size(); ++i) {
-    if (art.bound[i] == 0) art.lambda[i] = art.right_side[i];
-  }
+  factor(art.free_pattern, art.factors);
+  solve(art.free_pattern, art.factors, art.right_side);
+  for (std::size_t k = 0; k < art.free.size(); ++k) art.lambda[art.free[k]] = art.right_side[k];
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);
 }
 
@@ -401,6 +426,7 @@ bool revise_bounds(bool release, Articulation& art) {
     for (int i = joint.first; i < joint.first + joint.count; ++i) {
       const JointRow& row = art.rows[i];
       std::int8_t bound = 0;
+      if (art.bound[i] == Articulation::kGiven) continue;
       if (art.bound[i] == 0) {
         bound = side_of(art.lambda[i], row.low, row.high);
       } else if (!release) {
@@ -418,7 +444,6 @@ bool revise_bounds(bool release, Articulation& art) {
 }
 
 void solve_with_bounds(Articulation& art) {
-  assemble(art);
   bool changed = true;
   for (int pass = 0; changed && pass < kMaxPasses; ++pass) {
     solve_free_rows(art);
@@ -502,8 +527,7 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
   art.rows.resize(row_count);
   art.lambda.resize(row_count);
   art.bound.resize(row_count);
-  art.right_side.resize(row_count);
-  art.matrix.resize(art.pattern.number_count);
+  art.free_pattern = art.pattern;
   return art;
 }
 

@@ -32,6 +32,7 @@ struct Link {
 /// each, which are joined where hooks share a body that forces move. Chains and trees have no fill, so the
 /// cost grows with their length only. Motors and limits have bounds: rows that are at one drop out, those
 /// that pull away from it come back, eight times; then rows only drop out, until none is beyond its bounds. A
+/// spring drops out while the motor beside it holds its velocity, and with it the spring's impulse. A
 /// compliance of 1e-9 of each diagonal, 1e-5 in loops, decides what loops and doubled hooks leave
 /// undetermined.
 ///
@@ -58,6 +59,7 @@ struct Link {
 /// Tournier et al. 2015, "Stable constrained dynamics".
 struct Articulation {
   static constexpr std::uint32_t kWeld = 0xFFFFFFFF;
+  static constexpr std::int8_t kGiven = 2;  ///< Of a spring: the motor beside it says what it does.
 
   std::vector<std::uint32_t> bodies;  ///< Rows in order; HookPlace::kWorld for the world. One for each link.
   std::vector<double> parts;          ///< Into how many links the body of each link is divided.
@@ -83,8 +85,12 @@ struct Articulation {
   std::vector<Link> links;  ///< As bodies.
   std::vector<JointRow> rows;
   std::vector<double> lambda;
-  std::vector<std::int8_t> bound;  ///< Of each row: -1 at low, 1 at high, 0 between.
-  std::vector<double> matrix;
+  std::vector<std::int8_t> bound;  ///< Of each row: -1 at low, 1 at high, 0 between, or kGiven.
+  // Of the rows that are free.
+  std::vector<int> free;        ///< Rows.
+  std::vector<int> free_sizes;  ///< How many each joint has.
+  std::vector<double> columns;  ///< Of each joint: n, then the lever on a, then on b; x of all, y, z.
+  BlockPattern free_pattern;
   std::vector<double> factors;
   std::vector<double> right_side;
 };

@@ -60,10 +60,7 @@ void list_blocks(const Elimination& e, BlockPattern& p) {
     std::vector<std::uint32_t> rows = {j};
     for (const std::uint32_t node : e.below[e.order[j]]) rows.push_back(place[node]);
     std::sort(rows.begin(), rows.end());
-    for (const std::uint32_t i : rows) {
-      p.block.push_back({i, j, p.number_count});
-      p.number_count += static_cast<std::uint32_t>(p.size[i] * p.size[j]);
-    }
+    for (const std::uint32_t i : rows) p.block.push_back({i, j});
     p.column_begin.push_back(static_cast<std::uint32_t>(p.block.size()));
   }
 }
@@ -106,21 +103,60 @@ void factor_below(const double* diagonal, int n, double* b, int m) {
   }
 }
 
-void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, std::span<double> numbers) {
+/// What is below the diagonal in a column: its blocks stand one after the other.
+struct ColumnBelow {
+  const double* numbers;
+  std::size_t rows = 0;
+};
+
+ColumnBelow below_diagonal(const BlockPattern& p, int column, std::span<const double> numbers) {
+  const BlockPattern::Block& diagonal = p.block[p.column_begin[column]];
+  const auto n = static_cast<std::size_t>(p.size[column]);
+  std::size_t rows = 0;
+  for (std::uint32_t b = p.column_begin[column] + 1; b < p.column_begin[column + 1]; ++b)
+    rows += static_cast<std::size_t>(p.size[p.block[b].row]);
+  return {numbers.data() + diagonal.offset + n * n, rows};
+}
+
+/// D L^T of a column below its diagonal, by rows.
+void scale_transposed(const double* diagonal, std::size_t n, const ColumnBelow& below,
+                      std::vector<double>& scaled) {
+  scaled.resize(n * below.rows);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = diagonal[k * n + k];
+    for (std::size_t r = 0; r < below.rows; ++r) scaled[k * below.rows + r] = d * below.numbers[r * n + k];
+  }
+}
+
+/// Subtracts the product of a row of n numbers and n rows of kWidth, `stride` apart.
+template <int kWidth>
+void subtract_row(const double* x, std::size_t n, const double* y, std::size_t stride, double* target) {
+  double sum[kWidth];
+  for (int c = 0; c < kWidth; ++c) sum[c] = target[c];
+  for (std::size_t k = 0; k < n; ++k) {
+    for (int c = 0; c < kWidth; ++c) sum[c] -= x[k] * y[k * stride + static_cast<std::size_t>(c)];
+  }
+  for (int c = 0; c < kWidth; ++c) target[c] = sum[c];
+}
+
+/// Subtracts left D right^T from the target; `scaled` by scale_transposed. Several numbers are summed side by
+/// side, which compilers may not do with one sum.
+void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, const ColumnBelow& below,
+                      const std::vector<double>& scaled, std::span<double> numbers) {
   const BlockPattern::Block& left = p.block[u.left];
   const BlockPattern::Block& right = p.block[u.right];
-  const int n = p.size[left.column];
-  const int columns = p.size[right.row];
-  const double* d = &numbers[p.block[p.column_begin[left.column]].offset];
-  double* target = &numbers[p.block[u.target].offset];
-  for (int r = 0; r < p.size[left.row]; ++r) {
-    const double* x = &numbers[left.offset + static_cast<std::size_t>(r) * n];
-    for (int c = 0; c < columns; ++c) {
-      const double* y = &numbers[right.offset + static_cast<std::size_t>(c) * n];
-      double sum = 0;
-      for (int k = 0; k < n; ++k) sum += x[k] * d[k * n + k] * y[k];
-      target[r * columns + c] -= sum;
-    }
+  const auto n = static_cast<std::size_t>(p.size[left.column]);
+  const auto rows = static_cast<std::size_t>(p.size[left.row]);
+  const auto columns = static_cast<std::size_t>(p.size[right.row]);
+  if (n == 0) return;
+  const double* x = numbers.data() + left.offset;
+  const double* y = scaled.data() + (numbers.data() + right.offset - below.numbers) / static_cast<int>(n);
+  double* target = numbers.data() + p.block[u.target].offset;
+  for (std::size_t r = 0; r < rows; ++r, x += n, target += columns) {
+    std::size_t c = 0;
+    for (; c + 4 <= columns; c += 4) subtract_row<4>(x, n, y + c, below.rows, target + c);
+    for (; c + 2 <= columns; c += 2) subtract_row<2>(x, n, y + c, below.rows, target + c);
+    for (; c < columns; ++c) subtract_row<1>(x, n, y + c, below.rows, target + c);
   }
 }
 
@@ -128,14 +164,14 @@ void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, std:
 void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
   for (int j = 0; j < p.node_count(); ++j) {
     const int n = p.size[j];
-    double* own = &x[p.first[j]];
-    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    double* own = x.data() + p.first[j];
+    const double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
     for (int i = 1; i < n; ++i) {
       for (int k = 0; k < i; ++k) own[i] -= diagonal[i * n + k] * own[k];
     }
     for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
-      double* below = &x[p.first[p.block[b].row]];
-      const double* l = &numbers[p.block[b].offset];
+      double* below = x.data() + p.first[p.block[b].row];
+      const double* l = numbers.data() + p.block[b].offset;
       for (int r = 0; r < p.size[p.block[b].row]; ++r) {
         for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
       }
@@ -147,12 +183,12 @@ void substitute_forward(const BlockPattern& p, std::span<const double> numbers, 
 void substitute_back(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
   for (int j = p.node_count() - 1; j >= 0; --j) {
     const int n = p.size[j];
-    double* own = &x[p.first[j]];
-    const double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    double* own = x.data() + p.first[j];
+    const double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
     for (int i = 0; i < n; ++i) own[i] /= diagonal[i * n + i];
     for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
-      const double* below = &x[p.first[p.block[b].row]];
-      const double* l = &numbers[p.block[b].offset];
+      const double* below = x.data() + p.first[p.block[b].row];
+      const double* l = numbers.data() + p.block[b].offset;
       for (int r = 0; r < p.size[p.block[b].row]; ++r) {
         for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
       }
@@ -171,15 +207,24 @@ std::optional<BlockPattern> make_block_pattern(const Neighbors& neighbors, const
   if (!e) return std::nullopt;
   BlockPattern p;
   p.operations = e->operations;
-  p.first.push_back(0);
-  for (const std::uint32_t node : e->order) {
-    p.size.push_back(sizes[node]);
-    p.first.push_back(p.first.back() + sizes[node]);
-  }
   list_blocks(*e, p);
+  std::vector<int> in_order;
+  for (const std::uint32_t node : e->order) in_order.push_back(sizes[node]);
+  resize_blocks(in_order, p);
   p.order = std::move(e->order);
   list_updates(p);
   return p;
+}
+
+void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
+  p.size.assign(sizes.begin(), sizes.end());
+  p.first.assign(1, 0);
+  for (const int size : sizes) p.first.push_back(p.first.back() + size);
+  p.number_count = 0;
+  for (BlockPattern::Block& block : p.block) {
+    block.offset = p.number_count;
+    p.number_count += static_cast<std::uint32_t>(p.size[block.row] * p.size[block.column]);
+  }
 }
 
 std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
@@ -191,15 +236,16 @@ std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t
 }
 
 void factor(const BlockPattern& p, std::span<double> numbers) {
+  std::vector<double> scaled;
   for (int j = 0; j < p.node_count(); ++j) {
-    double* diagonal = &numbers[p.block[p.column_begin[j]].offset];
+    double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
     factor_diagonal(diagonal, p.size[j]);
-    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
-      factor_below(diagonal, p.size[j], &numbers[p.block[b].offset], p.size[p.block[b].row]);
-    }
-    for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u) {
-      subtract_product(p, p.update[u], numbers);
-    }
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b)
+      factor_below(diagonal, p.size[j], numbers.data() + p.block[b].offset, p.size[p.block[b].row]);
+    const ColumnBelow below = below_diagonal(p, j, numbers);
+    scale_transposed(diagonal, static_cast<std::size_t>(p.size[j]), below, scaled);
+    for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u)
+      subtract_product(p, p.update[u], below, scaled, numbers);
   }
 }
 

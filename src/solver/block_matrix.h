@@ -43,6 +43,9 @@ struct BlockPattern {
 [[nodiscard]] std::optional<BlockPattern> make_block_pattern(
     const std::vector<std::vector<std::uint32_t>>& neighbors, const std::vector<int>& sizes, double budget);
 
+/// Gives the block rows other sizes, which may be 0; `operations` stays what it was.
+void resize_blocks(std::span<const int> sizes, BlockPattern& pattern);
+
 /// The block (row, column), which exists; row >= column.
 [[nodiscard]] std::uint32_t find_block(const BlockPattern& pattern, std::uint32_t row, std::uint32_t column);
 

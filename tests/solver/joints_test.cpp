@@ -252,6 +252,22 @@ TEST_SUITE("solver/joints") {
     CHECK(std::abs(d(rig.omega(body).z)) < 1e-4);
   }
 
+  TEST_CASE("friction holds against the spring of its freedom up to its force, and lets go beyond") {
+    // 100 N/m want 0.1 m: 10 N. Against 8 N the body swings once, about 0.02 m, and stays where it turns.
+    for (const auto& [friction, place] : {std::pair{12.0, 0.0}, std::pair{8.0, 0.04}}) {
+      JointRig rig;
+      rig.gravity = {};
+      const BodyId body = rig.add({.mass = Real(2)});
+      HookDesc desc = {.kind = HookKind::kSixDegrees, .b = {body}, .axis = {Real(1), Real(0), Real(0)}};
+      desc.freedoms[0] = {.spring = {.stiffness = Real(100), .target = Real(0.1)},
+                          .motor = {.max_force = Real(friction)}};
+      for (std::size_t i = 1; i < 6; ++i) desc.freedoms[i] = {.locked = true};
+      rig.hook(desc);
+      rig.run(3);
+      CHECK(std::abs(d(rig.center(body).x) - place) < 0.0005);
+    }
+  }
+
   TEST_CASE("hooks that say the same twice share the load, those that disagree stay finite") {
     JointRig rig;
     const BodyId body = rig.add({.center = {0, -1, 0}});
