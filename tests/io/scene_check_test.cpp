@@ -31,11 +31,17 @@ hooke::Scene load(const std::string& file) {
   return std::move(*scene.value);
 }
 
+std::size_t bodies_of(const hooke::SceneObjects& objects) {
+  std::size_t count = 0;
+  for (const hooke::SceneBody& body : objects.bodies) count += body.tag.array.count();
+  return count;
+}
+
 /// Scenes of more bodies than this take minutes: they have a test of their own.
 bool is_large(const hooke::Scene& scene) {
   constexpr std::size_t kMany = 600;
-  std::size_t count = 0;
-  for (const hooke::SceneBody& body : scene.objects.bodies) count += body.tag.array.count();
+  std::size_t count = bodies_of(scene.objects);
+  for (const hooke::SceneEvent& event : scene.timeline) count += bodies_of(event.add);
   return count > kMany;
 }
 
