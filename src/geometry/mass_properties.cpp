@@ -3,14 +3,13 @@
 #include "math/rotation.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace hooke::geometry {
 
 namespace {
 
 using Inertia = math::Symmetric3<double>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The integral of x x^T is turned into the one of |x|^2 1 - x x^T.
 Inertia inertia_from(const Inertia& second_moment) {
@@ -54,12 +53,12 @@ MassProperties mass_of_box(DVec3 half) {
 }
 
 MassProperties mass_of_sphere(double r) {
-  const double volume = 4.0 / 3.0 * kPi * r * r * r;
+  const double volume = 4.0 / 3.0 * std::numbers::pi * r * r * r;
   return turned_solid(volume, 0.4 * volume * r * r, 0.4 * volume * r * r);
 }
 
 MassProperties mass_of_cylinder(double r, double h) {
-  const double volume = 2 * kPi * r * r * h;
+  const double volume = 2 * std::numbers::pi * r * r * h;
   return turned_solid(volume, 0.5 * volume * r * r, volume * (0.25 * r * r + h * h / 3));
 }
 
@@ -74,7 +73,7 @@ MassProperties mass_of_capsule(double r, double h) {
 
 /// Of height 2 h; the center is at a quarter of it.
 MassProperties mass_of_cone(double r, double h) {
-  const double volume = 2.0 / 3.0 * kPi * r * r * h;
+  const double volume = 2.0 / 3.0 * std::numbers::pi * r * r * h;
   MassProperties cone = turned_solid(volume, 0.3 * volume * r * r, 0.15 * volume * (r * r + h * h));
   cone.center = {0, -0.5 * h, 0};
   return cone;

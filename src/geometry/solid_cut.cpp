@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace hooke::geometry {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Up to four corners of a convex piece of a triangle.
 struct Piece {
@@ -106,7 +105,7 @@ bool contains(std::span<const Corners> surface, DVec3 p) {
     half_angles +=
         math::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
   }
-  return half_angles > kPi;
+  return half_angles > std::numbers::pi;
 }
 
 SolidHalves cut(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane,

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include <array>
+
+/// \file
+/// Whether segments and triangles have a point in common. All are closed sets: what touches, in a point,
+/// along an edge or in a common plane, overlaps. The answers are exact for the given coordinates (see
+/// orientation.h), also for triangles that are only a segment or a point. Nothing overlaps what is not
+/// finite.
+
+namespace hooke::geometry {
+
+using DTriangle = std::array<DVec3, 3>;
+
+/// Whether two segments meet. Either may be a point.
+[[nodiscard]] bool segments_overlap(DVec3 a, DVec3 b, DVec3 c, DVec3 d);
+
+/// Whether the segment from `from` to `to` meets the triangle.
+[[nodiscard]] bool segment_meets_triangle(DVec3 from, DVec3 to, const DTriangle& triangle);
+
+/// Whether two triangles have a point in common: whether an edge of either meets the other.
+[[nodiscard]] bool triangles_overlap(const DTriangle& a, const DTriangle& b);
+
+}  // namespace hooke::geometry
