@@ -3,6 +3,7 @@
 #include "hooke/shape.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -62,6 +63,53 @@ inline MeshDesc make_sphere(int levels) {
       finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
     }
     mesh.triangles = finer;
+  }
+  return mesh;
+}
+
+/// A box about the origin, facing outward.
+inline MeshDesc make_box(Vec3 half) {
+  MeshDesc mesh = make_cube(1);
+  for (Vec3& p : mesh.positions) p = {half.x * p.x, half.y * p.y, half.z * p.z};
+  return mesh;
+}
+
+/// A ring of round wire about the y axis, facing outward: `around` x `across` points.
+inline MeshDesc make_torus(Real ring_radius, Real wire_radius, std::uint32_t around, std::uint32_t across) {
+  MeshDesc mesh;
+  const Real turn = Real(6.283185307179586);
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const Real a = turn * Real(i) / Real(around);
+    for (std::uint32_t k = 0; k < across; ++k) {
+      const Real b = turn * Real(k) / Real(across);
+      const Real out = ring_radius + wire_radius * std::cos(b);
+      mesh.positions.push_back({out * std::cos(a), wire_radius * std::sin(b), out * std::sin(a)});
+      const std::uint32_t next = (i + 1) % around * across;
+      const std::uint32_t up = (k + 1) % across;
+      mesh.triangles.push_back({i * across + k, i * across + up, next + up});
+      mesh.triangles.push_back({i * across + k, next + up, next + k});
+    }
+  }
+  return mesh;
+}
+
+/// A corner of two arms of length 2, width 1 and thickness 2 half_z in the plane z = 0: x, y in [0, 2]
+/// without (1, 2] x (1, 2]. Concave, facing outward.
+inline MeshDesc make_ell(Real half_z) {
+  MeshDesc mesh;
+  const Real outline[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  for (const Real z : {-half_z, half_z}) {
+    for (const auto& p : outline) mesh.positions.push_back({p[0], p[1], z});
+  }
+  const std::array<std::uint32_t, 3> lid[] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  for (const auto& t : lid) {
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+    mesh.triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t next = (i + 1) % 6;
+    mesh.triangles.push_back({i, next, next + 6});
+    mesh.triangles.push_back({i, next + 6, i + 6});
   }
   return mesh;
 }

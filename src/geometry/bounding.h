@@ -1,0 +1,88 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "geometry/box.h"
+
+#include <span>
+
+/// \file
+/// Volumes around points, in double: spheres, boxes along the axes, boxes turned with the object. Every one
+/// holds all its points, to rounding. Points must be finite and below 1e100; without any the volume is empty.
+
+namespace hooke::geometry {
+
+/// Where an object is: its points are turned, then shifted [m].
+struct RigidPose {
+  DVec3 position = {};
+  Quaternion<double> rotation = {};  ///< Of length one.
+};
+
+/// The point of the object's frame in the world.
+[[nodiscard]] inline DVec3 to_world(const RigidPose& pose, DVec3 p) {
+  return rotate(pose.rotation, p) + pose.position;
+}
+/// The point of the world in the object's frame.
+[[nodiscard]] inline DVec3 to_local(const RigidPose& pose, DVec3 p) {
+  return rotate(conjugate(pose.rotation), p - pose.position);
+}
+/// Where `object` is, seen from the frame of `seen_from`.
+[[nodiscard]] inline RigidPose relative_pose(const RigidPose& object, const RigidPose& seen_from) {
+  return {to_local(seen_from, object.position), normalize(conjugate(seen_from.rotation) * object.rotation)};
+}
+
+struct BoundingSphere {
+  DVec3 center = {};
+  double radius = -1;  ///< [m]; negative: empty.
+};
+
+using DBox = Box3<double>;
+
+/// A box turned in any way.
+struct OrientedBox {
+  DVec3 center = {};
+  Matrix3<double> axes = {};          ///< The columns, of length one and at right angles.
+  DVec3 half_extents = {-1, -1, -1};  ///< Along them [m]; negative: empty.
+};
+
+/// The smallest sphere around the points. The point farthest outside joins the support, the smallest sphere
+/// of at most five points is found among the spheres through two, three or four of them, and so on until no
+/// point is outside by more than 1e-12 of the radius (Gaertner 1999, Fast and robust smallest enclosing
+/// balls: its pivot rule). A handful of passes over the points.
+[[nodiscard]] BoundingSphere minimum_sphere(std::span<const DVec3> points);
+
+/// The paper's (4.3.1): about the mean of the vertices, as far as the farthest. Up to twice too large.
+[[nodiscard]] BoundingSphere vertex_sphere(std::span<const DVec3> points);
+
+[[nodiscard]] DBox bounds_of(std::span<const DVec3> points);
+
+/// The box with the given axes.
+[[nodiscard]] OrientedBox box_along(const Matrix3<double>& axes, std::span<const DVec3> points);
+
+/// A tight box: the smallest in volume of those that lie with a side on a face of the convex hull (and with
+/// another on an edge of it seen along that face's normal), of the one along the principal axes of the points
+/// and of the one along the coordinate axes. The smallest box of all may have its sides on edges only
+/// (O'Rourke 1985, Finding minimal enclosing boxes): of a regular tetrahedron it is a cube, which this finds
+/// not.
+[[nodiscard]] OrientedBox tight_box(std::span<const DVec3> points);
+
+/// [m^3]; 0 for an empty one.
+[[nodiscard]] double volume_of(const BoundingSphere& sphere);
+[[nodiscard]] double volume_of(const DBox& box);
+[[nodiscard]] double volume_of(const OrientedBox& box);
+
+/// Whether volumes of two objects, the second one's at `b_in_a` in the frame of the first, may be within
+/// `margin` [m] of each other: no is certain, as rounding counts for yes. Boxes along the axes are taken as
+/// the box around the turned one, oriented ones by the 15 axes of Gottschalk, Lin and Manocha (1996,
+/// OBBTree).
+[[nodiscard]] bool may_touch(const BoundingSphere& a, const BoundingSphere& b, const RigidPose& b_in_a,
+                             double margin);
+[[nodiscard]] bool may_touch(const DBox& a, const DBox& b, const RigidPose& b_in_a, double margin);
+[[nodiscard]] bool may_touch(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_in_a,
+                             double margin);
+
+/// Squared distance of a point, 0 inside [m^2].
+[[nodiscard]] double distance_squared(const BoundingSphere& sphere, DVec3 p);
+[[nodiscard]] double distance_squared(const OrientedBox& box, DVec3 p);
+
+}  // namespace hooke::geometry
