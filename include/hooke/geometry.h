@@ -8,9 +8,76 @@
 #include <vector>
 
 /// \file
-/// Makes meshes for bodies. Needs no World.
+/// Makes meshes for bodies; planes, polygons, parts of transforms. Needs no World.
 
 namespace hooke {
+
+/// A x + B y + C z + D = 0 with (A, B, C) the normal, of length one, and D = -offset.
+struct Plane {
+  DVec3 normal = {0, 1, 0};  ///< Unit.
+  double offset = 0;         ///< dot(normal, x) = offset on the plane [m].
+};
+
+/// Through three points, which run counter-clockwise seen from the side the normal points to.
+///
+/// Errors: points on one line (height over the longest side below 1e-12 of it), one that is not finite.
+[[nodiscard]] Result<Plane> plane_through(DVec3 a, DVec3 b, DVec3 c);
+
+/// Through a point, across a normal of any length.
+///
+/// Errors: a normal of no length, numbers that are not finite.
+[[nodiscard]] Result<Plane> plane_across(DVec3 normal, DVec3 point);
+
+/// From an equation A x + B y + C z + D = 0 of any scale.
+///
+/// Errors: A, B and C all zero, numbers that are not finite.
+[[nodiscard]] Result<Plane> plane_of_equation(double a, double b, double c, double d);
+
+/// Positive on the side the normal points to [m]. D counts: the point (0, 5, 0) is 2 m over the plane y = 3.
+[[nodiscard]] inline double signed_distance(const Plane& plane, DVec3 p) {
+  return dot(plane.normal, p) - plane.offset;
+}
+
+/// 1 over the plane, -1 under it, 0 within `tolerance` [m] of it, and for what is not a number.
+[[nodiscard]] int side_of(const Plane& plane, DVec3 p, double tolerance);
+
+/// A flat polygon, prepared for the question which points are in it. It may be concave; sides that cross give
+/// it a winding number beyond one.
+struct Polygon {
+  std::vector<DVec3> corners = {};  ///< Counter-clockwise seen from the side the normal points to [m].
+  Plane plane = {};
+  std::vector<Plane> sides = {};  ///< One through each side, from corner k to k + 1, facing inward.
+  bool is_convex = true;
+};
+
+/// The normal is the sum of the corners' (Newell), so that no three corners decide it alone.
+///
+/// Errors: fewer than 3 or more than 65536 corners, one that is not finite, neighbors at one place, no area,
+/// a corner farther than `tolerance` [m] from the plane.
+[[nodiscard]] Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance);
+
+/// Whether a point is in the polygon: at most `tolerance` [m] from its plane and, seen along the normal,
+/// inside or at most that far outside a side. All three ask the same of convex polygons (they may differ at
+/// corners, where lines meet farther out than the tolerance); they are the paper's (4.2.3).
+///
+/// By cross products: the point is on the inner side of every side. Convex polygons only; of a concave one
+/// this is the part from which all of it can be seen.
+[[nodiscard]] bool is_inside_by_cross_products(const Polygon& polygon, DVec3 p, double tolerance);
+
+/// By dot products against the stored planes of the sides, with the same answer. What the paper calls "a dot
+/// product" with the sides themselves is wrong for one point in three around a random triangle.
+[[nodiscard]] bool is_inside_by_side_planes(const Polygon& polygon, DVec3 p, double tolerance);
+
+/// By the sum of the angles under which the sides are seen, a whole turn inside and none outside, each with
+/// its sign: right for concave polygons too.
+[[nodiscard]] bool is_inside_by_angles(const Polygon& polygon, DVec3 p, double tolerance);
+
+/// How often the polygon runs counter-clockwise around the point seen along the normal, by which sides cross
+/// the ray from it (Sunday 2001): exact, without a tolerance. On a side it is that of either side of it.
+[[nodiscard]] int winding_number(const Polygon& polygon, DVec3 p);
+
+/// By the winding number, which is not zero inside; concave polygons too. The quickest that is right for all.
+[[nodiscard]] bool is_inside_by_winding(const Polygon& polygon, DVec3 p, double tolerance);
 
 /// A landscape: point (column, row) lies at (column cell, heights[row * columns + column], row cell) in the
 /// mesh's frame [m]; the upper side is outside. Each cell is cut from (column, row) to (column + 1, row + 1).
@@ -30,5 +97,27 @@ namespace hooke {
 /// that is not positive and finite, parts outside [1, 256].
 [[nodiscard]] Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concavity_max,
                                                              int parts_max);
+
+/// A rotation matrix as a unit quaternion, w >= 0 (Shepperd 1978, Quaternion from rotation matrix: by the
+/// largest of its four components). Of a matrix with errors of rounding it has them too, and unit length.
+[[nodiscard]] Quaternion<double> quaternion_from(const Matrix3<double>& rotation);
+
+/// An affine matrix taken apart: M = T R U with U upper triangular; its rows are (scale.x, shear_xy,
+/// shear_xz), (0, scale.y, shear_yz), (0, 0, scale.z). Without shear this is T R S.
+struct TransformParts {
+  DVec3 translation = {};            ///< [m]
+  Quaternion<double> rotation = {};  ///< Unit.
+  DVec3 scale = {1, 1, 1};           ///< x and y not negative; z negative in a reflection.
+  double shear_xy = 0, shear_xz = 0, shear_yz = 0;
+};
+
+/// The parts of an affine matrix (its last row is not read), by columns made orthogonal in order
+/// (Gram-Schmidt). Every matrix of finite numbers has them. A reflection has its negative scale in z,
+/// whatever axis it was made with. A column without a direction of its own has scale 0, and takes one at
+/// right angles to those before it; the zero matrix has the rotation of none.
+[[nodiscard]] TransformParts decompose(const Matrix4<double>& matrix);
+
+/// The matrix of the parts: the inverse of decompose.
+[[nodiscard]] Matrix4<double> compose(const TransformParts& parts);
 
 }  // namespace hooke

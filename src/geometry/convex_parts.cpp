@@ -28,8 +28,6 @@ namespace {
 
 using geometry::ConvexHull;
 using geometry::Corners;
-using geometry::height_over;
-using geometry::Plane;
 using geometry::SolidHalves;
 using geometry::SolidPiece;
 
@@ -116,8 +114,8 @@ std::vector<Plane> find_notch_planes(const MeshDesc& mesh, double on_plane) {
       const DVec3 normal = geometry::normal_of(corners);
       notch.planes[side] = {normal, dot(normal, vector_cast<double>(corners[0]))};
     }
-    const double above =
-        height_over(notch.planes[0], vector_cast<double>(mesh.positions[topology.edge_sides[e].opposite[1]]));
+    const double above = signed_distance(
+        notch.planes[0], vector_cast<double>(mesh.positions[topology.edge_sides[e].opposite[1]]));
     if (!(above > on_plane)) continue;
     const auto along =
         vector_cast<double>(mesh.positions[topology.edges[e][1]] - mesh.positions[topology.edges[e][0]]);

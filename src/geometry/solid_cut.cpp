@@ -69,12 +69,13 @@ std::optional<DVec3> meeting_point(const Plane& a, const Plane& b, const Plane& 
 void cut_corners(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane, double on_plane,
                  SolidHalves& halves) {
   for (const Vec3& p : piece.corners) {
-    const double height = height_over(plane, vector_cast<double>(p));
+    const double height = signed_distance(plane, vector_cast<double>(p));
     if (height <= on_plane) halves.below.corners.push_back(p);
     if (height >= -on_plane) halves.above.corners.push_back(p);
   }
   const auto is_in_piece = [&](DVec3 p) {
-    return std::ranges::all_of(piece.planes, [&](const Plane& c) { return height_over(c, p) <= on_plane; });
+    return std::ranges::all_of(piece.planes,
+                               [&](const Plane& c) { return signed_distance(c, p) <= on_plane; });
   };
   for (std::size_t i = 0; i < piece.planes.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -114,7 +115,7 @@ SolidHalves cut(const SolidPiece& piece, std::span<const Corners> solid, const P
   for (const Corners& t : piece.surface) {
     std::array<double, 3> height = {};
     std::transform(t.begin(), t.end(), height.begin(), [&](Vec3 p) {
-      const double h = height_over(plane, vector_cast<double>(p));
+      const double h = signed_distance(plane, vector_cast<double>(p));
       return std::abs(h) <= on_plane ? 0 : h;
     });
     if (height != std::array<double, 3>{}) {

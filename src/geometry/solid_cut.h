@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hooke/math.h"
+#include "hooke/geometry.h"
 
 #include "geometry/triangle_mesh.h"
 
@@ -12,15 +12,6 @@
 /// Solids cut by planes, without lids on the cuts.
 
 namespace hooke::geometry {
-
-struct Plane {
-  DVec3 normal = {};  ///< Unit.
-  double offset = 0;  ///< dot(normal, x) = offset on the plane [m].
-};
-
-inline double height_over(const Plane& plane, DVec3 p) {
-  return dot(plane.normal, p) - plane.offset;
-}
 
 using Corners = std::array<Vec3, 3>;  ///< Of a triangle, counter-clockwise seen from outside.
 

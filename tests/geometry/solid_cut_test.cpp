@@ -92,8 +92,7 @@ TEST_SUITE("geometry/solid_cut") {
       piece.surface.push_back(shifted);
     }
     const std::vector<Corners> solid = piece.surface;
-    for (const hooke::geometry::Plane& plane :
-         {hooke::geometry::Plane{{1, 0, 0}, 2}, {{0, 1, 0}, 0}, {{0, 0, 1}, 0}}) {
+    for (const hooke::Plane& plane : {hooke::Plane{{1, 0, 0}, 2}, {{0, 1, 0}, 0}, {{0, 0, 1}, 0}}) {
       piece = cut(piece, solid, plane, kOnPlane).below;
     }
     CHECK(piece.corners.empty());
