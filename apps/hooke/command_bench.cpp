@@ -1,3 +1,4 @@
+#include "hooke/bench_ofg.h"
 #include "hooke/bench_peers.h"
 #include "hooke/command_line.h"
 #include "hooke/output_file.h"
@@ -60,7 +61,8 @@ std::string line(const std::string& scene, int workers, const BenchRow& row) {
 int command_bench(Arguments arguments) {
   CLI::App app("Times scenes. A hash that depends on the number of workers fails.", "hooke bench");
   BenchOptions options;
-  app.add_option("SCENE", options.scenes, "Scene files; with --peers rigid ones by default");
+  app.add_option("SCENE", options.scenes,
+                 "Scene files; with --peers rigid ones by default; ofg for opposing face geometry");
   app.add_option("--workers", options.workers, "Numbers of threads to try")
       ->delimiter(',')
       ->check(CLI::Range(1, 64));
@@ -70,8 +72,11 @@ int command_bench(Arguments arguments) {
       ->check(CLI::Range(1, 64));
   app.add_option("--csv", options.csv, "Where the rows go; printed by default");
   app.add_flag("--peers", options.peers, "Also by Bullet and ODE, with one thread each; bodies only");
-  app.footer("Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv");
+  app.footer(
+      "Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv\n  hooke "
+      "bench ofg");
   if (const auto code = parse(app, arguments)) return *code;
+  if (options.scenes == std::vector<std::string>{"ofg"}) return bench_ofg(options.csv);
   if (options.peers) {
     return bench_peers({.scenes = options.scenes,
                         .workers = options.workers,

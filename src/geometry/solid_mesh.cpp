@@ -155,6 +155,7 @@ Result<SolidMesh> make_solid_mesh(const MeshDesc& mesh) {
   }
   solid.topology = compute_topology(solid.positions.size(), solid.triangles);
   make_normals_and_edges(solid);
+  solid.sphere = minimum_sphere(solid.positions);
   solid.tree = build_volume_tree<OrientedBox>(solid.view());
   return solid;
 }

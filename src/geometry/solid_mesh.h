@@ -29,6 +29,7 @@ struct SolidMesh {
   std::vector<DVec3> edge_normals = {};           ///< The sum of its two faces' normals.
   std::vector<DVec3> vertex_normals = {};         ///< Of its faces' normals, weighted by their angles there.
   std::vector<std::uint8_t> is_convex_edge = {};  ///< 1 where the solid is less than a half-space.
+  BoundingSphere sphere = {};                     ///< The smallest.
   OrientedBoxTree tree = {};
   double size = 0;  ///< The largest coordinate's size [m]: what rounding errors are measured by.
 

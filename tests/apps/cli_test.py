@@ -330,6 +330,11 @@ class Bench(Program):
             self.assertGreater(float(row["max_penetration"]), 1e-5)
             self.assertLess(float(row["max_penetration"]), 0.02)
 
+    def test_opposing_faces_are_measured_or_it_says_how_to_get_them(self):
+        if not (pathlib.Path(PROGRAM).parent / "hooke-ofg").exists():
+            _, err = self.hooke("bench", "ofg", code=3)
+            self.assert_one_line(err, "-DHOOKE_BENCH=ON")
+
     def test_peers_are_not_given_cloth(self):
         if not (pathlib.Path(PROGRAM).parent / "hooke-peers").exists():
             self.skipTest("hooke-peers was not built")

@@ -20,6 +20,7 @@ using hooke::geometry::make_solid_mesh;
 using hooke::geometry::RigidPose;
 using hooke::geometry::Search;
 using hooke::geometry::SolidMesh;
+using hooke::test::random_vector;
 
 namespace {
 
@@ -61,20 +62,10 @@ int count_at(const Contacts& contacts, DVec3 point, double within) {
                                         [&](const MeshContact& c) { return near(c.point, point) < within; }));
 }
 
-double component(std::mt19937_64& random, double size) {
-  return size * hooke::test::signed_unit(random);
-}
-
-DVec3 random_vector(std::mt19937_64& random, double size) {
-  const double x = component(random, size);
-  const double y = component(random, size);
-  return {x, y, component(random, size)};
-}
-
 RigidPose random_pose(std::mt19937_64& random, double reach) {
-  const DVec3 q = random_vector(random, 1);
-  const double w = component(random, 1);
-  return {random_vector(random, reach), normalize(hooke::Quaternion<double>{q.x, q.y, q.z, w})};
+  const DVec3 q = random_vector(random);
+  const double w = hooke::test::signed_unit(random);
+  return {reach * random_vector(random), normalize(hooke::Quaternion<double>{q.x, q.y, q.z, w})};
 }
 
 /// Whether two solids have a point in common, by all pairs of triangles and by a vertex inside.

@@ -28,6 +28,7 @@ using hooke::geometry::TrianglePair;
 using hooke::geometry::triangles_overlap;
 using hooke::geometry::vertex_sphere;
 using hooke::geometry::VolumeTree;
+using hooke::test::random_vector;
 
 namespace {
 
@@ -43,12 +44,6 @@ Points moved(const Points& points, const RigidPose& pose) {
   Points result;
   for (const DVec3& p : points) result.push_back(to_world(pose, p));
   return result;
-}
-
-DVec3 random_vector(std::mt19937_64& random) {
-  const double x = hooke::test::signed_unit(random);
-  const double y = hooke::test::signed_unit(random);
-  return {x, y, hooke::test::signed_unit(random)};
 }
 
 RigidPose random_pose(std::mt19937_64& random, double reach) {

@@ -21,6 +21,7 @@ using hooke::Polygon;
 using hooke::side_of;
 using hooke::signed_distance;
 using hooke::winding_number;
+using hooke::test::random_vector;
 
 namespace {
 
@@ -36,12 +37,6 @@ Polygon polygon(const Corners& corners) {
 
 double unit(std::mt19937_64& random) {
   return hooke::test::signed_unit(random);
-}
-
-DVec3 random_vector(std::mt19937_64& random) {
-  const double x = unit(random);
-  const double y = unit(random);
-  return {x, y, unit(random)};
 }
 
 /// Points of a plane in any place.

@@ -13,14 +13,9 @@ using hooke::Matrix4;
 using hooke::Quaternion;
 using hooke::quaternion_from;
 using hooke::TransformParts;
+using hooke::test::random_vector;
 
 namespace {
-
-DVec3 random_vector(std::mt19937_64& random) {
-  const double x = hooke::test::signed_unit(random);
-  const double y = hooke::test::signed_unit(random);
-  return {x, y, hooke::test::signed_unit(random)};
-}
 
 Quaternion<double> random_rotation(std::mt19937_64& random) {
   const DVec3 v = random_vector(random);

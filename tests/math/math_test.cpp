@@ -13,17 +13,13 @@ using DMat3 = hooke::Matrix3<double>;
 using DMat4 = hooke::Matrix4<double>;
 using DQuat = hooke::Quaternion<double>;
 
+using hooke::test::random_vector;
 using hooke::test::signed_unit;
 
 namespace {
 
 constexpr double kTolerance = 1e-12;  // a few hundred roundings of numbers near one
 
-DVec3 random_vector(std::mt19937_64& random) {
-  const double x = signed_unit(random);
-  const double y = signed_unit(random);
-  return {x, y, signed_unit(random)};
-}
 DQuat random_rotation(std::mt19937_64& random) {
   const DVec3 v = random_vector(random);
   return hooke::normalize(DQuat{v.x, v.y, v.z, signed_unit(random)});
