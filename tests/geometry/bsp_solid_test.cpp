@@ -1,0 +1,148 @@
+#include "geometry/bsp_solid.h"
+
+#include "geometry/solids.h"
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <limits>
+#include <random>
+#include <string>
+
+using hooke::DVec3;
+using hooke::geometry::combine_solids;
+using hooke::geometry::SolidMesh;
+using hooke::geometry::SolidOperation;
+using hooke::geometry::SolidRepairs;
+using hooke::test::is_manifold;
+using hooke::test::make_box;
+using hooke::test::volume_of;
+
+namespace {
+
+struct Combined {
+  SolidMesh both, common, rest;
+};
+
+Combined combine(const SolidMesh& a, const SolidMesh& b) {
+  const auto both = combine_solids(a, b, SolidOperation::kUnion);
+  const auto common = combine_solids(a, b, SolidOperation::kIntersection);
+  const auto rest = combine_solids(a, b, SolidOperation::kDifference);
+  if (!both) FAIL(both.error().where << " " << both.error().message);
+  REQUIRE(common);
+  REQUIRE(rest);
+  return {both.value(), common.value(), rest.value()};
+}
+
+/// Closed manifolds, and the volumes of what is common and what is not add up.
+void check_pair(const SolidMesh& a, const SolidMesh& b) {
+  const Combined c = combine(a, b);
+  CHECK(is_manifold(c.both));
+  CHECK(is_manifold(c.common));
+  CHECK(is_manifold(c.rest));
+  const double sum = volume_of(a) + volume_of(b);
+  CHECK(std::fabs(volume_of(c.both) + volume_of(c.common) - sum) < 1e-9 * sum);
+  CHECK(std::fabs(volume_of(c.rest) + volume_of(c.common) - volume_of(a)) < 1e-9 * sum);
+}
+
+SolidMesh random_solid(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto kind = random() % 6;
+  if (kind == 0) {
+    // On a coarse grid: faces, edges and corners of two such fall together.
+    const auto at = [&] { return 0.5 * static_cast<double>(static_cast<int>(random() % 5) - 2); };
+    const DVec3 p = {at(), at(), at()};
+    return make_box(p, p + DVec3{0.5, 1, 0.5 + 0.5 * static_cast<double>(random() % 2)});
+  }
+  if (kind == 1) {
+    const auto at = [&] { return static_cast<double>(static_cast<int>(random() % 3) - 1); };
+    return hooke::test::moved(hooke::test::make_corner(), {}, 0.5 + 0.5 * static_cast<double>(random() % 2),
+                              {at(), at(), at()});
+  }
+  const hooke::Quaternion<double> turn =
+      normalize(hooke::Quaternion<double>{unit(random), unit(random), unit(random), unit(random)});
+  const DVec3 shift = {unit(random), unit(random), unit(random)};
+  if (kind == 2) return hooke::test::moved(make_box({-1, -0.6, -0.8}, {1, 0.6, 0.8}), turn, 1, shift);
+  if (kind == 3) return hooke::test::moved(hooke::test::make_ring(12, 0.6, 1.2, 0.3), turn, 1, shift);
+  if (kind == 4) return hooke::test::moved(hooke::test::make_star(2, 0.9999, random), turn, 1, shift);
+  return hooke::test::moved(hooke::test::make_star(2, 0.4, random), turn, 1.3, shift);
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/bsp_solid") {
+  TEST_CASE("two boxes that overlap by an eighth") {
+    const Combined c = combine(make_box({0, 0, 0}, {2, 2, 2}), make_box({1, 1, 1}, {3, 3, 3}));
+    CHECK(volume_of(c.both) == doctest::Approx(15).epsilon(1e-14));
+    CHECK(volume_of(c.common) == doctest::Approx(1).epsilon(1e-14));
+    CHECK(volume_of(c.rest) == doctest::Approx(7).epsilon(1e-14));
+    CHECK(c.common.positions.size() == 8);
+    CHECK(c.common.triangles.size() <= 24);
+    CHECK(is_manifold(c.both));
+    CHECK(is_manifold(c.rest));
+  }
+
+  TEST_CASE("boxes that share a face, part of one, an edge, a corner, everything, or nothing") {
+    const SolidMesh box = make_box({0, 0, 0}, {1, 1, 1});
+    const struct {
+      DVec3 lower, upper;
+      double common;
+      std::size_t shells;
+    } cases[] = {{{1, 0, 0}, {2, 1, 1}, 0, 1},     {{1, 0.25, 0.25}, {2, 0.75, 0.75}, 0, 1},
+                 {{1, 1, 0}, {2, 2, 1}, 0, 2},     {{1, 1, 0.25}, {2, 2, 0.75}, 0, 2},
+                 {{1, 1, 1}, {2, 2, 2}, 0, 2},     {{0, 0, 0}, {1, 1, 1}, 1, 1},
+                 {{0, 0, 0}, {1, 1, 0.5}, 0.5, 1}, {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}, 0.125, 1},
+                 {{5, 5, 5}, {6, 6, 6}, 0, 2}};
+    for (const auto& other : cases) {
+      const SolidMesh b = make_box(other.lower, other.upper);
+      check_pair(box, b);
+      const Combined c = combine(box, b);
+      CHECK(volume_of(c.common) == doctest::Approx(other.common).epsilon(1e-14));
+      // Euler: each shell without holes has two vertices and triangles' halves more than edges.
+      const auto& both = c.both;
+      CHECK(both.positions.size() - both.triangles.size() / 2 == 2 * other.shells);
+    }
+  }
+
+  TEST_CASE("a solid and itself: all, all, nothing") {
+    std::mt19937 random(3);
+    const SolidMesh star = hooke::test::make_star(2, 0.5, random);
+    const Combined c = combine(star, star);
+    CHECK(c.both.triangles.size() == star.triangles.size());
+    CHECK(c.common.triangles.size() == star.triangles.size());
+    CHECK(c.rest.triangles.empty());
+  }
+
+  TEST_CASE("a solid taken out of one around it leaves a cavity, which can be filled again") {
+    const SolidMesh box = make_box({-2, -2, -2}, {2, 2, 2});
+    const SolidMesh ball = hooke::geometry::solid_mesh_of(hooke::test::make_sphere(2));
+    const Combined c = combine(box, ball);
+    CHECK(c.rest.triangles.size() == box.triangles.size() + ball.triangles.size());
+    CHECK(volume_of(c.rest) == doctest::Approx(64 - volume_of(ball)).epsilon(1e-9));
+    const auto filled = combine_solids(c.rest, ball, SolidOperation::kUnion);
+    REQUIRE(filled);
+    CHECK(filled.value().triangles.size() == 12);
+  }
+
+  TEST_CASE("200 random pairs: closed manifolds whose volumes add up to 1e-9") {
+    std::mt19937 random(20050901);
+    for (int pair = 0; pair < 200; ++pair) {
+      CAPTURE(pair);
+      const SolidMesh a = random_solid(random);
+      check_pair(a, random_solid(random));
+    }
+  }
+
+  TEST_CASE("the results go in again: a block drilled three ways") {
+    SolidMesh block = make_box({-1, -1, -1}, {1, 1, 1});
+    const SolidMesh drills[] = {make_box({-2, -0.5, -0.5}, {2, 0.5, 0.5}),
+                                make_box({-0.5, -2, -0.5}, {0.5, 2, 0.5}),
+                                make_box({-0.5, -0.5, -2}, {0.5, 0.5, 2})};
+    for (const SolidMesh& drill : drills) {
+      auto drilled = combine_solids(block, drill, SolidOperation::kDifference);
+      REQUIRE(drilled);
+      block = drilled.value();
+      CHECK(is_manifold(block));
+    }
+    CHECK(volume_of(block) == doctest::Approx(8 - 3 * 2 + 2).epsilon(1e-13));
+  }
+}
