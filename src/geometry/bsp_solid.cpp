@@ -2,6 +2,7 @@
 
 #include "geometry/box.h"
 #include "geometry/bsp_seams.h"
+#include "geometry/bsp_shells.h"
 
 #include <algorithm>
 #include <array>
@@ -190,7 +191,9 @@ Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& 
     if (done.was_inside_out) std::swap(corners[1], corners[2]);
     pieces.push_back(space.add_triangle({points[corners[0]], points[corners[1]], points[corners[2]]}, t));
   }
-  if (const auto closed = seam_pieces(space, pieces); !closed) return closed.error();
+  const auto seamed = seam_pieces(space, pieces);
+  if (!seamed) return seamed.error();
+  if (Result<void> sound = check_shells(space, pieces, seamed.value()); !sound) return sound.error();
   if (repairs != nullptr) *repairs = done;
   return pieces;
 }

@@ -49,13 +49,13 @@ Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes);
 
 /// The triangles as pieces, moved to the lattice and repaired. Errors name the triangles: a mesh without
 /// triangles, indices out of range, a surface that is not closed (a T-junction is), triangles that face
-/// opposite sides.
+/// opposite sides, a shell wound the same way as one around it.
 Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& lattice,
                                                 const SolidMesh& mesh, SolidRepairs* repairs);
 
 /// The tree of a solid. In addition to the errors of build_pieces: every triangle must have all of the solid
-/// on its inner side and nothing on its outer; where it does not, the surface goes through itself, lies on
-/// itself or is wound twice around a place.
+/// on its inner side and nothing on its outer; where it does not, the surface goes through itself or lies on
+/// itself.
 Result<BspPieces> build_solid_tree(BspSpace& space, const std::vector<BspPiece>& pieces);
 
 enum class SolidOperation : std::uint8_t { kUnion, kIntersection, kDifference };
