@@ -1,11 +1,37 @@
 #include "hooke/command_line.h"
+#include "hooke/geometry.h"
 #include "hooke/model_io.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 namespace hooke::app {
+
+namespace {
+
+/// What is asked of the shapes of two models.
+struct Combination {
+  const char* option;
+  const char* help;
+  SolidOperation operation;
+  std::string other = {};
+};
+
+/// The model's surface joined with that of `other`; the look is gone.
+Result<Model> combine(const Model& model, const Combination& combination, const ImportOptions& options) {
+  const auto other = import_model(combination.other, options);
+  if (!other) return other.error();
+  const auto mesh = combine_solids(model.mesh, other.value().mesh, combination.operation);
+  if (!mesh) return mesh.error();
+  if (mesh.value().triangles.empty()) {
+    return Error{ErrorCode::kOutOfRange, combination.option, "nothing is left"};
+  }
+  return model_of(mesh.value());
+}
+
+}  // namespace
 
 int command_convert(Arguments arguments) {
   CLI::App app("Converts a model. Reads .3ds .obj .stl .ply .gltf .glb, writes .obj .glb .stl .3ds.",
@@ -14,6 +40,11 @@ int command_convert(Arguments arguments) {
   std::string output;
   ImportOptions options;
   std::optional<double> scale;
+  Combination combinations[] = {
+      {"--union", "Join with this solid", SolidOperation::kUnion},
+      {"--intersect", "Keep what is in this solid, too", SolidOperation::kIntersection},
+      {"--subtract", "Take this solid out", SolidOperation::kDifference},
+  };
   const std::map<std::string, UpAxis> axes = {{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}};
   app.add_option("IN", input, "Model to read")->required();
   app.add_option("OUT", output, "Model to write")->required();
@@ -23,14 +54,21 @@ int command_convert(Arguments arguments) {
   add_number(app, "--scale", scale, 1e-9, 1e9, "Meters per unit of the file");
   add_number(app, "--fit", options.fit, 1e-6, 1e6, "Make the longest side so long [m]");
   app.get_option("--fit")->excludes("--scale");
+  auto* const operations = app.add_option_group("Solids", "One of these; both models must be closed");
+  for (Combination& c : combinations) operations->add_option(c.option, c.other, c.help)->option_text("MODEL");
+  operations->require_option(0, 1);
   app.footer(
       "Examples:\n"
       "  hooke convert scenes/models/lantern.3ds lantern.glb --fit 0.4\n"
-      "  hooke convert scenes/models/crate.3ds crate.obj --up z --scale 0.01");
+      "  hooke convert scenes/models/crate.3ds crate.obj --up z --scale 0.01\n"
+      "  hooke convert cube.obj --subtract cylinder.obj drilled.obj");
   if (const auto code = parse(app, arguments)) return *code;
 
   options.scale = scale.value_or(options.scale);
-  const auto model = import_model(input, options);
+  auto model = import_model(input, options);
+  for (const Combination& c : combinations) {
+    if (model && !c.other.empty()) model = combine(model.value(), c, options);
+  }
   if (!model) return report(model.error());
   const auto written = export_model(model.value(), output);
   if (!written) return report(written.error());

@@ -4,6 +4,7 @@
 #include "hooke/result.h"
 #include "hooke/shape.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -119,5 +120,23 @@ struct TransformParts {
 
 /// The matrix of the parts: the inverse of decompose.
 [[nodiscard]] Matrix4<double> compose(const TransformParts& parts);
+
+enum class SolidOperation : std::uint8_t {
+  kUnion,         ///< What is in `a` or in `b`.
+  kIntersection,  ///< What is in both.
+  kDifference,    ///< What is in `a` and not in `b`.
+};
+
+/// Two solids as one mesh, without triangles if nothing is left. Corners are moved by less than 2^-32 of the
+/// longest side of the box around both; from there to the result all is exact, so faces, edges and corners
+/// that fall together are welded. Then edges shorter than 2e-6 of the result's diagonal are collapsed, and
+/// triangles lower than that flipped away where possible, so that the mesh is as good in a file. It is
+/// closed, each of its edges has two triangles, and the triangles at a vertex form one fan: where the solid
+/// touches itself, vertices are doubled. Takes about a second for 10,000 triangles.
+///
+/// Double or flat triangles and meshes that are inside out are put right. Errors name the triangles: a mesh
+/// that is not closed, faces opposite sides, goes through itself or lies on itself; a number that is not
+/// finite or beyond 1e9 m; triangles whose planes cut each other into too many pieces.
+[[nodiscard]] Result<MeshDesc> combine_solids(const MeshDesc& a, const MeshDesc& b, SolidOperation operation);
 
 }  // namespace hooke

@@ -3,6 +3,7 @@
 #include "geometry/box.h"
 #include "geometry/bsp_seams.h"
 #include "geometry/bsp_shells.h"
+#include "geometry/bsp_slivers.h"
 
 #include <algorithm>
 #include <array>
@@ -288,3 +289,21 @@ Result<SolidMesh> combine_solids(const SolidMesh& a, const SolidMesh& b, SolidOp
 }
 
 }  // namespace hooke::geometry
+
+namespace hooke {
+
+Result<MeshDesc> combine_solids(const MeshDesc& a, const MeshDesc& b, SolidOperation operation) {
+  const auto combined =
+      geometry::combine_solids(geometry::solid_mesh_of(a), geometry::solid_mesh_of(b), operation);
+  if (!combined) return combined.error();
+  geometry::Box3<double> box;
+  for (const DVec3& p : combined.value().positions) box = merge(box, {p, p});
+  const double diagonal = combined.value().positions.empty() ? 0 : length(box.upper - box.lower);
+  // Twice the distance at which the corners of a model's file are welded.
+  const geometry::SolidMesh clean = geometry::without_slivers(combined.value(), 2e-6 * diagonal);
+  MeshDesc mesh = {.triangles = clean.triangles};
+  for (const DVec3& p : clean.positions) mesh.positions.push_back(vector_cast<Real>(p));
+  return mesh;
+}
+
+}  // namespace hooke

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/geometry.h"
 #include "hooke/math.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"
@@ -57,8 +58,6 @@ Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& 
 /// on its inner side and nothing on its outer; where it does not, the surface goes through itself or lies on
 /// itself.
 Result<BspPieces> build_solid_tree(BspSpace& space, const std::vector<BspPiece>& pieces);
-
-enum class SolidOperation : std::uint8_t { kUnion, kIntersection, kDifference };
 
 /// What is in `a` or in `b`, in both, or in `a` and not in `b`: the triangles of each are sorted down the
 /// tree of the other (Thibault and Naylor 1987, Set operations on polyhedra using binary space partitioning

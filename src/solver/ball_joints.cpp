@@ -1,5 +1,6 @@
 #include "solver/ball_joints.h"
 
+#include "math/rotation.h"
 #include "solver/bodies.h"
 #include "solver/hook_colors.h"
 #include "solver/joint_rows.h"

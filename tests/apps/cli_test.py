@@ -254,6 +254,47 @@ class Convert(Program):
         count = struct.unpack("<I", (self.folder / "crate.stl").read_bytes()[80:84])[0]
         self.assertEqual((count, f"{triangles} triangles" in out), (triangles, True))
 
+    def write_box(self, name, low, high, without=0):
+        """A box as OBJ, quads counter-clockwise from outside, some of them left out."""
+        points = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
+        quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+        lines = ["v {} {} {}".format(*p) for p in points]
+        lines += ["f " + " ".join(str(i + 1) for i in quad) for quad in quads[without:]]
+        (self.folder / name).write_text("\n".join(lines) + "\n")
+
+    def read_solid(self, name):
+        """The volume of an OBJ; fails unless each edge has one triangle each way."""
+        lines = [line.split() for line in (self.folder / name).read_text().split("\n")]
+        points = [[float(word) for word in line[1:4]] for line in lines if line[:1] == ["v"]]
+        faces = [[int(word.split("/")[0]) - 1 for word in line[1:]] for line in lines if line[:1] == ["f"]]
+        edges = [(face[k], face[k - 2]) for face in faces for k in range(3)]
+        self.assertEqual(len(edges), len(set(edges)))
+        self.assertEqual(set(edges), {edge[::-1] for edge in edges})
+        volume = 0
+        for a, b, c in ([points[i] for i in face] for face in faces):
+            volume += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + \
+                a[2] * (b[0] * c[1] - b[1] * c[0])
+        return volume / 6
+
+    def test_solids_are_joined_cut_and_taken_from_each_other(self):
+        self.write_box("a.obj", (0, 0, 0), (2, 2, 2))
+        self.write_box("b.obj", (1, 1, 0), (3, 3, 1))
+        for option, volume in (("--union", 11), ("--intersect", 1), ("--subtract", 7)):
+            self.hooke("convert", "a.obj", option, "b.obj", "out.obj")
+            self.assertAlmostEqual(self.read_solid("out.obj"), volume, places=5)
+
+    def test_solids_that_cannot_be_joined(self):
+        self.write_box("a.obj", (0, 0, 0), (2, 2, 2))
+        self.write_box("open.obj", (1, 1, 1), (3, 3, 3), without=1)
+        self.write_box("far.obj", (5, 5, 5), (6, 6, 6))
+        self.assert_one_line(self.hooke("convert", "a.obj", "--union", "open.obj", "x.obj", code=2)[1],
+                             r"^b\.mesh\.triangles\[\d+\]: has an edge without a neighbor, one of 4 such edges")
+        self.assert_one_line(self.hooke("convert", "a.obj", "--intersect", "far.obj", "x.obj", code=2)[1],
+                             "^--intersect: nothing is left")
+        self.assert_one_line(self.hooke("convert", "a.obj", "x.obj", "--union", "far.obj", "--subtract", "far.obj",
+                                        code=2)[1], "^hooke convert: ")
+        self.assertNotIn("x.obj", self.files())
+
     def test_bad_models_and_names(self):
         (self.folder / "bad.3ds").write_bytes(b"MM\x00")
         self.assert_one_line(self.hooke("convert", "bad.3ds", "x.obj", code=2)[1], r"^bad\.3ds: ")

@@ -1,7 +1,9 @@
 #include "geometry/bsp_solid.h"
 
+#include "geometry/bsp_slivers.h"
 #include "geometry/solids.h"
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
@@ -9,10 +11,9 @@
 #include <string>
 
 using hooke::DVec3;
+using hooke::SolidOperation;
 using hooke::geometry::combine_solids;
 using hooke::geometry::SolidMesh;
-using hooke::geometry::SolidOperation;
-using hooke::geometry::SolidRepairs;
 using hooke::test::is_manifold;
 using hooke::test::make_box;
 using hooke::test::volume_of;
@@ -144,5 +145,59 @@ TEST_SUITE("geometry/bsp_solid") {
       CHECK(is_manifold(block));
     }
     CHECK(volume_of(block) == doctest::Approx(8 - 3 * 2 + 2).epsilon(1e-13));
+  }
+
+  TEST_CASE("for files: no triangle thinner than 2e-6 of the diagonal, and still a manifold") {
+    // A step of 1e-7 m on one side: all of its triangles are slivers.
+    const SolidMesh box = make_box({0, 0, 0}, {1, 1, 1});
+    const SolidMesh other = make_box({0.25, 0.25, 0.5}, {0.75, 0.75, 1.0000001});
+    CHECK(combine(box, other).both.triangles.size() > 20);
+    const SolidMesh clean = hooke::geometry::without_slivers(combine(box, other).both, 1e-6);
+    CHECK(is_manifold(clean));
+    CHECK(volume_of(clean) == doctest::Approx(1).epsilon(1e-6));
+
+    std::mt19937 random(41);
+    std::size_t slivers = 0;
+    std::size_t slivers_before = 0;
+    const auto count_slivers = [](const SolidMesh& mesh) {
+      return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+        const DVec3 a = mesh.positions[t[0]];
+        const DVec3 b = mesh.positions[t[1]];
+        const DVec3 c = mesh.positions[t[2]];
+        const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+        return length(cross(b - a, c - a)) <= 1e-5 * longest;
+      });
+    };
+    for (int pair = 0; pair < 40; ++pair) {
+      CAPTURE(pair);
+      const SolidMesh a = random_solid(random);
+      const auto both = combine_solids(a, random_solid(random), SolidOperation::kUnion);
+      REQUIRE(both);
+      const SolidMesh cleaned = hooke::geometry::without_slivers(both.value(), 1e-5);
+      CHECK(is_manifold(cleaned));
+      CHECK(volume_of(cleaned) == doctest::Approx(volume_of(both.value())).epsilon(1e-4));
+      slivers_before += static_cast<std::size_t>(count_slivers(both.value()));
+      slivers += static_cast<std::size_t>(count_slivers(cleaned));
+    }
+    CHECK(slivers_before > 100);
+    CHECK(50 * slivers <= slivers_before);
+  }
+
+  TEST_CASE("the public form is the same in float, and says whose triangle is wrong") {
+    const hooke::MeshDesc cube = hooke::test::make_cube(1);
+    hooke::MeshDesc other = cube;
+    for (auto& p : other.positions) p.x += 1;
+    const auto both = hooke::combine_solids(cube, other, SolidOperation::kUnion);
+    REQUIRE(both);
+    const SolidMesh mesh = hooke::geometry::solid_mesh_of(both.value());
+    CHECK(is_manifold(mesh));
+    CHECK(volume_of(mesh) == doctest::Approx(12).epsilon(1e-7));
+    other.triangles.pop_back();
+    const auto open = hooke::combine_solids(cube, other, SolidOperation::kUnion);
+    REQUIRE_FALSE(open);
+    CHECK(open.error().where.find("b.mesh.triangles[") == 0);
+    const auto none = hooke::combine_solids({}, cube, SolidOperation::kUnion);
+    REQUIRE_FALSE(none);
+    CHECK(none.error().where == "a.mesh.triangles");
   }
 }
