@@ -53,7 +53,7 @@ struct Placed {
 };
 
 /// Everything of one search but its pairs.
-struct Scene {
+struct TwoMeshes {
   Placed a, b;
   double margin = 0;
   Search search = Search::kAll;
@@ -82,7 +82,7 @@ double clearance(const Placed& own, std::uint32_t vertex, DVec3 normal) {
 
 /// The face through which a vertex near the surface is pushed out.
 SolidPoint face_for(const Placed& own, std::uint32_t vertex, const Placed& other, const SolidPoint& nearest,
-                    const Scene& scene) {
+                    const TwoMeshes& scene) {
   const DVec3 p = to_local(other.pose, own.positions[vertex]);
   std::vector<std::uint32_t> faces;
   const double reach = std::fabs(nearest.signed_distance) + scene.margin + scene.rounding;
@@ -104,7 +104,7 @@ SolidPoint face_for(const Placed& own, std::uint32_t vertex, const Placed& other
 }
 
 /// Contacts of the vertices of `own` with `other`; normals point out of `other`.
-void find_vertex_contacts(const Placed& own, const Placed& other, bool own_is_a, const Scene& scene,
+void find_vertex_contacts(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene,
                           std::vector<MeshContact>& found) {
   const geometry::OrientedBox& bounds = other.mesh.tree.nodes[0].volume;
   for (std::uint32_t v = 0; v < own.positions.size(); ++v) {
@@ -205,7 +205,7 @@ MeshContact edge_contact(std::uint32_t own_edge, std::uint32_t other_edge, bool 
 /// Adds the contacts of one part of an edge inside the other solid, from `in` to `out`.
 class InnerPart {
  public:
-  InnerPart(const Placed& own, const Placed& other, bool own_is_a, const Scene& scene)
+  InnerPart(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene)
       : own_(own), other_(other), own_is_a_(own_is_a), scene_(scene) {}
 
   void add(const Pierce& in, const Pierce& out, std::vector<MeshContact>& found) const {
@@ -282,10 +282,10 @@ class InnerPart {
   const Placed& own_;
   const Placed& other_;
   bool own_is_a_;
-  const Scene& scene_;
+  const TwoMeshes& scene_;
 };
 
-void find_through_contacts(const Placed& own, const Placed& other, bool own_is_a, const Scene& scene,
+void find_through_contacts(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene,
                            const Pairs& near, std::vector<MeshContact>& found) {
   const Pairs pairs = edge_face_pairs(own, other, own_is_a, near, scene.search);
   const std::vector<Pierce> pierces = find_pierces(own, other, pairs);
@@ -297,7 +297,7 @@ void find_through_contacts(const Placed& own, const Placed& other, bool own_is_a
 
 // --- Edges that cross within the margin ---
 
-Pairs edge_pairs(const Scene& scene, const Pairs& near) {
+Pairs edge_pairs(const TwoMeshes& scene, const Pairs& near) {
   Pairs pairs;
   if (scene.search == Search::kAll) {
     for (std::uint32_t e = 0; e < scene.a.mesh.topology.edges.size(); ++e) {
@@ -327,7 +327,7 @@ bool is_behind(const Placed& placed, std::uint32_t edge, DVec3 out) {
   return true;
 }
 
-void find_near_edges(const Scene& scene, const Pairs& near, std::vector<MeshContact>& found) {
+void find_near_edges(const TwoMeshes& scene, const Pairs& near, std::vector<MeshContact>& found) {
   const double reach = scene.margin + scene.rounding;
   for (const auto& [edge_a, edge_b] : edge_pairs(scene, near)) {
     if (scene.a.mesh.is_convex_edge[edge_a] == 0 || scene.b.mesh.is_convex_edge[edge_b] == 0) continue;
@@ -389,7 +389,7 @@ void find_mesh_contacts(const SolidMesh& a, const RigidPose& pose_a, const Solid
   if (a.triangles.empty() || b.triangles.empty()) return;
   const RigidPose a_in_b = relative_pose(pose_a, pose_b);
   const double rounding = kRounding * (a.size + b.size);
-  const Scene scene = {{a, a_in_b}, {b, {}}, std::max(margin, 0.0), search, rounding};
+  const TwoMeshes scene = {{a, a_in_b}, {b, {}}, std::max(margin, 0.0), search, rounding};
   if (!may_touch(a.tree.nodes[0].volume, b.tree.nodes[0].volume, relative_pose(pose_b, pose_a),
                  scene.margin + rounding)) {
     return;
