@@ -72,7 +72,7 @@ double depth_of(std::span<const Corners> surface, const ConvexHull& hull) {
     const auto longest = static_cast<double>(std::max({length(b - a), length(c - b), length(a - c)}));
     const int steps = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, 2 * kSamplesPerExtent);
     for (int i = 0; i <= steps; ++i) {
-      for (int k = 0; i + k <= steps; ++k) {
+      for (int k = 0; k <= steps - i; ++k) {
         look_at(a + Real(i) / Real(steps) * (b - a) + Real(k) / Real(steps) * (c - a));
       }
     }

@@ -422,6 +422,8 @@ class Help(Program):
                     self.draw(*words[1:])
                 elif words[0] == "compare" and shutil.which("gnuplot") is None:
                     continue
+                elif words == ["bench", "ofg"]:
+                    continue  # a program of its own, built with the benchmarks alone
                 elif words[0] == "check" and not re.search(r"V\d|--list", " ".join(words)):
                     self.hooke(*words, "V1")  # all cases are tests of their own, of minutes with a sanitizer
                 elif words[0] != "view":
