@@ -225,6 +225,14 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
   return way + turning_reach(a) + turning_reach(b) > kMargin + thick;
 }
 
+/// Whether a body turns so far in the step that the levers of its start are not those of the whole.
+bool spins(const Path& path) {
+  constexpr Real kFar = Real(0.2);  // [rad]
+  return length_squared(path.turn) > kFar * kFar;
+}
+
+constexpr Real kMiddle = Real(0.5);  // of the step
+
 /// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
 void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const Convex& now_a = scene.placed[pair.collider_a];
@@ -243,7 +251,11 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (!(pair.time > Real(0))) {
+  if (pair.manifold_count > 0 && chunk.time < kMiddle && (spins(path_a) || spins(path_b))) {
+    chunk.time = kMiddle;
+    pair.time = Real(0);
+  }
+  if (!(chunk.time > Real(0))) {
     test_view(scene, {now_a, now_b, path_a.center, path_b.center}, pair, chunk);
     return;
   }
