@@ -13,6 +13,27 @@
 
 namespace hooke {
 
+/// A mesh made into the surface of a solid, and what that took. Numbers are those of the given triangles.
+struct SolidRepair {
+  MeshDesc mesh = {};
+  std::uint32_t points_dropped = 0;            ///< Welded to another, or of no triangle.
+  std::vector<std::uint32_t> degenerate = {};  ///< Left out: without height, or with a corner twice.
+  std::vector<std::uint32_t> duplicate = {};   ///< Left out: on another with the same corners.
+  std::vector<std::uint32_t> turned = {};      ///< Turned over, to face outward as their neighbors do.
+  std::vector<std::uint32_t> given = {};       ///< Of each triangle of `mesh`, its number in the given one.
+};
+
+/// Mends what can be mended without guessing a shape: points nearer to each other than 1e-6 of the bounding
+/// box's diagonal become one; triangles without height go; of several with the same corners one stays, or
+/// none where the surface is closed without them (two back to back enclose nothing); triangles turn so that
+/// neighbors agree and the outside is outside. A mesh of a solid comes back as it is, in its order.
+///
+/// Errors name the triangles, eight at most: a coordinate that is not finite, an index out of range, edges
+/// with one triangle (the surface is open) or with more than two, sides that cannot agree (a Moebius strip or
+/// Klein bottle), no volume (all in one plane), triangles that cross each other, nothing left. Takes half
+/// a second for 50,000 triangles.
+[[nodiscard]] Result<SolidRepair> repair_solid(const MeshDesc& mesh);
+
 /// A x + B y + C z + D = 0 with (A, B, C) the normal, of length one, and D = -offset.
 struct Plane {
   DVec3 normal = {0, 1, 0};  ///< Unit.

@@ -10,6 +10,12 @@ namespace hooke::io {
 
 namespace {
 
+using geometry::find_turned;
+using geometry::is_degenerate;
+using geometry::Weld;
+using geometry::weld;
+using geometry::weld_distance;
+
 /// Above this number of faces around a point its corners keep their faces' normals: comparing all pairs would
 /// take the square of it.
 constexpr std::size_t kMaxFan = 1024;
@@ -202,6 +208,29 @@ Model assemble_model(const Soup& soup, double crease) {
   if (model.materials.empty()) model.materials.emplace_back();
   model.vertices = table.take();
   return model;
+}
+
+void weld_model(Model& model) {
+  std::vector<DVec3> points;
+  points.reserve(model.vertices.size());
+  for (const ModelVertex& vertex : model.vertices) {
+    points.push_back({vertex.position[0], vertex.position[1], vertex.position[2]});
+  }
+  const double distance = weld_distance(points);
+  Weld welded = weld(points, distance);
+  std::vector<DVec3> welded_points;
+  welded_points.reserve(welded.first.size());
+  for (const std::uint32_t i : welded.first) welded_points.push_back(points[i]);
+
+  model.mesh = {};
+  model.mesh.positions.reserve(welded_points.size());
+  for (const DVec3 p : welded_points) model.mesh.positions.push_back(vector_cast<Real>(p));
+  for (std::size_t i = 0; i + 2 < model.indices.size(); i += 3) {
+    const Triangle triangle = {welded.welded_of[model.indices[i]], welded.welded_of[model.indices[i + 1]],
+                               welded.welded_of[model.indices[i + 2]]};
+    if (!is_degenerate(welded_points, triangle, distance)) model.mesh.triangles.push_back(triangle);
+  }
+  model.welded_of = std::move(welded.welded_of);
 }
 
 }  // namespace hooke::io

@@ -101,7 +101,8 @@ TEST_SUITE("io/model_geometry") {
     const std::vector<DVec3> corners = {{0, 0, 0},   {2, 0, 0}, {2, 1, 0}, {1, 1, 0},
                                         {1, 1.5, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}};
     check_triangulation(corners, 3);
-    for (const Triangle& t : triangulate(corners)) CHECK_FALSE(hooke::io::is_degenerate(corners, t, 1e-9));
+    for (const Triangle& t : triangulate(corners))
+      CHECK_FALSE(hooke::geometry::is_degenerate(corners, t, 1e-9));
   }
 
   TEST_CASE("polygons that cross themselves or have no area give triangles and no crash") {
@@ -118,7 +119,7 @@ TEST_SUITE("io/model_geometry") {
       points.push_back({x, 0, 0});
       points.push_back({x + 0.9 * d, -0.9 * d, 0.9 * d});
     }
-    const hooke::io::Weld weld = hooke::io::weld(points, d);
+    const hooke::geometry::Weld weld = hooke::geometry::weld(points, d);
     CHECK(weld.first.size() == 1000);
     for (std::size_t i = 0; i < points.size(); ++i) CHECK(weld.welded_of[i] == i / 2);
   }

@@ -1,20 +1,18 @@
-#include "io/model_geometry.h"
+#include "geometry/mesh_clean.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 
-namespace hooke::io {
+namespace hooke::geometry {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
 /// Cells of four weld distances: a point's neighborhood then touches one or two cells per axis.
-class Grid {
+class WeldGrid {
  public:
-  Grid(DVec3 low, double distance) : low_(low), distance_(distance), cell_(distance > 0 ? 4 * distance : 1) {}
+  WeldGrid(DVec3 low, double distance)
+      : low_(low), distance_(distance), cell_(distance > 0 ? 4 * distance : 1) {}
 
   /// The earliest point stored within the distance of `p`, or kNone.
   [[nodiscard]] std::uint32_t find(DVec3 p) const {
@@ -75,28 +73,18 @@ class Grid {
   std::vector<Stored> points_;
 };
 
-DVec3 lower_corner(std::span<const DVec3> points) {
-  DVec3 low = points.empty() ? DVec3{} : points[0];
-  for (const DVec3 p : points) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  return low;
-}
-
-DVec3 upper_corner(std::span<const DVec3> points) {
-  DVec3 high = points.empty() ? DVec3{} : points[0];
-  for (const DVec3 p : points) high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  return high;
-}
-
 }  // namespace
 
 double weld_distance(std::span<const DVec3> points) {
-  return 1e-6 * length(upper_corner(points) - lower_corner(points));
+  if (points.empty()) return 0;
+  const DBox box = bounds_of(points);
+  return 1e-6 * length(box.upper - box.lower);
 }
 
 Weld weld(std::span<const DVec3> points, double distance) {
   Weld result;
   result.welded_of.reserve(points.size());
-  Grid grid(lower_corner(points), distance);
+  WeldGrid grid(points.empty() ? DVec3{} : bounds_of(points).lower, distance);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     std::uint32_t welded = grid.find(points[i]);
     if (welded == kNone) {
@@ -117,27 +105,4 @@ bool is_degenerate(std::span<const DVec3> points, const Triangle& triangle, doub
   return !(length(cross(b - a, c - a)) > distance * longest);
 }
 
-void weld_model(Model& model) {
-  std::vector<DVec3> points;
-  points.reserve(model.vertices.size());
-  for (const ModelVertex& vertex : model.vertices) {
-    points.push_back({vertex.position[0], vertex.position[1], vertex.position[2]});
-  }
-  const double distance = weld_distance(points);
-  Weld welded = weld(points, distance);
-  std::vector<DVec3> welded_points;
-  welded_points.reserve(welded.first.size());
-  for (const std::uint32_t i : welded.first) welded_points.push_back(points[i]);
-
-  model.mesh = {};
-  model.mesh.positions.reserve(welded_points.size());
-  for (const DVec3 p : welded_points) model.mesh.positions.push_back(vector_cast<Real>(p));
-  for (std::size_t i = 0; i + 2 < model.indices.size(); i += 3) {
-    const Triangle triangle = {welded.welded_of[model.indices[i]], welded.welded_of[model.indices[i + 1]],
-                               welded.welded_of[model.indices[i + 2]]};
-    if (!is_degenerate(welded_points, triangle, distance)) model.mesh.triangles.push_back(triangle);
-  }
-  model.welded_of = std::move(welded.welded_of);
-}
-
-}  // namespace hooke::io
+}  // namespace hooke::geometry

@@ -1,12 +1,13 @@
-#include "io/model_geometry.h"
+#include "base/disjoint_sets.h"
+#include "geometry/mesh_clean.h"
+#include "math/trig.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
-namespace hooke::io {
+namespace hooke::geometry {
 
 namespace {
 
@@ -14,7 +15,7 @@ namespace {
 constexpr std::ptrdiff_t kMaxNested = 2048;
 
 /// One side of a triangle, named by its ends in ascending order.
-struct Side {
+struct Border {
   std::uint32_t low = 0;
   std::uint32_t high = 0;
   std::uint32_t triangle = 0;
@@ -29,13 +30,8 @@ struct Surface {
   DVec3 high = {};
 };
 
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  for (; parent[i] != i; i = parent[i]) parent[i] = parent[parent[i]];
-  return i;
-}
-
-std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
-  std::vector<Side> sides;
+std::vector<Border> sorted_sides(std::span<const Triangle> triangles) {
+  std::vector<Border> sides;
   sides.reserve(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -44,7 +40,7 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
       sides.push_back({std::min(from, to), std::max(from, to), t, from < to});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const Border& a, const Border& b) {
     if (a.low != b.low) return a.low < b.low;
     return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
   });
@@ -53,7 +49,7 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
 
 /// Calls `visit` with the sides of each edge.
 template <class Visit>
-void for_edges(std::span<const Side> sides, const Visit& visit) {
+void for_edges(std::span<const Border> sides, const Visit& visit) {
   for (std::size_t first = 0; first < sides.size();) {
     std::size_t last = first + 1;
     while (last < sides.size() && sides[last].low == sides[first].low &&
@@ -66,20 +62,15 @@ void for_edges(std::span<const Side> sides, const Visit& visit) {
 }
 
 /// For each triangle, the surface it belongs to: triangles that share an edge share a surface.
-std::vector<std::uint32_t> find_surfaces(std::span<const Side> sides, std::size_t triangle_count) {
-  std::vector<std::uint32_t> parent(triangle_count);
-  std::iota(parent.begin(), parent.end(), 0u);
-  for_edges(sides, [&](std::span<const Side> edge) {
-    for (const Side& side : edge) {
-      const std::uint32_t a = find_root(parent, edge[0].triangle);
-      const std::uint32_t b = find_root(parent, side.triangle);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+std::vector<std::uint32_t> find_surfaces(std::span<const Border> sides, std::size_t triangle_count) {
+  base::DisjointSets sets(triangle_count);
+  for_edges(sides, [&](std::span<const Border> edge) {
+    for (const Border& side : edge) sets.merge(edge[0].triangle, side.triangle);
   });
   std::vector<std::uint32_t> surface_of(triangle_count);
   std::uint32_t count = 0;
   for (std::uint32_t t = 0; t < triangle_count; ++t) {
-    const std::uint32_t root = find_root(parent, t);
+    const std::uint32_t root = sets.root(t);
     surface_of[t] = root == t ? count++ : surface_of[root];  // a root comes before its members
   }
   return surface_of;
@@ -95,9 +86,9 @@ struct Neighbors {
   std::size_t count = 0;
 };
 
-std::vector<Neighbors> find_neighbors(std::span<const Side> sides, std::size_t triangle_count) {
+std::vector<Neighbors> find_neighbors(std::span<const Border> sides, std::size_t triangle_count) {
   std::vector<Neighbors> neighbors(triangle_count);
-  for_edges(sides, [&](std::span<const Side> edge) {
+  for_edges(sides, [&](std::span<const Border> edge) {
     if (edge.size() != 2) return;
     const bool differ = edge[0].ascending == edge[1].ascending;
     Neighbors& a = neighbors[edge[0].triangle];
@@ -126,7 +117,7 @@ void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::
 }
 
 /// Makes each surface agree with its first triangle.
-void make_consistent(std::span<const Side> sides, std::vector<std::uint8_t>& turned) {
+void make_consistent(std::span<const Border> sides, std::vector<std::uint8_t>& turned) {
   const std::vector<Neighbors> neighbors = find_neighbors(sides, turned.size());
   std::vector<std::uint8_t> is_seen(turned.size(), 0);
   for (std::uint32_t start = 0; start < turned.size(); ++start) {
@@ -135,14 +126,14 @@ void make_consistent(std::span<const Side> sides, std::vector<std::uint8_t>& tur
 }
 
 /// Whether as many sides run along the edge as against it.
-bool is_balanced(std::span<const Side> edge, std::span<const std::uint8_t> turned) {
+bool is_balanced(std::span<const Border> edge, std::span<const std::uint8_t> turned) {
   std::ptrdiff_t sum = 0;
-  for (const Side& side : edge) sum += side.ascending != (turned[side.triangle] != 0) ? 1 : -1;
+  for (const Border& side : edge) sum += side.ascending != (turned[side.triangle] != 0) ? 1 : -1;
   return sum == 0;
 }
 
 std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<const Triangle> triangles,
-                                       std::span<const Side> sides, std::span<const std::uint8_t> turned) {
+                                       std::span<const Border> sides, std::span<const std::uint8_t> turned) {
   const std::vector<std::uint32_t> surface_of = find_surfaces(sides, triangles.size());
   const std::uint32_t count =
       surface_of.empty() ? 0 : *std::max_element(surface_of.begin(), surface_of.end()) + 1;
@@ -164,7 +155,7 @@ std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<
     }
     surface.triangles.push_back(t);
   }
-  for_edges(sides, [&](std::span<const Side> edge) {
+  for_edges(sides, [&](std::span<const Border> edge) {
     if (!is_balanced(edge, turned)) surfaces[surface_of[edge[0].triangle]].is_closed = false;
   });
   return surfaces;
@@ -172,8 +163,8 @@ std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<
 
 /// How often the surface winds around `p`: the sum of signed solid angles over 4 pi (Van Oosterom and
 /// Strackee, 1983). About +-1 inside a closed surface, about 0 outside.
-double winding_number(std::span<const DVec3> points, std::span<const Triangle> triangles,
-                      const Surface& surface, DVec3 p) {
+double turns_around(std::span<const DVec3> points, std::span<const Triangle> triangles,
+                    const Surface& surface, DVec3 p) {
   double sum = 0.0;
   for (const std::uint32_t t : surface.triangles) {
     const DVec3 a = points[triangles[t][0]] - p;
@@ -183,7 +174,7 @@ double winding_number(std::span<const DVec3> points, std::span<const Triangle> t
     const double lb = length(b);
     const double lc = length(c);
     sum +=
-        2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        2 * math::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
   }
   return sum / (4 * std::numbers::pi);
 }
@@ -203,7 +194,7 @@ double outermost_volume(std::span<const DVec3> points, std::span<const Triangle>
   for (const Surface& other : surfaces) {
     if (!other.is_closed || !box_contains(other, surfaces[s])) continue;
     if (outermost != &surfaces[s] && !box_contains(other, *outermost)) continue;
-    if (std::abs(winding_number(points, triangles, other, p)) > 0.5) outermost = &other;
+    if (std::abs(turns_around(points, triangles, other, p)) > 0.5) outermost = &other;
   }
   return outermost->volume;
 }
@@ -211,7 +202,7 @@ double outermost_volume(std::span<const DVec3> points, std::span<const Triangle>
 }  // namespace
 
 std::vector<std::uint8_t> find_turned(std::span<const DVec3> points, std::span<const Triangle> triangles) {
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<Border> sides = sorted_sides(triangles);
   std::vector<std::uint8_t> agreed(triangles.size(), 0);
   const std::vector<Surface> given = describe_surfaces(points, triangles, sides, agreed);
   make_consistent(sides, agreed);
@@ -234,4 +225,4 @@ std::vector<std::uint8_t> find_turned(std::span<const DVec3> points, std::span<c
   return turned;
 }
 
-}  // namespace hooke::io
+}  // namespace hooke::geometry
