@@ -1,13 +1,15 @@
 #include "geometry/bounding.h"
 
 #include "geometry/meshes.h"
+#include "geometry/preselection.h"
 #include "geometry/volume_tree.h"
 #include "math/random.h"
 
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
-#include <limits>
+#include <map>
+#include <string>
 #include <vector>
 
 using hooke::DVec3;
@@ -269,5 +271,36 @@ TEST_SUITE("geometry/bounding") {
     }
     CHECK(by_oriented < by_boxes);
     CHECK(by_oriented < by_spheres);
+  }
+
+  TEST_CASE("every preselection leaves all pairs that overlap; the paper's sphere more than any other") {
+    std::mt19937_64 random(7);
+    using hooke::geometry::Preselection;
+    for (const MeshDesc& mesh :
+         {hooke::test::make_torus(1, Real(0.2), 12, 8), hooke::test::make_box({4, Real(0.1), Real(0.1)})}) {
+      const Points points = points_of(mesh);
+      const MeshView view = {points, mesh.triangles};
+      const auto volumes = make_bounding_volumes(view);
+      std::map<Preselection, std::uint64_t> left;
+      for (int i = 0; i < 40; ++i) {
+        const RigidPose pose_a = random_pose(random, 1);
+        const RigidPose pose_b = random_pose(random, 3);
+        const std::size_t overlapping = true_pairs(view, view, relative_pose(pose_b, pose_a)).size();
+        for (const Preselection p : hooke::geometry::kPreselections) {
+          const auto count = count_candidates(p, volumes, pose_a, volumes, pose_b);
+          REQUIRE(count.pairs_left >= overlapping);
+          left[p] += count.pairs_left;
+        }
+        const hooke::geometry::DBox box = world_box(volumes, pose_b);
+        REQUIRE(distance_squared(box, to_world(pose_b, points[0])) == 0);
+      }
+      CHECK(left[Preselection::kAllPairs] == 40 * mesh.triangles.size() * mesh.triangles.size());
+      CHECK(left[Preselection::kVertexSphere] >= left[Preselection::kSphere]);
+      CHECK(left[Preselection::kSphere] > left[Preselection::kOrientedBox]);
+      CHECK(left[Preselection::kOrientedBox] > left[Preselection::kOrientedBoxTree]);
+      CHECK(left[Preselection::kBox] > left[Preselection::kBoxTree]);
+      CHECK(left[Preselection::kBoxTree] >= left[Preselection::kOrientedBoxTree]);
+    }
+    CHECK(std::string(name_of(Preselection::kOrientedBoxTree)) == "oriented_box_tree");
   }
 }

@@ -1,5 +1,6 @@
 #include "hooke/model_io.h"
 
+#include "geometry/preselection.h"
 #include "io/model_support.h"
 
 #include <doctest/doctest.h>
@@ -10,6 +11,7 @@ using hooke::import_model;
 using hooke::ImportOptions;
 using hooke::Model;
 using hooke::UpAxis;
+using hooke::geometry::triangles_overlap;
 using hooke::io_test::built_importer;
 using hooke::io_test::measure;
 using hooke::io_test::Measures;
@@ -224,6 +226,42 @@ TEST_SUITE("io/model_import") {
       const Measures wuson = measure(imported(path).mesh);
       CHECK(wuson.volume > 1);  // open, and still wound outward
       CHECK(wuson.high.y == doctest::Approx(1.51525));
+    }
+  }
+
+  TEST_CASE("no preselection loses triangles of the sample models that overlap") {
+    using hooke::DVec3;
+    using hooke::geometry::RigidPose;
+    const auto importer = built_importer();
+    for (const std::string name : {"3ds/fels.3ds", "3ds/cubes_with_alpha.3DS", "3ds/test1.3ds"}) {
+      CAPTURE(name);
+      const std::string path = sample(name);
+      if (path.empty()) continue;
+      const hooke::MeshDesc mesh = imported(path).mesh;
+      std::vector<DVec3> points;
+      for (const auto& p : mesh.positions) points.push_back(hooke::vector_cast<double>(p));
+      const hooke::geometry::MeshView view = {points, mesh.triangles};
+      const auto volumes = make_bounding_volumes(view);
+      // Half a radius aside, and turned by 106 degrees.
+      const RigidPose pose = {{0.5 * volumes.sphere.radius, 0.1 * volumes.sphere.radius, 0},
+                              {0.8, 0, 0, 0.6}};
+      std::vector<DVec3> moved;
+      for (const DVec3& p : points) moved.push_back(to_world(pose, p));
+      const hooke::geometry::MeshView placed = {moved, mesh.triangles};
+      std::uint64_t overlapping = 0;
+      for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
+          overlapping += triangles_overlap(view.corners(i), placed.corners(k)) ? 1 : 0;
+        }
+      }
+      CHECK(overlapping > 0);
+      std::uint64_t by_boxes = 0;
+      for (const auto preselection : hooke::geometry::kPreselections) {
+        const auto count = count_candidates(preselection, volumes, {}, volumes, pose);
+        CHECK(count.pairs_left >= overlapping);
+        by_boxes = count.pairs_left;
+      }
+      CHECK(by_boxes < 20 * overlapping);  // by the last, trees of oriented boxes
     }
   }
 }
