@@ -26,7 +26,8 @@ struct RenderOptions {
   std::optional<double> seconds;
   std::optional<double> at;
   std::optional<double> trail;  ///< [s]
-  std::string stepper;          ///< Of the laboratory; empty for the solver.
+  std::vector<std::string> bounds;
+  std::string stepper;  ///< Of the laboratory; empty for the solver.
   bool force = false;
   SceneOverrides overrides;
 };
@@ -45,6 +46,10 @@ void describe(CLI::App& app, RenderOptions& options) {
   add_number(app, "--at", options.at, 0, 1e6, "Time of a single picture; the scene's end by default");
   add_number(app, "--trail", options.trail, 1e-6, 1e6,
              "Leave ropes and particles in the picture as they were every so many seconds");
+  app.add_option("--bounds", options.bounds,
+                 "Bounding volumes around bodies, one after the other: sphere, vertex_sphere, box, "
+                 "oriented_box, sphere_tree, box_tree, oriented_box_tree")
+      ->delimiter(',');
   CLI::Option* stepper =
       app.add_option("--stepper", options.stepper, "Draw the laboratory's run; see hooke compare --help");
   app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
@@ -56,7 +61,8 @@ void describe(CLI::App& app, RenderOptions& options) {
       "  hooke render scenes/flag.json -o flag.mp4 --seconds 2 --size 640x360\n"
       "  hooke render scenes/rope.json -o rope.png --at 1.5\n"
       "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180\n"
-      "  hooke render scenes/paper/fig2.json -o fig2.png --stepper euler --force --trail 0.016 --at 0.3");
+      "  hooke render scenes/paper/fig2.json -o fig2.png --stepper euler --force --trail 0.016 --at 0.3\n"
+      "  hooke render scenes/paper/fig7.json -o fig7.png --bounds sphere,box,oriented_box,oriented_box_tree");
 }
 
 bool read_size(RenderOptions& options) {
@@ -74,9 +80,10 @@ bool ends_in(const std::string& text, const std::string& ending) {
 class Film {
  public:
   Film(Simulation simulation, std::optional<lab::Run> run, render::Renderer renderer,
-       std::optional<double> trail)
+       std::optional<double> trail, std::vector<render::Preselection> bounds)
       : simulation_(std::move(simulation)), run_(std::move(run)), renderer_(std::move(renderer)) {
     if (trail) drawing_.keep_trail(*trail);
+    drawing_.draw_bounds(std::move(bounds));
     has_trail_ = trail.has_value();
     drawing_.record(simulation_);
   }
@@ -180,6 +187,13 @@ int command_render(Arguments arguments) {
     return report({ErrorCode::kOutOfRange, "--at", "is for a single picture, X.png"});
   }
 
+  std::vector<render::Preselection> bounds;
+  for (const std::string& name : options.bounds) {
+    const auto kind = render::bounding_volume_named(name);
+    if (!kind)
+      return report({ErrorCode::kOutOfRange, "--bounds", "no bounding volume is called '" + name + "'"});
+    bounds.push_back(*kind);
+  }
   auto scene = read_scene(options.scene);
   if (!scene) return kBadInput;
   apply(options.overrides, scene->world);
@@ -194,7 +208,8 @@ int command_render(Arguments arguments) {
     if (!created) return report(created.error());
     run.emplace(std::move(created).value());
   }
-  Film film(std::move(*simulation), std::move(run), std::move(renderer).value(), options.trail);
+  Film film(std::move(*simulation), std::move(run), std::move(renderer).value(), options.trail,
+            std::move(bounds));
   const auto done = single ? render_picture(film, options) : render_film(film, options);
   if (!done) return report(done.error());
   std::printf("%s\n", options.output.c_str());

@@ -148,6 +148,7 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
   add_trail(origin, place, list);
   const State state = between(time);
   std::vector<Vec3> points;
+  std::size_t bounded = 0;
   for (const ObjectState& object : state.objects) {
     points.resize(object.points.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = local(object.points[i]);
@@ -156,6 +157,20 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
     here.rotation = object.pose.rotation;
     here.points = points;
     add_figure(*object.figure, here, list);
+    if (!object.figure->solids.empty() && !object.figure->half_space) {
+      add_bounds(*object.figure, here, bounded++, list);
+    }
+  }
+}
+
+void SceneDrawing::add_bounds(const Figure& figure, const FigurePlace& place, std::size_t number,
+                              render::DrawList& list) const {
+  if (bounds_.empty()) return;
+  const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
+  for (const FigureSolid& solid : figure.solids) {
+    if (solid.geometry.levels[0] == nullptr) continue;
+    render::add_bounding_lines(*solid.geometry.levels[0], transform_of(solid), body,
+                               bounds_[number % bounds_.size()], list.lines);
   }
 }
 

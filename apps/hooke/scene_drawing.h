@@ -4,6 +4,7 @@
 #include "hooke/scene_camera.h"
 #include "hooke/scene_io.h"
 
+#include "render/bounding_lines.h"
 #include "render/draw_list.h"
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace hooke::app {
@@ -30,6 +32,10 @@ class SceneDrawing {
   /// From now on ropes and particles leave a copy of themselves behind every `interval` [s], as on a plate
   /// that is exposed again and again. Positive.
   void keep_trail(double interval) { trail_interval_ = interval; }
+
+  /// From now on bounding volumes are drawn around bodies: the first of these around the first body that is
+  /// no half-space, and so on, over again from the first.
+  void draw_bounds(std::vector<render::Preselection> bounds) { bounds_ = std::move(bounds); }
 
   /// Fills the list with the state at `time` [s]: by straight lines between the two copies, the later one
   /// beyond it. Camera, bodies and ropes are relative to a place near the camera. `height_px` is the
@@ -57,6 +63,8 @@ class SceneDrawing {
   [[nodiscard]] State between(double time) const;
   void measure(const State& state);
 
+  void add_bounds(const Figure& figure, const FigurePlace& place, std::size_t number,
+                  render::DrawList& list) const;
   void add_trail(const DVec3& origin, const FigurePlace& place, render::DrawList& list) const;
 
   BodyGeometries geometries_;
@@ -67,6 +75,7 @@ class SceneDrawing {
   std::optional<Viewpoint> automatic_;  ///< Frames the first state; for scenes without a camera.
   State previous_;
   State current_;
+  std::vector<render::Preselection> bounds_;
   std::optional<double> trail_interval_;  ///< [s]
   std::vector<State> trail_;              ///< Oldest first.
 };

@@ -341,6 +341,14 @@ class Render(Program):
                                check=True)
         self.assertEqual(count.stdout.strip().rstrip(","), "10")
 
+    def test_bounding_volumes_are_drawn_around_bodies(self):
+        words = ("scenes/paper/fig7.json", "--at", 0.1, "--size", "160x90")
+        self.draw(*words, "-o", "plain.png")
+        self.draw(*words, "-o", "bounds.png", "--bounds", "sphere,oriented_box")
+        self.assertNotEqual((self.folder / "plain.png").read_bytes(), (self.folder / "bounds.png").read_bytes())
+        _, err = self.hooke("render", *words, "-o", "x.png", "--bounds", "cube", code=2)
+        self.assert_one_line(err, "no bounding volume is called 'cube'")
+
     def test_without_ffmpeg_a_film_is_refused_and_leaves_nothing(self):
         self.draw("scenes/rope.json", "-o", "x.png", "--at", 0, "--size", "16x16")
         (self.folder / "x.png").unlink()
