@@ -254,12 +254,13 @@ class Convert(Program):
         count = struct.unpack("<I", (self.folder / "crate.stl").read_bytes()[80:84])[0]
         self.assertEqual((count, f"{triangles} triangles" in out), (triangles, True))
 
-    def write_box(self, name, low, high, without=0):
-        """A box as OBJ, quads counter-clockwise from outside, some of them left out."""
-        points = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
+    def write_boxes(self, name, *boxes, without=0):
+        """Boxes as OBJ, quads counter-clockwise from outside, the first of them left out."""
         quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-        lines = ["v {} {} {}".format(*p) for p in points]
-        lines += ["f " + " ".join(str(i + 1) for i in quad) for quad in quads[without:]]
+        lines = []
+        for number, box in enumerate(boxes):
+            lines += ["v {} {} {}".format(*(box[i >> axis & 1][axis] for axis in range(3))) for i in range(8)]
+            lines += ["f " + " ".join(str(8 * number + i + 1) for i in quad) for quad in quads[without:]]
         (self.folder / name).write_text("\n".join(lines) + "\n")
 
     def read_solid(self, name):
@@ -277,16 +278,27 @@ class Convert(Program):
         return volume / 6
 
     def test_solids_are_joined_cut_and_taken_from_each_other(self):
-        self.write_box("a.obj", (0, 0, 0), (2, 2, 2))
-        self.write_box("b.obj", (1, 1, 0), (3, 3, 1))
+        self.write_boxes("a.obj", ((0, 0, 0), (2, 2, 2)))
+        self.write_boxes("b.obj", ((1, 1, 0), (3, 3, 1)))
         for option, volume in (("--union", 11), ("--intersect", 1), ("--subtract", 7)):
             self.hooke("convert", "a.obj", option, "b.obj", "out.obj")
             self.assertAlmostEqual(self.read_solid("out.obj"), volume, places=5)
 
+    def test_the_building_of_a_scene_is_a_block_without_rooms_and_doors(self):
+        self.write_boxes("block.obj", ((0, 0, 0), (12.8, 2.4, 4.4)))
+        self.write_boxes("rooms.obj", *(((x, 0.2, 0.2), (x + 4, 3, 4.2)) for x in (0.2, 4.4, 8.6)))
+        self.write_boxes("doors.obj", ((1, 0.2, 1.7), (11.8, 2, 2.7)))
+        self.hooke("convert", "block.obj", "--subtract", "rooms.obj", "open.obj")
+        # Three rooms of 4 x 2.2 x 4 m above the floor, then two doors of 0.2 x 1.8 x 1 m.
+        self.assertAlmostEqual(self.read_solid("open.obj"), 12.8 * 2.4 * 4.4 - 3 * 4 * 2.2 * 4, places=4)
+        self.hooke("convert", "open.obj", "--subtract", "doors.obj", "rooms.glb")
+        kept = PROJECT / "scenes/paper/models/rooms.glb"
+        self.assertEqual((self.folder / "rooms.glb").read_bytes(), kept.read_bytes())
+
     def test_solids_that_cannot_be_joined(self):
-        self.write_box("a.obj", (0, 0, 0), (2, 2, 2))
-        self.write_box("open.obj", (1, 1, 1), (3, 3, 3), without=1)
-        self.write_box("far.obj", (5, 5, 5), (6, 6, 6))
+        self.write_boxes("a.obj", ((0, 0, 0), (2, 2, 2)))
+        self.write_boxes("open.obj", ((1, 1, 1), (3, 3, 3)), without=1)
+        self.write_boxes("far.obj", ((5, 5, 5), (6, 6, 6)))
         self.assert_one_line(self.hooke("convert", "a.obj", "--union", "open.obj", "x.obj", code=2)[1],
                              r"^b\.mesh\.triangles\[\d+\]: has an edge without a neighbor, one of 4 such edges")
         self.assert_one_line(self.hooke("convert", "a.obj", "--intersect", "far.obj", "x.obj", code=2)[1],
