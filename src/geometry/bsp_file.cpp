@@ -14,9 +14,11 @@ namespace {
 constexpr std::string_view kMagic = "HOOKEBSP";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kMostItems = 1u << 30;  // of nodes, faces or corners
-constexpr std::size_t kNodeSize = 4 * 8 + 4 * 4;
-constexpr std::size_t kFaceSize = 3 * 4;
-constexpr std::size_t kCornerSize = 3 * 8;
+// Bytes.
+constexpr std::size_t kHeaderSize = 24;
+constexpr std::size_t kNodeSize = 48;
+constexpr std::size_t kFaceSize = 12;
+constexpr std::size_t kCornerSize = 24;
 
 class Writer {
  public:
@@ -65,6 +67,25 @@ Error file_error(std::string message) {
 
 Error item_error(const char* name, std::size_t index, const char* message) {
   return {ErrorCode::kBadSyntax, std::string("bsp.") + name + "[" + std::to_string(index) + "]", message};
+}
+
+/// Of so many nodes, faces and corners, whose bytes are there.
+BspTree read_tree(BytesReader& reader, const std::array<std::uint32_t, 3>& counts) {
+  BspTree tree;
+  tree.nodes.resize(counts[0]);
+  tree.faces.resize(counts[1]);
+  tree.corners.resize(counts[2]);
+  for (BspNode& node : tree.nodes) {
+    node.normal = reader.vector();
+    node.offset = reader.real();
+    for (std::uint32_t* n : {&node.above, &node.below, &node.first_face, &node.face_count})
+      *n = reader.number();
+  }
+  for (BspFace& face : tree.faces) {
+    for (std::uint32_t* n : {&face.triangle, &face.first_corner, &face.corner_count}) *n = reader.number();
+  }
+  for (DVec3& corner : tree.corners) corner = reader.vector();
+  return tree;
 }
 
 Result<void> check_nodes(const BspTree& tree) {
@@ -128,7 +149,6 @@ std::vector<std::byte> save_bsp(const BspTree& tree) {
 }
 
 Result<BspTree> load_bsp(std::span<const std::byte> bytes) {
-  constexpr std::size_t kHeaderSize = kMagic.size() + 4 * 4;
   if (bytes.size() < kHeaderSize ||
       !std::equal(kMagic.begin(), kMagic.end(), bytes.begin(),
                   [](char c, std::byte b) { return static_cast<std::byte>(c) == b; })) {
@@ -148,20 +168,7 @@ Result<BspTree> load_bsp(std::span<const std::byte> bytes) {
   if (size != bytes.size()) {
     return file_error(std::to_string(bytes.size()) + " bytes; its counts ask for " + std::to_string(size));
   }
-  BspTree tree;
-  tree.nodes.resize(counts[0]);
-  tree.faces.resize(counts[1]);
-  tree.corners.resize(counts[2]);
-  for (BspNode& node : tree.nodes) {
-    node.normal = reader.vector();
-    node.offset = reader.real();
-    for (std::uint32_t* n : {&node.above, &node.below, &node.first_face, &node.face_count})
-      *n = reader.number();
-  }
-  for (BspFace& face : tree.faces) {
-    for (std::uint32_t* n : {&face.triangle, &face.first_corner, &face.corner_count}) *n = reader.number();
-  }
-  for (DVec3& corner : tree.corners) corner = reader.vector();
+  const BspTree tree = read_tree(reader, counts);
   if (Result<void> sound = check_nodes(tree); !sound) return sound.error();
   if (Result<void> sound = check_faces(tree); !sound) return sound.error();
   return tree;

@@ -89,7 +89,8 @@ std::vector<Side> list_sides(std::span<const std::vector<SeamCorner>> outlines) 
 /// Vertices that may lie on edges of others, sorted along each axis.
 class SeamVertices {
  public:
-  SeamVertices(const BspSpace& space, const SeamedPieces& seamed, std::vector<std::uint32_t> candidates)
+  SeamVertices(const BspSpace& space, const SeamedPieces& seamed,
+               const std::vector<std::uint32_t>& candidates)
       : space_(space), seamed_(seamed) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       sorted_[axis] = candidates;
@@ -155,7 +156,7 @@ void divide_edges(const BspSpace& space, std::span<const BspPiece> pieces, Seame
   });
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-  const SeamVertices vertices(space, seamed, std::move(candidates));
+  const SeamVertices vertices(space, seamed, candidates);
   // Backward, so that the corners before keep their places in the outline.
   std::sort(open.begin(), open.end(), [](const Side& a, const Side& b) {
     return std::tie(a.piece, b.corner) < std::tie(b.piece, a.corner);
@@ -164,8 +165,10 @@ void divide_edges(const BspSpace& space, std::span<const BspPiece> pieces, Seame
     std::vector<std::uint32_t> found = vertices.between(side, pieces[side.piece]);
     if (!side.is_forward) std::reverse(found.begin(), found.end());
     std::vector<SeamCorner>& outline = seamed.outlines[side.piece];
-    std::vector<SeamCorner> inserted;
-    for (const std::uint32_t v : found) inserted.push_back({v, true});
+    std::vector<SeamCorner> inserted(found.size());
+    std::transform(found.begin(), found.end(), inserted.begin(), [](std::uint32_t v) {
+      return SeamCorner{v, true};
+    });
     outline.insert(outline.begin() + side.corner + 1, inserted.begin(), inserted.end());
   }
 }

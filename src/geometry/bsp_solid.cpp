@@ -161,34 +161,51 @@ Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes) {
   return lattice;
 }
 
+namespace {
+
+/// A mesh on the lattice.
+struct LatticeMesh {
+  std::vector<LatticePoint> points = {};
+  std::vector<Triangle> triangles = {};  // their corners welded; as many as in the mesh
+  std::vector<std::uint32_t> kept = {};  // of the triangles
+};
+
+/// Welds, and leaves out flat and double triangles.
+LatticeMesh repair(const Lattice& lattice, const SolidMesh& mesh, SolidRepairs& repairs) {
+  LatticeMesh result;
+  for (const DVec3& p : mesh.positions) {
+    const DVec3 steps = (1 / lattice.step) * (p - lattice.origin);
+    result.points.push_back({nearest(steps.x), nearest(steps.y), nearest(steps.z)});
+  }
+  const std::vector<std::uint32_t> same = weld_places(result.points);
+  for (std::uint32_t i = 0; i < same.size(); ++i) repairs.merged_vertices += same[i] != i ? 1 : 0;
+  for (const Triangle& t : mesh.triangles) {
+    const auto& [a, b, c] = result.triangles.emplace_back(Triangle{same[t[0]], same[t[1]], same[t[2]]});
+    if (normal_of({result.points[a], result.points[b], result.points[c]}) == LatticeNormal{}) continue;
+    result.kept.push_back(static_cast<std::uint32_t>(result.triangles.size() - 1));
+  }
+  repairs.flat_triangles = result.triangles.size() - result.kept.size();
+  const std::size_t with_duplicates = result.kept.size();
+  result.kept = without_duplicates(result.triangles, result.kept);
+  repairs.duplicate_triangles = with_duplicates - result.kept.size();
+  return result;
+}
+
+}  // namespace
+
 Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& lattice,
                                                 const SolidMesh& mesh, SolidRepairs* repairs) {
   if (Result<void> usable = check_indices(mesh); !usable) return usable.error();
   SolidRepairs done;
-  std::vector<LatticePoint> points;
-  for (const DVec3& p : mesh.positions) {
-    const DVec3 steps = (1 / lattice.step) * (p - lattice.origin);
-    points.push_back({nearest(steps.x), nearest(steps.y), nearest(steps.z)});
+  const LatticeMesh repaired = repair(lattice, mesh, done);
+  const std::vector<LatticePoint>& points = repaired.points;
+  if (repaired.kept.empty()) {
+    return solid_error("mesh.triangles", "no triangle is left with an area of its own");
   }
-  const std::vector<std::uint32_t> same = weld_places(points);
-  for (std::uint32_t i = 0; i < same.size(); ++i) done.merged_vertices += same[i] != i ? 1 : 0;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> kept;
-  for (const Triangle& t : mesh.triangles) {
-    const Triangle& welded = triangles.emplace_back(Triangle{same[t[0]], same[t[1]], same[t[2]]});
-    const LatticeNormal normal = normal_of({points[welded[0]], points[welded[1]], points[welded[2]]});
-    if (normal != LatticeNormal{}) kept.push_back(static_cast<std::uint32_t>(triangles.size() - 1));
-  }
-  done.flat_triangles = triangles.size() - kept.size();
-  const std::size_t with_duplicates = kept.size();
-  kept = without_duplicates(triangles, kept);
-  done.duplicate_triangles = with_duplicates - kept.size();
-  if (kept.empty()) return solid_error("mesh.triangles", "no triangle is left with an area of its own");
-
-  done.was_inside_out = six_volumes(points, triangles, kept) < 0;
+  done.was_inside_out = six_volumes(points, repaired.triangles, repaired.kept) < 0;
   std::vector<BspPiece> pieces;
-  for (const std::uint32_t t : kept) {
-    Triangle corners = triangles[t];
+  for (const std::uint32_t t : repaired.kept) {
+    Triangle corners = repaired.triangles[t];
     if (done.was_inside_out) std::swap(corners[1], corners[2]);
     pieces.push_back(space.add_triangle({points[corners[0]], points[corners[1]], points[corners[2]]}, t));
   }

@@ -28,7 +28,7 @@ struct SolidMesh {
 
 /// What was done to a mesh to make it the surface of a solid.
 struct SolidRepairs {
-  std::size_t merged_vertices = 0;      ///< That had moved onto another by at most a step of the lattice.
+  std::size_t merged_vertices = 0;      ///< At the same place of the lattice as another.
   std::size_t flat_triangles = 0;       ///< Without area; left out.
   std::size_t duplicate_triangles = 0;  ///< The same corners twice, or once each way; left out.
   bool was_inside_out = false;          ///< All triangles turned over.
@@ -48,9 +48,9 @@ struct Lattice {
 /// less than 1e-9 m wide.
 Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes);
 
-/// The triangles as pieces, moved to the lattice and repaired. Errors name the triangles: a mesh without
-/// triangles, indices out of range, a surface that is not closed (a T-junction is), triangles that face
-/// opposite sides, a shell wound the same way as one around it.
+/// The triangles as pieces, moved to the lattice, which is that of this mesh, and repaired. Errors name the
+/// triangles: a mesh without triangles, indices out of range, a surface that is not closed (a T-junction is),
+/// triangles that face opposite sides, a shell wound the same way as one around it.
 Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& lattice,
                                                 const SolidMesh& mesh, SolidRepairs* repairs);
 

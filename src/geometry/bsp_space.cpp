@@ -53,8 +53,7 @@ Int128 common_divisor(Int128 a, Int128 b) {
     a = b;
     b = rest;
   }
-  if (b == 0) return a;
-  return std::gcd(static_cast<std::int64_t>(a % b), static_cast<std::int64_t>(b));
+  return b == 0 ? a : std::gcd(static_cast<std::int64_t>(a % b), static_cast<std::int64_t>(b));
 }
 
 bool has_direction(const LatticeNormal& a) {
@@ -86,6 +85,7 @@ BspSide BspSpace::add_plane(LatticePoint p, LatticeNormal normal) {
   HOOKE_ASSERT(divisor > 0);
   const bool is_flipped = !has_direction(normal);
   const Int128 scale = is_flipped ? -divisor : divisor;
+  // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): asserted above
   BspPlane plane = {.a = {normal.x / scale, normal.y / scale, normal.z / scale}};
   plane.d = -(plane.a.x * p.x + plane.a.y * p.y + plane.a.z * p.z);
   const auto [entry, is_new] = plane_of_.try_emplace({plane.a.x, plane.a.y, plane.a.z, plane.d},
