@@ -17,7 +17,7 @@
 /// The integrator laboratory: the same scenes as a World, as an ordinary differential equation y' = f(t, y)
 /// in double, solved by the methods of the textbooks. Library hooke::lab.
 ///
-///     World world = ...;  // with particles, ropes, cloths, fields
+///     World world = ...;  // with particles, ropes, cloths, bodies, fields
 ///     lab::Run run = lab::Run::create(world, {.stepper = "rk4"}).value();
 ///     while (run.time() < 10 && run.advance()) plot(run.time(), run.energy().total());
 ///
@@ -90,14 +90,22 @@ struct Options {
 
 /// What is done for one object, and how well.
 struct ObjectReport {
-  PointRef::Kind kind = PointRef::Kind::kNone;
-  std::uint32_t slot = 0;  ///< Of its id.
+  PointRef::Kind kind = PointRef::Kind::kNone;  ///< None: a body.
+  std::uint32_t slot = 0;                       ///< Of its id.
   std::string stepper;
   double dt = 0;                      ///< Of the method, not of the output [s].
   std::uint64_t steps = 0;            ///< Of the method; for adaptive ones those they chose.
   std::uint64_t evaluations = 0;      ///< Of the forces on the whole object.
   std::optional<double> error = {};   ///< Estimate when Accuracy was declared [m].
   std::vector<std::string> left_out;  ///< What of the object has no force here, in words.
+};
+
+/// A body in the laboratory.
+struct BodyState {
+  DVec3 center = {};                 ///< Of mass [m].
+  Quaternion<double> rotation = {};  ///< Of the body's frame; unit.
+  DVec3 velocity = {};               ///< Of the center of mass [m/s].
+  DVec3 angular_velocity = {};       ///< In world axes [rad/s].
 };
 
 /// A scene in the laboratory: as it stood in the World when the run was created. Objects do not act on one
@@ -129,6 +137,9 @@ class Run {
   /// Of all objects in order of creation, one after the other.
   [[nodiscard]] std::vector<DVec3> positions() const;
   [[nodiscard]] std::vector<DVec3> velocities() const;
+
+  /// Errors: kStaleId for a body that was not in the World, or that stands.
+  [[nodiscard]] Result<BodyState> body(BodyId id) const;
 
   /// As World::measure() has it: held points have none, fields and gravity are potential.
   [[nodiscard]] Energy energy() const;

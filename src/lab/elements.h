@@ -6,6 +6,7 @@
 #include "elements/dihedral.h"
 #include "elements/fields.h"
 #include "elements/spring.h"
+#include "lab/turn.h"
 
 #include <array>
 #include <cstdint>
@@ -112,17 +113,60 @@ struct PointRow {
   double half_rho_area = 0;  ///< rho C_d A / 2 [kg/m]
   DVec3 uniform = {};        ///< Gravity and the uniform fields together [m/s^2].
   DVec3 magnetic = {};       ///< All magnetic fields together [T].
+  DVec3 load = {};           ///< Of what a body rests on [N].
   const std::vector<FieldDesc>* attractors = nullptr;
 
   template <class T>
   Forces<T, 1> force(const Points<T, 1>& p) const {
-    Vector3<T> f = vector_cast<T>(mass * uniform);
+    Vector3<T> f = vector_cast<T>(mass * uniform + load);
     f += elements::magnetic_force(p.v[0], magnetic, charge);
     f += elements::point_air_force(vector_cast<T>(p.wind[0]) - p.v[0], viscous, half_rho_area);
     for (const FieldDesc& field : *attractors) {
       f += mass * elements::attraction(p.x[0] - vector_cast<T>(field.center), field.strength);
     }
     return {f};
+  }
+};
+
+/// Euler's equations for the turn p of a body (turn.h): with the inertia I about the principal axes,
+///
+///     I omega' = torque - omega x I omega   (in those axes),   omega' -= damping omega
+///
+/// As a row on a point of mass 1, its force is p''.
+struct TurnRow {
+  static constexpr int kPoints = 1;
+  std::array<std::uint32_t, 1> at = {};
+  std::array<DVec3, 3> axes = {};  ///< Principal, in the world, where p = 0.
+  DVec3 inertia = {};              ///< About them [kg m^2].
+  DVec3 torque = {};               ///< Of what the body rests on, in world axes [N m].
+  double damping = 0;              ///< [1/s]
+
+  template <class T>
+  Forces<T, 1> force(const Points<T, 1>& points) const {
+    const Vector3<T> p = points.x[0];
+    const Vector3<T> omega = spin_of(p, points.v[0]);
+    const Vector3<T> own = in_axes(turned(-p, omega));
+    const Vector3<T> moment =
+        in_axes(turned(-p, vector_cast<T>(torque))) - cross(own, weighted(own, inertia));
+    const DVec3 inverse = {1 / inertia.x, 1 / inertia.y, 1 / inertia.z};
+    const Vector3<T> spin_up = turned(p, out_of_axes(weighted(moment, inverse))) - damping * omega;
+    // omega' s + omega s' = p'' + p x p'' / 2, solved for p''.
+    const Vector3<T> b = turn_scale(p) * spin_up + (0.5 * dot(p, points.v[0])) * omega;
+    return {(1 / turn_scale(p)) * turn_rate(p, b)};
+  }
+
+  template <class T>
+  [[nodiscard]] Vector3<T> in_axes(Vector3<T> v) const {
+    return {dot(vector_cast<T>(axes[0]), v), dot(vector_cast<T>(axes[1]), v),
+            dot(vector_cast<T>(axes[2]), v)};
+  }
+  template <class T>
+  [[nodiscard]] Vector3<T> out_of_axes(Vector3<T> v) const {
+    return v.x * vector_cast<T>(axes[0]) + v.y * vector_cast<T>(axes[1]) + v.z * vector_cast<T>(axes[2]);
+  }
+  template <class T>
+  static Vector3<T> weighted(Vector3<T> v, DVec3 weights) {
+    return {weights.x * v.x, weights.y * v.y, weights.z * v.z};
   }
 };
 

@@ -59,6 +59,17 @@ Error not_finite(const Part& part) {
   return {ErrorCode::kLimitExceeded, std::string(part.method->info.name), text};
 }
 
+/// Coordinates of turns (turn.h) tell one step from the next up to about a radian.
+Result<void> turns_slowly(const Part& part) {
+  if (!part.system.is_body()) return {};
+  const double angle = length(part.system.body(part.start_time, part.y).spin) * part.h;
+  if (!(angle > 1) || part.y.size() == 0) return {};
+  char text[160];
+  std::snprintf(text, sizeof(text), "turns by %.3g rad in a step of %.3g s; at most 1 can be followed", angle,
+                part.h);
+  return Error{ErrorCode::kOutOfRange, part.system.name(), text};
+}
+
 }  // namespace
 
 Result<void> advance(Part& part) {
@@ -80,6 +91,7 @@ Result<void> advance(Part& part) {
       return error;
     }
     if (push_out(part.system, part.bodies, part.y)) part.work.forget();
+    if (part.system.lay_chart(part.y)) part.work.forget();
     ++part.steps;
   }
   ++part.outputs;
@@ -99,7 +111,9 @@ Result<void> check(const Part& part, const Options& options) {
         ErrorCode::kUnsupported, "stepper",
         name + " needs derivatives, which force laws and gusts of wind do not have: " + part.system.name()};
   }
-  if (options.force || info.implicit || info.adaptive) return {};
+  if (options.force || info.adaptive) return {};
+  if (const Result<void> slow = turns_slowly(part); !slow) return slow.error();
+  if (info.implicit) return {};
   const auto grows = worst(part.system, *part.method, part.start_time, part.h);
   if (grows) return diverges(part.system, *part.method, *grows, part.h);
   return {};

@@ -1,6 +1,7 @@
 /// The public class over the parts: from a World to one part per object, and from their states to points.
 
 #include "lab/part.h"
+#include "math/rotation.h"
 #include "world/access.h"
 
 #include <algorithm>
@@ -13,10 +14,23 @@ struct Run::Data {
   double dt = 0;
   std::uint64_t outputs = 0;
   double start_time = 0;
-  std::vector<Part> parts;  ///< One per object, in order of creation.
+  std::vector<Part> parts;   ///< One per object, in order of creation.
+  std::vector<Part> bodies;  ///< One per body that moves, by row.
   state::SlotTable<ParticlesId> particles_slots;
   state::SlotTable<RopeId> rope_slots;
   state::SlotTable<ClothId> cloth_slots;
+  state::SlotTable<BodyId> body_slots;
+  std::vector<std::uint32_t> body_of_row;              ///< Index into `bodies`; kNone for those that stand.
+  std::vector<Quaternion<double>> principal_of_frame;  ///< By row: from a body's frame to its principal axes.
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  Result<void> add_bodies(const state::Tables& tables, const Options& options);
+
+  template <class Visit>
+  void for_each_part(Visit&& visit) const {
+    for (const Part& part : parts) visit(part);
+    for (const Part& part : bodies) visit(part);
+  }
 };
 
 namespace {
@@ -46,12 +60,10 @@ const std::string& stepper_of(const System& system, const Options& options) {
   return options.stepper;
 }
 
-Result<Part> make_part(const state::Tables& tables, std::uint32_t object, const Options& options) {
-  Result<System> system = System::create(tables, object);
+Result<Part> make_part(Result<System> system, Bodies bodies, double start_time, const Options& options) {
   if (!system) return system.error();
-  Part part = {.system = std::move(system).value()};
-  if (options.contacts) part.bodies = bodies_near(tables, tables.objects[object]);
-  part.start_time = tables.time;
+  Part part = {.system = std::move(system).value(), .bodies = std::move(bodies)};
+  part.start_time = start_time;
   part.h = options.dt;
   part.y = part.system.initial_state();
   part.work.tolerance = options.tolerance;
@@ -109,11 +121,27 @@ Result<Run> Run::create(const World& world, const Options& options) {
   data->rope_slots = tables.rope_slots;
   data->cloth_slots = tables.cloth_slots;
   for (std::uint32_t object = 0; object < tables.objects.size(); ++object) {
-    Result<Part> part = make_part(tables, object, options);
+    Bodies near = options.contacts ? bodies_near(tables, tables.objects[object]) : Bodies{};
+    Result<Part> part = make_part(System::create(tables, object), std::move(near), tables.time, options);
     if (!part) return part.error();
     data->parts.push_back(std::move(part).value());
   }
+  if (const auto added = data->add_bodies(tables, options); !added) return added.error();
   return Run(std::move(data));
+}
+
+Result<void> Run::Data::add_bodies(const state::Tables& tables, const Options& options) {
+  body_slots = tables.body_slots;
+  body_of_row.assign(tables.bodies.motion.size(), kNone);
+  for (const std::uint32_t row : tables.moving_bodies) {
+    Result<Part> part = make_part(System::create_body(tables, row), {}, tables.time, options);
+    if (!part) return part.error();
+    body_of_row[row] = static_cast<std::uint32_t>(bodies.size());
+    bodies.push_back(std::move(part).value());
+  }
+  for (const state::BodyMass& mass : tables.bodies.mass)
+    principal_of_frame.push_back(conjugate(math::in_double(mass.principal)));
+  return {};
 }
 
 Result<void> Run::advance() {
@@ -123,6 +151,14 @@ Result<void> Run::advance() {
     const Result<void> moved = lab::advance(part);
     if (moved) continue;
     for (std::size_t i = 0; i + 1 < before.size(); ++i) take_back(data_->parts[i], before[i]);
+    return moved.error();
+  }
+  const std::vector<Part> bodies_before = data_->bodies;
+  for (Part& part : data_->bodies) {
+    const Result<void> moved = lab::advance(part);
+    if (moved) continue;
+    for (std::size_t i = 0; i < before.size(); ++i) take_back(data_->parts[i], before[i]);
+    data_->bodies = bodies_before;
     return moved.error();
   }
   ++data_->outputs;
@@ -190,26 +226,36 @@ std::vector<DVec3> Run::velocities() const {
   return all(data_->parts, velocities_of);
 }
 
+Result<BodyState> Run::body(BodyId id) const {
+  const std::uint32_t row = data_->body_slots.find(id);
+  if (row == data_->body_slots.kNone || data_->body_of_row[row] == Data::kNone)
+    return Error{ErrorCode::kStaleId, "body", "no body that moves has this id"};
+  const Part& part = data_->bodies[data_->body_of_row[row]];
+  const BodyMotion now = part.system.body(part.time(), part.y);
+  return BodyState{now.center, normalize(now.rotation * data_->principal_of_frame[row]), now.velocity,
+                   now.spin};
+}
+
 Energy Run::energy() const {
   Energy sum;
-  for (const Part& part : data_->parts) {
+  data_->for_each_part([&](const Part& part) {
     const Energy energy = part.system.energy(part.time(), part.y);
     sum.kinetic += energy.kinetic;
     sum.potential += energy.potential;
     sum.elastic += energy.elastic;
-  }
+  });
   return sum;
 }
 
 std::uint64_t Run::evaluations() const {
   std::uint64_t sum = 0;
-  for (const Part& part : data_->parts) sum += part.system.evaluations();
+  data_->for_each_part([&](const Part& part) { sum += part.system.evaluations(); });
   return sum;
 }
 
 std::vector<ObjectReport> Run::report() const {
   std::vector<ObjectReport> reports;
-  for (const Part& part : data_->parts) {
+  data_->for_each_part([&](const Part& part) {
     const bool adaptive = part.method->info.adaptive;
     reports.push_back({.kind = part.system.kind(),
                        .slot = part.system.slot(),
@@ -219,7 +265,7 @@ std::vector<ObjectReport> Run::report() const {
                        .evaluations = part.system.evaluations(),
                        .error = part.error_estimate,
                        .left_out = part.system.left_out()});
-  }
+  });
   return reports;
 }
 

@@ -151,6 +151,7 @@ std::vector<State> System::acceleration_and_derivatives(double t, const State& y
 }
 
 std::vector<DVec3> System::positions(double t, const State& y) const {
+  if (is_body()) return body_positions(t, y);
   const Motion<double> m = motion_now(t, y);
   std::vector<DVec3> result;
   for (const std::uint32_t row : row_of_point_) result.push_back(m.x[row]);

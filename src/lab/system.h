@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,18 @@
 
 namespace hooke::lab {
 
-/// y = (x, v, q, omega): positions [m] and velocities [m/s] of the n free points (for a body its center of
-/// mass), then rotations and angular velocities of bodies, of which there are none in this version. Held
-/// points are not in y: where they are is known.
+/// y = (x, v): positions [m] and velocities [m/s] of the n free points. A body is two: its center of mass and
+/// its turn [rad], [rad/s], which turn.h moves like a point. Held points are not in y: where they are is
+/// known.
 using State = Eigen::VectorXd;
+
+/// Where a body is and how it moves.
+struct BodyMotion {
+  DVec3 center = {};                 ///< Of mass [m].
+  Quaternion<double> rotation = {};  ///< From the principal axes of inertia to the world; unit.
+  DVec3 velocity = {};               ///< Of the center [m/s].
+  DVec3 spin = {};                   ///< Angular velocity in world axes [rad/s].
+};
 
 /// Entries of da/dx and da/dv, the derivatives of accelerations: row and column count coordinates of points.
 struct Jacobian {
@@ -45,6 +54,8 @@ class System {
  public:
   /// Object `object` of the tables. Errors: a rigid spring or segment.
   static Result<System> create(const state::Tables& tables, std::uint32_t object);
+  /// A rigid body that moves freely, or as told (kinematic).
+  static System create_body(const state::Tables& tables, std::uint32_t row);
 
   [[nodiscard]] State initial_state() const;
   [[nodiscard]] Eigen::Index coordinates() const { return coordinates_; }  ///< 3 per free point.
@@ -72,7 +83,8 @@ class System {
   /// "spring 3 of particles 1 (k = 1e+05 N/m)"
   [[nodiscard]] std::string row_name(std::size_t row) const;
 
-  /// Of all points of the object, held or not, in the order of their maker.
+  /// Of all points of the object, held or not, in the order of their maker. Of a body four: its center, and
+  /// where its three axes meet the sphere around it.
   [[nodiscard]] std::vector<DVec3> positions(double t, const State& y) const;
   [[nodiscard]] std::vector<DVec3> velocities(double t, const State& y) const;
 
@@ -89,6 +101,20 @@ class System {
   [[nodiscard]] std::string name() const;  ///< "particles 1"
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
+
+  // Of bodies.
+  [[nodiscard]] bool is_body() const { return kind_ == PointRef::Kind::kNone; }
+  [[nodiscard]] BodyMotion body(double t, const State& y) const;
+  /// Of a body that moves freely.
+  void set_velocity(State& y, DVec3 velocity, DVec3 spin) const;
+  void move_center(State& y, DVec3 way) const;
+  /// Force and torque about the center from now on, in world axes [N], [N m].
+  void set_load(DVec3 force, DVec3 torque);
+  /// Takes the rotation of `y` as the new origin of turns, if it is far from the old one. \return Whether it
+  /// was: states kept from before then mean nothing.
+  bool lay_chart(State& y);
+  /// Largest |p| that a step may leave: beyond, coordinates of turns do not tell where the body is.
+  static constexpr double kMostTurn = 4;
 
   /// Free point `i` of y: its row of the object, for contacts.
   [[nodiscard]] std::uint32_t row_of_free(Eigen::Index i) const { return free_rows_[i]; }
@@ -134,8 +160,10 @@ class System {
     for (const SailRow& row : sails_) visit(row);
     for (const StrandRow& row : strands_) visit(row);
     for (const PointRow& row : points_) visit(row);
+    for (const TurnRow& row : turns_) visit(row);
   }
   [[nodiscard]] std::vector<DVec3> wind(double t, const std::vector<DVec3>& x) const;
+  [[nodiscard]] std::vector<DVec3> body_positions(double t, const State& y) const;
   [[nodiscard]] Motion<double> motion_now(double t, const State& y) const;
 
   std::vector<SpringRow> springs_;  ///< Of the table, then the segments of a rope.
@@ -144,6 +172,9 @@ class System {
   std::vector<SailRow> sails_;
   std::vector<StrandRow> strands_;
   std::vector<PointRow> points_;
+  std::vector<TurnRow> turns_;           ///< One for a body that moves freely.
+  Quaternion<double> chart_ = {};        ///< Of a body, where its turn is zero.
+  std::optional<DVec3> kinematic_spin_;  ///< Of a body that moves as told [rad/s].
   std::shared_ptr<const std::vector<FieldDesc>> attractors_;
   std::shared_ptr<Laws> laws_;  ///< None: null.
 

@@ -13,6 +13,7 @@ double number(Real value) {
 }
 
 const char* noun(PointRef::Kind kind) {
+  if (kind == PointRef::Kind::kNone) return "body";
   if (kind == PointRef::Kind::kRope) return "rope";
   return kind == PointRef::Kind::kCloth ? "cloth" : "particles";
 }

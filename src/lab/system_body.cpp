@@ -1,0 +1,125 @@
+/// A rigid body as a system of two points: its center of mass and its turn.
+
+#include "lab/system.h"
+#include "math/rotation.h"
+
+#include <cmath>
+
+namespace hooke::lab {
+
+namespace {
+
+constexpr std::uint32_t kCenter = 0;  ///< Rows.
+constexpr std::uint32_t kTurn = 1;
+constexpr double kFarTurn = 1;  ///< |p| beyond which a chart is laid anew: 53 degrees.
+
+std::array<DVec3, 3> axes_of(Quaternion<double> rotation) {
+  return {rotate(rotation, DVec3{1, 0, 0}), rotate(rotation, DVec3{0, 1, 0}),
+          rotate(rotation, DVec3{0, 0, 1})};
+}
+
+/// The path of a body that moves as told: its own, or on with the velocity it has.
+state::Pin path_of(const state::Tables& tables, std::uint32_t row) {
+  const state::Bodies& bodies = tables.bodies;
+  state::Pin pin;
+  if (bodies.path[row].kind != MotionDesc::Kind::kStill) {
+    pin.motion = bodies.path[row];
+    pin.start = bodies.path_start[row];
+    pin.start_time = bodies.path_time[row];
+    return pin;
+  }
+  pin.motion = {.kind = MotionDesc::Kind::kConstantVelocity, .velocity = bodies.motion[row].v};
+  pin.start = bodies.center[row];
+  pin.start_time = tables.time;
+  return pin;
+}
+
+}  // namespace
+
+System System::create_body(const state::Tables& tables, std::uint32_t row) {
+  const state::Bodies& bodies = tables.bodies;
+  const state::BodyMass& mass = bodies.mass[row];
+  const state::BodyTraits& traits = bodies.traits[row];
+  System system;
+  system.slot_ = bodies.slot[row];
+  system.attractors_ = std::make_shared<const std::vector<FieldDesc>>();
+  system.chart_ = math::in_double(math::in_double(bodies.rotation[row]) * math::in_double(mass.principal));
+  system.start_x_ = {bodies.center[row], {}};
+  const DVec3 spin = vector_cast<double>(bodies.angular_velocity[row]);
+  system.start_v_ = {vector_cast<double>(bodies.motion[row].v), spin};
+  system.radius_ = {static_cast<double>(traits.radius), 0};
+  system.mass_ = {static_cast<double>(mass.mass), 1};
+  system.pins_.resize(2);
+  system.free_of_row_ = {kHeld, kHeld};
+  if (traits.kind != BodyKind::kDynamic) {
+    system.pins_[kCenter] = path_of(tables, row);
+    system.pins_[kTurn].start_time = tables.time;
+    system.kinematic_spin_ = spin;
+    return system;
+  }
+  system.free_of_row_ = {0, 1};
+  system.free_rows_ = {kCenter, kTurn};
+  system.coordinates_ = 6;
+  PointRow center = {.at = {kCenter}, .mass = system.mass_[kCenter]};
+  center.uniform = static_cast<double>(traits.gravity_scale) * vector_cast<double>(tables.desc.gravity);
+  center.viscous = static_cast<double>(traits.linear_damping) * center.mass;
+  center.attractors = system.attractors_.get();
+  system.points_ = {center};
+  system.turns_ = {{.at = {kTurn},
+                    .axes = axes_of(system.chart_),
+                    .inertia = vector_cast<double>(mass.inertia),
+                    .damping = static_cast<double>(traits.angular_damping)}};
+  system.velocity_dependent_ = true;  // by the gyroscopic term
+  if (bodies.force[row] != Vec3{} || bodies.torque[row] != Vec3{})
+    system.left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
+  return system;
+}
+
+BodyMotion System::body(double t, const State& y) const {
+  const Motion<double> m = motion_now(t, y);
+  const DVec3 p = m.x[kTurn];
+  if (kinematic_spin_) {
+    const DVec3 turn = (t - pins_[kTurn].start_time) * *kinematic_spin_;
+    return {m.x[kCenter], normalize(math::quaternion_of(turn) * chart_), m.v[kCenter], *kinematic_spin_};
+  }
+  return {m.x[kCenter], normalize(rotation_of(p) * chart_), m.v[kCenter], spin_of(p, m.v[kTurn])};
+}
+
+std::vector<DVec3> System::body_positions(double t, const State& y) const {
+  const BodyMotion now = body(t, y);
+  std::vector<DVec3> result = {now.center};
+  for (const DVec3 axis : axes_of(now.rotation)) result.push_back(now.center + radius_[kCenter] * axis);
+  return result;
+}
+
+void System::set_velocity(State& y, DVec3 velocity, DVec3 spin) const {
+  auto all = v(y);
+  const auto turn = x(y).segment<3>(3 * kTurn);
+  const DVec3 rate = turn_rate({turn[0], turn[1], turn[2]}, spin);
+  all.segment<3>(3 * kCenter) = Eigen::Vector3d(velocity.x, velocity.y, velocity.z);
+  all.segment<3>(3 * kTurn) = Eigen::Vector3d(rate.x, rate.y, rate.z);
+}
+
+void System::move_center(State& y, DVec3 way) const {
+  x(y).segment<3>(3 * kCenter) += Eigen::Vector3d(way.x, way.y, way.z);
+}
+
+void System::set_load(DVec3 force, DVec3 torque) {
+  for (PointRow& row : points_) row.load = force;
+  for (TurnRow& row : turns_) row.torque = torque;
+}
+
+bool System::lay_chart(State& y) {
+  if (turns_.empty()) return false;
+  const auto turn = x(y).segment<3>(3 * kTurn);
+  const DVec3 p = {turn[0], turn[1], turn[2]};
+  if (!(length_squared(p) > kFarTurn * kFarTurn)) return false;
+  const BodyMotion now = body(0, y);
+  chart_ = now.rotation;
+  turns_[0].axes = axes_of(chart_);
+  x(y).segment<3>(3 * kTurn).setZero();
+  set_velocity(y, now.velocity, now.spin);
+  return true;
+}
+
+}  // namespace hooke::lab

@@ -1,0 +1,219 @@
+#include "lab/scenes.h"
+#include "lab/turn.h"
+#include "math/rotation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hooke {
+
+using test::advance;
+using test::empty_space;
+using test::make_run;
+using test::make_world;
+using test::take;
+
+namespace {
+
+double in_double(Real value) {
+  return static_cast<double>(value);
+}
+
+/// A disc of radius 0.5 m and 0.2 m thick along y, spinning aside of its axis.
+struct Top {
+  World world = make_world(empty_space());
+  BodyId id = {};
+  double along = 0.125;                             // inertia per mass about the axis
+  double across = (3 * 0.5 * 0.5 + 4 * 0.01) / 12;  // and across it
+  DVec3 spin = {1, 5, 0};                           // in world axes, which are the body's at the start
+  DVec3 momentum = {across * spin.x, along* spin.y, 0};
+
+  Top() {
+    BodyDesc disc = {.kind = BodyKind::kDynamic, .shape = Shape::cylinder(Real(0.5), Real(0.1))};
+    disc.angular_velocity = {Real(1), Real(5), Real(0)};
+    id = take(world.add_body(disc));
+  }
+
+  /// The axis goes round L with L / I1, the body about its axis with w3 (I1 - I3) / I1.
+  [[nodiscard]] Quaternion<double> rotation(double t) const {
+    const double own = spin.y * (across - along) / across * t;
+    return math::quaternion_of((t / across) * momentum) * math::quaternion_of(DVec3{0, own, 0});
+  }
+};
+
+/// Angle between two rotations [rad].
+double angle_between(Quaternion<double> a, Quaternion<double> b) {
+  return length(math::turn_between(a, b, DVec3{}));
+}
+
+/// How far a method's rotation is from the closed form after `seconds`.
+double top_error(const std::string& stepper, double dt, double seconds) {
+  const Top top;
+  lab::Run run = make_run(top.world, {.stepper = stepper, .dt = dt});
+  advance(run, std::llround(seconds / dt));
+  return angle_between(take(run.body(top.id)).rotation, top.rotation(seconds));
+}
+
+/// The complete elliptic integral K, by the arithmetic-geometric mean.
+double elliptic_quarter(double modulus_squared) {
+  double a = 1;
+  double b = std::sqrt(1 - modulus_squared);
+  for (int i = 0; i < 40; ++i) {
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return std::numbers::pi / 2 / a;
+}
+
+}  // namespace
+
+TEST_SUITE("lab/bodies") {
+  TEST_CASE("coordinates of a turn, its rate and its spin agree with quaternions") {
+    const DVec3 p = {0.4, -0.7, 0.2};
+    const DVec3 omega = {1.5, 0.3, -2};
+    const DVec3 rate = lab::turn_rate(p, omega);
+    CHECK(length(lab::spin_of(p, rate) - omega) < 1e-15);
+    // 2 tan(angle / 2) along the axis.
+    const double angle = 2 * std::atan(length(p) / 2);
+    const Quaternion<double> q = math::quaternion_of(angle * normalize(p));
+    CHECK(angle_between(q, lab::rotation_of(p)) < 1e-15);
+    CHECK(length(lab::turned(p, omega) - rotate(q, omega)) < 1e-14);
+    // q' = omega q / 2, by a small step both ways.
+    const double h = 1e-5;
+    const Quaternion<double> after = math::quaternion_of(h * omega) * q;
+    CHECK(angle_between(after, lab::rotation_of(p + h * rate)) < 1e-9);
+  }
+
+  TEST_CASE("a free symmetric top follows its closed form, each method at its order") {
+    const struct {
+      std::string stepper;
+      double order;
+    } rows[] = {{"euler", 1},
+                {"symplectic_euler", 1},
+                {"taylor2", 2},
+                {"taylor3", 3},
+                {"heun", 2},
+                {"midpoint", 2},
+                {"verlet", 2},
+                {"rk4", 4},
+                {"implicit_euler", 1},
+                {"am2", 2},
+                {"bdf2", 2},
+                {"ab2", 2},
+                {"ab4", 4}};
+    for (const auto& row : rows) {
+      CAPTURE(row.stepper);
+      const double dt = row.order < 3 ? 1.0 / 480 : 1.0 / 60;  // sizes are float: errors end at 1e-7
+      const double coarse = top_error(row.stepper, dt, 2);
+      const double fine = top_error(row.stepper, dt / 2, 2);
+      CHECK(std::log2(coarse / fine) == doctest::Approx(row.order).epsilon(0.12));
+    }
+    CHECK(top_error("rk4", 1.0 / 240, 10) < 1e-6);
+  }
+
+  TEST_CASE("a body turned about its middle axis is back after the period of the elliptic integral") {
+    World world = make_world(empty_space());
+    BodyDesc desc = {.kind = BodyKind::kDynamic, .shape = Shape::box({Real(0.5), Real(0.1), Real(0.25)})};
+    desc.angular_velocity = {Real(0), Real(0.3), Real(6)};
+    const BodyId box = take(world.add_body(desc));
+    const double aside = in_double(Real(0.3));
+    const double i1 = (0.2 * 0.2 + 0.5 * 0.5) / 12;
+    const double i2 = (1 + 0.2 * 0.2) / 12;
+    const double i3 = (1 + 0.5 * 0.5) / 12;
+    const double energy = i2 * 36 + i3 * aside * aside;
+    const double momentum = i2 * i2 * 36 + i3 * i3 * aside * aside;
+    const double rate = std::sqrt((i3 - i2) * (momentum - energy * i1) / (i1 * i2 * i3));
+    const double modulus = (i2 - i1) * (energy * i3 - momentum) / ((i3 - i2) * (momentum - energy * i1));
+    const double period = 4 * elliptic_quarter(modulus) / rate;
+    lab::Run run = make_run(world, {.stepper = "rk4", .dt = period / 4000});
+    const auto own_spin = [&] {
+      const lab::BodyState now = take(run.body(box));
+      return rotate(conjugate(now.rotation), now.angular_velocity);
+    };
+    const double before = run.energy().total();
+    advance(run, 2000);
+    CHECK(own_spin().z == doctest::Approx(-6).epsilon(1e-6));
+    advance(run, 2000);
+    CHECK(length(own_spin() - DVec3{0, aside, 6}) < 1e-5);  // the sizes are float
+    CHECK(run.energy().total() == doctest::Approx(before).epsilon(1e-9));
+  }
+
+  TEST_CASE("energy and momentum of a free top drift at the order of the method") {
+    const auto drift = [](const std::string& stepper, double dt) {
+      const Top top;
+      lab::Run run = make_run(top.world, {.stepper = stepper, .dt = dt});
+      const double before = run.energy().total();
+      advance(run, std::llround(2 / dt));
+      const lab::BodyState now = take(run.body(top.id));
+      const DVec3 own = rotate(conjugate(now.rotation), now.angular_velocity);
+      const DVec3 momentum =
+          rotate(now.rotation, {top.across * own.x, top.along * own.y, top.across * own.z});
+      return std::pair(std::abs(run.energy().total() / before - 1),
+                       length(momentum - top.momentum) / length(top.momentum));
+    };
+    for (const auto& [stepper, order] :
+         {std::pair<std::string, double>{"euler", 1}, {"heun", 2}, {"rk4", 4}}) {
+      CAPTURE(stepper);
+      const auto coarse = drift(stepper, 1.0 / 120);
+      const auto fine = drift(stepper, 1.0 / 240);
+      CHECK(std::log2(coarse.first / fine.first) > order - 0.2);
+      CHECK(std::log2(coarse.second / fine.second) > order - 0.2);
+    }
+  }
+
+  TEST_CASE("a thrown body flies its parabola and spins on for ten turns") {
+    World world = make_world();
+    BodyDesc ball = {.kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.1)), .position = {0, 100, 0}};
+    ball.velocity = {Real(3), Real(4), Real(0)};
+    ball.angular_velocity = {Real(0), Real(8), Real(0)};
+    const BodyId id = take(world.add_body(ball));
+    lab::Run run = make_run(world, {.stepper = "rk4", .dt = 0.005});
+    advance(run, 1571);
+    const lab::BodyState now = take(run.body(id));
+    const double t = run.time();
+    const double g = in_double(Real(9.81));
+    CHECK(now.center.y == doctest::Approx(100 + 4 * t - g * t * t / 2).epsilon(1e-12));
+    CHECK(now.velocity.y == doctest::Approx(4 - g * t).epsilon(1e-12));
+    CHECK(angle_between(now.rotation, math::quaternion_of(DVec3{0, 8 * t, 0})) < 1e-4);
+    CHECK(length(now.angular_velocity - DVec3{0, 8, 0}) < 1e-5);
+  }
+
+  TEST_CASE("a kinematic body goes as told") {
+    World world = make_world();
+    BodyDesc arm = {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(1), Real(0.5), Real(0.5)})};
+    arm.velocity = {Real(1), Real(0), Real(0)};
+    arm.angular_velocity = {Real(0), Real(0), Real(2)};
+    const BodyId id = take(world.add_body(arm));
+    lab::Run run = make_run(world, {.dt = 0.25});
+    advance(run, 4);
+    const lab::BodyState now = take(run.body(id));
+    CHECK(length(now.center - DVec3{1, 0, 0}) < 1e-15);
+    CHECK(angle_between(now.rotation, math::quaternion_of(DVec3{0, 0, 2})) < 1e-14);
+  }
+
+  TEST_CASE("a body that turns by more than a radian a step is refused") {
+    const Top top;
+    const auto run = lab::Run::create(top.world, {.stepper = "rk4", .dt = 0.25});
+    REQUIRE_FALSE(run);
+    CHECK(run.error().where == "body 1");
+    CHECK(run.error().message == "turns by 1.27 rad in a step of 0.25 s; at most 1 can be followed");
+  }
+
+  TEST_CASE("an id that is not there has no state") {
+    const Top top;
+    lab::Run run = make_run(top.world, {});
+    CHECK(run.body(BodyId{}).error().code == ErrorCode::kStaleId);
+  }
+
+  TEST_CASE("a declared accuracy chooses steps for a body by its farthest point") {
+    const Top top;
+    lab::Run run = make_run(top.world, {.dt = 0.05, .accuracy = lab::Accuracy{1e-5, 2}});
+    advance(run, 40);
+    CHECK(0.6 * angle_between(take(run.body(top.id)).rotation, top.rotation(2)) < 1e-5);
+    CHECK(run.report()[0].error.has_value());
+  }
+}
+
+}  // namespace hooke
