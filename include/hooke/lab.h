@@ -28,7 +28,7 @@
 /// are refused, because they have no force law; limits and tethers, which have none either, are left out, and
 /// ObjectReport::left_out says so; a point that a step leaves inside a static body is put back on its surface
 /// and loses its speed into it, and of its sliding what friction takes, which makes any method first order
-/// there. Docs: docs/laboratory.md.
+/// there. Bodies collide by rollback, see CollisionOptions; hooks do not hold them. Docs: docs/laboratory.md.
 
 namespace hooke::lab {
 
@@ -68,6 +68,64 @@ struct ObjectStepper {
   std::string stepper;
 };
 
+/// How bodies that collide are dealt with: rollback (the paper's 4.3.2, listing 11).
+///
+/// A step that leaves two bodies deeper in each other than `epsilon` is canceled: they are set back to their
+/// last clear state and take a shorter step, until they touch, when they hit. Bodies that rest or slide on
+/// each other are a state of their own: what they press on each other with acts through the step as a force.
+struct CollisionOptions {
+  /// What finds a collision.
+  enum class Collider : std::uint8_t {
+    kNone,
+    kExact,  ///< Faces, edges and corners.
+    kFaces,  ///< Of a sphere with what is flat, only faces that its center is over: the paper's (4.3.1),
+             ///< which misses edges (4.4, figure 6).
+  };
+  /// Which pairs it is asked about.
+  enum class Preselection : std::uint8_t {
+    kNone,     ///< All.
+    kSpheres,  ///< Whose spheres around their centers of mass meet on their ways.
+    kBoxes,    ///< Whose boxes along the axes do, too.
+  };
+  /// How the length of the next try is found.
+  enum class Search : std::uint8_t {
+    kHalving,      ///< Half of the last one; what is clear stays done (listing 11).
+    kBackward,     ///< Back from the penetration by its depth over its speed, again and again (4.5.1).
+    kEvent,        ///< The root of the distance on the step's interpolation, mended by the steps that follow.
+    kAdvancement,  ///< Conservative advancement on the same: never late.
+  };
+  /// How collisions within a step are seen that leave no overlap at its end.
+  enum class Sweep : std::uint8_t {
+    kNone,      ///< Not: fast bodies pass through thin ones, as in the paper (4.4).
+    kCast,      ///< Conservative advancement of each pair along its way.
+    kExtruded,  ///< The same for the pairs whose extruded silhouettes meet (4.5.4).
+  };
+
+  Collider collider = Collider::kExact;
+  Preselection preselection = Preselection::kBoxes;
+  Search search = Search::kEvent;
+  Sweep sweep = Sweep::kCast;
+  double epsilon = 1e-6;     ///< Depth, and distance, that counts as touching [m]. [1e-12, 1]
+  int iteration_limit = 40;  ///< Tries in a row that may be canceled. Then the bodies hit where they were
+                             ///< clear last, moved together by their inverse masses. [1, 1000]
+  bool regional = true;      ///< Only bodies that meet in a step take it again, not all.
+};
+
+/// What collisions cost and left, since the run began.
+struct CollisionReport {
+  std::uint64_t rollbacks = 0;      ///< Steps that were canceled.
+  double resimulated_seconds = 0;   ///< Of them, each times its bodies [s].
+  std::uint64_t hits = 0;           ///< Of pairs of bodies.
+  std::uint64_t limit_reached = 0;  ///< Times the iteration limit ended a search.
+  std::uint64_t zeno = 0;           ///< Steps with more hits than could be followed: the rest went unbounced.
+  double deepest = 0;               ///< Largest overlap that was left in a state [m].
+  double last_hit = 0;              ///< When the last hit was [s].
+  std::uint64_t candidates = 0;     ///< Pairs of bodies that the preselection left, summed over steps.
+  std::uint64_t touching = 0;       ///< Of those, pairs that touched.
+  double backward_error = 0;  ///< kBackward: farthest that a first step back came out from where the method
+                              ///< was at that time [m].
+};
+
 struct Options {
   /// A name of steppers(), or "auto": for each object
   ///   taylor2         if only gravity and uniform fields act on it: its steps are then exact;
@@ -85,7 +143,8 @@ struct Options {
   /// Run an explicit method where it is known to diverge. Otherwise that is an Error naming the spring: where
   /// its oscillation grows, for methods without any stable step without damping by more than 10 % per period.
   bool force = false;
-  bool contacts = true;  ///< With static bodies.
+  bool contacts = true;  ///< Of points with static bodies, and of bodies with each other.
+  CollisionOptions collisions = {};
 };
 
 /// What is done for one object, and how well.
@@ -146,6 +205,7 @@ class Run {
 
   [[nodiscard]] std::uint64_t evaluations() const;  ///< Of the forces, summed over objects.
   [[nodiscard]] std::vector<ObjectReport> report() const;
+  [[nodiscard]] const CollisionReport& collisions() const;
 
  private:
   struct Data;

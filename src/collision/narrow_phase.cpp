@@ -7,6 +7,7 @@
 #include "collision/manifold_points.h"
 #include "collision/narrow_phase_ghosts.h"
 #include "collision/narrow_phase_keep.h"
+#include "collision/pair_surface.h"
 #include "collision/placement.h"
 
 #include <algorithm>
@@ -70,22 +71,6 @@ Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   return kMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
 }
 
-struct Surface {
-  Real friction, static_friction, restitution;
-};
-
-Surface surface_of(const ContactDesc& a, const ContactDesc& b, std::span<const MaterialPairDesc> materials) {
-  for (const MaterialPairDesc& m : materials) {
-    if ((m.a == a.material && m.b == b.material) || (m.a == b.material && m.b == a.material)) {
-      return {m.friction, std::max(m.friction, m.static_friction.value_or(m.friction)), m.restitution};
-    }
-  }
-  const Real friction = std::sqrt(a.friction * b.friction);
-  const Real at_rest =
-      std::sqrt(a.static_friction.value_or(a.friction) * b.static_friction.value_or(b.friction));
-  return {friction, std::max(friction, at_rest), std::max(a.restitution, b.restitution)};
-}
-
 Vec3 turned(Quat rotation, Vec3 v) {
   return v == Vec3{} ? v : rotate(rotation, v);
 }
@@ -94,7 +79,7 @@ Vec3 turned(Quat rotation, Vec3 v) {
 void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifold& m) {
   const ContactDesc& a = scene.colliders.surface[pair.collider_a];
   const ContactDesc& b = scene.colliders.surface[pair.collider_b];
-  const Surface surface = surface_of(a, b, scene.materials);
+  const PairSurface surface = surface_of(a, b, scene.materials);
   m.collider_a = pair.collider_a;
   m.collider_b = pair.collider_b;
   m.body_a = scene.colliders.body[pair.collider_a];

@@ -80,21 +80,37 @@ Result<void> advance(Part& part) {
   const State before = part.y;
   const double start = part.time();
   for (int i = 0; i < part.steps_per_output; ++i) {
-    part.method->step(part.system, start + i * part.h, part.h, part.y, part.work);
-    if (!part.work.error && !part.y.allFinite()) part.work.error = not_finite(part);
-    if (part.work.error) {
+    if (const auto moved = take_steps(part, start + i * part.h, part.h, part.y); !moved) {
       part.y = before;
       part.steps -= static_cast<std::uint64_t>(i);
       part.work.forget();
-      Error error = *part.work.error;
-      part.work.error.reset();
-      return error;
+      return moved.error();
     }
     if (push_out(part.system, part.bodies, part.y)) part.work.forget();
     if (part.system.lay_chart(part.y)) part.work.forget();
     ++part.steps;
   }
   ++part.outputs;
+  return {};
+}
+
+Result<void> take_steps(Part& part, double t, double seconds, State& y) {
+  if (y.size() == 0) return {};
+  const double count = std::max(1.0, std::ceil(std::abs(seconds) / part.h * (1 - 1e-12)));
+  const bool whole = seconds == count * part.h;
+  if (!whole) part.work.forget();
+  const double h = seconds / count;
+  for (double i = 0; i < count; ++i) {
+    part.method->step(part.system, t + i * h, h, y, part.work);
+    if (!part.work.error && !(y.allFinite() && part.system.turn_is_known(y)))
+      part.work.error = not_finite(part);
+    if (!part.work.error) continue;
+    const Error error = *part.work.error;
+    part.work.forget();
+    part.work.error.reset();
+    return error;
+  }
+  if (!whole) part.work.forget();
   return {};
 }
 

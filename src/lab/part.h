@@ -30,6 +30,10 @@ struct Part {
 /// One output step. Errors: see Run::advance; state and time are then those before.
 Result<void> advance(Part& part);
 
+/// Moves `y`, which is the part's at `t`, by `seconds` of either sign, in as many steps as `h` asks for; what
+/// the method keeps from step to step goes where they are shorter. Errors: the method's; not finite.
+Result<void> take_steps(Part& part, double t, double seconds, State& y);
+
 /// Does the method suit the system and the step? Errors: see Run::create.
 Result<void> check(const Part& part, const Options& options);
 

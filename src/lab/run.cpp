@@ -1,5 +1,6 @@
 /// The public class over the parts: from a World to one part per object, and from their states to points.
 
+#include "lab/collisions.h"
 #include "lab/part.h"
 #include "math/rotation.h"
 #include "world/access.h"
@@ -16,6 +17,7 @@ struct Run::Data {
   double start_time = 0;
   std::vector<Part> parts;   ///< One per object, in order of creation.
   std::vector<Part> bodies;  ///< One per body that moves, by row.
+  Collisions collisions;
   state::SlotTable<ParticlesId> particles_slots;
   state::SlotTable<RopeId> rope_slots;
   state::SlotTable<ClothId> cloth_slots;
@@ -25,6 +27,7 @@ struct Run::Data {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   Result<void> add_bodies(const state::Tables& tables, const Options& options);
+  Result<void> advance_bodies(double t);
 
   template <class Visit>
   void for_each_part(Visit&& visit) const {
@@ -45,6 +48,11 @@ Result<void> in_range(const char* name, double value, double low, double high) {
 Result<void> check_numbers(const Options& options) {
   // The smallest step is one that still moves a time of some hours.
   if (const auto good = in_range("dt", options.dt, 1e-9, 1e6); !good) return good.error();
+  const CollisionOptions& collisions = options.collisions;
+  if (const auto good = in_range("collisions.epsilon", collisions.epsilon, 1e-12, 1); !good)
+    return good.error();
+  if (const auto good = in_range("collisions.iteration_limit", collisions.iteration_limit, 1, 1000); !good)
+    return good.error();
   if (const auto good = in_range("tolerance", options.tolerance, 1e-14, 0.1); !good) return good.error();
   if (!options.accuracy) return {};
   if (const auto good = in_range("accuracy.max_error", options.accuracy->max_error, 1e-12, 1e6); !good)
@@ -139,6 +147,9 @@ Result<void> Run::Data::add_bodies(const state::Tables& tables, const Options& o
     body_of_row[row] = static_cast<std::uint32_t>(bodies.size());
     bodies.push_back(std::move(part).value());
   }
+  Result<Collisions> collider = Collisions::create(tables, options);
+  if (!collider) return collider.error();
+  collisions = std::move(collider).value();
   for (const state::BodyMass& mass : tables.bodies.mass)
     principal_of_frame.push_back(conjugate(math::in_double(mass.principal)));
   return {};
@@ -153,16 +164,26 @@ Result<void> Run::advance() {
     for (std::size_t i = 0; i + 1 < before.size(); ++i) take_back(data_->parts[i], before[i]);
     return moved.error();
   }
-  const std::vector<Part> bodies_before = data_->bodies;
-  for (Part& part : data_->bodies) {
-    const Result<void> moved = lab::advance(part);
-    if (moved) continue;
+  if (const auto moved = data_->advance_bodies(time()); !moved) {
     for (std::size_t i = 0; i < before.size(); ++i) take_back(data_->parts[i], before[i]);
-    data_->bodies = bodies_before;
     return moved.error();
   }
   ++data_->outputs;
   return {};
+}
+
+/// All or none of them.
+Result<void> Run::Data::advance_bodies(double t) {
+  const std::vector<Part> before = bodies;
+  Result<void> moved = collisions.advance(t, dt, bodies);
+  for (std::size_t i = 0; i < bodies.size() && moved; ++i) {
+    if (!collisions.collides(i)) moved = lab::advance(bodies[i]);
+  }
+  if (!moved) {
+    bodies = before;
+    for (Part& part : bodies) part.work.forget();  // what SUNDIALS keeps is shared by copies
+  }
+  return moved;
 }
 
 double Run::dt() const {
@@ -251,6 +272,10 @@ std::uint64_t Run::evaluations() const {
   std::uint64_t sum = 0;
   data_->for_each_part([&](const Part& part) { sum += part.system.evaluations(); });
   return sum;
+}
+
+const CollisionReport& Run::collisions() const {
+  return data_->collisions.report();
 }
 
 std::vector<ObjectReport> Run::report() const {

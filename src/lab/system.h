@@ -6,6 +6,7 @@
 #include "state/tables.h"
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -105,7 +106,9 @@ class System {
   // Of bodies.
   [[nodiscard]] bool is_body() const { return kind_ == PointRef::Kind::kNone; }
   [[nodiscard]] BodyMotion body(double t, const State& y) const;
-  /// Of a body that moves freely.
+  // Of a body that moves freely:
+  /// Of its center [m/s^2], and of its spin [rad/s^2].
+  [[nodiscard]] std::array<DVec3, 2> body_acceleration(double t, const State& y) const;
   void set_velocity(State& y, DVec3 velocity, DVec3 spin) const;
   void move_center(State& y, DVec3 way) const;
   /// Force and torque about the center from now on, in world axes [N], [N m].
@@ -113,8 +116,8 @@ class System {
   /// Takes the rotation of `y` as the new origin of turns, if it is far from the old one. \return Whether it
   /// was: states kept from before then mean nothing.
   bool lay_chart(State& y);
-  /// Largest |p| that a step may leave: beyond, coordinates of turns do not tell where the body is.
-  static constexpr double kMostTurn = 4;
+  /// False after a step that turned a body so far that its coordinates do not tell where it is.
+  [[nodiscard]] bool turn_is_known(const State& y) const;
 
   /// Free point `i` of y: its row of the object, for contacts.
   [[nodiscard]] std::uint32_t row_of_free(Eigen::Index i) const { return free_rows_[i]; }

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint32_t kCenter = 0;  ///< Rows.
 constexpr std::uint32_t kTurn = 1;
-constexpr double kFarTurn = 1;  ///< |p| beyond which a chart is laid anew: 53 degrees.
+constexpr double kMostTurn = 8;  ///< |p| after a step: 152 degrees.
+constexpr double kFarTurn = 1;   ///< |p| beyond which a chart is laid anew: 53 degrees.
 
 std::array<DVec3, 3> axes_of(Quaternion<double> rotation) {
   return {rotate(rotation, DVec3{1, 0, 0}), rotate(rotation, DVec3{0, 1, 0}),
@@ -85,6 +86,16 @@ BodyMotion System::body(double t, const State& y) const {
   return {m.x[kCenter], normalize(rotation_of(p) * chart_), m.v[kCenter], spin_of(p, m.v[kTurn])};
 }
 
+std::array<DVec3, 2> System::body_acceleration(double t, const State& y) const {
+  const State a = acceleration(t, y);
+  const Motion<double> m = motion_now(t, y);
+  const DVec3 p = m.x[kTurn], rate = m.v[kTurn];
+  const DVec3 second = {a[3 * kTurn], a[3 * kTurn + 1], a[3 * kTurn + 2]};
+  // omega s = p' + p x p' / 2, differentiated.
+  const DVec3 spin_up = second + 0.5 * cross(p, second) - (0.5 * dot(p, rate)) * spin_of(p, rate);
+  return {DVec3{a[0], a[1], a[2]}, (1 / turn_scale(p)) * spin_up};
+}
+
 std::vector<DVec3> System::body_positions(double t, const State& y) const {
   const BodyMotion now = body(t, y);
   std::vector<DVec3> result = {now.center};
@@ -107,6 +118,10 @@ void System::move_center(State& y, DVec3 way) const {
 void System::set_load(DVec3 force, DVec3 torque) {
   for (PointRow& row : points_) row.load = force;
   for (TurnRow& row : turns_) row.torque = torque;
+}
+
+bool System::turn_is_known(const State& y) const {
+  return turns_.empty() || x(y).segment<3>(3 * kTurn).norm() <= kMostTurn;
 }
 
 bool System::lay_chart(State& y) {

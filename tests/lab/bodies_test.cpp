@@ -9,7 +9,6 @@
 namespace hooke {
 
 using test::advance;
-using test::empty_space;
 using test::make_run;
 using test::make_world;
 using test::take;
@@ -22,7 +21,7 @@ double in_double(Real value) {
 
 /// A disc of radius 0.5 m and 0.2 m thick along y, spinning aside of its axis.
 struct Top {
-  World world = make_world(empty_space());
+  World world = make_world(test::empty_space());
   BodyId id = {};
   double along = 0.125;                             // inertia per mass about the axis
   double across = (3 * 0.5 * 0.5 + 4 * 0.01) / 12;  // and across it
@@ -114,7 +113,7 @@ TEST_SUITE("lab/bodies") {
   }
 
   TEST_CASE("a body turned about its middle axis is back after the period of the elliptic integral") {
-    World world = make_world(empty_space());
+    World world = make_world(test::empty_space());
     BodyDesc desc = {.kind = BodyKind::kDynamic, .shape = Shape::box({Real(0.5), Real(0.1), Real(0.25)})};
     desc.angular_velocity = {Real(0), Real(0.3), Real(6)};
     const BodyId box = take(world.add_body(desc));
