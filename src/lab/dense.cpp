@@ -1,6 +1,7 @@
 #include "lab/dense.h"
 
 #include "geometry/extrusion.h"
+#include "math/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,6 +50,11 @@ std::array<DVec3, 3> DenseMotion::Cubic::rates(double h) const {
   return {rate_from, middle, rate_to};
 }
 
+DenseMotion::DenseMotion(const BodyMotion& start, double seconds)
+    : h_(seconds), spin_(length(start.spin)), start_(start) {
+  rates_.fill(start.velocity);
+}
+
 DenseMotion::DenseMotion(const System& system, double t, double h, const State& y0, const State& y1)
     : system_(&system), told_(y0.size() == 0), t_(t), h_(h), start_(system.body(t, y0)) {
   if (told_) {
@@ -65,7 +71,14 @@ DenseMotion::DenseMotion(const System& system, double t, double h, const State& 
 }
 
 BodyMotion DenseMotion::at(double share) const {
-  if (system_ == nullptr) return start_;
+  if (system_ == nullptr) {
+    BodyMotion now = start_;
+    if (h_ > 0) {
+      now.center += (share * h_) * start_.velocity;
+      now.rotation = normalize(math::quaternion_of((share * h_) * start_.spin) * start_.rotation);
+    }
+    return now;
+  }
   if (told_) return system_->body(t_ + share * h_, State(0));
   State y(2 * system_->coordinates());
   const DVec3 parts[] = {center_.at(share, h_), turn_.at(share, h_), center_.rate_at(share, h_),
@@ -75,10 +88,8 @@ BodyMotion DenseMotion::at(double share) const {
 }
 
 std::array<DVec3, 4> DenseMotion::centers() const {
-  if (system_ == nullptr) return {start_.center, start_.center, start_.center, start_.center};
-  if (told_) {
+  if (system_ == nullptr || told_)
     return {start_.center, at(1.0 / 3).center, at(2.0 / 3).center, at(1).center};
-  }
   return {center_.from, center_.from + (h_ / 3) * center_.rate_from, center_.to - (h_ / 3) * center_.rate_to,
           center_.to};
 }

@@ -17,6 +17,8 @@ class DenseMotion {
  public:
   /// A body that stands.
   explicit DenseMotion(const BodyMotion& still) : start_(still) { rates_.fill(still.velocity); }
+  /// A body that moves evenly, by its velocity and spin, for `seconds`.
+  DenseMotion(const BodyMotion& start, double seconds);
   /// From y0 at t to y1 at t + h. The system must outlive this.
   DenseMotion(const System& system, double t, double h, const State& y0, const State& y1);
 

@@ -49,6 +49,7 @@ TEST_SUITE("check/cases") {
     CHECK(failed_rows("V18", light) >= 2);
     CHECK(failed_rows("V19", light) == 3);
     CHECK(failed_rows("I3", light) == 2);
+    CHECK(failed_rows("I20", light) == 10);
   }
 
   TEST_CASE("half the gravity is found in the laboratory too") {

@@ -106,4 +106,7 @@ Rows hook_limits(const CheckSetting& setting);
 Rows hook_motors(const CheckSetting& setting);
 Rows hook_springs(const CheckSetting& setting);
 
+// cases_rollback.cpp: bodies in the laboratory
+Rows rollback(const CheckSetting& setting);
+
 }  // namespace hooke::check

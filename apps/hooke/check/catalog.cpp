@@ -83,6 +83,7 @@ const std::vector<CheckCase>& check_cases() {
       {"I14", "Motors of hooks", hook_motors},
       {"I15", "Springs of hooks", hook_springs},
       {"I16", "Resistance to rolling and spinning", resisted_balls},
+      {"I20", "Rollback in the laboratory", rollback},
   };
   return cases;
 }
