@@ -308,6 +308,39 @@ struct ClothDesc {
   ContactDesc contact = {};
 };
 
+/// A soft solid of tetrahedra: a box of cells, the inside of a closed mesh, or tetrahedra as given. Its
+/// material keeps its law at any deformation: psi = mu / 2 tr(F^T F) + lambda / 2 (det F - 1 - mu / lambda)^2
+/// (stable neo-Hookean, Smith, de Goes and Kim 2018), and comes back from being turned inside out.
+///
+/// A substep of h seconds carries a wave through a cell, not farther: where mu is above about
+/// density (edge / 4 h)^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.
+struct SolidDesc {
+  std::array<std::int32_t, 3> cells = {4, 4, 4};  ///< Of the box along x, y, z. Each [1, 256], 2^20 in all.
+  Vec3 size = {Real(1), Real(1), Real(1)};        ///< Of the box about `position` [m], each positive.
+  MeshId mesh = {};       ///< Replaces the box: the inside of a closed surface, as a lattice of cells whose
+                          ///< outer points lie on the mesh. The mesh is carried along (World::surface).
+  Real cell = Real(0.1);  ///< About the size of the lattice's cells [m], positive. Thinner parts are lost.
+  std::vector<Vec3> points = {};  ///< With `tetrahedra`: replace the box [m]. Point i is points[i].
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra = {};  ///< Corners in any order, none without volume.
+  DVec3 position = {};  ///< Of the box's center, of the mesh's frame, of the frame of `points` [m].
+  Quat rotation = {};   ///< Of the same.
+
+  Real density = Real(1000);            ///< [kg/m^3], positive. Of a mesh: of the volume inside it.
+  std::optional<Real> total_mass = {};  ///< [kg]: replaces density.
+  Real young_modulus = Real(1e5);       ///< E [Pa], positive.
+  Real poisson_ratio = Real(0.45);      ///< nu. [0, 0.499]
+  /// Viscosity over stiffness [s]: a wave of angular frequency w is damped by w damping / 2 of critical.
+  /// [0, 0.1]
+  Real damping = Real(0.002);
+  Real thickness = Real(0.004);  ///< [m]: points keep half of it from what they touch. Positive.
+  Real air_friction = Real(0);   ///< Viscous drag of the whole solid [N s/m], shared out by volume.
+  std::vector<PinDesc> pins = {};
+  std::vector<LoadDesc> loads = {};
+  Real charge = Real(0);  ///< [C], shared out by volume.
+  Vec3 velocity = {};     ///< Of all points at the start [m/s].
+  ContactDesc contact = {};
+};
+
 /// A damped Hooke spring between two points of one object. On the first: F = -[k (|x| - L) + c v.u] u, x =
 /// x_a - x_b.
 struct SpringDesc {

@@ -22,13 +22,14 @@ using BodyId = Id<struct BodyTag>;            ///< A shape with a pose.
 using HookId = Id<struct HookTag>;            ///< What holds two things together.
 using RopeId = Id<struct RopeTag>;            ///< A chain of point masses.
 using ClothId = Id<struct ClothTag>;          ///< A surface of point masses.
+using SolidId = Id<struct SolidTag>;          ///< Tetrahedra of point masses.
 using ParticlesId = Id<struct ParticlesTag>;  ///< Loose point masses and their springs.
 using FieldId = Id<struct FieldTag>;          ///< Gravity-like, radial or magnetic.
 using ForceLawId = Id<struct ForceLawTag>;    ///< The user's own force.
 
 /// One point of a deformable object, in the order its maker gave the points.
 struct PointRef {
-  enum class Kind : std::uint8_t { kNone, kParticles, kRope, kCloth };
+  enum class Kind : std::uint8_t { kNone, kParticles, kRope, kCloth, kSolid };
 
   Kind kind = Kind::kNone;
   std::uint32_t slot = 0;
@@ -44,6 +45,9 @@ constexpr PointRef point(RopeId id, std::uint32_t index) {
 }
 constexpr PointRef point(ClothId id, std::uint32_t index) {
   return {PointRef::Kind::kCloth, id.slot, id.generation, index};
+}
+constexpr PointRef point(SolidId id, std::uint32_t index) {
+  return {PointRef::Kind::kSolid, id.slot, id.generation, index};
 }
 
 /// One shape of a body.

@@ -100,7 +100,7 @@ struct StepReport {
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
-  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness.
+  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness, and in solids.
 
   [[nodiscard]] double total() const { return kinetic + potential + elastic; }
 };
@@ -196,6 +196,7 @@ class World {
   [[nodiscard]] Result<HookId> add_hook(const HookDesc& desc);
   [[nodiscard]] Result<RopeId> add_rope(const RopeDesc& desc);
   [[nodiscard]] Result<ClothId> add_cloth(const ClothDesc& desc);
+  [[nodiscard]] Result<SolidId> add_solid(const SolidDesc& desc);
   [[nodiscard]] Result<ParticlesId> add_particles(const ParticlesDesc& desc);
   [[nodiscard]] Result<FieldId> add_field(const FieldDesc& desc);
   [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
@@ -208,6 +209,7 @@ class World {
   bool remove(HookId id);
   bool remove(RopeId id);
   bool remove(ClothId id);
+  bool remove(SolidId id);
   bool remove(ParticlesId id);
   bool remove(FieldId id);
   bool remove(ForceLawId id);
@@ -215,9 +217,12 @@ class World {
   // Reading. A stale or null id gives an empty view, an identity pose, an empty list.
   [[nodiscard]] PointView positions(RopeId id) const;
   [[nodiscard]] PointView positions(ClothId id) const;
+  /// Points of a solid: of a box, corners of cells, x fastest, then centers of cells.
+  [[nodiscard]] PointView positions(SolidId id) const;
   [[nodiscard]] PointView positions(ParticlesId id) const;
   [[nodiscard]] PointView velocities(RopeId id) const;
   [[nodiscard]] PointView velocities(ClothId id) const;
+  [[nodiscard]] PointView velocities(SolidId id) const;
   [[nodiscard]] PointView velocities(ParticlesId id) const;
   [[nodiscard]] Pose pose(BodyId id) const;
   [[nodiscard]] Vec3 velocity(BodyId id) const;          ///< Of the center of mass [m/s].
@@ -247,6 +252,13 @@ class World {
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
+  /// The surface of a solid [m]: the vertices of its mesh where the solid has carried them, or its outer
+  /// points.
+  [[nodiscard]] std::vector<DVec3> surface(SolidId id) const;
+  /// The triangles of that surface, as indices into it, counter-clockwise seen from outside.
+  [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(SolidId id) const;
+  /// The volume of a solid's tetrahedra [m^3]; those inside out count negative.
+  [[nodiscard]] double volume(SolidId id) const;
 
   // Asking where bodies are now; not points of ropes, cloths and particles. Any number of threads may ask at
   // once while none calls anything else. The first query after bodies moved brings the tree of boxes up to

@@ -17,6 +17,7 @@ namespace hooke::build {
 
 Result<void> add_rope(const RopeDesc& desc, state::Tables& tables);
 Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables);
+Result<void> add_solid(const SolidDesc& desc, state::Tables& tables);
 Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
 
 /// The row of the new body; its slot is not set.

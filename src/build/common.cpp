@@ -66,6 +66,7 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   object.bends = {static_cast<std::uint32_t>(tables.bends.count()), 0};
   object.triangles = {static_cast<std::uint32_t>(tables.triangles.count()), 0};
   object.segments = {static_cast<std::uint32_t>(tables.segments.count()), 0};
+  object.tetrahedra = {static_cast<std::uint32_t>(tables.tetrahedra.count()), 0};
 
   const std::size_t first = object.particles.first;
   state::Particles::for_each_column(particles, [&](auto& column) { column.resize(first + count); });

@@ -15,6 +15,7 @@ double number(Real value) {
 const char* noun(PointRef::Kind kind) {
   if (kind == PointRef::Kind::kNone) return "body";
   if (kind == PointRef::Kind::kRope) return "rope";
+  if (kind == PointRef::Kind::kSolid) return "solid";
   return kind == PointRef::Kind::kCloth ? "cloth" : "particles";
 }
 
@@ -32,6 +33,10 @@ std::string System::name() const {
 
 Result<System> System::create(const state::Tables& tables, std::uint32_t object_row) {
   const state::Deformable& object = tables.objects[object_row];
+  if (object.tetrahedra.count > 0) {
+    return Error{ErrorCode::kUnsupported, std::string(noun(object.kind)) + " " + std::to_string(object.slot),
+                 "is a solid; the laboratory has no tetrahedra"};
+  }
   System system;
   system.kind_ = object.kind;
   system.slot_ = object.slot;

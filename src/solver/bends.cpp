@@ -10,18 +10,6 @@ namespace hooke::solver {
 
 namespace {
 
-std::vector<int> color_rows(const state::Bends& bends, int particle_count) {
-  std::vector<std::uint64_t> used(static_cast<std::size_t>(particle_count), 0);
-  std::vector<int> color;
-  int lone_color = 64;
-  for (const state::Bends::Stencil& s : bends.stencil) {
-    const std::uint32_t ends[4] = {s.edge_a, s.edge_b, s.wing_a, s.wing_b};
-    const int taken = take_color(used, ends, 4);
-    color.push_back(taken < 64 ? taken : lone_color++);
-  }
-  return color;
-}
-
 void set_lane(const state::Bends& bends, std::size_t row, int lane, BendBlock& block, BendLaws& laws) {
   const state::Bends::Stencil& s = bends.stencil[row];
   const std::uint32_t ends[4] = {s.edge_a, s.edge_b, s.wing_a, s.wing_b};
@@ -35,7 +23,7 @@ void set_lane(const state::Bends& bends, std::size_t row, int lane, BendBlock& b
 
 void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks& blocks) {
   blocks = {};
-  const std::vector<int> color = color_rows(bends, particle_count);
+  const std::vector<int> color = color_fours(bends.stencil, particle_count);
   std::vector<std::size_t> order(color.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

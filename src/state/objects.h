@@ -4,7 +4,9 @@
 #include "hooke/id.h"
 #include "hooke/math.h"
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 /// \file
@@ -20,7 +22,17 @@ struct Rows {
   [[nodiscard]] std::uint32_t end() const { return first + count; }
 };
 
-/// One rope, cloth or group of particles: its origin and its rows. Objects stand in order of creation.
+/// Vertices that a solid carries along, and the triangles between them. Never changes after it was made.
+struct Skin {
+  struct Anchor {
+    std::array<std::uint32_t, 4> points = {};  ///< Of the solid, in the maker's order.
+    std::array<Real, 4> weights = {};          ///< With the sum 1.
+  };
+  std::vector<Anchor> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
   std::uint32_t slot = 0;  ///< Of its id.
@@ -30,6 +42,8 @@ struct Deformable {
   Rows bends = {};
   Rows triangles = {};
   Rows segments = {};
+  Rows tetrahedra = {};
+  std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

@@ -13,6 +13,7 @@
 #include "state/particles.h"
 #include "state/slot_table.h"
 #include "state/springs.h"
+#include "state/tetrahedra.h"
 
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,7 @@ struct Tables {
   Bends bends;
   Triangles triangles;
   Segments segments;
+  Tetrahedra tetrahedra;
   Contacts contacts;
   std::vector<Pin> pins;  ///< In order of particle.
   Bodies bodies;
@@ -61,6 +63,7 @@ struct Tables {
   SlotTable<HookId> hook_slots;
   SlotTable<RopeId> rope_slots;
   SlotTable<ClothId> cloth_slots;
+  SlotTable<SolidId> solid_slots;
   SlotTable<ParticlesId> particles_slots;
   SlotTable<FieldId> field_slots;
   SlotTable<ForceLawId> force_law_slots;

@@ -1,5 +1,6 @@
 #include "collision/particle_contacts.h"
 #include "elements/dihedral.h"
+#include "elements/tetrahedron.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -140,6 +141,24 @@ double measure_bends(const Tables& t) {
   return energy;
 }
 
+double measure_tetrahedra(const Tables& t) {
+  double energy = 0;
+  for (int i = 0; i < t.tetrahedra.count(); ++i) {
+    const auto [a, b, c, d] = t.tetrahedra.corners[i];
+    std::array<DVec3, 4> gradients = {};
+    for (std::size_t k = 0; k < 3; ++k) {
+      gradients[k + 1] = vector_cast<double>(t.tetrahedra.shape_gradient[i][k]);
+      gradients[0] -= gradients[k + 1];
+    }
+    const Matrix3<double> f = elements::gradient_of(
+        {middle_of(t, a), middle_of(t, b), middle_of(t, c), middle_of(t, d)}, gradients);
+    const elements::NeoHookean<double> material = {static_cast<double>(t.tetrahedra.shear_modulus[i]),
+                                                   static_cast<double>(t.tetrahedra.volume_modulus[i])};
+    energy += static_cast<double>(t.tetrahedra.volume[i]) * elements::energy_density(f, material);
+  }
+  return energy;
+}
+
 }  // namespace
 
 Measurement World::measure() const {
@@ -148,7 +167,8 @@ Measurement World::measure() const {
   Stretch stretch;
   measure_particles(t, m);
   measure_bodies(t, m);
-  m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t);
+  m.energy.elastic =
+      measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) + measure_tetrahedra(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks)

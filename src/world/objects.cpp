@@ -29,6 +29,9 @@ void renumber_particles(Tables& t, Rows removed) {
   for (state::Triangles::Corners& c : t.triangles.corners) {
     for (std::uint32_t* p : {&c.a, &c.b, &c.c}) moved(*p);
   }
+  for (state::Tetrahedra::Corners& c : t.tetrahedra.corners) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) moved(*p);
+  }
   for (state::Pin& pin : t.pins) moved(pin.particle);
 }
 
@@ -38,6 +41,8 @@ std::uint32_t object_row(const Tables& t, PointRef point) {
       return t.rope_slots.find({point.slot, point.generation});
     case PointRef::Kind::kCloth:
       return t.cloth_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kSolid:
+      return t.solid_slots.find({point.slot, point.generation});
     case PointRef::Kind::kParticles:
       return t.particles_slots.find({point.slot, point.generation});
     case PointRef::Kind::kNone:
@@ -49,6 +54,7 @@ std::uint32_t object_row(const Tables& t, PointRef point) {
 void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
   if (object.kind == PointRef::Kind::kRope) t.rope_slots.move(object.slot, row);
   if (object.kind == PointRef::Kind::kCloth) t.cloth_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kSolid) t.solid_slots.move(object.slot, row);
   if (object.kind == PointRef::Kind::kParticles) t.particles_slots.move(object.slot, row);
 }
 
@@ -79,6 +85,7 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   erase_rows(t.bends, gone.bends);
   erase_rows(t.triangles, gone.triangles);
   erase_rows(t.segments, gone.segments);
+  erase_rows(t.tetrahedra, gone.tetrahedra);
   std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.object == row; });
   for (state::Pin& pin : t.pins) pin.object -= pin.object > row ? 1 : 0;
   renumber_particles(t, gone.particles);
@@ -93,6 +100,7 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
     object.bends.first -= gone.bends.count;
     object.triangles.first -= gone.triangles.count;
     object.segments.first -= gone.segments.count;
+    object.tetrahedra.first -= gone.tetrahedra.count;
     move_slot(t, object, i);
   }
   ++t.revision;
@@ -165,10 +173,10 @@ void restore_tables(const Tables& from, Tables& to) {
   const int workers = to.desc.workers;
   const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
   const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
-  const std::uint32_t generations[] = {to.mesh_slots.generation(),      to.body_slots.generation(),
-                                       to.rope_slots.generation(),      to.cloth_slots.generation(),
-                                       to.particles_slots.generation(), to.field_slots.generation(),
-                                       to.force_law_slots.generation(), to.hook_slots.generation()};
+  const std::uint32_t generations[] = {
+      to.mesh_slots.generation(),      to.body_slots.generation(),      to.rope_slots.generation(),
+      to.cloth_slots.generation(),     to.particles_slots.generation(), to.field_slots.generation(),
+      to.force_law_slots.generation(), to.hook_slots.generation(),      to.solid_slots.generation()};
   to = from;
   to.desc.workers = workers;
   to.revision = revision;
@@ -181,6 +189,7 @@ void restore_tables(const Tables& from, Tables& to) {
   to.field_slots.set_generation(generations[5] + 1);
   to.force_law_slots.set_generation(generations[6] + 1);
   to.hook_slots.set_generation(generations[7] + 1);
+  to.solid_slots.set_generation(generations[8] + 1);
 }
 
 }  // namespace hooke::world

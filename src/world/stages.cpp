@@ -17,6 +17,7 @@ using parallel::Range;
 
 constexpr int kParticleGrain = 1024;
 constexpr int kTriangleGrain = 512;
+constexpr int kTetrahedronGrain = 64;
 
 /// An object is moved back to its origin when its first particle is farther than this from it [m].
 constexpr Real kFarFromOrigin = Real(64);
@@ -36,6 +37,16 @@ void read_wind(WorldData& world, double time) {
         const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
         world.wind[p] = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
       }
+    });
+  }
+}
+
+/// Tetrahedra of one color share no particle; colors follow one another.
+template <class Kernel>
+void for_tetrahedra(WorldData& world, Kernel kernel) {
+  for (const solver::TetrahedronPass& pass : world.tetrahedra.passes) {
+    for_ranges(*world.pool, pass.end - pass.first, kTetrahedronGrain, [&](Range range) {
+      kernel(world.tetrahedra, {pass.first + range.begin, pass.first + range.end}, world.tables.particles);
     });
   }
 }
@@ -60,6 +71,7 @@ void refresh_derived(WorldData& world) {
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
   solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
+  solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.chains.clear();
   for (const state::Deformable& object : tables.objects) {
@@ -98,7 +110,8 @@ void begin_step(WorldData& world, double dt) {
   }
 }
 
-void remember_rope_velocities(WorldData& world) {
+void begin_particle_substep(WorldData& world) {
+  if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
   for (const solver::Chain& chain : world.chains) {
     for (std::uint32_t i = 0; i < chain.node_count; ++i) {
       const std::size_t p = chain.first_particle + i;
@@ -188,6 +201,10 @@ void rebase_origins(WorldData& world) {
     for (std::uint32_t i = object.particles.first; i < object.particles.end(); ++i)
       particles.position[i].x -= shift;
   }
+}
+
+void solve_solids(WorldData& world) {
+  for_tetrahedra(world, solver::solve_tetrahedra);
 }
 
 void end_step(WorldData& world, double dt, StepReport& report) {

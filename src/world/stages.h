@@ -14,13 +14,17 @@ void refresh_derived(WorldData& world);
 /// step sums up.
 void begin_step(WorldData& world, double dt);
 
-/// Velocities of rope nodes before the substep's forces change them.
-void remember_rope_velocities(WorldData& world);
+/// What looks at velocities before the substep's forces change them: ropes remember theirs, solids are
+/// damped.
+void begin_particle_substep(WorldData& world);
 
 /// The wind on triangles and segments; drag, forces, fields on particles; the user's force laws.
 void apply_wind(WorldData& world, Real h);
 void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
+
+/// Tetrahedra of solids, color after color.
+void solve_solids(WorldData& world);
 
 /// The force and torque on bodies for the substep that begins at `time`: what was given for the step, and
 /// what the user's laws over bodies ask for.

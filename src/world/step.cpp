@@ -64,6 +64,7 @@ void prepare(WorldData& w, double dt, Real h) {
   const Real particle_h = h / static_cast<Real>(t.desc.particle_substeps);
   solver::prepare_springs(w.spring_blocks, particle_h);
   solver::prepare_bends(w.bend_blocks, particle_h);
+  solver::prepare_tetrahedra(w.tetrahedra, particle_h);
   world::begin_motion(w, static_cast<Real>(dt));
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
   solver::prepare_joints(*w.pool, h, t.hooks, t.bodies, w.joints);
@@ -93,7 +94,7 @@ void solve_bends(WorldData& w) {
 
 void apply_forces(WorldData& w, double time, Real h) {
   state::Particles& particles = w.tables.particles;
-  world::remember_rope_velocities(w);
+  world::begin_particle_substep(w);
   world::apply_wind(w, h);
   world::apply_forces(w, h);
   for_ranges(*w.pool, particles.count(), kParticleGrain,
@@ -116,6 +117,7 @@ void substep_particles(WorldData& w, double time, Real h) {
   });
   solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   solve_bends(w);
+  world::solve_solids(w);
   solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { solver::solve_contacts(t.objects, rows, h, t.contacts, t.particles); });

@@ -112,6 +112,11 @@ Result<ClothId> World::add_cloth(const ClothDesc& desc) {
   return add_object(t, t.cloth_slots, [&] { return build::add_cloth(desc, t); });
 }
 
+Result<SolidId> World::add_solid(const SolidDesc& desc) {
+  state::Tables& t = data_->tables;
+  return add_object(t, t.solid_slots, [&] { return build::add_solid(desc, t); });
+}
+
 Result<ParticlesId> World::add_particles(const ParticlesDesc& desc) {
   state::Tables& t = data_->tables;
   return add_object(t, t.particles_slots, [&] { return build::add_particles(desc, t); });
@@ -163,6 +168,10 @@ bool World::remove(ClothId id) {
   return world::remove_object(data_->tables, PointRef::Kind::kCloth, data_->tables.cloth_slots.find(id));
 }
 
+bool World::remove(SolidId id) {
+  return world::remove_object(data_->tables, PointRef::Kind::kSolid, data_->tables.solid_slots.find(id));
+}
+
 bool World::remove(ParticlesId id) {
   return world::remove_object(data_->tables, PointRef::Kind::kParticles,
                               data_->tables.particles_slots.find(id));
@@ -174,6 +183,9 @@ PointView World::positions(RopeId id) const {
 PointView World::positions(ClothId id) const {
   return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.position);
 }
+PointView World::positions(SolidId id) const {
+  return view_of(data_->tables, data_->tables.solid_slots, id, data_->tables.particles.position);
+}
 PointView World::positions(ParticlesId id) const {
   return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.position);
 }
@@ -182,6 +194,9 @@ PointView World::velocities(RopeId id) const {
 }
 PointView World::velocities(ClothId id) const {
   return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.velocity);
+}
+PointView World::velocities(SolidId id) const {
+  return view_of(data_->tables, data_->tables.solid_slots, id, data_->tables.particles.velocity);
 }
 PointView World::velocities(ParticlesId id) const {
   return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.velocity);
@@ -210,6 +225,37 @@ std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
     result.push_back({point_of[a - first], point_of[b - first], point_of[c - first]});
   }
   return result;
+}
+
+std::vector<DVec3> World::surface(SolidId id) const {
+  const PointView points = positions(id);
+  if (points.empty()) return {};
+  std::vector<DVec3> surface;
+  for (const auto& anchor : data_->tables.objects[data_->tables.solid_slots.find(id)].skin->vertices) {
+    DVec3& place = surface.emplace_back(points.origin());
+    for (std::size_t k = 0; k < 4; ++k)
+      place += static_cast<double>(anchor.weights[k]) * vector_cast<double>(points.offset(anchor.points[k]));
+  }
+  return surface;
+}
+
+std::vector<std::array<std::uint32_t, 3>> World::triangles(SolidId id) const {
+  const std::uint32_t row = data_->tables.solid_slots.find(id);
+  if (row == data_->tables.solid_slots.kNone) return {};
+  return data_->tables.objects[row].skin->triangles;
+}
+
+double World::volume(SolidId id) const {
+  const state::Tables& t = data_->tables;
+  const std::uint32_t row = t.solid_slots.find(id);
+  if (row == t.solid_slots.kNone) return 0;
+  double sum = 0;
+  for (std::uint32_t i = t.objects[row].tetrahedra.first; i < t.objects[row].tetrahedra.end(); ++i) {
+    const auto [a, b, c, d] = t.tetrahedra.corners[i];
+    const auto x = [&](std::uint32_t p) { return vector_cast<double>(t.particles.position[p].x); };
+    sum += dot(x(b) - x(a), cross(x(c) - x(a), x(d) - x(a))) / 6;
+  }
+  return sum;
 }
 
 Result<void> World::apply_force(PointRef point, Vec3 force) {

@@ -11,6 +11,7 @@
 #include "solver/hard_islands.h"
 #include "solver/joints.h"
 #include "solver/spring_blocks.h"
+#include "solver/tetrahedra.h"
 #include "state/tables.h"
 
 #include <atomic>
@@ -37,6 +38,7 @@ struct WorldData {
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
+  solver::TetrahedronRows tetrahedra;
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 

@@ -1,0 +1,260 @@
+/// Solids from a box of cells, from a closed mesh, or from tetrahedra as given.
+
+#include "build/build.h"
+#include "build/common.h"
+#include "elements/tetrahedron.h"
+#include "geometry/tetrahedral_mesh.h"
+#include "geometry/vertex_order.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace hooke::build {
+
+namespace {
+
+using geometry::TetrahedralMesh;
+using geometry::Tetrahedron;
+
+constexpr double kMostCells = 1 << 20;
+constexpr std::size_t kMostTetrahedra = std::size_t{1} << 24;
+/// Volume of a tetrahedron over the cube of its longest edge; 0.118 where all edges are equal.
+constexpr double kFlattest = 1e-5;
+constexpr double kSmallest = 1e-15;  ///< Volume of a tetrahedron: less is lost in float [m^3].
+
+struct SolidBody {
+  TetrahedralMesh mesh;  ///< In the world.
+  double volume = 0;     ///< That the density is of [m^3].
+  std::shared_ptr<const state::Skin> skin;
+};
+
+bool is_turn(Quat q) {
+  const Real size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  return std::isfinite(size) && size > Real(0);
+}
+
+Checks check(const SolidDesc& desc) {
+  Checks checks("solid");
+  checks.place("position", desc.position)
+      .require(is_turn(desc.rotation), "rotation", "must be finite and not zero")
+      .positive("density", static_cast<double>(desc.density))
+      .positive("young_modulus", static_cast<double>(desc.young_modulus))
+      .in_range("young_modulus", static_cast<double>(desc.young_modulus), 0, 1e12)
+      .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), 0, 0.499)
+      .in_range("damping", static_cast<double>(desc.damping), 0, 0.1)
+      .positive("thickness", static_cast<double>(desc.thickness))
+      .not_negative("air_friction", static_cast<double>(desc.air_friction))
+      .finite("charge", static_cast<double>(desc.charge))
+      .finite("velocity", desc.velocity)
+      .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+  if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
+  return checks;
+}
+
+Checks check_box(const SolidDesc& desc) {
+  Checks checks = check(desc);
+  const char* const axes[] = {"[0]", "[1]", "[2]"};
+  double count = 1;
+  for (int k = 0; k < 3; ++k) {
+    checks.in_range(std::string("cells") + axes[k], desc.cells[k], 1, 256);
+    count *= desc.cells[k];
+  }
+  checks.require(count <= kMostCells, "cells", "must not be more than 1048576 in all");
+  return checks.positive("size.x", static_cast<double>(desc.size.x))
+      .positive("size.y", static_cast<double>(desc.size.y))
+      .positive("size.z", static_cast<double>(desc.size.z));
+}
+
+TetrahedralMesh fill_box(const SolidDesc& desc) {
+  const DVec3 size = vector_cast<double>(desc.size);
+  geometry::CellGrid grid = {.counts = {desc.cells[0], desc.cells[1], desc.cells[2]}, .corner = -0.5 * size};
+  grid.cell = {size.x / desc.cells[0], size.y / desc.cells[1], size.z / desc.cells[2]};
+  grid.filled.assign(static_cast<std::size_t>(desc.cells[0]) * desc.cells[1] * desc.cells[2], 1);
+  return geometry::fill_cells(grid);
+}
+
+/// Checks tetrahedra as given, and turns those around that are inside out.
+Result<TetrahedralMesh> take_given(const SolidDesc& desc) {
+  TetrahedralMesh mesh;
+  Checks checks("solid");
+  checks.in_range("tetrahedra", static_cast<double>(desc.tetrahedra.size()), 1, kMostTetrahedra);
+  for (std::size_t i = 0; i < desc.points.size(); ++i) {
+    const DVec3 p = vector_cast<double>(desc.points[i]);
+    checks.place(indexed("points", i), p);
+    mesh.points.push_back(p);
+  }
+  std::vector<std::uint8_t> used(desc.points.size(), 0);
+  for (std::size_t i = 0; checks.good() && i < desc.tetrahedra.size(); ++i) {
+    Tetrahedron t = desc.tetrahedra[i];
+    const std::string where = indexed("tetrahedra", i);
+    for (const std::uint32_t p : t) checks.require(p < desc.points.size(), where, p, "is not a point");
+    if (!checks.good()) break;
+    double longest = 0;
+    for (int k = 0; k < 6; ++k) {
+      constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+      longest = std::max(longest, length(mesh.points[t[kEdges[k][0]]] - mesh.points[t[kEdges[k][1]]]));
+    }
+    const auto& x = mesh.points;
+    const double volume = geometry::volume6(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) / 6;
+    checks.require(std::abs(volume) > kFlattest * longest * longest * longest, where, "is flat");
+    if (volume < 0) std::swap(t[2], t[3]);
+    for (const std::uint32_t p : t) used[p] = 1;
+    mesh.tetrahedra.push_back(t);
+  }
+  for (std::size_t i = 0; i < used.size(); ++i)
+    checks.require(used[i] != 0, indexed("points", i), "belongs to no tetrahedron");
+  if (!checks.good()) return checks.result().error();
+  return mesh;
+}
+
+double volume_of(const TetrahedralMesh& mesh, std::size_t i) {
+  const auto& x = mesh.points;
+  const Tetrahedron& t = mesh.tetrahedra[i];
+  return geometry::volume6(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) / 6;
+}
+
+double volume_of(const TetrahedralMesh& mesh) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) sum += volume_of(mesh, i);
+  return sum;
+}
+
+/// The outer points and the faces between them.
+std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
+  auto skin = std::make_shared<state::Skin>();
+  std::vector<std::uint32_t> number(mesh.points.size(), geometry::kNone);
+  for (geometry::Triangle t : geometry::surface_of(mesh.tetrahedra)) {
+    for (std::uint32_t& p : t) {
+      if (number[p] == geometry::kNone) {
+        number[p] = static_cast<std::uint32_t>(skin->vertices.size());
+        skin->vertices.push_back({.points = {p, p, p, p}, .weights = {Real(1)}});
+      }
+      p = number[p];
+    }
+    skin->triangles.push_back(t);
+  }
+  return skin;
+}
+
+/// The vertices of `surface` where they lie in the lattice.
+std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const MeshDesc& surface) {
+  std::vector<DVec3> places;
+  for (const Vec3& p : surface.positions) places.push_back(vector_cast<double>(p));
+  auto skin = std::make_shared<state::Skin>();
+  for (const geometry::TetrahedronPlace& place : geometry::locate(mesh, places)) {
+    state::Skin::Anchor& anchor = skin->vertices.emplace_back();
+    anchor.points = mesh.tetrahedra[place.tetrahedron];
+    for (std::size_t k = 0; k < 4; ++k) anchor.weights[k] = static_cast<Real>(place.weights[k]);
+  }
+  skin->triangles = surface.triangles;
+  return skin;
+}
+
+Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) {
+  SolidBody body;
+  const Checks checks =
+      desc.mesh || !desc.tetrahedra.empty() || !desc.points.empty() ? check(desc) : check_box(desc);
+  if (!checks.good()) return checks.result().error();
+  if (desc.mesh) {
+    const std::uint32_t row = tables.mesh_slots.find(desc.mesh);
+    if (row == tables.mesh_slots.kNone || !tables.meshes[row]) {
+      return Error{ErrorCode::kStaleId, "solid.mesh", "refers to no mesh that is in the world"};
+    }
+    const MeshDesc& surface = tables.meshes[row]->desc;
+    Result<TetrahedralMesh> filled = geometry::fill_solid(surface, static_cast<double>(desc.cell));
+    if (!filled) return Error{filled.error().code, "solid." + filled.error().where, filled.error().message};
+    body.mesh = std::move(filled).value();
+    body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
+    body.skin = skin_of(body.mesh, surface);
+  } else {
+    const bool given = !desc.tetrahedra.empty() || !desc.points.empty();
+    Result<TetrahedralMesh> mesh = given ? take_given(desc) : Result<TetrahedralMesh>(fill_box(desc));
+    if (!mesh) return mesh.error();
+    body.mesh = std::move(mesh).value();
+    body.volume = volume_of(body.mesh);
+    body.skin = skin_of(body.mesh);
+  }
+  const Quaternion<double> turn =
+      normalize(Quaternion<double>{desc.rotation.x, desc.rotation.y, desc.rotation.z, desc.rotation.w});
+  for (DVec3& p : body.mesh.points) p = desc.position + rotate(turn, p);
+  return body;
+}
+
+/// A quarter of each tetrahedron to each of its corners.
+std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
+  std::vector<double> share(mesh.points.size(), 0.0);
+  const double whole = volume_of(mesh);
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
+    for (const std::uint32_t p : mesh.tetrahedra[i]) share[p] += volume_of(mesh, i) / (4 * whole);
+  }
+  return share;
+}
+
+Points make_points(const SolidBody& body, const SolidDesc& desc) {
+  Points points(body.mesh.points.size());
+  points.position = body.mesh.points;
+  const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
+                                      : body.volume * static_cast<double>(desc.density);
+  const std::vector<double> share = volume_shares(body.mesh);
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    points.velocity[i] = desc.velocity;
+    points.mass[i] = static_cast<Real>(share[i] * mass);
+    points.charge[i] = static_cast<Real>(share[i] * static_cast<double>(desc.charge));
+    points.viscous_drag[i] = static_cast<Real>(share[i] * static_cast<double>(desc.air_friction));
+    points.radius[i] = Real(0.5) * desc.thickness;
+  }
+  add_loads(desc.loads, points.mass);
+  std::vector<geometry::Edge> edges;
+  for (const Tetrahedron& t : body.mesh.tetrahedra) {
+    for (int k = 0; k < 4; ++k) edges.push_back({t[k], t[(k + 1) % 4]});
+  }
+  points.row_of = geometry::invert_order(geometry::compute_cuthill_mckee_order(share.size(), edges));
+  return points;
+}
+
+void append_tetrahedra(const TetrahedralMesh& mesh, const SolidDesc& desc, state::Tables& tables) {
+  state::Deformable& object = tables.objects.back();
+  const auto material =
+      elements::neo_hookean(static_cast<double>(desc.young_modulus), static_cast<double>(desc.poisson_ratio));
+  const auto& x = mesh.points;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    const auto rest = elements::tetrahedron_rest<double>({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
+    tables.tetrahedra.corners.push_back({row_of(tables, object, t[0]), row_of(tables, object, t[1]),
+                                         row_of(tables, object, t[2]), row_of(tables, object, t[3])});
+    tables.tetrahedra.shape_gradient.push_back(
+        {vector_cast<Real>(rest.b[1]), vector_cast<Real>(rest.b[2]), vector_cast<Real>(rest.b[3])});
+    tables.tetrahedra.volume.push_back(static_cast<Real>(rest.volume));
+    tables.tetrahedra.shear_modulus.push_back(static_cast<Real>(material.shear));
+    tables.tetrahedra.volume_modulus.push_back(static_cast<Real>(material.volume));
+    tables.tetrahedra.damping_time.push_back(desc.damping);
+    ++object.tetrahedra.count;
+  }
+}
+
+}  // namespace
+
+Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
+  const Result<SolidBody> body = make_body(desc, tables);
+  if (!body) return body.error();
+  Checks checks("solid");
+  check_points(checks, desc.pins, desc.loads, body.value().mesh.points.size());
+  if (!checks.good()) return checks.result();
+  const TetrahedralMesh& mesh = body.value().mesh;
+  for (std::size_t i = 0; checks.good() && i < mesh.tetrahedra.size(); ++i)
+    checks.require(volume_of(mesh, i) >= kSmallest, "size", "is too small: tetrahedra below 1e-15 m^3");
+  if (!checks.good()) return checks.result();
+  const Points points = make_points(body.value(), desc);
+  for (std::size_t i = 0; i < points.mass.size(); ++i)
+    checks.require(points.mass[i] > Real(0), "density", "is too small: point masses would be zero");
+  if (!checks.good()) return checks.result();
+  state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
+  object.friction = desc.contact.friction;
+  object.skin = body.value().skin;
+  append_tetrahedra(mesh, desc, tables);
+  return {};
+}
+
+}  // namespace hooke::build

@@ -1,0 +1,136 @@
+#include "geometry/tetrahedral_mesh.h"
+
+#include "geometry/meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <limits>
+
+namespace hooke::geometry {
+
+namespace {
+
+double volume_of(const TetrahedralMesh& mesh) {
+  double sum = 0;
+  const auto& x = mesh.points;
+  for (const Tetrahedron& t : mesh.tetrahedra) sum += volume6(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) / 6;
+  return sum;
+}
+
+double least_volume(const TetrahedralMesh& mesh) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto& x = mesh.points;
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    least = std::min(least, volume6(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) / 6);
+  return least;
+}
+
+/// The outer surface as a mesh of its own.
+MeshDesc skin_of(const TetrahedralMesh& mesh) {
+  MeshDesc skin;
+  for (const DVec3& p : mesh.points) skin.positions.push_back(vector_cast<Real>(p));
+  skin.triangles = surface_of(mesh.tetrahedra);
+  return skin;
+}
+
+TetrahedralMesh filled(const MeshDesc& mesh, double cell) {
+  Result<TetrahedralMesh> result = fill_solid(mesh, cell);
+  if (!result) FAIL(result.error().where << ": " << result.error().message);
+  return std::move(result).value();
+}
+
+}  // namespace
+
+TEST_SUITE("geometry/tetrahedral_mesh") {
+  TEST_CASE("a box of cells has the tetrahedra it should, none of them inside out, and its own volume") {
+    CellGrid grid = {.counts = {2, 3, 4}, .cell = {0.5, 1, 2}};
+    grid.filled.assign(24, 1);
+    const TetrahedralMesh mesh = fill_cells(grid);
+    // Corners and centers; four at each inner face, two at each outer one.
+    CHECK(mesh.points.size() == 3 * 4 * 5 + 24);
+    const int inner = 1 * 3 * 4 + 2 * 2 * 4 + 2 * 3 * 3;
+    const int outer = 2 * (3 * 4 + 2 * 4 + 2 * 3);
+    CHECK(mesh.tetrahedra.size() == 4 * inner + 2 * outer);
+    CHECK(volume_of(mesh) == doctest::Approx(24));
+    CHECK(least_volume(mesh) == doctest::Approx(1.0 / 12));
+  }
+
+  TEST_CASE("the surface of a solid is closed and faces outward") {
+    CellGrid grid = {.counts = {3, 3, 3}, .filled = std::vector<std::uint8_t>(27, 1)};
+    grid.filled[grid.index(1, 1, 1)] = 0;  // a cavity
+    grid.filled[grid.index(2, 2, 2)] = 0;
+    const TetrahedralMesh mesh = fill_cells(grid);
+    CHECK(volume_of(mesh) == doctest::Approx(25));
+    const MeshDesc skin = skin_of(mesh);
+    CHECK(compute_topology(skin.positions.size(), skin.triangles).is_closed());
+    CHECK(compute_signed_volume(skin.positions, skin.triangles) == doctest::Approx(25));
+  }
+
+  TEST_CASE("a cube is filled exactly, whatever the cell") {
+    for (const double cell : {0.1, 0.3, 0.7, 5.0}) {
+      const TetrahedralMesh mesh = filled(test::make_cube(Real(0.5)), cell);
+      CHECK(volume_of(mesh) == doctest::Approx(1).epsilon(1e-5));
+      CHECK(least_volume(mesh) > 0);
+    }
+  }
+
+  TEST_CASE("a sphere is filled the better the smaller the cells, and its outer points lie on it") {
+    const MeshDesc sphere = test::make_sphere(4);
+    const double whole = compute_signed_volume(sphere.positions, sphere.triangles);
+    double before = 1;
+    for (const double cell : {0.5, 0.25, 0.125}) {
+      const TetrahedralMesh mesh = filled(sphere, cell);
+      const double error = std::abs(volume_of(mesh) / whole - 1);
+      CHECK(error < 0.5 * before);
+      before = error;
+      CHECK(least_volume(mesh) > 0.005 * cell * cell * cell);
+      double farthest = 0;
+      for (const Triangle& t : surface_of(mesh.tetrahedra)) {
+        for (const std::uint32_t p : t) farthest = std::max(farthest, std::abs(length(mesh.points[p]) - 1));
+      }
+      // Where a tetrahedron would lose nine tenths of its volume, its point stays off the sphere.
+      CHECK(farthest < 0.4 * cell);
+    }
+    CHECK(before < 0.01);
+  }
+
+  TEST_CASE("every vertex of a mesh has its place in the lattice, inside or beside a tetrahedron") {
+    const MeshDesc sphere = test::make_sphere(3);
+    const TetrahedralMesh mesh = filled(sphere, 0.25);
+    std::vector<DVec3> places;
+    for (const Vec3& p : sphere.positions) places.push_back(vector_cast<double>(p));
+    places.push_back({0.1, 0.2, 0.3});
+    const std::vector<TetrahedronPlace> found = locate(mesh, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      DVec3 sum = {};
+      for (int k = 0; k < 4; ++k)
+        sum += found[i].weights[k] * mesh.points[mesh.tetrahedra[found[i].tetrahedron][k]];
+      CHECK(length(sum - places[i]) < 1e-12);
+      // A coarse flat face under a finer sphere: a little outside.
+      const double least = *std::min_element(found[i].weights.begin(), found[i].weights.end());
+      CHECK(least > -0.35);
+    }
+    CHECK(*std::min_element(found.back().weights.begin(), found.back().weights.end()) >= 0);
+    // Far away there is still an answer.
+    const std::vector<DVec3> far = {{100, 0, 0}};
+    CHECK(std::isfinite(locate(mesh, far).front().weights[0]));
+  }
+
+  TEST_CASE("what is no solid, or no cell, is refused with one clear line") {
+    MeshDesc open = test::make_cube(Real(0.5));
+    open.triangles.pop_back();
+    CHECK_FALSE(fill_solid(open, 0.1).has_value());
+    const MeshDesc cube = test::make_cube(Real(0.5));
+    for (const double cell : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(), 1e-9}) {
+      const auto result = fill_solid(cube, cell);
+      REQUIRE_FALSE(result.has_value());
+      CHECK(result.error().where == "cell");
+    }
+    MeshDesc flat = cube;
+    for (Vec3& p : flat.positions) p.y = Real(0);
+    CHECK_FALSE(fill_solid(flat, 0.1).has_value());
+  }
+}
+
+}  // namespace hooke::geometry
