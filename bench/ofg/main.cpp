@@ -21,8 +21,8 @@ namespace {
 using hooke::DVec3;
 using hooke::MeshDesc;
 using hooke::Real;
+using hooke::geometry::ContactMesh;
 using hooke::geometry::RigidPose;
-using hooke::geometry::SolidMesh;
 using hooke::geometry::TrianglePair;
 using hooke::geometry::triangles_overlap;
 using hooke::test::random_vector;
@@ -33,11 +33,11 @@ constexpr double kDepth = 0.01;
 
 struct Pair {
   const char* name;
-  SolidMesh a, b;
+  ContactMesh a, b;
 };
 
-SolidMesh solid(const MeshDesc& mesh) {
-  return hooke::geometry::make_solid_mesh(mesh).value();
+ContactMesh solid(const MeshDesc& mesh) {
+  return hooke::geometry::make_contact_mesh(mesh).value();
 }
 
 MeshDesc scaled(MeshDesc mesh, Real factor) {

@@ -13,10 +13,10 @@ namespace {
 
 using geometry::closest_on_face;
 using geometry::closest_on_solid;
+using geometry::ContactMesh;
 using geometry::DTriangle;
 using geometry::RigidPose;
 using geometry::Search;
-using geometry::SolidMesh;
 using geometry::SolidPoint;
 using geometry::SurfaceFeature;
 using geometry::TrianglePair;
@@ -29,11 +29,11 @@ constexpr double kCoplanar = 1e-9;   ///< Scores of faces this near are the same
 
 /// A mesh and where its vertices are in the frame of the search, that of b.
 struct Placed {
-  const SolidMesh& mesh;
+  const ContactMesh& mesh;
   std::vector<DVec3> positions;
   RigidPose pose;  ///< From the mesh's own frame to that of the search.
 
-  Placed(const SolidMesh& solid, const RigidPose& place) : mesh(solid), pose(place) {
+  Placed(const ContactMesh& solid, const RigidPose& place) : mesh(solid), pose(place) {
     positions.reserve(solid.positions.size());
     for (const DVec3& p : solid.positions) positions.push_back(to_world(place, p));
   }
@@ -187,7 +187,7 @@ std::vector<Pierce> find_pierces(const Placed& own, const Placed& other, const P
 }
 
 /// The edge that two triangles share, kNone without one.
-std::uint32_t shared_edge(const SolidMesh& mesh, std::uint32_t face, std::uint32_t other) {
+std::uint32_t shared_edge(const ContactMesh& mesh, std::uint32_t face, std::uint32_t other) {
   for (const std::uint32_t e : mesh.topology.triangle_edges[face]) {
     const auto& sides = mesh.topology.edge_sides[e].triangles;
     if (sides[0] == other || sides[1] == other) return e;
@@ -381,7 +381,7 @@ void to_world(const RigidPose& pose, std::vector<MeshContact>& contacts) {
 
 }  // namespace
 
-void find_mesh_contacts(const SolidMesh& a, const RigidPose& pose_a, const SolidMesh& b,
+void find_mesh_contacts(const ContactMesh& a, const RigidPose& pose_a, const ContactMesh& b,
                         const RigidPose& pose_b, double margin, Search search,
                         std::vector<MeshContact>& found) {
   found.clear();
@@ -414,7 +414,7 @@ double largest_depth(const std::vector<MeshContact>& contacts) {
   return largest;
 }
 
-void find_sphere_contacts(DVec3 center, double radius, const SolidMesh& b, const RigidPose& pose_b,
+void find_sphere_contacts(DVec3 center, double radius, const ContactMesh& b, const RigidPose& pose_b,
                           double margin, Search search, std::vector<MeshContact>& found) {
   found.clear();
   if (!hooke::is_finite(center) || !is_finite(pose_b) || b.triangles.empty()) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/solid_mesh.h"
+#include "geometry/contact_mesh.h"
 
 #include <cstdint>
 #include <vector>
@@ -46,8 +46,8 @@ struct MeshContact {
 /// - Two convex edges that cross within the margin, each on the outer side of the other.
 ///
 /// Total for finite poses with rotations of length one; a pose that is not finite has no contacts.
-void find_mesh_contacts(const geometry::SolidMesh& a, const geometry::RigidPose& pose_a,
-                        const geometry::SolidMesh& b, const geometry::RigidPose& pose_b, double margin,
+void find_mesh_contacts(const geometry::ContactMesh& a, const geometry::RigidPose& pose_a,
+                        const geometry::ContactMesh& b, const geometry::RigidPose& pose_b, double margin,
                         geometry::Search search, std::vector<MeshContact>& found);
 
 /// The largest depth of the contacts [m]; minus infinity without any.
@@ -57,7 +57,7 @@ void find_mesh_contacts(const geometry::SolidMesh& a, const geometry::RigidPose&
 /// solid (b): the face, edge or vertex at each place of the surface that is nearer than any around it, within
 /// `margin` of the sphere. With its center inside the solid the sphere has one contact, at the nearest place.
 /// `feature_b` is a triangle's, edge's or vertex' index; the kinds are kVertexFace, kEdgeEdge, kFaceVertex.
-void find_sphere_contacts(DVec3 center, double radius, const geometry::SolidMesh& b,
+void find_sphere_contacts(DVec3 center, double radius, const geometry::ContactMesh& b,
                           const geometry::RigidPose& pose_b, double margin, geometry::Search search,
                           std::vector<MeshContact>& found);
 

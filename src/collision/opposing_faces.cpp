@@ -10,10 +10,10 @@ namespace hooke::collision {
 namespace {
 
 using geometry::BoundingSphere;
+using geometry::ContactMesh;
 using geometry::DTriangle;
 using geometry::MeshView;
 using geometry::RigidPose;
-using geometry::SolidMesh;
 
 using Faces = std::vector<std::uint32_t>;
 
@@ -54,7 +54,7 @@ BoundingSphere sphere_around(const MeshView& mesh, const Faces& faces) {
 
 }  // namespace
 
-void find_opposing_faces(const SolidMesh& a, const RigidPose& pose_a, const SolidMesh& b,
+void find_opposing_faces(const ContactMesh& a, const RigidPose& pose_a, const ContactMesh& b,
                          const RigidPose& pose_b, int k, OpposingFaces& result) {
   result = {};
   if (a.triangles.empty() || b.triangles.empty()) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/solid_mesh.h"
+#include "geometry/contact_mesh.h"
 
 #include <cstdint>
 #include <vector>
@@ -34,8 +34,8 @@ struct OpposingFaces {
 ///
 /// `k` below one is taken as one. Of equally near faces the first is taken. Total for finite poses with
 /// rotations of length one; for others nothing overlaps.
-void find_opposing_faces(const geometry::SolidMesh& a, const geometry::RigidPose& pose_a,
-                         const geometry::SolidMesh& b, const geometry::RigidPose& pose_b, int k,
+void find_opposing_faces(const geometry::ContactMesh& a, const geometry::RigidPose& pose_a,
+                         const geometry::ContactMesh& b, const geometry::RigidPose& pose_b, int k,
                          OpposingFaces& result);
 
 }  // namespace hooke::collision

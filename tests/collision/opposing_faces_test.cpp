@@ -12,24 +12,24 @@ using hooke::DVec3;
 using hooke::Real;
 using hooke::collision::find_opposing_faces;
 using hooke::collision::OpposingFaces;
+using hooke::geometry::ContactMesh;
 using hooke::geometry::RigidPose;
-using hooke::geometry::SolidMesh;
 using hooke::geometry::TrianglePair;
 
 namespace {
 
-SolidMesh solid(const hooke::MeshDesc& mesh) {
-  return hooke::geometry::make_solid_mesh(mesh).value();
+ContactMesh solid(const hooke::MeshDesc& mesh) {
+  return hooke::geometry::make_contact_mesh(mesh).value();
 }
 
-OpposingFaces faces_of(const SolidMesh& a, const SolidMesh& b, const RigidPose& pose_b, int k) {
+OpposingFaces faces_of(const ContactMesh& a, const ContactMesh& b, const RigidPose& pose_b, int k) {
   OpposingFaces result;
   find_opposing_faces(a, {}, b, pose_b, k, result);
   return result;
 }
 
 /// Pairs that overlap, by all pairs, in order.
-std::vector<TrianglePair> all_pairs(const SolidMesh& a, const SolidMesh& b, const RigidPose& pose_b) {
+std::vector<TrianglePair> all_pairs(const ContactMesh& a, const ContactMesh& b, const RigidPose& pose_b) {
   std::vector<DVec3> moved;
   for (const DVec3& p : a.positions) moved.push_back(to_local(pose_b, p));
   const hooke::geometry::MeshView view = {moved, a.triangles};
@@ -47,8 +47,8 @@ std::vector<TrianglePair> all_pairs(const SolidMesh& a, const SolidMesh& b, cons
 TEST_SUITE("collision/opposing_faces") {
   TEST_CASE("with all faces it is brute force") {
     std::mt19937_64 random(1);
-    const SolidMesh torus = solid(hooke::test::make_torus(1, Real(0.3), 10, 6));
-    const SolidMesh ball = solid(hooke::test::make_sphere(1));
+    const ContactMesh torus = solid(hooke::test::make_torus(1, Real(0.3), 10, 6));
+    const ContactMesh ball = solid(hooke::test::make_sphere(1));
     int overlapping = 0;
     for (int i = 0; i < 20; ++i) {
       const double x = hooke::test::signed_unit(random);
@@ -63,7 +63,7 @@ TEST_SUITE("collision/opposing_faces") {
   }
 
   TEST_CASE("the steps one by one, on two balls that touch along x") {
-    const SolidMesh ball = solid(hooke::test::make_sphere(3));  // has a vertex at +x and at -x
+    const ContactMesh ball = solid(hooke::test::make_sphere(3));  // has a vertex at +x and at -x
     // 0: apart by their spheres.
     CHECK(faces_of(ball, ball, {{2.1, 0, 0}, {}}, 4).last_step == 0);
     // 1 and 3: the faces around both vertices, four each.
@@ -82,15 +82,15 @@ TEST_SUITE("collision/opposing_faces") {
     CHECK(found.pairs_tested == 16);
     CHECK(found.overlapping.size() == all_pairs(ball, ball, {{1.999, 0, 0}, {}}).size());
     // 5: far faces chosen, since the center of a ring's sphere is in its hole.
-    const SolidMesh ring = solid(hooke::test::make_torus(2, Real(0.1), 40, 6));
+    const ContactMesh ring = solid(hooke::test::make_torus(2, Real(0.1), 40, 6));
     const OpposingFaces missed = faces_of(ring, ball, {{1.2, 0, 0}, {}}, 1);
     CHECK(missed.faces_a.size() == 1);
   }
 
   TEST_CASE("it never says that solids overlap which do not, and misses some on large faces") {
     std::mt19937_64 random(2);
-    const SolidMesh plate = solid(hooke::test::make_box({5, Real(0.1), 5}));
-    const SolidMesh ball = solid(hooke::test::make_sphere(2));
+    const ContactMesh plate = solid(hooke::test::make_box({5, Real(0.1), 5}));
+    const ContactMesh ball = solid(hooke::test::make_sphere(2));
     int touching = 0;
     int found = 0;
     for (int i = 0; i < 100; ++i) {
@@ -106,7 +106,7 @@ TEST_SUITE("collision/opposing_faces") {
   }
 
   TEST_CASE("any k and any pose") {
-    const SolidMesh cube = solid(hooke::test::make_cube(1));
+    const ContactMesh cube = solid(hooke::test::make_cube(1));
     CHECK(faces_of(cube, cube, {{1.5, 0, 0}, {}}, -3).faces_a.size() == 1);
     CHECK(faces_of(cube, cube, {{1.5, 0, 0}, {}}, 0).pairs_tested <= 1);
     CHECK(faces_of(cube, cube, {{1.5, 0, 0}, {}}, 1 << 30).faces_b.size() == 12);

@@ -1,8 +1,8 @@
 #include "hooke/geometry.h"
 
+#include "geometry/contact_mesh.h"
 #include "geometry/mesh_clean.h"
 #include "geometry/meshes.h"
-#include "geometry/solid_mesh.h"
 #include "math/random.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ SolidRepair repaired(const MeshDesc& mesh) {
   auto result = repair_solid(mesh);
   REQUIRE(result.has_value());
   // What comes out is good enough for contact.
-  REQUIRE(hooke::geometry::make_solid_mesh(result.value().mesh).has_value());
+  REQUIRE(hooke::geometry::make_contact_mesh(result.value().mesh).has_value());
   return std::move(result).value();
 }
 

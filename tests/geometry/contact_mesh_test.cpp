@@ -1,4 +1,4 @@
-#include "geometry/solid_mesh.h"
+#include "geometry/contact_mesh.h"
 
 #include "geometry/closest.h"
 #include "geometry/meshes.h"
@@ -13,31 +13,31 @@ using hooke::DVec3;
 using hooke::MeshDesc;
 using hooke::Real;
 using hooke::geometry::closest_on_solid;
-using hooke::geometry::make_solid_mesh;
+using hooke::geometry::ContactMesh;
+using hooke::geometry::make_contact_mesh;
 using hooke::geometry::Search;
-using hooke::geometry::SolidMesh;
 using hooke::geometry::SolidPoint;
 using hooke::geometry::SurfaceFeature;
 
 namespace {
 
-SolidMesh solid(const MeshDesc& mesh) {
-  auto result = make_solid_mesh(mesh);
+ContactMesh solid(const MeshDesc& mesh) {
+  auto result = make_contact_mesh(mesh);
   REQUIRE(result.has_value());
   return std::move(result).value();
 }
 
 std::string where_of(const MeshDesc& mesh) {
-  const auto result = make_solid_mesh(mesh);
+  const auto result = make_contact_mesh(mesh);
   REQUIRE_FALSE(result.has_value());
   return result.error().where;
 }
 
 }  // namespace
 
-TEST_SUITE("geometry/solid_mesh") {
+TEST_SUITE("geometry/contact_mesh") {
   TEST_CASE("distances to a cube, inside and outside, and what is nearest") {
-    const SolidMesh cube = solid(hooke::test::make_cube(1));
+    const ContactMesh cube = solid(hooke::test::make_cube(1));
     struct Case {
       DVec3 p;
       double distance;
@@ -60,8 +60,8 @@ TEST_SUITE("geometry/solid_mesh") {
 
   TEST_CASE("inside and outside of solids that are not convex are told right everywhere") {
     std::mt19937_64 random(1);
-    const SolidMesh ell = solid(hooke::test::make_ell(1));
-    const SolidMesh torus = solid(hooke::test::make_torus(1, Real(0.3), 64, 32));
+    const ContactMesh ell = solid(hooke::test::make_ell(1));
+    const ContactMesh torus = solid(hooke::test::make_torus(1, Real(0.3), 64, 32));
     for (int i = 0; i < 5000; ++i) {
       const double x = 3 * hooke::test::signed_unit(random);
       const double y = 3 * hooke::test::signed_unit(random);
@@ -77,12 +77,12 @@ TEST_SUITE("geometry/solid_mesh") {
 
   TEST_CASE("the tree finds the same place as all triangles do, to the bit") {
     std::mt19937_64 random(2);
-    const SolidMesh solids[] = {solid(hooke::test::make_cube(1)), solid(hooke::test::make_ell(1)),
-                                solid(hooke::test::make_torus(1, Real(0.3), 12, 7)),
-                                solid(hooke::test::make_sphere(3))};
+    const ContactMesh solids[] = {solid(hooke::test::make_cube(1)), solid(hooke::test::make_ell(1)),
+                                  solid(hooke::test::make_torus(1, Real(0.3), 12, 7)),
+                                  solid(hooke::test::make_sphere(3))};
     std::vector<std::uint32_t> by_tree;
     std::vector<std::uint32_t> by_all;
-    for (const SolidMesh& mesh : solids) {
+    for (const ContactMesh& mesh : solids) {
       for (int i = 0; i < 500; ++i) {
         DVec3 p = {2 * hooke::test::signed_unit(random), 0, 0};
         p.y = 2 * hooke::test::signed_unit(random);
@@ -106,7 +106,7 @@ TEST_SUITE("geometry/solid_mesh") {
   }
 
   TEST_CASE("edges are convex where the solid is less than half a space") {
-    const SolidMesh ell = solid(hooke::test::make_ell(1));
+    const ContactMesh ell = solid(hooke::test::make_ell(1));
     int convex = 0;
     for (const auto flag : ell.is_convex_edge) convex += flag;
     // Six edges on each lid and six between them, but for the one in the notch. Diagonals are flat.
@@ -136,13 +136,13 @@ TEST_SUITE("geometry/solid_mesh") {
     MeshDesc far = hooke::test::make_cube(1);
     for (auto& p : far.positions) p.x += Real(4e9);
     for (auto& p : far.positions) p.y *= Real(1e6), p.x += p.y;
-    CHECK_FALSE(make_solid_mesh(far).has_value());
+    CHECK_FALSE(make_contact_mesh(far).has_value());
     CHECK(where_of(MeshDesc{}) == "mesh.triangles");
   }
 
   TEST_CASE("slivers have a normal") {
     MeshDesc needle = hooke::test::make_box({1, Real(1e-7), Real(1e-7)});
-    const SolidMesh mesh = solid(needle);
+    const ContactMesh mesh = solid(needle);
     for (const DVec3& n : mesh.face_normals) CHECK(length(n) == doctest::Approx(1));
     CHECK(closest_on_solid(mesh, {0.1, 1, 0.2e-7}, Search::kTree).signed_distance == doctest::Approx(1));
   }

@@ -1,4 +1,4 @@
-#include "geometry/solid_mesh.h"
+#include "geometry/contact_mesh.h"
 
 #include "geometry/closest.h"
 #include "math/trig.h"
@@ -23,7 +23,7 @@ std::string triangle_name(std::size_t index) {
   return std::string("mesh.triangles[").append(std::to_string(index)).append("]");
 }
 
-void make_normals_and_edges(SolidMesh& solid) {
+void make_normals_and_edges(ContactMesh& solid) {
   solid.edge_normals.assign(solid.topology.edges.size(), {});
   solid.vertex_normals.assign(solid.positions.size(), {});
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
@@ -48,7 +48,7 @@ void make_normals_and_edges(SolidMesh& solid) {
 /// Calls `visit` with the triangles whose boxes may be within the distance that `reach` returns at the time
 /// [m], near ones first.
 template <class Reach, class Visit>
-void visit_near(const SolidMesh& solid, DVec3 p, const Reach& reach, const Visit& visit) {
+void visit_near(const ContactMesh& solid, DVec3 p, const Reach& reach, const Visit& visit) {
   const OrientedBoxTree& tree = solid.tree;
   if (tree.nodes.empty()) return;
   const double slack = kRounding * (solid.size + length(p));
@@ -79,11 +79,11 @@ void visit_near(const SolidMesh& solid, DVec3 p, const Reach& reach, const Visit
 }
 
 template <class Visit>
-void visit_all(const SolidMesh& solid, const Visit& visit) {
+void visit_all(const ContactMesh& solid, const Visit& visit) {
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) visit(t);
 }
 
-DVec3 normal_at(const SolidMesh& solid, const SolidPoint& place) {
+DVec3 normal_at(const ContactMesh& solid, const SolidPoint& place) {
   switch (place.feature) {
     case SurfaceFeature::kEdge:
       return solid.edge_normals[place.index];
@@ -96,7 +96,7 @@ DVec3 normal_at(const SolidMesh& solid, const SolidPoint& place) {
 }
 
 /// Which part of the triangle has these weights of its corners.
-void name_feature(const SolidMesh& solid, const DVec3& weights, SolidPoint& place) {
+void name_feature(const ContactMesh& solid, const DVec3& weights, SolidPoint& place) {
   const std::array<double, 3> weight = {weights.x, weights.y, weights.z};
   const auto zeros = std::count(weight.begin(), weight.end(), 0.0);
   place.feature = SurfaceFeature::kFace;
@@ -112,12 +112,12 @@ void name_feature(const SolidMesh& solid, const DVec3& weights, SolidPoint& plac
   }
 }
 
-TrianglePoint<double> closest_in(const SolidMesh& solid, std::uint32_t triangle, DVec3 p) {
+TrianglePoint<double> closest_in(const ContactMesh& solid, std::uint32_t triangle, DVec3 p) {
   const auto [a, b, c] = solid.view().corners(triangle);
   return closest_on_triangle(p, a, b, c);
 }
 
-SolidPoint place_on(const SolidMesh& solid, std::uint32_t triangle, const TrianglePoint<double>& near,
+SolidPoint place_on(const ContactMesh& solid, std::uint32_t triangle, const TrianglePoint<double>& near,
                     DVec3 p) {
   SolidPoint place = {.point = near.point, .triangle = triangle};
   name_feature(solid, near.weights, place);
@@ -129,9 +129,9 @@ SolidPoint place_on(const SolidMesh& solid, std::uint32_t triangle, const Triang
 
 }  // namespace
 
-Result<SolidMesh> make_solid_mesh(const MeshDesc& mesh) {
+Result<ContactMesh> make_contact_mesh(const MeshDesc& mesh) {
   if (Result<void> valid = validate_solid(mesh); !valid) return valid.error();
-  SolidMesh solid;
+  ContactMesh solid;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const auto p = vector_cast<double>(mesh.positions[i]);
     const double size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -160,11 +160,11 @@ Result<SolidMesh> make_solid_mesh(const MeshDesc& mesh) {
   return solid;
 }
 
-SolidPoint closest_on_face(const SolidMesh& solid, std::uint32_t triangle, DVec3 p) {
+SolidPoint closest_on_face(const ContactMesh& solid, std::uint32_t triangle, DVec3 p) {
   return place_on(solid, triangle, closest_in(solid, triangle, p), p);
 }
 
-SolidPoint closest_on_solid(const SolidMesh& solid, DVec3 p, Search search) {
+SolidPoint closest_on_solid(const ContactMesh& solid, DVec3 p, Search search) {
   std::uint32_t best = 0;
   TrianglePoint<double> nearest = {.distance_squared = std::numeric_limits<double>::infinity()};
   const auto visit = [&](std::uint32_t t) {
@@ -184,7 +184,7 @@ SolidPoint closest_on_solid(const SolidMesh& solid, DVec3 p, Search search) {
   return place_on(solid, best, nearest, p);
 }
 
-void find_near_faces(const SolidMesh& solid, DVec3 p, double distance, Search search,
+void find_near_faces(const ContactMesh& solid, DVec3 p, double distance, Search search,
                      std::vector<std::uint32_t>& found) {
   found.clear();
   const auto visit = [&](std::uint32_t t) {

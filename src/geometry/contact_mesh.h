@@ -21,7 +21,7 @@ enum class Search : std::uint8_t {
   kTree,  ///< By the tree of oriented boxes.
 };
 
-struct SolidMesh {
+struct ContactMesh {
   std::vector<DVec3> positions = {};  ///< [m]
   std::vector<Triangle> triangles = {};
   MeshTopology topology = {};
@@ -38,7 +38,7 @@ struct SolidMesh {
 
 /// Errors: those of validate_solid, a coordinate beyond 1e9 m, a triangle without area. `where` names the
 /// triangle.
-[[nodiscard]] Result<SolidMesh> make_solid_mesh(const MeshDesc& mesh);
+[[nodiscard]] Result<ContactMesh> make_contact_mesh(const MeshDesc& mesh);
 
 /// Part of a surface.
 enum class SurfaceFeature : std::uint8_t { kFace, kEdge, kVertex };
@@ -55,13 +55,13 @@ struct SolidPoint {
 /// The nearest of all triangles, of equally near ones the first. Inside or outside is told by the normal of
 /// the face, edge or vertex (Baerentzen and Aanaes 2005, Signed distance computation using the angle weighted
 /// pseudonormal): exact for surfaces that do not cut themselves.
-[[nodiscard]] SolidPoint closest_on_solid(const SolidMesh& solid, DVec3 p, Search search);
+[[nodiscard]] SolidPoint closest_on_solid(const ContactMesh& solid, DVec3 p, Search search);
 
 /// The point of one triangle nearest to `p`; its `feature` is the face's, an edge's or a vertex'.
-[[nodiscard]] SolidPoint closest_on_face(const SolidMesh& solid, std::uint32_t triangle, DVec3 p);
+[[nodiscard]] SolidPoint closest_on_face(const ContactMesh& solid, std::uint32_t triangle, DVec3 p);
 
 /// Replaces `found` by the triangles not farther from `p` than `distance` [m], in ascending order.
-void find_near_faces(const SolidMesh& solid, DVec3 p, double distance, Search search,
+void find_near_faces(const ContactMesh& solid, DVec3 p, double distance, Search search,
                      std::vector<std::uint32_t>& found);
 
 }  // namespace hooke::geometry
