@@ -75,6 +75,24 @@ TEST_SUITE("geometry/contact_mesh") {
     }
   }
 
+  TEST_CASE("a vertex with many thin triangles on one side is outside on the other side too") {
+    // A wedge with its tip at (1, 0, 0), whose lower side is a fan of 20 triangles: the mean of the normals
+    // there points down.
+    MeshDesc wedge;
+    wedge.positions = {{1, 0, 0}, {0, Real(0.05), 0}};
+    for (int i = 0; i <= 20; ++i) wedge.positions.push_back({0, Real(-0.05), Real(0.1) * Real(i - 10)});
+    wedge.triangles = {{0, 1, 22}, {0, 2, 1}};
+    for (std::uint32_t i = 2; i < 22; ++i) {
+      wedge.triangles.push_back({0, i + 1, i});
+      wedge.triangles.push_back({1, i, i + 1});
+    }
+    const ContactMesh mesh = solid(wedge);
+    const SolidPoint place = closest_on_solid(mesh, {1.01, 0.1, 0}, Search::kTree);
+    CHECK(place.feature == SurfaceFeature::kVertex);
+    CHECK(place.index == 0);
+    CHECK(place.signed_distance == doctest::Approx(std::sqrt(0.01 * 0.01 + 0.1 * 0.1)).epsilon(1e-6));
+  }
+
   TEST_CASE("the tree finds the same place as all triangles do, to the bit") {
     std::mt19937_64 random(2);
     const ContactMesh solids[] = {solid(hooke::test::make_cube(1)), solid(hooke::test::make_ell(1)),

@@ -110,6 +110,10 @@ TEST_SUITE("geometry/transform_parts") {
       CHECK(std::fabs(parts.scale.x - scale.x) < 1e-14);
       CHECK(std::fabs(parts.scale.y - scale.y) < 1e-14);
     }
+    // With two columns left they are told from their mirror.
+    for (const DVec3& scale : {DVec3{0, 3, 4}, DVec3{2, 0, 4}}) {
+      CHECK(parts_of(make_transform(DVec3{}, q, scale)).scale.z == doctest::Approx(4));
+    }
     const Matrix4<double> zero = {{{}, {}, {}, {}}};
     CHECK(decompose(zero).rotation == Quaternion<double>{});
     CHECK(decompose(zero).scale == DVec3{});
