@@ -183,6 +183,15 @@ TEST_SUITE("geometry/bsp_solid") {
     CHECK(50 * slivers <= slivers_before);
   }
 
+  TEST_CASE("a hole too narrow for a file stays a hole rather than a pinch") {
+    // A hole of three sides, one of them short: without it the other two would lie on each other.
+    SolidMesh ring = hooke::test::make_ring(3, 0.3, 1, 0.5);
+    for (const std::size_t k : {0u, 3u}) ring.positions[4 + k] = ring.positions[k] + DVec3{0, 1e-7, 0};
+    const SolidMesh clean = hooke::geometry::without_slivers(ring, 1e-6);
+    CHECK(is_manifold(clean));
+    CHECK(volume_of(clean) == doctest::Approx(volume_of(ring)).epsilon(1e-6));
+  }
+
   TEST_CASE("the public form is the same in float, and says whose triangle is wrong") {
     const hooke::MeshDesc cube = hooke::test::make_cube(1);
     hooke::MeshDesc other = cube;

@@ -398,6 +398,12 @@ TEST_SUITE("geometry/bsp_tree") {
     CHECK(saved.error_with(saved.node(1) + 32, {0, 0, 0, 0x7F}).find("bsp.nodes[1]: a child") == 0);
     CHECK(saved.error_with(saved.node(0) + 32, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}) ==
           "bsp.nodes[1]: no node's child");
+    // The root in place of a leaf: a way without end.
+    const auto is_leaf_above = [](const auto& node) { return node.above >= hooke::geometry::kBspEmpty; };
+    const auto& nodes = saved.tree.nodes;
+    const auto leaf = std::find_if(nodes.begin(), nodes.end(), is_leaf_above) - nodes.begin();
+    CHECK(saved.error_with(saved.node(static_cast<std::size_t>(leaf)) + 32, {0, 0, 0, 0}).find(": a child") !=
+          std::string::npos);
     CHECK(saved.error_with(saved.node(0) + 40, {0, 0, 0, 0x7F}) == "bsp.nodes[0]: faces that are not there");
     // Infinite, and not of length one.
     CHECK(saved.error_with(saved.node(2) + 6, {0xF0, 0x7F}) == "bsp.nodes[2]: a plane that is none");
