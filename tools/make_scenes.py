@@ -14,12 +14,12 @@ import struct
 import sys
 
 from hook_scenes import HOOK_SCENES
+from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot, fall, fibonacci_points,
                        ground, hull_of, prism, product, promise, rotated, scaled, scene, sector, slab,
                        solid_mass, solid_moments, text_of, turn, weight_energy)
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
-PLACES = {"fig7": "paper", "bsp_walk": "paper"}  # folders of those that lie deeper
 # Written when asked for by name: above 300 kB, or not held by the solver yet. docs/decisions/0005-bodies.md
 # says what is missing.
 ON_REQUEST = {"mixpile", "gyroscope"}
@@ -99,7 +99,7 @@ def fig7():
     wedge["vertices"] = [add(one, scaled(-1, center)) for one in wedge["vertices"]]
     names = ["vertex_sphere", "sphere", "box", "oriented_box", "oriented_box_tree"]
     tilts = [turn(Z, math.radians(20 + 15 * i)) for i in range(5)]
-    made = scene(
+    return scene(
         "Figure 7 of the paper: bounding shapes",
         "Five like wedges turn as they fall from 3 m, without touching. Drawn with the shape that each is named "
         "after: hooke render scenes/paper/fig7.json -o fig7.png --at 0.3 --bounds " + ",".join(names), 0.5,
@@ -108,7 +108,6 @@ def fig7():
                              angular_velocity=[0.5, 1.5, 0.4 * i])
                         for i, name in enumerate(names))
         ], [fall(name, 3, 30) for name in names], meshes={"wedge": wedge})
-    return made | {"$schema": "../schema.json"}
 
 
 # ---- Chains of impacts ------------------------------------------------------------------------------------
@@ -798,17 +797,22 @@ def tilts_of(rotation, moments, omega):
 
 
 SCENES = [
-    slope_crate, fig1, fig7, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
+    slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
-    convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, bsp_walk, *HOOK_SCENES
+    convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES
 ]
+PAPER = [fig5, fig6, fig7, wall, rollback_room, bsp_walk]  # in the folder paper
 
 
 def main():
     check = "--check" in sys.argv[1:]
     names = [name for name in sys.argv[1:] if name != "--check"]
     wanted = [one for one in SCENES if one.__name__ in names or not names and one.__name__ not in ON_REQUEST]
-    files = {FOLDER / PLACES.get(one.__name__, "") / f"{one.__name__}.json": text_of(one()).encode() for one in wanted}
+    files = {FOLDER / f"{one.__name__}.json": text_of(one()).encode() for one in wanted}
+    for one in PAPER:
+        if not names or one.__name__ in names:
+            made = one() | {"$schema": "../schema.json"}
+            files[FOLDER / "paper" / f"{one.__name__}.json"] = text_of(made).encode()
     if not names or "hulls_on_mesh" in names:
         files[FOLDER / "models" / "hills.glb"] = hills()
     for path, content in files.items():

@@ -18,6 +18,10 @@ using Json = nlohmann::ordered_json;
 
 std::string name_of(const Simulation& simulation, const lab::ObjectReport& report) {
   for (const SceneObject& object : simulation.objects()) {
+    if (report.kind == PointRef::Kind::kNone) {
+      if (object.kind == SceneObject::Kind::kBody && object.body.slot == report.slot) return object.name;
+      continue;
+    }
     const PointRef reference = reference_of(object);
     if (reference.kind == report.kind && reference.slot == report.slot) return object.name;
   }
@@ -49,6 +53,19 @@ Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t
   return {};
 }
 
+Json json_of_collisions(const lab::CollisionReport& report) {
+  return {{"hits", report.hits},
+          {"rollbacks", report.rollbacks},
+          {"resimulated_seconds", report.resimulated_seconds},
+          {"limit_reached", report.limit_reached},
+          {"zeno", report.zeno},
+          {"deepest", report.deepest},
+          {"last_hit", report.last_hit},
+          {"candidates", report.candidates},
+          {"touching", report.touching},
+          {"backward_error", report.backward_error}};
+}
+
 std::string json_text(const Simulation& simulation, const lab::Run& run, const LaboratoryRun& options,
                       const Energy& start) {
   Json objects = Json::array();
@@ -67,6 +84,7 @@ std::string json_text(const Simulation& simulation, const lab::Run& run, const L
                        {"seconds", run.time()},
                        {"evaluations", run.evaluations()},
                        {"energy", {{"start", json_of(start)}, {"end", json_of(run.energy())}}},
+                       {"collisions", json_of_collisions(run.collisions())},
                        {"objects", objects}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -79,6 +97,16 @@ std::string summary_text(const Simulation& simulation, const lab::Run& run, cons
                   static_cast<unsigned long long>(run.evaluations()));
   text += text_of("energy    %.6g J kinetic, %.6g potential, %.6g elastic; at the start %.6g, %.6g, %.6g\n",
                   end.kinetic, end.potential, end.elastic, start.kinetic, start.potential, start.elastic);
+  const lab::CollisionReport& hits = run.collisions();
+  if (hits.candidates > 0) {
+    const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    text += text_of(
+        "collisions %llu hits, the last at %.9g s; %llu rollbacks, %.4g s taken again, %llu at the "
+        "limit, %llu Zeno; deepest overlap %.2g m; %llu of %llu pairs touched\n",
+        count(hits.hits), hits.last_hit, count(hits.rollbacks), hits.resimulated_seconds,
+        count(hits.limit_reached), count(hits.zeno), hits.deepest, count(hits.touching),
+        count(hits.candidates));
+  }
   for (const lab::ObjectReport& report : run.report()) {
     text += name_of(simulation, report) + ": " + report.stepper;
     text += text_of(", %llu steps of %.4g s", static_cast<unsigned long long>(report.steps), report.dt);

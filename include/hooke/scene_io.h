@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/lab.h"
 #include "hooke/model_io.h"
 #include "hooke/result.h"
 #include "hooke/world.h"
@@ -219,6 +220,12 @@ struct SceneAccuracy {
   double max_error = 1e-3;  ///< Of any point's position up to the end [m], positive.
 };
 
+/// What the laboratory does with the scene (`hooke run --stepper declared`).
+struct SceneLaboratory {
+  std::string stepper = "rk4";  ///< A name of lab::steppers() or "auto".
+  lab::CollisionOptions collisions = {};
+};
+
 /// A figure that the scene promises.
 struct SceneExpectation {
   enum class Quantity : std::uint8_t {
@@ -280,6 +287,7 @@ struct Scene {
   Real dt = Real(1) / Real(60);  ///< Of one step [s]. (0, 1]
   double seconds = 10;           ///< How long it runs. [0, 1e6]
   std::optional<SceneAccuracy> accuracy = {};
+  std::optional<SceneLaboratory> laboratory = {};
   std::vector<SceneMesh> meshes = {};
   std::vector<SceneMaterial> materials = {};
   std::vector<ScenePair> material_pairs = {};

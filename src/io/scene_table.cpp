@@ -92,6 +92,7 @@ std::vector<Field> scene_rows() {
       field<&Scene::accuracy>(
           "accuracy", "", kAny,
           "Of the laboratory: it then chooses method and step; without it they are given."),
+      field<&Scene::laboratory>("laboratory", "", kAny, "Its method, and how bodies collide in it."),
       field<&Scene::meshes>("meshes", "", kAny, "Triangles, by name."),
       field<&Scene::materials>("materials", "", kAny, "Looks and friction, by name."),
       field<&Scene::material_pairs>("material_pairs", "", kAny, "What two materials do to each other."),
@@ -342,11 +343,48 @@ const Kind& kind_of<SceneAccuracy>() {
   return kind;
 }
 
+template <>
+const Kind& kind_of<SceneLaboratory>() {
+  using Options = lab::CollisionOptions;
+  constexpr Rule depth = {.least = 1e-12, .most = 1};
+  static const Kind kind = {
+      .name = "laboratory",
+      .help =
+          "What the laboratory does with the scene (`hooke run --stepper declared`); the real-time solver "
+          "has no use for it.",
+      .fields =
+          {field<&SceneLaboratory::stepper>("stepper", "", kNotEmpty,
+                                            "As `rk4`, or `auto`; `hooke compare --help` lists them."),
+           field<&SceneLaboratory::collisions, &Options::collider>(
+               "collider", "", kAny,
+               "What finds collisions: all features, or as in the paper faces only, which misses edges."),
+           field<&SceneLaboratory::collisions, &Options::preselection>(
+               "preselection", "", kAny,
+               "Which pairs it is asked about: whose spheres meet, whose boxes do."),
+           field<&SceneLaboratory::collisions, &Options::search>(
+               "rollback", "", kAny,
+               "How the next try after a canceled step is found: half of it, back by depth over speed, the "
+               "root "
+               "of the distance, conservative advancement."),
+           field<&SceneLaboratory::collisions, &Options::sweep>(
+               "sweep", "", kAny,
+               "How the way is looked at: not, as in the paper; cast; cast where extruded silhouettes meet."),
+           field<&SceneLaboratory::collisions, &Options::epsilon>("epsilon", "m", depth,
+                                                                  "Depth that counts as touching."),
+           field<&SceneLaboratory::collisions, &Options::iteration_limit>(
+               "iteration_limit", "", between(1, 1000), "Tries in a row that may be canceled."),
+           field<&SceneLaboratory::collisions, &Options::regional>(
+               "regional", "", kAny, "Only bodies that meet in a step take it again.")},
+      .defaults = defaults_of<SceneLaboratory>};
+  return kind;
+}
+
 std::span<const Kind* const> all_kinds() {
   static const std::vector<const Kind*> kinds = [] {
-    std::vector<const Kind*> list = {&kind_of<Scene>(),     &kind_of<WorldDesc>(),
-                                     &kind_of<WindDesc>(),  &kind_of<SceneAccuracy>(),
-                                     &kind_of<SceneMesh>(), &kind_of<SceneMaterial>()};
+    std::vector<const Kind*> list = {&kind_of<Scene>(),           &kind_of<WorldDesc>(),
+                                     &kind_of<WindDesc>(),        &kind_of<SceneAccuracy>(),
+                                     &kind_of<SceneLaboratory>(), &kind_of<SceneMesh>(),
+                                     &kind_of<SceneMaterial>()};
     list.insert(list.end(), body_kinds().begin(), body_kinds().end());
     list.insert(list.end(), hook_kinds().begin(), hook_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());
@@ -364,6 +402,43 @@ template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>() {
   static constexpr EnumName names[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
                                        {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<lab::CollisionOptions::Collider>() {
+  using Collider = lab::CollisionOptions::Collider;
+  static constexpr EnumName names[] = {{"none", static_cast<int>(Collider::kNone)},
+                                       {"exact", static_cast<int>(Collider::kExact)},
+                                       {"faces", static_cast<int>(Collider::kFaces)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<lab::CollisionOptions::Preselection>() {
+  using Preselection = lab::CollisionOptions::Preselection;
+  static constexpr EnumName names[] = {{"none", static_cast<int>(Preselection::kNone)},
+                                       {"spheres", static_cast<int>(Preselection::kSpheres)},
+                                       {"boxes", static_cast<int>(Preselection::kBoxes)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<lab::CollisionOptions::Search>() {
+  using Search = lab::CollisionOptions::Search;
+  static constexpr EnumName names[] = {{"halving", static_cast<int>(Search::kHalving)},
+                                       {"backward", static_cast<int>(Search::kBackward)},
+                                       {"event", static_cast<int>(Search::kEvent)},
+                                       {"advancement", static_cast<int>(Search::kAdvancement)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<lab::CollisionOptions::Sweep>() {
+  using Sweep = lab::CollisionOptions::Sweep;
+  static constexpr EnumName names[] = {{"none", static_cast<int>(Sweep::kNone)},
+                                       {"cast", static_cast<int>(Sweep::kCast)},
+                                       {"extruded", static_cast<int>(Sweep::kExtruded)}};
   return names;
 }
 

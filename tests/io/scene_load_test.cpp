@@ -37,6 +37,9 @@ TEST_SUITE("io/scene_load") {
       "version": 1,  // a comment
       "world": {"gravity": [0, -1.62, 0], "substeps": 4, "wind": {"velocity": [3, 0, 0], "gusts": "paper"}},
       "dt": 0.01, "seconds": 2, "accuracy": {"max_error": 1e-4},
+      "laboratory": {"stepper": "verlet", "collider": "faces", "preselection": "spheres",
+                     "rollback": "halving", "sweep": "none", "epsilon": 1e-3, "iteration_limit": 5,
+                     "regional": false},
       "bodies": [{"shape": {"sphere": {"radius": 0.25}}, "rotation": {"axis": [0, 0, 2], "angle_deg": 90}}],
       "ropes": [{"masses": 32, "stiffness": 1e4, "stiffness_of": "segment", "extension_max": "rigid", "stepper": "rk4",
                  "pins": [0, {"point": "last", "motion": {"sine": {"amplitude": [0, 0, 0.1]}}}]}],
@@ -52,6 +55,16 @@ TEST_SUITE("io/scene_load") {
     CHECK(scene.world.gravity == hooke::Vec3{0, hooke::Real(-1.62), 0});
     CHECK(scene.world.wind.gusts == hooke::WindDesc::Gusts::kPaper);
     CHECK(scene.step_count() == 200);
+    REQUIRE(scene.laboratory.has_value());
+    const hooke::lab::CollisionOptions& collisions = scene.laboratory->collisions;
+    CHECK(scene.laboratory->stepper == "verlet");
+    CHECK(collisions.collider == hooke::lab::CollisionOptions::Collider::kFaces);
+    CHECK(collisions.preselection == hooke::lab::CollisionOptions::Preselection::kSpheres);
+    CHECK(collisions.search == hooke::lab::CollisionOptions::Search::kHalving);
+    CHECK(collisions.sweep == hooke::lab::CollisionOptions::Sweep::kNone);
+    CHECK(collisions.epsilon == doctest::Approx(1e-3));
+    CHECK(collisions.iteration_limit == 5);
+    CHECK_FALSE(collisions.regional);
     REQUIRE(scene.accuracy.has_value());
     CHECK(scene.accuracy->max_error == doctest::Approx(1e-4));
     const hooke::BodyDesc& body = scene.objects.bodies.at(0).desc;

@@ -142,10 +142,14 @@ Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepp
                           bool force) {
   const Scene& scene = simulation.scene();
   lab::Options options = {.dt = static_cast<double>(scene.dt), .force = force};
-  if (stepper == kDeclaredName) {
-    if (!scene.accuracy) {
-      return Error{ErrorCode::kOutOfRange, "--stepper", "'declared' needs 'accuracy' in the scene"};
+  if (scene.laboratory) options.collisions = scene.laboratory->collisions;
+  if (stepper == kDeclaredName && !scene.accuracy) {
+    if (!scene.laboratory) {
+      return Error{ErrorCode::kOutOfRange, "--stepper",
+                   "'declared' needs 'accuracy' or 'laboratory' in the scene"};
     }
+    options.stepper = scene.laboratory->stepper;
+  } else if (stepper == kDeclaredName) {
     options.accuracy = {.max_error = scene.accuracy->max_error, .seconds = seconds};
   } else {
     options.stepper = stepper;
@@ -160,8 +164,28 @@ Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepp
   return run;
 }
 
+/// Bodies that stand have no state in the run, and stay.
+static Result<void> show_body(const lab::Run& run, const SceneObject& object, World& world) {
+  const auto state = run.body(object.body);
+  if (!state) return {};
+  const lab::BodyState& now = state.value();
+  if (!(length(now.center) < kGone)) return Error{ErrorCode::kOutOfRange, object.name, "is gone"};
+  const Pose before = world.pose(object.body);
+  const Vec3 lever = vector_cast<Real>(world.center_of_mass(object.body) - before.position);
+  const DVec3 own = vector_cast<double>(rotate(conjugate(before.rotation), lever));
+  const auto real = [](double value) { return static_cast<Real>(value); };
+  const auto& q = now.rotation;
+  return world.set_pose(object.body,
+                        {now.center - rotate(q, own), {real(q.x), real(q.y), real(q.z), real(q.w)}});
+}
+
 Result<void> show_run(const lab::Run& run, Simulation& simulation) {
   for (const SceneObject& object : simulation.objects()) {
+    if (object.kind == SceneObject::Kind::kBody) {
+      auto moved = show_body(run, object, simulation.world());
+      if (!moved) return moved;
+      continue;
+    }
     const std::vector<DVec3> points = positions_of(run, object);
     PointRef reference = reference_of(object);
     for (std::size_t i = 0; i < points.size(); ++i) {
