@@ -17,6 +17,9 @@ PALETTE = {  # linear
     "slate": {"color": [0.10, 0.16, 0.25], "shininess": 30},
     "ivory": {"color": [0.72, 0.67, 0.55], "shininess": 60},
     "steel": {"color": [0.62, 0.64, 0.68], "shininess": 100},
+    "rose": {"color": [0.60, 0.10, 0.14], "shininess": 90},
+    "felt": {"color": [0.50, 0.62, 0.06], "shininess": 4},
+    "rubber": {"color": [0.03, 0.04, 0.06], "shininess": 60},
     "glass": {"color": [0.62, 0.72, 0.78], "shininess": 200, "opacity": 0.25},
 }
 TONES = ["sand", "clay", "moss", "slate"]  # of many like things

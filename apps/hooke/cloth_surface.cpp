@@ -74,6 +74,31 @@ ClothSurface make_model_surface(const Model& model) {
   return surface;
 }
 
+ClothSurface make_solid_surface(std::span<const Vec3> points,
+                                std::span<const std::array<std::uint32_t, 3>> triangles) {
+  // Triangles at a point that face the same of the six ways share a vertex.
+  ClothSurface surface;
+  surface.geometry = std::make_shared<render::MeshGeometry>();
+  std::map<std::pair<std::uint32_t, int>, std::uint32_t> vertex_of;
+  for (const auto& t : triangles) {
+    const Vec3 n = cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
+    const float size[3] = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+    const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+    const float along = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+    for (const std::uint32_t p : t) {
+      const auto next = static_cast<std::uint32_t>(surface.point_of.size());
+      const auto [entry, is_new] = vertex_of.try_emplace({p, 2 * axis + (along < 0 ? 1 : 0)}, next);
+      if (is_new) surface.point_of.push_back(p);
+      surface.geometry->indices.push_back(entry->second);
+    }
+  }
+  surface.geometry->vertices.resize(surface.point_of.size());
+  surface.group_of.resize(surface.point_of.size());
+  std::iota(surface.group_of.begin(), surface.group_of.end(), 0U);
+  surface.group_normals.resize(surface.point_of.size());
+  return surface;
+}
+
 void update_surface(ClothSurface& surface, std::span<const Vec3> points) {
   std::vector<render::Vertex>& vertices = surface.geometry->vertices;
   for (std::size_t i = 0; i < vertices.size(); ++i) {

@@ -12,8 +12,8 @@
 
 namespace hooke::app {
 
-/// The drawn triangles of a cloth. Several drawn vertices may follow one simulated point: where a texture has
-/// a seam they share the normal, where the model has a crease each side keeps its own.
+/// The drawn triangles of a cloth or solid. Several drawn vertices may follow one simulated point: where a
+/// texture has a seam they share the normal, where the model has a crease each side keeps its own.
 struct ClothSurface {
   std::shared_ptr<render::MeshGeometry> geometry;
   std::vector<std::uint32_t> point_of;  ///< For each vertex.
@@ -27,6 +27,11 @@ ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
 
 /// A model whose simulated vertices are the cloth's points.
 ClothSurface make_model_surface(const Model& model);
+
+/// The outer points of a solid, with an edge wherever triangles at rest meet at an angle of a right one or
+/// more.
+ClothSurface make_solid_surface(std::span<const Vec3> points,
+                                std::span<const std::array<std::uint32_t, 3>> triangles);
 
 /// The model as it stands in its file.
 std::shared_ptr<render::MeshGeometry> geometry_of(const Model& model);

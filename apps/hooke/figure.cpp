@@ -40,6 +40,8 @@ render::Color usual_color(SceneObject::Kind kind) {
       return {0.80F, 0.68F, 0.48F};
     case SceneObject::Kind::kCloth:
       return {0.30F, 0.50F, 0.72F};
+    case SceneObject::Kind::kSolid:
+      return {0.78F, 0.32F, 0.38F};
     case SceneObject::Kind::kParticles:
       return {0.90F, 0.55F, 0.25F};
     default:
@@ -148,6 +150,17 @@ void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figu
     figure.surface =
         make_grid_surface(object.columns, object.rows, simulation.world().triangles(object.cloth));
   }
+}
+
+void prepare_solid(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  if (object.model != nullptr) {
+    figure.surface = make_model_surface(*object.model);
+    return;
+  }
+  const std::vector<DVec3> places = simulation.world().surface(object.solid);
+  std::vector<Vec3> points;
+  for (const DVec3& place : places) points.push_back(vector_cast<float>(place - places.front()));
+  figure.surface = make_solid_surface(points, simulation.world().triangles(object.solid));
 }
 
 void prepare_points(const Simulation& simulation, const SceneObject& object, Figure& figure) {
@@ -296,6 +309,7 @@ Figure make_figure(const Simulation& simulation, const SceneObject& object, cons
   const Look look = {object.kind, object.material, object.look, object.model.get()};
   figure.ranges = ranges_of(simulation.scene(), look, textures);
   if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
+  if (object.kind == SceneObject::Kind::kSolid) prepare_solid(simulation, object, figure);
   prepare_points(simulation, object, figure);
   return figure;
 }
@@ -315,6 +329,7 @@ void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list
       add_rope(figure, place, list);
       break;
     case SceneObject::Kind::kCloth:
+    case SceneObject::Kind::kSolid:
       add_cloth(figure, place, list);
       break;
     case SceneObject::Kind::kParticles:

@@ -53,7 +53,7 @@ struct Figure {
   std::vector<PaintedRange> ranges;     ///< Of all but bodies; at least one.
   std::vector<FigureSolid> solids;      ///< Of a body.
   bool half_space = false;              ///< The body is one.
-  std::optional<ClothSurface> surface;  ///< Of a cloth.
+  std::optional<ClothSurface> surface;  ///< Of a cloth or solid.
   std::vector<float> radii;             ///< Of particles [m].
   std::vector<SpringDesc> springs;      ///< Of particles.
   std::vector<FigureLoad> loads;        ///< Of ropes and cloths.

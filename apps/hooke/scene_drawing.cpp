@@ -49,10 +49,11 @@ std::shared_ptr<const render::Image> SceneDrawing::find_texture(const std::strin
 
 std::shared_ptr<Figure> SceneDrawing::find_figure(const Simulation& simulation, const SceneObject& object) {
   // The ids of other kinds are null.
-  const std::uint32_t slot =
-      object.body.slot + object.rope.slot + object.cloth.slot + object.particles.slot + object.hook.slot;
+  const std::uint32_t slot = object.body.slot + object.rope.slot + object.cloth.slot + object.solid.slot +
+                             object.particles.slot + object.hook.slot;
   const std::uint32_t generation = object.body.generation + object.rope.generation + object.cloth.generation +
-                                   object.particles.generation + object.hook.generation;
+                                   object.solid.generation + object.particles.generation +
+                                   object.hook.generation;
   std::shared_ptr<Figure>& figure = figures_[{object.kind, slot, generation}];
   if (figure == nullptr) {
     figure = std::make_shared<Figure>(make_figure(
@@ -73,6 +74,10 @@ void SceneDrawing::record(const Simulation& simulation, double time) {
     if (object.kind == SceneObject::Kind::kHook) {
       const std::array<DVec3, 2> anchors = simulation.world().hook_anchors(object.hook);
       state.points.assign(anchors.begin(), anchors.end());
+      continue;
+    }
+    if (object.kind == SceneObject::Kind::kSolid) {
+      state.points = simulation.world().surface(object.solid);
       continue;
     }
     const PointView points = positions_of(simulation.world(), object);

@@ -298,6 +298,9 @@ struct ClothDesc {
   Bend bend = Bend::kAngle;
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
   bool tethers = false;  ///< Hold every point within its rest distance of the pins: inextensible cloth.
+  /// Of a closed mesh: fills it with gas, so many pascals above the air around it (101325 Pa) at the volume
+  /// it has when added; from then on (p + 101325 Pa) V stays the same. [-1e5, 1e8]
+  std::optional<Real> pressure = {};
   Real drag_coefficient = Real(1.2);  ///< Of a triangle across the flow.
   Real lift_coefficient = Real(0.6);
   Real air_friction = Real(0);  ///< Viscous drag of the whole cloth [N s/m], shared out by area.

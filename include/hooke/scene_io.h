@@ -48,7 +48,7 @@ struct ScenePair {
   MaterialPairDesc desc = {};
 };
 
-/// Triangles for bodies and cloths: a file, or vertices and triangles in place.
+/// Triangles for bodies, cloths and solids: a file, or vertices and triangles in place.
 struct SceneMesh {
   std::string name = {};
   std::string file = {};  ///< Relative to the scene file; empty when `mesh` holds the triangles.
@@ -148,6 +148,12 @@ struct SceneCloth {
   std::vector<ScenePin> pins = {};
   std::vector<SceneLoad> loads = {};
 };
+struct SceneSolid {
+  SceneTag tag = {};
+  SolidDesc desc = {};
+  std::string mesh = {};  ///< A name in Scene::meshes; empty for a box of cells.
+  std::vector<ScenePin> pins = {};
+};
 struct SceneParticles {
   SceneTag tag = {};
   ParticlesDesc desc = {};
@@ -171,6 +177,7 @@ struct SceneObjects {
   std::vector<SceneBody> bodies = {};
   std::vector<SceneRope> ropes = {};
   std::vector<SceneCloth> cloths = {};
+  std::vector<SceneSolid> solids = {};
   std::vector<SceneParticles> particles = {};
   std::vector<SceneField> fields = {};
   std::vector<SceneHook> hooks = {};
@@ -344,13 +351,14 @@ struct Loaded {
 
 /// One object of a running simulation: what to draw and how.
 struct SceneObject {
-  enum class Kind : std::uint8_t { kBody, kRope, kCloth, kParticles, kField, kHook };
+  enum class Kind : std::uint8_t { kBody, kRope, kCloth, kSolid, kParticles, kField, kHook };
 
   std::string name = {};
   Kind kind = Kind::kBody;
   BodyId body = {};  ///< The id of its kind is set, the others are null.
   RopeId rope = {};
   ClothId cloth = {};
+  SolidId solid = {};
   ParticlesId particles = {};
   FieldId field = {};
   HookId hook = {};
@@ -370,17 +378,18 @@ struct SceneObject {
 
   Shape shape = {};              ///< Of a body.
   std::vector<Part> parts = {};  ///< Of a compound body.
-  Real radius = Real(0);         ///< Of a rope's strand or a particle [m]; half a cloth's thickness.
-  double rest_length = 0;        ///< Of a rope [m].
-  std::uint32_t columns = 0;     ///< Of a cloth's grid; 0 for a mesh.
+  Real radius = Real(0);   ///< Of a rope's strand or a particle [m]; half the thickness of a cloth or solid.
+  double rest_length = 0;  ///< Of a rope [m].
+  std::uint32_t columns = 0;  ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
   HookKind hook_kind = HookKind::kBall;
   std::array<BodyId, 2> hooked = {};        ///< What a hook holds; null for the world.
   bool broken = false;                      ///< Of a hook: its id is stale.
-  std::shared_ptr<const Model> model = {};  ///< Of a mesh body or cloth; of a hull, its faces.
+  std::shared_ptr<const Model> model = {};  ///< Of a mesh body, cloth or solid; of a hull, its faces.
 };
 
-/// The points of a rope, a cloth or particles, as World::positions gives them; none for other objects.
+/// The points of a rope, a cloth, a solid or particles, as World::positions gives them; none for other
+/// objects.
 [[nodiscard]] PointView positions_of(const World& world, const SceneObject& object);
 
 /// One expectation, evaluated.

@@ -100,7 +100,7 @@ struct StepReport {
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
-  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness, and in solids.
+  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness, in solids and in gas.
 
   [[nodiscard]] double total() const { return kinetic + potential + elastic; }
 };
@@ -252,6 +252,8 @@ class World {
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
+  /// Pressure of the gas in a closed cloth above that of the air around it [Pa]; 0 for a cloth without.
+  [[nodiscard]] Real pressure(ClothId id) const;
   /// The surface of a solid [m]: the vertices of its mesh where the solid has carried them, or its outer
   /// points.
   [[nodiscard]] std::vector<DVec3> surface(SolidId id) const;

@@ -59,6 +59,7 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
       .finite("charge", static_cast<double>(desc.charge))
       .finite("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
+  if (desc.pressure) checks.in_range("pressure", static_cast<double>(*desc.pressure), -1e5, 1e8);
   if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
   check_points(checks, desc.pins, desc.loads, count);
   return checks;
@@ -262,6 +263,21 @@ void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   }
 }
 
+/// What pressure times volume the gas keeps, and the volume; an error for a surface that holds none.
+Result<void> fill_with_gas(const Surface& s, double pressure, state::Deformable& object) {
+  double volume = 0;
+  for (const Triangle& t : s.triangles) {
+    const DVec3 a = s.points[t[0]] - s.points[0];
+    volume += dot(a, cross(s.points[t[1]] - s.points[0], s.points[t[2]] - s.points[0])) / 6;
+  }
+  if (!s.topology.is_closed() || !(volume > 0)) {
+    return Error{ErrorCode::kOutOfRange, "cloth.pressure", "needs a closed mesh that faces outward"};
+  }
+  object.gas = (state::kAirPressure + pressure) * volume;
+  object.gas_volume = volume;
+  return {};
+}
+
 Points make_points(const Surface& s, const ClothDesc& desc, double total_area,
                    const std::vector<double>& share) {
   Points points(s.points.size());
@@ -319,8 +335,15 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
                    "vertex " + std::to_string(i) + " belongs to no area"};
     }
   }
+  state::Deformable filled;
+  if (desc.pressure) {
+    const Result<void> gas = fill_with_gas(surface, static_cast<double>(*desc.pressure), filled);
+    if (!gas) return gas.error();
+  }
   const Points points = make_points(surface, desc, area, share);
   state::Deformable& object = append_object(PointRef::Kind::kCloth, points, desc.pins, tables);
+  object.gas = filled.gas;
+  object.gas_volume = filled.gas_volume;
   object.friction = desc.contact.friction;
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;

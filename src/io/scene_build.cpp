@@ -17,6 +17,7 @@ class Builder {
   void build(const SceneBody& body, const std::string& path);
   void build(const SceneRope& rope, const std::string& path);
   void build(const SceneCloth& cloth, const std::string& path);
+  void build(const SceneSolid& solid, const std::string& path);
   void build(const SceneParticles& particles, const std::string& path);
   void build(const SceneField& field, const std::string& path);
   void build(const SceneHook& hook, const std::string& path);
@@ -318,6 +319,31 @@ void Builder::build(const SceneCloth& cloth, const std::string& path) {
   }
 }
 
+void Builder::build(const SceneSolid& solid, const std::string& path) {
+  SolidDesc desc = solid.desc;
+  std::shared_ptr<const Model> model;
+  if (!solid.mesh.empty()) {
+    desc.mesh = data_.models[solid.mesh].id;
+    model = data_.models[solid.mesh].model;
+  }
+  desc.contact.friction = friction_of(solid.tag);
+  for (std::size_t i = 0; i < solid.tag.array.count() && !full(); ++i) {
+    desc.position = solid.desc.position + solid.tag.array.offset(i);
+    SceneObject object = make_object(solid.tag, SceneObject::Kind::kSolid, path, i);
+    object.radius = Real(0.5) * desc.thickness;
+    object.model = model;
+    const Result<SolidId> added = data_.world.add_solid(desc);
+    if (!keep(object, &SceneObject::solid, added)) return;
+    // The lattice in a mesh is known only now.
+    std::vector<DVec3> points(data_.world.positions(added.value()).size());
+    for (std::size_t k = 0; k < points.size(); ++k) points[k] = data_.world.positions(added.value())[k];
+    if (!reserve(points.size(), path)) return;
+    for (const PinDesc& pin : pins_of(solid.pins, points, 0, path)) {
+      (void)data_.world.pin(point(added.value(), pin.point), pin.motion);  // a motion that was checked
+    }
+  }
+}
+
 void Builder::build(const SceneParticles& particles, const std::string& path) {
   ParticlesDesc desc = particles.desc;
   std::vector<DVec3> points;
@@ -437,6 +463,7 @@ void build_objects(const SceneObjects& objects, const std::string& prefix, Simul
   build_list(builder, objects.bodies, prefix + "bodies");
   build_list(builder, objects.ropes, prefix + "ropes");
   build_list(builder, objects.cloths, prefix + "cloths");
+  build_list(builder, objects.solids, prefix + "solids");
   build_list(builder, objects.particles, prefix + "particles");
   build_list(builder, objects.fields, prefix + "fields");
   build_list(builder, objects.hooks, prefix + "hooks");
@@ -456,6 +483,8 @@ PointRef point_of(const World& world, const SceneObject& object, ScenePoint want
       return point(object.rope, index(world.positions(object.rope).size()));
     case SceneObject::Kind::kCloth:
       return point(object.cloth, index(world.positions(object.cloth).size()));
+    case SceneObject::Kind::kSolid:
+      return point(object.solid, index(world.positions(object.solid).size()));
     case SceneObject::Kind::kParticles:
       return point(object.particles, index(world.positions(object.particles).size()));
     default:

@@ -83,7 +83,7 @@ class Checker {
 
 bool has_points(SceneObject::Kind kind) {
   return kind == SceneObject::Kind::kRope || kind == SceneObject::Kind::kCloth ||
-         kind == SceneObject::Kind::kParticles;
+         kind == SceneObject::Kind::kSolid || kind == SceneObject::Kind::kParticles;
 }
 
 std::size_t saturated_product(std::size_t a, std::size_t b) {
@@ -125,6 +125,10 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
   for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
     const SceneCloth& cloth = objects.cloths[i];
     add(cloth.tag, indexed(prefix + "cloths", i), SceneObject::Kind::kCloth, point_count(cloth));
+  }
+  for (std::size_t i = 0; i < objects.solids.size(); ++i) {
+    const SceneSolid& solid = objects.solids[i];
+    add(solid.tag, indexed(prefix + "solids", i), SceneObject::Kind::kSolid, point_count(solid));
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     const SceneParticles& particles = objects.particles[i];
@@ -190,6 +194,11 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
     const std::string path = indexed(prefix + "cloths", i);
     check_tag(objects.cloths[i].tag, path);
     check_mesh_name(objects.cloths[i].mesh, path + ".mesh");
+  }
+  for (std::size_t i = 0; i < objects.solids.size(); ++i) {
+    const std::string path = indexed(prefix + "solids", i);
+    check_tag(objects.solids[i].tag, path);
+    check_mesh_name(objects.solids[i].mesh, path + ".mesh");
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     check_tag(objects.particles[i].tag, indexed(prefix + "particles", i));
@@ -479,6 +488,10 @@ void Checker::check_points(const SceneObjects& objects, const std::string& prefi
     check_pins(cloth.pins, point_count(cloth), cloth.mesh.empty() ? &cloth.desc : nullptr, path);
     check_loads(cloth.loads, point_count(cloth), path);
   }
+  for (std::size_t i = 0; i < objects.solids.size(); ++i) {
+    const std::string path = indexed(prefix + "solids", i);
+    if (!is_damaged(path)) check_pins(objects.solids[i].pins, point_count(objects.solids[i]), nullptr, path);
+  }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     const SceneParticles& particles = objects.particles[i];
     const std::string path = indexed(prefix + "particles", i);
@@ -511,6 +524,9 @@ void Checker::count_points(const SceneObjects& objects, const std::string& prefi
   }
   for (std::size_t i = 0; i < objects.cloths.size(); ++i) {
     count(objects.cloths[i].tag.array, point_count(objects.cloths[i]), indexed(prefix + "cloths", i));
+  }
+  for (std::size_t i = 0; i < objects.solids.size(); ++i) {
+    count(objects.solids[i].tag.array, point_count(objects.solids[i]), indexed(prefix + "solids", i));
   }
   for (std::size_t i = 0; i < objects.particles.size(); ++i) {
     const SceneParticles& particles = objects.particles[i];
@@ -549,6 +565,18 @@ std::size_t point_count(const SceneCloth& cloth) {
   if (!cloth.mesh.empty()) return 0;
   return static_cast<std::size_t>(std::max(cloth.desc.columns, 0)) *
          static_cast<std::size_t>(std::max(cloth.desc.rows, 0));
+}
+
+std::size_t point_count(const SceneSolid& solid) {
+  if (!solid.mesh.empty()) return 0;
+  std::size_t corners = 1;
+  std::size_t centers = 1;
+  for (const std::int32_t cells : solid.desc.cells) {
+    const auto count = static_cast<std::size_t>(std::max(cells, 0));
+    corners = saturated_product(corners, count + 1);
+    centers = saturated_product(centers, count);
+  }
+  return corners + centers;
 }
 
 std::size_t point_count(const SceneParticles& particles) {

@@ -18,9 +18,11 @@ struct CopyName {
 };
 [[nodiscard]] std::optional<CopyName> take_copy_name(const std::string& name);
 
-/// Number of points of one instance; 0 for the cloth of a mesh, which is known once the mesh is read.
+/// Number of points of one instance; 0 for the cloth or solid of a mesh, which is known once the mesh is
+/// read.
 [[nodiscard]] std::size_t point_count(const SceneRope& rope);
 [[nodiscard]] std::size_t point_count(const SceneCloth& cloth);
+[[nodiscard]] std::size_t point_count(const SceneSolid& solid);
 [[nodiscard]] std::size_t point_count(const SceneParticles& particles);
 
 /// A file named in a scene, from the folder of the scene. An Error if it is outside of that folder.

@@ -22,6 +22,8 @@ PointView velocities_of(const World& world, const SceneObject& object) {
       return world.velocities(object.rope);
     case SceneObject::Kind::kCloth:
       return world.velocities(object.cloth);
+    case SceneObject::Kind::kSolid:
+      return world.velocities(object.solid);
     case SceneObject::Kind::kParticles:
       return world.velocities(object.particles);
     default:
@@ -230,6 +232,8 @@ PointView positions_of(const World& world, const SceneObject& object) {
       return world.positions(object.rope);
     case SceneObject::Kind::kCloth:
       return world.positions(object.cloth);
+    case SceneObject::Kind::kSolid:
+      return world.positions(object.solid);
     case SceneObject::Kind::kParticles:
       return world.positions(object.particles);
     default:

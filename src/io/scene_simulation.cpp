@@ -37,6 +37,7 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
     data.world.remove(object.body);
     data.world.remove(object.rope);
     data.world.remove(object.cloth);
+    data.world.remove(object.solid);
     data.world.remove(object.particles);
     data.world.remove(object.field);
     data.world.remove(object.hook);

@@ -59,6 +59,7 @@ std::vector<Field> object_rows() {
       field<Prefix..., &SceneObjects::bodies>("bodies", "", kAny, "Rigid bodies, still or moving."),
       field<Prefix..., &SceneObjects::ropes>("ropes", "", kAny, "Ropes, strings, hair."),
       field<Prefix..., &SceneObjects::cloths>("cloths", "", kAny, "Cloths, flags, soft shells."),
+      field<Prefix..., &SceneObjects::solids>("solids", "", kAny, "Soft solids: jelly, rubber."),
       field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
       field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle."),
       field<Prefix..., &SceneObjects::hooks>("hooks", "", kAny, "What holds bodies together."),
@@ -122,8 +123,9 @@ const Kind& kind_of<WorldDesc>() {
       .fields =
           {field<&WorldDesc::gravity>("gravity", "m/s^2", kAny, "Acceleration of everything."),
            field<&WorldDesc::substeps>("substeps", "", passes, "Solver passes per step; more is stiffer."),
-           field<&WorldDesc::particle_substeps>("particle_substeps", "", passes,
-                                                "Passes over ropes, cloths, particles in each substep."),
+           field<&WorldDesc::particle_substeps>(
+               "particle_substeps", "", passes,
+               "Passes over ropes, cloths, solids, particles in each substep."),
            field<&WorldDesc::workers>("workers", "", passes, "Threads. The result does not depend on it."),
            field<&WorldDesc::wind>("wind", "", kAny, "Moving air."),
            field<&WorldDesc::contact_hz>("contact_hz", "Hz", between(0.1, 1000),

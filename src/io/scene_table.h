@@ -78,6 +78,8 @@ const Kind& kind_of<SceneRope>();
 template <>
 const Kind& kind_of<SceneCloth>();
 template <>
+const Kind& kind_of<SceneSolid>();
+template <>
 const Kind& kind_of<SceneParticles>();
 template <>
 const Kind& kind_of<ParticleDesc>();

@@ -220,6 +220,8 @@ std::vector<Field> cloth_rows() {
                                              "Largest relative extension of a stretch spring."),
       field<desc, &ClothDesc::tethers>("tethers", "", kAny,
                                        "Hold every point within its rest distance of the pins."),
+      field<desc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
+                                        "Of gas in a closed mesh, above that of the air, at the start."),
       field<desc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
                                                 "Of a triangle across the flow."),
       field<desc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
@@ -230,6 +232,35 @@ std::vector<Field> cloth_rows() {
       field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
       field<desc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
       field<desc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+  };
+}
+
+std::vector<Field> solid_rows() {
+  constexpr auto desc = &SceneSolid::desc;
+  return {
+      field<desc, &SolidDesc::cells>("cells", "", between(1, 256), "Of the box along x, y, z."),
+      field<desc, &SolidDesc::size>("size", "m", kAny, "Of the box about `position`, each positive."),
+      field<&SceneSolid::mesh>("mesh", "", kNotEmpty,
+                               "Replaces the box: the name in `meshes` of a closed surface that is filled."),
+      field<desc, &SolidDesc::cell>("cell", "m", kPositive,
+                                    "Size of the cells that fill a mesh; thinner parts are lost."),
+      field<desc, &SolidDesc::position>("position", "m", kAny, "Of the box's center or the mesh's frame."),
+      field<desc, &SolidDesc::rotation>("rotation", "", kAny, "Of the same."),
+      field<desc, &SolidDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+      field<desc, &SolidDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `density`."),
+      field<desc, &SolidDesc::young_modulus>("young_modulus", "Pa", kPositive,
+                                             "Stiffness; more than a substep carries acts as what it does."),
+      field<desc, &SolidDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
+                                             "How far it narrows when it is pulled; near 0.5 it keeps its "
+                                             "volume."),
+      field<desc, &SolidDesc::damping>("damping", "s", between(0, 0.1), "Viscosity over stiffness."),
+      field<desc, &SolidDesc::thickness>("thickness", "m", kPositive,
+                                         "Points keep half of it from what they touch."),
+      field<desc, &SolidDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                            "Viscous drag of the whole solid, shared out by volume."),
+      field<&SceneSolid::pins>("pins", "", kAny, "Points that are held."),
+      field<desc, &SolidDesc::charge>("charge", "C", kAny, "Shared out by volume."),
+      field<desc, &SolidDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
 }
 
@@ -273,6 +304,13 @@ template <>
 const Kind& kind_of<SceneCloth>() {
   static const Kind kind = make_object_kind<SceneCloth>(
       "cloth", "A surface of point masses: a grid, or the triangles of a mesh.", cloth_rows());
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneSolid>() {
+  static const Kind kind = make_object_kind<SceneSolid>(
+      "solid", "A soft solid of tetrahedra: a box of cells, or the inside of a closed mesh.", solid_rows());
   return kind;
 }
 
@@ -370,6 +408,7 @@ const Kind& kind_of<SceneField>() {
 std::span<const Kind* const> object_kinds() {
   static const std::array kinds = {&kind_of<SceneRope>(),
                                    &kind_of<SceneCloth>(),
+                                   &kind_of<SceneSolid>(),
                                    &kind_of<SceneParticles>(),
                                    &kind_of<ParticleDesc>(),
                                    &kind_of<SpringDesc>(),

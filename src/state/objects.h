@@ -14,6 +14,8 @@
 
 namespace hooke::state {
 
+inline constexpr double kAirPressure = 101325;  ///< Of the air around closed cloths [Pa].
+
 /// Rows [first, first + count) of a table.
 struct Rows {
   std::uint32_t first = 0;
@@ -44,6 +46,8 @@ struct Deformable {
   Rows segments = {};
   Rows tetrahedra = {};
   std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
+  double gas = 0;         ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
+  double gas_volume = 0;  ///< V when it was filled [m^3].
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

@@ -159,6 +159,20 @@ double measure_tetrahedra(const Tables& t) {
   return energy;
 }
 
+/// Work to press the gas to where it is, against the air around; least where both are equal.
+double measure_gas(const Tables& t) {
+  double energy = 0;
+  solver::GasVolume gas;
+  for (const state::Deformable& object : t.objects) {
+    if (!(object.gas > 0)) continue;
+    solver::measure_gas(object, t.triangles, t.particles, gas);
+    const double calm = object.gas / state::kAirPressure;  // its volume at the pressure around
+    const double volume = std::max(gas.volume, 1e-3 * object.gas_volume);
+    energy += state::kAirPressure * (volume - calm) - object.gas * std::log(volume / calm);
+  }
+  return energy;
+}
+
 }  // namespace
 
 Measurement World::measure() const {
@@ -167,8 +181,8 @@ Measurement World::measure() const {
   Stretch stretch;
   measure_particles(t, m);
   measure_bodies(t, m);
-  m.energy.elastic =
-      measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) + measure_tetrahedra(t);
+  m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
+                     measure_tetrahedra(t) + measure_gas(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks)

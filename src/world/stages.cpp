@@ -73,6 +73,11 @@ void refresh_derived(WorldData& world) {
   solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
+  world.gas_objects.clear();
+  for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
+    if (tables.objects[i].gas > 0) world.gas_objects.push_back(i);
+  }
+  world.gas_volumes.resize(world.gas_objects.size());
   world.chains.clear();
   for (const state::Deformable& object : tables.objects) {
     if (object.kind != PointRef::Kind::kRope) continue;
@@ -203,8 +208,15 @@ void rebase_origins(WorldData& world) {
   }
 }
 
-void solve_solids(WorldData& world) {
+void solve_solids(WorldData& world, Real h) {
   for_tetrahedra(world, solver::solve_tetrahedra);
+  state::Tables& tables = world.tables;
+  for_ranges(*world.pool, static_cast<int>(world.gas_objects.size()), 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, static_cast<double>(h),
+                        world.gas_volumes[i], tables.particles);
+    }
+  });
 }
 
 void end_step(WorldData& world, double dt, StepReport& report) {

@@ -23,8 +23,8 @@ void apply_wind(WorldData& world, Real h);
 void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
 
-/// Tetrahedra of solids, color after color.
-void solve_solids(WorldData& world);
+/// Tetrahedra of solids, color after color; then the gas in closed cloths.
+void solve_solids(WorldData& world, Real h);
 
 /// The force and torque on bodies for the substep that begins at `time`: what was given for the step, and
 /// what the user's laws over bodies ask for.

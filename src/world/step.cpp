@@ -117,7 +117,7 @@ void substep_particles(WorldData& w, double time, Real h) {
   });
   solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   solve_bends(w);
-  world::solve_solids(w);
+  world::solve_solids(w, h);
   solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { solver::solve_contacts(t.objects, rows, h, t.contacts, t.particles); });

@@ -6,6 +6,7 @@
 #include "build/build.h"
 #include "geometry/triangle_mesh.h"
 #include "solver/forces.h"
+#include "solver/gas.h"
 #include "solver/wind.h"
 #include "world/hooks.h"
 #include "world/objects.h"
@@ -225,6 +226,14 @@ std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
     result.push_back({point_of[a - first], point_of[b - first], point_of[c - first]});
   }
   return result;
+}
+
+Real World::pressure(ClothId id) const {
+  const std::uint32_t row = data_->tables.cloth_slots.find(id);
+  if (row == data_->tables.cloth_slots.kNone || !(data_->tables.objects[row].gas > 0)) return Real(0);
+  solver::GasVolume gas;
+  solver::measure_gas(data_->tables.objects[row], data_->tables.triangles, data_->tables.particles, gas);
+  return static_cast<Real>(solver::gas_pressure(data_->tables.objects[row], gas.volume));
 }
 
 std::vector<DVec3> World::surface(SolidId id) const {

@@ -8,6 +8,7 @@
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
 #include "solver/chains.h"
+#include "solver/gas.h"
 #include "solver/hard_islands.h"
 #include "solver/joints.h"
 #include "solver/spring_blocks.h"
@@ -39,6 +40,8 @@ struct WorldData {
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
   solver::TetrahedronRows tetrahedra;
+  std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
+  std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;
   std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
 

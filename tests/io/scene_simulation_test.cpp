@@ -177,6 +177,50 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(holds("spoke[1]", "bodies[0]", "link[3]")[1] == hooke::DVec3{0, -3, 0});
   }
 
+  TEST_CASE("solids have pins by place, copies, points by number, and go when they are told") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1, "seconds": 1,
+      "meshes": {"kite": {"vertices": [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
+        "triangles": [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]}},
+      "solids": [
+        {"name": "jelly", "cells": [2, 3, 2], "size": [0.2, 0.3, 0.2], "pins": [{"topmost": 0.01}],
+         "array": {"grid": [2, 1, 1], "spacing": [1, 1, 1]}},
+        {"name": "kite", "mesh": "kite", "cell": 0.4, "poisson_ratio": 0.3}],
+      "timeline": [{"at_step": 20, "remove": "kite"}],
+      "expect": [{"quantity": "height", "of": "jelly[1]", "point": "last", "op": "<", "value": 0.2}]
+    })");
+    REQUIRE(simulation.objects().size() == 3);
+    const hooke::SceneObject* jelly = simulation.find("jelly[1]");
+    REQUIRE(jelly != nullptr);
+    CHECK(hooke::positions_of(simulation.world(), *jelly).size() == 3 * 4 * 3 + 12);
+    const hooke::SolidId kite = simulation.find("kite")->solid;
+    CHECK(simulation.world().surface(kite).size() == 6);
+    step(simulation, 30);
+    CHECK(simulation.find("kite") == nullptr);
+    CHECK(simulation.world().surface(kite).empty());
+    // The top hangs where it was, the rest under it.
+    const hooke::DVec3 top = hooke::positions_of(simulation.world(), *jelly)[9];
+    CHECK(top.y == doctest::Approx(0.15));
+    CHECK(simulation.check(0).passed);
+  }
+
+  TEST_CASE("what is wrong with a solid stands at its place in the file") {
+    const auto first_error = [](const std::string& solid) {
+      auto scene =
+          hooke::parse_scene(R"({"version": 1, "seconds": 1, "solids": [)" + solid + "]}", "demo.json");
+      if (!scene) return hooke::to_line(scene.errors.front());
+      const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+      return simulation ? std::string() : hooke::to_line(simulation.errors.front());
+    };
+    CHECK(first_error(R"({"poisson_ratio": 0.5})").find("solids[0].poisson_ratio") != std::string::npos);
+    CHECK(first_error(R"({"cells": [0, 1, 1]})").find("solids[0].cells") != std::string::npos);
+    CHECK(first_error(R"({"size": [1, -1, 1]})").find("solids[0].size") != std::string::npos);
+    CHECK(first_error(R"({"mesh": "none"})").find("solids[0].mesh") != std::string::npos);
+    CHECK(first_error(R"({"pins": [{"row": 0}]})").find("solids[0].pins[0]") != std::string::npos);
+    CHECK(first_error(R"({"pins": [27]})").find("solids[0].pins[0]") == std::string::npos);
+    CHECK(first_error(R"({"pins": [200]})").find("solids[0].pins[0]") != std::string::npos);
+  }
+
   TEST_CASE("an array is removed as a whole, and its hooks with it") {
     hooke::Simulation simulation = simulate(R"({
       "version": 1,

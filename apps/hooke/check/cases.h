@@ -51,6 +51,12 @@ Rows conical_pendulum(const CheckSetting& setting);
 Rows capstan(const CheckSetting& setting);
 Rows sliding_block(const CheckSetting& setting);
 
+// cases_solids.cpp: tetrahedra
+Rows pulled_bar(const CheckSetting& setting);
+Rows hanging_bar(const CheckSetting& setting);
+Rows cantilever(const CheckSetting& setting);
+Rows jelly_wave(const CheckSetting& setting);
+
 // cases_time.cpp: the same physics at any rate
 Rows display_rate(const CheckSetting& setting);
 Rows overload(const CheckSetting& setting);

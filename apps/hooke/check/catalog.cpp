@@ -63,6 +63,9 @@ const std::vector<CheckCase>& check_cases() {
       {"V59", "Pairs without a clear normal", degenerate_pairs},
       {"V60", "Seams in floors", seams_in_floors},
       {"V61", "Dominoes at any scale", domino_scaling},
+      {"V62", "Cantilever of jelly", cantilever},
+      {"V70", "Bar of jelly under its own weight", hanging_bar},
+      {"V71", "Pulled bar of jelly", pulled_bar},
       {"V86", "Any display rate", display_rate, 2e-4, 1.0 / 60},
       {"V91", "Order by halving the step", orders, 1.0 / 60},
       {"V92", "Overload", overload, 2e-4, 1.0 / 60},
@@ -83,6 +86,7 @@ const std::vector<CheckCase>& check_cases() {
       {"I14", "Motors of hooks", hook_motors},
       {"I15", "Springs of hooks", hook_springs},
       {"I16", "Resistance to rolling and spinning", resisted_balls},
+      {"I17", "Wave in a bar of jelly", jelly_wave},
       {"I20", "Rollback in the laboratory", rollback},
   };
   return cases;

@@ -69,6 +69,7 @@ class Rig {
 
   RopeId add(const RopeDesc& desc) { return must(world_.add_rope(desc)); }
   ClothId add(const ClothDesc& desc) { return must(world_.add_cloth(desc)); }
+  SolidId add(const SolidDesc& desc) { return must(world_.add_solid(desc)); }
   ParticlesId add(const ParticlesDesc& desc) { return must(world_.add_particles(desc)); }
   BodyId add(BodyDesc desc);
 
@@ -82,6 +83,7 @@ class Rig {
   [[nodiscard]] std::vector<DVec3> positions(IdType id) const {
     return run_ ? run_->positions(id) : copy_points(world_.positions(id));
   }
+  [[nodiscard]] std::vector<DVec3> positions(SolidId id) const { return copy_points(world_.positions(id)); }
   template <class IdType>
   [[nodiscard]] std::vector<DVec3> velocities(IdType id) const {
     return run_ ? run_->velocities(id) : copy_points(world_.velocities(id));

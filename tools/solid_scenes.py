@@ -1,0 +1,144 @@
+"""Scenes of soft solids and of balls with gas in them; make_scenes.py writes them."""
+import math
+
+from scene_kit import DT, G, X, Z, body, box, fall, ground, promise, scene, turn
+
+
+def icosphere(radius, levels):
+    """An octahedron, each triangle cut in four `levels` times, its points on the sphere."""
+    points = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+    triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
+    for _ in range(levels):
+        middles, finer = {}, []
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                p = [x + y for x, y in zip(points[a], points[b])]
+                size = math.sqrt(sum(x * x for x in p))
+                middles[key] = len(points)
+                points.append([x / size for x in p])
+            return middles[key]
+
+        for a, b, c in triangles:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            finer += [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        triangles = finer
+    return {"vertices": [[radius * x for x in p] for p in points], "triangles": triangles}
+
+
+def torus(ring, tube, around, across):
+    """About the y axis."""
+    vertices, triangles = [], []
+    for i in range(around):
+        a = 2 * math.pi * i / around
+        for k in range(across):
+            b = 2 * math.pi * k / across
+            r = ring + tube * math.cos(b)
+            vertices.append([r * math.cos(a), tube * math.sin(b), r * math.sin(a)])
+            p, q = i * across + k, i * across + (k + 1) % across
+            s, t = (p + across) % (around * across), (q + across) % (around * across)
+            triangles += [[p, q, t], [p, t, s]]
+    return {"vertices": vertices, "triangles": triangles}
+
+
+def at_point(quantity, op, value, of, point, tolerance=None, at_step=None):
+    return promise(quantity, op, value, of, tolerance, at_step) | {"point": point}
+
+
+def falling_point(height, step, of, point):
+    """As scene_kit.fall, of one point."""
+    drop = G * (step * DT)**2 / 2
+    return at_point("height", "==", height - drop, of, point, 0.01 * drop, step)
+
+
+CENTER = 6**3 + 62  # the middle cell of 5 x 5 x 5
+
+
+def jelly_cube():
+    edge, stiffness, step = 0.4, 5e4, 20
+    slope = math.atan(0.3)
+    cube = {"material": "rose", "cells": [5, 5, 5], "size": [edge] * 3, "young_modulus": stiffness, "damping": 0.01}
+    # A column of height H shortens by rho g H^2 / 2 E under its own weight.
+    sag = 1000 * G * edge**2 / (2 * stiffness)
+    on_slope = [1.1 + 0.25 * math.sin(slope), 0.3 + 0.25 * math.cos(slope), 0]
+    return scene(
+        "Jelly cubes",
+        "A cube of jelly, E = 50 kPa and almost incompressible, falls 1 m, squashes, jumps and comes to rest "
+        "shortened by nearly rho g H^2 / 2 E = 16 mm. Another one stays on a slope of tan = 0.3 by friction.", 4,
+        [1.9, 1.3, 2.6], [0.4, 0.35, 0], {"ground": {"friction": 0.6}, "slate": {"friction": 0.6}, "rose": {"friction": 0.6}}, [
+            ground(),
+            body("slope", "slate", box(0.7, 0.05, 0.5), [1.1, 0.25, 0], "static", rotation=turn(Z, slope))
+        ], [
+            falling_point(1.2, step, "falling", CENTER),
+            # Points rest 2 mm above the ground. The foot, held by friction, gives way less than the rest.
+            promise("highest", ">", edge + 0.002 - sag, "falling"),
+            promise("highest", "<", edge + 0.002 - 0.55 * sag, "falling"),
+            promise("lowest", ">", -0.001, "falling"),
+            at_point("height", ">", 0.4, "leaning", CENTER),
+            at_point("x", "==", on_slope[0], "leaning", CENTER, 0.1),
+            promise("kinetic_energy", "<", 0.02),
+            promise("penetration", "<", 0.002),
+            promise("contacts", ">", 40)
+        ], world={"particle_substeps": 2}, solids=[
+            {"name": "falling"} | cube | {"position": [0, 1.2, 0]},
+            {"name": "leaning"} | cube | {"position": on_slope, "rotation": turn(Z, slope)}
+        ])
+
+
+def jelly_model():
+    """Two rings of jelly: one falls and lies, one hangs by its top."""
+    ring, tube, lean, step = 0.3, 0.12, 1.2, 15
+    jelly = {"mesh": "ring", "cell": 0.08, "young_modulus": 1e5, "poisson_ratio": 0.4, "damping": 0.01}
+    return scene(
+        "Rings of jelly",
+        "A closed mesh filled with a lattice of tetrahedra that carries the mesh along. One ring falls on its edge, "
+        "squashes, tips over and lies; one hangs by its top and is drawn out by its weight.", 5, [1.9, 1.2, 2.3],
+        [0.35, 0.45, 0], {
+            "ground": {"friction": 0.6},
+            "rose": {},
+            "moss": {}
+        }, [ground()], [
+            promise("lowest", "==", 1 - ring * math.sin(lean) - tube - G * (step * DT)**2 / 2, "falling", 0.004, step),
+            promise("highest", "==", 2 * tube, "falling", 0.02),
+            promise("lowest", ">", -0.001, "falling"),
+            # At rest 0.58; half the gravity would draw it out half as far.
+            promise("lowest", "==", 0.492, "hanging", 0.015),
+            promise("kinetic_energy", "<", 0.02),
+            promise("penetration", "<", 0.002)
+        ], meshes={"ring": torus(ring, tube, 32, 16)}, solids=[
+            {"name": "falling", "material": "rose"} | jelly | {
+                "position": [0, 1.0, 0], "rotation": turn(X, lean)},
+            {"name": "hanging", "material": "moss"} | jelly | {
+                "position": [1.0, 1.0, 0], "rotation": turn(X, math.pi / 2), "pins": [{"topmost": 0.03}]}
+        ])
+
+
+def dropped_ball(title, description, ball, look, rebound, tolerance, apex, passes):
+    """A ball with gas in it dropped from 100 inches, as the rules of its game have it."""
+    start, radius = 2.54, ball.pop("radius")
+    ball |= {"name": "ball", "material": look, "mesh": "ball", "position": [0, start + radius, 0]}
+    return scene(
+        title, description, apex * DT, [0.4, 0.8, 1.9], [0, 0.6, 0], {"ground": {"friction": 0.6}, look: {}},
+        [ground()], [
+            promise("lowest", "==", start - G * (0.5)**2 / 2, "ball", 0.03, 30),
+            promise("lowest", "==", rebound, "ball", tolerance, apex),
+            promise("penetration", "<", 0.001),
+        ], world={"substeps": 16, "particle_substeps": passes}, meshes={"ball": icosphere(radius, 3)}, cloths=[ball])
+
+
+def tennis_ball():
+    ball = {"radius": 0.033, "total_mass": 0.0577, "pressure": 82700, "thickness": 0.001, "stretch_stiffness": 30000,
+            "shear_stiffness": 0, "bend_stiffness": 0.02, "bend_damping": 0.0006, "damping": 3, "drag_coefficient": 0, "lift_coefficient": 0}
+    return dropped_ball("Tennis ball", "Rubber and felt with gas at 12 psi. From 100 inches on concrete the rules "
+                        "ask for a rebound of 1.35 to 1.47 m.", ball, "felt", 1.41, 0.06, 76, 32)
+
+
+def squash_ball():
+    ball = {"radius": 0.02, "total_mass": 0.024, "pressure": 0, "thickness": 0.001, "stretch_stiffness": 7000,
+            "shear_stiffness": 0, "bend_stiffness": 0.02, "damping": 7, "drag_coefficient": 0, "lift_coefficient": 0}
+    return dropped_ball("Squash ball", "Rubber of 4 mm, warm. From 100 inches the rules ask for a rebound of 26 to "
+                        "33 %, 0.66 to 0.84 m.", ball, "rubber", 0.75, 0.09, 66, 8)
+
+
+SOLID_SCENES = [jelly_cube, jelly_model, tennis_ball, squash_ball]
