@@ -102,7 +102,7 @@ constexpr const char* kEverything = R"({
     {"name": "cloth", "columns": 4, "rows": 3, "corner": [0, 1, 0], "column_direction": [0, 0, 1],
      "row_direction": [1, 0, 0], "width": 2, "height": 3, "areal_density": 0.3, "thickness": 0.01,
      "stretch_stiffness": "rigid", "shear_stiffness": 100, "bend_stiffness": 0.5, "damping": 0.1,
-     "bend_damping": 0.2, "bend": "none", "extension_max": 0.1, "tethers": true, "drag_coefficient": 1,
+     "bend_damping": 0.2, "bend": "none", "extension_max": 0.1, "tethers": true, "pressure": 500, "drag_coefficient": 1,
      "lift_coefficient": 0, "air_friction": 0.1, "pins": [{"column": "last"}, {"row": 1}, {"topmost": 0}],
      "loads": [{"point": 1, "mass": 1}], "charge": 1, "velocity": [1, 0, 0]},
     {"mesh": "inline", "position": [0, 1, 0], "rotation": [1, 0, 0, 0], "total_mass": 1}],
@@ -122,6 +122,10 @@ constexpr const char* kEverything = R"({
     {"kind": "six_degrees", "b": "top[1]", "anchor": [0, 0, 0], "freedoms": [{"locked": true}, {"locked": false},
      {"locked": false, "limits": {"upper": 1}}, {"locked": true, "spring": {"target": 0.25}}, {"locked": false},
      {"locked": false, "spring": {"stiffness": 2}}]}],
+  "solids": [
+    {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
+     "damping": 0.0625, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
+    {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],
   "timeline": [
     {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},
     {"at_step": 2, "remove": "late"},
