@@ -108,7 +108,6 @@ void apply_forces(WorldData& w, double time, Real h) {
 void substep_particles(WorldData& w, double time, Real h) {
   state::Tables& t = w.tables;
   apply_forces(w, time, h);
-
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { collision::update_contacts(rows, t); });
   for_ranges(*w.pool, static_cast<int>(w.chains.size()), kChainGrain, [&](Range rows) {
