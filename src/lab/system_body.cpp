@@ -73,6 +73,7 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   system.velocity_dependent_ = true;  // by the gyroscopic term
   if (bodies.force[row] != Vec3{} || bodies.torque[row] != Vec3{})
     system.left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
+  if (!tables.hooks.empty()) system.left_out_.emplace_back("hooks: they do not hold bodies here");
   return system;
 }
 

@@ -272,6 +272,25 @@ TEST_SUITE("lab/collisions") {
     CHECK(top == doctest::Approx(0.25).epsilon(1e-4));
   }
 
+  TEST_CASE("a ball and a box come down on a mesh as on a plane") {
+    World world = make_world();
+    MeshDesc floor;
+    for (const double x : {-4.0, 4.0}) {
+      for (const double z : {-4.0, 4.0}) floor.positions.push_back(vector_cast<Real>(DVec3{x, 0, z}));
+    }
+    floor.triangles = {{0, 1, 2}, {1, 3, 2}};
+    take(world.add_body({.shape = Shape::of_mesh(take(world.add_mesh(floor)))}));
+    const BodyId id = take(world.add_body(ball(0.25, {-2, 1.25, 1}, 0.5)));
+    BodyDesc box = {.kind = BodyKind::kDynamic, .shape = box_of(0.5, 0.25, 0.5), .position = {1, 0.5, 1}};
+    const BodyId crate = take(world.add_body(box));
+    lab::Run run = make_run(world, exact(Search::kEvent));
+    while (run.collisions().hits < 2 && run.time() < 1) advance(run, 1);
+    CHECK(run.collisions().last_hit == doctest::Approx(std::sqrt(2 / kGravity)).epsilon(1e-9));
+    CHECK(take(run.body(id)).velocity.y > 1);
+    CHECK(take(run.body(crate)).center.y == doctest::Approx(0.25).epsilon(1e-9));
+    CHECK(length(take(run.body(crate)).velocity) < 1e-9);
+  }
+
   TEST_CASE("one of five touching balls leaves, as one came") {
     World world = make_world(empty_space());
     std::vector<BodyId> row;
