@@ -15,7 +15,7 @@ namespace hooke::geometry {
 namespace {
 
 constexpr double kCoordinateMax = 1e9;
-constexpr double kRounding = 1e-12;  ///< Of the sizes involved: what a bound may be off by.
+constexpr double kBoundRounding = 1e-12;  ///< Of the sizes involved: what a bound may be off by.
 
 constexpr double kFlat = 1e-9;  ///< Sine of the angle below which an edge is flat.
 
@@ -51,7 +51,7 @@ template <class Reach, class Visit>
 void visit_near(const ContactMesh& solid, DVec3 p, const Reach& reach, const Visit& visit) {
   const OrientedBoxTree& tree = solid.tree;
   if (tree.nodes.empty()) return;
-  const double slack = kRounding * (solid.size + length(p));
+  const double slack = kBoundRounding * (solid.size + length(p));
   const auto distance = [&](std::uint32_t node) {
     return std::sqrt(distance_squared(tree.nodes[node].volume, p)) - slack;
   };

@@ -91,6 +91,12 @@ void refresh_derived(WorldData& world) {
   world.law_force.assign(count, Vec3{});
 }
 
+void prepare_rows(WorldData& world, Real h) {
+  solver::prepare_springs(world.spring_blocks, h);
+  solver::prepare_bends(world.bend_blocks, h);
+  solver::prepare_tetrahedra(world.tetrahedra, h);
+}
+
 void begin_step(WorldData& world, double dt) {
   state::Tables& tables = world.tables;
   world.start_position = tables.particles.position;

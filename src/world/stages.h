@@ -10,6 +10,9 @@ namespace hooke::world {
 /// Makes the solver's copies of rows anew if rows came or went since they were made.
 void refresh_derived(WorldData& world);
 
+/// The coefficients of springs, bends and tetrahedra for a particle substep of `h` [s].
+void prepare_rows(WorldData& world, Real h);
+
 /// Remembers where everything is, reads the wind at each particle for the middle of the step, zeroes what the
 /// step sums up.
 void begin_step(WorldData& world, double dt);

@@ -62,9 +62,7 @@ void detect(WorldData& w, double dt) {
 void prepare(WorldData& w, double dt, Real h) {
   state::Tables& t = w.tables;
   const Real particle_h = h / static_cast<Real>(t.desc.particle_substeps);
-  solver::prepare_springs(w.spring_blocks, particle_h);
-  solver::prepare_bends(w.bend_blocks, particle_h);
-  solver::prepare_tetrahedra(w.tetrahedra, particle_h);
+  world::prepare_rows(w, particle_h);
   world::begin_motion(w, static_cast<Real>(dt));
   for_bodies(w, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
   solver::prepare_joints(*w.pool, h, t.hooks, t.bodies, w.joints);

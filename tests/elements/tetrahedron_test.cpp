@@ -114,8 +114,7 @@ TEST_SUITE("elements/tetrahedron") {
     const auto inner = [](DVec3 p) { return p.x > 0 && p.x < 3 && p.y > 0 && p.y < 3 && p.z > 0 && p.z < 3; };
     std::mt19937_64 random(5);
     for (DVec3& p : mesh.points) {
-      if (inner(p))
-        p += 0.1 * DVec3{test::signed_unit(random), test::signed_unit(random), test::signed_unit(random)};
+      if (inner(p)) p += 0.1 * test::random_vector(random);
     }
     const NeoHookean<double> material = neo_hookean(1.0, 0.3);
     const DMat3 f = skewed(1);

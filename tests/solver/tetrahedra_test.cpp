@@ -94,8 +94,7 @@ Jelly make_cube(int cells, const Stuff& stuff) {
 }
 
 Vec3 random_vector(std::mt19937_64& random) {
-  return {static_cast<Real>(test::signed_unit(random)), static_cast<Real>(test::signed_unit(random)),
-          static_cast<Real>(test::signed_unit(random))};
+  return vector_cast<Real>(test::random_vector(random));
 }
 
 constexpr Real kSubstep = Real(1) / Real(480);
