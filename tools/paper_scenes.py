@@ -74,8 +74,9 @@ def wall():
         ], [
             promise("x", "==", x, "ball", 2, steps),
             promise("speed", "==", back * speed, "ball", 0.5, steps),
+            promise("height", "==", -G * (steps * DT)**2 / 2, "ball", 0.02, steps),
             promise("x", "<", 4, "ball")
-        ], world={"gravity": [0, 0, 0]}, **laboratory(rollback="event", sweep="extruded"))
+        ], **laboratory(rollback="event", sweep="extruded"))
 
 
 def rollback_room():

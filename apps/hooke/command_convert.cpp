@@ -61,7 +61,7 @@ int command_convert(Arguments arguments) {
       "Examples:\n"
       "  hooke convert scenes/models/lantern.3ds lantern.glb --fit 0.4\n"
       "  hooke convert scenes/models/crate.3ds crate.obj --up z --scale 0.01\n"
-      "  hooke convert cube.obj --subtract cylinder.obj drilled.obj");
+      "  hooke convert scenes/models/crate.3ds --subtract scenes/models/lantern.3ds hollow.obj");
   if (const auto code = parse(app, arguments)) return *code;
 
   options.scale = scale.value_or(options.scale);
