@@ -216,6 +216,21 @@ bool spins(const Path& path) {
   return length_squared(path.turn) > kFar * kFar;
 }
 
+/// Whether the pair had contacts whose places hardly come nearer or part: a tip that spins, a wheel that
+/// rolls.
+bool goes_on_touching(const Scene& scene, const Pair& pair) {
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    const Manifold& m = scene.old[i];
+    for (std::int32_t k = 0; k < m.point_count; ++k) {
+      const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
+      const Vec3 v =
+          velocity_at(scene.bodies, m.body_b, p.anchor_b) - velocity_at(scene.bodies, m.body_a, p.anchor_a);
+      if (std::fabs(dot(m.normal, v)) * scene.dt > kMargin) return false;
+    }
+  }
+  return pair.manifold_count > 0;
+}
+
 constexpr Real kMiddle = Real(0.5);  // of the step
 
 /// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
@@ -236,7 +251,7 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (pair.manifold_count > 0 && chunk.time < kMiddle && (spins(path_a) || spins(path_b))) {
+  if (chunk.time < kMiddle && (spins(path_a) || spins(path_b)) && goes_on_touching(scene, pair)) {
     chunk.time = kMiddle;
     pair.time = Real(0);
   }
