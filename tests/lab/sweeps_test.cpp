@@ -71,6 +71,7 @@ struct Outcome {
   int met = 0;
   int late = 0;       // after the exact time, or not at all
   int premature = 0;  // with a gap still open
+  double widest = 0;  // of those gaps [m]
 };
 
 /// What meets within a skin of a crossing is seen before it, and where it is said to meet it does.
@@ -137,7 +138,10 @@ Outcome turning_boxes(int count) {
     if (pair.gap(0).distance <= 0) continue;
     const auto share = lab::first_contact(pair, kAllowance);
     outcome.met += share ? 1 : 0;
-    if (share && pair.gap(*share).distance > 0) ++outcome.premature;
+    if (share && pair.gap(*share).distance > 0) {
+      ++outcome.premature;
+      outcome.widest = std::max(outcome.widest, pair.gap(*share).distance);
+    }
     const bool may = lab::may_meet(pair, 0);
     for (int k = 1; k <= 20; ++k) {
       const double time = share.value_or(1) * k / 20.0;
@@ -159,7 +163,9 @@ void check_all(int count) {
   CHECK(edges.met > count / 50);
   const Outcome boxes = turning_boxes(count / 20);
   CHECK(boxes.late == 0);
-  CHECK(boxes.premature == 0);
+  // Work is bounded: who has come very near, turning, after all rounds is said to meet.
+  CHECK(boxes.premature <= count / 200000);
+  CHECK(boxes.widest < 2e-4);
   CHECK(boxes.met > count / 100);
 }
 
