@@ -35,8 +35,7 @@ Vec3 support_of_cone(const Convex& c, Vec3 d) {
 }
 
 Vec3 support_of_hull(const Convex& c, Vec3 d) {
-  const Vec3 local = {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
-  return c.center + c.axes * c.hull->vertices[geometry::support(*c.hull, local)];
+  return c.center + c.axes * c.hull->vertices[geometry::support(*c.hull, transpose(c.axes) * d)];
 }
 
 Vec3 support_of_triangle(const Convex& c, Vec3 d) {

@@ -41,13 +41,8 @@ Vec3 vertex_of(const Convex& c, std::size_t i) {
   return c.center + c.axes * c.hull->vertices[i];
 }
 
-/// A direction in the axes of the shape.
-Vec3 in_frame(const Convex& c, Vec3 d) {
-  return {dot(c.axes.x, d), dot(c.axes.y, d), dot(c.axes.z, d)};
-}
-
 Vec3 farthest_vertex(const Convex& c, Vec3 d) {
-  return vertex_of(c, geometry::support(*c.hull, in_frame(c, d)));
+  return vertex_of(c, geometry::support(*c.hull, transpose(c.axes) * d));
 }
 
 Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::uint32_t side) {
@@ -58,7 +53,7 @@ Axis face_axis(const Convex& own, const Convex& other, std::size_t face, std::ui
 }
 
 void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, HullPair& pair) {
-  const Vec3 local = in_frame(own, middle_of(other) - own.center);
+  const Vec3 local = transpose(own.axes) * (middle_of(other) - own.center);
   for (std::size_t i = 0; i < own.hull->faces.size(); ++i) {
     const ConvexHull::Face& f = own.hull->faces[i];
     // The other's center is inside it by its inner radius.
@@ -84,7 +79,7 @@ PlacedEdge place_edge(const Convex& c, std::size_t i) {
 /// its faces; none of them is farther along than the whole of the part across the edge.
 std::vector<PlacedEdge> edges_toward(const Convex& own, const Convex& other, Real least) {
   const ConvexHull& hull = *own.hull;
-  const Vec3 middle = in_frame(own, middle_of(other) - own.center);
+  const Vec3 middle = transpose(own.axes) * (middle_of(other) - own.center);
   const Real reach = other.hull->inner_radius + least;
   std::vector<PlacedEdge> edges;
   edges.reserve(hull.edges.size());
