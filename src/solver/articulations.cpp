@@ -289,13 +289,15 @@ bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
 /// A motor that is at no bound holds the velocity along its axis, which gives the impulse of the spring
 /// there.
 void give_springs(Articulation& art) {
-  for (std::size_t i = 0; i + 1 < art.rows.size(); ++i) {
-    const JointRow& spring = art.rows[i];
-    const JointRow& motor = art.rows[i + 1];
-    if (spring.role != RowRole::kSpring || motor.role != RowRole::kMotor) continue;
-    if (!(spring.n == motor.n) || !(spring.axis == motor.axis)) continue;
-    art.bound[i] = art.bound[i + 1] == 0 ? Articulation::kGiven : std::int8_t{0};
-    if (art.bound[i] != 0) art.lambda[i] = (spring.target - motor.target) / spring.gamma;
+  for (const Articulation::Joint& joint : art.joints) {
+    for (int i = joint.first; i + 1 < joint.first + joint.count; ++i) {
+      const JointRow& spring = art.rows[i];
+      const JointRow& motor = art.rows[i + 1];
+      if (spring.role != RowRole::kSpring || motor.role != RowRole::kMotor) continue;
+      if (!(spring.n == motor.n) || !(spring.axis == motor.axis)) continue;
+      art.bound[i] = art.bound[i + 1] == 0 ? Articulation::kGiven : std::int8_t{0};
+      if (art.bound[i] != 0) art.lambda[i] = (spring.target - motor.target) / spring.gamma;
+    }
   }
 }
 
@@ -317,19 +319,19 @@ void list_free_rows(Articulation& art) {
       }
     }
   }
-  resize_blocks(art.free_sizes, art.free_pattern);
+  resize_blocks(art.free_sizes, art.pattern);
 }
 
 /// The part of a link in the block of two joints' rows.
 void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
-  const BlockPattern::Block& block = art.free_pattern.block[coupling.block];
+  const BlockPattern::Block& block = art.pattern.block[coupling.block];
   const Articulation::Joint& left = art.joints[block.row];
   const Articulation::Joint& right = art.joints[block.column];
   const Link& link = art.links[coupling.link];
   const double sign = sign_at(left, coupling.link) * sign_at(right, coupling.link);
-  const int* rows = art.free.data() + art.free_pattern.first[block.row];
+  const int* rows = art.free.data() + art.pattern.first[block.row];
   const auto count = static_cast<std::size_t>(art.free_sizes[block.column]);
-  const double* n = art.columns.data() + 9 * static_cast<std::size_t>(art.free_pattern.first[block.column]);
+  const double* n = art.columns.data() + 9 * static_cast<std::size_t>(art.pattern.first[block.column]);
   const double* j = n + (coupling.link == right.a ? 3 : 6) * count;
   double* to = art.factors.data() + block.offset;
   for (int r = 0; r < art.free_sizes[block.row]; ++r) {
@@ -346,15 +348,15 @@ void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
 
 /// J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
 void assemble(Articulation& art) {
-  art.factors.assign(art.free_pattern.number_count, 0.0);
+  art.factors.assign(art.pattern.number_count, 0.0);
   for (const Articulation::Coupling& coupling : art.couplings) add_coupling(coupling, art);
   const double compliance = art.has_loops ? kComplianceOfLoops : kComplianceOfTrees;
-  for (int i = 0; i < art.free_pattern.node_count(); ++i) {
-    const BlockPattern::Block& block = art.free_pattern.block[art.free_pattern.column_begin[i]];
+  for (int i = 0; i < art.pattern.node_count(); ++i) {
+    const BlockPattern::Block& block = art.pattern.block[art.pattern.column_begin[i]];
     const int n = art.free_sizes[i];
     for (int r = 0; r < n; ++r) {
       double& number = art.factors[block.offset + static_cast<std::size_t>(r * (n + 1))];
-      number += art.rows[art.free[art.free_pattern.first[i] + r]].gamma + compliance * number;
+      number += art.rows[art.free[art.pattern.first[i] + r]].gamma + compliance * number;
     }
   }
 }
@@ -413,8 +415,8 @@ void solve_free_rows(Articulation& art) {
       if (art.bound[i] == 0) art.right_side.push_back(shortfall(art, joint, art.rows[i]));
     }
   }
-  factor(art.free_pattern, art.factors);
-  solve(art.free_pattern, art.factors, art.right_side);
+  factor(art.pattern, art.factors);
+  solve(art.pattern, art.factors, art.right_side);
   for (std::size_t k = 0; k < art.free.size(); ++k) art.lambda[art.free[k]] = art.right_side[k];
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);
 }
@@ -527,7 +529,6 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
   art.rows.resize(row_count);
   art.lambda.resize(row_count);
   art.bound.resize(row_count);
-  art.free_pattern = art.pattern;
   return art;
 }
 

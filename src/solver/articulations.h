@@ -79,7 +79,7 @@ struct Articulation {
   };
   std::vector<Joint> joints;  ///< In order of elimination.
   std::vector<Coupling> couplings;
-  BlockPattern pattern;
+  BlockPattern pattern;  ///< Of the joints; in a solution, of their rows that are free.
 
   // Lives for one substep.
   std::vector<Link> links;  ///< As bodies.
@@ -90,7 +90,6 @@ struct Articulation {
   std::vector<int> free;        ///< Rows.
   std::vector<int> free_sizes;  ///< How many each joint has.
   std::vector<double> columns;  ///< Of each joint: n, then the lever on a, then on b; x of all, y, z.
-  BlockPattern free_pattern;
   std::vector<double> factors;
   std::vector<double> right_side;
 };

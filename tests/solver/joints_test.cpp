@@ -268,6 +268,23 @@ TEST_SUITE("solver/joints") {
     }
   }
 
+  TEST_CASE("a motor says nothing of a spring that is another hook's") {
+    // The spring's row is the last of its hook and the motor's the first of the next, along the same axis.
+    JointRig rig;
+    rig.gravity = {};
+    const BodyId a = rig.add({.mass = Real(2)});
+    const BodyId b = rig.add({.center = {1, 0, 0}, .mass = Real(2)});
+    HookDesc spring = {.kind = HookKind::kSixDegrees, .b = {a}, .axis = {Real(1), Real(0), Real(0)}};
+    spring.freedoms[0] = {.spring = {.stiffness = Real(100), .damping = Real(20), .target = Real(0.1)}};
+    HookDesc motor = {.kind = HookKind::kSixDegrees, .a = {a}, .b = {b}, .axis = {Real(1), Real(0), Real(0)}};
+    motor.freedoms[0] = {.motor = {.speed = Real(0), .max_force = Real(1000)}};
+    rig.hook(spring);
+    rig.hook(motor);
+    rig.run(4);
+    CHECK(std::abs(d(rig.center(a).x) - 0.1) < 0.001);
+    CHECK(std::abs(d(rig.center(b).x) - 1.1) < 0.001);
+  }
+
   TEST_CASE("hooks that say the same twice share the load, those that disagree stay finite") {
     JointRig rig;
     const BodyId body = rig.add({.center = {0, -1, 0}});
