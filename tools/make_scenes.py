@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes of rigid bodies and soft solids that are too regular or too long to be written by hand, scenes/*.json.
+"""Writes the scenes that are too regular or too long to be written by hand, scenes/*.json.
 
 usage: make_scenes.py [--check] [NAME ...]
 
@@ -18,6 +18,7 @@ from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot, fall, fibonacci_points,
                        ground, hull_of, prism, product, promise, rotated, scaled, scene, sector, slab,
                        solid_mass, solid_moments, text_of, turn, weight_energy)
+from rope_scenes import ROPE_SCENES
 from solid_scenes import SOLID_SCENES
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
@@ -801,7 +802,7 @@ SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
-    *SOLID_SCENES
+    *ROPE_SCENES, *SOLID_SCENES
 ]
 PAPER = [fig5, fig6, fig7, wall, rollback_room, bsp_walk]  # in the folder paper
 

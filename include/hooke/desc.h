@@ -163,9 +163,11 @@ struct BodyDesc {
   MotionDesc motion = {};         ///< kKinematic: its path from the start; rotation by `angular_velocity`.
 };
 
-/// What a hook holds on one side.
+/// What a hook holds on one side: a body, a point of a rope, cloth, solid or group of particles, or, where
+/// neither is given, the world itself.
 struct HookEnd {
-  BodyId body = {};  ///< None: the world itself.
+  BodyId body = {};
+  PointRef point = {};  ///< Of a deformable object; its index may be PointRef::kNearest.
 };
 
 enum class HookKind : std::uint8_t {
@@ -176,6 +178,7 @@ enum class HookKind : std::uint8_t {
   kDistance,  ///< The distance of two points stays within `limits`, or what it was where there are none.
   kWheel,     ///< B slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
   kSixDegrees,  ///< Each of the six `freedoms` on its own.
+  kRopeSlide,   ///< B slides along rope a, between its ends: a bead on a string. `anchor` says where it is.
 };
 
 /// Bounds of a freedom [m] or [rad]; infinite where there is none.
@@ -214,6 +217,10 @@ struct HookFreedom {
 };
 
 /// Holds two ends together. Anchor and axes are given in the world, as things stand when the hook is made.
+///
+/// Points have no rotation: between a point and anything, kBall, kDistance, kRopeSlide, and kSlider with a
+/// body or the world as a. A point is held where it is, whatever `anchor` says, and what it is hooked to at
+/// the same place; two points are drawn together.
 ///
 /// Freedoms are those of b relative to a, in a's axes: x along `axis`, y along the part of `second_axis` that
 /// is across it, z across both (kWheel: z along the axle). A rotation is taken apart as one about a's x, then

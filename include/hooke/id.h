@@ -31,10 +31,16 @@ using ForceLawId = Id<struct ForceLawTag>;    ///< The user's own force.
 struct PointRef {
   enum class Kind : std::uint8_t { kNone, kParticles, kRope, kCloth, kSolid };
 
+  /// Of a hook: the place of the object that is nearest to the hook's anchor: on a segment of a rope, on a
+  /// triangle of a cloth, in a tetrahedron of a solid, at a loose particle.
+  static constexpr std::uint32_t kNearest = 0xFFFFFFFF;
+
   Kind kind = Kind::kNone;
   std::uint32_t slot = 0;
   std::uint32_t generation = 0;
   std::uint32_t index = 0;
+
+  friend constexpr bool operator==(PointRef, PointRef) = default;
 };
 
 constexpr PointRef point(ParticlesId id, std::uint32_t index) {

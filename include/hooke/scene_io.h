@@ -162,10 +162,14 @@ struct SceneParticles {
 /// A hook. In an array, copy i holds copy i of `a` and of `b` where they are arrays, counted from the copy
 /// that is named: with "link[1]", copy i holds link[1 + i].
 struct SceneHook {
-  std::string name = {};  ///< As SceneTag::name.
-  HookDesc desc = {};     ///< All but `a` and `b`.
-  std::string a = {};     ///< Name of a body; empty for the world.
-  std::string b = {};     ///< Name of a body.
+  std::string name = {};             ///< As SceneTag::name.
+  HookDesc desc = {};                ///< All but `a`, `b` and `anchor`.
+  std::optional<DVec3> anchor = {};  ///< HookDesc::anchor; needed unless a point says where.
+  std::string a = {};                ///< Name of what it holds; empty for the world.
+  std::string b = {};
+  std::optional<ScenePoint> a_point = {};  ///< Of a rope, cloth, solid or particles; the place nearest to the
+                                           ///< anchor without it.
+  std::optional<ScenePoint> b_point = {};
   SceneArray array = {};  ///< Offsets of the anchors.
 };
 struct SceneField {
@@ -383,7 +387,7 @@ struct SceneObject {
   std::uint32_t columns = 0;  ///< Of a cloth's grid; 0 for a mesh.
   std::uint32_t rows = 0;
   HookKind hook_kind = HookKind::kBall;
-  std::array<BodyId, 2> hooked = {};        ///< What a hook holds; null for the world.
+  std::array<std::string, 2> hooked = {};   ///< Names of what a hook holds; empty for the world.
   bool broken = false;                      ///< Of a hook: its id is stale.
   std::shared_ptr<const Model> model = {};  ///< Of a mesh body, cloth or solid; of a hull, its faces.
 };

@@ -1,5 +1,6 @@
 #include "build/build.h"
 #include "build/checks.h"
+#include "build/hook_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,12 +88,15 @@ Quaternion<To> quaternion_cast(Quaternion<From> q) {
   return {static_cast<To>(q.x), static_cast<To>(q.y), static_cast<To>(q.z), static_cast<To>(q.w)};
 }
 
-HookPlace place_on(const state::Bodies& bodies, std::uint32_t body, DVec3 anchor, DQuat axes) {
-  if (body == HookPlace::kWorld) return {.anchor = anchor, .axes = quaternion_cast<Real>(axes)};
-  const DQuat inverse = conjugate(normalize(quaternion_cast<double>(bodies.rotation[body])));
-  return {.body = body,
-          .anchor = rotate(inverse, anchor - bodies.center[body]),
-          .axes = quaternion_cast<Real>(inverse * axes)};
+/// Gives an end its anchor and axes in its own frame; a point has neither place nor rotation of its own.
+void place(const state::Bodies& bodies, DVec3 anchor, DQuat axes, HookPlace& end) {
+  end.axes = quaternion_cast<Real>(axes);
+  if (end.is_point()) return;
+  end.anchor = anchor;
+  if (end.body == HookPlace::kWorld) return;
+  const DQuat inverse = conjugate(normalize(quaternion_cast<double>(bodies.rotation[end.body])));
+  end.anchor = rotate(inverse, anchor - bodies.center[end.body]);
+  end.axes = quaternion_cast<Real>(inverse * axes);
 }
 
 constexpr HookFreedom kLocked = {.locked = true};
@@ -122,6 +126,8 @@ std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
       suspension.motor = {};
       return {suspension, kLocked, kLocked, desc.steering, kLocked, {.motor = desc.motor}};
     }
+    case HookKind::kRopeSlide:
+      return {HookFreedom{.limits = {Real(-1), Real(1)}}, kLocked, kLocked, {}, {}, {}};
     case HookKind::kSixDegrees:
       break;
   }
@@ -134,15 +140,71 @@ void lock_closed_limits(HookFreedom& freedom) {
   freedom = {.locked = true, .limits = freedom.limits, .spring = {.target = freedom.limits.lower}};
 }
 
-Result<std::uint32_t> find_end(const HookEnd& end, const char* where, const Tables& t) {
-  if (end.body == BodyId{}) return HookPlace::kWorld;
-  const std::uint32_t row = t.body_slots.find(end.body);
-  if (row != t.body_slots.kNone) return row;
-  return Error{ErrorCode::kStaleId, where, "refers to nothing that is in the world"};
+bool share_particle(const HookPlace& a, const HookPlace& b) {
+  const auto end_a = a.particle.begin() + a.particle_count;
+  return std::any_of(b.particle.begin(), b.particle.begin() + b.particle_count,
+                     [&](std::uint32_t p) { return std::find(a.particle.begin(), end_a, p) != end_a; });
 }
 
 bool is_dynamic(const Tables& t, std::uint32_t body) {
   return body != HookPlace::kWorld && t.bodies.traits[body].kind == BodyKind::kDynamic;
+}
+
+/// Whether a hook of this kind can hold these two.
+Result<void> check_ends(HookKind kind, const HookPlace& a, const HookPlace& b, const Tables& t) {
+  const auto wrong = [](const char* where, const char* what) {
+    return Error{ErrorCode::kOutOfRange, where, what};
+  };
+  const auto is_rope = [&](const HookPlace& end) {
+    return end.is_point() && t.objects[end.object].kind == PointRef::Kind::kRope;
+  };
+  const bool any_point = a.is_point() || b.is_point();
+  if (kind == HookKind::kRopeSlide) {
+    if (!is_rope(a)) return wrong("hook.a", "must be a rope, along which `b` slides");
+    if (is_rope(b) && b.object == a.object) return wrong("hook.b", "must not be of the rope it slides along");
+    return {};
+  }
+  if (!any_point) {
+    if (a.body == b.body) return wrong("hook.b", "must be another body than `a`, or the world");
+    if (!is_dynamic(t, a.body) && !is_dynamic(t, b.body))
+      return wrong("hook", "needs a dynamic body at one end at least");
+    return {};
+  }
+  if (kind == HookKind::kSlider) {
+    if (a.is_point())
+      return wrong("hook.a", "must be a body or the world: a point has no axes to slide along");
+    return {};
+  }
+  if (kind != HookKind::kBall && kind != HookKind::kDistance)
+    return wrong("hook.kind", "must be ball, slider, distance or rope_slide: a point has no rotation");
+  if (a.is_point() && b.is_point() && a.object == b.object && share_particle(a, b))
+    return wrong("hook.b", "must be another place than `a`");
+  return {};
+}
+
+/// Where a hook holds its two ends [m].
+struct Anchors {
+  DVec3 a, b;
+};
+
+/// Points are held where they are, and bodies at the place of the point they are hooked to.
+Anchors anchors_of(const HookDesc& desc, DVec3 wanted_b, const FoundEnd& a, const FoundEnd& b) {
+  Anchors anchors = {a.place.is_point() ? a.position : desc.anchor,
+                     b.place.is_point() ? b.position : wanted_b};
+  if (desc.kind == HookKind::kDistance || desc.kind == HookKind::kRopeSlide) return anchors;
+  if (a.place.is_point() && !b.place.is_point()) anchors.b = a.position;
+  if (b.place.is_point() && !a.place.is_point()) anchors.a = b.position;
+  return anchors;
+}
+
+/// Both points of the segment at which the hook begins; solver::slide_hooks gives them their weights.
+void begin_slide(const Tables& t, Hook& hook) {
+  const state::Deformable& rope = t.objects[hook.a.object];
+  const std::uint32_t first = std::min(hook.a.particle[0], rope.particles.end() - 2);
+  hook.a.particle = {first, first + 1};
+  hook.a.weight = {Real(1), Real(0)};
+  hook.a.particle_count = 2;
+  hook.a.axes = {};  // x along the rope: solver::turn_of_slide
 }
 
 }  // namespace
@@ -173,7 +235,7 @@ bool is_closed(const HookLimits& limits) {
 
 Result<void> validate(const HookDesc& desc) {
   Checks checks("hook");
-  checks.require(desc.kind <= HookKind::kSixDegrees, "kind", "must be one of HookKind")
+  checks.require(desc.kind <= HookKind::kRopeSlide, "kind", "must be one of HookKind")
       .place("anchor", desc.anchor)
       .finite("axis", desc.axis)
       .require(length(vector_cast<double>(desc.axis)) > 0, "axis", "must not be zero");
@@ -200,29 +262,33 @@ Result<void> validate(const HookDesc& desc) {
 Result<void> add_hook(const HookDesc& desc, Tables& t) {
   const Result<void> good = validate(desc);
   if (!good) return good.error();
-  const Result<std::uint32_t> a = find_end(desc.a, "hook.a", t);
+  const DVec3 wanted_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
+  const Result<FoundEnd> a = find_end(desc.a, desc.anchor, "hook.a", t);
   if (!a) return a.error();
-  const Result<std::uint32_t> b = find_end(desc.b, "hook.b", t);
+  const Result<FoundEnd> b = find_end(desc.b, wanted_b, "hook.b", t);
   if (!b) return b.error();
-  if (a.value() == b.value()) {
-    return Error{ErrorCode::kOutOfRange, "hook.b", "must be another body than `a`, or the world"};
-  }
-  if (!is_dynamic(t, a.value()) && !is_dynamic(t, b.value())) {
-    return Error{ErrorCode::kOutOfRange, "hook", "needs a dynamic body at one end at least"};
-  }
-  const DVec3 anchor_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
+  const Result<void> fits = check_ends(desc.kind, a.value().place, b.value().place, t);
+  if (!fits) return fits.error();
+  const Anchors anchors = anchors_of(desc, wanted_b, a.value(), b.value());
   const DQuat axes = quaternion_of(axes_of(desc));
   Hook hook = {.kind = desc.kind,
                .collide = desc.collide,
-               .a = place_on(t.bodies, a.value(), desc.anchor, axes),
-               .b = place_on(t.bodies, b.value(), anchor_b, axes),
+               .a = a.value().place,
+               .b = b.value().place,
                .break_force = desc.break_force,
                .break_torque = desc.break_torque,
-               .freedom = freedoms_of(desc, length(anchor_b - desc.anchor)),
+               .freedom = freedoms_of(desc, length(anchors.b - anchors.a)),
                .cone = desc.kind == HookKind::kBall ? desc.cone.value_or(kRigid) : kRigid};
+  place(t.bodies, anchors.a, axes, hook.a);
+  place(t.bodies, anchors.b, axes, hook.b);
+  if (hook.holds_point()) {
+    for (int i = 3; i < 6; ++i) hook.freedom[i] = {};
+    hook.cone = kRigid;
+  }
+  if (hook.kind == HookKind::kRopeSlide) begin_slide(t, hook);
   std::for_each(hook.freedom.begin(), hook.freedom.end(), lock_closed_limits);
   if (desc.kind == HookKind::kDistance) {
-    hook.value[0] = length(anchor_b - desc.anchor);
+    hook.value[0] = length(anchors.b - anchors.a);
     hook.rest_distance = static_cast<Real>(hook.value[0]);
   }
   t.hooks.push_back(hook);

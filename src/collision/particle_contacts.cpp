@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace hooke::collision {
@@ -21,14 +22,25 @@ struct Frame {
   const state::ColliderShape* shape = nullptr;
   Quat rotation = {};
   Vec3 offset = {};
+  Vec3 center = {};         ///< Of the body's mass.
+  Vec3 belt_velocity = {};  ///< Of a conveyor's surface against its body [m/s].
+  Real speed = Real(0);     ///< Of the body's fastest point, at most [m/s].
 
   [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
   [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
 };
 
 Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
-  const Pose pose = state::frame_of_collider(t.bodies, t.colliders, collider);
-  return {&t.colliders.shape[collider], pose.rotation, vector_cast<Real>(pose.position - object.origin)};
+  const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);
+  const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
+  const std::uint32_t row = t.colliders.body[collider];
+  return {.shape = &t.colliders.shape[collider],
+          .rotation = body.rotation * t.colliders.rotation[collider],
+          .offset = vector_cast<Real>(body.position + arm - object.origin),
+          .center = vector_cast<Real>(body.position - object.origin),
+          .belt_velocity = rotate(body.rotation, t.colliders.surface[collider].surface_velocity),
+          .speed = length(t.bodies.motion[row].v) +
+                   length(t.bodies.angular_velocity[row]) * t.bodies.traits[row].radius};
 }
 
 /// Rows of the colliders that particles may touch, in ascending order.
@@ -61,38 +73,71 @@ Key key_of(const state::Contacts& contacts, std::size_t row) {
   return {contacts.particle[row], contacts.collider[row], contacts.feature[row]};
 }
 
-void append(state::Contacts& contacts, Key key, std::uint32_t object, Real friction) {
+void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint32_t body, Real friction) {
   contacts.particle.push_back(key.particle);
   contacts.collider.push_back(key.collider);
   contacts.feature.push_back(key.feature);
   contacts.object.push_back(object);
+  contacts.body.push_back(body);
   contacts.friction.push_back(friction);
   contacts.normal.push_back({});
   contacts.separation.push_back(Real(0));
+  contacts.lever.push_back({});
+  contacts.belt_velocity.push_back({});
+  contacts.surface_velocity.push_back({});
   contacts.normal_force.push_back(Real(0));
   contacts.friction_force.push_back({});
 }
 
+/// A particle and a body that a hook keeps from touching.
+using Hooked = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Those held together by hooks; all of a rope along which a body slides. Sorted.
+std::vector<Hooked> hooked_of(const state::Tables& t) {
+  std::vector<Hooked> hooked;
+  const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
+    if (!point.is_point() || body == state::HookPlace::kWorld) return;
+    for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
+    if (hook.kind != HookKind::kRopeSlide) return;
+    const state::Rows rope = t.objects[point.object].particles;
+    for (std::uint32_t p = rope.first; p < rope.end(); ++p) hooked.emplace_back(p, body);
+  };
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.collide) continue;
+    add(hook, hook.a, hook.b.body);
+    add(hook, hook.b, hook.a.body);
+  }
+  std::sort(hooked.begin(), hooked.end());
+  return hooked;
+}
+
+bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body) {
+  return std::binary_search(hooked.begin(), hooked.end(), Hooked{particle, body});
+}
+
 struct Finder {
+  std::vector<Hooked> hooked;
   state::Contacts contacts;
   std::vector<std::uint32_t> triangles;  // of one query
 };
 
 /// Appends the rows of one particle against one shape.
 void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame, Real way,
-               Finder& finder) {
+               Real step, Finder& finder) {
   const state::ColliderShape& shape = *frame.shape;
+  const std::uint32_t body = t.colliders.body[pair.collider];
+  if (is_hooked(finder.hooked, pair.particle, body)) return;
   const Vec3 x = frame.to_shape(t.particles.position[pair.particle].x);
-  const Real reach = t.particles.position[pair.particle].radius + way + kParticleMargin;
+  const Real reach = t.particles.position[pair.particle].radius + way + frame.speed * step + kParticleMargin;
   const Real friction =
       std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, friction);
+    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, body, friction);
     return;
   }
   find_triangles_near(*shape.mesh, x, reach, finder.triangles);
   for (const std::uint32_t triangle : finder.triangles) {
-    append(finder.contacts, {pair.particle, pair.collider, triangle}, object_row, friction);
+    append(finder.contacts, {pair.particle, pair.collider, triangle}, object_row, body, friction);
   }
 }
 
@@ -112,6 +157,17 @@ void carry_forces(const state::Contacts& from, state::Contacts& to) {
 void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap gap, Real radius) {
   contacts.normal[row] = frame.to_world(gap.normal);
   contacts.separation[row] = gap.distance - radius;
+}
+
+/// Where forces between the two act and how the body moves there. That is at the particle's center, `arm`
+/// from the body's: a particle has no rotation that could take the torque of friction at its surface.
+void set_surface(state::Tables& t, std::size_t row, Vec3 arm, Vec3 belt_velocity) {
+  state::Contacts& contacts = t.contacts;
+  const Vec3 n = contacts.normal[row];
+  contacts.lever[row] = arm;
+  contacts.belt_velocity[row] = belt_velocity - dot(belt_velocity, n) * n;
+  contacts.surface_velocity[row] =
+      state::velocity_now(t.bodies, contacts.body[row], contacts.lever[row]) + contacts.belt_velocity[row];
 }
 
 /// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
@@ -147,13 +203,14 @@ void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
   Finder finder;
+  finder.hooked = hooked_of(t);
   const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     const std::vector<Frame> frames = frames_of(t, colliders, t.objects[o]);
     for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
       const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
       for (std::size_t i = 0; i < colliders.size(); ++i)
-        find_pair(t, {p, colliders[i], 0}, o, frames[i], way, finder);
+        find_pair(t, {p, colliders[i], 0}, o, frames[i], way, step, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);
@@ -175,27 +232,32 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     const std::uint32_t particle = contacts.particle[first];
     const Frame frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
     const state::ColliderShape& shape = *frame.shape;
-    const Vec3 x = frame.to_shape(t.particles.position[particle].x);
+    const Vec3 place = t.particles.position[particle].x;
+    const Vec3 x = frame.to_shape(place);
     const Real radius = t.particles.position[particle].radius;
     if (shape.shape.kind != ShapeKind::kMesh) {
       set_row(contacts, first, frame, gap_to_shape(shape, x), radius);
-      continue;
+    } else {
+      gaps.clear();
+      for (std::size_t i = first; i < row; ++i)
+        gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
+      update_mesh_rows(contacts, first, gaps, frame, radius);
     }
-    gaps.clear();
-    for (std::size_t i = first; i < row; ++i)
-      gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
-    update_mesh_rows(contacts, first, gaps, frame, radius);
+    for (std::size_t i = first; i < row; ++i) set_surface(t, i, place - frame.center, frame.belt_velocity);
   }
 }
 
 double largest_penetration(const state::Tables& t) {
   double deepest = 0;
   const std::vector<std::uint32_t> colliders = solid_colliders(t);
+  const std::vector<Hooked> hooked = hooked_of(t);
   for (const state::Deformable& object : t.objects) {
     const std::vector<Frame> frames = frames_of(t, colliders, object);
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
-      for (const Frame& frame : frames) {
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Frame& frame = frames[i];
+        if (is_hooked(hooked, p, t.colliders.body[colliders[i]])) continue;
         const Vec3 x = frame.to_shape(t.particles.position[p].x);
         const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
         const Real distance =

@@ -5,15 +5,16 @@
 
 namespace hooke::collision {
 
-/// Finds the particles that may touch a static shape within the next `dt` and makes their contact rows, in
-/// order of particle, body and triangle. Rows that were there before keep their forces.
+/// Finds the particles that may touch the shape of a body within the next `dt` and makes their contact rows,
+/// in order of particle, body and triangle. Rows that were there before keep their forces.
 ///
-/// Reach: twice the way of the particle at its speed, plus that of gravity, plus 2 cm. What is pulled farther
-/// than that within one step is found one step late.
+/// Reach: twice the way of the particle at its speed, plus those of gravity and of the body, plus 2 cm. What
+/// is pulled farther than that within one step is found one step late.
 void find_contacts(state::Tables& tables, double dt);
 
-/// Normal and separation of each row at the particle's present place. `range` counts contact rows and may
-/// begin anywhere: the rows of a particle and a body belong to the range that holds the first of them.
+/// Normal, separation and surface of each row at the present place of the particle and of the body.
+/// `range` counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the
+/// range that holds the first of them.
 void update_contacts(parallel::Range range, state::Tables& tables);
 
 /// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Looks at all

@@ -38,8 +38,9 @@ class Builder {
   std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
-  /// The body that copy `i` of a hook names; null for the world.
-  Result<BodyId> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
+  /// The object that copy `i` of a hook names; null for the world.
+  Result<const SceneObject*> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
+  [[nodiscard]] HookEnd end_at(const SceneObject* object, const std::optional<ScenePoint>& point) const;
   template <class IdType>
   bool keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added);
   /// Points of one instance that a pin holds.
@@ -368,11 +369,12 @@ void Builder::build(const SceneField& field, const std::string& path) {
   keep(object, &SceneObject::field, data_.world.add_field(field.desc));
 }
 
-Result<BodyId> Builder::find_end(const std::string& name, const SceneArray& array, std::size_t i) const {
-  if (name.empty()) return BodyId{};
+Result<const SceneObject*> Builder::find_end(const std::string& name, const SceneArray& array,
+                                             std::size_t i) const {
+  if (name.empty()) return static_cast<const SceneObject*>(nullptr);
   auto found = data_.row_of.find(name);
   if (array.kind != SceneArray::Kind::kSingle) {
-    // A body without a name is called by its path, which looks like that of a copy.
+    // An object without a name is called by its path, which looks like that of a copy.
     const bool is_path = found != data_.row_of.end() && data_.objects[found->second].path == name;
     const std::optional<CopyName> first = is_path ? std::nullopt : take_copy_name(name);
     if (found == data_.row_of.end()) {
@@ -381,29 +383,39 @@ Result<BodyId> Builder::find_end(const std::string& name, const SceneArray& arra
       found = data_.row_of.find(indexed(first->array, first->copy + i));
     }
   }
-  if (found != data_.row_of.end()) return data_.objects[found->second].body;
+  if (found != data_.row_of.end()) return &data_.objects[found->second];
   return Error{ErrorCode::kStaleId, "", "there is no object " + in_quotes(name) + " any more"};
+}
+
+HookEnd Builder::end_at(const SceneObject* object, const std::optional<ScenePoint>& wanted) const {
+  if (object == nullptr) return {};
+  if (object->kind == SceneObject::Kind::kBody) return {.body = object->body};
+  PointRef point = point_of(data_.world, *object, wanted.value_or(ScenePoint{}));
+  if (!wanted) point.index = PointRef::kNearest;
+  return {.point = point};
 }
 
 void Builder::build(const SceneHook& hook, const std::string& path) {
   HookDesc desc = hook.desc;
   for (std::size_t i = 0; i < hook.array.count() && !full(); ++i) {
     if (!reserve(1, path)) return;
-    const Result<BodyId> a = find_end(hook.a, hook.array, i);
-    const Result<BodyId> b = find_end(hook.b, hook.array, i);
+    const Result<const SceneObject*> a = find_end(hook.a, hook.array, i);
+    const Result<const SceneObject*> b = find_end(hook.b, hook.array, i);
     if (!a || !b) {
       const Error& error = a ? b.error() : a.error();
       return fail(path + (a ? ".b" : ".a"), error.code, error.message);
     }
-    desc.a = {a.value()};
-    desc.b = {b.value()};
+    desc.a = end_at(a.value(), hook.a_point);
+    desc.b = end_at(b.value(), hook.b_point);
+    const std::array<std::string, 2> held = {a.value() != nullptr ? a.value()->name : "",
+                                             b.value() != nullptr ? b.value()->name : ""};
     const DVec3 offset = hook.array.offset(i);
-    desc.anchor = hook.desc.anchor + offset;
+    desc.anchor = hook.anchor.value_or(DVec3{}) + offset;
     if (hook.desc.anchor_b) desc.anchor_b = *hook.desc.anchor_b + offset;
     SceneObject object =
         make_object({.name = hook.name, .array = hook.array}, SceneObject::Kind::kHook, path, i);
     object.hook_kind = desc.kind;
-    object.hooked = {a.value(), b.value()};
+    object.hooked = held;
     if (!keep(object, &SceneObject::hook, data_.world.add_hook(desc))) return;
   }
 }

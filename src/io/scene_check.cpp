@@ -54,7 +54,8 @@ class Checker {
   void check_mesh_name(const std::string& name, const std::string& path);
   void check_references(const SceneObjects& objects, const std::string& prefix);
   void check_hook(const SceneHook& hook, const std::string& path);
-  void check_hook_end(const SceneHook& hook, const std::string& name, const std::string& path);
+  void check_hook_end(const SceneHook& hook, const std::string& name, const std::optional<ScenePoint>& point,
+                      const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
   void check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
@@ -245,14 +246,21 @@ const NamedObject* Checker::find_object(const std::string& name, const std::stri
   return object;
 }
 
-void Checker::check_hook_end(const SceneHook& hook, const std::string& name, const std::string& path) {
+void Checker::check_hook_end(const SceneHook& hook, const std::string& name,
+                             const std::optional<ScenePoint>& point, const std::string& path) {
   const bool single = hook.array.kind == SceneArray::Kind::kSingle;
   const NamedObject* object = single ? find_object(name, path) : find_named(name, path);
   if (object == nullptr) return;
-  if (object->kind != SceneObject::Kind::kBody) {
-    fail(path, ErrorCode::kOutOfRange, in_quotes(name) + " is not a body");
+  const bool body = object->kind == SceneObject::Kind::kBody;
+  if (!body && !has_points(object->kind)) {
+    fail(path, ErrorCode::kOutOfRange, in_quotes(name) + " cannot be hooked");
     return;
   }
+  if (body && point) {
+    fail(path + "_point", ErrorCode::kOutOfRange, in_quotes(name) + " is a body, which has no points");
+    return;
+  }
+  if (point) check_point(*point, object->points, path + "_point");
   if (single || !object->is_array) return;
   const std::optional<CopyName> first =
       objects_.contains(name) ? std::optional<CopyName>{} : take_copy_name(name);
@@ -266,8 +274,8 @@ void Checker::check_hook_end(const SceneHook& hook, const std::string& name, con
 
 void Checker::check_hook(const SceneHook& hook, const std::string& path) {
   if (is_damaged(path)) return;
-  if (!hook.a.empty()) check_hook_end(hook, hook.a, path + ".a");
-  check_hook_end(hook, hook.b, path + ".b");
+  if (!hook.a.empty()) check_hook_end(hook, hook.a, hook.a_point, path + ".a");
+  check_hook_end(hook, hook.b, hook.b_point, path + ".b");
 }
 
 void Checker::check_point(ScenePoint point, std::size_t count, const std::string& path) {

@@ -29,10 +29,10 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
     const std::optional<io::CopyName> copy = io::take_copy_name(object.name);
     return object.name == name || (copy && copy->array == name);
   };
-  std::vector<BodyId> bodies = {};
+  std::vector<std::string> names = {};
   for (const SceneObject& object : data.objects) {
     if (!named(object)) continue;
-    if (object.body) bodies.push_back(object.body);
+    names.push_back(object.name);
     // Ids of other kinds are null, and removing nothing does nothing.
     data.world.remove(object.body);
     data.world.remove(object.rope);
@@ -42,11 +42,11 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
     data.world.remove(object.field);
     data.world.remove(object.hook);
   }
-  const auto gone = [&](BodyId body) {
-    return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+  const auto gone = [&](const std::string& held) {
+    return std::find(names.begin(), names.end(), held) != names.end();
   };
   const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
-    // The hooks of a body go with it.
+    // The hooks of an object go with it.
     return named(object) || gone(object.hooked[0]) || gone(object.hooked[1]);
   });
   if (removed == 0) {

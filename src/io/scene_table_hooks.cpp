@@ -14,6 +14,9 @@ bool check_hook(Reader& reader, const JsonNode& node, const void* object) {
   if (!hook.array.rotations.empty()) {
     return reader.fail(node, ErrorCode::kOutOfRange, "only an array of bodies has 'rotations'");
   }
+  if (!hook.anchor && !hook.a_point && !hook.b_point) {
+    return reader.fail(node, ErrorCode::kOutOfRange, "needs 'anchor', or a point of what it holds");
+  }
   return check_named(reader, node, hook.name);
 }
 
@@ -22,13 +25,22 @@ std::vector<Field> hook_rows() {
   return {
       field<&SceneHook::name>("name", "", kNotEmpty,
                               "Unique. Without it the hook is called by its place, as `hooks[0]`."),
-      field<desc, &HookDesc::kind>("kind", "", kAny,
-                                   "One point in common; turning about `axis`; sliding along it; moving as "
-                                   "one; a distance; a wheel; or what `freedoms` says."),
-      field<&SceneHook::a>("a", "", kNotEmpty, "Name of a body; the world without it."),
-      required(field<&SceneHook::b>("b", "", kNotEmpty, "Name of a body.")),
-      required(field<desc, &HookDesc::anchor>("anchor", "m", kAny,
-                                              "Where it holds both, in the world; of a distance, a.")),
+      field<desc, &HookDesc::kind>(
+          "kind", "", kAny,
+          "One point in common; turning about `axis`; sliding along it; moving as "
+          "one; a distance; a wheel; what `freedoms` says; or b sliding along rope a. "
+          "With points: ball, distance, rope_slide, slider."),
+      field<&SceneHook::a>("a", "", kNotEmpty,
+                           "Name of a body, rope, cloth, solid or particles; the world without it."),
+      required(field<&SceneHook::b>("b", "", kNotEmpty, "The same; never the world.")),
+      field<&SceneHook::a_point>(
+          "a_point", "", kAny,
+          "Which point of `a`; without it the place nearest to `anchor`: also within a "
+          "segment, triangle or tetrahedron."),
+      field<&SceneHook::b_point>("b_point", "", kAny, "Which point of `b`; as `a_point`."),
+      field<&SceneHook::anchor>("anchor", "m", kAny,
+                                "Where it holds both, in the world; of a distance, a. Needed unless a point "
+                                "says where."),
       field<desc, &HookDesc::anchor_b>("anchor_b", "m", kAny,
                                        "Of a distance: where it holds b; `anchor` by default."),
       field<desc, &HookDesc::axis>("axis", "", kAny,
@@ -113,7 +125,9 @@ const Kind& kind_of<HookFreedom>() {
 template <>
 const Kind& kind_of<SceneHook>() {
   static const Kind kind = {.name = "hook",
-                            .help = "Holds two bodies, or a body and the world, together.",
+                            .help =
+                                "Holds two things together: bodies, points of ropes, cloths, solids "
+                                "and particles, the world.",
                             .fields = hook_rows(),
                             .defaults = defaults_of<SceneHook>,
                             .check = check_hook};
@@ -134,7 +148,8 @@ std::span<const EnumName> names_of<HookKind>() {
                                        {"fixed", static_cast<int>(HookKind::kFixed)},
                                        {"distance", static_cast<int>(HookKind::kDistance)},
                                        {"wheel", static_cast<int>(HookKind::kWheel)},
-                                       {"six_degrees", static_cast<int>(HookKind::kSixDegrees)}};
+                                       {"six_degrees", static_cast<int>(HookKind::kSixDegrees)},
+                                       {"rope_slide", static_cast<int>(HookKind::kRopeSlide)}};
   return names;
 }
 

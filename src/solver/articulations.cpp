@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "math/rotation.h"
+#include "solver/geometric_stiffness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,6 @@ constexpr double kFastTurn = 0.03;           ///< In a substep, from which on ro
 constexpr double kLargeError = 2e-4;         ///< Gap of a joint over its levers, or its angle [rad].
 constexpr double kComplianceOfTrees = 1e-9;  ///< Share of each diagonal.
 constexpr double kComplianceOfLoops = 1e-5;
-constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left explicit.
-constexpr double kStiffnessDamping = 0.2;  ///< Share of the rest that acts on the velocity too.
-constexpr double kStiffnessGrowth = 1.5;
 constexpr int kMostHooks = 8;  ///< Of a body that is not divided.
 constexpr int kHooksOfPart = 4;
 constexpr int kWeldRows = 6;
@@ -114,31 +112,6 @@ void list_couplings(const state::Bodies& bodies, Articulation& art) {
   }
 }
 
-/// The geometric stiffness of force `force` on `link` at lever r, in scaled coordinates times h^2.
-Symmetric3<double> stiffness_of(DVec3 r, DVec3 force, const JointBody& body, double h) {
-  const DVec3 s = normalize(r) + normalize(force);
-  const double size = 0.25 * h * h * length(r) * length(force);
-  const double square = length_squared(s);
-  const Symmetric3<double> k = {size * (square - s.x * s.x), -size * s.x * s.y,  //
-                                -size * s.x * s.z,           size * (square - s.y * s.y),
-                                -size * s.y * s.z,           size * (square - s.z * s.z)};
-  return math::symmetric_product(body.scale, k, body.scale);
-}
-
-double trace(const Symmetric3<double>& m) {
-  return m.xx + m.yy + m.zz;
-}
-
-Symmetric3<double> scaled(double s, const Symmetric3<double>& m) {
-  return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
-}
-
-/// The part of the stiffness that is not left explicit.
-Symmetric3<double> excess_of(const Symmetric3<double>& stiffness) {
-  const double size = trace(stiffness);
-  return size > kStiffnessLeft ? scaled(1 - kStiffnessLeft / size, stiffness) : Symmetric3<double>{};
-}
-
 /// An equal part of a body moves as the body does.
 void divide(double parts, JointBody& body) {
   if (parts == 1) return;
@@ -173,20 +146,6 @@ void load_links(const state::Bodies& bodies, Articulation& art) {
     link.excess = {};
     link.response = link.body.inverse_mass > 0 ? Symmetric3<double>::diagonal(1) : Symmetric3<double>{};
   }
-}
-
-/// -1 below the bounds, 1 above them.
-std::int8_t side_of(double value, double low, double high) {
-  if (value < low) return -1;
-  return value > high ? std::int8_t{1} : std::int8_t{0};
-}
-
-/// Rows begin where they ended in the last substep.
-std::int8_t first_bound(const JointRow& row, double last) {
-  if (row.role == RowRole::kLimit) return last > 0 || row.c <= 0 ? 0 : -1;
-  if (row.role != RowRole::kMotor) return 0;
-  const double nearly = 0.999 * row.high;
-  return side_of(last, -nearly, nearly);
 }
 
 void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {

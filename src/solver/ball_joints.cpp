@@ -7,6 +7,7 @@
 #include "solver/soft_locks.h"
 #include "solver/sweep_order.h"
 #include "solver/wide/ball_joints.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <span>

@@ -78,11 +78,11 @@ void list_updates(BlockPattern& p) {
 }
 
 /// L D L^T of one dense block in place.
-void factor_diagonal(double* a, int n) {
+void factor_diagonal(double sign, double* a, int n) {
   for (int j = 0; j < n; ++j) {
     double pivot = a[j * n + j];
     for (int k = 0; k < j; ++k) pivot -= a[j * n + k] * a[j * n + k] * a[k * n + k];
-    if (!(pivot > 0)) pivot = std::numeric_limits<double>::max();
+    if (!(sign * pivot > 0)) pivot = sign * std::numeric_limits<double>::max();
     a[j * n + j] = pivot;
     for (int i = j + 1; i < n; ++i) {
       double sum = a[i * n + j];
@@ -212,6 +212,7 @@ std::optional<BlockPattern> make_block_pattern(const Neighbors& neighbors, const
   for (const std::uint32_t node : e->order) in_order.push_back(sizes[node]);
   resize_blocks(in_order, p);
   p.order = std::move(e->order);
+  p.sign.assign(p.order.size(), 1);
   list_updates(p);
   return p;
 }
@@ -227,6 +228,10 @@ void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
   }
 }
 
+void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& p) {
+  for (std::size_t i = 0; i < p.order.size(); ++i) p.sign[i] = sign_of_node[p.order[i]];
+}
+
 std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
   const auto begin = p.block.begin() + p.column_begin[column];
   const auto end = p.block.begin() + p.column_begin[column + 1];
@@ -239,7 +244,7 @@ void factor(const BlockPattern& p, std::span<double> numbers) {
   std::vector<double> scaled;
   for (int j = 0; j < p.node_count(); ++j) {
     double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
-    factor_diagonal(diagonal, p.size[j]);
+    factor_diagonal(p.sign[j], diagonal, p.size[j]);
     for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b)
       factor_below(diagonal, p.size[j], numbers.data() + p.block[b].offset, p.size[p.block[b].row]);
     const ColumnBelow below = below_diagonal(p, j, numbers);

@@ -137,15 +137,6 @@ void finish_rotation(std::uint32_t i, Bodies& bodies) {
 
 }  // namespace
 
-bool tumbles(const BodyMass& mass) {
-  const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
-  return most > Real(1.02) * least;
-}
-
-bool tumbles_now(const Bodies& bodies, std::uint32_t body) {
-  return tumbles(bodies.mass[body]) && !bodies.steady_turn[body].on;
-}
-
 math::Symmetric3<Real> inertia_scale(const BodyMass& mass, Quat rotation) {
   const Vec3 inverse = inverse_inertia(mass);
   const Real x = std::sqrt(inverse.x);
@@ -194,6 +185,27 @@ void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step
     m.v = free.v + by_contacts;
     m.omega_scaled = free.omega_scaled + turn_by_contacts;
   }
+}
+
+void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, Bodies& bodies) {
+  const Vec3 angular = cross(lever, impulse);
+  const math::Symmetric3<Real>& scale = bodies.scale[row];
+  Vec3 turn = scale * angular;
+  if (tumbles_now(bodies, row)) {
+    const math::Symmetric3<Real> now = inertia_scale(bodies.mass[row], bodies.rotation[row]);
+    turn = momentum_of(scale, now * (now * angular));
+  }
+  MotionLine& m = bodies.motion[row];
+  state::FreeLine& free = bodies.free_motion[row];
+  m.v += m.inverse_mass * impulse;
+  free.v += m.inverse_mass * impulse;
+  m.omega_scaled += turn;
+  free.omega_scaled += turn;
+  bodies.angular_momentum[row] += angular;
+}
+
+Real inverse_mass_at(const Bodies& bodies, std::uint32_t row, Vec3 direction, Vec3 lever) {
+  return bodies.motion[row].inverse_mass + length_squared(bodies.scale[row] * cross(lever, direction));
 }
 
 void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {

@@ -20,13 +20,6 @@ struct BodyStep {
   bool first = false;  ///< The first substep of a step.
 };
 
-/// Whether the axis of a free body's rotation visibly moves.
-[[nodiscard]] bool tumbles(const state::BodyMass& mass);
-
-/// Whether the body tumbles in this step. In the middle of a step the column of rotations is up to date for
-/// such bodies; others turn at its end.
-[[nodiscard]] bool tumbles_now(const state::Bodies& bodies, std::uint32_t body);
-
 /// S = I^(-1/2) in world axes [1/sqrt(kg) 1/m], of a body turned by `rotation`.
 [[nodiscard]] math::Symmetric3<Real> inertia_scale(const state::BodyMass& mass, Quat rotation);
 
@@ -50,6 +43,14 @@ void prepare_bodies(std::span<const std::uint32_t> rows, state::Bodies& bodies);
 /// is kept, energy within 2 % at 500 rad/s, of symmetric bodies exactly. Source of the splitting: Dullweber,
 /// Leimkuhler, McLachlan 1997, "Symplectic splitting methods for rigid body molecular dynamics".
 void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step, state::Bodies& bodies);
+
+/// An impulse [N s] at `lever` from the center [m], now: like those of hooks it counts as free motion, not as
+/// the doing of contacts between bodies.
+void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, state::Bodies& bodies);
+
+/// 1 / the mass that resists a push along unit `direction` at `lever` from the center [1/kg].
+[[nodiscard]] Real inverse_mass_at(const state::Bodies& bodies, std::uint32_t row, Vec3 direction,
+                                   Vec3 lever);
 
 /// dx += h v, theta_scaled += h omega_scaled.
 void move_bodies(std::span<const std::uint32_t> rows, Real h, state::Bodies& bodies);

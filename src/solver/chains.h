@@ -22,6 +22,7 @@ struct Chain {
   std::uint32_t first_contact = 0;
   std::uint32_t end_contact = 0;
   std::uint32_t solves = 0;  ///< Newton steps since the frame began; written by solve_chains.
+  bool in_bundle = false;    ///< Solved with what it is tied to; written by build_bundles (solver/bundles.h).
   bool unconverged = false;  ///< A length error above 1 % was left in this frame; written by solve_chains.
 };
 
@@ -43,8 +44,8 @@ struct Chain {
 /// k = infinity), a sweep back gives q and u. The solve repeats, linearized anew, while a length error
 /// exceeds 0.1 %, at most 8 times; more than 1 % left is reported.
 ///
-/// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), rho = 1000 m, N0 carried over substeps;
-/// friction holds likewise up to mu N and is mu N against the motion beyond.
+/// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), rho = 1000 m, u relative to the surface,
+/// N0 carried over substeps; friction holds likewise up to mu N and is mu N against the motion beyond.
 ///
 /// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable constrained
 /// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's

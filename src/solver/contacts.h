@@ -1,6 +1,7 @@
 #pragma once
 
 #include "parallel/range.h"
+#include "state/bodies.h"
 #include "state/contacts.h"
 #include "state/objects.h"
 #include "state/particles.h"
@@ -11,15 +12,23 @@ namespace hooke::solver {
 
 constexpr double kPushOutSpeed = 1;  ///< Overlap of particles leaves no faster than this [m/s].
 
-/// Contacts of cloth and loose particles with static shapes; those of ropes are solved inside the rope.
+/// Contacts of cloth, solids and loose particles with bodies; those of ropes are solved inside the rope. With
+/// v the velocity of the particle against the surface that it touches:
 ///
 ///   apart (s > 0)   n.v >= -s/h: the particle reaches the surface in this substep and no farther
 ///   overlapping     n.v >= 0, and the position is moved out by at most kPushOutSpeed h: overlap never
-///   becomes speed friction        the tangential velocity is reduced by at most mu times the normal change
+///                   becomes speed
+///   friction        the tangential velocity is reduced by at most mu times the normal change
 ///
 /// Rows of one particle are solved in order, twice when there are several. Ranges may begin anywhere: a
-/// particle's rows belong to the range that holds the first of them.
+/// particle's rows belong to the range that holds the first of them. Particles that touch a body which forces
+/// move, and which is awake, are left to solve_moving_contacts.
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
-                    state::Contacts& contacts, state::Particles& particles);
+                    state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles);
+
+/// The same of particles that touch bodies which give way: each row pushes its body as much as its particle.
+/// One after the other, in order of rows.
+void solve_moving_contacts(const std::vector<state::Deformable>& objects, Real h, state::Bodies& bodies,
+                           state::Contacts& contacts, state::Particles& particles);
 
 }  // namespace hooke::solver

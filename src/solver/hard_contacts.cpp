@@ -1,6 +1,7 @@
 #include "solver/hard_contacts.h"
 
 #include "math/rotation.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/bodies.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -191,6 +192,11 @@ void make_limit(const HookLimits& limits, double value, double h, JointRow& row)
   row.target = std::min(-row.rate * row.c, kLimitSpeed);
 }
 
+/// Beyond `most` in this substep and in the last.
+bool breaks(Real now, Real last, Real h, Real most) {
+  return std::min(now, last) > most * h;
+}
+
 }  // namespace
 
 JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
@@ -298,6 +304,31 @@ double joint_gap(const Hook& hook, const JointBody& a, const JointBody& b) {
     gap += (f.value[i] - nearest) * f.axis[i];
   }
   return length(gap);
+}
+
+std::int8_t side_of(double value, double low, double high) {
+  if (value < low) return -1;
+  return value > high ? std::int8_t{1} : std::int8_t{0};
+}
+
+std::int8_t first_bound(const JointRow& row, double last) {
+  if (row.role == RowRole::kLimit) return last > 0 || row.c <= 0 ? 0 : -1;
+  if (row.role != RowRole::kMotor) return 0;
+  const double nearly = 0.999 * row.high;
+  return side_of(last, -nearly, nearly);
+}
+
+void add_up_impulses(Real h, Hook& hook) {
+  const Real force = length(hook.impulse);
+  const Real torque = length(hook.angular_impulse);
+  hook.impulse_sum += hook.impulse;
+  hook.angular_impulse_sum += hook.angular_impulse;
+  if (breaks(force, hook.last_impulse, h, hook.break_force) ||
+      breaks(torque, hook.last_angular_impulse, h, hook.break_torque)) {
+    hook.broken = true;
+  }
+  hook.last_impulse = force;
+  hook.last_angular_impulse = torque;
 }
 
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, Hook& hook) {

@@ -81,8 +81,17 @@ struct JointRow {
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
+/// -1 below the bounds, 1 above them.
+[[nodiscard]] std::int8_t side_of(double value, double low, double high);
+
+/// The bound at which a row begins a substep: the one where it ended the last, with the impulse `last`.
+[[nodiscard]] std::int8_t first_bound(const JointRow& row, double last);
+
 /// How far b's anchor is from the nearest place that locks and limits leave to it [m].
 [[nodiscard]] double joint_gap(const state::Hook& hook, const JointBody& a, const JointBody& b);
+
+/// Adds the impulses of a substep of length h [s] to those of the step, and marks the hook if it breaks.
+void add_up_impulses(Real h, state::Hook& hook);
 
 /// Notes the impulses of a substep in the hook.
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, state::Hook& hook);

@@ -35,7 +35,7 @@ std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hoo
   std::vector<std::vector<std::uint32_t>> groups;
   for (std::uint32_t i = 0; i < hooks.size(); ++i) {
     const std::uint32_t body = is_dynamic(bodies, hooks[i].a.body) ? hooks[i].a.body : hooks[i].b.body;
-    if (!is_dynamic(bodies, body)) continue;
+    if (!is_dynamic(bodies, body) || hooks[i].holds_point()) continue;
     std::uint32_t& group = group_of[sets.root(body)];
     if (group == kNone) {
       group = static_cast<std::uint32_t>(groups.size());
@@ -50,24 +50,6 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
   return std::any_of(articulation.bodies.begin(), articulation.bodies.end(), [&](std::uint32_t body) {
     return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
   });
-}
-
-/// Beyond `most` in this substep and in the last.
-bool breaks(Real now, Real last, Real h, Real most) {
-  return std::min(now, last) > most * h;
-}
-
-void add_up(Real h, Hook& hook) {
-  const Real force = length(hook.impulse);
-  const Real torque = length(hook.angular_impulse);
-  hook.impulse_sum += hook.impulse;
-  hook.angular_impulse_sum += hook.angular_impulse;
-  if (breaks(force, hook.last_impulse, h, hook.break_force) ||
-      breaks(torque, hook.last_angular_impulse, h, hook.break_torque)) {
-    hook.broken = true;
-  }
-  hook.last_impulse = force;
-  hook.last_angular_impulse = torque;
 }
 
 }  // namespace
@@ -115,7 +97,7 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
       Articulation& art = joints.articulations[i];
       if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
       for (const Articulation::Joint& joint : art.joints) {
-        if (!joint.is_weld()) add_up(h, hooks[joint.hook]);
+        if (!joint.is_weld()) add_up_impulses(h, hooks[joint.hook]);
       }
     }
   });
@@ -127,7 +109,7 @@ void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
                   Joints& joints) {
   relax_ball_joints(pool, bodies, joints.balls);
   relax_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
-  for (const std::uint32_t row : joints.net.hooks) add_up(h, hooks[row]);
+  for (const std::uint32_t row : joints.net.hooks) add_up_impulses(h, hooks[row]);
 }
 
 void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,

@@ -164,6 +164,12 @@ inline Vec3 velocity_at(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
   return bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor);
 }
 
+/// The same in the middle of a step.
+inline Vec3 velocity_now(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
+  const MotionLine& m = bodies.motion[body];
+  return m.v + cross(bodies.scale[body] * m.omega_scaled, anchor);
+}
+
 /// What FilterDesc says of two bodies.
 inline bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
   if (a.group == b.group && a.group != 0) return a.group > 0;

@@ -3,9 +3,11 @@
 #include "hooke/math.h"
 #include "hooke/world.h"
 
+#include "math/rotation.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
 
+#include <algorithm>
 #include <cstdint>
 
 /// \file
@@ -25,6 +27,27 @@ inline Pose frame_of_collider(const Bodies& bodies, const Colliders& colliders, 
   const Quat rotation = bodies.rotation[body];
   return {bodies.center[body] + vector_cast<double>(rotate(rotation, colliders.position[row])),
           rotation * colliders.rotation[row]};
+}
+
+/// Whether the axis of a free body's rotation visibly moves.
+inline bool tumbles(const BodyMass& mass) {
+  const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
+  return most > Real(1.02) * least;
+}
+
+/// Whether the body tumbles in this step. In the middle of a step the column of rotations is up to date for
+/// such bodies; others turn at its end.
+inline bool tumbles_now(const Bodies& bodies, std::uint32_t row) {
+  return tumbles(bodies.mass[row]) && !bodies.steady_turn[row].on;
+}
+
+/// Center of mass and rotation in the middle of a step.
+inline Pose pose_now(const Bodies& bodies, std::uint32_t row) {
+  const MotionLine& m = bodies.motion[row];
+  const DVec3 center = bodies.center[row] + vector_cast<double>(m.dx);
+  const bool turned = m.inverse_mass > Real(0) && tumbles_now(bodies, row);
+  if (turned || m.theta_scaled == Vec3{}) return {center, bodies.rotation[row]};
+  return {center, math::quaternion_of(bodies.scale[row] * m.theta_scaled) * bodies.rotation[row]};
 }
 
 /// L = R I R^T omega, of a body whose frame is turned by `rotation`.

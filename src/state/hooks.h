@@ -8,13 +8,21 @@
 
 namespace hooke::state {
 
-/// Where a hook holds an end.
+/// Where a hook holds an end: a body, the world, or up to four particles of one object, which move the place
+/// between them by their weights.
 struct HookPlace {
   static constexpr std::uint32_t kWorld = 0xFFFFFFFF;
+  static constexpr std::uint32_t kMostParticles = 4;
 
   std::uint32_t body = kWorld;  ///< Row; a row keeps its number as long as its body lives.
   DVec3 anchor = {};  ///< From the center of mass, in the body's frame; of the world, in the world [m].
   Quat axes = {};     ///< From the hook's axes to the body's frame, or to the world.
+  std::uint32_t object = 0;          ///< Row of the deformable, where there are particles.
+  std::uint32_t particle_count = 0;  ///< Not 0: an end at particles; `body` is kWorld then and `anchor` zero.
+  std::array<std::uint32_t, kMostParticles> particle = {};  ///< Rows.
+  std::array<Real, kMostParticles> weight = {};             ///< With the sum 1.
+
+  [[nodiscard]] bool is_point() const { return particle_count > 0; }
 };
 
 /// Two ends held together. What each kind leaves free is written out in `freedom` when the hook is made. What
@@ -45,6 +53,9 @@ struct Hook {
   /// Ways along a's x, y, z, then angles. kDistance uses the first, along the line between the anchors; kBall
   /// has its twist limits in the fourth and one spring and motor for each axis.
   std::array<HookFreedom, 6> freedom = {};
+  /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
+  [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
+
   Real cone = kRigid;            ///< kBall: largest angle between the x axes [rad].
   Real rest_distance = Real(0);  ///< kDistance: of the anchors when they were hooked [m].
 };

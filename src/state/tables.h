@@ -24,6 +24,8 @@ namespace hooke::state {
 /// Everything a World holds that a copy must hold: a snapshot is a copy, a restoration an assignment, the
 /// hash a walk.
 struct Tables {
+  static constexpr std::uint32_t kNoRow = 0xFFFFFFFF;
+
   WorldDesc desc;
   double time = 0.0;          ///< [s]
   double body_substep = 0.0;  ///< Length of the last one of bodies [s]; 0 before the first step.
@@ -68,5 +70,22 @@ struct Tables {
   SlotTable<FieldId> field_slots;
   SlotTable<ForceLawId> force_law_slots;
 };
+
+/// The row of the object whose point it is; Tables::kNoRow for a stale or null reference.
+inline std::uint32_t object_row(const Tables& t, PointRef point) {
+  switch (point.kind) {
+    case PointRef::Kind::kRope:
+      return t.rope_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kCloth:
+      return t.cloth_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kSolid:
+      return t.solid_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kParticles:
+      return t.particles_slots.find({point.slot, point.generation});
+    case PointRef::Kind::kNone:
+      break;
+  }
+  return Tables::kNoRow;
+}
 
 }  // namespace hooke::state

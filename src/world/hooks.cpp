@@ -64,15 +64,17 @@ void wake_ends(const Hook& hook, state::Bodies& bodies) {
   }
 }
 
-double gap_of(const Hook& hook, const state::Bodies& bodies) {
-  return solver::joint_gap(hook, solver::joint_body(bodies, hook.a.body),
-                           solver::joint_body(bodies, hook.b.body));
+double gap_of(const Hook& hook, const state::Tables& t) {
+  solver::JointBody a = solver::joint_end(t, hook.a);
+  if (hook.kind == HookKind::kRopeSlide) a.rotation = solver::turn_of_slide(t, hook);
+  return solver::joint_gap(hook, a, solver::joint_end(t, hook.b));
 }
 
 void hash_hooks(const state::Tables& t, base::StateHash& hash) {
   for (const Hook& hook : t.hooks) {
     hash.add(hook.a.body);
     hash.add(hook.b.body);
+    hash.add(hook.a.particle[0]);  // where it slides
     for (const Real impulse : hook.row_impulse) hash.add(impulse);
     for (const double value : hook.value) hash.add(value);
   }

@@ -27,7 +27,7 @@ void remove_hooks_of(std::uint32_t body, state::Tables& tables);
 void wake_ends(const state::Hook& hook, state::Bodies& bodies);
 
 /// How far the ends of a hook are from where it holds them [m]; see World::hook_gap.
-[[nodiscard]] double gap_of(const state::Hook& hook, const state::Bodies& bodies);
+[[nodiscard]] double gap_of(const state::Hook& hook, const state::Tables& tables);
 
 /// Adds the state of hooks.
 void hash_hooks(const state::Tables& tables, base::StateHash& hash);

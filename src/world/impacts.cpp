@@ -32,7 +32,7 @@ Path path_of(const WorldData& world, std::uint32_t body) {
   Path path = collision::path_ahead(bodies, body, Real(0));
   path.way = m.dx;
   path.turn = turn_of(bodies, body);
-  if (m.inverse_mass > Real(0) && solver::tumbles_now(bodies, body)) {
+  if (m.inverse_mass > Real(0) && state::tumbles_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
   }
@@ -62,7 +62,7 @@ bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt
   constexpr Real kFar = Real(0.25);        // [rad]
   constexpr Real kLargePart = Real(0.25);  // of the largest entry
   if (!state::is_dynamic(bodies, body) || bodies.asleep[body] != 0) return false;
-  if (!solver::tumbles(bodies.mass[body])) return false;
+  if (!state::tumbles(bodies.mass[body])) return false;
   if (foreseen || dt * length(bodies.motion[body].v) > bodies.traits[body].radius) return true;
   const Vec3 turn = dt * bodies.angular_velocity[body];
   if (!(length(turn) > kFar)) return false;
@@ -131,7 +131,7 @@ void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
   const Pose end = collision::pose_at(path, Real(1));
   m.dx = vector_cast<Real>(end.position - bodies.center[body]);
   m.theta_scaled = turned * m.theta_scaled;
-  if (solver::tumbles_now(bodies, body)) solver::turn_back(body, end.rotation, bodies);
+  if (state::tumbles_now(bodies, body)) solver::turn_back(body, end.rotation, bodies);
 }
 
 }  // namespace

@@ -185,8 +185,7 @@ Measurement World::measure() const {
                      measure_tetrahedra(t) + measure_gas(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
-  for (const state::Hook& hook : t.hooks)
-    m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t.bodies));
+  for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));
   m.largest_penetration = std::max(collision::largest_penetration(t), deepest_of_bodies(t));
   return m;
 }

@@ -1,5 +1,7 @@
 #include "world/objects.h"
 
+#include "world/hooks.h"
+
 #include <algorithm>
 
 namespace hooke::world {
@@ -33,22 +35,25 @@ void renumber_particles(Tables& t, Rows removed) {
     for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) moved(*p);
   }
   for (state::Pin& pin : t.pins) moved(pin.particle);
+  for (state::Hook& hook : t.hooks) {
+    for (state::HookPlace* end : {&hook.a, &hook.b}) {
+      for (std::uint32_t i = 0; i < end->particle_count; ++i) moved(end->particle[i]);
+    }
+  }
 }
 
-std::uint32_t object_row(const Tables& t, PointRef point) {
-  switch (point.kind) {
-    case PointRef::Kind::kRope:
-      return t.rope_slots.find({point.slot, point.generation});
-    case PointRef::Kind::kCloth:
-      return t.cloth_slots.find({point.slot, point.generation});
-    case PointRef::Kind::kSolid:
-      return t.solid_slots.find({point.slot, point.generation});
-    case PointRef::Kind::kParticles:
-      return t.particles_slots.find({point.slot, point.generation});
-    case PointRef::Kind::kNone:
-      break;
+void remove_hooks_of_object(Tables& t, std::uint32_t object) {
+  const auto holds = [&](const state::HookPlace& end) { return end.is_point() && end.object == object; };
+  for (std::size_t i = t.hooks.size(); i-- > 0;) {
+    const state::Hook& hook = t.hooks[i];
+    if (!holds(hook.a) && !holds(hook.b)) continue;
+    wake_ends(hook, t.bodies);
+    remove_row(t.hook_slots, t.hook_slots.id_of(hook.slot), t.hooks);
+    ++t.hook_revision;
   }
-  return state::SlotTable<RopeId>::kNone;
+  for (state::Hook& hook : t.hooks) {
+    for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > object;
+  }
 }
 
 void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
@@ -69,7 +74,7 @@ Error not_finite(const char* what) {
 }
 
 std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
-  const std::uint32_t row = object_row(tables, point);
+  const std::uint32_t row = state::object_row(tables, point);
   if (row == state::SlotTable<RopeId>::kNone) return std::nullopt;
   const Deformable& object = tables.objects[row];
   if (point.index >= object.particles.count) return std::nullopt;
@@ -79,6 +84,7 @@ std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
 
 bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   if (row == state::SlotTable<RopeId>::kNone || t.objects[row].kind != kind) return false;
+  remove_hooks_of_object(t, row);
   const Deformable gone = t.objects[row];
   erase_rows(t.particles, gone.particles);
   erase_rows(t.springs, gone.springs);

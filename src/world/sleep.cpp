@@ -1,6 +1,7 @@
 #include "world/sleep.h"
 
 #include "base/disjoint_sets.h"
+#include "world/hooks.h"
 
 #include <algorithm>
 #include <limits>
@@ -50,6 +51,24 @@ bool disturbs(const Bodies& bodies, std::uint32_t body) {
          bodies.angular_velocity[body] != Vec3{};
 }
 
+/// A particle that meets a sleeper faster than this wakes it [m/s].
+constexpr Real kWakingSpeed = Real(0.2);
+
+/// Particles that meet sleepers: the cloth that lies on one does not wake it.
+bool wake_struck(WorldData& world) {
+  state::Tables& t = world.tables;
+  bool any = false;
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    const std::uint32_t body = t.contacts.body[row];
+    if (!is_dynamic(t.bodies, body) || t.bodies.asleep[body] == 0) continue;
+    const Vec3 v = t.particles.velocity[t.contacts.particle[row]].v;
+    if (!(t.contacts.normal_force[row] > Real(0)) || !(length(v) > kWakingSpeed)) continue;
+    state::wake(t.bodies, body);
+    any = true;
+  }
+  return any;
+}
+
 /// For how long each island has been at rest: the least over its members, at its root.
 std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSets& islands) {
   const Bodies& bodies = world.tables.bodies;
@@ -67,9 +86,9 @@ std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSet
 
 bool wake_touched(WorldData& world, Real dt) {
   const bool none_sleeps = world.awake.size() == world.tables.moving_bodies.size();
-  if (world.awake.empty() || none_sleeps) return false;
+  if (none_sleeps) return false;
   Bodies& bodies = world.tables.bodies;
-  bool any = false;
+  bool any = wake_struck(world);
   for (bool changed = true; changed;) {
     changed = false;
     for (const Manifold& m : world.tables.pairs.manifold) {
@@ -96,6 +115,9 @@ void put_to_sleep(WorldData& world, Real dt) {
   Bodies& bodies = t.bodies;
   if (!t.desc.sleeping || world.awake.empty()) return;
   bool any_rests = false;
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.holds_point()) wake_ends(hook, bodies);  // ropes and cloths never rest
+  }
   for (const std::uint32_t body : world.awake) {
     const Real speed =
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;

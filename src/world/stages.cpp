@@ -51,6 +51,22 @@ void for_tetrahedra(WorldData& world, Kernel kernel) {
   }
 }
 
+/// Bodies have had the gravity of all particle substeps at once. Those that hang on ropes get it as the ropes
+/// do, share by share: the ropes would feel it all in the first substep and none in the others.
+void share_out_gravity(WorldData& world, Real h, bool first) {
+  state::Tables& tables = world.tables;
+  const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
+  if (others == Real(0)) return;
+  const Real time = first ? -others * h : h;
+  for (const solver::Bundle& bundle : world.bundles.bundles) {
+    for (const std::uint32_t body : bundle.bodies) {
+      const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
+      tables.bodies.motion[body].v += change;
+      tables.bodies.free_motion[body].v += change;
+    }
+  }
+}
+
 /// Who is pushed by force laws over bodies, and what else pushes them.
 void begin_body_laws(WorldData& world) {
   const state::Tables& tables = world.tables;
@@ -221,6 +237,27 @@ void solve_solids(WorldData& world, Real h) {
     for (int i = range.begin; i < range.end; ++i) {
       solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, static_cast<double>(h),
                         world.gas_volumes[i], tables.particles);
+    }
+  });
+}
+
+void begin_ties(WorldData& world, Real h, bool first) {
+  solver::slide_hooks(world.tables);
+  solver::build_bundles(world.tables, world.chains, world.bundles);
+  share_out_gravity(world, h, first);
+  solver::weigh_points(world.bundles, world.tables, world.hooked_points);
+}
+
+void solve_ropes(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  solver::release_points(world.hooked_points, tables.particles);
+  for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows) {
+    solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.velocity_before, h,
+                         tables.particles, tables.segments, tables.contacts);
+  });
+  for_ranges(*world.pool, static_cast<int>(world.bundles.bundles.size()), 1, [&](Range rows) {
+    for (int i = rows.begin; i < rows.end; ++i) {
+      solver::solve_bundle(world.velocity_before, h, world.bundles.bundles[i], world.chains, tables);
     }
   });
 }

@@ -26,6 +26,11 @@ void apply_wind(WorldData& world, Real h);
 void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
 
+/// What is tied to what, in a substep of length h [s], the `first` of those that bodies share.
+void begin_ties(WorldData& world, Real h, bool first);
+/// Ropes and what they are tied to.
+void solve_ropes(WorldData& world, Real h);
+
 /// Tetrahedra of solids, color after color; then the gas in closed cloths.
 void solve_solids(WorldData& world, Real h);
 

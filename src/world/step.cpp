@@ -16,7 +16,6 @@
 #include "solver/bends.h"
 #include "solver/bodies.h"
 #include "solver/body_contacts.h"
-#include "solver/chains.h"
 #include "solver/contacts.h"
 #include "solver/forces.h"
 #include "solver/hard_islands.h"
@@ -48,7 +47,6 @@ using world::for_contact_colors;
 constexpr int kParticleGrain = 2048;
 constexpr int kBlockGrain = 16;
 constexpr int kContactGrain = 256;
-constexpr int kChainGrain = 1;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
@@ -101,23 +99,23 @@ void apply_forces(WorldData& w, double time, Real h) {
   solver::drive_pins(w.tables.pins, w.tables.objects, time, h, particles);
 }
 
-/// Ropes first, exactly; then elastic rows, soft ones before those that hold; contacts last among the writers
-/// of velocity.
-void substep_particles(WorldData& w, double time, Real h) {
+/// Elastic rows, soft ones before those that hold; ropes with what they are tied to, exactly; contacts last
+/// among the writers of velocity.
+void substep_particles(WorldData& w, double time, Real h, bool first) {
   state::Tables& t = w.tables;
   apply_forces(w, time, h);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { collision::update_contacts(rows, t); });
-  for_ranges(*w.pool, static_cast<int>(w.chains.size()), kChainGrain, [&](Range rows) {
-    solver::solve_chains(std::span(w.chains).subspan(rows.begin, rows.count()), w.velocity_before, h,
-                         t.particles, t.segments, t.contacts);
-  });
+  world::begin_ties(w, h, first);
   solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   solve_bends(w);
   world::solve_solids(w, h);
   solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
-  for_ranges(*w.pool, t.contacts.count(), kContactGrain,
-             [&](Range rows) { solver::solve_contacts(t.objects, rows, h, t.contacts, t.particles); });
+  world::solve_ropes(w, h);
+  for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
+    solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
+  });
+  solver::solve_moving_contacts(t.objects, h, t.bodies, t.contacts, t.particles);
 
   for_ranges(*w.pool, t.particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
@@ -142,9 +140,9 @@ void substep(WorldData& w, int i, double time, Real h) {
   solver::solve_hard_islands(*w.pool, step, w.hard_islands, w.body_contacts, bodies);
   solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for (int k = 1; k <= particle_substeps; ++k) {
-    substep_particles(w, time + k * static_cast<double>(particle_h), particle_h);
+    substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
+    for_bodies(w, [&](auto rows) { solver::move_bodies(rows, particle_h, bodies); });
   }
-  for_bodies(w, [&](auto rows) { solver::move_bodies(rows, h, bodies); });
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(
       w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });

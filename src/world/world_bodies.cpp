@@ -75,7 +75,7 @@ void sort_contacts(std::vector<BodyContact>& contacts) {
 
 /// How far a body has turned in the step so far, and has its rotation not yet.
 Quat turn_of(const Bodies& bodies, std::uint32_t row) {
-  if (solver::tumbles_now(bodies, row)) return {};
+  if (state::tumbles_now(bodies, row)) return {};
   return math::quaternion_of(bodies.scale[row] * bodies.motion[row].theta_scaled);
 }
 

@@ -7,6 +7,7 @@
 #include "solver/air.h"
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
+#include "solver/bundles.h"
 #include "solver/chains.h"
 #include "solver/gas.h"
 #include "solver/hard_islands.h"
@@ -43,7 +44,9 @@ struct WorldData {
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;
-  std::vector<solver::Chain> chains;  ///< One per rope, in order of creation.
+  std::vector<solver::Chain> chains;               ///< One per rope, in order of creation.
+  solver::Bundles bundles;                         ///< Of ropes with what they are tied to.
+  std::vector<solver::HookedPoint> hooked_points;  ///< Lives for one substep.
 
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};

@@ -3,6 +3,7 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "solver/bundles.h"
 #include "solver/joint_rows.h"
 #include "world/hooks.h"
 #include "world/objects.h"
@@ -36,6 +37,7 @@ int main_freedom(HookKind kind) {
     case HookKind::kBall:
     case HookKind::kFixed:
     case HookKind::kSixDegrees:
+    case HookKind::kRopeSlide:
       break;
   }
   return -1;
@@ -99,7 +101,7 @@ std::array<DVec3, 2> World::hook_anchors(HookId id) const {
   const Hook* hook = find_hook(t, id);
   if (hook == nullptr) return {};
   const auto place = [&](const state::HookPlace& end) {
-    const solver::JointBody body = solver::joint_body(t.bodies, end.body);
+    const solver::JointBody body = solver::joint_end(t, end);
     return body.center + rotate(body.rotation, end.anchor);
   };
   return {place(hook->a), place(hook->b)};
@@ -108,7 +110,7 @@ std::array<DVec3, 2> World::hook_anchors(HookId id) const {
 Real World::hook_gap(HookId id) const {
   const Tables& t = data_->tables;
   const Hook* hook = find_hook(t, id);
-  return hook == nullptr ? Real(0) : static_cast<Real>(world::gap_of(*hook, t.bodies));
+  return hook == nullptr ? Real(0) : static_cast<Real>(world::gap_of(*hook, t));
 }
 
 const std::vector<HookId>& World::broken_hooks() const {

@@ -195,15 +195,20 @@ const BadScene kBadScenes[] = {
       "'highest', 'total_energy', 'kinetic_energy', "
       "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts', 'asleep', 'force', "
       "'torque', 'angle', 'way', 'gap', 'broken'"}},
-    {R"({"version": 1, "hooks": [{"b": "x"}]})", {"1:26: hooks[0]: needs 'anchor'"}},
+    {R"({"version": 1, "hooks": [{"b": "x"}]})",
+     {"1:26: hooks[0]: needs 'anchor', or a point of what it holds"}},
     {R"({"version": 1, "hooks": [{"b": "ball", "anchor": [0, 0, 0]}]})",
      {"1:32: hooks[0].b: there is no object 'ball'"}},
-    {R"({"version": 1, "ropes": [{"name": "rope"}], "hooks": [{"b": "rope", "anchor": [0, 0, 0]}]})",
-     {"1:61: hooks[0].b: 'rope' is not a body"}},
+    {R"({"version": 1, "fields": [{"name": "g", "uniform": {"acceleration": [0, 1, 0]}}], "hooks": [{"b": "g", "anchor": [0, 0, 0]}]})",
+     {"1:99: hooks[0].b: 'g' cannot be hooked"}},
+    {R"({"version": 1, "ropes": [{"name": "rope"}], "hooks": [{"b": "rope", "b_point": 16}]})",
+     {"1:80: hooks[0].b_point: 16 is out of range, must be 0 to 15"}},
+    {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}], "hooks": [{"b": "ball", "b_point": 0}]})",
+     {"1:106: hooks[0].b_point: 'ball' is a body, which has no points"}},
     {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}],)"
      R"( "hooks": [{"kind": "joint", "b": "bal", "anchor": [0, 0, 0]}]})",
      {"1:90: hooks[0].kind: 'joint' is not one of 'ball', 'hinge', 'slider', 'fixed', 'distance', 'wheel', "
-      "'six_degrees'"}},
+      "'six_degrees', 'rope_slide'"}},
     {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}],)"
      R"( "hooks": [{"a": "bal", "b": "ball", "anchor": [0, 0, 0]}]})",
      {"1:87: hooks[0].a: there is no object 'bal', did you mean 'ball'?"}},

@@ -152,6 +152,23 @@ TEST_SUITE("io/scene_simulation") {
           "demo.json:3:57: hooks[0].limits: must allow some distance");
   }
 
+  TEST_CASE("hooks hold points by number, the last one, and the place nearest to their anchor") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "ropes": [{"name": "rope", "hook_point": [0, 2, 0], "direction": [1, 0, 0], "masses": 5, "length_at_rest": 4}],
+      "bodies": [{"name": "ball", "kind": "dynamic", "shape": {"sphere": {}}, "position": [4, 1, 0]}],
+      "hooks": [{"name": "end", "a": "ball", "b": "rope", "b_point": "last"},
+                {"name": "second", "a": "rope", "a_point": 1, "b": "ball", "kind": "distance", "anchor_b": [4, 1, 0]},
+                {"name": "between", "b": "rope", "anchor": [2.25, 1, 0], "spring": {"stiffness": 5}}]
+    })");
+    const auto anchors = [&](const char* hook) {
+      return simulation.world().hook_anchors(simulation.find(hook)->hook);
+    };
+    CHECK(anchors("end") == std::array{hooke::DVec3{4, 2, 0}, hooke::DVec3{4, 2, 0}});
+    CHECK(anchors("second") == std::array{hooke::DVec3{1, 2, 0}, hooke::DVec3{4, 1, 0}});
+    CHECK(anchors("between")[1] == hooke::DVec3{2.25, 2, 0});
+  }
+
   TEST_CASE("an array of hooks counts through arrays of bodies, from the copy that is named") {
     const hooke::Simulation simulation = simulate(R"({
       "version": 1,
@@ -167,8 +184,7 @@ TEST_SUITE("io/scene_simulation") {
     const auto holds = [&](const char* hook, const char* a, const char* b) {
       const hooke::SceneObject* object = simulation.find(hook);
       REQUIRE(object != nullptr);
-      const hooke::BodyId body_a = *a == '\0' ? hooke::BodyId{} : simulation.find(a)->body;
-      CHECK(object->hooked == std::array{body_a, simulation.find(b)->body});
+      CHECK(object->hooked == std::array<std::string, 2>{a, b});
       return simulation.world().hook_anchors(object->hook);
     };
     CHECK(holds("top", "", "link[0]")[0] == hooke::DVec3{0, 0.5, 0});

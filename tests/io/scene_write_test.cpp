@@ -121,7 +121,8 @@ constexpr const char* kEverything = R"({
      "array": {"grid": [2, 1, 1], "spacing": [1, 2, 1]}},
     {"kind": "six_degrees", "b": "top[1]", "anchor": [0, 0, 0], "freedoms": [{"locked": true}, {"locked": false},
      {"locked": false, "limits": {"upper": 1}}, {"locked": true, "spring": {"target": 0.25}}, {"locked": false},
-     {"locked": false, "spring": {"stiffness": 2}}]}],
+     {"locked": false, "spring": {"stiffness": 2}}]},
+    {"kind": "rope_slide", "a": "rope", "a_point": 1, "b": "jelly", "b_point": "last"}],
   "solids": [
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
      "damping": 0.0625, "thickness": 0.25, "pins": [{"topmost": 0.5}]},

@@ -24,11 +24,16 @@ inline void run(World& world, int steps, Real dt = Real(1) / Real(60)) {
   for (int i = 0; i < steps; ++i) REQUIRE(world.step(dt).healthy());
 }
 
+inline WorldDesc without_air() {
+  WorldDesc desc;
+  desc.wind.air_density = Real(0);
+  return desc;
+}
+
 /// A still world: no gravity, no air.
 inline WorldDesc empty_space() {
-  WorldDesc desc;
+  WorldDesc desc = without_air();
   desc.gravity = {};
-  desc.wind.air_density = Real(0);
   return desc;
 }
 

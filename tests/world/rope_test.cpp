@@ -9,14 +9,9 @@ namespace hooke {
 using test::make_world;
 using test::run;
 using test::take;
+using test::without_air;
 
 namespace {
-
-WorldDesc without_air() {
-  WorldDesc desc;
-  desc.wind.air_density = Real(0);
-  return desc;
-}
 
 /// Times at which x changes sign, interpolated.
 template <class Position>

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "solver/bundles.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// \file
+/// A bundle in the middle of its solution. Only bundles.cpp and bundles_matrix.cpp know it.
+
+namespace hooke::solver {
+
+/// How a body's velocity V = (sqrt(m) v, omega~) moves a place along a direction: row . V; and such a V.
+struct BodyRow {
+  DVec3 linear, angular;
+
+  [[nodiscard]] double at(int i) const {
+    const DVec3& part = i < 3 ? linear : angular;
+    return i % 3 == 0 ? part.x : i % 3 == 1 ? part.y : part.z;
+  }
+  BodyRow& operator+=(const BodyRow& other) {
+    linear += other.linear;
+    angular += other.angular;
+    return *this;
+  }
+  friend BodyRow operator*(double s, const BodyRow& row) { return {s * row.linear, s * row.angular}; }
+  friend double dot(const BodyRow& a, const BodyRow& b) {
+    return hooke::dot(a.linear, b.linear) + hooke::dot(a.angular, b.angular);
+  }
+};
+
+inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
+
+class BundleSolution {
+ public:
+  BundleSolution(double h, Bundle& bundle, state::Tables& tables) : h_(h), b_(bundle), t_(tables) {}
+
+  void load(const std::vector<Vec3>& before, const std::vector<Chain>& chains);
+  void run(std::vector<Chain>& chains);
+  void store(const std::vector<Chain>& chains);
+
+ private:
+  // Loading and checking.
+  void load_hooks();
+  bool stiffen();
+  void solve_with_bounds();
+  bool revise_bounds(bool release);
+  void read_solution();
+  void move_nodes();
+  [[nodiscard]] bool is_sound() const;
+
+  // The matrix and its right side.
+  void assemble();
+  void assemble_pair(const Bundle::Incident& a, const Bundle::Incident& b, std::uint32_t block,
+                     const RopeNode& node);
+  void assemble_pairs();
+  void assemble_hooks();
+  void assemble_bodies();
+  void assemble_touches();
+  void assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node);
+  void fill_right_side();
+  [[nodiscard]] std::vector<BodyRow> start_of_bodies() const;
+  void give_impulses(std::vector<BodyRow>& start);
+
+  /// How fast each hook row opens by itself: ends that nothing of the bundle moves.
+  [[nodiscard]] double given_speed(std::uint32_t hook, const JointRow& row) const;
+  [[nodiscard]] BodyRow hook_row(const JointRow& row, int end, const JointBody& body) const {
+    const double sign = end == 1 ? 1 : -1;
+    return {(sign * std::sqrt(body.inverse_mass)) * row.n, sign * (end == 1 ? row.j_b : row.j_a)};
+  }
+  /// Calls visit(hook, row, k) for each row; k counts within the hook.
+  template <class Visit>
+  void for_each_row(Visit&& visit) const {
+    for (std::uint32_t i = 0; i < b_.hooks.size(); ++i) {
+      for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row)
+        visit(i, row, static_cast<int>(row - b_.first_row[i]));
+    }
+  }
+
+  [[nodiscard]] std::uint32_t segment_count() const {
+    return static_cast<std::uint32_t>(b_.ropes.segments.size());
+  }
+  [[nodiscard]] std::uint32_t hook_block(std::uint32_t hook) const { return segment_count() + hook; }
+  [[nodiscard]] std::uint32_t body_block(int body) const {
+    return hook_block(static_cast<std::uint32_t>(b_.hooks.size())) + static_cast<std::uint32_t>(body);
+  }
+  [[nodiscard]] std::span<const Bundle::Incident> incidents_of(std::size_t node) const {
+    return std::span(b_.incidents)
+        .subspan(b_.first_incident[node], b_.first_incident[node + 1] - b_.first_incident[node]);
+  }
+  [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.place[block]]; }
+  /// Direction k of a row block; zero of a row that is at a bound.
+  [[nodiscard]] DVec3 direction(std::uint32_t block, int k) const {
+    if (block < segment_count()) return kAxes[static_cast<std::size_t>(k)];
+    const std::uint32_t row = b_.first_row[block - segment_count()] + static_cast<std::uint32_t>(k);
+    return b_.bound[row] == 0 ? b_.rows[row].n : DVec3{};
+  }
+  /// The number (i, k) of the block where `a` meets `b`.
+  double& number(std::uint32_t a, std::uint32_t b, int i, int k) {
+    const std::uint32_t row = b_.place[a];
+    const std::uint32_t column = b_.place[b];
+    const bool lower = row >= column;
+    const std::uint32_t block = find_block(b_.pattern, std::max(row, column), std::min(row, column));
+    const BlockPattern::Block& at = b_.pattern.block[block];
+    const int width = b_.pattern.size[at.column];
+    return b_.numbers[at.offset + static_cast<std::size_t>(lower ? i * width + k : k * width + i)];
+  }
+  double& right_side(std::uint32_t block, int i) {
+    return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.place[block]] + i)];
+  }
+
+  double h_;
+  Bundle& b_;
+  state::Tables& t_;
+};
+
+}  // namespace hooke::solver

@@ -1,0 +1,256 @@
+/// Loads a bundle, solves it, checks, repeats if need be. Read solve_bundle first, at the end of the file.
+
+#include "solver/bundles.h"
+
+#include "math/rotation.h"
+#include "solver/bundle_solution.h"
+#include "solver/geometric_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using math::Symmetric3;
+using state::Hook;
+
+constexpr int kFreePasses = 8;  ///< Rows with bounds come and go.
+constexpr int kMaxPasses = 16;  ///< In the rest they only go.
+
+}  // namespace
+
+void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Chain>& chains) {
+  b_.ropes.clear();
+  b_.settings.clear();
+  for (const std::uint32_t c : b_.chains) {
+    const std::size_t first = b_.ropes.nodes.size();
+    load_rope(chains[c], before, h_, t_.particles, t_.segments, t_.contacts, b_.ropes);
+    b_.settings.push_back(first_setting(first, b_.ropes));
+  }
+  for (const std::uint32_t p : b_.points)
+    b_.ropes.nodes.push_back(load_node(p, t_.particles.velocity[p].v, t_.particles));
+  for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
+    const JointBody body = joint_body_now(t_.bodies, b_.bodies[i]);
+    b_.moving[i] = {
+        .body = body, .stiffness = {}, .excess = {}, .v = body.v, .omega_scaled = body.omega_scaled};
+  }
+  for (RopeTouch& touch : b_.ropes.touches) touch.body = b_.body_of(t_.contacts.body[touch.row]);
+  load_hooks();
+  stiffen();
+}
+
+void BundleSolution::load_hooks() {
+  std::array<JointRow, Hook::kMaxRows> rows;
+  for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
+    Hook& hook = t_.hooks[b_.hooks[i]];
+    const auto end_of = [&](int end) {
+      const int body = b_.ends[i][end];
+      return body >= 0 ? b_.moving[body].body : joint_end(t_, end == 0 ? hook.a : hook.b);
+    };
+    JointBody a = end_of(0);
+    if (hook.kind == HookKind::kRopeSlide) a.rotation = turn_of_slide(t_, hook);
+    const int count = make_joint_rows(hook, a, end_of(1), h_, rows);
+    for (int k = 0; k < count; ++k) {
+      const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
+      b_.rows[row] = rows[k];
+      b_.lambda[row] = static_cast<double>(hook.row_impulse[k]);
+      b_.bound[row] = first_bound(rows[k], b_.lambda[row]);
+    }
+  }
+}
+
+/// Geometric stiffness of the forces found last. True if it has grown so much that the solution must be
+/// repeated.
+bool BundleSolution::stiffen() {
+  std::vector<Symmetric3<double>> found(b_.moving.size());
+  for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
+    const Hook& hook = t_.hooks[b_.hooks[i]];
+    DVec3 force;
+    for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row)
+      force += (b_.lambda[row] / h_) * b_.rows[row].n;
+    for (int end = 0; end < 2; ++end) {
+      const int body = b_.ends[i][end];
+      const DVec3 anchor = end == 0 ? hook.a.anchor : hook.b.anchor;
+      if (body < 0 || force == DVec3{} || anchor == DVec3{}) continue;
+      const JointBody& at = b_.moving[body].body;
+      found[body] =
+          found[body] + stiffness_of(rotate(at.rotation, anchor), end == 0 ? -force : force, at, h_);
+    }
+  }
+  bool grew = false;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    BundleBody& moving = b_.moving[i];
+    const double before = trace(moving.stiffness);
+    if (trace(found[i]) <= before) continue;
+    grew = grew || trace(found[i]) > std::max(kStiffnessGrowth * before, kStiffnessLeft);
+    moving.stiffness = found[i];
+    moving.excess = excess_of(found[i]);
+  }
+  return grew;
+}
+
+void BundleSolution::read_solution() {
+  const auto vector_at = [&](std::uint32_t block, int first) {
+    return DVec3{right_side(block, first), right_side(block, first + 1), right_side(block, first + 2)};
+  };
+  for (std::uint32_t i = 0; i < segment_count(); ++i) b_.ropes.segments[i].q = vector_at(i, 0);
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
+    if (b_.bound[row] == 0) b_.lambda[row] = right_side(hook_block(hook), k);
+  });
+  for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
+    b_.moving[i].v = std::sqrt(b_.moving[i].body.inverse_mass) * vector_at(body_block(i), 0);
+    b_.moving[i].omega_scaled = vector_at(body_block(i), 3);
+  }
+  move_nodes();
+}
+
+/// u = v* + W (B^T l + R V); what rows at bounds give is in v* already.
+void BundleSolution::move_nodes() {
+  for (RopeTouch& touch : b_.ropes.touches) {
+    if (touch.body < 0) continue;
+    const BundleBody& m = b_.moving[touch.body];
+    touch.surface = m.v + cross(m.body.scale * m.omega_scaled, touch.lever);
+  }
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    RopeNode& node = b_.ropes.nodes[n];
+    DVec3 impulse;
+    for (const Bundle::Incident& at : incidents_of(n)) {
+      if (at.block < segment_count()) {
+        impulse += at.weight * b_.ropes.segments[at.block].q;
+        continue;
+      }
+      const std::uint32_t first = b_.first_row[at.block - segment_count()];
+      for (int k = 0; k < size_of(at.block); ++k)
+        impulse += (at.weight * b_.lambda[first + static_cast<std::uint32_t>(k)]) * direction(at.block, k);
+    }
+    node.u = node.target + node.inverse * impulse;
+  }
+  for (const RopeTouch& touch : b_.ropes.touches) {
+    if (touch.body < 0 || !touch.active) continue;
+    RopeNode& node = b_.ropes.nodes[touch.node];
+    node.u += node.inverse * (grip_of(touch, node) * touch.surface);
+  }
+}
+
+/// As in articulations: rows beyond a bound go to it, rows that it holds back are let go if `release`.
+bool BundleSolution::revise_bounds(bool release) {
+  std::vector<double> speed(b_.rows.size());  // of opening
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    for (const Bundle::Incident& at : incidents_of(n)) {
+      if (at.block < segment_count()) continue;
+      const std::uint32_t hook = at.block - segment_count();
+      for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row)
+        speed[row] += at.weight * dot(b_.rows[row].n, b_.ropes.nodes[n].u);
+    }
+  }
+  bool changed = false;
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
+    const JointRow& of = b_.rows[row];
+    if (std::isinf(of.low) && std::isinf(of.high)) return;
+    std::int8_t bound = b_.bound[row];
+    if (bound == 0) {
+      bound = side_of(b_.lambda[row], of.low, of.high);
+    } else if (release) {
+      double lacks = of.target - of.gamma * b_.lambda[row] - speed[row] - given_speed(hook, of);
+      for (int end = 0; end < 2; ++end) {
+        const int body = b_.ends[hook][end];
+        if (body < 0) continue;
+        const BundleBody& m = b_.moving[body];
+        const BodyRow velocity = {(1 / std::sqrt(m.body.inverse_mass)) * m.v, m.omega_scaled};
+        lacks -= dot(hook_row(of, end, m.body), velocity);
+      }
+      const bool stays = bound < 0 ? lacks <= 1e-9 : lacks >= -1e-9;
+      if (!stays) bound = 0;
+    }
+    changed = changed || bound != b_.bound[row];
+    b_.bound[row] = bound;
+    if (bound != 0) b_.lambda[row] = bound < 0 ? of.low : of.high;
+  });
+  return changed;
+}
+
+void BundleSolution::solve_with_bounds() {
+  bool changed = true;
+  for (int pass = 0; changed && pass < kMaxPasses; ++pass) {
+    hold_nodes(h_, b_.ropes);
+    fill_right_side();
+    assemble();
+    factor(b_.pattern, b_.numbers);
+    solve(b_.pattern, b_.numbers, b_.right_side);
+    read_solution();
+    if (!is_sound()) return;
+    changed = revise_bounds(pass < kFreePasses);
+  }
+}
+
+bool BundleSolution::is_sound() const {
+  return solver::is_finite(b_.ropes) &&
+         std::all_of(b_.moving.begin(), b_.moving.end(), [](const BundleBody& m) {
+           return hooke::is_finite(m.v) && hooke::is_finite(m.omega_scaled);
+         });
+}
+
+void BundleSolution::run(std::vector<Chain>& chains) {
+  double error = 0;
+  for (int solves = 1; solves <= kMostRopeSolves; ++solves) {
+    std::size_t segment = 0;
+    for (std::size_t k = 0; k < b_.chains.size(); ++k) {
+      Chain& chain = chains[b_.chains[k]];
+      for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i)
+        linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
+      ++chain.solves;
+    }
+    solve_with_bounds();
+    if (!is_sound()) break;
+
+    const bool unsettled = update_touches(h_, b_.ropes);
+    bool limits_changed = false;
+    error = check_segments(h_, b_.ropes, limits_changed);
+    const bool long_enough = error <= kLengthTolerance && !limits_changed;
+    const bool grew = stiffen();
+    if (long_enough && !grew && solves >= least_solves(b_.ropes, unsettled)) break;
+    for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;
+  }
+  for (const std::uint32_t c : b_.chains)
+    chains[c].unconverged = chains[c].unconverged || !(error <= kReportedError) || !is_sound();
+}
+
+void BundleSolution::store(const std::vector<Chain>& chains) {
+  if (!is_sound()) return;
+  std::size_t node = 0;
+  std::size_t segment = 0;
+  for (const std::uint32_t c : b_.chains) {
+    store_rope(chains[c], node, segment, h_, b_.ropes, t_.particles, t_.segments);
+    node += chains[c].node_count;
+    segment += chains[c].node_count - 1;
+  }
+  for (const std::uint32_t p : b_.points) {
+    if (b_.ropes.nodes[node].w > 0) t_.particles.velocity[p].v = vector_cast<Real>(b_.ropes.nodes[node].u);
+    ++node;
+  }
+  store_touches(h_, b_.ropes, t_.contacts);
+  for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
+    const BundleBody& m = b_.moving[i];
+    set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);
+  }
+  for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
+    const std::size_t first = b_.first_row[i];
+    const std::size_t count = b_.first_row[i + 1] - first;
+    Hook& hook = t_.hooks[b_.hooks[i]];
+    store_joint_impulses(std::span(b_.rows).subspan(first, count), std::span(b_.lambda).subspan(first, count),
+                         hook);
+    add_up_impulses(static_cast<Real>(h_), hook);
+  }
+}
+
+void solve_bundle(const std::vector<Vec3>& before, Real h, Bundle& bundle, std::vector<Chain>& chains,
+                  state::Tables& tables) {
+  BundleSolution solution(static_cast<double>(h), bundle, tables);
+  solution.load(before, chains);
+  solution.run(chains);
+  solution.store(chains);
+}
+
+}  // namespace hooke::solver

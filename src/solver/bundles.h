@@ -1,0 +1,119 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "math/symmetric.h"
+#include "solver/block_matrix.h"
+#include "solver/chains.h"
+#include "solver/joint_rows.h"
+#include "solver/rope_rows.h"
+#include "state/tables.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Ropes with what they are tied to. A rope alone is a chain (solver/chains.h); what hooks at points, or a
+/// rope that lies on a moving body, join to each other is a bundle and solved as a whole.
+
+namespace hooke::solver {
+
+/// A body of a bundle while it is solved.
+struct BundleBody {
+  JointBody body;                      ///< Before the solution.
+  math::Symmetric3<double> stiffness;  ///< h^2 S K S of the hooks' forces.
+  math::Symmetric3<double> excess;     ///< What of it is implicit.
+  DVec3 v = {};                        ///< The result.
+  DVec3 omega_scaled = {};
+};
+
+/// Unknown are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m) v,
+/// omega~) of bodies. With B the Jacobians at particles, C those at bodies, W the particles' inverse masses
+/// with what touches them, P the grip of contacts on bodies and R = P J:
+///
+///   particles   u = v* + W (B^T l + R V)
+///   rows        B u + C V + E l = target,          l = (q, lambda), E by chains.h and joint_rows.h
+///   bodies      (1 + G) (V - V0) + 0.2 G V0 = C^T l - J^T (k + P (J V - u)),   G by articulations.h
+///
+/// where k is the part of a contact's impulse that does not depend on velocities. Particles are eliminated by
+/// hand; what is left in (l, V) is quasi-definite and is factored in an order of little fill: ropes between
+/// hooks first, in time proportional to their length, as a chain would be. Newton steps, contacts inside the
+/// solution and their repetition are those of a chain. Rows with bounds join and leave as in an articulation.
+///
+/// A share of 1e-6 of each hook row's diagonal is added as compliance: it decides what loops of rigid ropes
+/// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
+/// direction at b is that of its points blended along the segment.
+struct Bundle {
+  std::vector<std::uint32_t> chains;     ///< In order.
+  std::vector<std::uint32_t> points;     ///< Particles of no rope, in order of rows.
+  std::vector<std::uint32_t> hooks;      ///< Rows, in order.
+  std::vector<std::uint32_t> bodies;     ///< Rows, in order.
+  std::vector<std::array<int, 2>> ends;  ///< Of each hook a and b: index into `bodies`, or -1.
+
+  /// Index of a body's row in `bodies`, or -1.
+  [[nodiscard]] int body_of(std::uint32_t row) const;
+
+  // The matrix. Blocks are segments, then hooks, then bodies.
+  BlockPattern pattern;
+  std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
+  /// A row block at a node, with the weight of its Jacobian there.
+  struct Incident {
+    std::uint32_t block = 0;
+    double weight = 0;
+  };
+  std::vector<Incident> incidents;            ///< By node.
+  std::vector<std::uint32_t> first_incident;  ///< Of each node; one more at the end.
+  std::vector<std::uint32_t> pair_block;      ///< For each two incidents of a node (j <= i), by node, i, j.
+  std::vector<std::uint32_t> first_pair;      ///< Of each node.
+
+  // Lives for one substep.
+  RopeScratch ropes;                     ///< Nodes of chains, then points.
+  std::vector<RopeSetting> settings;     ///< Of chains.
+  std::vector<BundleBody> moving;        ///< As `bodies`.
+  std::vector<JointRow> rows;            ///< Of hooks.
+  std::vector<std::uint32_t> first_row;  ///< Of each hook; one more at the end.
+  std::vector<std::int8_t> bound;        ///< Of rows, as Articulation::bound.
+  std::vector<double> lambda;            ///< Of rows.
+  std::vector<double> numbers;
+  std::vector<double> right_side;  ///< Then the solution.
+};
+
+struct Bundles {
+  std::vector<Bundle> bundles;
+  std::vector<std::uint32_t> signature;  ///< Of what they were made from.
+};
+
+/// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has
+/// changed since they were made. Marks the chains that belong to one.
+void build_bundles(const state::Tables& tables, std::vector<Chain>& chains, Bundles& bundles);
+
+/// Puts the ends of hooks that slide along a rope where the other ends are nearest to them, searching from
+/// where they were.
+void slide_hooks(state::Tables& tables);
+
+/// The rotation whose x axis is the direction of the rope where a hook slides along it.
+[[nodiscard]] Quaternion<double> turn_of_slide(const state::Tables& tables, const state::Hook& hook);
+
+/// An end of a hook now: of a body, the world, or the place between particles, which has no rotation.
+[[nodiscard]] JointBody joint_end(const state::Tables& tables, const state::HookPlace& place);
+
+/// While elastic rows are solved, a hooked point of a cloth, solid or group of particles has the mass of what
+/// it is tied to as well: it is as hard to move as that. `weigh_points` notes the points' own state and gives
+/// them that mass; `release_points` takes it away again and leaves to each point what the impulses it has got
+/// make of it alone, which solve_bundle then shares out.
+struct HookedPoint {
+  std::uint32_t particle = 0;
+  Real inverse_mass = Real(0);
+  Vec3 velocity = {};
+};
+void weigh_points(const Bundles& bundles, state::Tables& tables, std::vector<HookedPoint>& points);
+void release_points(const std::vector<HookedPoint>& points, state::Particles& particles);
+
+/// Velocities of everything in a bundle for a substep of length h [s]. `before` holds velocities of particles
+/// from before the forces.
+void solve_bundle(const std::vector<Vec3>& before, Real h, Bundle& bundle, std::vector<Chain>& chains,
+                  state::Tables& tables);
+
+}  // namespace hooke::solver

@@ -1,0 +1,301 @@
+/// Which ropes, points and bodies hang together, and the pattern of their matrix.
+
+#include "base/assert.h"
+#include "base/disjoint_sets.h"
+#include "solver/bundles.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Hook;
+using state::HookPlace;
+using state::Tables;
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr double kNoBudget = std::numeric_limits<double>::infinity();
+
+bool moves(const state::Bodies& bodies, std::uint32_t body) {
+  return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
+}
+
+/// A contact that joins its rope to a body.
+bool joins(const Tables& t, std::size_t contact) {
+  const std::uint32_t object = t.contacts.object[contact];
+  return t.objects[object].kind == PointRef::Kind::kRope && moves(t.bodies, t.contacts.body[contact]);
+}
+
+std::vector<std::uint32_t> signature_of(const Tables& t) {
+  std::vector<std::uint32_t> s;
+  for (const std::uint64_t revision : {t.revision, t.hook_revision}) {
+    s.push_back(static_cast<std::uint32_t>(revision));
+    s.push_back(static_cast<std::uint32_t>(revision >> 32U));
+  }
+  for (const Hook& hook : t.hooks) {
+    if (!hook.holds_point()) continue;
+    s.push_back(hook.a.particle[0]);  // changes where it slides
+    for (const std::uint32_t body : {hook.a.body, hook.b.body}) s.push_back(moves(t.bodies, body) ? 1 : 0);
+  }
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    if (joins(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
+  }
+  return s;
+}
+
+/// Bodies, then particles; a rope is its first particle.
+class Groups {
+ public:
+  explicit Groups(const Tables& t)
+      : tables_(t), sets_(t.bodies.motion.size() + static_cast<std::size_t>(t.particles.count())) {
+    for (const Hook& hook : t.hooks) {
+      if (hook.holds_point()) join(hook);
+    }
+    for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+      if (joins(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
+    }
+  }
+
+  std::uint32_t of_hook(const Hook& hook) { return sets_.root(of_end(hook.a.is_point() ? hook.a : hook.b)); }
+  std::uint32_t of_contact(std::size_t row) {
+    return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
+  }
+  std::uint32_t of_particle(std::uint32_t object, std::uint32_t particle) {
+    const state::Deformable& owner = tables_.objects[object];
+    const std::uint32_t first = owner.kind == PointRef::Kind::kRope ? owner.particles.first : particle;
+    return sets_.root(static_cast<std::uint32_t>(tables_.bodies.motion.size()) + first);
+  }
+
+ private:
+  std::uint32_t of_end(const HookPlace& end) {
+    if (end.is_point()) return of_particle(end.object, end.particle[0]);
+    return moves(tables_.bodies, end.body) ? sets_.root(end.body) : kNone;
+  }
+
+  void join(const Hook& hook) {
+    for (const HookPlace& end : {hook.a, hook.b}) {
+      for (std::uint32_t i = 1; i < end.particle_count; ++i)
+        sets_.merge(of_particle(end.object, end.particle[0]), of_particle(end.object, end.particle[i]));
+    }
+    const std::uint32_t a = of_end(hook.a);
+    const std::uint32_t b = of_end(hook.b);
+    if (a != kNone && b != kNone) sets_.merge(a, b);
+  }
+
+  const Tables& tables_;
+  base::DisjointSets sets_;
+};
+
+void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t>& points) {
+  if (!end.is_point() || t.objects[end.object].kind == PointRef::Kind::kRope) return;
+  points.insert(points.end(), end.particle.begin(), end.particle.begin() + end.particle_count);
+}
+
+void sort_out(std::vector<std::uint32_t>& rows) {
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+}
+
+/// Members of all bundles, in order of the first hook, then of the first contact that makes one.
+std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
+  Groups groups(t);
+  std::vector<Bundle> bundles;
+  std::vector<std::uint32_t> bundle_of(t.bodies.motion.size() + t.particles.position.size(), kNone);
+  const auto bundle_at = [&](std::uint32_t group) -> Bundle& {
+    if (bundle_of[group] == kNone) {
+      bundle_of[group] = static_cast<std::uint32_t>(bundles.size());
+      bundles.emplace_back();
+    }
+    return bundles[bundle_of[group]];
+  };
+  for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
+    const Hook& hook = t.hooks[i];
+    if (!hook.holds_point()) continue;
+    Bundle& bundle = bundle_at(groups.of_hook(hook));
+    bundle.hooks.push_back(i);
+    for (const HookPlace& end : {hook.a, hook.b}) {
+      add_points(t, end, bundle.points);
+      if (moves(t.bodies, end.body)) bundle.bodies.push_back(end.body);
+    }
+  }
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    if (joins(t, row)) bundle_at(groups.of_contact(row)).bodies.push_back(t.contacts.body[row]);
+  }
+  std::uint32_t chain = 0;
+  for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
+    if (t.objects[o].kind != PointRef::Kind::kRope) continue;
+    const std::uint32_t bundle = bundle_of[groups.of_particle(o, t.objects[o].particles.first)];
+    chains[chain].in_bundle = bundle != kNone;
+    if (bundle != kNone) bundles[bundle].chains.push_back(chain);
+    ++chain;
+  }
+  for (Bundle& bundle : bundles) {
+    sort_out(bundle.points);
+    sort_out(bundle.bodies);
+  }
+  return bundles;
+}
+
+/// Finds the nodes of a bundle, and the blocks at them.
+struct Layout {
+  const Tables& tables;
+  const std::vector<Chain>& chains;
+  Bundle& bundle;
+  std::vector<std::vector<Bundle::Incident>> at_node = {};
+  std::vector<std::uint32_t> first_node = {};  ///< Of each chain, then of the points.
+  std::uint32_t segment_count = 0;
+
+  [[nodiscard]] std::uint32_t node_of(std::uint32_t particle) const {
+    for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
+      const Chain& chain = chains[bundle.chains[k]];
+      if (particle >= chain.first_particle && particle < chain.first_particle + chain.node_count)
+        return first_node[k] + particle - chain.first_particle;
+    }
+    const auto at = std::lower_bound(bundle.points.begin(), bundle.points.end(), particle);
+    return first_node.back() + static_cast<std::uint32_t>(at - bundle.points.begin());
+  }
+
+  void list_incidents() {
+    std::uint32_t nodes = 0;
+    for (const std::uint32_t c : bundle.chains) {
+      first_node.push_back(nodes);
+      nodes += chains[c].node_count;
+    }
+    first_node.push_back(nodes);
+    at_node.resize(nodes + bundle.points.size());
+    for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
+      for (std::uint32_t i = 0; i + 1 < chains[bundle.chains[k]].node_count; ++i) {
+        at_node[first_node[k] + i].push_back({segment_count, 1});
+        at_node[first_node[k] + i + 1].push_back({segment_count, -1});
+        ++segment_count;
+      }
+    }
+    for (std::uint32_t i = 0; i < bundle.hooks.size(); ++i) {
+      add_end(segment_count + i, -1, tables.hooks[bundle.hooks[i]].a);
+      add_end(segment_count + i, 1, tables.hooks[bundle.hooks[i]].b);
+    }
+  }
+
+  /// Weights of ends that slide change from substep to substep: set_slide_weights.
+  void add_end(std::uint32_t block, double sign, const HookPlace& end) {
+    for (std::uint32_t i = 0; i < end.particle_count; ++i)
+      at_node[node_of(end.particle[i])].push_back({block, sign * static_cast<double>(end.weight[i])});
+  }
+
+  [[nodiscard]] std::uint32_t body_block(std::uint32_t body) const {
+    const int index = bundle.body_of(body);
+    if (index < 0) return kNone;
+    return segment_count + static_cast<std::uint32_t>(bundle.hooks.size()) +
+           static_cast<std::uint32_t>(index);
+  }
+
+  /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighbors() const {
+    std::vector<std::vector<std::uint32_t>> of(segment_count + bundle.hooks.size() + bundle.bodies.size());
+    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+      if (a == b || a == kNone || b == kNone) return;
+      of[a].push_back(b);
+      of[b].push_back(a);
+    };
+    std::vector<std::vector<std::uint32_t>> bodies_at(at_node.size());
+    for (std::size_t row = 0; row < tables.contacts.particle.size(); ++row) {
+      if (!joins(tables, row)) continue;
+      const std::uint32_t block = body_block(tables.contacts.body[row]);
+      if (block != kNone) bodies_at[node_of(tables.contacts.particle[row])].push_back(block);
+    }
+    for (std::size_t node = 0; node < at_node.size(); ++node) {
+      for (const Bundle::Incident& a : at_node[node]) {
+        for (const Bundle::Incident& b : at_node[node]) meet(a.block, b.block);
+        for (const std::uint32_t body : bodies_at[node]) meet(a.block, body);
+      }
+      for (const std::uint32_t a : bodies_at[node]) {
+        for (const std::uint32_t b : bodies_at[node]) meet(a, b);
+      }
+    }
+    for (std::uint32_t i = 0; i < bundle.hooks.size(); ++i) {
+      for (const HookPlace& end : {tables.hooks[bundle.hooks[i]].a, tables.hooks[bundle.hooks[i]].b})
+        meet(segment_count + i, body_block(end.body));
+    }
+    for (std::vector<std::uint32_t>& list : of) sort_out(list);
+    return of;
+  }
+};
+
+void list_pairs(const Layout& layout, Bundle& bundle) {
+  for (const std::vector<Bundle::Incident>& at : layout.at_node) {
+    bundle.first_incident.push_back(static_cast<std::uint32_t>(bundle.incidents.size()));
+    bundle.first_pair.push_back(static_cast<std::uint32_t>(bundle.pair_block.size()));
+    bundle.incidents.insert(bundle.incidents.end(), at.begin(), at.end());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        const auto [low, high] = std::minmax({bundle.place[at[i].block], bundle.place[at[j].block]});
+        bundle.pair_block.push_back(find_block(bundle.pattern, high, low));
+      }
+    }
+  }
+  bundle.first_incident.push_back(static_cast<std::uint32_t>(bundle.incidents.size()));
+}
+
+void make_pattern(const Tables& t, const std::vector<Chain>& chains, Bundle& bundle) {
+  Layout layout = {t, chains, bundle};
+  layout.list_incidents();
+  std::vector<int> sizes(layout.segment_count, 3);
+  bundle.first_row.assign(1, 0);
+  for (const std::uint32_t hook : bundle.hooks) {
+    sizes.push_back(count_joint_rows(t.hooks[hook]));
+    bundle.first_row.push_back(bundle.first_row.back() + static_cast<std::uint32_t>(sizes.back()));
+  }
+  std::vector<std::int8_t> signs(sizes.size(), 1);
+  sizes.resize(sizes.size() + bundle.bodies.size(), 6);
+  signs.resize(sizes.size(), -1);
+  std::optional<BlockPattern> pattern = make_block_pattern(layout.neighbors(), sizes, kNoBudget);
+  HOOKE_ASSERT(pattern.has_value());
+  bundle.pattern = std::move(*pattern);
+  set_signs(signs, bundle.pattern);
+  bundle.place.resize(sizes.size());
+  for (std::uint32_t i = 0; i < sizes.size(); ++i) bundle.place[bundle.pattern.order[i]] = i;
+  list_pairs(layout, bundle);
+  bundle.rows.resize(bundle.first_row.back());
+  bundle.bound.resize(bundle.first_row.back());
+  bundle.lambda.resize(bundle.first_row.back());
+  bundle.moving.resize(bundle.bodies.size());
+  for (const std::uint32_t hook : bundle.hooks)
+    bundle.ends.push_back({bundle.body_of(t.hooks[hook].a.body), bundle.body_of(t.hooks[hook].b.body)});
+}
+
+/// The two nodes at which a hook slides along its rope follow its weights.
+void set_slide_weights(const Tables& t, Bundle& bundle) {
+  const auto segments =
+      static_cast<std::uint32_t>(bundle.place.size() - bundle.hooks.size() - bundle.bodies.size());
+  const auto slides = [&](const Bundle::Incident& at) {
+    return at.block >= segments && at.block < segments + bundle.hooks.size() && at.weight <= 0 &&
+           t.hooks[bundle.hooks[at.block - segments]].kind == HookKind::kRopeSlide;
+  };
+  std::vector<int> seen(bundle.hooks.size(), 0);
+  for (Bundle::Incident& at : bundle.incidents) {
+    if (!slides(at)) continue;
+    const std::uint32_t hook = at.block - segments;
+    at.weight = -static_cast<double>(t.hooks[bundle.hooks[hook]].a.weight[seen[hook]++]);
+  }
+}
+
+}  // namespace
+
+int Bundle::body_of(std::uint32_t row) const {
+  const auto at = std::lower_bound(bodies.begin(), bodies.end(), row);
+  return at != bodies.end() && *at == row ? static_cast<int>(at - bodies.begin()) : -1;
+}
+
+void build_bundles(const Tables& tables, std::vector<Chain>& chains, Bundles& bundles) {
+  std::vector<std::uint32_t> signature = signature_of(tables);
+  if (signature != bundles.signature) {
+    bundles.signature = std::move(signature);
+    bundles.bundles = sort_members(tables, chains);
+    for (Bundle& bundle : bundles.bundles) make_pattern(tables, chains, bundle);
+  }
+  for (Bundle& bundle : bundles.bundles) set_slide_weights(tables, bundle);
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,224 @@
+/// The matrix of a bundle and its right side. Equations: bundles.h.
+
+#include "solver/bundle_solution.h"
+#include "solver/geometric_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using math::Symmetric3;
+using Incident = Bundle::Incident;
+
+constexpr double kCompliance = 1e-6;  ///< Share of a hook row's diagonal.
+
+std::array<double, 9> entries_of(const Symmetric3<double>& m) {
+  return {m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz};
+}
+
+BodyRow row_along(DVec3 n, DVec3 lever, const JointBody& body) {
+  return {std::sqrt(body.inverse_mass) * n, body.scale * cross(lever, n)};
+}
+
+/// Column m of the Jacobian at `lever`: how V_m alone moves the place there.
+DVec3 column_at(int m, DVec3 lever, const JointBody& body) {
+  return {row_along(kAxes[0], lever, body).at(m), row_along(kAxes[1], lever, body).at(m),
+          row_along(kAxes[2], lever, body).at(m)};
+}
+
+}  // namespace
+
+void BundleSolution::assemble_pair(const Incident& a, const Incident& b, std::uint32_t block,
+                                   const RopeNode& node) {
+  const BlockPattern::Block& at = b_.pattern.block[block];
+  const bool a_is_row = b_.place[a.block] == at.row;
+  const Incident& row = a_is_row ? a : b;
+  const Incident& column = a_is_row ? b : a;
+  double* numbers = b_.numbers.data() + at.offset;
+  const double weight = row.weight * column.weight;
+  const Symmetric3<double>& w = node.inverse;
+  if (row.block < segment_count() && column.block < segment_count()) {
+    const std::array<double, 9> entries = entries_of(w);
+    for (int i = 0; i < 9; ++i) numbers[i] += weight * entries[i];
+    return;
+  }
+  const int width = b_.pattern.size[at.column];
+  for (int k = 0; k < width; ++k) {
+    const DVec3 moved_by = weight * (w * direction(column.block, k));
+    for (int i = 0; i < b_.pattern.size[at.row]; ++i)
+      numbers[i * width + k] += dot(direction(row.block, i), moved_by);
+  }
+}
+
+void BundleSolution::assemble_pairs() {
+  for (std::size_t node = 0; node < b_.ropes.nodes.size(); ++node) {
+    const RopeNode& of = b_.ropes.nodes[node];
+    if (!(of.w > 0)) continue;
+    const std::span<const Incident> at = incidents_of(node);
+    std::uint32_t pair = b_.first_pair[node];
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) assemble_pair(at[i], at[j], b_.pair_block[pair++], of);
+    }
+  }
+}
+
+void BundleSolution::assemble_hooks() {
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
+    const std::uint32_t block = hook_block(hook);
+    double& diagonal = number(block, block, k, k);
+    if (b_.bound[row] != 0) {
+      diagonal = 1;
+      return;
+    }
+    double mobility = diagonal;  // with what bodies add once they are eliminated
+    for (int end = 0; end < 2; ++end) {
+      const int body = b_.ends[hook][end];
+      if (body < 0) continue;
+      const BodyRow c = hook_row(b_.rows[row], end, b_.moving[body].body);
+      mobility += dot(c, c);
+      for (int m = 0; m < 6; ++m) number(block, body_block(body), k, m) += c.at(m);
+    }
+    diagonal += b_.rows[row].gamma + kCompliance * mobility;
+  });
+}
+
+void BundleSolution::assemble_bodies() {
+  for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
+    const std::array<double, 9> turn =
+        entries_of(Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, b_.moving[i].excess));
+    for (int k = 0; k < 3; ++k) {
+      number(body_block(i), body_block(i), k, k) -= 1;
+      for (int m = 0; m < 3; ++m) number(body_block(i), body_block(i), 3 + k, 3 + m) -= turn[3 * k + m];
+    }
+  }
+}
+
+/// R = P J couples the rows at the node to the body, the body to itself, and to others that touch the node.
+void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node) {
+  const RopeNode& node = b_.ropes.nodes[touch.node];
+  const Symmetric3<double> grip = grip_of(touch, node);
+  const JointBody& body = b_.moving[touch.body].body;
+  const std::uint32_t block = body_block(touch.body);
+  for (int m = 0; m < 6; ++m) {
+    const DVec3 r = grip * column_at(m, touch.lever, body);
+    const DVec3 moved_by = node.inverse * r;
+    for (const Incident& at : incidents_of(touch.node)) {
+      for (int k = 0; k < size_of(at.block); ++k)
+        number(at.block, block, k, m) += at.weight * dot(direction(at.block, k), moved_by);
+    }
+    for (int k = 0; k < 6; ++k) number(block, block, k, m) -= dot(column_at(k, touch.lever, body), r);
+    for (const RopeTouch& other : at_node) {
+      if (other.body < touch.body || !other.active) continue;
+      const JointBody& to = b_.moving[other.body].body;
+      const DVec3 gripped = grip_of(other, node) * moved_by;
+      for (int k = 0; k < 6; ++k)
+        number(body_block(other.body), block, k, m) += dot(column_at(k, other.lever, to), gripped);
+    }
+  }
+}
+
+void BundleSolution::assemble_touches() {
+  const std::vector<RopeTouch>& touches = b_.ropes.touches;
+  for (std::size_t first = 0; first < touches.size();) {
+    std::size_t end = first;
+    while (end < touches.size() && touches[end].node == touches[first].node) ++end;
+    const std::span<const RopeTouch> at_node = std::span(touches).subspan(first, end - first);
+    for (const RopeTouch& touch : at_node) {
+      if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
+    }
+    first = end;
+  }
+}
+
+void BundleSolution::assemble() {
+  b_.numbers.assign(b_.pattern.number_count, 0);
+  assemble_pairs();
+  for (std::uint32_t i = 0; i < segment_count(); ++i) {
+    const std::array<double, 9> e = entries_of(b_.ropes.segments[i].compliance);
+    double* numbers = &number(i, i, 0, 0);
+    for (int k = 0; k < 9; ++k) numbers[k] += e[k];
+  }
+  assemble_hooks();
+  assemble_bodies();
+  assemble_touches();
+}
+
+double BundleSolution::given_speed(std::uint32_t hook, const JointRow& row) const {
+  const state::Hook& of = t_.hooks[b_.hooks[hook]];
+  double speed = 0;
+  for (int end = 0; end < 2; ++end) {
+    const state::HookPlace& place = end == 0 ? of.a : of.b;
+    if (b_.ends[hook][end] >= 0 || place.is_point()) continue;
+    const JointBody given = joint_end(t_, place);
+    const double along = dot(row.n, given.v) + dot(end == 0 ? row.j_a : row.j_b, given.omega_scaled);
+    speed += end == 0 ? -along : along;
+  }
+  return speed;
+}
+
+/// V0 as geometric stiffness has it.
+std::vector<BodyRow> BundleSolution::start_of_bodies() const {
+  std::vector<BodyRow> start;
+  for (const BundleBody& m : b_.moving) {
+    start.push_back({(1 / std::sqrt(m.body.inverse_mass)) * m.body.v,
+                     m.body.omega_scaled + m.excess * m.body.omega_scaled});
+  }
+  return start;
+}
+
+/// Rows at a bound give its impulse, like a force from outside.
+void BundleSolution::give_impulses(std::vector<BodyRow>& start) {
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
+    if (b_.bound[row] == 0 || b_.lambda[row] == 0) return;
+    for (int end = 0; end < 2; ++end) {
+      const int body = b_.ends[hook][end];
+      if (body >= 0) start[body] += b_.lambda[row] * hook_row(b_.rows[row], end, b_.moving[body].body);
+    }
+  });
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    RopeNode& node = b_.ropes.nodes[n];
+    for (const Incident& at : incidents_of(n)) {
+      if (at.block < segment_count()) continue;
+      const std::uint32_t hook = at.block - segment_count();
+      for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row) {
+        if (b_.bound[row] != 0 && b_.lambda[row] != 0)
+          node.target += node.inverse * ((at.weight * b_.lambda[row]) * b_.rows[row].n);
+      }
+    }
+  }
+}
+
+void BundleSolution::fill_right_side() {
+  b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
+  std::vector<BodyRow> start = start_of_bodies();
+  give_impulses(start);
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    for (const Incident& at : incidents_of(n)) {
+      for (int k = 0; k < size_of(at.block); ++k)
+        right_side(at.block, k) -= at.weight * dot(direction(at.block, k), b_.ropes.nodes[n].target);
+    }
+  }
+  for (std::uint32_t i = 0; i < segment_count(); ++i) {
+    for (int k = 0; k < 3; ++k) right_side(i, k) -= dot(kAxes[k], b_.ropes.segments[i].offset);
+  }
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
+    if (b_.bound[row] == 0)
+      right_side(hook_block(hook), k) += b_.rows[row].target - given_speed(hook, b_.rows[row]);
+  });
+  for (const RopeTouch& touch : b_.ropes.touches) {
+    if (touch.body < 0 || !touch.active) continue;
+    const RopeNode& node = b_.ropes.nodes[touch.node];
+    const DVec3 on_node = push_of(touch, node, h_) - grip_of(touch, node) * node.target;
+    const JointBody& body = b_.moving[touch.body].body;
+    start[touch.body] +=
+        {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(touch.lever, on_node))};
+  }
+  for (int i = 0; i < static_cast<int>(start.size()); ++i) {
+    for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -start[i].at(m);
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "math/symmetric.h"
+#include "solver/chains.h"
+
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Ropes in solver form: what solving one alone (chains.cpp) and solving several with what they hang on
+/// (bundles.cpp) have in common. Equations: chains.h.
+
+namespace hooke::solver {
+
+struct RopeNode {
+  DVec3 x, v_free, v_before;         ///< Position, velocity with forces, velocity before forces.
+  double mass = 0, w = 0;            ///< w = 0: held.
+  DVec3 u;                           ///< The result.
+  DVec3 target;                      ///< v*: free velocity with the contact's pull.
+  math::Symmetric3<double> inverse;  ///< W
+};
+
+struct RopeSegment {
+  std::uint32_t a = 0;  ///< Node; b is the next one.
+  DVec3 n, offset;
+  math::Symmetric3<double> compliance;  ///< E
+  math::Symmetric3<double> k;           ///< (X + W)^-1
+  DVec3 s, q;                           ///< Free velocity of the rope behind, impulse.
+  double rest = 0, stiffness = 0, damping = 0, limit = 0;
+  double tension_bound = 0;  ///< T+
+  double gamma = 0;
+  bool limited = false;
+};
+
+/// A contact of a node.
+struct RopeTouch {
+  std::uint32_t row = 0, node = 0;
+  DVec3 n, f0, f;
+  DVec3 against;  ///< Direction of friction on a node that slides.
+  DVec3 surface;  ///< Velocity of what is touched, at the contact [m/s].
+  int body = -1;  ///< Of a net, whose velocity is solved for; -1: `surface` is given.
+  DVec3 lever;    ///< From that body's center [m].
+  double separation = 0, friction = 0, n0 = 0, normal = 0;
+  bool active = false, slides = false;
+};
+
+/// How a rope's segments are linearized.
+struct RopeSetting {
+  double compliance = 0;
+  DVec3 turning = {};  ///< Angular velocity of the line between the rope's ends [rad/s].
+  bool first = true;   ///< At the start of the substep; later about the last result.
+};
+
+/// Ropes in a row: the nodes and segments of one, then of the next.
+struct RopeScratch {
+  std::vector<RopeNode> nodes;
+  std::vector<RopeSegment> segments;
+  std::vector<RopeTouch> touches;  ///< In order of nodes.
+
+  void clear() {
+    nodes.clear();
+    segments.clear();
+    touches.clear();
+  }
+};
+
+inline constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
+inline constexpr double kComplianceInContact =
+    1e-5;                                         ///< Rigid segments between stuck nodes are undetermined.
+inline constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
+inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
+inline constexpr double kReportedError = 0.01;
+inline constexpr int kMostRopeSolves = 8;
+
+/// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
+void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
+               const state::Particles& particles, const state::Segments& segments,
+               const state::Contacts& contacts, RopeScratch& s);
+
+/// One node, as load_rope makes it.
+[[nodiscard]] RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& particles);
+
+/// How the rope that was loaded last, from node `first_node` on, is linearized at the start of a substep.
+[[nodiscard]] RopeSetting first_setting(std::size_t first_node, const RopeScratch& s);
+
+/// The segment's equation u_b - u_a = offset + compliance q.
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+               RopeSegment& segment);
+
+/// W and v* of every node, with what touches it.
+void hold_nodes(double h, RopeScratch& s);
+
+/// The mass that a contact adds to its node: the change of the impulse on it per velocity.
+[[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch, const RopeNode& node);
+
+/// The impulse of a contact on its node, less what `grip_of` says of velocities.
+[[nodiscard]] DVec3 push_of(const RopeTouch& touch, const RopeNode& node, double h);
+
+/// Contact forces that follow from u. True if the set of active contacts changed or a node slides.
+bool update_touches(double h, RopeScratch& s);
+
+/// Largest relative length error left; raises T+ and moves segments onto or off their limits.
+double check_segments(double h, RopeScratch& s, bool& limits_changed);
+
+/// How many solutions a substep takes at least, by what update_touches said.
+[[nodiscard]] int least_solves(const RopeScratch& s, bool unsettled);
+
+[[nodiscard]] bool is_finite(const RopeScratch& s);
+
+/// Writes back one rope, which begins at node `first_node` and segment `first_segment`; its mean tension is
+/// summed over the step.
+void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+                const RopeScratch& s, state::Particles& particles, state::Segments& segments);
+
+/// Writes back all contacts.
+void store_touches(double h, const RopeScratch& s, state::Contacts& contacts);
+
+}  // namespace hooke::solver

@@ -1,0 +1,293 @@
+"""Scenes of ropes with what they are tied to; make_scenes.py writes them."""
+import math
+
+from scene_kit import DT, G, X, Y, Z, add, body, box, fall, ground, promise, scaled, scene, turn
+
+
+def line(a, b, segments):
+    return [add(a, scaled(i / segments, add(b, scaled(-1, a)))) for i in range(segments + 1)]
+
+
+def rope(name, material, points, mass, radius=0.01, **more):
+    return {"name": name, "material": material, "points": points, "total_mass": mass, "radius": radius} | more
+
+
+def tie(name, a, b, a_point=None, b_point=None, kind="ball", **more):
+    """Holds a point of b to a, a body or a point of another object, or to the world."""
+    made = {"name": name, "kind": kind} | ({"a": a} if a else {})
+    made |= {"a_point": a_point} if a_point is not None else {}
+    made |= {"b": b} | ({"b_point": b_point} if b_point is not None else {})
+    return made | more
+
+
+def at_point(quantity, op, value, of, point, tolerance=None, at_step=None):
+    return promise(quantity, op, value, of, tolerance, at_step) | {"point": point}
+
+
+def tension(value, of, segment, tolerance):
+    return at_point("tension", "within", value, of, segment, tolerance)
+
+
+
+def crane():
+    length, segments, load, own = 5.0, 50, 1000.0, 1.0
+    top = [2.0, 8.0, 0.0]
+    end = add(top, [0, -length, 0])
+    half = 0.5
+    return scene(
+        "Crane",
+        "A ton hangs on a kilogram of rope that does not stretch, of 50 segments. Statics: the rope carries "
+        "(M + m) g at its top and M g at its hook.",
+        20, [7, 5.5, 9], [0.8, 4.2, 0], {"ground": {}, "steel": {}, "clay": {}, "slate": {}}, [
+            ground(),
+            body("mast", "slate", box(0.2, 4.4, 0.2), [-1.5, 4.4, 0], "static"),
+            body("jib", "slate", box(2.2, 0.15, 0.15), [0.3, 8.3, 0], "static"),
+            body("back", "slate", box(0.5, 0.5, 0.4), [-2.4, 8.3, 0], "static"),
+            body("load", "clay", box(half, half, half), add(end, [0, -half, 0]), mass=load),
+        ], [
+            tension((load + own * (1 - 0.5 / segments)) * G, "rope", 0, 0.001),
+            promise("force", "within", load * G, "hook", 0.001),
+            promise("largest_stretch", "<", 0.001),
+            promise("height", "==", end[1] - half, "load", 0.002),
+            promise("gap", "<", 0.0005)
+        ],
+        ropes=[rope("rope", "steel", line(top, end, segments), own, 0.02)],
+        hooks=[tie("hook", "load", "rope", b_point="last")])
+
+
+def hanging_table():
+    board, bowl, own, segments = 40.0, 10.0, 1.0, 20
+    top, half = 3.0, [0.7, 0.03, 0.5]
+    height = 1.2
+    ropes, hooks = [], []
+    drop = top - height - half[1]
+    splay = 0.15
+    for sx in (-1, 1):
+        for sz in (-1, 1):
+            name = f"rope_{'l' if sx < 0 else 'r'}{'b' if sz < 0 else 'f'}"
+            corner = [sx * half[0] * 0.9, height + half[1], sz * half[2] * 0.9]
+            ropes.append(
+                rope(name, "hemp", line(add(corner, [sx * splay, drop, 0]), corner, segments), own, 0.012,
+                     axial_stiffness=1e6))
+            hooks.append(tie("hook_" + name[5:], "board", name, b_point="last"))
+    share = (board + bowl) * G / 4 * math.hypot(1, splay / drop)
+    return scene(
+        "Hanging table",
+        "A board on four ropes with a bowl's weight in its middle. Each hook carries a quarter of both, and "
+        "what the slope of its rope adds.",
+        10, [2.6, 2.3, 3.2], [0, 1.5, 0], {"ground": {}, "oak": {}, "hemp": {}, "rose": {}, "slate": {}}, [
+            ground(),
+            body("beam_back", "slate", box(1.1, 0.06, 0.06), [0, top + 0.06, -half[2] * 0.9], "static"),
+            body("beam_front", "slate", box(1.1, 0.06, 0.06), [0, top + 0.06, half[2] * 0.9], "static"),
+            body("board", "oak", box(*half), [0, height, 0], mass=board),
+            body("weight", "rose", {"cylinder": {"radius": 0.18, "half_height": 0.08}},
+                 [0, height + half[1] + 0.08, 0], mass=bowl),
+        ], [
+            *(promise("force", "within", share, one["name"], 0.005) for one in hooks),
+            promise("height", "==", height, "board", 0.003),
+            promise("tilt", "<", 0.1, "board"),
+            promise("largest_stretch", "<", 0.001)
+        ],
+        ropes=ropes,
+        hooks=hooks)
+
+
+def suspension_bridge():
+    """Hangers at equal distances with equal loads: the main cable is a funicular polygon, y = 4 f x^2 / L^2."""
+    planks, gap, sag, deck, shortest = 17, 0.6, 1.6, 1.0, 0.35
+    plank = 30.0
+    span = (planks + 1) * gap
+    half = [0.27, 0.04, 0.8]
+
+    def cable_height(x):
+        return deck + shortest + sag * (2 * x / span)**2
+
+    xs = [(k - (planks - 1) / 2) * gap for k in range(planks)]
+    bodies = [ground()]
+    ropes, hooks = [], []
+    for side, z in (("l", -half[2]), ("r", half[2])):
+        points = [[x, cable_height(x), z] for x in (-span / 2, *xs, span / 2)]
+        ropes.append(rope(f"cable_{side}", "cable", points, 4.0, 0.03, pins=[0, "last"]))
+        bodies += [
+            body(f"tower_{side}{n}", "slate", box(0.12, cable_height(span / 2) / 2, 0.12),
+                 [s * (span / 2 + 0.12), cable_height(span / 2) / 2, z], "static")
+            for n, s in enumerate((-1, 1))
+        ]
+        for k, x in enumerate(xs):
+            low = [x, deck + half[1], z]
+            ropes.append(rope(f"hanger_{side}{k}", "cable", [[x, cable_height(x), z], low], 0.2, 0.015, pins=[]))
+            hooks.append(tie(f"top_{side}{k}", f"cable_{side}", f"hanger_{side}{k}", k + 1, 0))
+            hooks.append(tie(f"foot_{side}{k}", f"plank_{k}", f"hanger_{side}{k}", b_point=1))
+    bodies += [body(f"plank_{k}", "oak", box(*half), [x, deck, 0], mass=plank) for k, x in enumerate(xs)]
+    bodies += [
+        body(f"shore_{n}", "moss", box(1.0, deck / 2, 1.2), [s * (span / 2 - gap / 2 - 0.03 + 1.0), deck / 2, 0],
+             "static", collides=False) for n, s in enumerate((-1, 1))
+    ]
+    # Of each side a node carries half a plank, its hanger and its share of the cable.
+    node = plank / 2 + 0.2 + 4.0 / (planks + 1)
+    rise = cable_height(gap) - cable_height(0)
+    pull = node * G * 0.5 * gap / rise  # half the load of the middle node at the slope beside it
+    return scene(
+        "Suspension bridge",
+        "Seventeen planks on hangers, the hangers on two cables: bodies, ropes on ropes, everything tied. The "
+        "cables hang in the polygon of their loads, so that statics gives the pull in the middle: half of what "
+        "the middle hanger carries, over the slope beside it.",
+        10, [5.5, 4.2, 11], [0, 1.3, 0],
+        {"ground": {}, "oak": {}, "cable": {}, "slate": {}, "moss": {}}, bodies, [
+            tension(pull * math.hypot(1, rise / gap), "cable_l", planks // 2 + 1, 0.02),
+            tension(pull * math.hypot(1, rise / gap), "cable_r", planks // 2 + 1, 0.02),
+            promise("force", "within", plank / 2 * G, f"foot_l{planks // 2}", 0.02),
+            promise("height", "==", deck, f"plank_{planks // 2}", 0.03),
+            promise("largest_stretch", "<", 0.001),
+            promise("tilt", "<", 1, f"plank_{planks // 2}")
+        ],
+        ropes=ropes,
+        hooks=hooks)
+
+
+def necklace():
+    """Beads on a string slide to its middle."""
+    span, length, segments, beads, r, mass = 1.0, 1.6, 80, 9, 0.03, 0.05
+    top = 1.6
+    # Two straight halves at first.
+    low = [0, top - math.sqrt(length**2 - span**2) / 2, 0]
+    left, right = [-span / 2, top, 0], [span / 2, top, 0]
+    points = line(left, low, segments // 2) + line(low, right, segments // 2)[1:]
+    bodies, hooks = [ground()], []
+    for k in range(beads):
+        share = (k + 1) / (beads + 1)
+        at = points[round(share * segments)]
+        bodies.append(body(f"bead_{k}", "rose" if k % 2 else "ivory", {"sphere": {"radius": r}}, at, mass=mass))
+        hooks.append({"name": f"thread_{k}", "kind": "rope_slide", "a": "string", "b": f"bead_{k}", "anchor": at})
+    bodies += [
+        body(f"post_{n}", "slate", {"cylinder": {"radius": 0.02, "half_height": top / 2}},
+             [s * (span / 2 + 0.02), top / 2, 0], "static") for n, s in enumerate((-1, 1))
+    ]
+    bodies.append(body("ball", "clay", {"sphere": {"radius": 0.04}}, [0.9, 1.5, 0]))
+    return scene(
+        "Necklace",
+        "Nine beads on a string, spread along it, slide to its lowest place and lie there side by side. Nothing "
+        "holds them but the string. The ball beside them falls: y0 - g t^2 / 2.",
+        12, [0.9, 1.5, 2.2], [0.1, 0.95, 0], {"ground": {}, "rose": {}, "ivory": {}, "slate": {}, "hemp": {}, "clay": {}},
+        bodies, [
+            fall("ball", 1.5, 20),
+            promise("x", "==", 0, "bead_4", 0.08),
+            promise("height", "<", low[1] + 2.5 * r, "bead_4"),
+            promise("height", ">", low[1] - 2.0 * r, "bead_4"),
+            promise("gap", "<", 0.002),
+            promise("largest_stretch", "<", 0.001)
+        ],
+        ropes=[rope("string", "hemp", points, 0.02, 0.004, pins=[0, "last"])],
+        hooks=hooks)
+
+
+def pulley():
+    """Atwood's machine: a = (m2 - m1) g / (m1 + m2 + I / r^2), I = M R^2 / 2."""
+    m1, m2, wheel, radius, strand = 2.0, 3.0, 4.0, 0.25, 0.005
+    r, axle = radius + strand, 2.6
+    straight = 1.5
+    points = [[-r, axle - straight * (1 - i / 50), 0] for i in range(50)]
+    points += [[-r * math.cos(math.pi * i / 26), axle + r * math.sin(math.pi * i / 26), 0] for i in range(27)]
+    points += [[r, axle - straight * (i + 1) / 50, 0] for i in range(50)]
+    a = (m2 - m1) * G / (m1 + m2 + wheel * (radius / r)**2 / 2)
+    step = 40
+    way = a * (step * DT)**2 / 2
+    half = 0.1
+    start = axle - straight - half
+    return scene(
+        "Pulley",
+        "Atwood's machine with a wheel that has mass: the rope does not slip on it. The heavier weight goes "
+        "down with a = (m2 - m1) g / (m1 + m2 + I / r^2), r to the middle of the rope.",
+        0.9, [1.6, 2.2, 3.2], [0, 1.6, 0], {"ground": {}, "steel": {}, "rose": {}, "slate": {}, "hemp": {}, "oak": {"friction": 3}}, [
+            ground(),
+            body("bracket", "slate", box(0.05, 0.5, 0.05), [0, axle + 0.35, -0.2], "static", collides=False),
+            body("wheel", "oak", {"cylinder": {"radius": radius, "half_height": 0.06}}, [0, axle, 0],
+                 rotation=turn(X, math.pi / 2), mass=wheel),
+            body("light", "steel", box(half, half, half), [-r, start, 0], mass=m1),
+            body("heavy", "rose", box(half * 1.15, half * 1.15, half * 1.15), [r, start - 0.15 * half, 0], mass=m2),
+        ], [
+            promise("height", "==", start - 0.15 * half - way, "heavy", 0.015 * way, step),
+            promise("height", "==", start + way, "light", 0.015 * way, step),
+            promise("angular_speed", "within", a * step * DT / r, "wheel", 0.03, step),
+            promise("largest_stretch", "<", 0.005)
+        ],
+        ropes=[rope("rope", "hemp", points, 0.002, strand, pins=[]) | {"material": "oak"}],
+        hooks=[
+            {"name": "axle", "kind": "hinge", "b": "wheel", "anchor": [0, axle, 0], "axis": Z},
+            tie("left", "light", "rope", b_point=0),
+            tie("right", "heavy", "rope", b_point="last")
+        ])
+
+
+def tug_of_war():
+    """Both slide: (m1 + m2) a = F2 - F1 - mu (m1 + m2) g; the rope takes F1 + mu m1 g + m1 a."""
+    m1, m2, f1, f2, friction = 60.0, 80.0, 150.0, 950.0, 0.4
+    half, reach, height = 0.3, 2.0, 0.3
+    a = (f2 - f1) / (m1 + m2) - friction * G
+    pull = f1 + friction * m1 * G + m1 * a
+    step = 60
+    return scene(
+        "Tug of war",
+        "Two crates on a rope are pulled apart, the right one harder: after the jerk both slide to the right "
+        "with a = (F2 - F1) / (m1 + m2) - mu g, and the rope carries F1 + mu m1 g + m1 a.",
+        1.2, [1.5, 2.2, 5.5], [0.8, 0.2, 0], {"ground": {"friction": friction}, "clay": {"friction": friction}, "slate": {"friction": friction}, "hemp": {}}, [
+            ground(),
+            body("left", "clay", box(half, half, half), [-reach, half, 0], mass=m1),
+            body("right", "slate", box(half, half, half), [reach, half, 0], mass=m2),
+        ], [
+            tension(pull, "rope", 10, 0.02),
+            promise("speed", "within", a * 70 * DT, "right", 0.03, 70),
+            promise("x", "==", reach + a * (step * DT)**2 / 2, "right", 0.03, step),
+            promise("largest_stretch", "<", 0.001)
+        ],
+        ropes=[rope("rope", "hemp", line([half - reach, height, 0], [reach - half, height, 0], 20), 0.5, 0.02, pins=[])],
+        hooks=[tie("hook_left", "left", "rope", b_point=0), tie("hook_right", "right", "rope", b_point="last")],
+        timeline=[{"at_step": 0, "force": {"object": "left", "point": 0, "force": [-f1, 0, 0], "steps": 72}},
+                  {"at_step": 0, "force": {"object": "right", "point": 0, "force": [f2, 0, 0], "steps": 72}}])
+
+
+def rope_bridge():
+    """Each plank is tied to both ropes at both of its edges."""
+    planks, pitch, width, plank = 14, 0.3, 0.9, 8.0
+    half = [0.11, 0.02, width / 2]
+    span = planks * pitch
+    low, top = 1.2, 1.75
+    start = -span / 2
+
+    def height(x):
+        return low + (top - low) * (2 * x / span)**2
+
+    hooks, ropes, bodies = [], [], [ground()]
+    xs = [start + i * pitch / 2 for i in range(2 * planks + 1)]
+    for side, z in (("l", -width / 2), ("r", width / 2)):
+        ropes.append(rope(f"rope_{side}", "hemp", [[x, height(x), z] for x in xs], 3.0, 0.02, pins=[0, "last"]))
+    for k in range(planks):
+        x = start + (k + 0.5) * pitch
+        slope = math.atan2(height(x + 0.1) - height(x - 0.1), 0.2)
+        bodies.append(body(f"plank_{k}", "oak", box(*half), [x, height(x), 0], rotation=turn(Z, slope), mass=plank))
+        for side, z in (("l", -width / 2), ("r", width / 2)):
+            for end, s in (("a", -1), ("b", 1)):
+                at = [x + s * half[0] * math.cos(slope), height(x) + s * half[0] * math.sin(slope), z]
+                hooks.append(tie(f"tie_{side}{k}{end}", f"plank_{k}", f"rope_{side}", anchor=at))
+    bodies += [
+        body(f"cliff_{n}", "slate", box(0.6, top / 2, 0.8), [s * (span / 2 + 0.6), top / 2, 0], "static")
+        for n, s in enumerate((-1, 1))
+    ]
+    crate = 60.0
+    bodies.append(body("crate", "clay", box(0.2, 0.2, 0.2), [0, low + 0.6, 0], mass=crate))
+    return scene(
+        "Rope bridge",
+        "Planks tied to two ropes at both edges, and a crate that drops on them. The ropes carry it at the "
+        "banks: each bank half of all the weight.",
+        12, [2.2, 3.2, 6.2], [0, 1.1, 0], {"ground": {}, "oak": {}, "hemp": {}, "slate": {}, "clay": {}}, bodies, [
+            promise("height", ">", low - 0.25, "crate"),
+            promise("largest_stretch", "<", 0.002),
+            promise("gap", "<", 0.005),
+            promise("speed", "<", 0.2, "crate"),
+            promise("height", "==", low + 0.6 - G * (15 * DT)**2 / 2, "crate", 0.01 * G * (15 * DT)**2 / 2, 15)
+        ],
+        ropes=ropes,
+        hooks=hooks)
+
+
+ROPE_SCENES = [crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge]
