@@ -290,4 +290,155 @@ def rope_bridge():
         hooks=hooks)
 
 
-ROPE_SCENES = [crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge]
+def posts(places, height, radius=0.03, material="slate"):
+    return [
+        body(f"post_{n}", material, {"cylinder": {"radius": radius, "half_height": height / 2}},
+             [x, height / 2, z], "static", collides=False) for n, (x, z) in enumerate(places)
+    ]
+
+
+def trampoline():
+    """A crate comes to rest on cloth that is held at its rim."""
+    columns, width, height, mass = 25, 3.0, 0.9, 100.0
+    rim = [k for k in range(columns)] + [(columns - 1) * columns + k for k in range(columns)]
+    rim += [r * columns + k for r in range(1, columns - 1) for k in (0, columns - 1)]
+    half = 0.3
+    start = height + half + 0.3
+    depth = 0.696  # at 8 x 32 substeps; 0.701 at the 8 x 8 of the scene, 0.777 at 8 x 4
+    return scene(
+        "Trampoline",
+        "A crate of 100 kg falls on cloth of half a kilogram per square meter that is held at its rim, bounces and "
+        "comes to rest. How deep it lies was found with four times the substeps.",
+        8, [2.6, 2.3, 3.6], [0, 0.7, 0], {"ground": {}, "steel": {}, "clay": {}, "slate": {}, "trampoline": {}}, [
+            ground(),
+            *(body(f"beam_{n}", "steel", box(width / 2 + 0.06 if n < 2 else 0.03, 0.03, 0.03 if n < 2 else width / 2),
+                   [(n - 2.5) * 2 * (width / 2 + 0.03) if n > 1 else 0, height, (n - 0.5) * 2 * (width / 2 + 0.03) if n < 2 else 0],
+                   "static", collides=False) for n in range(4)),
+            *posts([(x, z) for x in (-width / 2 - 0.03, width / 2 + 0.03) for z in (-width / 2 - 0.03, width / 2 + 0.03)], height),
+            body("crate", "clay", box(half, half, half), [0, start, 0], mass=mass),
+        ], [
+            promise("height", "==", height + half - depth, "crate", 0.05 * depth),
+            promise("speed", "<", 0.3, "crate"),
+            fall("crate", start, 14),
+        ],
+        world={"particle_substeps": 8},
+        cloths=[{
+            "name": "bed", "material": "trampoline", "columns": columns, "rows": columns, "width": width, "height": width,
+            "corner": [-width / 2, height, -width / 2], "column_direction": X, "row_direction": Z,
+            "areal_density": 0.5, "stretch_stiffness": 4000, "shear_stiffness": 800, "damping": 4,
+            "thickness": 0.01, "pins": rim
+        }])
+
+
+def curtain_rings():
+    """The rings of a curtain slide on a rod: those at its ends are drawn apart."""
+    columns, rows, width, height, top = 33, 25, 2.4, 2.0, 2.4
+    spread = 3.4
+    every = 4
+    return scene(
+        "Curtain on rings",
+        "Nine rings hold a curtain to a rod and slide along it without friction. The last ring is pushed to the "
+        "left, then pulled to the right by 6 N: the curtain closes and opens until its cloth is straight along the rod. A ball falls beside it.",
+        8, [0.4, 1.9, 4.6], [0.2, 1.35, 0], {"ground": {}, "steel": {}, "rose": {}, "slate": {}, "clay": {}}, [
+            ground(),
+            *posts([(-spread / 2, 0), (spread / 2, 0)], top + 0.02, 0.025),
+            body("ball", "clay", {"sphere": {"radius": 0.06}}, [1.95, 2, 0]),
+        ], [
+            fall("ball", 2, 20),
+            promise("gap", "<", 0.003),
+            at_point("height", "==", top, "curtain", 16, 0.03),
+            at_point("x", "==", -spread / 2 + 0.1 + width, "curtain", columns - 1, 0.1),
+            promise("lowest", "==", top - height, "curtain", 0.06),
+        ],
+        world={"particle_substeps": 2},
+        ropes=[rope("rod", "steel", line([-spread / 2, top, 0], [spread / 2, top, 0], 68), 1.0, 0.015,
+                    pins=list(range(69)))],
+        cloths=[{
+            "name": "curtain", "material": "rose", "columns": columns, "rows": rows, "width": width, "height": height,
+            "corner": [-spread / 2 + 0.1, top, 0], "areal_density": 0.25, "stretch_stiffness": 2e3,
+            "shear_stiffness": 300, "bend_stiffness": 2e-4, "air_friction": 0.3, "thickness": 0.006,
+            "pins": [0]
+        }],
+        hooks=[{
+            "name": f"ring_{k}", "kind": "rope_slide", "a": "rod", "b": "curtain", "b_point": k * every,
+            "anchor": [-spread / 2 + 0.1 + k * every * width / (columns - 1), top, 0]
+        } for k in range(1, (columns - 1) // every + 1)],
+        timeline=[{"at_step": 0, "force": {"object": "curtain", "point": columns - 1, "force": [-6, 0, 0], "steps": 90}},
+                  {"at_step": 150, "force": {"object": "curtain", "point": columns - 1, "force": [6, 0, 0], "steps": 330}}])
+
+
+def catch_net():
+    """A ball is thrown into a net that hangs on four corners, and stays in it."""
+    columns, width, mass, radius = 31, 3.0, 5.0, 0.25
+    top = 3.0
+    speed = 8.0
+    start = [0, 1.6, 4.0]
+    return scene(
+        "Catching net",
+        "A ball of 5 kg flies at 8 m/s into a net held at its four corners. The net gives way, takes its speed and "
+        "throws it back slower; it never passes through.",
+        1.6, [4.5, 2.2, 3.4], [0, 1.5, 0.8], {"ground": {}, "slate": {}, "clay": {}, "felt": {}}, [
+            ground(),
+            *posts([(-width / 2, 0), (width / 2, 0)], top + 0.05, 0.05),
+            body("ball", "clay", {"sphere": {"radius": radius}}, start, mass=mass, velocity=[0, 1.6, -speed]),
+        ], [
+            promise("z", ">", -1.4, "ball"),
+            promise("z", "==", start[2] - speed * 20 * DT, "ball", 0.02, 20),
+            promise("height", "==", start[1] + 1.6 * 20 * DT - G * (20 * DT)**2 / 2, "ball", 0.01, 20),
+            promise("momentum", "<", mass * speed),
+            promise("speed", "<", 0.9 * speed, "ball"),
+        ],
+        world={"particle_substeps": 4},
+        cloths=[{
+            "name": "net", "material": "felt", "columns": columns, "rows": columns, "width": width, "height": top - 0.3,
+            "corner": [-width / 2, top, 0], "areal_density": 0.3, "stretch_stiffness": 6e3, "shear_stiffness": 1e3,
+            "damping": 1, "thickness": 0.02, "pins": [0, columns - 1, columns * (columns - 1), "last"]
+        }])
+
+
+def washing_line():
+    """Three towels on a line in the wind, each held by two pegs."""
+    span, top, sag = 5.0, 2.0, 0.12
+    segments = 60
+    wide, high = 0.9, 1.1
+    points = [[-span / 2 + span * i / segments, top - sag * (1 - (2 * i / segments - 1)**2), 0] for i in range(segments + 1)]
+
+    def height(x):
+        return top - sag * (1 - (2 * x / span)**2)
+
+    cloths, hooks = [], []
+    for n, (x, tone) in enumerate(((-1.9, "rose"), (-0.45, "ivory"), (1.0, "felt"))):
+        name = f"towel_{n}"
+        low = min(height(x), height(x + wide)) - 0.005
+        cloths.append({
+            "name": name, "material": tone, "columns": 16, "rows": 19, "width": wide, "height": high,
+            "corner": [x, low, 0.012], "areal_density": 0.3, "stretch_stiffness": 2e3, "shear_stiffness": 400,
+            "bend_stiffness": 1e-3, "damping": 0.2
+        })
+        hooks += [tie(f"peg_{n}{k}", "line", name, b_point=point, anchor=[x + k * wide, height(x + k * wide), 0])
+                  for k, point in ((0, 0), (1, 15))]
+    weight = 3 * 0.3 * wide * high
+    return scene(
+        "Washing line",
+        "Towels hang on a line by pegs: points of cloths tied to places along a rope. In the first seconds the air "
+        "is still, and the line carries the weight of all three; then the wind comes.",
+        10, [1.2, 2.0, 5.4], [0, 1.3, 0], {"ground": {}, "slate": {}, "hemp": {}, "rose": {}, "ivory": {}, "felt": {}}, [
+            ground(),
+            *posts([(-span / 2 - 0.03, 0), (span / 2 + 0.03, 0)], top + 0.05, 0.035),
+        ], [
+            promise("gap", "<", 0.01),
+            promise("largest_stretch", "<", 0.3),
+            promise("lowest", "==", height(0.25) - high, "towel_1", 0.15, 180),
+            promise("potential_energy", "within", G * (weight * (height(0.3) - high / 2) + 0.3 * (top - sag)), None, 0.06, 180),
+        ],
+        world={"particle_substeps": 2, "wind": {"velocity": [0, 0, 0]}},
+        ropes=[rope("line", "hemp", points, 0.3, 0.006, pins=[0, "last"])],
+        cloths=cloths,
+        hooks=hooks,
+        timeline=[{"at_step": 240, "wind": {"velocity": [1, 0, 2.6], "gust": 0.5}}])
+
+
+ROPE_SCENES = [
+    crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge, trampoline, curtain_rings,
+    catch_net, washing_line
+]

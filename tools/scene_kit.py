@@ -20,6 +20,7 @@ PALETTE = {  # linear
     "rose": {"color": [0.60, 0.10, 0.14], "shininess": 90},
     "felt": {"color": [0.50, 0.62, 0.06], "shininess": 4},
     "rubber": {"color": [0.03, 0.04, 0.06], "shininess": 60},
+    "trampoline": {"color": [0.05, 0.09, 0.30], "shininess": 20},
     "cable": {"color": [0.10, 0.10, 0.11], "shininess": 60},
     "hemp": {"color": [0.45, 0.33, 0.18], "shininess": 4},
     "glass": {"color": [0.62, 0.72, 0.78], "shininess": 200, "opacity": 0.25},

@@ -90,7 +90,7 @@ TEST_SUITE("check/cases") {
   TEST_CASE("a slope or a drum without friction is found") {
     const CheckSetting slippery{.friction_scale = 0};
     CHECK(failed_rows("I10", slippery) == 3);  // the row without friction stays
-    CHECK(failed_rows("I9", slippery) == 3);
+    CHECK(failed_rows("V14", slippery) == 3);
   }
 
   TEST_CASE("a tenth more friction is found") {

@@ -291,6 +291,68 @@ TEST_SUITE("world/ties") {
     for (const std::uint64_t hash : hashes) CHECK(hash == hashes.front());
   }
 
+  TEST_CASE("a ball flies into a cloth in empty space: neither passes, and momentum stays") {
+    WorldDesc desc = empty_space();
+    desc.particle_substeps = 2;
+    World world = make_world(desc);
+    const ClothId cloth = take(world.add_cloth({.columns = 17,
+                                                .rows = 17,
+                                                .corner = {-0.5, 0.5, 0},
+                                                .areal_density = Real(0.5),
+                                                .damping = Real(1)}));
+    const BodyId ball = take(world.add_body({.kind = BodyKind::kDynamic,
+                                             .shape = {.kind = ShapeKind::kSphere, .radius = Real(0.1)},
+                                             .position = {0.05, 0, 0.6},
+                                             .velocity = {0, 0, -3},
+                                             .mass = Real(0.5)}));
+    const DVec3 before = world.measure().momentum;
+    double deepest = 0;
+    for (int i = 0; i < 120; ++i) {
+      REQUIRE(world.step(Real(1) / Real(60)).healthy());
+      deepest = std::max(deepest, world.measure().largest_penetration);
+    }
+    CHECK(length(world.measure().momentum - before) < 1e-5 * length(before));
+    CHECK(deepest < 0.005);
+    CHECK(world.positions(cloth)[144].z < world.center_of_mass(ball).z);
+    CHECK(d(world.velocity(ball).z) > -2.5);
+  }
+
+  TEST_CASE("a belt carries what lies on it, and a moving wall pushes it") {
+    World world = make_world(without_air());
+    (void)take(world.add_body({.shape = {.kind = ShapeKind::kHalfSpace},
+                               .contact = {.friction = Real(0.5), .surface_velocity = {Real(0.4), 0, 0}}}));
+    const ParticlesId grains =
+        take(world.add_particles({.particles = {{.position = {0, 0.01, 0}}, {.position = {0, 0.01, 5}}},
+                                  .contact = {.friction = Real(0.5)}}));
+    run(world, 90);
+    CHECK(std::abs(d(world.velocities(grains).offset(0).x) - 0.4) < 1e-3);
+    const BodyId wall =
+        take(world.add_body({.kind = BodyKind::kKinematic,
+                             .shape = {.kind = ShapeKind::kBox, .half_extents = {Real(0.1), 1, 1}},
+                             .position = {-1, 1, 5},
+                             .velocity = {3, 0, 0}}));
+    run(world, 60);
+    CHECK(world.positions(grains)[1].x > world.center_of_mass(wall).x + 0.1);
+    CHECK(std::abs(d(world.velocities(grains).offset(1).x) - 3) < 0.05);
+  }
+
+  TEST_CASE("a rope that falls on a crate asleep wakes it, and slides off with friction") {
+    World world = make_world(without_air());
+    (void)take(world.add_body({.shape = {.kind = ShapeKind::kHalfSpace}}));
+    const BodyId crate = add_box(world, {0, 0.2, 0}, 1);
+    run(world, 120);
+    REQUIRE(world.asleep(crate));
+    const RopeId rope = add_rope(world, {-0.3, 1.5, 0.02}, {0.3, 1.5, 0.02}, 12, 2);
+    bool woke = false;
+    for (int i = 0; i < 120; ++i) {
+      world.step(Real(1) / Real(60));
+      woke = woke || !world.asleep(crate);
+    }
+    CHECK(woke);
+    CHECK(world.positions(rope)[6].y > 0.39);
+    CHECK(std::abs(world.center_of_mass(crate).y - 0.2) < 0.005);
+  }
+
   TEST_CASE("what cannot be hooked is said") {
     World world = make_world();
     const RopeId rope = take(world.add_rope({}));

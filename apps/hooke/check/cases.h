@@ -29,6 +29,10 @@ Rows hanging_weight(const CheckSetting& setting);
 Rows series_and_parallel(const CheckSetting& setting);
 Rows catenary(const CheckSetting& setting);
 Rows elastic_catenary(const CheckSetting& setting);
+Rows atwood(const CheckSetting& setting);
+Rows cycloid(const CheckSetting& setting);
+Rows swinging_load(const CheckSetting& setting);
+Rows table_on_ropes(const CheckSetting& setting);
 Rows resolution_of_rope(const CheckSetting& setting);
 Rows heavy_load(const CheckSetting& setting);
 
