@@ -438,7 +438,102 @@ def washing_line():
         timeline=[{"at_step": 240, "wind": {"velocity": [1, 0, 2.6], "gust": 0.5}}])
 
 
+def cantilever_end(load, stiffness, length):
+    """Way of the end of a clamped rod down and back under a load, by integrating the elastica."""
+    alpha = load * length**2 / stiffness
+    low, high = 0.0, math.pi / 2
+    for _ in range(60):  # the slope at the end, so that the arc is as long as the rod
+        end = (low + high) / 2
+        steps = 4000
+        # theta'' = -alpha cos(theta), theta(0) = 0, theta'(1) = 0: shoot from the free end.
+        theta, rate = end, 0.0
+        for _ in range(steps):
+            h = 1 / steps
+            k1t, k1r = rate, alpha * -math.cos(theta)
+            k2t, k2r = rate + h / 2 * k1r, alpha * -math.cos(theta + h / 2 * k1t)
+            theta, rate = theta + h * k2t, rate + h * k2r
+        low, high = (low, end) if theta > 0 else (end, high)
+    down = back = 0.0
+    theta, rate = end, 0.0
+    for _ in range(steps):
+        h = 1 / steps
+        middle = theta + h / 2 * rate
+        down += h * math.sin(middle)
+        back += h * (1 - math.cos(middle))
+        k2r = alpha * -math.cos(middle)
+        theta, rate = theta + h * (rate + h / 2 * alpha * -math.cos(theta)), rate + h * k2r
+    return length * down, length * back
+
+
+def cable_and_hair():
+    """The same strand twice: one resists bending, one does not."""
+    length, segments, height, load = 1.2, 32, 1.5, 0.5
+    stiffness = 2.0
+    pitch = length / segments
+    down, _ = cantilever_end(load * G, stiffness, length)
+    ropes = []
+    for name, z, ei in (("cable", -0.3, stiffness), ("hair", 0.3, 0)):
+        points = [[-pitch + i * pitch, height, z] for i in range(segments + 2)]
+        more = {"bend_stiffness": ei, "bend_damping": 0.1} if ei else {"air_friction": 0.6}
+        ropes.append(
+            rope(name, "cable" if ei else "hemp", points, 0.002, 0.012, pins=[0, 1],
+                 loads=[{"point": segments + 1, "mass": load}], **more))
+    return scene(
+        "Cable and hair",
+        "Two strands of the same length are clamped at the left and carry half a kilogram at their right ends. The "
+        "cable has EI = 2 N m^2 and bends as the elastica says, the hair has none and hangs straight down.",
+        12, [0.9, 1.5, 3.0], [0.45, 0.95, 0], {"ground": {}, "slate": {}, "cable": {}, "hemp": {}}, [
+            ground(),
+            body("wall", "slate", box(0.1, 0.9, 0.6), [-pitch - 0.1, 0.9, 0], "static", collides=False),
+        ], [
+            at_point("height", "==", height - down, "cable", "last", 0.003),
+            at_point("height", "==", height - length, "hair", "last", 0.015),
+            at_point("x", "==", 0, "hair", "last", 0.15),
+            promise("largest_stretch", "<", 0.001)
+        ],
+        ropes=ropes)
+
+
+def hair_wind():
+    """Strands that resist bending, clamped on a head that nods; then the wind comes."""
+    head, radius, top = 0.12, 0.001, 1.2
+    strands, segments, length = 60, 12, 0.30
+    pitch = length / segments
+    ropes, hooks = [], []
+    golden = math.pi * (3 - math.sqrt(5))
+    for k in range(strands):
+        # Over the upper part of the head, without the face.
+        y = 0.25 + 0.72 * (k + 0.5) / strands
+        angle = golden * k
+        r = math.sqrt(1 - y * y)
+        n = [r * math.cos(angle), y, r * math.sin(angle)]
+        root = add([0, top, 0], scaled(head, n))
+        ropes.append(
+            rope(f"hair_{k}", "hemp" if k % 3 else "oak", [add(root, scaled((i - 1) * pitch, n)) for i in range(segments + 2)],
+                 0.0004, radius, pins=[], bend_stiffness=2e-6, bend_damping=0.02))
+        hooks += [tie(f"root_{k}{i}", "head", f"hair_{k}", b_point=i) for i in (0, 1)]
+    return scene(
+        "Hair in the wind",
+        "Sixty hairs of 30 cm, rods with EI = 2e-6 N m^2, stand clamped on a head that moves to and fro. They fall, "
+        "swing after it and, after four seconds, blow to one side. A ball falls beside them.",
+        8, [0.55, 1.35, 1.15], [0, 1.1, 0], {"ground": {}, "sand": {}, "oak": {}, "hemp": {}, "clay": {}, "slate": {}}, [
+            ground(),
+            body("head", "sand", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",
+                 motion={"sine": {"amplitude": [0.06, 0, 0], "frequency_hz": 0.8}}),
+            body("ball", "clay", {"sphere": {"radius": 0.04}}, [0.5, 1.2, 0.3]),
+        ], [
+            fall("ball", 1.2, 20),
+            promise("largest_stretch", "<", 0.01),
+            promise("gap", "<", 0.002),
+            promise("penetration", "<", 0.002),
+            at_point("height", "<", top + 0.02, "hair_10", "last", None, 200),
+        ],
+        ropes=ropes,
+        hooks=hooks,
+        timeline=[{"at_step": 240, "wind": {"velocity": [-4, 0, 1.5], "gust": 0.4}}])
+
+
 ROPE_SCENES = [
     crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge, trampoline, curtain_rings,
-    catch_net, washing_line
+    catch_net, washing_line, cable_and_hair, hair_wind
 ]

@@ -264,6 +264,10 @@ struct RopeDesc {
   Real extension_max = kRigid;  ///< Largest relative extension of a segment, e.g. 0.05. Positive.
   StiffnessOf stiffness_of = StiffnessOf::kRope;
   std::optional<Real> axial_stiffness = {};  ///< EA [N]: replaces `stiffness` by EA / length_at_rest.
+  /// EI [N m^2], not negative: the rope resists bending and is straight at rest, a cable, a rod, a hair.
+  /// Where its first or last two points are pinned it is clamped.
+  Real bend_stiffness = Real(0);
+  Real bend_damping = Real(0);  ///< Of bending, over EI [s], not negative.
   std::vector<DVec3> points =
       {};  ///< Replaces hook_point, direction, masses, length_at_rest; taken as at rest.
   std::vector<PinDesc> pins = {{}};  ///< The first point by default; `{}` for none.

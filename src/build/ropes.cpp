@@ -16,6 +16,8 @@ Checks check(const RopeDesc& desc) {
       .not_negative("inner_friction", static_cast<double>(desc.inner_friction))
       .not_negative("air_friction", static_cast<double>(desc.air_friction))
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
+      .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
+      .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
       .positive("radius", static_cast<double>(desc.radius))
       .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
       .finite("charge", static_cast<double>(desc.charge))
@@ -99,6 +101,8 @@ Result<void> add_rope(const RopeDesc& desc, state::Tables& tables) {
 
   state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  object.bend_stiffness = desc.bend_stiffness;
+  object.bend_damping = desc.bend_damping;
   object.drag_coefficient = desc.drag_coefficient;
   object.feels_air = object.feels_air || desc.drag_coefficient > Real(0);
   append_segments(desc, lengths, total, tables);

@@ -171,6 +171,10 @@ std::vector<Field> rope_rows() {
                                            "Of the rope, whatever the number of points; or of each segment, "
                                            "as in the paper: more points make a "
                                            "softer rope."),
+      field<desc, &RopeDesc::bend_stiffness>(
+          "bend_stiffness", "N m^2", kNotNegative,
+          "EI: resistance to bending; straight at rest, clamped where two end points are pinned."),
+      field<desc, &RopeDesc::bend_damping>("bend_damping", "s", kNotNegative, "Of bending, over EI."),
       field<desc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
                                               "EA; replaces `stiffness` by EA / `length_at_rest`."),
       field<desc, &RopeDesc::points>(

@@ -83,7 +83,16 @@ class BundleSolution {
   [[nodiscard]] std::uint32_t segment_count() const {
     return static_cast<std::uint32_t>(b_.ropes.segments.size());
   }
-  [[nodiscard]] std::uint32_t hook_block(std::uint32_t hook) const { return segment_count() + hook; }
+  [[nodiscard]] std::uint32_t bend_block(std::uint32_t bend) const { return segment_count() + bend; }
+  /// Blocks before those of hooks: vectors, along the axes of the world.
+  [[nodiscard]] std::uint32_t vector_count() const {
+    return segment_count() + static_cast<std::uint32_t>(b_.ropes.bends.size());
+  }
+  [[nodiscard]] const DVec3& vector_impulse(std::uint32_t block) const {
+    return block < segment_count() ? b_.ropes.segments[block].q
+                                   : b_.ropes.bends[block - segment_count()].impulse;
+  }
+  [[nodiscard]] std::uint32_t hook_block(std::uint32_t hook) const { return vector_count() + hook; }
   [[nodiscard]] std::uint32_t body_block(int body) const {
     return hook_block(static_cast<std::uint32_t>(b_.hooks.size())) + static_cast<std::uint32_t>(body);
   }
@@ -94,8 +103,8 @@ class BundleSolution {
   [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.place[block]]; }
   /// Direction k of a row block; zero of a row that is at a bound.
   [[nodiscard]] DVec3 direction(std::uint32_t block, int k) const {
-    if (block < segment_count()) return kAxes[static_cast<std::size_t>(k)];
-    const std::uint32_t row = b_.first_row[block - segment_count()] + static_cast<std::uint32_t>(k);
+    if (block < vector_count()) return kAxes[static_cast<std::size_t>(k)];
+    const std::uint32_t row = b_.first_row[block - vector_count()] + static_cast<std::uint32_t>(k);
     return b_.bound[row] == 0 ? b_.rows[row].n : DVec3{};
   }
   /// The number (i, k) of the block where `a` meets `b`.

@@ -26,7 +26,9 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
   b_.settings.clear();
   for (const std::uint32_t c : b_.chains) {
     const std::size_t first = b_.ropes.nodes.size();
+    const std::size_t first_segment = b_.ropes.segments.size();
     load_rope(chains[c], before, h_, t_.particles, t_.segments, t_.contacts, b_.ropes);
+    load_bends(chains[c], first, first_segment, h_, b_.ropes);
     b_.settings.push_back(first_setting(first, b_.ropes));
   }
   for (const std::uint32_t p : b_.points)
@@ -96,6 +98,8 @@ void BundleSolution::read_solution() {
     return DVec3{right_side(block, first), right_side(block, first + 1), right_side(block, first + 2)};
   };
   for (std::uint32_t i = 0; i < segment_count(); ++i) b_.ropes.segments[i].q = vector_at(i, 0);
+  for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i)
+    b_.ropes.bends[i].impulse = vector_at(bend_block(i), 0);
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     if (b_.bound[row] == 0) b_.lambda[row] = right_side(hook_block(hook), k);
   });
@@ -117,11 +121,11 @@ void BundleSolution::move_nodes() {
     RopeNode& node = b_.ropes.nodes[n];
     DVec3 impulse;
     for (const Bundle::Incident& at : incidents_of(n)) {
-      if (at.block < segment_count()) {
-        impulse += at.weight * b_.ropes.segments[at.block].q;
+      if (at.block < vector_count()) {
+        impulse += at.weight * vector_impulse(at.block);
         continue;
       }
-      const std::uint32_t first = b_.first_row[at.block - segment_count()];
+      const std::uint32_t first = b_.first_row[at.block - vector_count()];
       for (int k = 0; k < size_of(at.block); ++k)
         impulse += (at.weight * b_.lambda[first + static_cast<std::uint32_t>(k)]) * direction(at.block, k);
     }
@@ -139,8 +143,8 @@ bool BundleSolution::revise_bounds(bool release) {
   std::vector<double> speed(b_.rows.size());  // of opening
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     for (const Bundle::Incident& at : incidents_of(n)) {
-      if (at.block < segment_count()) continue;
-      const std::uint32_t hook = at.block - segment_count();
+      if (at.block < vector_count()) continue;
+      const std::uint32_t hook = at.block - vector_count();
       for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row)
         speed[row] += at.weight * dot(b_.rows[row].n, b_.ropes.nodes[n].u);
     }

@@ -42,6 +42,9 @@ struct BundleBody {
 /// hooks first, in time proportional to their length, as a chain would be. Newton steps, contacts inside the
 /// solution and their repetition are those of a chain. Rows with bounds join and leave as in an articulation.
 ///
+/// A rope that resists bending has a vector row at each inner node, the change of direction there, with the
+/// compliance of a spring of EI over the length between the middles of the two segments.
+///
 /// A share of 1e-6 of each hook row's diagonal is added as compliance: it decides what loops of rigid ropes
 /// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
 /// direction at b is that of its points blended along the segment.
@@ -55,7 +58,7 @@ struct Bundle {
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, then hooks, then bodies.
+  // The matrix. Blocks are segments, bends, hooks, bodies.
   BlockPattern pattern;
   std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.

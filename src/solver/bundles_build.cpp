@@ -126,7 +126,9 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
   std::uint32_t chain = 0;
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
     if (t.objects[o].kind != PointRef::Kind::kRope) continue;
-    const std::uint32_t bundle = bundle_of[groups.of_particle(o, t.objects[o].particles.first)];
+    const std::uint32_t group = groups.of_particle(o, t.objects[o].particles.first);
+    if (t.objects[o].bend_stiffness > Real(0)) (void)bundle_at(group);
+    const std::uint32_t bundle = bundle_of[group];
     chains[chain].in_bundle = bundle != kNone;
     if (bundle != kNone) bundles[bundle].chains.push_back(chain);
     ++chain;
@@ -145,7 +147,7 @@ struct Layout {
   Bundle& bundle;
   std::vector<std::vector<Bundle::Incident>> at_node = {};
   std::vector<std::uint32_t> first_node = {};  ///< Of each chain, then of the points.
-  std::uint32_t segment_count = 0;
+  std::uint32_t vector_count = 0;              ///< Segments, then bends.
 
   [[nodiscard]] std::uint32_t node_of(std::uint32_t particle) const {
     for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
@@ -167,14 +169,28 @@ struct Layout {
     at_node.resize(nodes + bundle.points.size());
     for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
       for (std::uint32_t i = 0; i + 1 < chains[bundle.chains[k]].node_count; ++i) {
-        at_node[first_node[k] + i].push_back({segment_count, 1});
-        at_node[first_node[k] + i + 1].push_back({segment_count, -1});
-        ++segment_count;
+        at_node[first_node[k] + i].push_back({vector_count, 1});
+        at_node[first_node[k] + i + 1].push_back({vector_count, -1});
+        ++vector_count;
       }
     }
+    for (std::size_t k = 0; k < bundle.chains.size(); ++k)
+      list_bends(chains[bundle.chains[k]], first_node[k]);
     for (std::uint32_t i = 0; i < bundle.hooks.size(); ++i) {
-      add_end(segment_count + i, -1, tables.hooks[bundle.hooks[i]].a);
-      add_end(segment_count + i, 1, tables.hooks[bundle.hooks[i]].b);
+      add_end(vector_count + i, -1, tables.hooks[bundle.hooks[i]].a);
+      add_end(vector_count + i, 1, tables.hooks[bundle.hooks[i]].b);
+    }
+  }
+
+  void list_bends(const Chain& chain, std::uint32_t first) {
+    if (!(chain.bend_stiffness > 0)) return;
+    for (std::uint32_t i = 1; i + 1 < chain.node_count; ++i) {
+      const double before = 1 / static_cast<double>(tables.segments.rest_length[chain.first_segment + i - 1]);
+      const double behind = 1 / static_cast<double>(tables.segments.rest_length[chain.first_segment + i]);
+      at_node[first + i - 1].push_back({vector_count, before});
+      at_node[first + i].push_back({vector_count, -before - behind});
+      at_node[first + i + 1].push_back({vector_count, behind});
+      ++vector_count;
     }
   }
 
@@ -187,13 +203,12 @@ struct Layout {
   [[nodiscard]] std::uint32_t body_block(std::uint32_t body) const {
     const int index = bundle.body_of(body);
     if (index < 0) return kNone;
-    return segment_count + static_cast<std::uint32_t>(bundle.hooks.size()) +
-           static_cast<std::uint32_t>(index);
+    return vector_count + static_cast<std::uint32_t>(bundle.hooks.size()) + static_cast<std::uint32_t>(index);
   }
 
   /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighbors() const {
-    std::vector<std::vector<std::uint32_t>> of(segment_count + bundle.hooks.size() + bundle.bodies.size());
+    std::vector<std::vector<std::uint32_t>> of(vector_count + bundle.hooks.size() + bundle.bodies.size());
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
       if (a == b || a == kNone || b == kNone) return;
       of[a].push_back(b);
@@ -216,7 +231,7 @@ struct Layout {
     }
     for (std::uint32_t i = 0; i < bundle.hooks.size(); ++i) {
       for (const HookPlace& end : {tables.hooks[bundle.hooks[i]].a, tables.hooks[bundle.hooks[i]].b})
-        meet(segment_count + i, body_block(end.body));
+        meet(vector_count + i, body_block(end.body));
     }
     for (std::vector<std::uint32_t>& list : of) sort_out(list);
     return of;
@@ -241,7 +256,7 @@ void list_pairs(const Layout& layout, Bundle& bundle) {
 void make_pattern(const Tables& t, const std::vector<Chain>& chains, Bundle& bundle) {
   Layout layout = {t, chains, bundle};
   layout.list_incidents();
-  std::vector<int> sizes(layout.segment_count, 3);
+  std::vector<int> sizes(layout.vector_count, 3);
   bundle.first_row.assign(1, 0);
   for (const std::uint32_t hook : bundle.hooks) {
     sizes.push_back(count_joint_rows(t.hooks[hook]));
@@ -267,16 +282,16 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, Bundle& bun
 
 /// The two nodes at which a hook slides along its rope follow its weights.
 void set_slide_weights(const Tables& t, Bundle& bundle) {
-  const auto segments =
+  const auto vectors =
       static_cast<std::uint32_t>(bundle.place.size() - bundle.hooks.size() - bundle.bodies.size());
   const auto slides = [&](const Bundle::Incident& at) {
-    return at.block >= segments && at.block < segments + bundle.hooks.size() && at.weight <= 0 &&
-           t.hooks[bundle.hooks[at.block - segments]].kind == HookKind::kRopeSlide;
+    return at.block >= vectors && at.block < vectors + bundle.hooks.size() && at.weight <= 0 &&
+           t.hooks[bundle.hooks[at.block - vectors]].kind == HookKind::kRopeSlide;
   };
   std::vector<int> seen(bundle.hooks.size(), 0);
   for (Bundle::Incident& at : bundle.incidents) {
     if (!slides(at)) continue;
-    const std::uint32_t hook = at.block - segments;
+    const std::uint32_t hook = at.block - vectors;
     at.weight = -static_cast<double>(t.hooks[bundle.hooks[hook]].a.weight[seen[hook]++]);
   }
 }

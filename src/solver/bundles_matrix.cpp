@@ -40,7 +40,7 @@ void BundleSolution::assemble_pair(const Incident& a, const Incident& b, std::ui
   double* numbers = b_.numbers.data() + at.offset;
   const double weight = row.weight * column.weight;
   const Symmetric3<double>& w = node.inverse;
-  if (row.block < segment_count() && column.block < segment_count()) {
+  if (row.block < vector_count() && column.block < vector_count()) {
     const std::array<double, 9> entries = entries_of(w);
     for (int i = 0; i < 9; ++i) numbers[i] += weight * entries[i];
     return;
@@ -141,6 +141,10 @@ void BundleSolution::assemble() {
     double* numbers = &number(i, i, 0, 0);
     for (int k = 0; k < 9; ++k) numbers[k] += e[k];
   }
+  for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i) {
+    double* numbers = &number(bend_block(i), bend_block(i), 0, 0);
+    for (int k = 0; k < 3; ++k) numbers[4 * k] += b_.ropes.bends[i].gamma;
+  }
   assemble_hooks();
   assemble_bodies();
   assemble_touches();
@@ -181,8 +185,8 @@ void BundleSolution::give_impulses(std::vector<BodyRow>& start) {
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     RopeNode& node = b_.ropes.nodes[n];
     for (const Incident& at : incidents_of(n)) {
-      if (at.block < segment_count()) continue;
-      const std::uint32_t hook = at.block - segment_count();
+      if (at.block < vector_count()) continue;
+      const std::uint32_t hook = at.block - vector_count();
       for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row) {
         if (b_.bound[row] != 0 && b_.lambda[row] != 0)
           node.target += node.inverse * ((at.weight * b_.lambda[row]) * b_.rows[row].n);
@@ -203,6 +207,9 @@ void BundleSolution::fill_right_side() {
   }
   for (std::uint32_t i = 0; i < segment_count(); ++i) {
     for (int k = 0; k < 3; ++k) right_side(i, k) -= dot(kAxes[k], b_.ropes.segments[i].offset);
+  }
+  for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i) {
+    for (int k = 0; k < 3; ++k) right_side(bend_block(i), k) += dot(kAxes[k], b_.ropes.bends[i].target);
   }
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     if (b_.bound[row] == 0)

@@ -19,6 +19,8 @@ struct Chain {
   std::uint32_t first_particle = 0;
   std::uint32_t node_count = 0;
   std::uint32_t first_segment = 0;
+  double bend_stiffness = 0;  ///< EI [N m^2]; with it the rope is a bundle (solver/bundles.h).
+  double bend_damping = 0;    ///< Over EI [s].
   std::uint32_t first_contact = 0;
   std::uint32_t end_contact = 0;
   std::uint32_t solves = 0;  ///< Newton steps since the frame began; written by solve_chains.

@@ -127,6 +127,28 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
   }
 }
 
+void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+                RopeScratch& s) {
+  if (!(chain.bend_stiffness > 0)) return;
+  for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
+    const double before = s.segments[first_segment + i - 1].rest;
+    const double behind = s.segments[first_segment + i].rest;
+    const RopeNode* node = &s.nodes[first_node + i];
+    const auto held = [&](std::ptrdiff_t step) { return !(node[0].w > 0) && !(node[step].w > 0); };
+    const double length = 0.5 * ((held(-1) ? 0 : before) + (held(1) ? 0 : behind));
+    RopeBend bend;
+    bend.node = static_cast<std::uint32_t>(first_node + i);
+    bend.before = 1 / before;
+    bend.behind = 1 / behind;
+    bend.stiffness = chain.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
+    bend.damping = chain.bend_damping * bend.stiffness;
+    bend.gamma = 1 / (h * (bend.damping + h * bend.stiffness));
+    const V change = bend.behind * (node[1].x - node[0].x) - bend.before * (node[0].x - node[-1].x);
+    bend.target = (-bend.stiffness / (bend.damping + h * bend.stiffness)) * change;
+    s.bends.push_back(bend);
+  }
+}
+
 RopeSetting first_setting(std::size_t first_node, const RopeScratch& s) {
   const bool touches = std::any_of(s.touches.begin(), s.touches.end(),
                                    [&](const RopeTouch& t) { return t.node >= first_node && t.active; });

@@ -32,6 +32,18 @@ struct RopeSegment {
   bool limited = false;
 };
 
+/// Resistance to bending at an inner node: the change of direction there, m_e - m_d of the two segments'
+/// vectors over their lengths, which is 2 sin(angle / 2).
+struct RopeBend {
+  std::uint32_t node = 0;
+  double before = 0, behind = 0;  ///< 1 / length of the segments [1/m].
+  double stiffness = 0;           ///< EI over the length that bends here [N m].
+  double damping = 0;             ///< [N m s]
+  double gamma = 0;
+  DVec3 target;   ///< Of the rate at which the change of direction grows.
+  DVec3 impulse;  ///< [N m s]
+};
+
 /// A contact of a node.
 struct RopeTouch {
   std::uint32_t row = 0, node = 0;
@@ -55,11 +67,13 @@ struct RopeSetting {
 struct RopeScratch {
   std::vector<RopeNode> nodes;
   std::vector<RopeSegment> segments;
+  std::vector<RopeBend> bends;
   std::vector<RopeTouch> touches;  ///< In order of nodes.
 
   void clear() {
     nodes.clear();
     segments.clear();
+    bends.clear();
     touches.clear();
   }
 };
@@ -86,6 +100,11 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
 /// The segment's equation u_b - u_a = offset + compliance q.
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                RopeSegment& segment);
+
+/// Bends of a rope whose nodes begin at `first_node`, as rows of a substep of length h [s]: implicit Euler,
+/// as for springs (solver/springs.h). At a clamp, the end of two held nodes, only half a segment bends.
+void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+                RopeScratch& s);
 
 /// W and v* of every node, with what touches it.
 void hold_nodes(double h, RopeScratch& s);

@@ -99,7 +99,9 @@ void refresh_derived(WorldData& world) {
     if (object.kind != PointRef::Kind::kRope) continue;
     world.chains.push_back({.first_particle = object.particles.first,
                             .node_count = object.particles.count,
-                            .first_segment = object.segments.first});
+                            .first_segment = object.segments.first,
+                            .bend_stiffness = static_cast<double>(object.bend_stiffness),
+                            .bend_damping = static_cast<double>(object.bend_damping)});
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
   world.velocity_before.assign(count, Vec3{});

@@ -29,6 +29,8 @@ Rows hanging_weight(const CheckSetting& setting);
 Rows series_and_parallel(const CheckSetting& setting);
 Rows catenary(const CheckSetting& setting);
 Rows elastic_catenary(const CheckSetting& setting);
+Rows elastica(const CheckSetting& setting);
+Rows euler_columns(const CheckSetting& setting);
 Rows atwood(const CheckSetting& setting);
 Rows cycloid(const CheckSetting& setting);
 Rows swinging_load(const CheckSetting& setting);

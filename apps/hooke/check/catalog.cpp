@@ -68,6 +68,8 @@ const std::vector<CheckCase>& check_cases() {
       {"V60", "Seams in floors", seams_in_floors},
       {"V61", "Dominoes at any scale", domino_scaling},
       {"V62", "Cantilever of jelly", cantilever},
+      {"V63", "Elastica", elastica},
+      {"V65", "Columns that buckle", euler_columns},
       {"V70", "Bar of jelly under its own weight", hanging_bar},
       {"V71", "Pulled bar of jelly", pulled_bar},
       {"V86", "Any display rate", display_rate, 2e-4, 1.0 / 60},

@@ -1,0 +1,114 @@
+/// Ropes that resist bending: cantilevers far from straight, columns that buckle.
+
+#include "cases.h"
+#include "rig.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace hooke::check {
+
+namespace {
+
+/// A straight rod of 1 m and EI = g, almost without mass: a load of p kg bends it as p = P L^2 / EI says.
+RopeDesc rod(DVec3 along, int segments, bool clamped_start, bool clamped_end) {
+  RopeDesc desc{.total_mass = real(1e-3),
+                .bend_stiffness = real(kGravity),
+                .bend_damping = real(2e-3),
+                .pins = {},
+                .drag_coefficient = real(0)};
+  for (int i = clamped_start ? -1 : 0; i <= segments + (clamped_end ? 1 : 0); ++i)
+    desc.points.push_back((i / static_cast<double>(segments)) * along);
+  return desc;
+}
+
+WorldDesc without_air() {
+  WorldDesc desc = sleepless();
+  desc.wind.air_density = real(0);
+  return desc;
+}
+
+/// How a column is held; its top always carries the load.
+struct Column {
+  bool clamped_below = false, free_above = false, clamped_above = false;
+  double k = 1;  ///< Effective length over length (textbook).
+  std::string name;
+};
+
+/// Whether a column that is a little crooked has bent visibly after some seconds.
+bool buckles(const CheckSetting& setting, const Column& column, double load) {
+  const int segments = 48;
+  RopeDesc desc = rod({0, 1, 0}, segments, column.clamped_below, column.clamped_above);
+  const auto last = static_cast<std::uint32_t>(desc.points.size()) - 1;
+  const std::uint32_t top = column.clamped_above ? last - 1 : last;
+  desc.pins = {{.point = 0}};
+  if (column.clamped_below) desc.pins.push_back({.point = 1});
+  desc.loads = {{.point = top, .mass = real(load)}};
+  Rig rig(setting, without_air());
+  const RopeId id = rig.add(desc);
+  for (std::uint32_t i = top; !column.free_above && i <= last; ++i) {
+    must(rig.world().add_hook(
+        {.kind = HookKind::kSlider, .b = {.point = point(id, i)}, .axis = {real(0), real(1), real(0)}}));
+  }
+  const std::uint32_t seen = column.free_above ? top : last / 2;
+  must(rig.world().apply_impulse(point(id, seen),
+                                 {real(column.free_above ? 1e-3 * load : 1e-6), real(0), real(0)}));
+  rig.run(column.free_above ? 8 : 4);
+  return std::abs(rig.positions(id)[seen].x) > 0.03;
+}
+
+}  // namespace
+
+/// Where the end of a clamped rod is under a load across it: Bisshopp and Drucker 1945, Mattiasson 1981,
+/// whose figures these are.
+Rows elastica(const CheckSetting& setting) {
+  struct Figure {
+    double load, down, in;
+  };
+  constexpr std::array<Figure, 4> kFigures = {
+      {{1, 0.30172, 0.05643}, {2, 0.49346, 0.16064}, {5, 0.71379, 0.38763}, {10, 0.81061, 0.55500}}};
+  Rows rows;
+  for (const Figure& figure : kFigures) {
+    const int segments = 32;
+    RopeDesc desc = rod({1, 0, 0}, segments, true, false);
+    desc.pins = {{.point = 0}, {.point = 1}};
+    desc.bend_damping = real(0.3);
+    desc.loads = {{.point = segments + 1, .mass = real(figure.load)}};
+    Rig rig(setting, without_air());
+    const RopeId id = rig.add(desc);
+    rig.run(12);
+    const DVec3 end = rig.positions(id).back();
+    const std::string load = ", P L^2 / EI = " + std::to_string(static_cast<int>(figure.load));
+    rows.push_back(relative_row("way of the end down" + load, "m", figure.down, -end.y));
+    rows.push_back(relative_row("way of the end back" + load, "m", figure.in, 1 - end.x));
+  }
+  return rows;
+}
+
+/// pi^2 EI / (K L)^2 (Euler 1744), by halving an interval of 10 % to either side.
+Rows euler_columns(const CheckSetting& setting) {
+  const std::array<Column, 4> columns = {
+      {{.k = 1, .name = "on hinges"},
+       {.clamped_below = true, .free_above = true, .k = 2, .name = "clamped, free"},
+       {.clamped_below = true, .clamped_above = true, .k = 0.5, .name = "clamped, clamped"},
+       {.clamped_below = true, .k = 0.699156, .name = "clamped, on a hinge"}}};
+  Rows rows;
+  for (const Column& column : columns) {
+    const double expected = std::pow(kTau / 2 / column.k, 2);
+    double low = 0.9 * expected;
+    double high = 1.1 * expected;
+    for (int i = 0; i < 6; ++i) {
+      const double middle = 0.5 * (low + high);
+      (buckles(setting, column, middle) ? high : low) = middle;
+    }
+    CheckRow row = relative_row("load that buckles a column " + column.name + ", over EI / L^2", "", expected,
+                                0.5 * (low + high), 0.02);
+    if (column.clamped_above)
+      row = known_miss(row, "the upper clamp is two points that slide, at which a whole segment bends");
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace hooke::check
