@@ -63,7 +63,7 @@ void add_rows(const std::string& name, const MeshDesc& desc) {
   for (const RigidPose& pose : poses) overlapping += count_true(mesh, volumes, pose);
   std::printf("%-24s %6zu %-18s %12s %12.1f\n", name.c_str(), desc.triangles.size(), "overlap", "",
               static_cast<double>(overlapping) / kPoses);
-  for (const auto preselection : hooke::geometry::kPreselections) {
+  for (const auto preselection : hooke::kPreselections) {
     hooke::geometry::Candidates sum;
     for (const RigidPose& pose : poses) {
       const auto count = count_candidates(preselection, volumes, {}, volumes, pose);

@@ -80,7 +80,7 @@ bool ends_in(const std::string& text, const std::string& ending) {
 class Film {
  public:
   Film(Simulation simulation, std::optional<lab::Run> run, render::Renderer renderer,
-       std::optional<double> trail, std::vector<render::Preselection> bounds)
+       std::optional<double> trail, std::vector<Preselection> bounds)
       : simulation_(std::move(simulation)), run_(std::move(run)), renderer_(std::move(renderer)) {
     if (trail) drawing_.keep_trail(*trail);
     drawing_.draw_bounds(std::move(bounds));
@@ -187,7 +187,7 @@ int command_render(Arguments arguments) {
     return report({ErrorCode::kOutOfRange, "--at", "is for a single picture, X.png"});
   }
 
-  std::vector<render::Preselection> bounds;
+  std::vector<Preselection> bounds;
   for (const std::string& name : options.bounds) {
     const auto kind = render::bounding_volume_named(name);
     if (!kind)

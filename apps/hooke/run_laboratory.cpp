@@ -17,14 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string name_of(const Simulation& simulation, const lab::ObjectReport& report) {
-  for (const SceneObject& object : simulation.objects()) {
-    if (report.kind == PointRef::Kind::kNone) {
-      if (object.kind == SceneObject::Kind::kBody && object.body.slot == report.slot) return object.name;
-      continue;
-    }
-    const PointRef reference = reference_of(object);
-    if (reference.kind == report.kind && reference.slot == report.slot) return object.name;
-  }
+  for (const SceneObject& object : simulation.objects())
+    if (is_of(report, object)) return object.name;
   return "?";
 }
 
@@ -102,10 +96,10 @@ std::string summary_text(const Simulation& simulation, const lab::Run& run, cons
     const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     text += text_of(
         "collisions %llu hits, the last at %.9g s; %llu rollbacks, %.4g s taken again, %llu at the "
-        "limit, %llu Zeno; deepest overlap %.2g m; %llu of %llu pairs touched\n",
+        "limit, %llu Zeno; deepest overlap %.2g m; of %llu pairs that the preselection left %llu touched\n",
         count(hits.hits), hits.last_hit, count(hits.rollbacks), hits.resimulated_seconds,
-        count(hits.limit_reached), count(hits.zeno), hits.deepest, count(hits.touching),
-        count(hits.candidates));
+        count(hits.limit_reached), count(hits.zeno), hits.deepest, count(hits.candidates),
+        count(hits.touching));
   }
   for (const lab::ObjectReport& report : run.report()) {
     text += name_of(simulation, report) + ": " + report.stepper;

@@ -35,7 +35,7 @@ class SceneDrawing {
 
   /// From now on bounding volumes are drawn around bodies: the first of these around the first body that is
   /// no half-space, and so on, over again from the first.
-  void draw_bounds(std::vector<render::Preselection> bounds) { bounds_ = std::move(bounds); }
+  void draw_bounds(std::vector<Preselection> bounds) { bounds_ = std::move(bounds); }
 
   /// Fills the list with the state at `time` [s]: by straight lines between the two copies, the later one
   /// beyond it. Camera, bodies and ropes are relative to a place near the camera. `height_px` is the
@@ -75,7 +75,7 @@ class SceneDrawing {
   std::optional<Viewpoint> automatic_;  ///< Frames the first state; for scenes without a camera.
   State previous_;
   State current_;
-  std::vector<render::Preselection> bounds_;
+  std::vector<Preselection> bounds_;
   std::optional<double> trail_interval_;  ///< [s]
   std::vector<State> trail_;              ///< Oldest first.
 };

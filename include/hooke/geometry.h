@@ -9,7 +9,7 @@
 #include <vector>
 
 /// \file
-/// Makes meshes for bodies; planes, polygons, parts of transforms. Needs no World.
+/// Makes meshes for bodies; planes, polygons, parts of transforms, bounding volumes. Needs no World.
 
 namespace hooke {
 
@@ -141,6 +141,28 @@ struct TransformParts {
 
 /// The matrix of the parts: the inverse of decompose.
 [[nodiscard]] Matrix4<double> compose(const TransformParts& parts);
+
+/// What tells first that two objects cannot touch (the paper's preselection, 4.3.1, and its bounding objects,
+/// 4.5.2).
+enum class Preselection : std::uint8_t {
+  kAllPairs,      ///< Nothing does.
+  kVertexSphere,  ///< The paper's sphere about the mean vertex.
+  kSphere,        ///< The smallest.
+  kBox,           ///< Along the axes of the world.
+  kOrientedBox,   ///< Tight, turning with the object.
+  kSphereTree,
+  kBoxTree,  ///< Boxes along the axes of each object's own frame.
+  kOrientedBoxTree,
+};
+
+inline constexpr Preselection kPreselections[] = {Preselection::kAllPairs,    Preselection::kVertexSphere,
+                                                  Preselection::kSphere,      Preselection::kBox,
+                                                  Preselection::kOrientedBox, Preselection::kSphereTree,
+                                                  Preselection::kBoxTree,     Preselection::kOrientedBoxTree};
+
+/// "all_pairs", "vertex_sphere", "sphere", "box", "oriented_box", "sphere_tree", "box_tree",
+/// "oriented_box_tree".
+[[nodiscard]] const char* name_of(Preselection preselection);
 
 enum class SolidOperation : std::uint8_t {
   kUnion,         ///< What is in `a` or in `b`.

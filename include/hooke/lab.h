@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/geometry.h"
 #include "hooke/id.h"
 #include "hooke/math.h"
 #include "hooke/result.h"
@@ -81,12 +82,6 @@ struct CollisionOptions {
     kFaces,  ///< Of a sphere with what is flat, only faces that its center is over: the paper's (4.3.1),
              ///< which misses edges (4.4, figure 6).
   };
-  /// Which pairs it is asked about.
-  enum class Preselection : std::uint8_t {
-    kNone,     ///< All.
-    kSpheres,  ///< Whose spheres around their centers of mass meet on their ways.
-    kBoxes,    ///< Whose boxes along the axes do, too.
-  };
   /// How the length of the next try is found.
   enum class Search : std::uint8_t {
     kHalving,      ///< Half of the last one; what is clear stays done (listing 11).
@@ -102,7 +97,8 @@ struct CollisionOptions {
   };
 
   Collider collider = Collider::kExact;
-  Preselection preselection = Preselection::kBoxes;
+  Preselection preselection = Preselection::kBox;  ///< Which pairs it is asked about: whose volumes may
+                                                   ///< meet on their ways. Half-spaces are near to all.
   Search search = Search::kEvent;
   Sweep sweep = Sweep::kCast;
   double epsilon = 1e-6;     ///< Depth, and distance, that counts as touching [m]. [1e-12, 1]

@@ -1,6 +1,7 @@
 #include "io/scene_table.h"
 
 #include <algorithm>
+#include <array>
 
 namespace hooke::io {
 
@@ -362,7 +363,7 @@ const Kind& kind_of<SceneLaboratory>() {
                "What finds collisions: all features, or as in the paper faces only, which misses edges."),
            field<&SceneLaboratory::collisions, &Options::preselection>(
                "preselection", "", kAny,
-               "Which pairs it is asked about: whose spheres meet, whose boxes do."),
+               "Which pairs it is asked about: whose bounding volumes may meet within the step."),
            field<&SceneLaboratory::collisions, &Options::search>(
                "rollback", "", kAny,
                "How the next try after a canceled step is found: half of it, back by depth over speed, the "
@@ -417,11 +418,13 @@ std::span<const EnumName> names_of<lab::CollisionOptions::Collider>() {
 }
 
 template <>
-std::span<const EnumName> names_of<lab::CollisionOptions::Preselection>() {
-  using Preselection = lab::CollisionOptions::Preselection;
-  static constexpr EnumName names[] = {{"none", static_cast<int>(Preselection::kNone)},
-                                       {"spheres", static_cast<int>(Preselection::kSpheres)},
-                                       {"boxes", static_cast<int>(Preselection::kBoxes)}};
+std::span<const EnumName> names_of<Preselection>() {
+  static const auto names = [] {
+    std::array<EnumName, std::size(kPreselections)> list = {};
+    for (std::size_t i = 0; i < list.size(); ++i)
+      list[i] = {name_of(kPreselections[i]), static_cast<int>(kPreselections[i])};
+    return list;
+  }();
   return names;
 }
 

@@ -18,6 +18,8 @@ Result<Collisions> Collisions::create(const state::Tables& tables, const Options
   collisions.bodies_ = std::move(bodies).value();
   collisions.collides_.resize(tables.moving_bodies.size());
   for (std::uint32_t i = 0; i < collisions.bodies_.size(); ++i) {
+    collisions.setting_.volumes.push_back(
+        make_body_volumes(collisions.bodies_[i], options.collisions.preselection));
     const int part = collisions.bodies_[i].part;
     (part < 0 ? collisions.still_ : collisions.movers_).push_back(i);
     if (part >= 0) collisions.collides_[static_cast<std::size_t>(part)] = 1;
@@ -29,7 +31,7 @@ Result<void> Collisions::advance(double t, double dt, std::vector<Part>& parts) 
   if (movers_.empty()) return {};
   const std::vector<Part> before = parts;
   std::vector<Outcome> regions;
-  const bool all = setting_.options.preselection == CollisionOptions::Preselection::kNone;
+  const bool all = setting_.options.preselection == Preselection::kAllPairs;
   if (setting_.options.regional && !all) {
     for (const std::uint32_t body : movers_) regions.push_back({.members = {body}});
   } else {

@@ -3,6 +3,7 @@
 #include "lab/dense.h"
 #include "lab/impulses.h"
 #include "lab/part.h"
+#include "lab/preselection.h"
 #include "lab/rigid_body.h"
 
 #include <compare>
@@ -26,7 +27,8 @@ struct BodyPair {
 struct CollisionSetting {
   CollisionOptions options = {};
   std::vector<MaterialPairDesc> materials = {};
-  double dt = 0;  ///< Of an output step [s].
+  double dt = 0;                          ///< Of an output step [s].
+  std::vector<BodyVolumes> volumes = {};  ///< By body.
 };
 
 /// Bodies that take their steps together.

@@ -9,22 +9,7 @@ namespace hooke::lab {
 
 namespace {
 
-using Preselection = CollisionOptions::Preselection;
 using Sweep = CollisionOptions::Sweep;
-
-/// Around all control points of a center.
-struct Sphere {
-  DVec3 center = {};
-  double radius = 0;
-};
-
-Sphere swept_sphere(const RigidBody& body, const DenseMotion& motion) {
-  const std::array<DVec3, 4> centers = motion.centers();
-  Sphere sphere = {0.25 * (centers[0] + centers[1] + centers[2] + centers[3]), 0};
-  for (const DVec3 c : centers) sphere.radius = std::max(sphere.radius, length(c - sphere.center));
-  sphere.radius += body.radius;
-  return sphere;
-}
 
 Box grown(Box box, double by) {
   const DVec3 around = {by, by, by};
@@ -48,16 +33,12 @@ Box swept_bounds(const RigidBody& body, const DenseMotion& motion) {
 void Region::find_pairs(const Attempt& attempt) {
   pairs_.clear();
   const CollisionOptions& options = setting_.options;
-  const bool by_box = options.preselection == Preselection::kBoxes;
-  const bool by_sphere = options.preselection != Preselection::kNone;
   const auto meet = [&](std::uint32_t a, std::uint32_t b) {
-    if (!by_sphere) return true;
-    const Sphere of_a = swept_sphere(bodies_[a], attempt.motions[a]);
-    const Sphere of_b = swept_sphere(bodies_[b], attempt.motions[b]);
-    const double reach = of_a.radius + of_b.radius + options.epsilon;
-    if (!(length(of_a.center - of_b.center) <= reach)) return false;
-    return !by_box || overlap(grown(swept_bounds(bodies_[a], attempt.motions[a]), options.epsilon),
-                              swept_bounds(bodies_[b], attempt.motions[b]));
+    if (options.preselection == Preselection::kBox)  // tighter than a margin: swept along the way
+      return overlap(grown(swept_bounds(bodies_[a], attempt.motions[a]), options.epsilon),
+                     swept_bounds(bodies_[b], attempt.motions[b]));
+    return may_meet(options.preselection, {setting_.volumes[a], attempt.motions[a], bodies_[a].radius},
+                    {setting_.volumes[b], attempt.motions[b], bodies_[b].radius}, options.epsilon);
   };
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     if (!bodies_[a].is_free && !bodies_[b].is_free) return;

@@ -74,7 +74,7 @@ class Pen {
 }  // namespace
 
 std::optional<Preselection> bounding_volume_named(std::string_view name) {
-  for (const Preselection kind : geometry::kPreselections) {
+  for (const Preselection kind : kPreselections) {
     if (kind != Preselection::kAllPairs && name == name_of(kind)) return kind;
   }
   return {};

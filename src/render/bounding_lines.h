@@ -12,8 +12,6 @@
 
 namespace hooke::render {
 
-using geometry::Preselection;
-
 /// The volume of that name; nothing for others, and for "all_pairs", which has none.
 std::optional<Preselection> bounding_volume_named(std::string_view name);
 

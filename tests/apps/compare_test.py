@@ -37,6 +37,20 @@ def stiff():
     return scene
 
 
+def two_towers(preselection):
+    """Two plates that stand 10 m apart, with two boxes above each that fall on it."""
+    box = {"shape": {"box": {"half_extents": [0.25, 0.25, 0.25]}}}
+    bodies = [box | {"position": [x, -0.25, 0]} for x in (0, 10)]
+    bodies += [box | {"name": f"box_{x}_{i}", "kind": "dynamic", "position": [x, y, 0]}
+               for x in (0, 10) for i, y in enumerate((0.375, 1.125))]
+    return {
+        "version": 1,
+        "seconds": 0.5,
+        "bodies": bodies,
+        "laboratory": {"stepper": "rk4", "preselection": preselection, "regional": False},
+    }
+
+
 class Compare(Program):
     def compare(self, *words, code=0):
         """Runs it into `out` and returns the rows of the summary by stepper."""
@@ -109,6 +123,22 @@ class Compare(Program):
         self.assertEqual(list(rows), ["rk4", "declared"])
         self.assertLess(float(rows["declared"]["largest_error_m"]), 1e-6)
         self.assertRegex((self.folder / "out" / "index.html").read_text(), "declared</b> .*, within the declared 1e-06 m")
+
+    def test_bodies_are_compared_by_their_centers_and_their_pairs_are_counted(self):
+        counts = {}
+        for preselection in ("all_pairs", "oriented_box"):
+            rows = self.compare(self.scene(two_towers(preselection)), "--steppers", "rk4,solver", "--no-limits")
+            counts[preselection] = [int(rows["rk4"][key]) for key in ("pairs_asked", "pairs_touching")]
+            self.assertEqual(rows["solver"]["pairs_asked"], "0")
+            # It falls 0.125 m in 0.16 s, and stays.
+            self.assertAlmostEqual(self.series("rk4")[-1]["y_m"], 0.25, delta=1e-5)
+        steps, pairs = 30, 14  # of six boxes, without the two that stand
+        self.assertGreaterEqual(counts["all_pairs"][0], steps * pairs)
+        self.assertLess(counts["oriented_box"][0], counts["all_pairs"][0] / 2)
+        self.assertGreater(counts["oriented_box"][1], 0)
+        self.assertEqual(counts["oriented_box"][1], counts["all_pairs"][1])
+        out, _ = self.hooke("compare", "scene.json", "--steppers", "rk4", "--no-limits", "--out", "out")
+        self.assertRegex(out, "pairs asked +pairs touching")
 
     def test_bad_input_is_one_line_and_leaves_nothing(self):
         name = self.scene(stiff())

@@ -275,7 +275,7 @@ TEST_SUITE("geometry/bounding") {
 
   TEST_CASE("every preselection leaves all pairs that overlap; the paper's sphere more than any other") {
     std::mt19937_64 random(7);
-    using hooke::geometry::Preselection;
+    using hooke::Preselection;
     for (const MeshDesc& mesh :
          {hooke::test::make_torus(1, Real(0.2), 12, 8), hooke::test::make_box({4, Real(0.1), Real(0.1)})}) {
       const Points points = points_of(mesh);
@@ -286,7 +286,7 @@ TEST_SUITE("geometry/bounding") {
         const RigidPose pose_a = random_pose(random, 1);
         const RigidPose pose_b = random_pose(random, 3);
         const std::size_t overlapping = true_pairs(view, view, relative_pose(pose_b, pose_a)).size();
-        for (const Preselection p : hooke::geometry::kPreselections) {
+        for (const Preselection p : hooke::kPreselections) {
           const auto count = count_candidates(p, volumes, pose_a, volumes, pose_b);
           REQUIRE(count.pairs_left >= overlapping);
           left[p] += count.pairs_left;

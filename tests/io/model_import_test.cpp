@@ -256,7 +256,7 @@ TEST_SUITE("io/model_import") {
       }
       CHECK(overlapping > 0);
       std::uint64_t by_boxes = 0;
-      for (const auto preselection : hooke::geometry::kPreselections) {
+      for (const auto preselection : hooke::kPreselections) {
         const auto count = count_candidates(preselection, volumes, {}, volumes, pose);
         CHECK(count.pairs_left >= overlapping);
         by_boxes = count.pairs_left;

@@ -37,7 +37,7 @@ TEST_SUITE("io/scene_load") {
       "version": 1,  // a comment
       "world": {"gravity": [0, -1.62, 0], "substeps": 4, "wind": {"velocity": [3, 0, 0], "gusts": "paper"}},
       "dt": 0.01, "seconds": 2, "accuracy": {"max_error": 1e-4},
-      "laboratory": {"stepper": "verlet", "collider": "faces", "preselection": "spheres",
+      "laboratory": {"stepper": "verlet", "collider": "faces", "preselection": "sphere_tree",
                      "rollback": "halving", "sweep": "none", "epsilon": 1e-3, "iteration_limit": 5,
                      "regional": false},
       "bodies": [{"shape": {"sphere": {"radius": 0.25}}, "rotation": {"axis": [0, 0, 2], "angle_deg": 90}}],
@@ -59,7 +59,7 @@ TEST_SUITE("io/scene_load") {
     const hooke::lab::CollisionOptions& collisions = scene.laboratory->collisions;
     CHECK(scene.laboratory->stepper == "verlet");
     CHECK(collisions.collider == hooke::lab::CollisionOptions::Collider::kFaces);
-    CHECK(collisions.preselection == hooke::lab::CollisionOptions::Preselection::kSpheres);
+    CHECK(collisions.preselection == hooke::Preselection::kSphereTree);
     CHECK(collisions.search == hooke::lab::CollisionOptions::Search::kHalving);
     CHECK(collisions.sweep == hooke::lab::CollisionOptions::Sweep::kNone);
     CHECK(collisions.epsilon == doctest::Approx(1e-3));

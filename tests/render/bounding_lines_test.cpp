@@ -8,13 +8,13 @@
 #include <vector>
 
 using hooke::Mat4;
+using hooke::Preselection;
 using hooke::Quat;
 using hooke::Vec3;
 using hooke::render::add_bounding_lines;
 using hooke::render::bounding_volume_named;
 using hooke::render::DrawLine;
 using hooke::render::MeshGeometry;
-using hooke::render::Preselection;
 
 namespace {
 
@@ -72,7 +72,7 @@ TEST_SUITE("render/bounding_lines") {
     two.indices.resize(6);
     CHECK(lines_of(two, Mat4{}, Preselection::kBoxTree).size() == 12);
     CHECK(lines_of(ball, Mat4{}, Preselection::kAllPairs).empty());
-    for (const auto kind : hooke::geometry::kPreselections) CHECK(lines_of({}, Mat4{}, kind).empty());
+    for (const auto kind : hooke::kPreselections) CHECK(lines_of({}, Mat4{}, kind).empty());
   }
 
   TEST_CASE("volumes have names") {

@@ -26,12 +26,27 @@ PointWords cut(const std::string& text, const Simulation& simulation) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
+/// What can be watched of an object at the start: its points, of a body that forces move the center of mass.
+std::vector<DVec3> points_of(const World& world, const SceneObject& object) {
+  if (object.kind == SceneObject::Kind::kBody) {
+    if (!(world.mass(object.body) > 0)) return {};
+    return {world.center_of_mass(object.body)};
+  }
+  const PointView points = positions_of(world, object);
+  std::vector<DVec3> list;
+  for (std::size_t i = 0; i < points.size(); ++i) list.push_back(points[i]);
+  return list;
+}
+
 const SceneObject* find_object(const Simulation& simulation, const std::string& name) {
   if (!name.empty()) return simulation.find(name);
+  const SceneObject* body = nullptr;  // taken where nothing has points
   for (const SceneObject& object : simulation.objects()) {
-    if (!positions_of(simulation.world(), object).empty()) return &object;
+    if (points_of(simulation.world(), object).empty()) continue;
+    if (object.kind != SceneObject::Kind::kBody) return &object;
+    if (body == nullptr) body = &object;
   }
-  return nullptr;
+  return body;
 }
 
 Result<Player> make_solver_player(const Stage& stage, double dt) {
@@ -48,12 +63,13 @@ Result<Player> make_solver_player(const Stage& stage, double dt) {
         return Error{ErrorCode::kOutOfRange, kSolverName, "the state is not finite any more"};
       },
       .position = [simulation, object,
-                   point = stage.point] { return positions_of(simulation->world(), object)[point]; },
+                   point = stage.point] { return points_of(simulation->world(), object)[point]; },
       .energy = [simulation] { return simulation->world().measure().energy; },
       .evaluations =
           [simulation, evaluations_per_step] {
             return evaluations_per_step * static_cast<double>(simulation->world().step_count());
           },
+      .collisions = [] { return lab::CollisionReport(); },
   };
 }
 
@@ -63,8 +79,7 @@ std::string chosen_text(const lab::Run& run, const Stage& stage) {
   for (const lab::ObjectReport& report : run.report()) {
     std::string name;
     for (const SceneObject& object : stage.start.objects()) {
-      const PointRef reference = reference_of(object);
-      if (reference.kind == report.kind && reference.slot == report.slot) name = object.name;
+      if (is_of(report, object)) name = object.name;
     }
     text += (text.empty() ? "" : "; ") + report.stepper + text_of(" at %.3g s for '", report.dt) + name + "'";
     if (report.error) text += text_of(", estimated error %.2g m", *report.error);
@@ -82,7 +97,7 @@ Result<Stage> make_stage(Scene scene, const std::string& point) {
   if (!built) return built.errors.front();
   const PointWords words = cut(point, *built.value);
   const SceneObject* object = find_object(*built.value, words.object);
-  const std::size_t count = object == nullptr ? 0 : positions_of(built.value->world(), *object).size();
+  const std::size_t count = object == nullptr ? 0 : points_of(built.value->world(), *object).size();
   if (count == 0) {
     return Error{ErrorCode::kOutOfRange, words.object.empty() ? path : "--point",
                  words.object.empty() ? "the scene has no points to compare"
@@ -98,7 +113,8 @@ Result<Stage> make_stage(Scene scene, const std::string& point) {
                      std::to_string(count - 1)};
   }
   const SceneObject watched = *object;
-  return Stage{std::move(*built.value), watched, static_cast<std::uint32_t>(index),
+  std::vector<DVec3> points = points_of(built.value->world(), watched);
+  return Stage{std::move(*built.value), watched, std::move(points), static_cast<std::uint32_t>(index),
                watched.name + ":" + std::to_string(index)};
 }
 
@@ -119,6 +135,7 @@ Result<void> check_stepper(const std::string& name) {
 Result<Player> make_player(const Stage& stage, const std::string& name, double dt, bool force) {
   if (name == kSolverName) return make_solver_player(stage, dt);
   lab::Options options = {.dt = dt, .force = force};
+  if (stage.scene().laboratory) options.collisions = stage.scene().laboratory->collisions;
   if (name == kDeclaredName && stage.scene().accuracy) {
     options.accuracy = {.max_error = stage.scene().accuracy->max_error, .seconds = stage.scene().seconds};
   } else {
@@ -133,6 +150,7 @@ Result<Player> make_player(const Stage& stage, const std::string& name, double d
       .position = [run, object, point = stage.point] { return positions_of(*run, object)[point]; },
       .energy = [run] { return run->energy(); },
       .evaluations = [run] { return static_cast<double>(run->evaluations()); },
+      .collisions = [run] { return run->collisions(); },
   };
   if (options.accuracy) player.note = chosen_text(*run, stage);
   return player;
@@ -204,9 +222,20 @@ std::vector<DVec3> positions_of(const lab::Run& run, const SceneObject& object) 
       return run.positions(object.rope);
     case SceneObject::Kind::kCloth:
       return run.positions(object.cloth);
+    case SceneObject::Kind::kBody: {
+      const auto state = run.body(object.body);
+      return state ? std::vector<DVec3>{state.value().center} : std::vector<DVec3>();
+    }
     default:
       return run.positions(object.particles);
   }
+}
+
+bool is_of(const lab::ObjectReport& report, const SceneObject& object) {
+  if (report.kind == PointRef::Kind::kNone)
+    return object.kind == SceneObject::Kind::kBody && object.body.slot == report.slot;
+  const PointRef reference = reference_of(object);
+  return reference.kind == report.kind && reference.slot == report.slot;
 }
 
 PointRef reference_of(const SceneObject& object) {

@@ -22,15 +22,16 @@ inline constexpr const char* kDeclaredName = "declared";
 struct Stage {
   Simulation start;  ///< Never stepped.
   SceneObject object;
-  std::uint32_t point = 0;  ///< Of the object.
-  std::string point_name;   ///< "rope:15"
+  std::vector<DVec3> points;  ///< Of the object at the start; of a body its center of mass [m].
+  std::uint32_t point = 0;    ///< Of the object.
+  std::string point_name;     ///< "rope:15"
 
   [[nodiscard]] const Scene& scene() const { return start.scene(); }
   [[nodiscard]] double dt() const { return static_cast<double>(scene().dt); }
 };
 
 /// Sets the stage. `point` is "OBJECT:INDEX", "OBJECT:last", "OBJECT", which is the last, or empty: the last
-/// point of the first object that has points.
+/// point of the first object that has points, else the center of mass of the first body that forces move.
 Result<Stage> make_stage(Scene scene, const std::string& point);
 
 /// One stepper at work. All functions belong to the same run.
@@ -38,8 +39,9 @@ struct Player {
   std::function<Result<void>()> advance;  ///< By Stage::dt.
   std::function<DVec3()> position;        ///< Of the watched point [m].
   std::function<Energy()> energy;
-  std::function<double()> evaluations;  ///< Of the forces, so far.
-  std::string note = {};                ///< What was chosen, if the run chose.
+  std::function<double()> evaluations;               ///< Of the forces, so far.
+  std::function<lab::CollisionReport()> collisions;  ///< So far; of the solver none.
+  std::string note = {};                             ///< What was chosen, if the run chose.
 };
 
 /// Errors: no such stepper, with the list of those that exist; kUnsupported for one that was not built in.
@@ -61,8 +63,11 @@ Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepp
 /// further than 1000 km.
 Result<void> show_run(const lab::Run& run, Simulation& simulation);
 
-/// Points of an object in a run of the laboratory [m].
+/// Points of an object in a run of the laboratory [m]; of a body its center of mass, if it moves.
 std::vector<DVec3> positions_of(const lab::Run& run, const SceneObject& object);
+
+/// Whether the report is of the object.
+bool is_of(const lab::ObjectReport& report, const SceneObject& object);
 
 /// The first point of an object, as the laboratory names objects.
 PointRef reference_of(const SceneObject& object);

@@ -59,8 +59,11 @@ std::string order_word(const Trial& trial, const Comparison& comparison) {
 }  // namespace
 
 Table summary_table(const Comparison& comparison) {
+  const bool collide = std::any_of(comparison.trials.begin(), comparison.trials.end(),
+                                   [](const Trial& trial) { return trial.collisions.candidates > 0; });
   Table table = {{"stepper", "order", "largest error [m]", "error at end [m]", "energy off [J]",
                   "evaluations /s", "ms /s", "largest k [N/m]", "largest omega dt", "diverged at [s]"}};
+  if (collide) table[0].insert(table[0].end(), {"pairs asked", "pairs touching"});
   for (const Trial& trial : comparison.trials) {
     const Limits& limits = trial.limits;
     const double last = trial.samples.empty() ? std::nan("") : trial.samples.back().error;
@@ -68,6 +71,9 @@ Table summary_table(const Comparison& comparison) {
                      word(energy_error(trial, comparison)), text_of("%.0f", trial.evaluations),
                      text_of("%.3g", trial.cost_ms), pair(limits.stiffness, limits.stiffness_in_theory),
                      pair(limits.step, limits.step_in_theory), word(trial.diverged_at)});
+    if (collide)
+      table.back().insert(table.back().end(), {std::to_string(trial.collisions.candidates),
+                                               std::to_string(trial.collisions.touching)});
   }
   return table;
 }
@@ -77,7 +83,7 @@ std::string summary_csv(const Comparison& comparison) {
       "stepper,order,order_theory,largest_error_m,final_error_m,energy_error_J,evaluations_per_s,cost_ms_per_"
       "s,"
       "largest_stiffness_N_per_m,largest_stiffness_theory_N_per_m,largest_omega_dt,largest_omega_dt_theory,"
-      "diverged_at_s\n";
+      "diverged_at_s,pairs_asked,pairs_touching\n";
   for (const Trial& trial : comparison.trials) {
     const Limits& limits = trial.limits;
     const std::optional<double> last =
@@ -88,7 +94,8 @@ std::string summary_csv(const Comparison& comparison) {
         limits.stiffness_in_theory,      limits.step,       limits.step_in_theory, trial.diverged_at};
     text += trial.name;
     for (const std::optional<double>& value : numbers) text += "," + number(value);
-    text += "\n";
+    text += "," + std::to_string(trial.collisions.candidates) + "," +
+            std::to_string(trial.collisions.touching) + "\n";
   }
   return text;
 }

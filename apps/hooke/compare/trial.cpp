@@ -44,10 +44,8 @@ Sample sample_of(const Player& player, double time) {
 
 /// Largest distance of the object's points from the watched one, at the start.
 double size_of(const Stage& stage) {
-  const PointView points = positions_of(stage.start.world(), stage.object);
   double size = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    size = std::max(size, length(points[i] - points[stage.point]));
+  for (const DVec3 p : stage.points) size = std::max(size, length(p - stage.points[stage.point]));
   return size;
 }
 
@@ -188,6 +186,7 @@ Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force,
   const double simulated = static_cast<double>(std::max<std::uint64_t>(step, 1)) * schedule.dt;
   trial.cost_ms = watch.milliseconds() / simulated;
   trial.evaluations = player.evaluations() / simulated;
+  trial.collisions = player.collisions();
   if (reference.samples.empty()) trial.largest_error = std::numeric_limits<double>::quiet_NaN();
   return trial;
 }

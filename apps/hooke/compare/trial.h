@@ -53,6 +53,7 @@ struct Trial {
   double cost_ms = 0;                      ///< Measured, per simulated second.
   double evaluations = 0;                  ///< Of the forces, per simulated second.
   double largest_error = 0;                ///< [m]; NaN without a reference.
+  lab::CollisionReport collisions = {};
   std::string note = {};
   Limits limits = {};
 };
