@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/bsp.h"
 #include "hooke/result.h"
 
 #include "geometry/bsp_space.h"
@@ -11,13 +12,6 @@
 /// Trees over exact pieces of triangles, as they are built and merged; the tree of queries is BspTree.
 
 namespace hooke::geometry {
-
-// A child that is no node.
-inline constexpr std::uint32_t kBspEmpty = 0xFFFFFFFE;
-inline constexpr std::uint32_t kBspSolid = 0xFFFFFFFF;
-inline constexpr bool is_bsp_leaf(std::uint32_t child) {
-  return child >= kBspEmpty;
-}
 
 struct BspSplitNode {
   std::uint32_t plane = 0;

@@ -1,4 +1,6 @@
-#include "geometry/bsp_tree.h"
+#include "hooke/bsp.h"
+
+#include "geometry/triangle_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace hooke::geometry {
+namespace hooke {
 
 namespace {
 
@@ -119,7 +121,7 @@ Result<void> check_faces(const BspTree& tree) {
         face.corner_count > tree.corners.size() - face.first_corner) {
       return item_error("faces", i, "fewer than three corners, or some that are not there");
     }
-    if (face.triangle >= kTriangleLimit) return item_error("faces", i, "of a triangle beyond 2^25");
+    if (face.triangle >= geometry::kTriangleLimit) return item_error("faces", i, "of a triangle beyond 2^25");
   }
   for (std::size_t i = 0; i < tree.corners.size(); ++i) {
     if (!is_finite(tree.corners[i])) return item_error("corners", i, "a coordinate that is not finite");
@@ -174,4 +176,4 @@ Result<BspTree> load_bsp(std::span<const std::byte> bytes) {
   return tree;
 }
 
-}  // namespace hooke::geometry
+}  // namespace hooke

@@ -1,17 +1,23 @@
+#include "hooke/bsp.h"
+
 #include "geometry/box.h"
-#include "geometry/bsp_tree.h"
 #include "geometry/closest.h"
+#include "geometry/triangle_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace hooke::geometry {
+namespace hooke {
 
 namespace {
 
 constexpr double kNoFraction = std::numeric_limits<double>::infinity();
 constexpr std::size_t kUsualDepth = 64;
 constexpr double kGrazing = 1e-12;  // relative; what is nearer to sliding along than this slides along
+
+std::uint32_t root_of(const BspTree& tree) {
+  return tree.nodes.empty() ? kBspEmpty : 0;
+}
 
 double height_over(const BspNode& node, DVec3 p) {
   return dot(node.normal, p) - node.offset;
@@ -32,7 +38,7 @@ void visit_leaves(const BspTree& tree, DVec3 origin, DVec3 direction, double fra
                   const Visit& visit) {
   std::vector<Stretch> stack;
   stack.reserve(kUsualDepth);
-  stack.push_back({.end = fraction_max});
+  stack.push_back({.child = root_of(tree), .end = fraction_max});
   while (!stack.empty()) {
     Stretch s = stack.back();
     stack.pop_back();
@@ -60,7 +66,8 @@ void visit_leaves(const BspTree& tree, DVec3 origin, DVec3 direction, double fra
 template <class Visit>
 void visit_crossings(const BspTree& tree, DVec3 origin, DVec3 direction, double fraction_max,
                      const Visit& visit) {
-  if (direction == DVec3{} || !(fraction_max >= 0)) return;
+  const bool is_ray = is_finite(origin) && is_finite(direction) && direction != DVec3{};
+  if (!is_ray || !(fraction_max >= 0)) return;
   std::optional<bool> was_solid;
   visit_leaves(tree, origin, direction, fraction_max,
                [&](bool is_solid, double fraction, std::uint32_t entered) {
@@ -74,7 +81,7 @@ void visit_crossings(const BspTree& tree, DVec3 origin, DVec3 direction, double 
 }  // namespace
 
 bool is_solid_at(const BspTree& tree, DVec3 p) {
-  std::uint32_t child = 0;
+  std::uint32_t child = is_finite(p) ? root_of(tree) : kBspEmpty;
   while (!is_bsp_leaf(child)) {
     const BspNode& node = tree.nodes[child];
     child = height_over(node, p) >= 0 ? node.above : node.below;
@@ -101,6 +108,7 @@ std::optional<BspCrossing> cast_ray(const BspTree& tree, DVec3 origin, DVec3 dir
 }
 
 std::optional<BspHit> move_point(const BspTree& tree, DVec3 origin, DVec3 motion) {
+  if (!is_finite(origin) || !is_finite(motion)) return std::nullopt;
   std::optional<BspHit> hit;
   bool is_start = true;
   visit_leaves(tree, origin, motion, 1.0, [&](bool is_solid, double fraction, std::uint32_t entered) {
@@ -137,13 +145,13 @@ DVec3 normal_of(std::span<const DVec3> corners) {
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
     sum += cross(corners[k] - corners[0], corners[k + 1] - corners[0]);
   }
-  return direction_or(sum, DVec3{});
+  return geometry::direction_or(sum, DVec3{});
 }
 
 }  // namespace
 
 std::uint32_t triangle_at(const BspTree& tree, std::uint32_t node, DVec3 p) {
-  std::uint32_t best = kNone;
+  std::uint32_t best = geometry::kNone;
   double depth = -kNoFraction;
   const BspNode& plane = tree.nodes[node];
   for (std::uint32_t f = plane.first_face; f < plane.first_face + plane.face_count; ++f) {
@@ -168,9 +176,9 @@ struct Sphere {
 
 DVec3 closest_on_face(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
   if (depth_in_outline(corners, normal, p) >= 0) return p - dot(normal, p - corners[0]) * normal;
-  SegmentPoint<double> best = {.distance_squared = kNoFraction};
+  geometry::SegmentPoint<double> best = {.distance_squared = kNoFraction};
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    const auto near = closest_on_segment(p, corners[k], corners[(k + 1) % corners.size()]);
+    const auto near = geometry::closest_on_segment(p, corners[k], corners[(k + 1) % corners.size()]);
     if (near.distance_squared < best.distance_squared) best = near;
   }
   return best.point;
@@ -179,7 +187,7 @@ DVec3 closest_on_face(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
 /// The first root of |offset + t motion| = radius, if t is not negative. Not where it is grazed: a sphere
 /// that slides along a plane must not stop at the edges in it.
 double time_to_distance(DVec3 offset, DVec3 motion, double radius) {
-  const double speed = safe_length(motion);
+  const double speed = geometry::safe_length(motion);
   if (!(speed > 0)) return kNoFraction;
   const DVec3 way = (1 / speed) * motion;
   const double along = dot(offset, way);
@@ -195,7 +203,7 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const DVec3 a = corners[k];
     const DVec3 b = corners[(k + 1) % corners.size()];
-    const DVec3 edge = direction_or(b - a, DVec3{});
+    const DVec3 edge = geometry::direction_or(b - a, DVec3{});
     const DVec3 offset = sphere.center - a;
     first = std::min(first, time_to_distance(offset, sphere.motion, sphere.radius));
     // The edge's line: without what is along it.
@@ -203,7 +211,7 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
                                          sphere.motion - dot(sphere.motion, edge) * edge, sphere.radius);
     if (!(time < first)) continue;
     const double place = dot(sphere.at(time) - a, edge);
-    if (place >= 0 && place <= safe_length(b - a)) first = time;
+    if (place >= 0 && place <= geometry::safe_length(b - a)) first = time;
   }
   return first;
 }
@@ -212,11 +220,12 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
 BspHit touch_face(std::span<const DVec3> corners, const Sphere& sphere) {
   const DVec3 normal = normal_of(corners);
   const DVec3 gap = sphere.center - closest_on_face(corners, normal, sphere.center);
-  if (safe_length(gap) <= sphere.radius) {
+  if (geometry::safe_length(gap) <= sphere.radius) {
     // The distance to what is convex grows for ever once it grows. Along the face is not toward it.
     const double toward = -dot(gap, sphere.motion);
-    const bool is_toward = toward > kGrazing * safe_length(gap) * safe_length(sphere.motion);
-    return {is_toward ? 0 : kNoFraction, direction_or(gap, normal)};
+    const bool is_toward =
+        toward > kGrazing * geometry::safe_length(gap) * geometry::safe_length(sphere.motion);
+    return {is_toward ? 0 : kNoFraction, geometry::direction_or(gap, normal)};
   }
   const double height = dot(normal, sphere.center - corners[0]);
   const double rate = dot(normal, sphere.motion);
@@ -227,7 +236,7 @@ BspHit touch_face(std::span<const DVec3> corners, const Sphere& sphere) {
   const double time = time_to_outline(corners, sphere);
   if (!(time <= 1)) return {kNoFraction, {}};
   const DVec3 center = sphere.at(time);
-  return {time, direction_or(center - closest_on_face(corners, normal, center), normal)};
+  return {time, geometry::direction_or(center - closest_on_face(corners, normal, center), normal)};
 }
 
 /// The part of the stretch where height + t rate is in [low, high]; empty: it begins after its end.
@@ -246,13 +255,15 @@ Stretch clip(Stretch s, double height, double rate, double low, double high) {
 }  // namespace
 
 std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motion, double radius) {
+  if (!is_finite(origin) || !is_finite(motion) || !(radius >= 0 && std::isfinite(radius)))
+    return std::nullopt;
   if (is_solid_at(tree, origin)) return BspHit{};
   const Sphere sphere = {origin, motion, radius};
   const DVec3 around = {radius, radius, radius};
   BspHit best = {kNoFraction, {}};
   std::vector<Stretch> stack;
   stack.reserve(kUsualDepth);
-  stack.push_back({.end = 1});
+  stack.push_back({.child = root_of(tree), .end = 1});
   while (!stack.empty()) {
     const Stretch s = stack.back();
     stack.pop_back();
@@ -264,11 +275,12 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
     const double reach =
         radius + 1e-12 * (radius + std::fabs(height) + std::fabs(rate) + std::fabs(node.offset));
     const Stretch own = clip(s, height, rate, -reach, reach);
-    const Box3<double> swept = {min_of(sphere.at(own.begin), sphere.at(own.end)) - around,
-                                max_of(sphere.at(own.begin), sphere.at(own.end)) + around};
+    const geometry::Box3<double> swept = {
+        geometry::min_of(sphere.at(own.begin), sphere.at(own.end)) - around,
+        geometry::max_of(sphere.at(own.begin), sphere.at(own.end)) + around};
     for (std::uint32_t k = 0; k < node.face_count && own.begin <= own.end; ++k) {
       const auto corners = corners_of(tree, tree.faces[node.first_face + k]);
-      Box3<double> box;
+      geometry::Box3<double> box;
       for (const DVec3& p : corners) box = merge(box, {p, p});
       if (!overlap(box, swept)) continue;
       const BspHit hit = touch_face(corners, sphere);
@@ -286,4 +298,4 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
   return best;
 }
 
-}  // namespace hooke::geometry
+}  // namespace hooke

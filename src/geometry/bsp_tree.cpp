@@ -32,13 +32,22 @@ Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs) {
   return tree;
 }
 
+}  // namespace hooke::geometry
+
+namespace hooke {
+
+Result<BspTree> build_bsp(const MeshDesc& mesh) {
+  return geometry::build_bsp(geometry::solid_mesh_of(mesh));
+}
+
 void order_back_to_front(const BspTree& tree, DVec3 eye, std::vector<std::uint32_t>& faces) {
   struct Waiting {
     std::uint32_t child = 0;
     bool is_own = false;  // only the node's own faces are left to do
   };
   faces.clear();
-  std::vector<Waiting> stack = {{0, false}};
+  std::vector<Waiting> stack;
+  if (!tree.nodes.empty()) stack.push_back({0, false});
   while (!stack.empty()) {
     const Waiting next = stack.back();
     stack.pop_back();
@@ -70,4 +79,4 @@ BspSize size_of(const BspTree& tree) {
   return size;
 }
 
-}  // namespace hooke::geometry
+}  // namespace hooke

@@ -13,16 +13,16 @@
 #include <string>
 #include <vector>
 
+using hooke::BspCrossing;
+using hooke::BspTree;
+using hooke::cast_ray;
 using hooke::DVec3;
-using hooke::geometry::BspCrossing;
-using hooke::geometry::BspTree;
+using hooke::is_solid_at;
+using hooke::load_bsp;
+using hooke::move_point;
+using hooke::move_sphere;
+using hooke::save_bsp;
 using hooke::geometry::build_bsp;
-using hooke::geometry::cast_ray;
-using hooke::geometry::is_solid_at;
-using hooke::geometry::load_bsp;
-using hooke::geometry::move_point;
-using hooke::geometry::move_sphere;
-using hooke::geometry::save_bsp;
 using hooke::geometry::SolidMesh;
 using hooke::geometry::SolidRepairs;
 using hooke::test::make_box;
@@ -173,6 +173,34 @@ TEST_SUITE("geometry/bsp_tree") {
     find_crossings(tree, {0, 3, 4}, {1, 0, 0}, kNever, crossings);
     REQUIRE(crossings.size() == 2);
     CHECK(crossings[1].fraction == doctest::Approx(2).epsilon(1e-15));
+  }
+
+  TEST_CASE("what is not finite is nowhere, and a tree of nothing is empty") {
+    const BspTree tree = tree_of(make_box({1, 2, 3}, {2, 4, 6}));
+    const DVec3 in = {1.5, 3, 4};
+    std::vector<std::uint32_t> faces;
+    for (const double bad : {std::nan(""), kNever, -kNever}) {
+      for (const DVec3 p : {DVec3{bad, 3, 4}, DVec3{1.5, bad, 4}, DVec3{1.5, 3, bad}}) {
+        CHECK_FALSE(is_solid_at(tree, p));
+        CHECK_FALSE(cast_ray(tree, p, {1, 0, 0}));
+        CHECK_FALSE(cast_ray(tree, in, p));
+        CHECK_FALSE(move_point(tree, p, {1, 0, 0}));
+        CHECK_FALSE(move_point(tree, in, p));
+        CHECK_FALSE(move_sphere(tree, p, {1, 0, 0}, 0.1));
+        CHECK_FALSE(move_sphere(tree, in, p, 0.1));
+        order_back_to_front(tree, p, faces);
+        CHECK(faces.size() == tree.faces.size());
+      }
+      CHECK_FALSE(move_sphere(tree, in, {1, 0, 0}, bad));
+      CHECK(cast_ray(tree, in, {1, 0, 0}, bad).has_value() == (bad > 0));
+    }
+    CHECK_FALSE(move_sphere(tree, in, {1, 0, 0}, -0.1));
+    const BspTree nothing;
+    CHECK_FALSE(is_solid_at(nothing, in));
+    CHECK_FALSE(cast_ray(nothing, in, {1, 0, 0}));
+    CHECK_FALSE(move_sphere(nothing, in, {1, 0, 0}, 1));
+    order_back_to_front(nothing, in, faces);
+    CHECK(faces.empty());
   }
 
   TEST_CASE("120 000 random rays pass the surface where all triangles say") {
@@ -399,7 +427,7 @@ TEST_SUITE("geometry/bsp_tree") {
     CHECK(saved.error_with(saved.node(0) + 32, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}) ==
           "bsp.nodes[1]: no node's child");
     // The root in place of a leaf: a way without end.
-    const auto is_leaf_above = [](const auto& node) { return node.above >= hooke::geometry::kBspEmpty; };
+    const auto is_leaf_above = [](const auto& node) { return node.above >= hooke::kBspEmpty; };
     const auto& nodes = saved.tree.nodes;
     const auto leaf = std::find_if(nodes.begin(), nodes.end(), is_leaf_above) - nodes.begin();
     CHECK(saved.error_with(saved.node(static_cast<std::size_t>(leaf)) + 32, {0, 0, 0, 0}).find(": a child") !=
