@@ -136,6 +136,11 @@ void ray_embree(benchmark::State& state) {
 BENCHMARK(ray_embree)->DenseRange(2, 6)->Arg(15);
 #endif
 
+void inside_bsp(benchmark::State& state) {
+  const auto tree = build_bsp(mesh_of(state.range(0))).value();
+  run(state, [&](const Ray& ray) { return is_solid_at(tree, ray.origin); });
+}
+
 void build_planes(benchmark::State& state) {
   for (auto _ : state) {
     const auto tree = build_bsp(mesh_of(state.range(0))).value();
@@ -153,6 +158,7 @@ void build_boxes(benchmark::State& state) {
 BENCHMARK(ray_bsp)->DenseRange(2, 6)->Arg(15);
 BENCHMARK(ray_boxes)->DenseRange(2, 6)->Arg(15);
 BENCHMARK(ray_all_triangles)->DenseRange(2, 4);
+BENCHMARK(inside_bsp)->DenseRange(2, 6)->Arg(15);
 BENCHMARK(build_planes)->DenseRange(2, 6)->Arg(15)->Unit(benchmark::kMillisecond);
 BENCHMARK(build_boxes)->DenseRange(2, 6)->Arg(15)->Unit(benchmark::kMillisecond);
 

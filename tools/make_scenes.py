@@ -19,7 +19,7 @@ from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot
                        ground, hull_of, prism, product, promise, rotated, scaled, scene, sector, slab,
                        solid_mass, solid_moments, text_of, turn, weight_energy)
 from rope_scenes import ROPE_SCENES
-from solid_scenes import SOLID_SCENES
+from solid_scenes import SOLID_SCENES, at_point
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 # Written when asked for by name: above 300 kB, or not held by the solver yet. docs/decisions/0005-bodies.md
@@ -667,7 +667,8 @@ def bsp_walk():
         "A walk through a building",
         "Three rooms in a row, cut out of a block by hooke convert --subtract, which merges BSP trees. A ball goes "
         "straight through both doors, x = x0 + v t, and stays at the far wall; one bounces between the walls of the "
-        "first room; a bullet of 200 m/s stops at a wall of 0.2 m; a box slides v^2 / (2 mu g).", 4,
+        "first room; a bullet of 200 m/s stops at a wall of 0.2 m; a box slides v^2 / (2 mu g). Points meet the BSP "
+        "tree itself: one falls on the floor, one begins in a wall and comes out of it.", 4,
         [6.4, 13, 7.5], [6.4, 0, 2], {
             "sand": {"friction": 0.3}, "ivory": {"friction": 0}, "clay": {"friction": 0},
             "moss": {"friction": 0.3}, "steel": {"friction": 0}
@@ -687,8 +688,16 @@ def bsp_walk():
             promise("x", "==", 12.55, "bullet", 0.02, 10),
             promise("x", "==", 9.2 + 9 / (2 * 0.3 * G), "slider", 0.03),
             fall("stone", 2.2, 24),
+            at_point("height", "==", 2 - G * (24 * DT)**2 / 2, "seeds", 0, 0.008, 24),
+            at_point("height", "==", 0.25, "seeds", 0, 0.001),
+            # 0.06 m deep in a wall of 0.2 m: out the near side, and down.
+            at_point("x", "==", 8.4 - 0.05, "seeds", 1, 0.001, 24),
+            at_point("height", "==", 0.25, "seeds", 1, 0.001),
             promise("penetration", "<", 0.02)
-        ], world={"sleeping": False}, meshes={"rooms": {"file": "models/rooms.glb"}}, material_pairs=[
+        ], world={"sleeping": False}, meshes={"rooms": {"file": "models/rooms.glb", "tree": "planes"}}, particles=[{
+            "name": "seeds", "material": "moss",
+            "particles": [{"position": [2, 2, 3.2], "radius": 0.05}, {"position": [8.46, 1.5, 3.2], "radius": 0.05}]
+        }], material_pairs=[
             {"a": "clay", "b": "sand", "friction": 0, "restitution": 1},
             *({"a": one, "b": "sand", "friction": 0} for one in ("ivory", "steel"))
         ])

@@ -53,6 +53,7 @@ struct SceneMesh {
   std::string name = {};
   std::string file = {};  ///< Relative to the scene file; empty when `mesh` holds the triangles.
   ImportOptions import = {};
+  MeshTree tree = MeshTree::kBoxes;  ///< For World::add_mesh.
   MeshDesc mesh = {};
 };
 

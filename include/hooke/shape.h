@@ -18,6 +18,14 @@ struct MeshDesc {
   std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< Indices into `positions`. At most 2^25.
 };
 
+/// By what a mesh is asked.
+enum class MeshTree : std::uint8_t {
+  kBoxes,   ///< Its triangles in a tree of boxes: any mesh, a surface that rays meet from both sides.
+  kPlanes,  ///< Also a BSP tree (hooke/bsp.h), of a closed mesh: a solid. Points of ropes, cloths and
+            ///< particles are pushed out from any depth; what begins inside a ray meets at once, and closest
+            ///< points know their depth. Rays take two to five times as long. Bodies meet its triangles.
+};
+
 enum class ShapeKind : std::uint8_t {
   kHalfSpace,  ///< Solid below the plane y = 0 of its frame.
   kSphere,

@@ -190,7 +190,8 @@ class World {
   World& operator=(World&&) noexcept;
 
   // Objects. An id stays valid until its object is removed; it is never reused.
-  [[nodiscard]] Result<MeshId> add_mesh(const MeshDesc& desc);
+  /// Errors also of build_bsp, with MeshTree::kPlanes.
+  [[nodiscard]] Result<MeshId> add_mesh(const MeshDesc& desc, MeshTree tree = MeshTree::kBoxes);
   [[nodiscard]] Result<BodyId> add_body(const BodyDesc& desc);
   /// Holds two bodies, or a body and the world, together; one end at least is a body that forces move.
   [[nodiscard]] Result<HookId> add_hook(const HookDesc& desc);
@@ -265,7 +266,7 @@ class World {
   // Asking where bodies are now; not points of ropes, cloths and particles. Any number of threads may ask at
   // once while none calls anything else. The first query after bodies moved brings the tree of boxes up to
   // date, about 0.1 us per awake body. Of equally near parts the one that was created first counts. A mesh is
-  // its surface, met from both sides; all other shapes are solid.
+  // its surface, met from both sides; meshes with MeshTree::kPlanes and all other shapes are solid.
   //
   // Errors: places beyond 1e9 m or not finite, motions of no length, stale ids, and any query during a step.
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -173,9 +174,9 @@ void set_surface(state::Tables& t, std::size_t row, Vec3 arm, Vec3 belt_velocity
 /// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
 /// triangle tells whether the particle is inside: then it alone pushes out. Outside, faces below the particle
 /// hold it; a rim does only where no face is, so that sliding over the edges between triangles of a flat mesh
-/// is not felt.
+/// is not felt. A mesh that knows whether it holds the particle says so in `known`.
 void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
-                      const Frame& frame, Real radius) {
+                      std::optional<bool> known, const Frame& frame, Real radius) {
   std::size_t nearest = 0;
   Real least = std::numeric_limits<Real>::infinity();
   bool any_face = false;
@@ -189,11 +190,13 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
     least = better ? g.unsigned_distance : least;
     inside = better ? g.gap.distance < Real(0) : inside;
   }
+  inside = known.value_or(inside);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const TriangleGap& g = gaps[i];
     const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && i == nearest;
     const bool active = inside ? i == nearest : holds;
-    set_row(contacts, first + i, frame, active ? g.gap : Gap{kNoContact, g.gap.normal}, radius);
+    const Gap gap = gap_on_side(g, known);
+    set_row(contacts, first + i, frame, active ? gap : Gap{kNoContact, gap.normal}, radius);
   }
 }
 
@@ -241,7 +244,7 @@ void update_contacts(parallel::Range range, state::Tables& t) {
       gaps.clear();
       for (std::size_t i = first; i < row; ++i)
         gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
-      update_mesh_rows(contacts, first, gaps, frame, radius);
+      update_mesh_rows(contacts, first, gaps, is_inside(*shape.mesh, x), frame, radius);
     }
     for (std::size_t i = first; i < row; ++i) set_surface(t, i, place - frame.center, frame.belt_velocity);
   }

@@ -58,8 +58,9 @@ std::optional<ClosestHit> closest_on_collider(const QueryScene& scene, std::uint
   Gap gap;
   if (shape.shape.kind == ShapeKind::kMesh) {
     hit.triangle = geometry::find_closest(shape.mesh->bvh, x).value().triangle;
-    gap = gap_to_triangle(*shape.mesh, hit.triangle, x).gap;
-    if (gap.distance < Real(0)) gap = {-gap.distance, -gap.normal};
+    const std::optional<bool> inside = is_inside(*shape.mesh, x);
+    gap = gap_on_side(gap_to_triangle(*shape.mesh, hit.triangle, x), inside);
+    if (!inside && gap.distance < Real(0)) gap = {-gap.distance, -gap.normal};
   } else {
     gap = gap_to_shape(shape, x);
   }

@@ -61,8 +61,8 @@ struct ClosestHit {
 };
 
 /// Replaces `hits` by the nearest surface point of every collider that is at most `reach` (not negative, may
-/// be infinite) from `point` or holds it, in order of distance. A mesh is its surface and holds nothing; its
-/// normal leads to the side on which the point is.
+/// be infinite) from `point` or holds it, in order of distance. A mesh without MeshTree::kPlanes is its
+/// surface and holds nothing; its normal leads to the side on which the point is.
 void find_near(const QueryScene& scene, DVec3 point, Real reach, std::vector<ClosestHit>& hits);
 
 /// The first of those.

@@ -135,7 +135,21 @@ std::optional<ShapeHit> cast_ray_on_capsule(double radius, double half_height, D
   return first_of(first_of(upper.hit(), lower.hit()), side.hit());
 }
 
+std::optional<ShapeHit> cast_ray_on_solid(const state::Mesh& mesh, DVec3 origin, DVec3 motion) {
+  if (is_solid_at(mesh.planes, origin)) {
+    const auto nearest = geometry::find_closest(mesh.bvh, vector_cast<Real>(origin));
+    const DVec3 back = motion == DVec3{} ? DVec3{} : normalize(-motion);
+    return ShapeHit{.normal = back, .triangle = nearest.value().triangle};
+  }
+  const auto crossing = cast_ray(mesh.planes, origin, motion, 1.0);
+  if (!crossing) return {};
+  const DVec3 normal = mesh.planes.nodes[crossing->node].normal;
+  return ShapeHit{crossing->fraction, dot(normal, motion) < 0 ? normal : -normal,
+                  triangle_at(mesh.planes, crossing->node, origin + crossing->fraction * motion)};
+}
+
 std::optional<ShapeHit> cast_ray_on_mesh(const state::Mesh& mesh, DVec3 origin, DVec3 motion) {
+  if (mesh.is_solid()) return cast_ray_on_solid(mesh, origin, motion);
   const auto hit = geometry::cast_ray(mesh.bvh, origin, motion, 1.0);
   if (!hit) return {};
   const auto [ia, ib, ic] = mesh.desc.triangles[hit->triangle];

@@ -17,8 +17,8 @@ struct ShapeHit {
 };
 
 /// The first point of the way from `origin` over `motion` (finite, in the shape's frame) that is in a shape.
-/// What begins in a solid meets it at 0, and the normal then leads back (zero without a motion). A mesh is
-/// met from either side, with the normal of the triangle's front.
+/// What begins in a solid meets it at 0, and the normal then leads back (zero without a motion). A mesh
+/// without MeshTree::kPlanes is met from either side, with the normal of the triangle's front.
 [[nodiscard]] std::optional<ShapeHit> cast_ray_on_shape(const state::ColliderShape& shape, DVec3 origin,
                                                         DVec3 motion);
 

@@ -3,6 +3,7 @@
 #include "geometry/closest.h"
 #include "geometry/closest_hull.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -66,14 +67,31 @@ TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec
   return result;
 }
 
+Gap gap_on_side(const TriangleGap& gap, std::optional<bool> is_inside) {
+  const bool is_right = gap.over_face || !is_inside || (gap.gap.distance < Real(0)) == *is_inside;
+  return is_right ? gap.gap : Gap{-gap.gap.distance, -gap.gap.normal};
+}
+
+std::optional<bool> is_inside(const state::Mesh& mesh, Vec3 x) {
+  if (!mesh.is_solid()) return {};
+  return is_solid_at(mesh.planes, vector_cast<double>(x));
+}
+
 void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found) {
   const Vec3 r = {reach, reach, reach};
   geometry::find_triangles(mesh.bvh, {.lower = x - r, .upper = x + r}, found);
+  if (!is_inside(mesh, x).value_or(false)) return;
+  const std::uint32_t nearest = geometry::find_closest(mesh.bvh, x).value().triangle;
+  const auto place = std::lower_bound(found.begin(), found.end(), nearest);
+  if (place == found.end() || *place != nearest) found.insert(place, nearest);
 }
 
 Real distance_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
-  const auto nearest = geometry::find_closest(mesh.bvh, x, reach);
-  return nearest ? gap_to_triangle(mesh, nearest->triangle, x).gap.distance : reach;
+  const std::optional<bool> inside = is_inside(mesh, x);
+  constexpr Real kAnyDepth = std::numeric_limits<Real>::infinity();
+  const auto nearest = geometry::find_closest(mesh.bvh, x, inside.value_or(false) ? kAnyDepth : reach);
+  if (!nearest) return reach;
+  return gap_on_side(gap_to_triangle(mesh, nearest->triangle, x), inside).distance;
 }
 
 }  // namespace hooke::collision

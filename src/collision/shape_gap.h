@@ -6,6 +6,7 @@
 #include "state/mesh.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// \file
@@ -35,10 +36,19 @@ struct TriangleGap {
 
 [[nodiscard]] TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x);
 
-/// Triangles whose boxes come within `reach` of a point, in ascending order.
+/// Whether a mesh with MeshTree::kPlanes holds the point; nothing for others, which do not know.
+[[nodiscard]] std::optional<bool> is_inside(const state::Mesh& mesh, Vec3 x);
+
+/// The gap of a point of which is_inside says where it is: beside the face, the side is that and not the
+/// plane's.
+[[nodiscard]] Gap gap_on_side(const TriangleGap& gap, std::optional<bool> is_inside);
+
+/// Triangles whose boxes come within `reach` of a point, in ascending order; and the nearest for a point
+/// inside a mesh with MeshTree::kPlanes.
 void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found);
 
-/// Signed distance to the nearest triangle, or `reach` if none is that near.
+/// Signed distance to the nearest triangle, or `reach` if none is that near. With MeshTree::kPlanes also
+/// deeper inside than `reach`.
 [[nodiscard]] Real distance_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach);
 
 }  // namespace hooke::collision

@@ -460,7 +460,7 @@ void build_meshes(SimulationData& data, std::vector<Error>& errors) {
       continue;
     }
     auto model = std::make_shared<Model>(std::move(read).value());
-    const Result<MeshId> added = data.world.add_mesh(model->mesh);
+    const Result<MeshId> added = data.world.add_mesh(model->mesh, mesh.tree);
     if (!added) {
       errors.push_back(scene_error(data.scene, path, added.error()));
       continue;

@@ -200,6 +200,10 @@ const Kind& kind_of<SceneMesh>() {
                                                                   "Length of one unit of the file."),
                  field<&SceneMesh::import, &ImportOptions::fit>(
                      "fit", "m", kPositive, "Replaces `scale`: length of the longest side."),
+                 field<&SceneMesh::tree>(
+                     "tree", "", kAny,
+                     "By what rays and points ask it: boxes, or planes too, a BSP tree of a closed mesh, "
+                     "which is solid then."),
                  field<&SceneMesh::mesh, &MeshDesc::positions>("vertices", "m", kAny, "Instead of a file."),
                  field<&SceneMesh::mesh, &MeshDesc::triangles>(
                      "triangles", "", kAny, "Three indices each, counter-clockwise seen from outside.")},
@@ -405,6 +409,13 @@ template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>() {
   static constexpr EnumName names[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
                                        {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<MeshTree>() {
+  static constexpr EnumName names[] = {{"boxes", static_cast<int>(MeshTree::kBoxes)},
+                                       {"planes", static_cast<int>(MeshTree::kPlanes)}};
   return names;
 }
 

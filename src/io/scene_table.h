@@ -113,6 +113,8 @@ const Kind& kind_of<Quat>();
 template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>();
 template <>
+std::span<const EnumName> names_of<MeshTree>();
+template <>
 std::span<const EnumName> names_of<UpAxis>();
 template <>
 std::span<const EnumName> names_of<BodyKind>();

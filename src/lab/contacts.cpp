@@ -16,13 +16,14 @@ using collision::Gap;
 Gap gap_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
   std::vector<std::uint32_t> near;
   collision::find_triangles_near(mesh, x, reach, near);
+  const std::optional<bool> inside = collision::is_inside(mesh, x);
   Gap best = {reach, {}};
   Real least = std::numeric_limits<Real>::infinity();
   for (const std::uint32_t triangle : near) {
     const collision::TriangleGap g = collision::gap_to_triangle(mesh, triangle, x);
     if (!(g.unsigned_distance < least)) continue;
     least = g.unsigned_distance;
-    best = g.gap;
+    best = collision::gap_on_side(g, inside);
   }
   return best;
 }
@@ -30,7 +31,8 @@ Gap gap_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
 Gap gap_to(const Bodies::Entry& entry, DVec3 x, double radius) {
   const state::ColliderShape& shape = entry.shape;
   const Vec3 local = rotate(conjugate(entry.pose.rotation), vector_cast<Real>(x - entry.pose.position));
-  // A point that is deeper than this inside a mesh stays there: twice its radius and 5 cm.
+  // A point that is deeper than this inside a mesh that is no MeshTree::kPlanes stays there: twice its radius
+  // and 5 cm.
   const Real reach = static_cast<Real>(2 * radius + 0.05);
   Gap gap = shape.shape.kind == ShapeKind::kMesh ? gap_to_mesh(*shape.mesh, local, reach)
                                                  : collision::gap_to_shape(shape.shape, local);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/bsp.h"
 #include "hooke/shape.h"
 
 #include "geometry/bvh.h"
@@ -10,6 +11,9 @@ namespace hooke::state {
 struct Mesh {
   MeshDesc desc;
   geometry::Bvh bvh;  ///< Over `desc.triangles`.
+  BspTree planes;     ///< With MeshTree::kPlanes; else without nodes.
+
+  [[nodiscard]] bool is_solid() const { return !planes.nodes.empty(); }
 };
 
 }  // namespace hooke::state

@@ -91,12 +91,17 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
-Result<MeshId> World::add_mesh(const MeshDesc& desc) {
+Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
   const Result<void> good = geometry::validate_mesh(desc);
   if (!good) return good.error();
   auto mesh = std::make_shared<state::Mesh>();
   mesh->desc = desc;
   mesh->bvh = geometry::build_bvh(desc.positions, desc.triangles);
+  if (tree == MeshTree::kPlanes) {
+    Result<BspTree> planes = build_bsp(desc);
+    if (!planes) return planes.error();
+    mesh->planes = std::move(planes).value();
+  }
   state::Tables& t = data_->tables;
   t.meshes.push_back(std::move(mesh));
   t.hulls.push_back(nullptr);

@@ -63,7 +63,7 @@ constexpr const char* kEverything = R"({
     "wind": {"velocity": [1, 0, 0.1], "gust": 0.5, "side_gust": 0.25, "correlation_time": 0.7,
              "correlation_length": 3, "seed": 7, "gusts": "paper", "air_density": 1.1}},
   "meshes": {"file": {"file": "a/b.obj", "up": "x", "scale": 0.001},
-             "fit": {"file": "c.3ds", "fit": 0.4},
+             "fit": {"file": "c.3ds", "fit": 0.4, "tree": "planes"},
              "inline": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}},
   "materials": {"silk": {"color": [0.1, 0.2, 0.3], "texture": "t.png", "shininess": 3, "opacity": 0.5,
                          "friction": 0.9, "static_friction": 1, "restitution": 0.25, "rolling_friction": 0.001,
