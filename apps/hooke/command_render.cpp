@@ -1,5 +1,6 @@
 #include "hooke/command_line.h"
 #include "hooke/compare/stage.h"
+#include "hooke/drawing_style.h"
 #include "hooke/progress.h"
 #include "hooke/scene_drawing.h"
 
@@ -26,7 +27,7 @@ struct RenderOptions {
   std::optional<double> seconds;
   std::optional<double> at;
   std::optional<double> trail;  ///< [s]
-  std::vector<std::string> bounds;
+  StyleWords style;
   std::string stepper;  ///< Of the laboratory; empty for the solver.
   bool force = false;
   SceneOverrides overrides;
@@ -46,10 +47,7 @@ void describe(CLI::App& app, RenderOptions& options) {
   add_number(app, "--at", options.at, 0, 1e6, "Time of a single picture; the scene's end by default");
   add_number(app, "--trail", options.trail, 1e-6, 1e6,
              "Leave ropes and particles in the picture as they were every so many seconds");
-  app.add_option("--bounds", options.bounds,
-                 "Bounding volumes around bodies, one after the other: sphere, vertex_sphere, box, "
-                 "oriented_box, sphere_tree, box_tree, oriented_box_tree")
-      ->delimiter(',');
+  add_style(app, options.style);
   CLI::Option* stepper =
       app.add_option("--stepper", options.stepper, "Draw the laboratory's run; see hooke compare --help");
   app.add_flag("--force", options.force, "Run an explicit stepper where it is known to diverge, too")
@@ -62,7 +60,8 @@ void describe(CLI::App& app, RenderOptions& options) {
       "  hooke render scenes/rope.json -o rope.png --at 1.5\n"
       "  hooke render scenes/rope.json -o rope_%04d.png --seconds 0.2 --size 320x180\n"
       "  hooke render scenes/paper/fig2.json -o fig2.png --stepper euler --force --trail 0.016 --at 0.3\n"
-      "  hooke render scenes/paper/fig7.json -o fig7.png --bounds sphere,box,oriented_box,oriented_box_tree");
+      "  hooke render scenes/paper/fig7.json -o fig7.png --bounds sphere,box,oriented_box,oriented_box_tree\n"
+      "  hooke render scenes/paper/bsp_walk.json -o walk.png --at 1 --painter");
 }
 
 bool read_size(RenderOptions& options) {
@@ -80,10 +79,12 @@ bool ends_in(const std::string& text, const std::string& ending) {
 class Film {
  public:
   Film(Simulation simulation, std::optional<lab::Run> run, render::Renderer renderer,
-       std::optional<double> trail, std::vector<Preselection> bounds)
-      : simulation_(std::move(simulation)), run_(std::move(run)), renderer_(std::move(renderer)) {
+       std::optional<double> trail, DrawingStyle style)
+      : simulation_(std::move(simulation)),
+        run_(std::move(run)),
+        renderer_(std::move(renderer)),
+        drawing_(std::move(style)) {
     if (trail) drawing_.keep_trail(*trail);
-    drawing_.draw_bounds(std::move(bounds));
     has_trail_ = trail.has_value();
     drawing_.record(simulation_);
   }
@@ -187,13 +188,8 @@ int command_render(Arguments arguments) {
     return report({ErrorCode::kOutOfRange, "--at", "is for a single picture, X.png"});
   }
 
-  std::vector<Preselection> bounds;
-  for (const std::string& name : options.bounds) {
-    const auto kind = render::bounding_volume_named(name);
-    if (!kind)
-      return report({ErrorCode::kOutOfRange, "--bounds", "no bounding volume is called '" + name + "'"});
-    bounds.push_back(*kind);
-  }
+  auto style = style_of(options.style);
+  if (!style) return report(style.error());
   auto scene = read_scene(options.scene);
   if (!scene) return kBadInput;
   apply(options.overrides, scene->world);
@@ -209,7 +205,7 @@ int command_render(Arguments arguments) {
     run.emplace(std::move(created).value());
   }
   Film film(std::move(*simulation), std::move(run), std::move(renderer).value(), options.trail,
-            std::move(bounds));
+            std::move(style).value());
   const auto done = single ? render_picture(film, options) : render_film(film, options);
   if (!done) return report(done.error());
   std::printf("%s\n", options.output.c_str());

@@ -1,4 +1,5 @@
 #include "hooke/command_line.h"
+#include "hooke/drawing_style.h"
 #include "hooke/scene_drawing.h"
 #include "hooke/view_window.h"
 
@@ -22,6 +23,7 @@ struct CommandOptions {
   bool paused = false;
   std::optional<double> seconds;
   std::string screenshot;
+  StyleWords style;
   SceneOverrides overrides;
 };
 
@@ -32,6 +34,7 @@ void describe(CLI::App& app, CommandOptions& options) {
   add_seconds(app, options.seconds, "Close after so much simulated time; never by default");
   app.add_option("--screenshot", options.screenshot, "Write the last picture to this .png")
       ->needs("--seconds");
+  add_style(app, options.style);
   add_overrides(app, options.overrides);
   app.footer(
       "Left drag orbits, right drag pans, the wheel zooms. Space plays and pauses, S or right arrow steps, "
@@ -39,6 +42,7 @@ void describe(CLI::App& app, CommandOptions& options) {
       "resets, Escape closes.\n\n"
       "Examples:\n"
       "  hooke view scenes/showcase.json\n"
+      "  hooke view scenes/paper/fig7.json --bounds sphere,oriented_box\n"
       "  hooke view scenes/models/lantern.3ds --fit 0.4");
 }
 
@@ -87,7 +91,11 @@ std::optional<Scene> read(const CommandOptions& options, int& code) {
 /// A simulation that can begin again, and its pictures.
 class Show {
  public:
-  explicit Show(Simulation simulation) : simulation_(std::move(simulation)), scene_(simulation_.scene()) {
+  Show(Simulation simulation, DrawingStyle style)
+      : simulation_(std::move(simulation)),
+        scene_(simulation_.scene()),
+        style_(std::move(style)),
+        drawing_(style_) {
     drawing_.record(simulation_);
   }
 
@@ -102,7 +110,7 @@ class Show {
     Loaded<Simulation> built = Simulation::create(scene_);
     if (!built) return built.errors.front();
     simulation_ = std::move(*built.value);
-    drawing_ = SceneDrawing();
+    drawing_ = SceneDrawing(style_);
     drawing_.record(simulation_);
     return {};
   }
@@ -121,6 +129,7 @@ class Show {
  private:
   Simulation simulation_;
   Scene scene_;
+  DrawingStyle style_;
   SceneDrawing drawing_;
 };
 
@@ -144,13 +153,15 @@ int command_view(Arguments arguments) {
   describe(app, options);
   if (const auto code = parse(app, arguments)) return *code;
 
+  auto style = style_of(options.style);
+  if (!style) return report(style.error());
   int code = kGood;
   auto scene = read(options, code);
   if (!scene) return code;
   apply(options.overrides, scene->world);
   auto simulation = build_simulation(std::move(*scene));
   if (!simulation) return kBadInput;
-  Show show(std::move(*simulation));
+  Show show(std::move(*simulation), std::move(style).value());
   ViewOptions view;
   view.title = show.scene().title.empty() ? "Hooke" : "Hooke: " + show.scene().title;
   view.start_paused = options.paused;

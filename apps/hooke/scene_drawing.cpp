@@ -3,7 +3,9 @@
 #include "hooke/clock.h"
 #include "hooke/figure.h"
 
+#include "render/bounding_lines.h"
 #include "render/image.h"
+#include "render/painter.h"
 
 #include <algorithm>
 #include <array>
@@ -166,16 +168,20 @@ void SceneDrawing::fill(double time, int height_px, render::DrawList& list) {
       add_bounds(*object.figure, here, bounded++, list);
     }
   }
+  if (!style_.painter) return;
+  const auto painted = render::paint_in_order(list);
+  if (!painted) warnings_.push_back(to_line(painted.error()));
 }
 
 void SceneDrawing::add_bounds(const Figure& figure, const FigurePlace& place, std::size_t number,
                               render::DrawList& list) const {
-  if (bounds_.empty()) return;
+  const std::vector<Preselection>& bounds = style_.bounds;
+  if (bounds.empty()) return;
   const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
   for (const FigureSolid& solid : figure.solids) {
     if (solid.geometry.levels[0] == nullptr) continue;
     render::add_bounding_lines(*solid.geometry.levels[0], transform_of(solid), body,
-                               bounds_[number % bounds_.size()], list.lines);
+                               bounds[number % bounds.size()], list.lines);
   }
 }
 

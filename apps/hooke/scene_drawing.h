@@ -1,10 +1,10 @@
 #pragma once
 
 #include "hooke/body_geometry.h"
+#include "hooke/geometry.h"
 #include "hooke/scene_camera.h"
 #include "hooke/scene_io.h"
 
-#include "render/bounding_lines.h"
 #include "render/draw_list.h"
 
 #include <cstdint>
@@ -20,10 +20,19 @@ namespace hooke::app {
 struct Figure;       // one object's looks and triangles; figure.h
 struct FigurePlace;  // where it is; figure.h
 
+struct DrawingStyle {
+  /// Drawn around bodies: the first of these around the first body that is no half-space, and so on, over
+  /// again from the first.
+  std::vector<Preselection> bounds = {};
+  bool painter = false;  ///< render::paint_in_order; a warning says why not, where it cannot.
+};
+
 /// Turns a simulation into what the renderer draws. Keeps copies of the last two states it was shown, so that
 /// a picture may lie between two steps.
 class SceneDrawing {
  public:
+  explicit SceneDrawing(DrawingStyle style = {}) : style_(std::move(style)) {}
+
   /// Takes a copy of the present state; the copy before it stays for interpolation.
   void record(const Simulation& simulation) { record(simulation, simulation.world().time()); }
   /// The same at a time [s] that the world does not know: its points were moved by hand.
@@ -33,16 +42,13 @@ class SceneDrawing {
   /// that is exposed again and again. Positive.
   void keep_trail(double interval) { trail_interval_ = interval; }
 
-  /// From now on bounding volumes are drawn around bodies: the first of these around the first body that is
-  /// no half-space, and so on, over again from the first.
-  void draw_bounds(std::vector<Preselection> bounds) { bounds_ = std::move(bounds); }
-
   /// Fills the list with the state at `time` [s]: by straight lines between the two copies, the later one
   /// beyond it. Camera, bodies and ropes are relative to a place near the camera. `height_px` is the
   /// picture's: no rope gets thinner than about two pixels.
   void fill(double time, int height_px, render::DrawList& list);
 
-  /// One line for each texture that could not be read; cleared by the call.
+  /// One line for each texture that could not be read, and for what could not be painted; cleared by the
+  /// call.
   [[nodiscard]] std::vector<std::string> take_warnings();
 
  private:
@@ -75,7 +81,7 @@ class SceneDrawing {
   std::optional<Viewpoint> automatic_;  ///< Frames the first state; for scenes without a camera.
   State previous_;
   State current_;
-  std::vector<Preselection> bounds_;
+  DrawingStyle style_;
   std::optional<double> trail_interval_;  ///< [s]
   std::vector<State> trail_;              ///< Oldest first.
 };

@@ -42,10 +42,6 @@ Result<void> check_indices(const SolidMesh& mesh) {
   return {};
 }
 
-std::int64_t nearest(double steps) {
-  return static_cast<std::int64_t>(std::floor(steps + 0.5));
-}
-
 /// Numbers places; vertices at the same place get the number of the first of them.
 std::vector<std::uint32_t> weld_places(const std::vector<LatticePoint>& points) {
   std::vector<std::uint32_t> order(points.size());
@@ -134,6 +130,12 @@ SolidMesh solid_mesh_of(const MeshDesc& mesh) {
   return solid;
 }
 
+LatticePoint Lattice::point_of(DVec3 place) const {
+  const DVec3 steps = (1 / step) * (place - origin);
+  const auto nearest = [](double x) { return static_cast<std::int64_t>(std::floor(x + 0.5)); };
+  return {nearest(steps.x), nearest(steps.y), nearest(steps.z)};
+}
+
 Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes) {
   Box3<double> box;
   for (const SolidMesh* mesh : meshes) {
@@ -173,10 +175,7 @@ struct LatticeMesh {
 /// Welds, and leaves out flat and double triangles.
 LatticeMesh repair(const Lattice& lattice, const SolidMesh& mesh, SolidRepairs& repairs) {
   LatticeMesh result;
-  for (const DVec3& p : mesh.positions) {
-    const DVec3 steps = (1 / lattice.step) * (p - lattice.origin);
-    result.points.push_back({nearest(steps.x), nearest(steps.y), nearest(steps.z)});
-  }
+  for (const DVec3& p : mesh.positions) result.points.push_back(lattice.point_of(p));
   const std::vector<std::uint32_t> same = weld_places(result.points);
   for (std::uint32_t i = 0; i < same.size(); ++i) repairs.merged_vertices += same[i] != i ? 1 : 0;
   for (const Triangle& t : mesh.triangles) {

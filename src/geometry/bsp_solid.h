@@ -42,6 +42,8 @@ struct Lattice {
   DVec3 origin = {};
   double step = 1;  ///< [m]
   [[nodiscard]] DVec3 place_of(DVec3 in_steps) const { return origin + step * in_steps; }
+  /// The point of the lattice nearest to a place within its box.
+  [[nodiscard]] LatticePoint point_of(DVec3 place) const;
 };
 
 /// The lattice of one or of two meshes. Errors: a coordinate is not finite or beyond 1e9 m, a box that is

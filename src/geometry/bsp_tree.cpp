@@ -6,6 +6,28 @@
 
 namespace hooke::geometry {
 
+namespace {
+
+/// The exact tree in double.
+BspTree rounded(const BspSpace& space, const Lattice& lattice, const BspPieces& exact) {
+  BspTree tree;
+  for (const BspSplitNode& node : exact.nodes) {
+    const BspPlane& plane = space.plane(node.plane);
+    const double offset = dot(plane.normal, lattice.origin) - lattice.step * plane.offset;
+    tree.nodes.push_back({plane.normal, offset, node.above, node.below, node.first_face, node.face_count});
+  }
+  for (const BspPiece& piece : exact.faces) {
+    tree.faces.push_back({piece.triangle, static_cast<std::uint32_t>(tree.corners.size()),
+                          static_cast<std::uint32_t>(piece.corners.size())});
+    for (const BspCorner& corner : piece.corners) {
+      tree.corners.push_back(lattice.place_of(space.point(corner.point).place));
+    }
+  }
+  return tree;
+}
+
+}  // namespace
+
 Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs) {
   const std::array<const SolidMesh*, 1> meshes = {&mesh};
   const Result<Lattice> lattice = make_lattice(meshes);
@@ -15,21 +37,25 @@ Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs) {
   if (!pieces) return pieces.error();
   const auto exact = build_solid_tree(space, pieces.value());
   if (!exact) return exact.error();
+  return rounded(space, lattice.value(), exact.value());
+}
 
-  BspTree tree;
-  for (const BspSplitNode& node : exact.value().nodes) {
-    const BspPlane& plane = space.plane(node.plane);
-    const double offset = dot(plane.normal, lattice.value().origin) - lattice.value().step * plane.offset;
-    tree.nodes.push_back({plane.normal, offset, node.above, node.below, node.first_face, node.face_count});
+Result<BspTree> build_painters_bsp(const SolidMesh& mesh) {
+  const std::array<const SolidMesh*, 1> meshes = {&mesh};
+  const Result<Lattice> lattice = make_lattice(meshes);
+  if (!lattice) return lattice.error();
+  BspSpace space;
+  std::vector<BspPiece> pieces;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    const auto at = [&](std::uint32_t vertex) { return lattice.value().point_of(mesh.positions[vertex]); };
+    BspPiece piece = space.add_triangle({at(a), at(b), at(c)}, t);
+    if (!piece.corners.empty()) pieces.push_back(std::move(piece));
   }
-  for (const BspPiece& piece : exact.value().faces) {
-    tree.faces.push_back({piece.triangle, static_cast<std::uint32_t>(tree.corners.size()),
-                          static_cast<std::uint32_t>(piece.corners.size())});
-    for (const BspCorner& corner : piece.corners) {
-      tree.corners.push_back(lattice.value().place_of(space.point(corner.point).place));
-    }
-  }
-  return tree;
+  if (pieces.empty()) return BspTree{};
+  const auto exact = build_pieces(space, pieces);
+  if (!exact) return exact.error();
+  return rounded(space, lattice.value(), exact.value());
 }
 
 }  // namespace hooke::geometry

@@ -15,4 +15,9 @@ namespace hooke::geometry {
 /// itself, or say what limit is exceeded. The same tree on every machine.
 Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs = nullptr);
 
+/// The tree of any triangles, open or through each other, for order_back_to_front alone: its leaves say
+/// nothing. Those without area are left out. Precondition: indices in range. Errors: those of make_lattice
+/// and build_pieces.
+Result<BspTree> build_painters_bsp(const SolidMesh& mesh);
+
 }  // namespace hooke::geometry

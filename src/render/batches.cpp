@@ -28,6 +28,7 @@ auto batch_key(const Item& item) {
 }
 
 bool drawn_before(const Item& a, const Item& b) {
+  if (a.batch.is_in_order || b.batch.is_in_order) return a.batch.is_in_order && !b.batch.is_in_order;
   const bool blends = a.batch.alpha == AlphaMode::kBlend && b.batch.alpha == AlphaMode::kBlend;
   return blends ? a.eye_distance > b.eye_distance : batch_key(a) < batch_key(b);
 }
@@ -68,7 +69,7 @@ class Collector {
     for (const Item& item : items_) {
       // See-through copies stay apart: others may lie between them.
       const bool joins = previous != nullptr && item.batch.alpha != AlphaMode::kBlend &&
-                         batch_key(*previous) == batch_key(item);
+                         !item.batch.is_in_order && batch_key(*previous) == batch_key(item);
       if (!joins) {
         result_.batches.push_back(item.batch);
         result_.batches.back().first_instance = result_.instances.size();
@@ -116,6 +117,7 @@ Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
   batch.two_sided = mesh.two_sided;
   batch.mirrored = determinant(linear_part(mesh.transform)) < 0;
   batch.casts_shadow = mesh.casts_shadow && mesh.opacity >= 0.5F;
+  batch.is_in_order = mesh.is_in_order && batch.alpha == AlphaMode::kOpaque;
   batch.mesh = index;
   item.instance = {rows_of(mesh.transform),
                    linear_of(mesh.color, mesh.opacity),

@@ -35,11 +35,13 @@ struct Batch {
   bool two_sided = false;
   bool mirrored = false;
   bool casts_shadow = true;
+  bool is_in_order = false;
   std::size_t mesh = kNoMesh;  ///< Its first entry in DrawList::meshes, to name it in errors.
 };
 
 struct Batches {
-  std::vector<Batch> batches;  ///< Solid first, then holed, then see-through from far to near.
+  std::vector<Batch>
+      batches;  ///< What is in order first, then solid, holed, and see-through from far to near.
   std::vector<Instance> instances;
   std::vector<Bounds> objects;  ///< One box for each drawn thing, for near and far.
   Bounds casters;               ///< Around everything that casts a shadow.

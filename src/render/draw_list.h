@@ -93,6 +93,8 @@ struct DrawMesh {
   bool two_sided =
       false;  ///< Back faces are drawn, with the normal turned to their side. Else they are culled.
   bool casts_shadow = true;  ///< See-through parts below opacity one half never do.
+  bool is_in_order = false;  ///< Drawn before all others, in the order of the list and of its triangles, over
+                             ///< what is there: see painter.h. Opaque only.
 };
 
 /// A smooth round tube through the points (Catmull-Rom), with round ends.

@@ -217,7 +217,9 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
     } else {
       glEnable(GL_CULL_FACE);
     }
+    glDepthFunc(batch.is_in_order ? GL_ALWAYS : GL_LEQUAL);
     draw_batch(data, batch, *prepared.meshes[i]);
+    glDepthFunc(GL_LEQUAL);
     glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
   }
 }

@@ -358,6 +358,7 @@ class Render(Program):
         self.draw(*words, "-o", "plain.png")
         self.draw(*words, "-o", "bounds.png", "--bounds", "sphere,oriented_box")
         self.assertNotEqual((self.folder / "plain.png").read_bytes(), (self.folder / "bounds.png").read_bytes())
+        self.hooke("view", words[0], "--bounds", "cube", code=2)
         _, err = self.hooke("render", *words, "-o", "x.png", "--bounds", "cube", code=2)
         self.assert_one_line(err, "no bounding volume is called 'cube'")
 
@@ -415,9 +416,10 @@ class View(Program):
         server = os.environ.get("XVFB_RUN")
         if not server:
             self.skipTest("no xvfb-run")
-        for what in ("scenes/rope.json", "scenes/models/lantern.3ds"):
+        for what, *style in (["scenes/rope.json"], ["scenes/models/lantern.3ds", "--painter"],
+                             ["scenes/paper/fig7.json", "--bounds", "sphere"]):
             words = [server, "-a", "-s", "-screen 0 640x480x24", PROGRAM, "view", what, "--seconds", "0.02",
-                     "--screenshot", "x.png"]
+                     "--screenshot", "x.png", *style]
             # The display's libraries leave a few bytes behind; leaks of ours show without a display too.
             environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}
             done = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, check=False,
