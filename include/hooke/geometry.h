@@ -173,7 +173,7 @@ enum class SolidOperation : std::uint8_t {
 /// Two solids as one mesh, without triangles if nothing is left. Corners are moved by less than 2^-32 of the
 /// longest side of the box around both; from there to the result all is exact, so faces, edges and corners
 /// that fall together are welded. Then edges shorter than 2e-6 of the result's diagonal are collapsed, and
-/// triangles lower than that flipped away where possible, so that the mesh is as good in a file. It is
+/// triangles lower than that flipped away or lifted, so that the mesh is closed in a file, too. It is
 /// closed, each of its edges has two triangles, and the triangles at a vertex form one fan: where the solid
 /// touches itself, vertices are doubled. Takes about a second for 10,000 triangles.
 ///

@@ -1,5 +1,7 @@
 #include "geometry/bsp_slivers.h"
 
+#include "geometry/closest.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -11,6 +13,8 @@ namespace hooke::geometry {
 namespace {
 
 constexpr int kRounds = 16;
+constexpr double kLift = 1.5;   // times the distance: how high a sliver becomes
+constexpr double kFlat = 1e-3;  // times the distance: no height, and so no plane
 
 /// A manifold whose edges can be collapsed and flipped.
 class Remesher {
@@ -35,6 +39,22 @@ class Remesher {
       } else if (twice_area(t) <= distance_ * sides[static_cast<std::size_t>(longest)]) {
         has_changed = flip(t, static_cast<std::size_t>(longest)) || has_changed;
       }
+    }
+    return has_changed;
+  }
+
+  /// For triangles where neither can be done: the corner over the longest edge is moved away from it, in the
+  /// triangle's plane or in that of its neighbor, until it is high enough. Whether anything was done.
+  bool lift_rest() {
+    bool has_changed = false;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (!is_alive(t)) continue;
+      const std::array<double, 3> sides = {side(t, 0), side(t, 1), side(t, 2)};
+      const auto longest =
+          static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
+      if (twice_area(t) > distance_ * sides[longest]) continue;
+      lift(t, longest);
+      has_changed = true;
     }
     return has_changed;
   }
@@ -147,6 +167,18 @@ class Remesher {
     return true;
   }
 
+  void lift(std::uint32_t t, std::size_t k) {
+    const DVec3 edge = direction_or(place(t, k + 1) - place(t, k), DVec3{1, 0, 0});
+    const auto across = [&](DVec3 p) { return (p - place(t, k)) - dot(p - place(t, k), edge) * edge; };
+    const auto [other, number] = beside(corner(t, k + 1), corner(t, k));
+    const DVec3 height = across(place(t, k + 2));
+    const DVec3 away = other == kNone ? DVec3{} : -across(place(other, number));
+    const bool has_plane = length(height) > kFlat * distance_;
+    const DVec3 direction =
+        direction_or(has_plane ? height : away, direction_or(cross(edge, DVec3{1, 0, 0}), DVec3{0, 1, 0}));
+    mesh_.positions[corner(t, k + 2)] += kLift * distance_ * direction - height;
+  }
+
   SolidMesh mesh_;
   std::vector<std::vector<std::uint32_t>> around_;  // the triangles at each vertex
   double distance_;
@@ -157,6 +189,8 @@ class Remesher {
 SolidMesh without_slivers(const SolidMesh& mesh, double distance) {
   Remesher remesher(mesh, distance);
   for (int round = 0; round < kRounds && remesher.improve(); ++round) {
+  }
+  for (int round = 0; round < kRounds && remesher.lift_rest(); ++round) {
   }
   return remesher.result();
 }

@@ -6,8 +6,9 @@ namespace hooke::geometry {
 
 /// A closed manifold without what a format in float cannot hold: edges shorter than `distance` [m] are
 /// collapsed, and the longest edge of a triangle that is lower than that over it is flipped, as long as the
-/// mesh stays a manifold. The surface moves by about `distance`; a few slivers may be left where neither can
-/// be done, and shells that small stay. Bounded work: at most 16 times over all triangles.
+/// mesh stays a manifold. Where neither can be done, the corner over that edge is moved away from it. The
+/// surface moves by about `distance`; shells that small stay. Bounded work: at most 32 times over all
+/// triangles.
 [[nodiscard]] SolidMesh without_slivers(const SolidMesh& mesh, double distance);
 
 }  // namespace hooke::geometry

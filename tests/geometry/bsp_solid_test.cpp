@@ -1,12 +1,14 @@
 #include "geometry/bsp_solid.h"
 
 #include "geometry/bsp_slivers.h"
+#include "geometry/mesh_clean.h"
 #include "geometry/solids.h"
 
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 
@@ -66,6 +68,41 @@ SolidMesh random_solid(std::mt19937& random) {
   if (kind == 3) return hooke::test::moved(hooke::test::make_ring(12, 0.6, 1.2, 0.3), turn, 1, shift);
   if (kind == 4) return hooke::test::moved(hooke::test::make_star(2, 0.9999, random), turn, 1, shift);
   return hooke::test::moved(hooke::test::make_star(2, 0.4, random), turn, 1.3, shift);
+}
+
+hooke::MeshDesc in_float(const SolidMesh& solid) {
+  hooke::MeshDesc mesh = {.triangles = solid.triangles};
+  for (const DVec3& p : solid.positions) mesh.positions.push_back(hooke::vector_cast<hooke::Real>(p));
+  return mesh;
+}
+
+/// What is left of the triangles when a reader has welded points at 1e-6 of the diagonal and dropped what has
+/// no height.
+std::vector<hooke::geometry::Triangle> as_read(const hooke::MeshDesc& mesh) {
+  const SolidMesh solid = hooke::geometry::solid_mesh_of(mesh);
+  const double distance = hooke::geometry::weld_distance(solid.positions);
+  const auto welds = hooke::geometry::weld(solid.positions, distance);
+  std::vector<DVec3> points;
+  for (const std::uint32_t i : welds.first) points.push_back(solid.positions[i]);
+  std::vector<hooke::geometry::Triangle> triangles;
+  for (auto t : solid.triangles) {
+    for (std::uint32_t& vertex : t) vertex = welds.welded_of[vertex];
+    if (!hooke::geometry::is_degenerate(points, t, distance)) triangles.push_back(t);
+  }
+  return triangles;
+}
+
+/// Each edge is gone along as often one way as the other.
+bool is_closed(const std::vector<hooke::geometry::Triangle>& triangles) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> excess;
+  for (const auto& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k];
+      const std::uint32_t to = t[(k + 1) % 3];
+      excess[std::minmax(from, to)] += from < to ? 1 : -1;
+    }
+  }
+  return std::all_of(excess.begin(), excess.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace
@@ -181,6 +218,24 @@ TEST_SUITE("geometry/bsp_solid") {
     }
     CHECK(slivers_before > 100);
     CHECK(50 * slivers <= slivers_before);
+  }
+
+  TEST_CASE("results are still closed when they were in a file of floats and welded by its reader") {
+    std::mt19937 random(20050901);
+    int results = 0;
+    for (int pair = 0; pair < 125; ++pair) {
+      CAPTURE(pair);
+      const hooke::MeshDesc a = in_float(random_solid(random));
+      const hooke::MeshDesc b = in_float(random_solid(random));
+      for (const auto operation :
+           {SolidOperation::kUnion, SolidOperation::kIntersection, SolidOperation::kDifference}) {
+        const auto combined = hooke::combine_solids(a, b, operation);
+        REQUIRE(combined);
+        results += combined.value().triangles.empty() ? 0 : 1;
+        CHECK(is_closed(as_read(combined.value())));
+      }
+    }
+    CHECK(results > 250);
   }
 
   TEST_CASE("a hole too narrow for a file stays a hole rather than a pinch") {
