@@ -31,7 +31,8 @@ struct Weld {
 
 /// Which triangles must be turned over to face outward, a flag for each. A surface without border is made
 /// consistent and gets a positive volume; one inside another such surface turns with the outermost around it,
-/// so that a cavity stays a cavity. A surface with a border stays as it is.
+/// so that a cavity stays a cavity. A surface with a border is made consistent as the most of its triangles
+/// are.
 [[nodiscard]] std::vector<std::uint8_t> find_turned(std::span<const DVec3> points,
                                                     std::span<const Triangle> triangles);
 

@@ -99,24 +99,27 @@ std::vector<Neighbors> find_neighbors(std::span<const Border> sides, std::size_t
   return neighbors;
 }
 
-/// Turns triangles so that neighbors agree with `start` and with each other, as far as edges with two sides
-/// lead.
+/// Turns triangles so that neighbors agree with each other, as far as edges with two sides lead from `start`:
+/// the fewer of them, of equally many not `start`.
 void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::vector<std::uint8_t>& is_seen,
                 std::vector<std::uint8_t>& turned) {
-  std::vector<std::uint32_t> open = {start};
-  while (!open.empty()) {
-    const std::uint32_t t = open.back();
-    open.pop_back();
+  std::vector<std::uint32_t> reached = {start};
+  std::size_t turned_count = 0;
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const std::uint32_t t = reached[next];
+    turned_count += turned[t];
     for (std::size_t i = 0; i < neighbors[t].count; ++i) {
       const Neighbors::Link link = neighbors[t].links[i];
       if (std::exchange(is_seen[link.to], std::uint8_t{1}) != 0) continue;
       turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
-      open.push_back(link.to);
+      reached.push_back(link.to);
     }
   }
+  if (2 * turned_count <= reached.size()) return;
+  for (const std::uint32_t t : reached) turned[t] ^= 1u;
 }
 
-/// Makes each surface agree with its first triangle.
+/// Makes each surface agree with the most of its triangles.
 void make_consistent(std::span<const Border> sides, std::vector<std::uint8_t>& turned) {
   const std::vector<Neighbors> neighbors = find_neighbors(sides, turned.size());
   std::vector<std::uint8_t> is_seen(turned.size(), 0);
@@ -212,11 +215,11 @@ std::vector<std::uint8_t> find_turned(std::span<const DVec3> points, std::span<c
 
   std::vector<std::uint8_t> turned(triangles.size(), 0);
   for (std::size_t s = 0; s < given.size(); ++s) {
-    double volume = 0.0;  // of a surface with a border: leave it
+    double volume = 0.0;  // of a surface with a border: it has none
     if (given[s].is_closed) {
       volume = closed_count > kMaxNested ? given[s].volume : outermost_volume(points, triangles, given, s);
-    } else if (repaired[s].is_closed) {
-      volume = repaired[s].volume;
+    } else {
+      volume = repaired[s].is_closed ? repaired[s].volume : 0.0;
       for (const std::uint32_t t : given[s].triangles) turned[t] = agreed[t];
     }
     if (volume >= 0) continue;

@@ -1,5 +1,6 @@
 #include "io/model_geometry.h"
 
+#include "geometry/meshes.h"
 #include "io/model_support.h"
 
 #include <doctest/doctest.h>
@@ -160,6 +161,25 @@ TEST_SUITE("io/model_geometry") {
     sheet.triangles = {{0, 2, 1}, {0, 3, 2}};
     const Model model = model_of(sheet);
     for (const auto& vertex : model.vertices) CHECK(vertex.normal[2] == doctest::Approx(-1));
+  }
+
+  TEST_CASE("an open sheet with a few triangles flipped is turned as the most of them are") {
+    MeshDesc sheet = hooke::test::make_grid(6, 6, 1);
+    const MeshDesc good = sheet;
+    for (std::size_t t = 0; t < 50; t += 4)
+      std::swap(sheet.triangles[t][1], sheet.triangles[t][2]);  // also the first
+    const Model model = model_of(sheet);
+    REQUIRE(model.mesh.triangles.size() == 50);
+    for (const auto& vertex : model.vertices) CHECK(vertex.normal[2] == doctest::Approx(1));
+    for (const auto& [a, b, c] : model.mesh.triangles) {
+      const auto& p = model.mesh.positions;
+      CHECK(cross(p[b] - p[a], p[c] - p[a]).z > 0);
+    }
+    // Of two sheets that do not touch each has its own say.
+    for (const auto& t : good.triangles) sheet.triangles.push_back({t[0] + 36, t[2] + 36, t[1] + 36});
+    for (const hooke::Vec3 p : good.positions) sheet.positions.push_back(p + hooke::Vec3{0, 0, 2});
+    for (const auto& vertex : model_of(sheet).vertices)
+      CHECK(vertex.normal[2] == doctest::Approx(vertex.position[2] > 1 ? -1 : 1));
   }
 
   TEST_CASE("a box is flat-shaded, a fine sphere is smooth, and crease zero makes it flat") {
