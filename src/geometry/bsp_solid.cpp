@@ -173,45 +173,39 @@ struct LatticeMesh {
 };
 
 /// Welds, and leaves out flat and double triangles.
-LatticeMesh repair(const Lattice& lattice, const SolidMesh& mesh, SolidRepairs& repairs) {
+LatticeMesh on_lattice(const Lattice& lattice, const SolidMesh& mesh) {
   LatticeMesh result;
   for (const DVec3& p : mesh.positions) result.points.push_back(lattice.point_of(p));
   const std::vector<std::uint32_t> same = weld_places(result.points);
-  for (std::uint32_t i = 0; i < same.size(); ++i) repairs.merged_vertices += same[i] != i ? 1 : 0;
   for (const Triangle& t : mesh.triangles) {
     const auto& [a, b, c] = result.triangles.emplace_back(Triangle{same[t[0]], same[t[1]], same[t[2]]});
     if (normal_of({result.points[a], result.points[b], result.points[c]}) == LatticeNormal{}) continue;
     result.kept.push_back(static_cast<std::uint32_t>(result.triangles.size() - 1));
   }
-  repairs.flat_triangles = result.triangles.size() - result.kept.size();
-  const std::size_t with_duplicates = result.kept.size();
   result.kept = without_duplicates(result.triangles, result.kept);
-  repairs.duplicate_triangles = with_duplicates - result.kept.size();
   return result;
 }
 
 }  // namespace
 
 Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& lattice,
-                                                const SolidMesh& mesh, SolidRepairs* repairs) {
+                                                const SolidMesh& mesh) {
   if (Result<void> usable = check_indices(mesh); !usable) return usable.error();
-  SolidRepairs done;
-  const LatticeMesh repaired = repair(lattice, mesh, done);
-  const std::vector<LatticePoint>& points = repaired.points;
-  if (repaired.kept.empty()) {
+  const LatticeMesh moved = on_lattice(lattice, mesh);
+  const std::vector<LatticePoint>& points = moved.points;
+  if (moved.kept.empty()) {
     return solid_error("mesh.triangles", "no triangle is left with an area of its own");
   }
-  done.was_inside_out = six_volumes(points, repaired.triangles, repaired.kept) < 0;
+  const bool is_inside_out = six_volumes(points, moved.triangles, moved.kept) < 0;
   std::vector<BspPiece> pieces;
-  for (const std::uint32_t t : repaired.kept) {
-    Triangle corners = repaired.triangles[t];
-    if (done.was_inside_out) std::swap(corners[1], corners[2]);
+  for (const std::uint32_t t : moved.kept) {
+    Triangle corners = moved.triangles[t];
+    if (is_inside_out) std::swap(corners[1], corners[2]);
     pieces.push_back(space.add_triangle({points[corners[0]], points[corners[1]], points[corners[2]]}, t));
   }
   const auto seamed = seam_pieces(space, pieces);
   if (!seamed) return seamed.error();
   if (Result<void> sound = check_shells(space, pieces, seamed.value()); !sound) return sound.error();
-  if (repairs != nullptr) *repairs = done;
   return pieces;
 }
 
@@ -243,7 +237,7 @@ Result<Operand> make_operand(BspSpace& space, const Lattice& lattice, const Soli
     error.where = std::string(name).append(".").append(error.where);
     return error;
   };
-  auto pieces = make_solid_pieces(space, lattice, mesh, nullptr);
+  auto pieces = make_solid_pieces(space, lattice, mesh);
   if (!pieces) return named(pieces.error());
   auto tree = build_solid_tree(space, pieces.value());
   if (!tree) return named(tree.error());

@@ -26,15 +26,6 @@ struct SolidMesh {
 
 [[nodiscard]] SolidMesh solid_mesh_of(const MeshDesc& mesh);
 
-/// What was done to a mesh to make it the surface of a solid.
-struct SolidRepairs {
-  std::size_t merged_vertices = 0;      ///< At the same place of the lattice as another.
-  std::size_t flat_triangles = 0;       ///< Without area; left out.
-  std::size_t duplicate_triangles = 0;  ///< The same corners twice, or once each way; left out.
-  bool was_inside_out = false;          ///< All triangles turned over.
-  friend bool operator==(const SolidRepairs&, const SolidRepairs&) = default;
-};
-
 /// The grid that meshes are moved to: the step is a power of two, and the longest side of the box around them
 /// has 2^32 to 2^33 steps. So a corner moves by less than 2^-32 of that side (0.2 nm on 1 m); coordinates in
 /// float mostly do not move at all.
@@ -50,11 +41,13 @@ struct Lattice {
 /// less than 1e-9 m wide.
 Result<Lattice> make_lattice(std::span<const SolidMesh* const> meshes);
 
-/// The triangles as pieces, moved to the lattice, which is that of this mesh, and repaired. Errors name the
-/// triangles: a mesh without triangles, indices out of range, a surface that is not closed (a T-junction is),
-/// triangles that face opposite sides, a shell wound the same way as one around it.
+/// The triangles as pieces, moved to the lattice, which is that of this mesh. What changes no solid goes
+/// without a word: triangles without area, as many of one as of its back; a mesh inside out is turned over.
+/// What needs more is for repair_solid of hooke/geometry.h, which reports it. Errors name the triangles: a
+/// mesh without triangles, indices out of range, a surface that is not closed (a T-junction is), triangles
+/// that face opposite sides, a shell wound the same way as one around it.
 Result<std::vector<BspPiece>> make_solid_pieces(BspSpace& space, const Lattice& lattice,
-                                                const SolidMesh& mesh, SolidRepairs* repairs);
+                                                const SolidMesh& mesh);
 
 /// The tree of a solid. In addition to the errors of build_pieces: every triangle must have all of the solid
 /// on its inner side and nothing on its outer; where it does not, the surface goes through itself or lies on

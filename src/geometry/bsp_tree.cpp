@@ -28,12 +28,12 @@ BspTree rounded(const BspSpace& space, const Lattice& lattice, const BspPieces& 
 
 }  // namespace
 
-Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs) {
+Result<BspTree> build_bsp(const SolidMesh& mesh) {
   const std::array<const SolidMesh*, 1> meshes = {&mesh};
   const Result<Lattice> lattice = make_lattice(meshes);
   if (!lattice) return lattice.error();
   BspSpace space;
-  const auto pieces = make_solid_pieces(space, lattice.value(), mesh, repairs);
+  const auto pieces = make_solid_pieces(space, lattice.value(), mesh);
   if (!pieces) return pieces.error();
   const auto exact = build_solid_tree(space, pieces.value());
   if (!exact) return exact.error();

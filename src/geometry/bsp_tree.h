@@ -10,10 +10,10 @@
 namespace hooke::geometry {
 
 /// The tree of the solid that the mesh bounds. The mesh may be inside out, have double or flat triangles and
-/// T-junctions (what was done about them is in `repairs`, unless null); cavities and several shells are fine.
+/// T-junctions; cavities and several shells are fine.
 /// Errors name the triangles of a mesh that is open, faces opposite sides, goes through itself or lies on
 /// itself, or say what limit is exceeded. The same tree on every machine.
-Result<BspTree> build_bsp(const SolidMesh& mesh, SolidRepairs* repairs = nullptr);
+Result<BspTree> build_bsp(const SolidMesh& mesh);
 
 /// The tree of any triangles, open or through each other, for order_back_to_front alone: its leaves say
 /// nothing. Those without area are left out. Precondition: indices in range. Errors: those of make_lattice

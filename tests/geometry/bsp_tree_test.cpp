@@ -24,7 +24,6 @@ using hooke::move_sphere;
 using hooke::save_bsp;
 using hooke::geometry::build_bsp;
 using hooke::geometry::SolidMesh;
-using hooke::geometry::SolidRepairs;
 using hooke::test::make_box;
 
 namespace {
@@ -517,31 +516,31 @@ TEST_SUITE("geometry/bsp_tree") {
     CHECK(rooms.size() == 16);
   }
 
-  TEST_CASE("named repairs") {
+  TEST_CASE(
+      "what changes no solid makes no other tree: inside out, double, flat, cut in the middle of an edge") {
     const SolidMesh box = make_box({0, 0, 0}, {1, 1, 1});
-    SolidRepairs repairs;
-    REQUIRE(build_bsp(box, &repairs));
-    CHECK(repairs == SolidRepairs{});
-
-    REQUIRE(build_bsp(hooke::test::inside_out(box), &repairs));
-    CHECK(repairs == SolidRepairs{.was_inside_out = true});
-
-    SolidMesh twice = hooke::test::joined(box, box);
-    REQUIRE(build_bsp(twice, &repairs));
-    CHECK(repairs == SolidRepairs{.merged_vertices = 8, .duplicate_triangles = 12});
+    const auto check_box = [](const SolidMesh& mesh) {
+      const BspTree tree = tree_of(mesh);
+      CHECK(size_of(tree).nodes == 6);
+      CHECK(size_of(tree).solid_leaves == 1);
+      CHECK(is_solid_at(tree, {0.5, 0.5, 0.5}));
+      CHECK_FALSE(is_solid_at(tree, {1.5, 0.5, 0.5}));
+      return size_of(tree).faces;
+    };
+    CHECK(check_box(box) == 12);
+    CHECK(check_box(hooke::test::inside_out(box)) == 12);
+    CHECK(check_box(hooke::test::joined(box, box)) == 12);
 
     // A triangle that lies on itself, both ways round.
     SolidMesh fin = box;
     fin.positions.push_back({2, 2, 2});
     fin.triangles.insert(fin.triangles.end(), {{0, 1, 8}, {1, 0, 8}});
-    REQUIRE(build_bsp(fin, &repairs));
-    CHECK(repairs == SolidRepairs{.duplicate_triangles = 2});
+    CHECK(check_box(fin) == 12);
 
     // Two boxes whose triangles lie on each other where they touch are one.
-    const auto two = build_bsp(hooke::test::joined(box, make_box({1, 0, 0}, {2, 1, 1})), &repairs);
-    REQUIRE(two);
-    CHECK(repairs == SolidRepairs{.merged_vertices = 4, .duplicate_triangles = 4});
-    CHECK_FALSE(cast_ray(two.value(), {0.5, 0.5, 0.5}, {1, 0, 0}, 1.4));
+    const BspTree two = tree_of(hooke::test::joined(box, make_box({1, 0, 0}, {2, 1, 1})));
+    CHECK(size_of(two).faces == 20);
+    CHECK_FALSE(cast_ray(two, {0.5, 0.5, 0.5}, {1, 0, 0}, 1.4));
 
     // An edge goes by its middle on one side: a flat triangle, or a T-junction without it.
     SolidMesh flat = box;
@@ -553,11 +552,9 @@ TEST_SUITE("geometry/bsp_tree") {
       break;
     }
     REQUIRE(flat.triangles.size() == 13);
-    REQUIRE(build_bsp(flat, &repairs));
-    CHECK(repairs == SolidRepairs{});
+    CHECK(check_box(flat) == 13);
     flat.triangles.push_back({0, 1, 8});
-    REQUIRE(build_bsp(flat, &repairs));
-    CHECK(repairs == SolidRepairs{.flat_triangles = 1});
+    CHECK(check_box(flat) == 13);
   }
 
   TEST_CASE("errors that name the triangles") {
