@@ -1,6 +1,7 @@
 #include "collision/particle_contacts.h"
 
 #include "collision/shape_gap.h"
+#include "geometry/box.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -53,6 +54,28 @@ std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
     if (t.bodies.traits[body].collides && !t.bodies.traits[body].sensor) rows.push_back(c);
   }
   return rows;
+}
+
+/// Those whose boxes, which hold their ways in this step, come within `reach` [m] of the object's points.
+std::vector<std::uint32_t> near_colliders(const state::Tables& t, const std::vector<std::uint32_t>& colliders,
+                                          const state::Deformable& object, Real reach) {
+  DVec3 lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  DVec3 upper = -lower;
+  for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+    const DVec3 x = vector_cast<double>(t.particles.position[p].x);
+    lower = geometry::min_of(lower, x);
+    upper = geometry::max_of(upper, x);
+  }
+  const auto margin = static_cast<double>(reach);
+  const geometry::Box3<double> box = {object.origin + lower - DVec3{margin, margin, margin},
+                                      object.origin + upper + DVec3{margin, margin, margin}};
+  std::vector<std::uint32_t> near;
+  for (const std::uint32_t c : colliders) {
+    const geometry::Box& bounds = t.colliders.bounds[c];
+    if (overlap(box, {vector_cast<double>(bounds.lower), vector_cast<double>(bounds.upper)}))
+      near.push_back(c);
+  }
+  return near;
 }
 
 /// The frames of `colliders` as one object sees them: made once for all of its particles.
@@ -205,15 +228,22 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
 void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
+  const auto way_of = [&](std::uint32_t p) {
+    return Real(2) * length(t.particles.velocity[p].v) * step + fall;
+  };
   Finder finder;
   finder.hooked = hooked_of(t);
   const std::vector<std::uint32_t> colliders = solid_colliders(t);
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
-    const std::vector<Frame> frames = frames_of(t, colliders, t.objects[o]);
-    for (std::uint32_t p = t.objects[o].particles.first; p < t.objects[o].particles.end(); ++p) {
-      const Real way = Real(2) * length(t.particles.velocity[p].v) * step + fall;
-      for (std::size_t i = 0; i < colliders.size(); ++i)
-        find_pair(t, {p, colliders[i], 0}, o, frames[i], way, step, finder);
+    const state::Rows particles = t.objects[o].particles;
+    Real reach = Real(0);
+    for (std::uint32_t p = particles.first; p < particles.end(); ++p)
+      reach = std::max(reach, t.particles.position[p].radius + way_of(p) + kParticleMargin);
+    const std::vector<std::uint32_t> near = near_colliders(t, colliders, t.objects[o], reach);
+    const std::vector<Frame> frames = frames_of(t, near, t.objects[o]);
+    for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
+      for (std::size_t i = 0; i < near.size(); ++i)
+        find_pair(t, {p, near[i], 0}, o, frames[i], way_of(p), step, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);
