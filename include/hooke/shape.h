@@ -30,8 +30,9 @@ enum class ShapeKind : std::uint8_t {
   kHalfSpace,  ///< Solid below the plane y = 0 of its frame.
   kSphere,
   kBox,
-  kMesh,     ///< Triangles, solid on the inner side of each. Of bodies that stand still or are moved by hand.
-  kCapsule,  ///< A cylinder along y between two half spheres.
+  kMesh,  ///< Triangles, solid on the inner side of each. Of a dynamic body: a closed surface, which has the
+          ///< mass of its inside and collides by its convex parts (decompose_convex).
+  kCapsule,   ///< A cylinder along y between two half spheres.
   kCylinder,  ///< Along y, its center at the origin.
   kCone,      ///< Along y, the tip up; the origin is halfway up, not the center of mass.
   kHull,      ///< The convex hull of a mesh's points.

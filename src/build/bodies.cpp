@@ -1,3 +1,5 @@
+#include "hooke/geometry.h"
+
 #include "build/build.h"
 #include "build/checks.h"
 #include "geometry/mass_properties.h"
@@ -15,6 +17,10 @@ namespace {
 using geometry::MassProperties;
 using state::ColliderShape;
 using state::Tables;
+
+// Of solids that are taken apart to move.
+constexpr Real kConcavity = Real(0.005);  ///< Depth that parts may dip below their hulls, of the diagonal.
+constexpr int kMostParts = 64;
 
 struct Part {
   PartDesc desc;
@@ -84,6 +90,45 @@ MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
   return geometry::moved(solid, part.rotation, vector_cast<double>(part.position));
 }
 
+/// The convex parts of a mesh, made where the tables have none.
+Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t) {
+  const std::uint32_t row = t.mesh_slots.find(mesh);
+  auto& parts = t.convex_parts[row];
+  if (!parts.empty()) return {};
+  const MeshDesc& solid = t.meshes[row]->desc;
+  geometry::Box bounds;
+  for (const Vec3 p : solid.positions) bounds = merge(bounds, geometry::Box{p, p});
+  const Real concavity = kConcavity * length(bounds.upper - bounds.lower);
+  Result<std::vector<MeshDesc>> pieces = decompose_convex(solid, concavity, kMostParts);
+  if (!pieces) {
+    const std::string reason = pieces.error().where + ": " + pieces.error().message;
+    return Error{pieces.error().code, where + "shape.mesh", "is no solid that could move: " + reason};
+  }
+  for (const MeshDesc& piece : pieces.value()) {
+    Result<geometry::ConvexHull> hull = geometry::make_convex_hull(piece.positions);
+    if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
+    parts.push_back(std::make_shared<const geometry::ConvexHull>(std::move(hull).value()));
+  }
+  return {};
+}
+
+/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole.
+Result<void> add_convex_parts(Part whole, const std::string& where, Tables& t, std::vector<Part>& parts) {
+  const MeshId id = whole.desc.shape.mesh;
+  if (const Result<void> made = make_convex_parts(id, where, t); !made) return made.error();
+  const MeshDesc& mesh = whole.shape.mesh->desc;
+  const MassProperties solid = geometry::mass_of(mesh.positions, mesh.triangles);
+  whole.solid = geometry::moved(solid, whole.desc.rotation, vector_cast<double>(whole.desc.position));
+  whole.desc.shape = Shape::hull_of(id);
+  for (const auto& hull : t.convex_parts[t.mesh_slots.find(id)]) {
+    Part part = whole;
+    part.shape = {.shape = whole.desc.shape, .mesh = nullptr, .hull = hull, .whole = whole.shape.mesh};
+    parts.push_back(std::move(part));
+    whole.solid = {};
+  }
+  return {};
+}
+
 Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
   std::vector<Part> parts;
   const std::vector<PartDesc> descs = parts_of(desc);
@@ -96,12 +141,15 @@ Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
     part.shape = std::move(shape.value());
     const ShapeKind kind = part.desc.shape.kind;
     if (kind == ShapeKind::kHull) t.hulls[t.mesh_slots.find(part.desc.shape.mesh)] = part.shape.hull;
-    const bool solid = kind != ShapeKind::kMesh && kind != ShapeKind::kHalfSpace;
-    if (desc.kind == BodyKind::kDynamic && !solid) {
-      return Error{ErrorCode::kOutOfRange, where + "shape",
-                   "a body that moves needs a solid shape: not a half-space and not a mesh (use its hull)"};
+    const bool moves = desc.kind == BodyKind::kDynamic;
+    if (moves && kind == ShapeKind::kHalfSpace)
+      return Error{ErrorCode::kOutOfRange, where + "shape", "a half-space does not move: it has no mass"};
+    if (moves && kind == ShapeKind::kMesh) {
+      if (const auto added = add_convex_parts(std::move(part), where, t, parts); !added) return added.error();
+      continue;
     }
-    if (solid) part.solid = solid_of(part.shape, part.desc);
+    if (kind != ShapeKind::kMesh && kind != ShapeKind::kHalfSpace)
+      part.solid = solid_of(part.shape, part.desc);
     parts.push_back(std::move(part));
   }
   return parts;
@@ -232,7 +280,7 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
 }  // namespace
 
 Result<ColliderShape> make_shape(const Shape& shape, const std::string& where, const Tables& t) {
-  ColliderShape result = {shape, nullptr, nullptr};
+  ColliderShape result = {.shape = shape, .mesh = nullptr, .hull = nullptr};
   if (shape.kind == ShapeKind::kBox) {
     result.hull = std::make_shared<geometry::ConvexHull>(geometry::make_box_hull(shape.half_extents));
   }

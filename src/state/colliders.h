@@ -19,6 +19,7 @@ struct ColliderShape {
   Shape shape = {};
   std::shared_ptr<const Mesh> mesh;                  ///< kMesh.
   std::shared_ptr<const geometry::ConvexHull> hull;  ///< kHull, and kBox as the hull it is.
+  std::shared_ptr<const Mesh> whole = {};  ///< kHull: the concave solid that it is a part of, or null.
 };
 
 /// Shapes of bodies, in columns. A body's colliders are consecutive rows; a removed body leaves holes.

@@ -56,6 +56,8 @@ struct Tables {
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
   /// Convex hulls of the same meshes' points; null until a body asks for one.
   std::vector<std::shared_ptr<const geometry::ConvexHull>> hulls;
+  /// Their convex parts; empty until a body that moves asks for them.
+  std::vector<std::vector<std::shared_ptr<const geometry::ConvexHull>>> convex_parts;
   std::vector<Field> fields;
   std::vector<ForceLawEntry> force_laws;
   bool any_force = false;  ///< Some particle has an external force for the coming step.

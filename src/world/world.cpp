@@ -105,6 +105,7 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
   state::Tables& t = data_->tables;
   t.meshes.push_back(std::move(mesh));
   t.hulls.push_back(nullptr);
+  t.convex_parts.emplace_back();
   return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
 }
 
@@ -153,6 +154,7 @@ bool World::remove(MeshId id) {
   if (row == t.mesh_slots.kNone || !t.meshes[row]) return false;
   t.meshes[row] = nullptr;  // bodies that use it share it
   t.hulls[row] = nullptr;
+  t.convex_parts[row].clear();
   t.mesh_slots.move(id.slot, t.mesh_slots.kNone);
   return true;
 }

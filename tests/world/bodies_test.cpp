@@ -1,4 +1,5 @@
 #include "constants.h"
+#include "geometry/meshes.h"
 #include "solver/wide/wide.h"
 #include "world/make.h"
 
@@ -254,6 +255,10 @@ TEST_SUITE("world/bodies") {
     body = cube({0, 0, 0});
     body.shape = Shape::half_space();
     CHECK(refused(body) == "body.shape");
+    MeshDesc open = test::make_box({Real(1), Real(1), Real(1)});
+    open.triangles.pop_back();
+    body.shape = Shape::of_mesh(take(world.add_mesh(open)));
+    CHECK(refused(body) == "body.shape.mesh");
     body = cube({0, 0, 0});
     body.shape = Shape::compound();
     CHECK(refused(body) == "body.parts");
@@ -265,6 +270,31 @@ TEST_SUITE("world/bodies") {
     body = cube({0, 0, 0});
     body.shape = Shape::hull_of({});
     CHECK(refused(body) == "body.shape.mesh");
+  }
+
+  TEST_CASE("a concave solid of triangles falls with the mass of its inside, and does not fill its hull") {
+    // 3 m^2 by 1 m; by the areas of its two arms the center is at (2 1 + 1 0.5) / 3 = 5/6 along both.
+    World world = make_world();
+    const MeshId ell = take(world.add_mesh(test::make_ell(Real(0.5))));
+    BodyDesc corner = {.kind = BodyKind::kDynamic, .shape = Shape::of_mesh(ell), .position = {0, 4, 0}};
+    corner.density = 500;
+    const BodyId id = take(world.add_body(corner));
+    const DVec3 center = world.center_of_mass(id);
+    CHECK(length(center - DVec3{5.0 / 6, 4 + 5.0 / 6, 0}) < 1e-6);
+    CHECK(world.measure().energy.potential == doctest::Approx(1500 * kGravity * center.y).epsilon(1e-6));
+    // A ball falls with it, in the corner that the hull covers.
+    const BodyId ball = take(world.add_body(
+        {.kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.2)), .position = {1.25, 4 + 1.25, 0}}));
+    run(world, 30);
+    const double fallen = center.y - world.center_of_mass(id).y;
+    CHECK(fallen == doctest::Approx(kGravity * 0.125).epsilon(0.02));
+    CHECK(world.pose(ball).position.y == doctest::Approx(5.25 - fallen).epsilon(1e-6));
+    CHECK(world.body_contacts().empty());
+    // The arm that stands keeps what comes from aside.
+    take(world.add_body({.shape = Shape::half_space(), .position = {0, -1, 0}}));
+    run(world, 120);
+    CHECK(world.pose(ball).position.y > -1 + 0.9);  // on the lying arm, 1 m thick
+    CHECK(world.pose(ball).position.x > 1);
   }
 }
 
