@@ -29,7 +29,8 @@
 /// are refused, because they have no force law; limits and tethers, which have none either, are left out, and
 /// ObjectReport::left_out says so; a point that a step leaves inside a static body is put back on its surface
 /// and loses its speed into it, and of its sliding what friction takes, which makes any method first order
-/// there. Bodies collide by rollback, see CollisionOptions; hooks do not hold them. Docs: docs/laboratory.md.
+/// there. Bodies collide by rollback, see CollisionOptions; of hooks a hinge to the world through a body's
+/// center of mass holds it, and no other. Docs: docs/laboratory.md.
 
 namespace hooke::lab {
 
@@ -89,6 +90,11 @@ struct CollisionOptions {
     kEvent,        ///< The root of the distance on the step's interpolation, mended by the steps that follow.
     kAdvancement,  ///< Conservative advancement on the same: never late.
   };
+  /// How places are found where two solids of triangles touch; the answer is the same to the bit.
+  enum class MeshSearch : std::uint8_t {
+    kAll,   ///< All faces and edges of one against all of the other: the paper's.
+    kTree,  ///< By trees of oriented boxes.
+  };
   /// How collisions within a step are seen that leave no overlap at its end.
   enum class Sweep : std::uint8_t {
     kNone,      ///< Not: fast bodies pass through thin ones, as in the paper (4.4).
@@ -99,6 +105,7 @@ struct CollisionOptions {
   Collider collider = Collider::kExact;
   Preselection preselection = Preselection::kBox;  ///< Which pairs it is asked about: whose volumes may
                                                    ///< meet on their ways. Half-spaces are near to all.
+  MeshSearch mesh_search = MeshSearch::kTree;
   Search search = Search::kEvent;
   Sweep sweep = Sweep::kCast;
   double epsilon = 1e-6;     ///< Depth, and distance, that counts as touching [m]. [1e-12, 1]

@@ -368,6 +368,10 @@ const Kind& kind_of<SceneLaboratory>() {
            field<&SceneLaboratory::collisions, &Options::preselection>(
                "preselection", "", kAny,
                "Which pairs it is asked about: whose bounding volumes may meet within the step."),
+           field<&SceneLaboratory::collisions, &Options::mesh_search>(
+               "mesh_search", "", kAny,
+               "How places are found where solids of triangles touch: all against all, as in the paper; by "
+               "trees of oriented boxes."),
            field<&SceneLaboratory::collisions, &Options::search>(
                "rollback", "", kAny,
                "How the next try after a canceled step is found: half of it, back by depth over speed, the "
@@ -436,6 +440,14 @@ std::span<const EnumName> names_of<Preselection>() {
       list[i] = {name_of(kPreselections[i]), static_cast<int>(kPreselections[i])};
     return list;
   }();
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<lab::CollisionOptions::MeshSearch>() {
+  using MeshSearch = lab::CollisionOptions::MeshSearch;
+  static constexpr EnumName names[] = {{"all", static_cast<int>(MeshSearch::kAll)},
+                                       {"tree", static_cast<int>(MeshSearch::kTree)}};
   return names;
 }
 

@@ -81,7 +81,8 @@ struct ShapeTables {
             of<ShapeKind::kCylinder>(group("cylinder", cylinder, "A drum.")),
             of<ShapeKind::kCone>(group("cone", cone, "A cone.")),
             of<ShapeKind::kMesh>(field<&Owner::mesh>("mesh", "", kNotEmpty,
-                                                     "A name in `meshes`; for bodies that are not dynamic.")),
+                                                     "Triangles: a name in `meshes`. Of a dynamic body a "
+                                                     "closed surface, which collides by its convex parts.")),
             of<ShapeKind::kHull>(field<&Owner::mesh>("hull", "", kNotEmpty,
                                                      "The convex hull of a mesh: a name in `meshes`."))};
   }

@@ -8,7 +8,8 @@ namespace hooke::lab {
 Result<Collisions> Collisions::create(const state::Tables& tables, const Options& options) {
   Collisions collisions;
   collisions.setting_ = {options.collisions, tables.desc.materials, options.dt};
-  if (!options.contacts || options.collisions.collider == Collider::kNone) return collisions;
+  const bool is_off = options.collisions.collider == CollisionOptions::Collider::kNone;
+  if (!options.contacts || is_off) return collisions;
   const auto collides = [](const state::BodyTraits& t) { return t.alive && t.collides && !t.sensor; };
   const auto& traits = tables.bodies.traits;
   if (tables.moving_bodies.empty() || std::count_if(traits.begin(), traits.end(), collides) < 2)

@@ -99,7 +99,7 @@ BodyGap DensePair::gap(double share) const {
   const double reach = motion_a.seconds() > 0 || motion_b.seconds() > 0
                            ? 0.1 + closing({}) * std::max(motion_a.seconds(), motion_b.seconds())
                            : 0.1;
-  return gap_between(a, motion_a.at(share), b, motion_b.at(share), collider, reach);
+  return gap_between(a, motion_a.at(share), b, motion_b.at(share), look, reach);
 }
 
 double DensePair::closing(DVec3 n) const {

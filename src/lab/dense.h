@@ -58,7 +58,7 @@ struct DensePair {
   const DenseMotion& motion_a;
   const RigidBody& b;
   const DenseMotion& motion_b;
-  Collider collider = Collider::kExact;
+  Look look = {};
 
   [[nodiscard]] BodyGap gap(double share) const;
   /// Bound of how fast their distance along `n` shrinks [m/s]; of any direction, where they are not convex.

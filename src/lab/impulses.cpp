@@ -107,6 +107,10 @@ std::vector<Group> groups_of(std::span<const ImpulsePoint> points) {
 ImpulseBody impulse_body(const RigidBody& body, const BodyMotion& at) {
   ImpulseBody result = {.center = at.center, .velocity = at.velocity, .spin = at.spin};
   if (!body.is_free) return result;
+  if (body.axle) {
+    result.inverse_inertia = math::axial(body.axle->axis, 1 / body.axle->inertia, 0.0);
+    return result;
+  }
   result.inverse_mass = 1 / body.mass;
   const DVec3 x = rotate(at.rotation, DVec3{1, 0, 0});
   const DVec3 y = rotate(at.rotation, DVec3{0, 1, 0});

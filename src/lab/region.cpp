@@ -142,7 +142,7 @@ double Region::longer_step(const Attempt& attempt) {
   ++tries_;
   const double gap =
       gap_between(bodies_[pair_known_.a], now(pair_known_.a), bodies_[pair_known_.b], now(pair_known_.b),
-                  setting_.options.collider, setting_.options.epsilon + attempt.h)
+                  Look(setting_.options), setting_.options.epsilon + attempt.h)
           .distance;
   if (!(gap > 0) || tries_ % 3 == 0) return 0.5 * known_;
   if (!(depth_known_ > 0)) return known_;
@@ -196,14 +196,18 @@ void Region::give_up(const Attempt& attempt) {
   known_ = 0;
   const auto [a, b] = attempt.pair;
   const BodyGap gap =
-      gap_between(bodies_[a], now(a), bodies_[b], now(b), setting_.options.collider,
+      gap_between(bodies_[a], now(a), bodies_[b], now(b), Look(setting_.options),
                   setting_.options.epsilon + dense(attempt, attempt.pair).closing({}) * attempt.h);
   project(attempt.pair, gap.distance, gap.normal);
   respond(0);
 }
 
-/// Moves two bodies along n until they touch, shared by their inverse masses.
+/// Moves two bodies along n until they touch, shared by their inverse masses; what has an axle turns.
 void Region::project(BodyPair pair, double distance, DVec3 normal) {
+  if (bodies_[pair.a].axle || bodies_[pair.b].axle) {
+    project_by_turning(pair);
+    return;
+  }
   const auto inverse = [&](std::uint32_t body) {
     return bodies_[body].is_free ? 1 / bodies_[body].mass : 0.0;
   };
@@ -212,6 +216,41 @@ void Region::project(BodyPair pair, double distance, DVec3 normal) {
   if (!(sum > 0)) return;
   if (of_a > 0) part(pair.a).system.move_center(part(pair.a).y, (distance * of_a / sum) * normal);
   if (sum > of_a) part(pair.b).system.move_center(part(pair.b).y, (-distance * (sum - of_a) / sum) * normal);
+}
+
+/// Where they are deepest. A body is moved as an impulse there would change its velocity, but that what has
+/// no axle does not turn.
+void Region::project_by_turning(BodyPair pair) {
+  const std::vector<Contact> contacts = contacts_of(pair, now(pair.a), now(pair.b));
+  const auto deepest =
+      std::min_element(contacts.begin(), contacts.end(),
+                       [](const Contact& x, const Contact& y) { return x.distance < y.distance; });
+  if (deepest == contacts.end()) return;
+  /// Of its answers to a push of 1 along n: the turn about its axle, and the way along n.
+  struct Answer {
+    double turn = 0, way = 0;
+  };
+  const auto answer = [&](std::uint32_t body) -> Answer {
+    const RigidBody& own = bodies_[body];
+    if (!own.is_free) return {};
+    if (!own.axle) return {0, 1 / own.mass};
+    const double lever = dot(own.axle->axis, cross(deepest->point - now(body).center, deepest->normal));
+    return {lever / own.axle->inertia, lever * lever / own.axle->inertia};
+  };
+  const Answer of_a = answer(pair.a), of_b = answer(pair.b);
+  if (!(of_a.way + of_b.way > 0)) return;
+  const double push = deepest->distance / (of_a.way + of_b.way);
+  const auto move = [&](std::uint32_t body, const Answer& own, double size) {
+    if (!(own.way > 0)) return;
+    const System& system = part(body).system;
+    if (bodies_[body].axle) {
+      system.turn_by(part(body).y, (size * own.turn) * bodies_[body].axle->axis);
+    } else {
+      system.move_center(part(body).y, (size * own.way) * deepest->normal);
+    }
+  };
+  move(pair.a, of_a, push);
+  move(pair.b, of_b, -push);
 }
 
 BodyMotion Region::now(std::uint32_t body) const {
@@ -223,7 +262,7 @@ BodyMotion Region::now(std::uint32_t body) const {
 
 DensePair Region::dense(const Attempt& attempt, BodyPair pair) const {
   return {bodies_[pair.a], attempt.motions[pair.a], bodies_[pair.b], attempt.motions[pair.b],
-          setting_.options.collider};
+          Look(setting_.options)};
 }
 
 }  // namespace hooke::lab

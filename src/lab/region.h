@@ -78,6 +78,7 @@ class Region {
   void accept(const Attempt& attempt);
   void give_up(const Attempt& attempt);
   void project(BodyPair pair, double distance, DVec3 normal);
+  void project_by_turning(BodyPair pair);
 
   // region_judge.cpp
   void find_pairs(const Attempt& attempt);

@@ -62,8 +62,7 @@ void Region::judge_end(Attempt& attempt, BodyPair pair) {
   const CollisionOptions& options = setting_.options;
   const BodyMotion a = attempt.motions[pair.a].at(1);
   const BodyMotion b = attempt.motions[pair.b].at(1);
-  const BodyGap gap =
-      gap_between(bodies_[pair.a], a, bodies_[pair.b], b, options.collider, 2 * options.epsilon);
+  const BodyGap gap = gap_between(bodies_[pair.a], a, bodies_[pair.b], b, Look(options), 2 * options.epsilon);
   if (gap.distance > options.epsilon) return;
   ++report_.touching;
   double approach = 0;
@@ -89,7 +88,7 @@ void Region::judge_end(Attempt& attempt, BodyPair pair) {
 
 void Region::judge_way(Attempt& attempt) {
   const CollisionOptions& options = setting_.options;
-  if (options.sweep == Sweep::kNone || options.collider != Collider::kExact) return;
+  if (options.sweep == Sweep::kNone || options.collider != CollisionOptions::Collider::kExact) return;
   for (const BodyPair pair : pairs_) {
     if (is_resting(pair)) continue;
     const DensePair both = dense(attempt, pair);

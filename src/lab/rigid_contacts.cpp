@@ -1,5 +1,6 @@
 /// Pairs of shapes: how far they are apart, and where they touch.
 
+#include "collision/mesh_gap.h"
 #include "collision/pair_surface.h"
 #include "lab/rigid_body.h"
 
@@ -37,6 +38,8 @@ struct Placed {
         rotation(normalize(at.rotation * s.rotation)) {}
 
   [[nodiscard]] bool is_convex() const { return !solid.vertices.empty(); }
+  [[nodiscard]] bool is_mesh() const { return shape.mesh != nullptr; }
+  [[nodiscard]] geometry::RigidPose pose() const { return {position, rotation}; }
   [[nodiscard]] Plane plane() const {
     const DVec3 n = rotate(rotation, DVec3{0, 1, 0});
     return {n, dot(n, position)};
@@ -67,8 +70,8 @@ SolidGap gap_to_faces(const ConvexSolid& solid, const ConvexSolid& ball) {
   return best;
 }
 
-SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, Collider collider) {
-  if (collider == Collider::kFaces) {
+SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, const Look& look) {
+  if (look.collider == CollisionOptions::Collider::kFaces) {
     if (b.vertices.size() == 1 && !a.faces.empty()) return gap_to_faces(a, b);
     if (a.vertices.size() == 1 && !b.faces.empty()) {
       const SolidGap gap = gap_to_faces(b, a);
@@ -101,23 +104,79 @@ std::vector<ConvexSolid> triangles_near(const Placed& mesh, const ConvexSolid& s
   return result;
 }
 
+/// To a plane a mesh is its vertices.
+ConvexSolid vertices_of(const Placed& mesh) {
+  ConvexSolid solid;
+  for (const Vec3 v : mesh.shape.mesh->desc.positions)
+    solid.vertices.push_back(to_world(mesh.pose(), vector_cast<double>(v)));
+  return solid;
+}
+
+/// Solids of triangles, or one and what can be taken as such.
+bool are_surfaces(const Placed& a, const Placed& b) {
+  return a.shape.surface && b.shape.surface && (a.is_mesh() || b.is_mesh());
+}
+
+bool is_ball_at_surface(const Placed& a, const Placed& b, const Look& look) {
+  return a.shape.kind == ShapeKind::kSphere && b.is_mesh() && b.shape.surface &&
+         look.collider == CollisionOptions::Collider::kExact;
+}
+
+geometry::Search search_of(const Look& look) {
+  return look.mesh_search == CollisionOptions::MeshSearch::kAll ? geometry::Search::kAll
+                                                                : geometry::Search::kTree;
+}
+
+std::vector<collision::MeshContact> ball_contacts(const Placed& ball, const Placed& mesh, const Look& look,
+                                                  double reach) {
+  std::vector<collision::MeshContact> contacts;
+  collision::find_sphere_contacts(ball.solid.vertices[0], ball.solid.skin, *mesh.shape.surface, mesh.pose(),
+                                  reach, search_of(look), contacts);
+  return contacts;
+}
+
+/// Calls `visit(contact)` for each place where solids of triangles touch, or one and a ball, with normals
+/// from a to b. \return Whether the two are that.
+template <class Visit>
+bool for_each_mesh_contact(const Placed& a, const Placed& b, const Look& look, double reach, Visit&& visit) {
+  const bool swapped = is_ball_at_surface(b, a, look);
+  std::vector<collision::MeshContact> contacts;
+  if (are_surfaces(a, b)) {
+    collision::find_mesh_contacts(*a.shape.surface, a.pose(), *b.shape.surface, b.pose(), reach,
+                                  search_of(look), contacts);
+  } else if (swapped || is_ball_at_surface(a, b, look)) {
+    contacts = swapped ? ball_contacts(b, a, look, reach) : ball_contacts(a, b, look, reach);
+  } else {
+    return false;
+  }
+  for (collision::MeshContact& contact : contacts) {
+    if (swapped) contact.normal = -contact.normal;
+    visit(contact);
+  }
+  return true;
+}
+
 /// Calls `visit(solid_a, solid_b, gap)` for each pair of convex pieces, and `visit_plane(plane, solid,
 /// swapped)` for a half-space and a piece.
 template <class Visit, class VisitPlane>
-void for_each_piece(const Placed& a, const Placed& b, Collider collider, double reach, Visit&& visit,
+void for_each_piece(const Placed& a, const Placed& b, const Look& look, double reach, Visit&& visit,
                     VisitPlane&& visit_plane) {
   if (a.is_convex() && b.is_convex()) {
-    visit(a.solid, b.solid, convex_gap(a.solid, b.solid, collider));
+    visit(a.solid, b.solid, convex_gap(a.solid, b.solid, look));
   } else if (a.shape.kind == ShapeKind::kHalfSpace && b.is_convex()) {
     visit_plane(a.plane(), b.solid, false);
   } else if (b.shape.kind == ShapeKind::kHalfSpace && a.is_convex()) {
     visit_plane(b.plane(), a.solid, true);
-  } else if (a.shape.mesh != nullptr && b.is_convex()) {
+  } else if (a.shape.kind == ShapeKind::kHalfSpace && b.is_mesh()) {
+    visit_plane(a.plane(), vertices_of(b), false);
+  } else if (b.shape.kind == ShapeKind::kHalfSpace && a.is_mesh()) {
+    visit_plane(b.plane(), vertices_of(a), true);
+  } else if (a.is_mesh() && b.is_convex()) {
     for (const ConvexSolid& piece : triangles_near(a, b.solid, reach))
-      visit(piece, b.solid, convex_gap(piece, b.solid, collider));
-  } else if (b.shape.mesh != nullptr && a.is_convex()) {
+      visit(piece, b.solid, convex_gap(piece, b.solid, look));
+  } else if (b.is_mesh() && a.is_convex()) {
     for (const ConvexSolid& piece : triangles_near(b, a.solid, reach))
-      visit(a.solid, piece, convex_gap(a.solid, piece, collider));
+      visit(a.solid, piece, convex_gap(a.solid, piece, look));
   }
 }
 
@@ -133,15 +192,25 @@ void for_each_pair(const RigidBody& a, const BodyMotion& at_a, const RigidBody& 
 }  // namespace
 
 BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                    Collider collider, double reach) {
+                    const Look& look, double reach) {
   BodyGap best = {kNothing, {0, 1, 0}};
   const auto take = [&](double distance, DVec3 normal) {
     if (distance < best.distance) best = {distance, normal};
   };
   for_each_pair(a, at_a, b, at_b, [&](const Placed& of_a, const Placed& of_b) {
-    if (of_a.shape.mesh != nullptr || of_b.shape.mesh != nullptr) take(reach, best.normal);
+    if (of_a.is_mesh() || of_b.is_mesh()) take(reach, best.normal);
+    if (are_surfaces(of_a, of_b)) {
+      const collision::MeshGap gap = collision::find_mesh_gap(
+          *of_a.shape.surface, of_a.pose(), *of_b.shape.surface, of_b.pose(), reach, search_of(look));
+      take(gap.distance, gap.normal);
+      return;
+    }
+    if (for_each_mesh_contact(of_a, of_b, look, reach, [&](const collision::MeshContact& contact) {
+          take(-contact.depth, contact.normal);
+        }))
+      return;
     for_each_piece(
-        of_a, of_b, collider, reach,
+        of_a, of_b, look, reach,
         [&](const ConvexSolid&, const ConvexSolid&, const SolidGap& gap) { take(gap.distance, gap.normal); },
         [&](const Plane& plane, const ConvexSolid& solid, bool swapped) {
           take(height_over(plane, solid), swapped ? -plane.normal : plane.normal);
@@ -151,18 +220,22 @@ BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody&
 }
 
 void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                   Collider collider, double reach, double tolerance,
+                   const Look& look, double reach, double tolerance,
                    const std::vector<MaterialPairDesc>& materials, std::vector<Contact>& contacts) {
   for_each_pair(a, at_a, b, at_b, [&](const Placed& of_a, const Placed& of_b) {
     const collision::PairSurface surface =
-        collision::surface_of(of_a.shape.surface, of_b.shape.surface, materials);
+        collision::surface_of(of_a.shape.contact, of_b.shape.contact, materials);
     const auto add = [&](DVec3 point, DVec3 normal, double distance) {
       contacts.push_back({point, normal, distance, static_cast<double>(surface.friction),
                           static_cast<double>(surface.static_friction),
                           static_cast<double>(surface.restitution)});
     };
+    if (for_each_mesh_contact(of_a, of_b, look, reach, [&](const collision::MeshContact& contact) {
+          add(contact.point, contact.normal, -contact.depth);
+        }))
+      return;
     for_each_piece(
-        of_a, of_b, collider, reach,
+        of_a, of_b, look, reach,
         [&](const ConvexSolid& x, const ConvexSolid& y, const SolidGap& gap) {
           if (gap.distance > reach) return;
           for (const DVec3 point : geometry::touch_points(x, y, gap, tolerance))

@@ -2,6 +2,7 @@
 
 #include "hooke/lab.h"
 
+#include "lab/axle.h"
 #include "lab/elements.h"
 #include "state/tables.h"
 
@@ -111,7 +112,10 @@ class System {
   [[nodiscard]] std::array<DVec3, 2> body_acceleration(double t, const State& y) const;
   void set_velocity(State& y, DVec3 velocity, DVec3 spin) const;
   void move_center(State& y, DVec3 way) const;
-  /// Force and torque about the center from now on, in world axes [N], [N m].
+  /// Turns it by 2 tan(angle / 2) about an axis, both in `turn` (turn.h); its spin stays.
+  void turn_by(State& y, DVec3 turn) const;
+  /// Force and torque about the center from now on, in world axes [N], [N m]. Bearings take what an axle does
+  /// not follow.
   void set_load(DVec3 force, DVec3 torque);
   /// Takes the rotation of `y` as the new origin of turns, if it is far from the old one. \return Whether it
   /// was: states kept from before then mean nothing.
@@ -178,6 +182,7 @@ class System {
   std::vector<TurnRow> turns_;           ///< One for a body that moves freely.
   Quaternion<double> chart_ = {};        ///< Of a body, where its turn is zero.
   std::optional<DVec3> kinematic_spin_;  ///< Of a body that moves as told [rad/s].
+  std::optional<Axle> axle_;             ///< Of a body that only turns.
   std::shared_ptr<const std::vector<FieldDesc>> attractors_;
   std::shared_ptr<Laws> laws_;  ///< None: null.
 

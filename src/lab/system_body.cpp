@@ -73,7 +73,17 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   system.velocity_dependent_ = true;  // by the gyroscopic term
   if (bodies.force[row] != Vec3{} || bodies.torque[row] != Vec3{})
     system.left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
-  if (!tables.hooks.empty()) system.left_out_.emplace_back("hooks: they do not hold bodies here");
+  system.axle_ = axle_of(tables, row);
+  if (system.axle_) {
+    system.start_v_ = {{}, dot(system.axle_->axis, spin) * system.axle_->axis};
+    // The same moment about every axis: nothing gyroscopic is left, and about its own it is as it was.
+    const double inertia = system.axle_->inertia;
+    system.turns_[0].inertia = {inertia, inertia, inertia};
+    system.set_load({}, {});
+  } else if (is_hooked(tables, row)) {
+    system.left_out_.emplace_back(
+        "hooks: of bodies only hinges to the world hold here, through the center of mass");
+  }
   return system;
 }
 
@@ -116,7 +126,21 @@ void System::move_center(State& y, DVec3 way) const {
   x(y).segment<3>(3 * kCenter) += Eigen::Vector3d(way.x, way.y, way.z);
 }
 
+void System::turn_by(State& y, DVec3 turn) const {
+  const BodyMotion now = body(0, y);
+  auto old = x(y).segment<3>(3 * kTurn);
+  const DVec3 p = {old[0], old[1], old[2]};
+  // Rodrigues' rule for one turn after another.
+  const DVec3 both = (1 / (1 - 0.25 * dot(turn, p))) * (turn + p + 0.5 * cross(turn, p));
+  old = Eigen::Vector3d(both.x, both.y, both.z);
+  set_velocity(y, now.velocity, now.spin);
+}
+
 void System::set_load(DVec3 force, DVec3 torque) {
+  if (axle_) {
+    force = -points_[0].mass * points_[0].uniform;
+    torque = dot(axle_->axis, torque) * axle_->axis;
+  }
   for (PointRow& row : points_) row.load = force;
   for (TurnRow& row : turns_) row.torque = torque;
 }

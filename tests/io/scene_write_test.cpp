@@ -56,7 +56,7 @@ std::string schema_complaint(const std::string& text) {
 constexpr const char* kEverything = R"({
   "version": 1, "title": "All \"keys\"\nand \u00e9", "description": "d", "dt": 0.004, "seconds": 3,
   "accuracy": {"max_error": 2e-4},
-  "laboratory": {"stepper": "verlet", "collider": "faces", "preselection": "sphere_tree", "rollback": "backward",
+  "laboratory": {"stepper": "verlet", "collider": "faces", "preselection": "sphere_tree", "mesh_search": "all", "rollback": "backward",
                  "sweep": "extruded", "epsilon": 1e-3, "iteration_limit": 5, "regional": false},
   "world": {"gravity": [1, -2, 3], "substeps": 2, "particle_substeps": 3, "workers": 2,
     "contact_hz": 50, "contact_damping_ratio": 6, "bias_sweeps": 2, "sleeping": false,
