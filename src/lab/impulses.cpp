@@ -8,7 +8,8 @@ namespace hooke::lab {
 namespace {
 
 constexpr int kMostSweeps = 20000;
-constexpr double kAtRest = 1e-14;  ///< Change of velocity in a sweep, in units of the largest velocity.
+constexpr double kAtRest = 1e-14;    ///< Change of velocity in a sweep, in units of the largest velocity.
+constexpr double kNoChange = 1e-15;  ///< Change of an impulse in a sweep, in units of itself.
 constexpr int kMostHitsOfPair = 200;
 constexpr double kApproach = 1e-12;  ///< Likewise, of a speed that counts as coming together.
 
@@ -38,21 +39,34 @@ class Row {
     across_ = 0.5 * (uu + ww) + std::sqrt(apart * apart + uw * uw);  // the larger eigenvalue
   }
 
-  /// \return The change of velocity [m/s].
+  /// Of the impulse on b, by solve() [N s].
+  [[nodiscard]] DVec3 last_change() const { return change_; }
+  /// Adds to the impulse, whatever is allowed: the next solve() brings it back to that.
+  void go_on(DVec3 impulse) {
+    const double along = dot(point_.contact.normal, impulse);
+    point_.lambda += along;
+    point_.tangent += impulse - along * point_.contact.normal;
+    apply(impulse);
+  }
+
+  /// \return The change of velocity [m/s], without that of rounding.
   double solve() {
     if (!(normal_ > 0)) return 0;
     const DVec3 n = point_.contact.normal;
     const double before = point_.lambda;
+    const DVec3 old = point_.tangent;
     point_.lambda = std::max(0.0, before - (dot(n, velocity()) - point_.target) / normal_);
     apply((point_.lambda - before) * n);
-    const DVec3 old = point_.tangent;
     const DVec3 v = velocity();
     const DVec3 wish = old - (1 / across_) * (v - dot(n, v) * n);
     const double size = length(wish);
     const bool sticks = size <= point_.contact.static_friction * point_.lambda;
     point_.tangent = sticks ? wish : (size > 0 ? point_.contact.friction * point_.lambda / size : 0.0) * wish;
     apply(point_.tangent - old);
-    return std::abs(point_.lambda - before) * normal_ + length(point_.tangent - old) * across_;
+    change_ = (point_.lambda - before) * n + (point_.tangent - old);
+    const double rounding = kNoChange * point_.lambda;
+    return std::max(0.0, std::abs(point_.lambda - before) - rounding) * normal_ +
+           std::max(0.0, length(point_.tangent - old) - rounding) * across_;
   }
 
  private:
@@ -72,6 +86,7 @@ class Row {
   ImpulseBody& b_;
   DVec3 lever_a_ = {}, lever_b_ = {}, u_ = {}, w_ = {};
   double normal_ = 0, across_ = 0;
+  DVec3 change_ = {};
 };
 
 double largest_speed(std::span<const ImpulseBody> bodies, std::span<const ImpulsePoint> points) {
@@ -136,10 +151,24 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
     rows.emplace_back(bodies, point);
   }
   const double enough = kAtRest * largest_speed(bodies, points);
+  std::vector<DVec3> way(points.size());  // of the sweeps before, as impulses on b
+  double size = 0;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    const double before = size;
     double change = 0;
-    for (Row& row : rows) change = std::max(change, row.solve());
+    size = 0;
+    for (Row& row : rows) {
+      change = std::max(change, row.solve());
+      size += length_squared(row.last_change());
+    }
     if (!(change > enough)) return true;
+    if (sweep + 1 == kMostSweeps) break;  // a sweep is last: it ends with impulses that are allowed
+    const double beta = size < before ? size / before : 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const DVec3 on = beta * way[i];
+      rows[i].go_on(on);
+      way[i] = on + rows[i].last_change();
+    }
   }
   return false;
 }

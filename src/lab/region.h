@@ -95,7 +95,7 @@ class Region {
   [[nodiscard]] std::vector<Contact> contacts_of(BodyPair pair, const BodyMotion& a,
                                                  const BodyMotion& b) const;
   [[nodiscard]] bool is_resting(BodyPair pair) const;
-  [[nodiscard]] bool rested(BodyPair pair, DVec3 point, double h) const;
+  [[nodiscard]] bool rested(BodyPair pair, const Contact& contact, double approach, double h) const;
 
   [[nodiscard]] BodyMotion now(std::uint32_t body) const;
   [[nodiscard]] DensePair dense(const Attempt& attempt, BodyPair pair) const;

@@ -69,7 +69,8 @@ void Region::judge_end(Attempt& attempt, BodyPair pair) {
   for (const Contact& contact : contacts_of(pair, a, b)) {
     const DVec3 v = b.velocity + cross(b.spin, contact.point - b.center) - a.velocity -
                     cross(a.spin, contact.point - a.center);
-    if (!rested(pair, contact.point, attempt.h)) approach = std::max(approach, -dot(contact.normal, v));
+    const double speed = -dot(contact.normal, v);
+    if (!rested(pair, contact, speed, attempt.h)) approach = std::max(approach, speed);
   }
   const bool comes = approach > 0;
   if (gap.distance < 0) attempt.overlaps.push_back({pair, gap.distance, gap.normal});

@@ -34,18 +34,23 @@ bool Region::is_resting(BodyPair pair) const {
 }
 
 /// Whether a point of contact is one that rested at the last clear state, as far as it may have slid in `h`.
-/// Curved ways press what rests together; that is no hit.
-bool Region::rested(BodyPair pair, DVec3 point, double h) const {
+/// Curved ways press what rests together; that is no hit. They do so by no more than the turning of the
+/// bodies turns their speeds in that time: what comes in faster has met another side.
+bool Region::rested(BodyPair pair, const Contact& contact, double approach, double h) const {
+  if (!is_resting(pair)) return false;
+  const auto speed = [&](std::uint32_t body) {
+    const BodyMotion at = now(body);
+    return length(at.velocity) + length(cross(at.spin, contact.point - at.center)) +
+           length(pulls_[body].linear) * h;
+  };
+  const double speeds = speed(pair.a) + speed(pair.b);
+  const double turned = h * (length(now(pair.a).spin) + length(now(pair.b).spin) +
+                             (length(pulls_[pair.a].angular) + length(pulls_[pair.b].angular)) * h);
+  if (approach > 2 * turned * speeds + kAtRest * speeds && approach * h > setting_.options.epsilon)
+    return false;
   return std::any_of(resting_.begin(), resting_.end(), [&](const ImpulsePoint& p) {
     if (p.a != pair.a || p.b != pair.b) return false;
-    const auto speed = [&](std::uint32_t body) {
-      const BodyMotion at = now(body);
-      return length(at.velocity) + length(at.spin) * length(p.contact.point - at.center);
-    };
-    const double way = 2 * h *
-                       (speed(pair.a) + speed(pair.b) + length(pulls_[pair.a].linear) * h +
-                        length(pulls_[pair.b].linear) * h);
-    return length(point - p.contact.point) <= way + 10 * setting_.options.epsilon;
+    return length(contact.point - p.contact.point) <= 2 * h * speeds + 10 * setting_.options.epsilon;
   });
 }
 
@@ -81,8 +86,8 @@ bool Region::respond(double h) {
       // Back after 2 v / a, where one of them stands and the other is pulled to it by a.
       const double a = std::max(length(pull[pair.a].linear), length(pull[pair.b].linear));
       short_flight.push_back(0.5 * a * kShortFlight * setting_.dt);
-      const double pressed =
-          rested(pair, contact.point, h) ? -kMore * normal_speed(bodies, points.back()) : 0;
+      const double speed = -normal_speed(bodies, points.back());
+      const double pressed = rested(pair, contact, speed, h) ? kMore * speed : 0;
       no_bounce.push_back(patient_ ? std::max(short_flight.back(), pressed)
                                    : std::numeric_limits<double>::infinity());
     }
