@@ -7,8 +7,10 @@
 #include "hooke/progress.h"
 #include "hooke/text_of.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace hooke::app {
 
@@ -28,7 +30,55 @@ std::string csv_line(const lab::Run& run) {
                  energy.elastic, static_cast<unsigned long long>(run.evaluations()));
 }
 
-Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t steps) {
+using Quantity = SceneExpectation::Quantity;
+
+/// Figures that only a step of the solver leaves.
+bool is_of_solver(Quantity quantity) {
+  constexpr Quantity kFigures[] = {
+      Quantity::kTension, Quantity::kPenetration, Quantity::kContacts, Quantity::kAsleep, Quantity::kForce,
+      Quantity::kTorque,  Quantity::kAngle,       Quantity::kWay,      Quantity::kGap,    Quantity::kBroken};
+  return std::find(std::begin(kFigures), std::end(kFigures), quantity) != std::end(kFigures);
+}
+
+/// What the scene promises of the laboratory's run: with `laboratory` in the scene, as it declares it.
+class Promises {
+ public:
+  Promises(Simulation& simulation, bool are_kept) : simulation_(simulation), are_kept_(are_kept) {}
+
+  /// Checks those that are due after so many steps. Errors: those of show_run.
+  Result<void> check(const lab::Run& run, std::uint64_t step) {
+    const Scene& scene = simulation_.scene();
+    bool is_shown = false;
+    for (std::size_t i = 0; i < scene.expect.size() && are_kept_; ++i) {
+      const SceneExpectation& wanted = scene.expect[i];
+      if (is_of_solver(wanted.quantity) || wanted.at_step.value_or(scene.step_count()) != step) continue;
+      if (!is_shown) {
+        if (auto shown = show_run(run, simulation_); !shown) return shown;
+        is_shown = true;
+      }
+      verdicts_.push_back(simulation_.check(i));
+      verdicts_.back().step = step;
+    }
+    return {};
+  }
+  [[nodiscard]] const std::vector<SceneVerdict>& verdicts() const { return verdicts_; }
+  [[nodiscard]] bool passed() const {
+    return std::all_of(verdicts_.begin(), verdicts_.end(), [](const SceneVerdict& v) { return v.passed; });
+  }
+  [[nodiscard]] std::string text() const {
+    std::string text;
+    for (const SceneVerdict& v : verdicts_)
+      text += (v.passed ? "pass expect[" : "FAIL expect[") + std::to_string(v.index) + "]: " + v.text + "\n";
+    return text;
+  }
+
+ private:
+  Simulation& simulation_;
+  bool are_kept_ = false;
+  std::vector<SceneVerdict> verdicts_;
+};
+
+Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t steps, Promises& promises) {
   std::optional<OutputFile> csv;
   if (!options.csv.empty()) {
     auto created = OutputFile::create(options.csv);
@@ -41,6 +91,7 @@ Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t
     const auto done = run.advance();
     if (!done) return done;
     if (csv) csv->write(csv_line(run));
+    if (auto checked = promises.check(run, i + 1); !checked) return checked;
     progress.show(i + 1);
   }
   if (csv) return csv->finish();
@@ -61,7 +112,7 @@ Json json_of_collisions(const lab::CollisionReport& report) {
 }
 
 std::string json_text(const Simulation& simulation, const lab::Run& run, const LaboratoryRun& options,
-                      const Energy& start) {
+                      const Energy& start, const Promises& promises) {
   Json objects = Json::array();
   for (const lab::ObjectReport& report : run.report()) {
     Json object = {{"name", name_of(simulation, report)},
@@ -79,6 +130,7 @@ std::string json_text(const Simulation& simulation, const lab::Run& run, const L
                        {"evaluations", run.evaluations()},
                        {"energy", {{"start", json_of(start)}, {"end", json_of(run.energy())}}},
                        {"collisions", json_of_collisions(run.collisions())},
+                       {"expect", json_of(simulation, promises.verdicts())},
                        {"objects", objects}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -115,27 +167,32 @@ std::string summary_text(const Simulation& simulation, const lab::Run& run, cons
 
 ExitCode run_laboratory(Scene scene, const LaboratoryRun& options) {
   const std::uint64_t steps = steps_in(scene, options.seconds);
-  if (!scene.timeline.empty() || !scene.expect.empty()) {
-    warn(
-        {ErrorCode::kUnsupported, options.scene, "timeline and expectations are the solver's, and left out"});
+  const bool keeps = options.stepper == kDeclaredName && scene.laboratory;
+  if (!scene.timeline.empty() || (!keeps && !scene.expect.empty())) {
+    const std::string what =
+        keeps ? "the timeline is the solver's" : "timeline and expectations are the solver's";
+    warn({ErrorCode::kUnsupported, options.scene, what + ", and left out"});
     scene.timeline.clear();
-    scene.expect.clear();
   }
-  const auto simulation = build_simulation(std::move(scene));
+  auto simulation = build_simulation(std::move(scene));
   if (!simulation) return kBadInput;
   auto run = make_run(*simulation, options.stepper, options.seconds, options.force);
   if (!run) return report(run.error());
   const Energy start = run.value().energy();
-  const auto done = simulate(run.value(), options, steps);
+  Promises promises(*simulation, keeps);
+  const auto done = simulate(run.value(), options, steps, promises);
   if (!done) return report(done.error());
+  const ExitCode verdict = promises.passed() ? kGood : kFailed;
   if (!options.json.empty()) {
-    const auto written = write_file(options.json, json_text(*simulation, run.value(), options, start));
-    return written ? kGood : report(written.error());
+    const auto written =
+        write_file(options.json, json_text(*simulation, run.value(), options, start, promises));
+    return written ? verdict : report(written.error());
   }
   if (!is_standard_output(options.csv)) {
     std::fputs(summary_text(*simulation, run.value(), options, start).c_str(), stdout);
+    std::fputs(promises.text().c_str(), stdout);
   }
-  return kGood;
+  return verdict;
 }
 
 }  // namespace hooke::app

@@ -17,8 +17,10 @@ struct LaboratoryRun {
   std::string json;  ///< Written instead of the summary if not empty.
 };
 
-/// Runs a scene in the laboratory instead of the solver, and reports what was chosen and reached. Timeline
-/// and expectations are left out.
+/// Runs a scene in the laboratory instead of the solver, and reports what was chosen and reached. The
+/// timeline is left out. Expectations hold for the method that the scene's `laboratory` declares, but for
+/// figures that only the solver has (contacts, forces of hooks, sleep); any other method's run is an
+/// experiment.
 ExitCode run_laboratory(Scene scene, const LaboratoryRun& options);
 
 }  // namespace hooke::app

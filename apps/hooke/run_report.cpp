@@ -9,23 +9,7 @@
 
 namespace hooke::app {
 
-namespace {
-
 using Json = nlohmann::ordered_json;
-
-Json verdicts_of(const Simulation& simulation) {
-  Json list = Json::array();
-  for (const SceneVerdict& verdict : simulation.verdicts()) {
-    list.push_back({{"text", verdict.text},
-                    {"achieved", verdict.achieved},
-                    {"value", simulation.scene().expect[verdict.index].value},
-                    {"step", verdict.step},
-                    {"passed", verdict.passed}});
-  }
-  return list;
-}
-
-}  // namespace
 
 StepTimes step_times(const std::vector<double>& step_ms) {
   if (step_ms.empty()) return {};
@@ -66,7 +50,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"largest_gap", end.largest_gap},
       {"contacts", record.contacts},
       {"state_hash", hash_text(world.state_hash())},
-      {"expect", verdicts_of(simulation)},
+      {"expect", json_of(simulation, simulation.verdicts())},
       {"passed", passed(simulation)},
       {"errors", errors},
       {"warnings", record.warnings},

@@ -182,6 +182,17 @@ Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepp
   return run;
 }
 
+static std::vector<DVec3> velocities_of(const lab::Run& run, const SceneObject& object) {
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      return run.velocities(object.rope);
+    case SceneObject::Kind::kCloth:
+      return run.velocities(object.cloth);
+    default:
+      return run.velocities(object.particles);
+  }
+}
+
 /// Bodies that stand have no state in the run, and stay.
 static Result<void> show_body(const lab::Run& run, const SceneObject& object, World& world) {
   const auto state = run.body(object.body);
@@ -193,8 +204,10 @@ static Result<void> show_body(const lab::Run& run, const SceneObject& object, Wo
   const DVec3 own = vector_cast<double>(rotate(conjugate(before.rotation), lever));
   const auto real = [](double value) { return static_cast<Real>(value); };
   const auto& q = now.rotation;
-  return world.set_pose(object.body,
-                        {now.center - rotate(q, own), {real(q.x), real(q.y), real(q.z), real(q.w)}});
+  const Pose pose = {now.center - rotate(q, own), {real(q.x), real(q.y), real(q.z), real(q.w)}};
+  if (auto moved = world.set_pose(object.body, pose); !moved) return moved;
+  if (auto moved = world.set_velocity(object.body, vector_cast<Real>(now.velocity)); !moved) return moved;
+  return world.set_angular_velocity(object.body, vector_cast<Real>(now.angular_velocity));
 }
 
 Result<void> show_run(const lab::Run& run, Simulation& simulation) {
@@ -205,11 +218,14 @@ Result<void> show_run(const lab::Run& run, Simulation& simulation) {
       continue;
     }
     const std::vector<DVec3> points = positions_of(run, object);
+    const std::vector<DVec3> velocities = velocities_of(run, object);
     PointRef reference = reference_of(object);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(length(points[i]) < kGone)) return Error{ErrorCode::kOutOfRange, object.name, "is gone"};
       reference.index = static_cast<std::uint32_t>(i);
       auto moved = simulation.world().set_position(reference, points[i]);
+      if (!moved) return moved;
+      moved = simulation.world().set_velocity(reference, vector_cast<Real>(velocities[i]));
       if (!moved) return moved;
     }
   }

@@ -59,8 +59,8 @@ Result<Player> make_player(const Stage& stage, const std::string& name, double d
 Result<lab::Run> make_run(const Simulation& simulation, const std::string& stepper, double seconds,
                           bool force);
 
-/// Moves the points of the simulation to where the run has them, to be drawn. Errors: a point is gone,
-/// further than 1000 km.
+/// Gives the objects of the simulation the places and velocities that the run has them at, to be drawn and
+/// measured. Errors: a point is gone, further than 1000 km.
 Result<void> show_run(const lab::Run& run, Simulation& simulation);
 
 /// Points of an object in a run of the laboratory [m]; of a body its center of mass, if it moves.
