@@ -13,6 +13,7 @@ import pathlib
 import struct
 import sys
 
+from concave_scenes import chain_of_links, gears, torus_on_peg
 from hook_scenes import HOOK_SCENES
 from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot, fall, fibonacci_points,
@@ -813,7 +814,8 @@ SCENES = [
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
     *ROPE_SCENES, *SOLID_SCENES
 ]
-PAPER = [fig5, fig6, fig7, wall, rollback_room, bsp_walk]  # in the folder paper
+PAPER = [fig5, fig6, fig7, wall, rollback_room, gears, torus_on_peg, chain_of_links,
+         bsp_walk]  # in the folder paper
 
 
 def main():

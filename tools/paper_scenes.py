@@ -89,7 +89,7 @@ def rollback_room():
         place = [-1.25 + 0.5 * i, 0.6 + 0.45 * i, 0.4 * (-1)**i]
         name, shape = ("ball", ball(half)) if i % 2 else ("crate", box(half, half, half))
         things.append(body(f"{name}{i}", "clay" if i % 2 else "moss", shape, place, mass=mass,
-                           velocity=[1.5 - 0.6 * i, 0, 0.3 * (i - 2)]))
+                           velocity=[1.5 - 0.6 * i, 0, 0.3 * (i - 2)], angular_damping=1.0))
     return scene(
         "Rollback in a room",
         "Balls and crates are thrown into a room; each hit is a step that was canceled and taken again, and only "

@@ -19,7 +19,7 @@ using state::ColliderShape;
 using state::Tables;
 
 // Of solids that are taken apart to move.
-constexpr Real kConcavity = Real(0.005);  ///< Depth that parts may dip below their hulls, of the diagonal.
+constexpr Real kConcavity = Real(0.001);  ///< Depth that parts may dip below their hulls, of the diagonal.
 constexpr int kMostParts = 64;
 
 struct Part {
