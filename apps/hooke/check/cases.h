@@ -120,5 +120,6 @@ Rows hook_springs(const CheckSetting& setting);
 
 // cases_rollback.cpp: bodies in the laboratory
 Rows rollback(const CheckSetting& setting);
+Rows bodies_by_rk4(const CheckSetting& setting);
 
 }  // namespace hooke::check

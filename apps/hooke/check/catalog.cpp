@@ -94,6 +94,7 @@ const std::vector<CheckCase>& check_cases() {
       {"I18", "Load that swings on a light rope", swinging_load},
       {"I19", "Table on four ropes", table_on_ropes},
       {"I20", "Rollback in the laboratory", rollback},
+      {"I21", "Bodies in the laboratory", bodies_by_rk4},
   };
   return cases;
 }

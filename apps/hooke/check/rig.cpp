@@ -47,7 +47,25 @@ bool Rig::step() {
   return healthy_;
 }
 
+DVec3 Rig::center(BodyId id) const {
+  return run_ ? must(run_->body(id)).center : world_.center_of_mass(id);
+}
+
+DVec3 Rig::velocity(BodyId id) const {
+  return run_ ? must(run_->body(id)).velocity : vector_cast<double>(world_.velocity(id));
+}
+
+DVec3 Rig::spin(BodyId id) const {
+  return run_ ? must(run_->body(id)).angular_velocity : vector_cast<double>(world_.angular_velocity(id));
+}
+
+DVec3 Rig::own_spin(BodyId id) const {
+  if (run_) return rotate(conjugate(must(run_->body(id)).rotation), spin(id));
+  return vector_cast<double>(rotate(conjugate(world_.pose(id).rotation), world_.angular_velocity(id)));
+}
+
 DVec3 Rig::direction(BodyId id, DVec3 own) const {
+  if (run_) return rotate(must(run_->body(id)).rotation, own);
   return vector_cast<double>(rotate(world_.pose(id).rotation, real(own)));
 }
 

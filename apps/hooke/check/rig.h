@@ -88,11 +88,13 @@ class Rig {
   [[nodiscard]] std::vector<DVec3> velocities(IdType id) const {
     return run_ ? run_->velocities(id) : copy_points(world_.velocities(id));
   }
-  [[nodiscard]] DVec3 center(BodyId id) const { return world_.center_of_mass(id); }
-  [[nodiscard]] DVec3 velocity(BodyId id) const { return vector_cast<double>(world_.velocity(id)); }
-  [[nodiscard]] DVec3 spin(BodyId id) const { return vector_cast<double>(world_.angular_velocity(id)); }
+  [[nodiscard]] DVec3 center(BodyId id) const;
+  [[nodiscard]] DVec3 velocity(BodyId id) const;
+  [[nodiscard]] DVec3 spin(BodyId id) const;
   /// A direction of the body's frame, in the world.
   [[nodiscard]] DVec3 direction(BodyId id, DVec3 own) const;
+  /// `spin` in the body's frame.
+  [[nodiscard]] DVec3 own_spin(BodyId id) const;
   [[nodiscard]] Energy energy() const { return run_ ? run_->energy() : world_.measure().energy; }
   /// Equal numbers mean the same bits of every position and velocity.
   [[nodiscard]] std::uint64_t state_hash() const;
