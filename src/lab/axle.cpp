@@ -32,7 +32,9 @@ std::optional<Axle> axle_of(const state::Tables& tables, std::uint32_t body) {
   if (std::any_of(hook + 1, tables.hooks.end(), is_held)) return {};
   const state::HookPlace& world = hook->a.body == body ? hook->b : hook->a;
   const bool is_free = hook->freedom[3] == HookFreedom{};  // the angle about the axis
-  if (hook->kind != HookKind::kHinge || world.body != state::HookPlace::kWorld || !is_free) return {};
+  if (hook->kind != HookKind::kHinge || world.body != state::HookPlace::kWorld || world.is_point() ||
+      !is_free)
+    return {};
   const DVec3 axis = normalize(rotate(math::in_double(world.axes), DVec3{1, 0, 0}));
   const DVec3 aside = cross(world.anchor - tables.bodies.center[body], axis);
   if (!(length(aside) <= kOffCenter * static_cast<double>(tables.bodies.traits[body].radius))) return {};
