@@ -151,6 +151,9 @@ struct BodyDesc {
   Real linear_damping = Real(0);     ///< Rate at which the velocity decays [1/s].
   Real angular_damping = Real(0);    ///< [1/s]
   Real gravity_scale = Real(1);
+  Real drag_coefficient = Real(0);    ///< C_d of the area it shows to the flow of air (WindDesc), 0 to 1e6.
+  Real magnus_coefficient = Real(0);  ///< C of the lift C rho V omega x v of a body that spins in air, V its
+                                      ///< volume; within 1e6. A smooth ball at low speed: 0.75.
   ContactDesc contact = {};
   FilterDesc filter = {};
   bool collides = true;  ///< False: only drawn.
@@ -393,18 +396,33 @@ struct ParticlesDesc {
   ContactDesc contact = {};
 };
 
-/// A force on every particle of the world.
+/// A force on every particle and every body that forces move. On bodies it acts at the center of mass.
 struct FieldDesc {
   enum class Kind : std::uint8_t {
     kUniform,        ///< Acceleration `vector` [m/s^2].
     kInverseSquare,  ///< Acceleration -strength (x - center) / |x - center|^3; none at the center itself.
-    kMagnetic,       ///< Force q v x `vector` [T] on charged particles.
+    kMagnetic,       ///< Force q v x `vector` [T] on charged particles; bodies have no charge.
+    kLiquid,   ///< At rest below y = `height`, or flowing with `vector` [m/s]. Lifts by the weight of what
+               ///< is displaced, at its center, and drags: velocity and spin of a body that displaces
+               ///< its own mass decay at the rate `drag`. The liquid itself does not move.
+    kSuction,  ///< Acceleration `strength` (1 - r / reach)^falloff towards `center`, r the distance from it.
+    kVortex,   ///< The same about the axis `vector` through `center`, r the distance from the axis:
+               ///< across it, counter-clockwise seen from its tip.
+    kExplosion,  ///< At `time` the velocity changes by `strength` (1 - r / reach)^falloff away from `center`,
+                 ///< at the start of the step in which that falls. Once; never if the time is over.
   };
 
   Kind kind = Kind::kUniform;
   Vec3 vector = {};
-  DVec3 center = {};      ///< kInverseSquare [m].
-  double strength = 0.0;  ///< kInverseSquare [m^3/s^2]; positive attracts.
+  DVec3 center = {};        ///< [m]
+  double strength = 0.0;    ///< kInverseSquare: [m^3/s^2]; positive attracts. kSuction, kVortex: [m/s^2].
+                            ///< kExplosion: [m/s].
+  double reach = 1.0;       ///< [m], 1e-6 to 1e9: from there on nothing is felt.
+  int falloff = 1;          ///< 0 to 8; 0: as strong everywhere within reach.
+  double height = 0.0;      ///< kLiquid [m].
+  double density = 1000.0;  ///< kLiquid [kg/m^3], 0 to 1e6.
+  double drag = 0.0;        ///< kLiquid [1/s], 0 to 1e6.
+  double time = 0.0;        ///< kExplosion [s].
 };
 
 /// One object's particles as a force law sees them, in the order the maker gave them.

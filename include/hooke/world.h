@@ -99,7 +99,7 @@ struct StepReport {
 /// elastic energy are taken where the particles were then. Energy of ropes is by their tension at its end.
 struct Energy {
   double kinetic = 0;    ///< [J]
-  double potential = 0;  ///< [J] in gravity and fields; zero at the world's origin.
+  double potential = 0;  ///< [J] in gravity, uniform and inverse square fields; zero at the origin.
   double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness, in solids and in gas.
 
   [[nodiscard]] double total() const { return kinetic + potential + elastic; }

@@ -268,8 +268,10 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
                               .linear_damping = desc.linear_damping,
                               .angular_damping = desc.angular_damping,
                               .gravity_scale = desc.gravity_scale,
+                              .drag_coefficient = desc.drag_coefficient,
                               .filter = desc.filter};
   for (const Part& part : parts) {
+    traits.magnus_volume += desc.magnus_coefficient * static_cast<Real>(part.solid.volume);
     const Extent extent = extent_of(part, center);
     traits.radius = std::max(traits.radius, extent.outer);
     traits.inner_radius = std::max(traits.inner_radius, extent.inner);
@@ -314,6 +316,8 @@ Result<void> validate(const BodyDesc& body) {
       .in_range("linear_damping", static_cast<double>(body.linear_damping), 0, 1e6)
       .in_range("angular_damping", static_cast<double>(body.angular_damping), 0, 1e6)
       .finite("gravity_scale", static_cast<double>(body.gravity_scale))
+      .in_range("drag_coefficient", static_cast<double>(body.drag_coefficient), 0, 1e6)
+      .in_range("magnus_coefficient", static_cast<double>(body.magnus_coefficient), -1e6, 1e6)
       .require(body.hit_speed >= Real(0), "hit_speed", static_cast<double>(body.hit_speed),
                "must be zero, positive or infinite");
   if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);

@@ -33,11 +33,21 @@ Result<void> validate(const WorldDesc& desc) {
 }
 
 Result<void> validate(const FieldDesc& field) {
-  return Checks("field")
-      .finite("vector", field.vector)
+  Checks checks("field");
+  checks.finite("vector", field.vector)
       .place("center", field.center)
       .finite("strength", field.strength)
-      .result();
+      .in_range("reach", field.reach, 1e-6, 1e9)
+      .in_range("falloff", field.falloff, 0, 8)
+      .in_range("height", field.height, -1e9, 1e9)
+      .in_range("density", field.density, 0, 1e6)
+      .in_range("drag", field.drag, 0, 1e6)
+      .finite("time", field.time);
+  if (field.kind == FieldDesc::Kind::kVortex) {
+    const double axis = length(vector_cast<double>(field.vector));
+    checks.require(axis >= 1e-6 && axis <= 1e6, "vector", "must be an axis, 1e-6 to 1e6 long");
+  }
+  return checks.result();
 }
 
 Result<void> validate(const MotionDesc& motion, const std::string& where) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "hooke/desc.h"
 #include "hooke/math.h"
+
+#include <cmath>
 
 namespace hooke::elements {
 
@@ -17,6 +20,48 @@ Vector3<T> attraction(Vector3<T> d, double strength) {
 template <class T>
 Vector3<T> magnetic_force(Vector3<T> v, DVec3 field, double charge) {
   return charge * cross(v, Vector3<T>{T(field.x), T(field.y), T(field.z)});
+}
+
+/// (1 - r / reach)^falloff; zero from `reach` on.
+inline double falloff(const FieldDesc& field, double r) {
+  if (!(r < field.reach)) return 0;
+  double share = 1;
+  for (int i = 0; i < field.falloff; ++i) share *= 1 - r / field.reach;
+  return share;
+}
+
+/// What a radial field gives at d from its center, away from it; nothing at the center itself.
+inline DVec3 radial(const FieldDesc& field, DVec3 d) {
+  const double r = length(d);
+  return r > 0 ? (field.strength * falloff(field, r) / r) * d : DVec3{};
+}
+
+/// What a vortex gives at d from its center; nothing on the axis.
+inline DVec3 swirl(const FieldDesc& field, DVec3 d) {
+  const DVec3 axis = normalize(vector_cast<double>(field.vector));
+  const DVec3 across = cross(axis, d);
+  const double r = length(across);
+  return r > 0 ? (field.strength * falloff(field, r) / r) * across : DVec3{};
+}
+
+/// Acceleration that a field gives at x to whatever is there [m/s^2]; zero of a field that asks for more than
+/// the place.
+inline DVec3 acceleration(const FieldDesc& field, DVec3 x) {
+  switch (field.kind) {
+    case FieldDesc::Kind::kUniform:
+      return vector_cast<double>(field.vector);
+    case FieldDesc::Kind::kInverseSquare:
+      return attraction(x - field.center, field.strength);
+    case FieldDesc::Kind::kSuction:
+      return -radial(field, x - field.center);
+    case FieldDesc::Kind::kVortex:
+      return swirl(field, x - field.center);
+    case FieldDesc::Kind::kMagnetic:
+    case FieldDesc::Kind::kLiquid:
+    case FieldDesc::Kind::kExplosion:
+      break;
+  }
+  return {};
 }
 
 }  // namespace hooke::elements

@@ -62,7 +62,7 @@ std::vector<Field> object_rows() {
       field<Prefix..., &SceneObjects::cloths>("cloths", "", kAny, "Cloths, flags, soft shells."),
       field<Prefix..., &SceneObjects::solids>("solids", "", kAny, "Soft solids: jelly, rubber."),
       field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
-      field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle."),
+      field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle and body."),
       field<Prefix..., &SceneObjects::hooks>("hooks", "", kAny, "What holds bodies together."),
   };
 }

@@ -130,6 +130,11 @@ std::vector<Field> body_rows() {
       field<desc, &BodyDesc::angular_damping>("angular_damping", "1/s", kNotNegative,
                                               "Rate at which the spin decays."),
       field<desc, &BodyDesc::gravity_scale>("gravity_scale", "", kAny, "Factor on gravity."),
+      field<desc, &BodyDesc::drag_coefficient>("drag_coefficient", "", between(0, 1e6),
+                                               "C_d in air, of the area it shows to the flow."),
+      field<desc, &BodyDesc::magnus_coefficient>(
+          "magnus_coefficient", "", between(-1e6, 1e6),
+          "C of the lift C rho V omega x v in air, V its volume; of a ball 0.75 (Rubinow and Keller)."),
       field<desc, &BodyDesc::contact, &ContactDesc::surface_velocity>(
           "surface_velocity", "m/s", kAny, "Of a conveyor belt, in the body's frame."),
       field<desc, &BodyDesc::filter, &FilterDesc::category>("category", "", kAny, "Bits of its categories."),

@@ -360,7 +360,7 @@ const Kind& uniform_kind() {
   static const Kind kind = {.name = "uniform",
                             .help = "The same acceleration everywhere.",
                             .fields = {required(field<&SceneField::desc, &FieldDesc::vector>(
-                                "acceleration", "m/s^2", kAny, "Of every particle."))},
+                                "acceleration", "m/s^2", kAny, "Of every particle and body."))},
                             .defaults = defaults_of<SceneField>};
   return kind;
 }
@@ -385,6 +385,73 @@ const Kind& magnetic_kind() {
   return kind;
 }
 
+const Kind& liquid_kind() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "liquid",
+      .help = "Lifts by the weight of what is displaced, and drags. The liquid itself does not move.",
+      .fields = {required(field<desc, &FieldDesc::height>("height", "m", between(-1e9, 1e9),
+                                                          "It fills everything below.")),
+                 field<desc, &FieldDesc::density>("density", "kg/m^3", between(0, 1e6),
+                                                  "Mass of a cubic meter."),
+                 field<desc, &FieldDesc::drag>(
+                     "drag", "1/s", between(0, 1e6),
+                     "Rate at which the motion of a body decays that displaces its own mass."),
+                 field<desc, &FieldDesc::vector>("flow", "m/s", kAny, "Of the current.")},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+Field falloff_row() {
+  return field<&SceneField::desc, &FieldDesc::falloff>("falloff", "", between(0, 8),
+                                                       "Exponent n of (1 - r / reach)^n.");
+}
+
+Field reach_row() {
+  return required(field<&SceneField::desc, &FieldDesc::reach>("reach", "m", between(1e-6, 1e9),
+                                                              "From there on nothing is felt."));
+}
+
+const Kind& suction_kind() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "suction",
+      .help = "Acceleration strength (1 - r / reach)^falloff towards the center, r the distance from it.",
+      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it points to."),
+                 required(field<desc, &FieldDesc::strength>("strength", "m/s^2", kAny, "Negative blows.")),
+                 reach_row(), falloff_row()},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+const Kind& vortex_kind() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "vortex",
+      .help = "Acceleration strength (1 - r / reach)^falloff about an axis, r the distance from that.",
+      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "A point of the axis."),
+                 required(field<desc, &FieldDesc::vector>("axis", "", kAny, "Any length but zero.")),
+                 required(field<desc, &FieldDesc::strength>(
+                     "strength", "m/s^2", kAny, "Positive: counter-clockwise seen from the axis's tip.")),
+                 reach_row(), falloff_row()},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+const Kind& explosion_kind() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "explosion",
+      .help = "Once, the velocity changes by strength (1 - r / reach)^falloff away from the center.",
+      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it happens."),
+                 required(field<desc, &FieldDesc::time>("time", "s", kNotNegative, "When it happens.")),
+                 required(
+                     field<desc, &FieldDesc::strength>("strength", "m/s", kAny, "Positive drives away.")),
+                 reach_row(), falloff_row()},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
 bool check_field(Reader& reader, const JsonNode& node, const void* object) {
   return check_named(reader, node, static_cast<const SceneField*>(object)->name);
 }
@@ -396,14 +463,24 @@ const Kind& kind_of<SceneField>() {
   constexpr auto desc = &SceneField::desc;
   static const Kind kind = {
       .name = "field",
-      .help = "A force on every particle of the world. One of `uniform`, `inverse_square`, `magnetic`.",
+      .help =
+          "A force on every particle and body of the world. One of `uniform`, `inverse_square`, `magnetic`, "
+          "`liquid`, `suction`, `vortex`, `explosion`.",
       .fields = {field<&SceneField::name>("name", "", kNotEmpty, "Unique."),
                  choice<FieldDesc::Kind::kUniform, desc, &FieldDesc::kind>(
                      group("uniform", uniform_kind, "Like gravity.")),
                  choice<FieldDesc::Kind::kInverseSquare, desc, &FieldDesc::kind>(
                      group("inverse_square", inverse_square_kind, "Like a planet's.")),
                  choice<FieldDesc::Kind::kMagnetic, desc, &FieldDesc::kind>(
-                     group("magnetic", magnetic_kind, "A magnet's."))},
+                     group("magnetic", magnetic_kind, "A magnet's.")),
+                 choice<FieldDesc::Kind::kLiquid, desc, &FieldDesc::kind>(
+                     group("liquid", liquid_kind, "Water that things float in.")),
+                 choice<FieldDesc::Kind::kSuction, desc, &FieldDesc::kind>(
+                     group("suction", suction_kind, "Towards a point.")),
+                 choice<FieldDesc::Kind::kVortex, desc, &FieldDesc::kind>(
+                     group("vortex", vortex_kind, "Round an axis.")),
+                 choice<FieldDesc::Kind::kExplosion, desc, &FieldDesc::kind>(
+                     group("explosion", explosion_kind, "Away from a point, once."))},
       .defaults = defaults_of<SceneField>,
       .check = check_field};
   return kind;
@@ -420,6 +497,10 @@ std::span<const Kind* const> object_kinds() {
                                    &uniform_kind(),
                                    &inverse_square_kind(),
                                    &magnetic_kind(),
+                                   &liquid_kind(),
+                                   &suction_kind(),
+                                   &vortex_kind(),
+                                   &explosion_kind(),
                                    &kind_of<ScenePin>(),
                                    &kind_of<SceneLoad>(),
                                    &kind_of<MotionDesc>(),

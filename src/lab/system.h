@@ -137,6 +137,8 @@ class System {
   };
 
   PointRow add_fields(const state::Tables& tables);
+  /// Says which fields are left out.
+  void note_fields(const state::Tables& tables);
   void add_points(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_segments(const state::Tables& tables, const state::Deformable& object);

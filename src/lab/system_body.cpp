@@ -43,7 +43,6 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   const state::BodyTraits& traits = bodies.traits[row];
   System system;
   system.slot_ = bodies.slot[row];
-  system.attractors_ = std::make_shared<const std::vector<FieldDesc>>();
   system.chart_ = math::in_double(math::in_double(bodies.rotation[row]) * math::in_double(mass.principal));
   system.start_x_ = {bodies.center[row], {}};
   const DVec3 spin = vector_cast<double>(bodies.angular_velocity[row]);
@@ -61,10 +60,12 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   system.free_of_row_ = {0, 1};
   system.free_rows_ = {kCenter, kTurn};
   system.coordinates_ = 6;
-  PointRow center = {.at = {kCenter}, .mass = system.mass_[kCenter]};
-  center.uniform = static_cast<double>(traits.gravity_scale) * vector_cast<double>(tables.desc.gravity);
+  PointRow center = system.add_fields(tables);
+  center.at = {kCenter};
+  center.mass = system.mass_[kCenter];
+  center.uniform +=
+      (static_cast<double>(traits.gravity_scale) - 1) * vector_cast<double>(tables.desc.gravity);
   center.viscous = static_cast<double>(traits.linear_damping) * center.mass;
-  center.attractors = system.attractors_.get();
   system.points_ = {center};
   system.turns_ = {{.at = {kTurn},
                     .axes = axes_of(system.chart_),
@@ -84,6 +85,9 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
     system.left_out_.emplace_back(
         "hooks: of bodies only hinges to the world hold here, through the center of mass");
   }
+  system.note_fields(tables);
+  if (traits.drag_coefficient != Real(0) || traits.magnus_volume != Real(0))
+    system.left_out_.emplace_back("air: bodies do not feel it here");
   return system;
 }
 

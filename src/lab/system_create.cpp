@@ -1,6 +1,7 @@
 #include "lab/laws.h"
 #include "lab/system.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -53,7 +54,7 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   return system;
 }
 
-/// What acts on all points alike; centers of attraction go to their own list.
+/// What acts on all points and bodies alike; centers of attraction go to their own list.
 PointRow System::add_fields(const state::Tables& tables) {
   auto attractors = std::make_shared<std::vector<FieldDesc>>();
   PointRow all = {.uniform = vector_cast<double>(tables.desc.gravity)};
@@ -66,6 +67,12 @@ PointRow System::add_fields(const state::Tables& tables) {
   all.attractors = attractors.get();
   attractors_ = std::move(attractors);
   return all;
+}
+
+void System::note_fields(const state::Tables& tables) {
+  const auto unknown = [](const state::Field& field) { return field.desc.kind > FieldDesc::Kind::kMagnetic; };
+  if (std::any_of(tables.fields.begin(), tables.fields.end(), unknown))
+    left_out_.emplace_back("liquids, suction, vortices and explosions: the laboratory has none");
 }
 
 void System::add_points(const state::Tables& tables, const state::Deformable& object) {
@@ -179,6 +186,7 @@ void System::note(const state::Tables& tables, const state::Deformable& object) 
   for (const PointRow& row : points_) damped = damped || (row.charge != 0 && row.magnetic != DVec3{});
   velocity_dependent_ = damped;
   ballistic_ = !damped && springs_.empty() && bends_.empty() && attractors_->empty();
+  note_fields(tables);
   if (tables.any_force) left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
 }
 

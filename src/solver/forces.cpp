@@ -1,5 +1,7 @@
 #include "solver/forces.h"
 
+#include "elements/fields.h"
+#include "geometry/immersion.h"
 #include "math/trig.h"
 
 #include <algorithm>
@@ -9,11 +11,10 @@ namespace hooke::solver {
 
 namespace {
 
-/// Acceleration of a field at an offset from its center [m/s^2].
-Vec3 attraction(const FieldDesc& field, DVec3 offset) {
-  const double r2 = length_squared(offset);
-  if (!(r2 > 0)) return {};
-  return vector_cast<Real>((-field.strength / (r2 * std::sqrt(r2))) * offset);
+/// Of the liquid where a ball of this radius is [kg].
+double displaced_mass(const FieldDesc& liquid, double y, Real radius) {
+  const auto r = static_cast<double>(radius);
+  return liquid.density * geometry::cap_volume(r, std::clamp(r + (liquid.height - y), 0.0, 2 * r));
 }
 
 /// `v` turned about the field by the angle a charge of q/m turns in h.
@@ -46,9 +47,14 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
     if (inputs.any_force) v += (h * w) * particles.force[p];
     for (const state::Field& field : inputs.fields) {
       const DVec3 x = object.origin + vector_cast<double>(particles.position[p].x);
-      if (field.desc.kind == FieldDesc::Kind::kUniform) v += h * field.desc.vector;
-      if (field.desc.kind == FieldDesc::Kind::kInverseSquare)
-        v += h * attraction(field.desc, x - field.desc.center);
+      v += h * vector_cast<Real>(elements::acceleration(field.desc, x));
+      if (field.desc.kind == FieldDesc::Kind::kLiquid) {
+        const double ratio =
+            displaced_mass(field.desc, x.y, particles.position[p].radius) * static_cast<double>(w);
+        const Real k = static_cast<Real>(field.desc.drag * ratio);
+        v = field.desc.vector + (Real(1) / (Real(1) + h * k)) * (v - field.desc.vector);
+        v -= (h * static_cast<Real>(ratio)) * inputs.gravity;
+      }
       if (field.desc.kind == FieldDesc::Kind::kMagnetic && particles.charge[p] != Real(0)) {
         v = turn(v, field.desc.vector, static_cast<double>(particles.charge[p]) * static_cast<double>(w),
                  static_cast<double>(h));

@@ -68,8 +68,10 @@ struct BodyTraits {
   Real linear_damping = Real(0);
   Real angular_damping = Real(0);
   Real gravity_scale = Real(1);
-  Real radius = Real(0);        ///< Of the smallest sphere about the center of mass around all shapes [m].
-  Real inner_radius = Real(0);  ///< Of a sphere that fits into the largest shape [m]: how thin it is.
+  Real drag_coefficient = Real(0);
+  Real magnus_volume = Real(0);  ///< Magnus coefficient times the volume of the shapes [m^3].
+  Real radius = Real(0);         ///< Of the smallest sphere about the center of mass around all shapes [m].
+  Real inner_radius = Real(0);   ///< Of a sphere that fits into the largest shape [m]: how thin it is.
   FilterDesc filter = {};
 };
 

@@ -25,8 +25,8 @@ double distance(const Tables& t, std::uint32_t a, std::uint32_t b) {
                 vector_cast<double>(t.particles.position[b].x));
 }
 
-double potential_of(const Tables& t, DVec3 x, double mass) {
-  double sum = -mass * dot(vector_cast<double>(t.desc.gravity), x);
+double potential_of(const Tables& t, DVec3 x, double mass, double gravity_scale = 1) {
+  double sum = -gravity_scale * mass * dot(vector_cast<double>(t.desc.gravity), x);
   for (const state::Field& field : t.fields) {
     if (field.desc.kind == FieldDesc::Kind::kUniform)
       sum -= mass * dot(vector_cast<double>(field.desc.vector), x);
@@ -65,8 +65,8 @@ void measure_bodies(const Tables& t, Measurement& m) {
     const DVec3 inertia = vector_cast<double>(mass.inertia);
     m.energy.kinetic += 0.5 * kilograms * length_squared(v);
     m.energy.kinetic += 0.5 * (l.x * l.x / inertia.x + l.y * l.y / inertia.y + l.z * l.z / inertia.z);
-    m.energy.potential += static_cast<double>(t.bodies.traits[body].gravity_scale) *
-                          potential_of(t, t.bodies.center[body], kilograms);
+    m.energy.potential += potential_of(t, t.bodies.center[body], kilograms,
+                                       static_cast<double>(t.bodies.traits[body].gravity_scale));
     m.momentum += kilograms * v;
     m.angular_momentum += kilograms * cross(t.bodies.center[body], v) + momentum;
   }

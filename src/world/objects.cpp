@@ -150,6 +150,10 @@ bool is_swapped(const Tables& t, const state::Manifold& m) {
   return t.bodies.slot[m.body_b] < t.bodies.slot[m.body_a];
 }
 
+void wake_all(Tables& t) {
+  for (const std::uint32_t body : t.moving_bodies) state::wake(t.bodies, body);
+}
+
 void wake_neighbors(Tables& t, std::uint32_t body) {
   for (const state::Pair& pair : t.pairs.pair) {
     const std::uint32_t a = t.colliders.body[pair.collider_a];

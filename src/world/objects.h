@@ -45,6 +45,9 @@ void restore_tables(const state::Tables& from, state::Tables& to);
 /// Wakes every body that is near `body`, before it goes or is moved by hand.
 void wake_neighbors(state::Tables& tables, std::uint32_t body);
 
+/// Wakes every body: a force on all of them has changed.
+void wake_all(state::Tables& tables);
+
 /// Adds the state of bodies and their contacts.
 void hash_bodies(const state::Tables& tables, base::StateHash& hash);
 

@@ -3,10 +3,10 @@
 #include "solver/forces.h"
 #include "solver/wind.h"
 #include "world/access.h"
+#include "world/body_forces.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace hooke::world {
 
@@ -67,18 +67,6 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   }
 }
 
-/// Who is pushed by force laws over bodies, and what else pushes them.
-void begin_body_laws(WorldData& world) {
-  const state::Tables& tables = world.tables;
-  const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };
-  world.law_bodies.clear();
-  if (std::none_of(tables.force_laws.begin(), tables.force_laws.end(), asks)) return;
-  std::copy_if(world.awake.begin(), world.awake.end(), std::back_inserter(world.law_bodies),
-               [&](std::uint32_t body) { return is_dynamic(tables.bodies, body); });
-  world.given_force = tables.bodies.force;
-  world.given_torque = tables.bodies.torque;
-}
-
 }  // namespace
 
 void refresh_derived(WorldData& world) {
@@ -121,7 +109,7 @@ void begin_step(WorldData& world, double dt) {
   world.start_origin.clear();
   for (const state::Deformable& object : tables.objects) world.start_origin.push_back(object.origin);
   read_wind(world, tables.time + 0.5 * dt);
-  begin_body_laws(world);
+  begin_body_forces(world);
 
   std::fill(tables.segments.mean_tension.begin(), tables.segments.mean_tension.end(), Real(0));
   std::size_t row = 0;
@@ -152,7 +140,7 @@ void begin_particle_substep(WorldData& world) {
 void apply_forces(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
-                                      tables.any_force};
+                                      tables.any_force, tables.desc.gravity};
   for (const state::Deformable& object : tables.objects) {
     if (tables.fields.empty() && !tables.any_force && !object.feels_air) continue;
     for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
@@ -192,16 +180,6 @@ void call_force_laws(WorldData& world, double time, Real h) {
   }
   for (std::size_t p = 0; p < world.law_force.size(); ++p) {
     tables.particles.velocity[p].v += (h * tables.particles.velocity[p].inverse_mass) * world.law_force[p];
-  }
-}
-
-void call_body_laws(WorldData& world, double time) {
-  if (world.law_bodies.empty()) return;
-  world.tables.bodies.force = world.given_force;
-  world.tables.bodies.torque = world.given_torque;
-  BodyForceView view = ForceViewAccess::make(world, time);
-  for (const state::ForceLawEntry& entry : world.tables.force_laws) {
-    if (entry.body_law) entry.body_law(view);
   }
 }
 

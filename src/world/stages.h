@@ -34,10 +34,6 @@ void solve_ropes(WorldData& world, Real h);
 /// Tetrahedra of solids, color after color; then the gas in closed cloths.
 void solve_solids(WorldData& world, Real h);
 
-/// The force and torque on bodies for the substep that begins at `time`: what was given for the step, and
-/// what the user's laws over bodies ask for.
-void call_body_laws(WorldData& world, double time);
-
 /// Puts rows that are not finite back to where they began the step, at rest. Returns how many.
 std::uint32_t quarantine_non_finite(WorldData& world);
 

@@ -23,6 +23,7 @@
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
+#include "world/body_forces.h"
 #include "world/events.h"
 #include "world/hooks.h"
 #include "world/impacts.h"
@@ -51,6 +52,7 @@ constexpr int kContactGrain = 256;
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
   world::refresh_hooks(w);
+  world::set_off_explosions(w, dt);
   world::list_awake_bodies(w);
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
@@ -129,7 +131,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
   world::drive_kinematic_bodies(w, time + static_cast<double>(h), h);
-  world::call_body_laws(w, time);
+  world::force_bodies(w, time, h);
   const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
   for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
   for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {

@@ -135,6 +135,7 @@ Result<FieldId> World::add_field(const FieldDesc& desc) {
   state::Tables& t = data_->tables;
   const FieldId id = t.field_slots.add(static_cast<std::uint32_t>(t.fields.size()));
   t.fields.push_back({desc, id.slot});
+  world::wake_all(t);
   return id;
 }
 
@@ -160,7 +161,10 @@ bool World::remove(MeshId id) {
 }
 
 bool World::remove(FieldId id) {
-  return world::remove_row(data_->tables.field_slots, id, data_->tables.fields);
+  state::Tables& t = data_->tables;
+  if (!world::remove_row(t.field_slots, id, t.fields)) return false;
+  world::wake_all(t);
+  return true;
 }
 
 bool World::remove(ForceLawId id) {

@@ -73,12 +73,6 @@ void sort_contacts(std::vector<BodyContact>& contacts) {
                    [&](const BodyContact& p, const BodyContact& q) { return order(p) < order(q); });
 }
 
-/// How far a body has turned in the step so far, and has its rotation not yet.
-Quat turn_of(const Bodies& bodies, std::uint32_t row) {
-  if (state::tumbles_now(bodies, row)) return {};
-  return math::quaternion_of(bodies.scale[row] * bodies.motion[row].theta_scaled);
-}
-
 }  // namespace
 
 BodyId BodyForceView::id(std::size_t i) const {
@@ -98,7 +92,7 @@ DVec3 BodyForceView::center_of_mass(std::size_t i) const {
 Quat BodyForceView::rotation(std::size_t i) const {
   if (i >= size()) return {};
   const Bodies& b = world_->tables.bodies;
-  return normalize(turn_of(b, rows_[i]) * b.rotation[rows_[i]]);
+  return normalize(state::pose_now(b, rows_[i]).rotation);
 }
 
 Vec3 BodyForceView::velocity(std::size_t i) const {

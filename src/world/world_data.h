@@ -79,7 +79,8 @@ struct WorldData {
   std::vector<Vec3> wind;                 ///< At each particle [m/s].
   std::vector<Vec3> law_force;            ///< What force laws ask for [N].
   std::vector<std::uint32_t> law_bodies;  ///< What force laws see: rows in ascending order.
-  std::vector<Vec3> given_force;          ///< On bodies, without what force laws ask for [N].
+  bool bodies_surrounded = false;         ///< Something besides laws pushes them in each substep.
+  std::vector<Vec3> given_force;          ///< On bodies, without fields and force laws [N].
   std::vector<Vec3> given_torque;         ///< [N m]
 
   std::unique_ptr<parallel::ThreadPool> pool;

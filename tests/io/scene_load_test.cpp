@@ -46,7 +46,8 @@ TEST_SUITE("io/scene_load") {
       "cloths": [{"columns": 5, "rows": 4, "bend": "spring", "total_mass": 0.5, "pins": [{"row": "last"}]}],
       "particles": [{"particles": [{"position": [0, 0, 0], "mass": 2}, {"position": [1, 0, 0]}],
                      "springs": [{"a": 0, "b": 1, "rest_length": 0.5}]}],
-      "fields": [{"inverse_square": {"strength": 4}}]
+      "fields": [{"inverse_square": {"strength": 4}},
+                 {"explosion": {"time": 0.5, "strength": 3, "reach": 2}}]
     })",
                                            "demo.json");
     INFO(first_line(loaded));
@@ -86,6 +87,8 @@ TEST_SUITE("io/scene_load") {
     CHECK(particles.particles.at(0).mass == hooke::Real(2));
     CHECK(particles.springs.at(0).rest_length == hooke::Real(0.5));
     CHECK(scene.objects.fields.at(0).desc.kind == hooke::FieldDesc::Kind::kInverseSquare);
+    CHECK(scene.objects.fields.at(1).desc.kind == hooke::FieldDesc::Kind::kExplosion);
+    CHECK(scene.objects.fields.at(1).desc.time == 0.5);
   }
 
   TEST_CASE("a body that moves arrives in its descriptor, with its parts and what two materials do") {
