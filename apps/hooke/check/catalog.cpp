@@ -72,6 +72,8 @@ const std::vector<CheckCase>& check_cases() {
       {"V65", "Columns that buckle", euler_columns},
       {"V70", "Bar of jelly under its own weight", hanging_bar},
       {"V71", "Pulled bar of jelly", pulled_bar},
+      {"V81", "Floating bodies", floating_bodies_in_water},
+      {"V83", "Bodies in air", bodies_in_air},
       {"V86", "Any display rate", display_rate, 2e-4, 1.0 / 60},
       {"V91", "Order by halving the step", orders, 1.0 / 60},
       {"V92", "Overload", overload, 2e-4, 1.0 / 60},
