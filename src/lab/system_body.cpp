@@ -43,6 +43,7 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   const state::BodyTraits& traits = bodies.traits[row];
   System system;
   system.slot_ = bodies.slot[row];
+  PointRow center = system.add_fields(tables);
   system.chart_ = math::in_double(math::in_double(bodies.rotation[row]) * math::in_double(mass.principal));
   system.start_x_ = {bodies.center[row], {}};
   const DVec3 spin = vector_cast<double>(bodies.angular_velocity[row]);
@@ -60,7 +61,6 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   system.free_of_row_ = {0, 1};
   system.free_rows_ = {kCenter, kTurn};
   system.coordinates_ = 6;
-  PointRow center = system.add_fields(tables);
   center.at = {kCenter};
   center.mass = system.mass_[kCenter];
   center.uniform +=

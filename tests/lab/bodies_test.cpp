@@ -179,6 +179,18 @@ TEST_SUITE("lab/bodies") {
     CHECK(length(now.angular_velocity - DVec3{0, 8, 0}) < 1e-5);
   }
 
+  TEST_CASE("a body goes round a center of attraction and comes back after 2 pi sqrt(a^3 / GM)") {
+    World world = make_world(test::empty_space());
+    take(world.add_field({.kind = FieldDesc::Kind::kInverseSquare, .strength = 4.0}));
+    BodyDesc desc = {.kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.1)), .position = {1, 0, 0}};
+    desc.velocity = {Real(0), Real(2), Real(0)};
+    const BodyId id = take(world.add_body(desc));
+    lab::Run run = make_run(world, {.stepper = "rk4", .dt = std::numbers::pi / 1000});
+    advance(run, 1000);
+    const DVec3 back = take(run.body(id)).center - DVec3{1, 0, 0};
+    CHECK(length(back) < 1e-6);
+  }
+
   TEST_CASE("a kinematic body goes as told") {
     World world = make_world();
     BodyDesc arm = {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(1), Real(0.5), Real(0.5)})};
