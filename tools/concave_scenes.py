@@ -83,6 +83,7 @@ def gears():
                         angular_damping=2, **more)
             hooks.append(hook(f"axle of {name}", "hinge", name, place, axis=Z))
         bodies.append(made)
+    bodies.append(body("ball", "clay", {"sphere": {"radius": 0.1}}, [3.2, 3, 0]))
     step = 150
     angle = speed * step * DT
 
@@ -93,11 +94,11 @@ def gears():
 
     return scene(
         "Gears", "Wheels of 12, 24 and 16 teeth on fixed axles, the first one driven. Teeth are all that connects "
-        "them: they turn as 12/24 and 12/16, within the play of the teeth.", 3, [0, 2.2, 7.2], [0, 1.75, 0], {
+        "them: they turn as 12/24 and 12/16, within the play of the teeth. A ball falls beside them.", 3, [0, 2.2, 7.2], [0, 1.75, 0], {
             "clay": {"friction": 0, "restitution": 0}, "sand": {"friction": 0, "restitution": 0},
             "moss": {"friction": 0, "restitution": 0}
         }, bodies, [
-            tilt("wheel", -1), tilt("last", 1),
+            fall("ball", 3, 20), tilt("wheel", -1), tilt("last", 1),
             promise("angular_speed", "==", speed * counts[0] / counts[1], "wheel", 0.1),
             promise("angular_speed", "==", speed * counts[0] / counts[2], "last", 0.15)
         ], meshes=meshes, hooks=hooks, **laboratory(rollback="event", sweep="none", epsilon=1e-5))
