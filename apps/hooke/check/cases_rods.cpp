@@ -83,6 +83,7 @@ Rows elastica(const CheckSetting& setting) {
     rows.push_back(relative_row("way of the end down" + load, "m", figure.down, -end.y));
     rows.push_back(relative_row("way of the end back" + load, "m", figure.in, 1 - end.x));
   }
+  for (CheckRow& row : rows) row.solver = "rope";
   return rows;
 }
 
@@ -106,6 +107,7 @@ Rows euler_columns(const CheckSetting& setting) {
                                 0.5 * (low + high), 0.02);
     if (column.clamped_above)
       row = known_miss(row, "the upper clamp is two points that slide, at which a whole segment bends");
+    row.solver = "rope";
     rows.push_back(row);
   }
   return rows;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace hooke::check {
 
@@ -23,6 +24,12 @@ std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   for (int i = 0; i <= segments; ++i)
     points.push_back(from + (i / static_cast<double>(segments)) * (to - from));
   return points;
+}
+
+/// Rows of what ropes and what they are tied to do.
+Rows by_ties(Rows rows) {
+  for (CheckRow& row : rows) row.solver = "rope, ties";
+  return rows;
 }
 
 HookId tie(Rig& rig, BodyId body, RopeId rope, std::uint32_t index) {
@@ -106,9 +113,9 @@ Rows atwood(const CheckSetting& setting) {
                    (Atwood::kHeavy + Atwood::kLight +
                     0.5 * Atwood::kWheel * std::pow(Atwood::kRadius / Atwood::kMiddle, 2));
   const double way = 0.5 * (machine.rig.center(machine.light).y - machine.rig.center(machine.heavy).y);
-  return {relative_row("acceleration of the weights", "m/s^2", a, 2 * way / (time * time)),
-          relative_row("turning of the wheel at the end", "rad/s", a * time / Atwood::kMiddle,
-                       std::abs(machine.rig.spin(machine.wheel).z), 0.03)};
+  return by_ties({relative_row("acceleration of the weights", "m/s^2", a, 2 * way / (time * time)),
+                  relative_row("turning of the wheel at the end", "rad/s", a * time / Atwood::kMiddle,
+                               std::abs(machine.rig.spin(machine.wheel).z), 0.03)});
 }
 
 /// From any start pi sqrt(R / g) to the bottom of a cycloid (Huygens 1673); from its cusp that is the fastest
@@ -128,7 +135,7 @@ Rows cycloid(const CheckSetting& setting) {
   const double slope_time = std::sqrt(kRolling * (kTau * kTau / 4 + 4) / kGravity);
   rows.push_back(relative_row("time on the straight line", "s", slope_time,
                               bead_time(setting, straight, {0, 0, 0}, bottom)));
-  return rows;
+  return by_ties(std::move(rows));
 }
 
 /// A ton on a kilogram of rope, let go at 30 degrees: rope and load swing as one body about the hook, which
@@ -152,11 +159,11 @@ Rows swinging_load(const CheckSetting& setting) {
     gain = std::max(gain, rig.energy().total() - energy);
   });
   const double swing = 1000 * kGravity * 5 * (1 - std::cos(angle));
-  return {absolute_row("largest stretch", "", 0, stretch, 1e-3),
-          absolute_row("largest gap of the hook", "m", 0, gap, 1e-4),
-          absolute_row("energy gained, share of the swing's", "", 0, gain / swing, 0.01),
-          absolute_row("energy lost after 20 s, share of the swing's", "", 0,
-                       std::max(0.0, energy - rig.energy().total()) / swing, 0.01)};
+  return by_ties({absolute_row("largest stretch", "", 0, stretch, 1e-3),
+                  absolute_row("largest gap of the hook", "m", 0, gap, 1e-4),
+                  absolute_row("energy gained, share of the swing's", "", 0, gain / swing, 0.01),
+                  absolute_row("energy lost after 20 s, share of the swing's", "", 0,
+                               std::max(0.0, energy - rig.energy().total()) / swing, 0.01)});
 }
 
 /// A board of 40 kg on four ropes of 1 kg and EA = 1e6 N, slightly splayed: each hook carries a quarter.
@@ -182,9 +189,9 @@ Rows table_on_ropes(const CheckSetting& setting) {
     most = std::max(most, lift);
   }
   const double yaw = rig.direction(top, {1, 0, 0}).z;
-  return {relative_row("least lift of a hook", "N", 10 * kGravity, least, 0.001),
-          relative_row("largest lift of a hook", "N", 10 * kGravity, most, 0.001),
-          absolute_row("yaw after 20 s", "rad", 0, std::abs(yaw), 1e-4)};
+  return by_ties({relative_row("least lift of a hook", "N", 10 * kGravity, least, 0.001),
+                  relative_row("largest lift of a hook", "N", 10 * kGravity, most, 0.001),
+                  absolute_row("yaw after 20 s", "rad", 0, std::abs(yaw), 1e-4)});
 }
 
 }  // namespace hooke::check
