@@ -4,6 +4,7 @@
 #include "collision/shape_bounds.h"
 #include "math/rotation.h"
 #include "solver/bodies.h"
+#include "state/body_frames.h"
 #include "world/bodies.h"
 
 #include <algorithm>
