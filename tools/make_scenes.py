@@ -16,11 +16,11 @@ import sys
 from concave_scenes import chain_of_links, gears, torus_on_peg
 from hook_scenes import HOOK_SCENES
 from paper_scenes import fig5, fig6, rollback_room, wall
-from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, body, box, cross, dot, fall, fibonacci_points,
-                       ground, hull_of, prism, product, promise, rotated, scaled, scene, sector, slab,
-                       solid_mass, solid_moments, text_of, turn, weight_energy)
+from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, at_point, body, box, cross, dot, fall,
+                       fibonacci_points, ground, hull_of, prism, product, promise, rotated, scaled,
+                       scene, sector, slab, solid_mass, solid_moments, text_of, turn, weight_energy)
 from rope_scenes import ROPE_SCENES
-from solid_scenes import SOLID_SCENES, at_point
+from solid_scenes import SOLID_SCENES
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 # Written when asked for by name: above 300 kB, or not held by the solver yet. docs/decisions/0005-bodies.md

@@ -1,7 +1,7 @@
 """Scenes of ropes with what they are tied to; make_scenes.py writes them."""
 import math
 
-from scene_kit import DT, G, X, Y, Z, add, body, box, fall, ground, promise, scaled, scene, turn
+from scene_kit import DT, G, X, Z, add, at_point, body, box, fall, ground, promise, scaled, scene, turn
 
 
 def line(a, b, segments):
@@ -18,10 +18,6 @@ def tie(name, a, b, a_point=None, b_point=None, kind="ball", **more):
     made |= {"a_point": a_point} if a_point is not None else {}
     made |= {"b": b} | ({"b_point": b_point} if b_point is not None else {})
     return made | more
-
-
-def at_point(quantity, op, value, of, point, tolerance=None, at_step=None):
-    return promise(quantity, op, value, of, tolerance, at_step) | {"point": point}
 
 
 def tension(value, of, segment, tolerance):

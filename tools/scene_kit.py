@@ -247,6 +247,10 @@ def promise(quantity, op, value, of=None, tolerance=None, at_step=None):
     return made | ({"at_step": at_step} if at_step is not None else {})
 
 
+def at_point(quantity, op, value, of, point, tolerance=None, at_step=None):
+    return promise(quantity, op, value, of, tolerance, at_step) | {"point": point}
+
+
 def fall(of, height, step, gravity=G, speed=0.0):
     """Free fall, y = y0 + v t - g t^2 / 2, while nothing is in the way; 1 % of the way is for the scheme."""
     t = step * DT

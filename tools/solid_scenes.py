@@ -1,7 +1,7 @@
 """Scenes of soft solids and of balls with gas in them; make_scenes.py writes them."""
 import math
 
-from scene_kit import DT, G, X, Z, body, box, fall, ground, promise, scene, turn
+from scene_kit import DT, G, X, Z, at_point, body, box, fall, ground, promise, scene, turn
 
 
 def icosphere(radius, levels):
@@ -40,10 +40,6 @@ def torus(ring, tube, around, across):
             s, t = (p + across) % (around * across), (q + across) % (around * across)
             triangles += [[p, q, t], [p, t, s]]
     return {"vertices": vertices, "triangles": triangles}
-
-
-def at_point(quantity, op, value, of, point, tolerance=None, at_step=None):
-    return promise(quantity, op, value, of, tolerance, at_step) | {"point": point}
 
 
 def falling_point(height, step, of, point):

@@ -84,7 +84,7 @@ ClothSurface make_solid_surface(std::span<const Vec3> points,
     const Vec3 n = cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
     const float size[3] = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-    const float along = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+    const auto along = component(n, axis);
     for (const std::uint32_t p : t) {
       const auto next = static_cast<std::uint32_t>(surface.point_of.size());
       const auto [entry, is_new] = vertex_of.try_emplace({p, 2 * axis + (along < 0 ? 1 : 0)}, next);

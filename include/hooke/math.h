@@ -65,6 +65,11 @@ template <class T>
 constexpr Vector3<T> cross(Vector3<T> a, Vector3<T> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Component `axis` of a vector: 0 is x, 1 is y, 2 is z.
+template <class T>
+constexpr T component(Vector3<T> a, int axis) {
+  return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
 template <class T>
 constexpr T length_squared(Vector3<T> a) {
   return dot(a, a);

@@ -14,10 +14,6 @@ constexpr int kBinCount = 16;
 // From this depth on halves are taken. They end after 16 more levels, within BroadPhaseTree::kMaxDepth.
 constexpr int kMedianDepth = 16;
 
-Real along(Vec3 v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 /// Twice the center: its order is what counts.
 Vec3 center_of(const BroadPhaseTree::Leaf& leaf) {
   return leaf.box.lower + leaf.box.upper;
@@ -30,7 +26,7 @@ struct Extent {
   Real size = Real(0);
 
   [[nodiscard]] int bin(const BroadPhaseTree::Leaf& leaf) const {
-    const Real place = (along(center_of(leaf), axis) - lower) / size;
+    const Real place = (component(center_of(leaf), axis) - lower) / size;
     return std::min(kBinCount - 1, static_cast<int>(place * Real(kBinCount)));
   }
 };
@@ -42,7 +38,7 @@ Extent find_extent(std::span<const BroadPhaseTree::Leaf> leaves) {
   }
   const Vec3 size = centers.upper - centers.lower;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  return {axis, along(centers.lower, axis), along(size, axis)};
+  return {axis, component(centers.lower, axis), component(size, axis)};
 }
 
 /// The number of bins on the first side of the split with the least surface times leaves (Wald, 2007, On fast
@@ -88,7 +84,7 @@ std::size_t split(std::span<BroadPhaseTree::Leaf> leaves, int depth) {
   const auto middle = leaves.begin() + static_cast<std::ptrdiff_t>(leaves.size() / 2);
   std::nth_element(leaves.begin(), middle, leaves.end(),
                    [&](const BroadPhaseTree::Leaf& a, const BroadPhaseTree::Leaf& b) {
-                     return along(center_of(a), extent.axis) < along(center_of(b), extent.axis);
+                     return component(center_of(a), extent.axis) < component(center_of(b), extent.axis);
                    });
   return leaves.size() / 2;
 }

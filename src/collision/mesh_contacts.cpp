@@ -1,5 +1,6 @@
 #include "collision/mesh_contacts.h"
 
+#include "base/sort_unique.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -59,11 +60,6 @@ struct TwoMeshes {
   Search search = Search::kAll;
   double rounding = 0;  ///< Lengths below are nothing [m].
 };
-
-void sort_unique(Pairs& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-}
 
 // --- Vertices ---
 
@@ -164,7 +160,7 @@ Pairs edge_face_pairs(const Placed& own, const Placed& other, bool own_is_a, con
       pairs.emplace_back(e, own_is_a ? in_b : in_a);
     }
   }
-  sort_unique(pairs);
+  base::sort_unique(pairs);
   return pairs;
 }
 
@@ -310,7 +306,7 @@ Pairs edge_pairs(const TwoMeshes& scene, const Pairs& near) {
       for (const std::uint32_t f : scene.b.mesh.topology.triangle_edges[in_b]) pairs.emplace_back(e, f);
     }
   }
-  sort_unique(pairs);
+  base::sort_unique(pairs);
   return pairs;
 }
 

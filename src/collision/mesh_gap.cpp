@@ -1,5 +1,6 @@
 #include "collision/mesh_gap.h"
 
+#include "base/sort_unique.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -33,11 +34,6 @@ void add_all(std::size_t of_a, std::size_t of_b, Pairs& pairs) {
   }
 }
 
-void tidy_features(Pairs& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-}
-
 Features all_features(const ContactMesh& a, const ContactMesh& b) {
   Features features;
   add_all(a.positions.size(), b.triangles.size(), features.vertex_face);
@@ -55,9 +51,9 @@ Features features_of(const ContactMesh& a, const ContactMesh& b, const Pairs& tr
       for (const std::uint32_t f : b.topology.triangle_edges[in_b]) features.edges.emplace_back(e, f);
     }
   }
-  tidy_features(features.vertex_face);
-  tidy_features(features.face_vertex);
-  tidy_features(features.edges);
+  base::sort_unique(features.vertex_face);
+  base::sort_unique(features.face_vertex);
+  base::sort_unique(features.edges);
   return features;
 }
 

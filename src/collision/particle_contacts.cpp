@@ -242,8 +242,9 @@ void find_contacts(state::Tables& t, double dt) {
     const std::vector<std::uint32_t> near = near_colliders(t, colliders, t.objects[o], reach);
     const std::vector<Frame> frames = frames_of(t, near, t.objects[o]);
     for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
+      const Real way = way_of(p);
       for (std::size_t i = 0; i < near.size(); ++i)
-        find_pair(t, {p, near[i], 0}, o, frames[i], way_of(p), step, finder);
+        find_pair(t, {p, near[i], 0}, o, frames[i], way, step, finder);
     }
   }
   carry_forces(t.contacts, finder.contacts);

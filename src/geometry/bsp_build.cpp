@@ -74,8 +74,7 @@ std::uint32_t median_plane(BspSpace& space, const Pieces& pieces, std::size_t ax
   std::vector<double> places;
   const std::size_t step = std::max<std::size_t>(1, pieces.size() / kSample);
   for (std::size_t i = 0; i < pieces.size(); i += step) {
-    const DVec3 p = space.point(pieces[i].corners[0].point).place;
-    places.push_back(axis == 0 ? p.x : axis == 1 ? p.y : p.z);
+    places.push_back(component(space.point(pieces[i].corners[0].point).place, axis));
   }
   const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
   std::nth_element(places.begin(), middle, places.end());

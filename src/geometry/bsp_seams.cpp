@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
+#include "base/sort_unique.h"
 
 #include <algorithm>
 #include <array>
@@ -53,8 +54,7 @@ void weld_corners(const BspSpace& space, std::span<const BspPiece> pieces, Seame
   for (const BspPiece& piece : pieces) {
     for (const BspCorner& corner : piece.corners) points.push_back(corner.point);
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  base::sort_unique(points);
   std::sort(points.begin(), points.end(), [&](std::uint32_t p, std::uint32_t q) {
     const int order = space.compare(p, q);
     return order != 0 ? order < 0 : p < q;
@@ -123,8 +123,7 @@ class SeamVertices {
   static constexpr double kSlack = 0x1p-14;  // places are right to 2^-18 steps
 
   [[nodiscard]] double at(std::uint32_t vertex, std::size_t axis) const {
-    const DVec3 p = space_.point(seamed_.vertices[vertex]).place;
-    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+    return component(space_.point(seamed_.vertices[vertex]).place, static_cast<int>(axis));
   }
 
   [[nodiscard]] std::span<const std::uint32_t> near(const Side& side, std::size_t axis) const {
@@ -154,8 +153,7 @@ void divide_edges(const BspSpace& space, std::span<const BspPiece> pieces, Seame
     candidates.push_back(edge[0].low);
     candidates.push_back(edge[0].high);
   });
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  base::sort_unique(candidates);
   const SeamVertices vertices(space, seamed, candidates);
   // Backward, so that the corners before keep their places in the outline.
   std::sort(open.begin(), open.end(), [](const Side& a, const Side& b) {

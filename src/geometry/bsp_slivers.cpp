@@ -1,5 +1,6 @@
 #include "geometry/bsp_slivers.h"
 
+#include "base/sort_unique.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -98,8 +99,7 @@ class Remesher {
         if (other != vertex) found.push_back(other);
       }
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    base::sort_unique(found);
     return found;
   }
 

@@ -20,10 +20,7 @@ struct Item {
 
   /// Twice the center: its order is what counts. In double, where the sum of two floats does not overflow.
   [[nodiscard]] double center(int axis) const {
-    const auto along = [axis](Vec3 v) {
-      return static_cast<double>(axis == 0 ? v.x : axis == 1 ? v.y : v.z);
-    };
-    return along(box.lower) + along(box.upper);
+    return static_cast<double>(component(box.lower, axis)) + static_cast<double>(component(box.upper, axis));
   }
 };
 

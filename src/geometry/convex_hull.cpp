@@ -1,6 +1,7 @@
 #include "geometry/convex_hull.h"
 
 #include "base/assert.h"
+#include "base/sort_unique.h"
 #include "geometry/box.h"
 #include "geometry/mass_properties.h"
 #include "geometry/quickhull.h"
@@ -82,8 +83,7 @@ Result<GriddedPoints> put_on_grid(std::span<const Vec3> points) {
 double thickness_of(std::span<const HullTriangle> triangles, std::span<const GridPoint> points) {
   std::vector<std::uint32_t> corners;
   for (const HullTriangle& t : triangles) corners.insert(corners.end(), t.vertex.begin(), t.vertex.end());
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  base::sort_unique(corners);
   double thickness = std::numeric_limits<double>::infinity();
   for (const HullTriangle& face : triangles) {
     std::int64_t lowest = 0;

@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/sort_unique.h"
 #include "geometry/mesh_clean.h"
 
 #include <algorithm>
@@ -21,8 +22,7 @@ constexpr std::size_t kNamedMax = 8;
 
 /// "triangle 3 has", "triangles 3, 5 and 7 more have".
 std::string named(Numbers numbers, const char* one_does, const char* many_do) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  base::sort_unique(numbers);
   std::string text = numbers.size() == 1 ? "triangle " : "triangles ";
   for (std::size_t i = 0; i < std::min(numbers.size(), kNamedMax); ++i) {
     if (i > 0) text += i + 1 == numbers.size() ? " and " : ", ";

@@ -20,8 +20,7 @@ bool is_opaque(const DrawMesh& mesh) {
   return mesh.geometry != nullptr && mesh.alpha == AlphaMode::kOpaque && mesh.opacity >= 1;
 }
 
-Vertex placed(const Vertex& vertex, const Mat4& transform) {
-  const Mat3 normals = transpose(inverse(linear_part(transform)));
+Vertex placed(const Vertex& vertex, const Mat4& transform, const Mat3& normals) {
   Vertex result = vertex;
   result.position = transform_point(transform, vertex.position);
   result.normal = normalize(normals * vertex.normal);
@@ -33,11 +32,12 @@ void add_sources(const DrawMesh& mesh, std::size_t number, std::vector<Source>& 
   const std::size_t first = std::min(mesh.first_index, geometry.indices.size());
   const std::size_t left = geometry.indices.size() - first;
   const std::size_t count = mesh.index_count > 0 ? std::min(mesh.index_count, left) : left;
+  const Mat3 normals = transpose(inverse(linear_part(mesh.transform)));
   const bool is_mirrored = determinant(linear_part(mesh.transform)) < 0;
   for (std::size_t i = first; i + 2 < first + count; i += 3) {
     Source source = {.mesh = number};
     for (std::size_t k = 0; k < 3; ++k)
-      source.corners[k] = placed(geometry.vertices[geometry.indices[i + k]], mesh.transform);
+      source.corners[k] = placed(geometry.vertices[geometry.indices[i + k]], mesh.transform, normals);
     if (is_mirrored) std::swap(source.corners[1], source.corners[2]);
     sources.push_back(source);
   }

@@ -1,6 +1,7 @@
 #include "solver/articulations.h"
 
 #include "base/assert.h"
+#include "base/sort_unique.h"
 #include "math/rotation.h"
 #include "solver/geometric_stiffness.h"
 
@@ -16,8 +17,6 @@ using math::Symmetric3;
 using state::Hook;
 using state::HookPlace;
 
-constexpr int kFreePasses = 8;  ///< Rows come and go.
-constexpr int kMaxPasses = 16;  ///< In the rest rows only go.
 constexpr int kMaxSolves = 4;
 constexpr double kFastTurn = 0.03;           ///< In a substep, from which on rows are not straight [rad].
 constexpr double kLargeError = 2e-4;         ///< Gap of a joint over its levers, or its angle [rad].
@@ -394,8 +393,7 @@ bool revise_bounds(bool release, Articulation& art) {
         continue;
       } else {
         const double lacks = shortfall(art, joint, row) - row.gamma * art.lambda[i];
-        const bool stays = art.bound[i] < 0 ? lacks <= 1e-9 : lacks >= -1e-9;
-        bound = stays ? art.bound[i] : std::int8_t{0};
+        bound = stays_at(art.bound[i], lacks) ? art.bound[i] : std::int8_t{0};
       }
       changed = changed || bound != art.bound[i];
       art.bound[i] = bound;
@@ -406,9 +404,9 @@ bool revise_bounds(bool release, Articulation& art) {
 
 void solve_with_bounds(Articulation& art) {
   bool changed = true;
-  for (int pass = 0; changed && pass < kMaxPasses; ++pass) {
+  for (int pass = 0; changed && pass < kMostBoundPasses; ++pass) {
     solve_free_rows(art);
-    changed = revise_bounds(pass < kFreePasses, art);
+    changed = revise_bounds(pass < kFreeBoundPasses, art);
   }
   if (!changed) return;
   for (std::size_t i = 0; i < art.rows.size(); ++i)
@@ -464,8 +462,7 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
     for (const std::uint32_t i : group) neighbors[i].insert(neighbors[i].end(), group.begin(), group.end());
   }
   for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
-    std::sort(neighbors[i].begin(), neighbors[i].end());
-    neighbors[i].erase(std::unique(neighbors[i].begin(), neighbors[i].end()), neighbors[i].end());
+    base::sort_unique(neighbors[i]);
     std::erase(neighbors[i], i);
   }
   Articulation art;

@@ -17,10 +17,7 @@ namespace hooke::solver {
 struct BodyRow {
   DVec3 linear, angular;
 
-  [[nodiscard]] double at(int i) const {
-    const DVec3& part = i < 3 ? linear : angular;
-    return i % 3 == 0 ? part.x : i % 3 == 1 ? part.y : part.z;
-  }
+  [[nodiscard]] double at(int i) const { return component(i < 3 ? linear : angular, i % 3); }
   BodyRow& operator+=(const BodyRow& other) {
     linear += other.linear;
     angular += other.angular;
@@ -65,8 +62,6 @@ class BundleSolution {
   [[nodiscard]] std::vector<BodyRow> start_of_bodies() const;
   void give_impulses(std::vector<BodyRow>& start);
 
-  /// How fast each hook row opens by itself: ends that nothing of the bundle moves.
-  [[nodiscard]] double given_speed(std::uint32_t hook, const JointRow& row) const;
   [[nodiscard]] BodyRow hook_row(const JointRow& row, int end, const JointBody& body) const {
     const double sign = end == 1 ? 1 : -1;
     return {(sign * std::sqrt(body.inverse_mass)) * row.n, sign * (end == 1 ? row.j_b : row.j_a)};
@@ -107,15 +102,21 @@ class BundleSolution {
     const std::uint32_t row = b_.first_row[block - vector_count()] + static_cast<std::uint32_t>(k);
     return b_.bound[row] == 0 ? b_.rows[row].n : DVec3{};
   }
-  /// The number (i, k) of the block where `a` meets `b`.
-  double& number(std::uint32_t a, std::uint32_t b, int i, int k) {
+  /// Numbers (i, k) of a block; of the lower half of the matrix, which alone is kept.
+  struct Numbers {
+    double* first;
+    int down, across;
+    double& operator()(int i, int k) const { return first[i * down + k * across]; }
+  };
+  /// Where block `a` meets `b`, row i of `a` and column k of `b`.
+  Numbers numbers(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t row = b_.place[a];
     const std::uint32_t column = b_.place[b];
-    const bool lower = row >= column;
     const std::uint32_t block = find_block(b_.pattern, std::max(row, column), std::min(row, column));
     const BlockPattern::Block& at = b_.pattern.block[block];
     const int width = b_.pattern.size[at.column];
-    return b_.numbers[at.offset + static_cast<std::size_t>(lower ? i * width + k : k * width + i)];
+    double* first = b_.numbers.data() + at.offset;
+    return row >= column ? Numbers{first, width, 1} : Numbers{first, 1, width};
   }
   double& right_side(std::uint32_t block, int i) {
     return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.place[block]] + i)];

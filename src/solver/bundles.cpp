@@ -16,9 +16,6 @@ namespace {
 using math::Symmetric3;
 using state::Hook;
 
-constexpr int kFreePasses = 8;  ///< Rows with bounds come and go.
-constexpr int kMaxPasses = 16;  ///< In the rest they only go.
-
 }  // namespace
 
 void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Chain>& chains) {
@@ -53,10 +50,16 @@ void BundleSolution::load_hooks() {
     };
     JointBody a = end_of(0);
     if (hook.kind == HookKind::kRopeSlide) a.rotation = turn_of_slide(t_, hook);
-    const int count = make_joint_rows(hook, a, end_of(1), h_, rows);
+    const JointBody b = end_of(1);
+    const int count = make_joint_rows(hook, a, b, h_, rows);
+    // Nothing of the bundle moves these ends: how fast they open the row is given.
+    const bool a_given = b_.ends[i][0] < 0 && !hook.a.is_point();
+    const bool b_given = b_.ends[i][1] < 0 && !hook.b.is_point();
     for (int k = 0; k < count; ++k) {
       const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
       b_.rows[row] = rows[k];
+      if (a_given) b_.rows[row].target += dot(rows[k].n, a.v) + dot(rows[k].j_a, a.omega_scaled);
+      if (b_given) b_.rows[row].target -= dot(rows[k].n, b.v) + dot(rows[k].j_b, b.omega_scaled);
       b_.lambda[row] = static_cast<double>(hook.row_impulse[k]);
       b_.bound[row] = first_bound(rows[k], b_.lambda[row]);
     }
@@ -157,7 +160,7 @@ bool BundleSolution::revise_bounds(bool release) {
     if (bound == 0) {
       bound = side_of(b_.lambda[row], of.low, of.high);
     } else if (release) {
-      double lacks = of.target - of.gamma * b_.lambda[row] - speed[row] - given_speed(hook, of);
+      double lacks = of.target - of.gamma * b_.lambda[row] - speed[row];
       for (int end = 0; end < 2; ++end) {
         const int body = b_.ends[hook][end];
         if (body < 0) continue;
@@ -165,8 +168,7 @@ bool BundleSolution::revise_bounds(bool release) {
         const BodyRow velocity = {(1 / std::sqrt(m.body.inverse_mass)) * m.v, m.omega_scaled};
         lacks -= dot(hook_row(of, end, m.body), velocity);
       }
-      const bool stays = bound < 0 ? lacks <= 1e-9 : lacks >= -1e-9;
-      if (!stays) bound = 0;
+      if (!stays_at(bound, lacks)) bound = 0;
     }
     changed = changed || bound != b_.bound[row];
     b_.bound[row] = bound;
@@ -177,7 +179,7 @@ bool BundleSolution::revise_bounds(bool release) {
 
 void BundleSolution::solve_with_bounds() {
   bool changed = true;
-  for (int pass = 0; changed && pass < kMaxPasses; ++pass) {
+  for (int pass = 0; changed && pass < kMostBoundPasses; ++pass) {
     hold_nodes(h_, b_.ropes);
     fill_right_side();
     assemble();
@@ -185,7 +187,7 @@ void BundleSolution::solve_with_bounds() {
     solve(b_.pattern, b_.numbers, b_.right_side);
     read_solution();
     if (!is_sound()) return;
-    changed = revise_bounds(pass < kFreePasses);
+    changed = revise_bounds(pass < kFreeBoundPasses);
   }
 }
 

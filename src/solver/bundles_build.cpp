@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
+#include "base/sort_unique.h"
 #include "solver/bundles.h"
 
 #include <algorithm>
@@ -18,14 +19,10 @@ using state::Tables;
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 constexpr double kNoBudget = std::numeric_limits<double>::infinity();
 
-bool moves(const state::Bodies& bodies, std::uint32_t body) {
-  return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
-}
-
 /// A contact that joins its rope to a body.
 bool joins(const Tables& t, std::size_t contact) {
   const std::uint32_t object = t.contacts.object[contact];
-  return t.objects[object].kind == PointRef::Kind::kRope && moves(t.bodies, t.contacts.body[contact]);
+  return t.objects[object].kind == PointRef::Kind::kRope && gives_way(t.bodies, t.contacts.body[contact]);
 }
 
 std::vector<std::uint32_t> signature_of(const Tables& t) {
@@ -37,7 +34,8 @@ std::vector<std::uint32_t> signature_of(const Tables& t) {
   for (const Hook& hook : t.hooks) {
     if (!hook.holds_point()) continue;
     s.push_back(hook.a.particle[0]);  // changes where it slides
-    for (const std::uint32_t body : {hook.a.body, hook.b.body}) s.push_back(moves(t.bodies, body) ? 1 : 0);
+    for (const std::uint32_t body : {hook.a.body, hook.b.body})
+      s.push_back(gives_way(t.bodies, body) ? 1 : 0);
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
@@ -71,7 +69,7 @@ class Groups {
  private:
   std::uint32_t of_end(const HookPlace& end) {
     if (end.is_point()) return of_particle(end.object, end.particle[0]);
-    return moves(tables_.bodies, end.body) ? sets_.root(end.body) : kNone;
+    return gives_way(tables_.bodies, end.body) ? sets_.root(end.body) : kNone;
   }
 
   void join(const Hook& hook) {
@@ -93,11 +91,6 @@ void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t
   points.insert(points.end(), end.particle.begin(), end.particle.begin() + end.particle_count);
 }
 
-void sort_out(std::vector<std::uint32_t>& rows) {
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-}
-
 /// Members of all bundles, in order of the first hook, then of the first contact that makes one.
 std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
   Groups groups(t);
@@ -117,7 +110,7 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
     bundle.hooks.push_back(i);
     for (const HookPlace& end : {hook.a, hook.b}) {
       add_points(t, end, bundle.points);
-      if (moves(t.bodies, end.body)) bundle.bodies.push_back(end.body);
+      if (gives_way(t.bodies, end.body)) bundle.bodies.push_back(end.body);
     }
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
@@ -134,8 +127,8 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
     ++chain;
   }
   for (Bundle& bundle : bundles) {
-    sort_out(bundle.points);
-    sort_out(bundle.bodies);
+    base::sort_unique(bundle.points);
+    base::sort_unique(bundle.bodies);
   }
   return bundles;
 }
@@ -233,7 +226,7 @@ struct Layout {
       for (const HookPlace& end : {tables.hooks[bundle.hooks[i]].a, tables.hooks[bundle.hooks[i]].b})
         meet(vector_count + i, body_block(end.body));
     }
-    for (std::vector<std::uint32_t>& list : of) sort_out(list);
+    for (std::vector<std::uint32_t>& list : of) base::sort_unique(list);
     return of;
   }
 };

@@ -68,7 +68,7 @@ void BundleSolution::assemble_pairs() {
 void BundleSolution::assemble_hooks() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     const std::uint32_t block = hook_block(hook);
-    double& diagonal = number(block, block, k, k);
+    double& diagonal = numbers(block, block)(k, k);
     if (b_.bound[row] != 0) {
       diagonal = 1;
       return;
@@ -79,7 +79,8 @@ void BundleSolution::assemble_hooks() {
       if (body < 0) continue;
       const BodyRow c = hook_row(b_.rows[row], end, b_.moving[body].body);
       mobility += dot(c, c);
-      for (int m = 0; m < 6; ++m) number(block, body_block(body), k, m) += c.at(m);
+      const Numbers coupled = numbers(block, body_block(body));
+      for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
     }
     diagonal += b_.rows[row].gamma + kCompliance * mobility;
   });
@@ -89,9 +90,10 @@ void BundleSolution::assemble_bodies() {
   for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
     const std::array<double, 9> turn =
         entries_of(Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, b_.moving[i].excess));
+    const Numbers own = numbers(body_block(i), body_block(i));
     for (int k = 0; k < 3; ++k) {
-      number(body_block(i), body_block(i), k, k) -= 1;
-      for (int m = 0; m < 3; ++m) number(body_block(i), body_block(i), 3 + k, 3 + m) -= turn[3 * k + m];
+      own(k, k) -= 1;
+      for (int m = 0; m < 3; ++m) own(3 + k, 3 + m) -= turn[3 * k + m];
     }
   }
 }
@@ -106,16 +108,18 @@ void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const Rope
     const DVec3 r = grip * column_at(m, touch.lever, body);
     const DVec3 moved_by = node.inverse * r;
     for (const Incident& at : incidents_of(touch.node)) {
+      const Numbers coupled = numbers(at.block, block);
       for (int k = 0; k < size_of(at.block); ++k)
-        number(at.block, block, k, m) += at.weight * dot(direction(at.block, k), moved_by);
+        coupled(k, m) += at.weight * dot(direction(at.block, k), moved_by);
     }
-    for (int k = 0; k < 6; ++k) number(block, block, k, m) -= dot(column_at(k, touch.lever, body), r);
+    const Numbers own = numbers(block, block);
+    for (int k = 0; k < 6; ++k) own(k, m) -= dot(column_at(k, touch.lever, body), r);
     for (const RopeTouch& other : at_node) {
       if (other.body < touch.body || !other.active) continue;
       const JointBody& to = b_.moving[other.body].body;
       const DVec3 gripped = grip_of(other, node) * moved_by;
-      for (int k = 0; k < 6; ++k)
-        number(body_block(other.body), block, k, m) += dot(column_at(k, other.lever, to), gripped);
+      const Numbers coupled = numbers(body_block(other.body), block);
+      for (int k = 0; k < 6; ++k) coupled(k, m) += dot(column_at(k, other.lever, to), gripped);
     }
   }
 }
@@ -138,29 +142,16 @@ void BundleSolution::assemble() {
   assemble_pairs();
   for (std::uint32_t i = 0; i < segment_count(); ++i) {
     const std::array<double, 9> e = entries_of(b_.ropes.segments[i].compliance);
-    double* numbers = &number(i, i, 0, 0);
-    for (int k = 0; k < 9; ++k) numbers[k] += e[k];
+    const Numbers own = numbers(i, i);
+    for (int k = 0; k < 9; ++k) own(k / 3, k % 3) += e[k];
   }
   for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i) {
-    double* numbers = &number(bend_block(i), bend_block(i), 0, 0);
-    for (int k = 0; k < 3; ++k) numbers[4 * k] += b_.ropes.bends[i].gamma;
+    const Numbers own = numbers(bend_block(i), bend_block(i));
+    for (int k = 0; k < 3; ++k) own(k, k) += b_.ropes.bends[i].gamma;
   }
   assemble_hooks();
   assemble_bodies();
   assemble_touches();
-}
-
-double BundleSolution::given_speed(std::uint32_t hook, const JointRow& row) const {
-  const state::Hook& of = t_.hooks[b_.hooks[hook]];
-  double speed = 0;
-  for (int end = 0; end < 2; ++end) {
-    const state::HookPlace& place = end == 0 ? of.a : of.b;
-    if (b_.ends[hook][end] >= 0 || place.is_point()) continue;
-    const JointBody given = joint_end(t_, place);
-    const double along = dot(row.n, given.v) + dot(end == 0 ? row.j_a : row.j_b, given.omega_scaled);
-    speed += end == 0 ? -along : along;
-  }
-  return speed;
 }
 
 /// V0 as geometric stiffness has it.
@@ -212,8 +203,7 @@ void BundleSolution::fill_right_side() {
     for (int k = 0; k < 3; ++k) right_side(bend_block(i), k) += dot(kAxes[k], b_.ropes.bends[i].target);
   }
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
-    if (b_.bound[row] == 0)
-      right_side(hook_block(hook), k) += b_.rows[row].target - given_speed(hook, b_.rows[row]);
+    if (b_.bound[row] == 0) right_side(hook_block(hook), k) += b_.rows[row].target;
   });
   for (const RopeTouch& touch : b_.ropes.touches) {
     if (touch.body < 0 || !touch.active) continue;

@@ -9,10 +9,6 @@ namespace hooke::solver {
 
 namespace {
 
-bool gives_way(const state::Bodies& bodies, std::uint32_t body) {
-  return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
-}
-
 /// One row. `yields`: its body gives way.
 void solve_row(std::size_t row, Real h, bool yields, state::Bodies& bodies, state::Contacts& contacts,
                state::Particles& particles) {

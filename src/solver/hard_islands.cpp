@@ -1,5 +1,7 @@
 #include "solver/hard_islands.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -159,8 +161,7 @@ void list_edges(const std::vector<Manifold>& manifolds, const Bodies& bodies, Ha
   }
   for (int i = 0; i < hard.count; ++i) {
     auto& edges = hard.found[i].edges;
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    base::sort_unique(edges);
   }
 }
 

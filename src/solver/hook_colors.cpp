@@ -27,8 +27,7 @@ int choose_color(const state::Hook& hook, const state::Bodies& bodies, std::vect
 }  // namespace
 
 bool is_awake(const state::Hook& hook, const state::Bodies& bodies) {
-  const auto awake = [&](std::uint32_t body) { return is_dynamic(bodies, body) && bodies.asleep[body] == 0; };
-  return awake(hook.a.body) || awake(hook.b.body);
+  return gives_way(bodies, hook.a.body) || gives_way(bodies, hook.b.body);
 }
 
 HookColors color_hooks(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,

@@ -22,6 +22,7 @@ using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
 constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
 constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
 constexpr double kLimitSpeed = 2;      ///< [m/s] or [rad/s]
@@ -304,6 +305,10 @@ double joint_gap(const Hook& hook, const JointBody& a, const JointBody& b) {
     gap += (f.value[i] - nearest) * f.axis[i];
   }
   return length(gap);
+}
+
+bool stays_at(std::int8_t bound, double lacks) {
+  return bound < 0 ? lacks <= kNoSpeed : lacks >= -kNoSpeed;
 }
 
 std::int8_t side_of(double value, double low, double high) {

@@ -84,6 +84,14 @@ int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, d
 /// -1 below the bounds, 1 above them.
 [[nodiscard]] std::int8_t side_of(double value, double low, double high);
 
+/// How often free rows are solved anew while rows go to their bounds and are let go again, and how often in
+/// all: after that they only go.
+inline constexpr int kFreeBoundPasses = 8;
+inline constexpr int kMostBoundPasses = 16;
+
+/// Whether a row stays at its bound (-1 or 1) that `lacks` so much speed there [m/s].
+[[nodiscard]] bool stays_at(std::int8_t bound, double lacks);
+
 /// The bound at which a row begins a substep: the one where it ended the last, with the impulse `last`.
 [[nodiscard]] std::int8_t first_bound(const JointRow& row, double last);
 

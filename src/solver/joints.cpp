@@ -47,9 +47,8 @@ std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hoo
 }
 
 bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
-  return std::any_of(articulation.bodies.begin(), articulation.bodies.end(), [&](std::uint32_t body) {
-    return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
-  });
+  return std::any_of(articulation.bodies.begin(), articulation.bodies.end(),
+                     [&](std::uint32_t body) { return gives_way(bodies, body); });
 }
 
 }  // namespace

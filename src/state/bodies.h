@@ -138,6 +138,11 @@ inline bool is_dynamic(const Bodies& bodies, std::uint32_t body) {
   return body < bodies.traits.size() && bodies.traits[body].kind == BodyKind::kDynamic;
 }
 
+/// Whether forces move the body now: it is dynamic and awake.
+inline bool gives_way(const Bodies& bodies, std::uint32_t body) {
+  return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
+}
+
 /// Consecutive rows, for range-based loops (clang 14 does not know std::views::iota of libstdc++ 12).
 struct RowRange {
   struct Iterator {

@@ -48,14 +48,28 @@ void drop_broken_hooks(WorldData& world) {
   if (!world.broken_hooks.empty()) ++t.hook_revision;
 }
 
-void remove_hooks_of(std::uint32_t body, state::Tables& t) {
+namespace {
+
+/// Those with an end for which `holds` is true.
+template <class Holds>
+void remove_hooks(state::Tables& t, Holds&& holds) {
   for (std::size_t i = t.hooks.size(); i-- > 0;) {
     const Hook& hook = t.hooks[i];
-    if (hook.a.body != body && hook.b.body != body) continue;
+    if (!holds(hook.a) && !holds(hook.b)) continue;
     wake_ends(hook, t.bodies);
     remove_row(t.hook_slots, t.hook_slots.id_of(hook.slot), t.hooks);
     ++t.hook_revision;
   }
+}
+
+}  // namespace
+
+void remove_hooks_of(std::uint32_t body, state::Tables& t) {
+  remove_hooks(t, [&](const HookPlace& end) { return end.body == body; });
+}
+
+void remove_hooks_of_object(std::uint32_t object, state::Tables& t) {
+  remove_hooks(t, [&](const HookPlace& end) { return end.is_point() && end.object == object; });
 }
 
 void wake_ends(const Hook& hook, state::Bodies& bodies) {

@@ -23,6 +23,9 @@ void drop_broken_hooks(WorldData& world);
 /// Takes the hooks of a body out of the world, before the body goes.
 void remove_hooks_of(std::uint32_t body, state::Tables& tables);
 
+/// The same of a rope, cloth, solid or group of particles, by its row.
+void remove_hooks_of_object(std::uint32_t object, state::Tables& tables);
+
 /// Wakes the bodies at both ends.
 void wake_ends(const state::Hook& hook, state::Bodies& bodies);
 

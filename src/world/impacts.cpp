@@ -52,7 +52,7 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
 Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
   const Bodies& bodies = world.tables.bodies;
   if (world.hooked[body] != 0) return Stoppable::kNever;
-  if (bodies.traits[body].kind != BodyKind::kDynamic || bodies.asleep[body] != 0) return Stoppable::kNever;
+  if (!state::gives_way(bodies, body)) return Stoppable::kNever;
   return fast ? Stoppable::kAlways : Stoppable::kSlow;
 }
 
@@ -62,7 +62,7 @@ Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
 bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt) {
   constexpr Real kFar = Real(0.25);        // [rad]
   constexpr Real kLargePart = Real(0.25);  // of the largest entry
-  if (!state::is_dynamic(bodies, body) || bodies.asleep[body] != 0) return false;
+  if (!state::gives_way(bodies, body)) return false;
   if (!state::tumbles(bodies.mass[body])) return false;
   if (foreseen || dt * length(bodies.motion[body].v) > bodies.traits[body].radius) return true;
   const Vec3 turn = dt * bodies.angular_velocity[body];

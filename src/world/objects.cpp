@@ -42,17 +42,10 @@ void renumber_particles(Tables& t, Rows removed) {
   }
 }
 
-void remove_hooks_of_object(Tables& t, std::uint32_t object) {
-  const auto holds = [&](const state::HookPlace& end) { return end.is_point() && end.object == object; };
-  for (std::size_t i = t.hooks.size(); i-- > 0;) {
-    const state::Hook& hook = t.hooks[i];
-    if (!holds(hook.a) && !holds(hook.b)) continue;
-    wake_ends(hook, t.bodies);
-    remove_row(t.hook_slots, t.hook_slots.id_of(hook.slot), t.hooks);
-    ++t.hook_revision;
-  }
+/// Objects behind `removed` have moved up by one row.
+void renumber_hooked_objects(Tables& t, std::uint32_t removed) {
   for (state::Hook& hook : t.hooks) {
-    for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > object;
+    for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > removed;
   }
 }
 
@@ -84,7 +77,8 @@ std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
 
 bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   if (row == state::SlotTable<RopeId>::kNone || t.objects[row].kind != kind) return false;
-  remove_hooks_of_object(t, row);
+  remove_hooks_of_object(row, t);
+  renumber_hooked_objects(t, row);
   const Deformable gone = t.objects[row];
   erase_rows(t.particles, gone.particles);
   erase_rows(t.springs, gone.springs);

@@ -89,6 +89,7 @@ bool wake_touched(WorldData& world, Real dt) {
   if (none_sleeps) return false;
   Bodies& bodies = world.tables.bodies;
   bool any = wake_struck(world);
+  if (world.awake.empty() && !any) return false;
   for (bool changed = true; changed;) {
     changed = false;
     for (const Manifold& m : world.tables.pairs.manifold) {

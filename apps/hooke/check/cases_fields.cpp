@@ -19,15 +19,9 @@ BodyDesc thrown_ball(double radius, double mass) {
   return desc;
 }
 
-WorldDesc airless() {
-  WorldDesc desc = sleepless();
-  desc.wind.air_density = real(0);
-  return desc;
-}
-
 /// How deep the bottom of a body lies that comes to rest in water with its surface at y = 0 [m].
 double floating_depth(const CheckSetting& setting, const BodyDesc& desc, double below_center) {
-  Rig rig(setting, airless());
+  Rig rig(setting, without_air());
   must(rig.world().add_field({.kind = FieldDesc::Kind::kLiquid, .density = kWater, .drag = 3}));
   const BodyId id = rig.add(desc);
   rig.run(15);
@@ -56,7 +50,7 @@ Rows floating_bodies_in_water(const CheckSetting& setting) {
   BodyDesc ball = moving(Shape::sphere(real(0.3)), {0, 0.1, 0});
   ball.density = real(0.5 * kWater);
 
-  Rig heaving(setting, airless());
+  Rig heaving(setting, without_air());
   must(heaving.world().add_field({.kind = FieldDesc::Kind::kLiquid, .density = kWater}));
   const double rest = height / 2 - share * height;
   box.position = {0, rest + 0.05, 0};

@@ -23,12 +23,6 @@ RopeDesc rod(DVec3 along, int segments, bool clamped_start, bool clamped_end) {
   return desc;
 }
 
-WorldDesc without_air() {
-  WorldDesc desc = sleepless();
-  desc.wind.air_density = real(0);
-  return desc;
-}
-
 /// How a column is held; its top always carries the load.
 struct Column {
   bool clamped_below = false, free_above = false, clamped_above = false;

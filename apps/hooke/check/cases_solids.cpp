@@ -21,10 +21,6 @@ struct Bar {
   double poisson_ratio = 0.3;
 };
 
-double along(DVec3 p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
 /// One meter long. `calm` is the rate at which air friction slows it [1/s].
 SolidDesc desc_of(const Bar& bar, double calm) {
   const double width = 1.0 / bar.length_over_width;
@@ -52,7 +48,7 @@ std::vector<std::uint32_t> points_at(const Rig& rig, SolidId id, int axis, doubl
   std::vector<std::uint32_t> found;
   const std::vector<DVec3> points = rig.positions(id);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (std::abs(along(points[i], axis) - place) < 1e-4) found.push_back(i);
+    if (std::abs(component(points[i], axis) - place) < 1e-4) found.push_back(i);
   }
   return found;
 }
@@ -60,7 +56,7 @@ std::vector<std::uint32_t> points_at(const Rig& rig, SolidId id, int axis, doubl
 double mean_of(const Rig& rig, SolidId id, const std::vector<std::uint32_t>& points, int axis) {
   const std::vector<DVec3> x = rig.positions(id);
   double sum = 0;
-  for (const std::uint32_t i : points) sum += along(x[i], axis);
+  for (const std::uint32_t i : points) sum += component(x[i], axis);
   return sum / static_cast<double>(points.size());
 }
 
@@ -112,8 +108,8 @@ Rows pulled_bar(const CheckSetting& setting) {
     const auto width = [&](int axis, double half) {
       std::vector<std::uint32_t> ends[2];
       for (std::uint32_t i = 0; i < points.size(); ++i) {
-        if (std::abs(std::abs(along(points[i], axis)) - half) < 1e-4)
-          ends[along(points[i], axis) > 0].push_back(i);
+        if (std::abs(std::abs(component(points[i], axis)) - half) < 1e-4)
+          ends[component(points[i], axis) > 0].push_back(i);
       }
       return (mean_of(rig, id, ends[1], axis) - mean_of(rig, id, ends[0], axis)) / (2 * half);
     };

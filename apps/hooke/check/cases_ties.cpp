@@ -13,12 +13,6 @@ namespace hooke::check {
 
 namespace {
 
-WorldDesc without_air() {
-  WorldDesc desc = sleepless();
-  desc.wind.air_density = real(0);
-  return desc;
-}
-
 std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   std::vector<DVec3> points;
   for (int i = 0; i <= segments; ++i)

@@ -103,6 +103,12 @@ WorldDesc sleepless() {
   return desc;
 }
 
+WorldDesc without_air() {
+  WorldDesc desc = sleepless();
+  desc.wind.air_density = real(0);
+  return desc;
+}
+
 BodyDesc moving(const Shape& shape, DVec3 position) {
   return {.kind = BodyKind::kDynamic, .shape = shape, .position = position};
 }

@@ -114,6 +114,7 @@ WorldDesc weightless();
 
 /// Bodies that have come to rest are watched on.
 WorldDesc sleepless();
+WorldDesc without_air();  ///< And sleepless.
 
 /// A body that forces move; 1000 kg/m^3.
 BodyDesc moving(const Shape& shape, DVec3 position);

@@ -31,14 +31,10 @@ struct FileCloser {
 };
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
-double coordinate(DVec3 p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
 PlotPoint span_of(const std::vector<Sample>& samples, int axis) {
   PlotPoint span = {1e300, -1e300};
   for (const Sample& sample : samples) {
-    const double value = coordinate(sample.position, axis);
+    const double value = component(sample.position, axis);
     span = {std::min(span.x, value), std::max(span.y, value)};
   }
   return span;
@@ -101,7 +97,7 @@ Plot trajectory_plot(const Comparison& comparison) {
           .y = {.label = "y [m]", .range = widened(span_of(guide, 1), 0.3, extent)},
           .same_scale = true,
           .curves = curves_of(comparison, true, [side](const Sample& sample) -> PlotPoint {
-            return {coordinate(sample.position, side), sample.position.y};
+            return {component(sample.position, side), sample.position.y};
           })};
 }
 
@@ -121,7 +117,7 @@ Plot position_plot(const Comparison& comparison) {
           .y = {.label = std::string(1, letter) + " [m]",
                 .range = widened(span_of(guide, axis), 0.3, 0.1 * comparison.reference.extent)},
           .curves = curves_of(comparison, true, [axis](const Sample& sample) -> PlotPoint {
-            return {sample.time, coordinate(sample.position, axis)};
+            return {sample.time, component(sample.position, axis)};
           })};
 }
 
