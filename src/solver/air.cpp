@@ -60,20 +60,30 @@ void push_segments(const state::Deformable& object, const state::Segments& segme
                    state::Particles& particles) {
   const std::vector<Vec3>& wind = air.wind;
   const Real h = air.h;
+  // Every segment sees the velocities from before, so that none waits for the one before it.
+  const auto first = particles.velocity.begin() + object.particles.first;
+  Vec3 v_a = first->v;
+  Vec3 on_a = {};  // the change by the segment before
   for (std::uint32_t i = 0; i < object.segments.count; ++i) {
     const std::size_t a = object.particles.first + i;
     const std::size_t b = a + 1;
-    const Vec3 axis = normalize(particles.position[b].x - particles.position[a].x);
-    const Vec3 flow = Real(0.5) * ((wind[a] - particles.velocity[a].v) + (wind[b] - particles.velocity[b].v));
-    const Vec3 across = flow - dot(flow, axis) * axis;
+    const Vec3 v_b = particles.velocity[b].v;
+    const Vec3 line = particles.position[b].x - particles.position[a].x;
+    const Real square = length_squared(line);
+    const Vec3 flow = Real(0.5) * ((wind[a] - v_a) + (wind[b] - v_b));
+    const Vec3 across = square > Real(0) ? flow - (dot(flow, line) / square) * line : flow;
     const Real diameter = Real(2) * particles.position[a].radius;
     const Real drag = Real(0.5) * air.density * object.drag_coefficient * diameter *
                       segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
-    for (const std::size_t p : {a, b}) {
+    const auto change_of = [&](std::size_t p) {
       const Real w = particles.velocity[p].inverse_mass;
-      particles.velocity[p].v += (w * h * Real(0.5) * drag / (Real(1) + w * h * drag)) * across;
-    }
+      return (w * h * Real(0.5) * drag / (Real(1) + w * h * drag)) * across;
+    };
+    particles.velocity[a].v = v_a + (on_a + change_of(a));
+    on_a = change_of(b);
+    v_a = v_b;
   }
+  first[object.segments.count].v += on_a;
 }
 
 }  // namespace hooke::solver

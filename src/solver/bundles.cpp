@@ -24,9 +24,10 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
   for (const std::uint32_t c : b_.chains) {
     const std::size_t first = b_.ropes.nodes.size();
     const std::size_t first_segment = b_.ropes.segments.size();
+    const std::size_t first_touch = b_.ropes.touches.size();
     load_rope(chains[c], before, h_, t_.particles, t_.segments, t_.contacts, b_.ropes);
     load_bends(chains[c], first, first_segment, h_, b_.ropes);
-    b_.settings.push_back(first_setting(first, b_.ropes));
+    b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
   }
   for (const std::uint32_t p : b_.points)
     b_.ropes.nodes.push_back(load_node(p, t_.particles.velocity[p].v, t_.particles));
@@ -216,7 +217,7 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     error = check_segments(h_, b_.ropes, limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
-    if (long_enough && !grew && solves >= least_solves(b_.ropes, unsettled)) break;
+    if (long_enough && !grew && solves >= least_solves(b_.ropes.touches, unsettled)) break;
     for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;
   }
   for (const std::uint32_t c : b_.chains)
@@ -236,7 +237,7 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
     if (b_.ropes.nodes[node].w > 0) t_.particles.velocity[p].v = vector_cast<Real>(b_.ropes.nodes[node].u);
     ++node;
   }
-  store_touches(h_, b_.ropes, t_.contacts);
+  store_touches(h_, b_.ropes.touches, t_.contacts);
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const BundleBody& m = b_.moving[i];
     set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);

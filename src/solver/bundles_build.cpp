@@ -120,7 +120,6 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
     if (t.objects[o].kind != PointRef::Kind::kRope) continue;
     const std::uint32_t group = groups.of_particle(o, t.objects[o].particles.first);
-    if (t.objects[o].bend_stiffness > Real(0)) (void)bundle_at(group);
     const std::uint32_t bundle = bundle_of[group];
     chains[chain].in_bundle = bundle != kNone;
     if (bundle != kNone) bundles[bundle].chains.push_back(chain);

@@ -125,16 +125,11 @@ void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const Rope
 }
 
 void BundleSolution::assemble_touches() {
-  const std::vector<RopeTouch>& touches = b_.ropes.touches;
-  for (std::size_t first = 0; first < touches.size();) {
-    std::size_t end = first;
-    while (end < touches.size() && touches[end].node == touches[first].node) ++end;
-    const std::span<const RopeTouch> at_node = std::span(touches).subspan(first, end - first);
+  for_each_touched(b_.ropes.touches, [&](std::span<const RopeTouch> at_node) {
     for (const RopeTouch& touch : at_node) {
       if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
     }
-    first = end;
-  }
+  });
 }
 
 void BundleSolution::assemble() {

@@ -1,78 +1,236 @@
-/// One rope after another: linearize its segments and contacts, sweep forward, sweep back, check, repeat if
-/// need be. Read solve_chain first, at the end of the file.
+/// Ropes side by side, as many as a vector has lanes: load them, take Newton steps until each is as long as
+/// its forces say, write them back. The steps themselves are in wide/rope_sweep.h. Read Group::solve first.
 
 #include "solver/chains.h"
 
 #include "solver/rope_rows.h"
+#include "solver/wide/ropes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
 
 namespace hooke::solver {
 
 namespace {
 
-using V = DVec3;
-using M = math::Symmetric3<double>;
+using wide::RopeLanes;
 
-void sweep(RopeScratch& s) {
-  RopeNode& head = s.nodes.front();
-  M phi_matrix = head.inverse;
-  V phi = head.target;
-  const std::size_t last = s.segments.size();
-  for (std::size_t i = 0; i < last; ++i) {
-    RopeSegment& e = s.segments[i];
-    const RopeNode& node = s.nodes[i + 1];
-    const M x = phi_matrix + e.compliance;
-    e.s = phi + e.offset;
-    e.k = math::inverse(x + node.inverse);
-    phi_matrix = math::symmetric_product(x, e.k, node.inverse);
-    phi = node.target + node.inverse * (e.k * (e.s - node.target));
-  }
-  V next = {};
-  for (std::size_t i = last; i > 0; --i) {
-    RopeSegment& e = s.segments[i - 1];
-    RopeNode& node = s.nodes[i];
-    e.q = e.k * (node.target + node.inverse * next - e.s);
-    node.u = node.target + node.inverse * (next - e.q);
-    next = e.q;
-  }
-  head.u = head.target + head.inverse * next;
+constexpr int kFewestForLanes = 2;  ///< Below that one after another is faster.
+
+struct Source {
+  const std::vector<Vec3>& before;
+  double h;
+  state::Particles& particles;
+  state::Segments& segments;
+  state::Contacts& contacts;
+};
+
+template <int kCount>
+void put(DVec3 v, double (&to)[3][kCount], int lane) {
+  to[0][lane] = v.x;
+  to[1][lane] = v.y;
+  to[2][lane] = v.z;
+}
+template <int kCount>
+DVec3 get(const double (&from)[3][kCount], int lane) {
+  return {from[0][lane], from[1][lane], from[2][lane]};
 }
 
-/// Newton steps until the rope is as long as its forces say and its contacts are settled. `s` is loaded.
-void solve_chain(Chain& chain, double h, RopeScratch& s) {
-  RopeSetting setting = first_setting(0, s);
-  double error = 0;
-  for (int solves = 1; solves <= kMostRopeSolves; ++solves) {
-    for (RopeSegment& segment : s.segments) linearize(setting, h, s.nodes, segment);
-    hold_nodes(h, s);
-    sweep(s);
-    ++chain.solves;
-    if (!is_finite(s)) break;
-
-    const bool unsettled = update_touches(h, s);
-    bool limits_changed = false;
-    error = check_segments(h, s, limits_changed);
-    const bool long_enough = error <= kLengthTolerance && !limits_changed;
-    if (long_enough && solves >= least_solves(s, unsettled)) break;
-    setting.first = setting.first && long_enough;
+/// Up to kCount ropes of equally many nodes. Lanes without one repeat the first.
+template <int kCount>
+class Group {
+ public:
+  void solve(const std::vector<Chain*>& chains, const Source& source) {
+    const int count = static_cast<int>(chains.size());
+    resize(*chains.front());
+    load(chains, source);
+    std::array<bool, kCount> done = {};
+    for (int solves = 1; solves <= kMostRopeSolves; ++solves) {
+      hold(source.h);
+      wide::solve_ropes(source.h, ropes_);
+      bool all_done = true;
+      for (int lane = 0; lane < count; ++lane) {
+        if (done[lane]) continue;
+        ++chains[lane]->solves;
+        done[lane] = settle(lane, solves, source.h) || solves == kMostRopeSolves;
+        if (done[lane]) store(*chains[lane], lane, source);
+        all_done = all_done && done[lane];
+      }
+      if (all_done) return;
+    }
   }
-  chain.unconverged = chain.unconverged || !(error <= kReportedError) || !is_finite(s);
+
+ private:
+  void resize(const Chain& chain) {
+    const std::size_t nodes = chain.node_count;
+    ropes_.nodes.resize(nodes);
+    ropes_.segments.resize(nodes - 1);
+    ropes_.bends.resize(chain.bend_stiffness > 0 && nodes > 2 ? nodes - 2 : 0);
+    ropes_.holds.resize(nodes);
+    ropes_.held.assign(nodes, 0);
+  }
+
+  /// Node after node, so that a line of lanes is written while it is in the cache.
+  void load(const std::vector<Chain*>& chains, const Source& source) {
+    std::array<const Chain*, kCount> chain;
+    for (int lane = 0; lane < kCount; ++lane)
+      chain[lane] = chains[static_cast<std::size_t>(lane) < chains.size() ? lane : 0];
+    std::array<RopeNode, kCount> before;
+    std::array<double, kCount> rest = {};
+    for (std::uint32_t i = 0; i < ropes_.nodes.size(); ++i) {
+      for (int lane = 0; lane < kCount; ++lane) {
+        const RopeNode node = load_node_at(*chain[lane], i, lane, source);
+        if (i > 0) rest[lane] += load_between(*chain[lane], i - 1, before[lane], node, lane, source);
+        before[lane] = node;
+      }
+    }
+    for (std::uint32_t i = 0; i < ropes_.bends.size(); ++i) {
+      for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source.h);
+    }
+    for (int lane = 0; lane < kCount; ++lane) begin(*chain[lane], rest[lane], lane, source);
+  }
+
+  RopeNode load_node_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+    const std::uint32_t row = chain.first_particle + i;
+    const RopeNode node = load_node(row, source.before[row], source.particles);
+    wide::RopeNodeLanes<kCount>& to = ropes_.nodes[i];
+    put(node.x, to.x, lane);
+    put(node.v_free, to.v_free, lane);
+    put(node.v_before, to.v_before, lane);
+    to.mass[lane] = node.mass;
+    to.w[lane] = node.w;
+    return node;
+  }
+
+  /// Contacts, and how the first step is linearized.
+  void begin(const Chain& chain, double rest, int lane, const Source& source) {
+    touches_[lane].clear();
+    load_touches(chain, 0, source.h, source.particles, source.contacts, touches_[lane]);
+    const auto& first = ropes_.nodes.front();
+    const auto& last = ropes_.nodes.back();
+    const RopeSetting setting = first_setting(touches_[lane], rest, get(last.x, lane) - get(first.x, lane),
+                                              get(last.v_before, lane) - get(first.v_before, lane));
+    ropes_.compliance[lane] = setting.compliance;
+    ropes_.first[lane] = 1;
+    put(setting.turning, ropes_.turning, lane);
+  }
+
+  /// Segment i; its length.
+  double load_between(const Chain& chain, std::uint32_t i, const RopeNode& a, const RopeNode& b, int lane,
+                      const Source& source) {
+    const RopeSegment e = load_segment(chain.first_segment + i, source.segments);
+    wide::RopeSegmentLanes<kCount>& to = ropes_.segments[i];
+    to.rest[lane] = e.rest;
+    to.stiffness[lane] = e.stiffness;
+    to.damping[lane] = e.damping;
+    to.limit[lane] = e.limit;
+    to.lighter[lane] = lighter_end(a, b);
+    to.held[lane] = a.w > 0 || b.w > 0 ? 0 : 1;
+    to.tension_bound[lane] = e.tension_bound;
+    to.limited[lane] = e.limited ? 1 : 0;
+    return e.rest;
+  }
+
+  void load_bend_at(const Chain& chain, std::uint32_t i, int lane, double h) {
+    const RopeBend bend = load_bend(chain, ropes_.segments[i].rest[lane], ropes_.segments[i + 1].rest[lane],
+                                    ropes_.segments[i].held[lane] > 0, ropes_.segments[i + 1].held[lane] > 0);
+    wide::RopeBendLanes<kCount>& to = ropes_.bends[i];
+    to.before[lane] = bend.before;
+    to.behind[lane] = bend.behind;
+    to.pull[lane] = -h * bend.stiffness;
+    to.grip[lane] = h * (bend.damping + h * bend.stiffness);
+  }
+
+  /// Node i of a lane as the functions of contacts take it.
+  [[nodiscard]] RopeNode node_at(std::uint32_t i, int lane) const {
+    const wide::RopeNodeLanes<kCount>& node = ropes_.nodes[i];
+    RopeNode one;
+    one.v_free = get(node.v_free, lane);
+    one.mass = node.mass[lane];
+    one.u = get(node.u, lane);
+    return one;
+  }
+
+  void hold(double h) {
+    for (int lane = 0; lane < kCount; ++lane) {
+      for_each_touched(touches_[lane], [&](std::span<const RopeTouch> at_node) {
+        const std::uint32_t i = at_node.front().node;
+        if (ropes_.held[i] == 0) {
+          ropes_.held[i] = 1;
+          for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(i, k), h), i, k);
+        }
+        put_hold(hold_of(at_node, node_at(i, lane), h), i, lane);
+      });
+    }
+  }
+
+  void put_hold(const NodeHold& hold, std::uint32_t i, int lane) {
+    wide::RopeHoldLanes<kCount>& to = ropes_.holds[i];
+    const math::Symmetric3<double>& m = hold.mass;
+    const std::array<double, 6> entries = {m.xx, m.xy, m.xz, m.yy, m.yz, m.zz};
+    for (int k = 0; k < 6; ++k) to.mass[k][lane] = entries[k];
+    put(hold.impulse, to.impulse, lane);
+  }
+
+  /// Whether a lane needs no further step.
+  bool settle(int lane, int solves, double h) {
+    if (ropes_.finite[lane] != 0) return true;
+    bool unsettled = false;
+    for (RopeTouch& t : touches_[lane]) unsettled = update_touch(h, node_at(t.node, lane), t) || unsettled;
+    const bool long_enough = ropes_.error[lane] <= kLengthTolerance && !(ropes_.limits_changed[lane] > 0);
+    if (long_enough && solves >= least_solves(touches_[lane], unsettled)) return true;
+    if (!long_enough) ropes_.first[lane] = 0;
+    return false;
+  }
+
+  void store(Chain& chain, int lane, const Source& source) {
+    const bool finite = ropes_.finite[lane] == 0;
+    chain.unconverged = chain.unconverged || !(ropes_.error[lane] <= kReportedError) || !finite;
+    if (!finite) return;
+    for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+      const wide::RopeNodeLanes<kCount>& node = ropes_.nodes[i];
+      if (node.w[lane] > 0)
+        source.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(get(node.u, lane));
+    }
+    for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
+      const wide::RopeSegmentLanes<kCount>& e = ropes_.segments[i];
+      store_tension(chain.first_segment + i, dot(get(e.n, lane), get(e.q, lane)) / source.h,
+                    e.limited[lane] > 0, source.segments);
+    }
+    store_touches(source.h, touches_[lane], source.contacts);
+  }
+
+  RopeLanes<kCount> ropes_;
+  std::array<std::vector<RopeTouch>, kCount> touches_;
+};
+
+bool fits(const Chain& a, const Chain& b) {
+  return a.node_count == b.node_count && (a.bend_stiffness > 0) == (b.bend_stiffness > 0);
 }
 
 }  // namespace
 
 void solve_chains(std::span<Chain> chains, const std::vector<Vec3>& before, Real h,
                   state::Particles& particles, state::Segments& segments, state::Contacts& contacts) {
-  thread_local RopeScratch scratch;
-  const auto substep = static_cast<double>(h);
+  thread_local Group<wide::kRopeLanes> together;
+  thread_local Group<1> alone;
+  thread_local std::vector<Chain*> members;
+  const Source source = {before, static_cast<double>(h), particles, segments, contacts};
+  const auto finish = [&] {
+    if (members.size() >= kFewestForLanes) {
+      together.solve(members, source);
+    } else if (!members.empty()) {
+      alone.solve(members, source);
+    }
+    members.clear();
+  };
   for (Chain& chain : chains) {
     if (chain.in_bundle) continue;
-    scratch.clear();
-    load_rope(chain, before, substep, particles, segments, contacts, scratch);
-    solve_chain(chain, substep, scratch);
-    if (!is_finite(scratch)) continue;
-    store_rope(chain, 0, 0, substep, scratch, particles, segments);
-    store_touches(substep, scratch, contacts);
+    if (members.size() == wide::kRopeLanes || (!members.empty() && !fits(*members.front(), chain))) finish();
+    members.push_back(&chain);
   }
+  finish();
 }
 
 }  // namespace hooke::solver

@@ -1,6 +1,7 @@
 #include "solver/rope_rows.h"
 
 #include "solver/contacts.h"
+#include "solver/wide/rope_segments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,38 +14,35 @@ namespace {
 using V = DVec3;
 using M = math::Symmetric3<double>;
 
-constexpr double kDamping = 0.2;           ///< Share of the geometric stiffness that damps waves.
-constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
-constexpr double kLimitTolerance = 1e-4;
 constexpr double kSlidingShare = 0.9999;  ///< Of mu N: a node whose friction was this large was sliding.
 constexpr int kLeastContactSolves = 2;
 constexpr int kSlidingSolves = 4;
-
-double lighter_end(const RopeNode& a, const RopeNode& b) {
-  const double inf = std::numeric_limits<double>::infinity();
-  const double m = std::min(a.w > 0 ? a.mass : inf, b.w > 0 ? b.mass : inf);
-  return m < inf ? m : 1.0;
-}
-
-V direction(V d, double l) {
-  return l > 0 ? (1.0 / l) * d : V{0, -1, 0};
-}
 
 V across(V n, V v) {
   return v - dot(n, v) * n;
 }
 
-/// Angular velocity of the line from the first to the last node before this substep; zero for a rope that is
-/// folded to less than a quarter of its length, whose line means nothing.
-V turning_of(std::size_t first_node, const RopeScratch& s) {
-  double total = 0;
-  for (std::size_t i = s.segments.size(); i > 0 && s.segments[i - 1].a >= first_node; --i)
-    total += s.segments[i - 1].rest;
-  const RopeNode& first = s.nodes[first_node];
-  const V line = s.nodes.back().x - first.x;
-  const double l2 = length_squared(line);
-  if (l2 < total * total / 16) return {};
-  return (1.0 / l2) * cross(line, s.nodes.back().v_before - first.v_before);
+using Lane = wide::HWY_NAMESPACE::Triple<double>;
+
+Lane lane_of(V v) {
+  return {v.x, v.y, v.z};
+}
+V vector_of(const Lane& lane) {
+  return {lane.x, lane.y, lane.z};
+}
+
+wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const RopeNode& a,
+                                                   const RopeNode& b) {
+  return {lane_of(b.x - a.x),
+          lane_of(b.u - a.u),
+          lane_of(b.v_before - a.v_before),
+          e.rest,
+          e.stiffness,
+          e.damping,
+          e.limit,
+          lighter_end(a, b),
+          e.limited ? 1.0 : 0.0,
+          e.tension_bound};
 }
 
 /// How fast a contact would open, with its gap as speed.
@@ -68,9 +66,10 @@ void update_friction(RopeTouch& t, V u, double rho) {
   if (t.slides) t.f = (t.friction * t.normal) * t.against;
 }
 
-RopeTouch load_touch(std::size_t row, double h, const state::Contacts& contacts) {
+RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Contacts& contacts) {
   RopeTouch t;
   t.row = static_cast<std::uint32_t>(row);
+  t.node = node;
   t.n = vector_cast<double>(contacts.normal[row]);
   t.surface = vector_cast<double>(contacts.surface_velocity[row]);
   t.lever = vector_cast<double>(contacts.lever[row]);
@@ -87,6 +86,12 @@ RopeTouch load_touch(std::size_t row, double h, const state::Contacts& contacts)
 }
 
 }  // namespace
+
+double lighter_end(const RopeNode& a, const RopeNode& b) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const double m = std::min(a.w > 0 ? a.mass : inf, b.w > 0 ? b.mass : inf);
+  return m < inf ? m : 1.0;
+}
 
 RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& particles) {
   return {.x = vector_cast<double>(particles.position[particle].x),
@@ -108,40 +113,51 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
     s.nodes.push_back(load_node(row, before[row], particles));
   }
   for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-    const std::size_t row = chain.first_segment + i;
-    RopeSegment e;
-    e.a = first + i;
-    e.rest = static_cast<double>(segments.rest_length[row]);
-    e.stiffness = static_cast<double>(segments.stiffness[row]);
-    e.damping = static_cast<double>(segments.damping[row]);
-    e.limit = static_cast<double>(segments.length_limit[row]);
-    e.tension_bound = static_cast<double>(segments.tension[row]);
-    e.limited = segments.limited[row] != 0;
-    s.segments.push_back(e);
+    s.segments.push_back(load_segment(chain.first_segment + i, segments));
+    s.segments.back().a = first + i;
   }
+  load_touches(chain, first, h, particles, contacts, s.touches);
+}
+
+RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
+  RopeSegment e;
+  e.rest = static_cast<double>(segments.rest_length[row]);
+  e.stiffness = static_cast<double>(segments.stiffness[row]);
+  e.damping = static_cast<double>(segments.damping[row]);
+  e.limit = static_cast<double>(segments.length_limit[row]);
+  e.tension_bound = static_cast<double>(segments.tension[row]);
+  e.limited = segments.limited[row] != 0;
+  return e;
+}
+
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Particles& particles,
+                  const state::Contacts& contacts, std::vector<RopeTouch>& touches) {
   for (std::uint32_t row = chain.first_contact; row < chain.end_contact; ++row) {
-    const std::uint32_t node = first + contacts.particle[row] - chain.first_particle;
-    if (!(s.nodes[node].w > 0)) continue;
-    s.touches.push_back(load_touch(row, h, contacts));
-    s.touches.back().node = node;
+    const std::uint32_t particle = contacts.particle[row];
+    if (particles.velocity[particle].inverse_mass > Real(0))
+      touches.push_back(load_touch(row, first_node + particle - chain.first_particle, h, contacts));
   }
+}
+
+RopeBend load_bend(const Chain& chain, double before, double behind, bool held_before, bool held_behind) {
+  const double length = 0.5 * ((held_before ? 0 : before) + (held_behind ? 0 : behind));
+  RopeBend bend;
+  bend.before = 1 / before;
+  bend.behind = 1 / behind;
+  bend.stiffness = chain.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
+  bend.damping = chain.bend_damping * bend.stiffness;
+  return bend;
 }
 
 void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
                 RopeScratch& s) {
   if (!(chain.bend_stiffness > 0)) return;
   for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
-    const double before = s.segments[first_segment + i - 1].rest;
-    const double behind = s.segments[first_segment + i].rest;
     const RopeNode* node = &s.nodes[first_node + i];
     const auto held = [&](std::ptrdiff_t step) { return !(node[0].w > 0) && !(node[step].w > 0); };
-    const double length = 0.5 * ((held(-1) ? 0 : before) + (held(1) ? 0 : behind));
-    RopeBend bend;
+    RopeBend bend = load_bend(chain, s.segments[first_segment + i - 1].rest,
+                              s.segments[first_segment + i].rest, held(-1), held(1));
     bend.node = static_cast<std::uint32_t>(first_node + i);
-    bend.before = 1 / before;
-    bend.behind = 1 / behind;
-    bend.stiffness = chain.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
-    bend.damping = chain.bend_damping * bend.stiffness;
     bend.gamma = 1 / (h * (bend.damping + h * bend.stiffness));
     const V change = bend.behind * (node[1].x - node[0].x) - bend.before * (node[0].x - node[-1].x);
     bend.target = (-bend.stiffness / (bend.damping + h * bend.stiffness)) * change;
@@ -149,37 +165,35 @@ void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_se
   }
 }
 
-RopeSetting first_setting(std::size_t first_node, const RopeScratch& s) {
-  const bool touches = std::any_of(s.touches.begin(), s.touches.end(),
-                                   [&](const RopeTouch& t) { return t.node >= first_node && t.active; });
-  if (touches) return {.compliance = kComplianceInContact};
-  return {.compliance = kComplianceInAir, .turning = turning_of(first_node, s)};
+RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V line, V speed) {
+  if (std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; }))
+    return {.compliance = kComplianceInContact};
+  RopeSetting setting = {.compliance = kComplianceInAir};
+  // The line of a rope that is folded to less than a quarter of its length means nothing.
+  const double square = length_squared(line);
+  if (square >= rest * rest / 16) setting.turning = (1.0 / square) * cross(line, speed);
+  return setting;
+}
+
+RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std::size_t first_touch,
+                          const RopeScratch& s) {
+  double rest = 0;
+  for (std::size_t i = first_segment; i < s.segments.size(); ++i) rest += s.segments[i].rest;
+  const RopeNode& first = s.nodes[first_node];
+  const RopeNode& last = s.nodes.back();
+  return first_setting(std::span(s.touches).subspan(first_touch), rest, last.x - first.x,
+                       last.v_before - first.v_before);
 }
 
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeSegment& e) {
-  const RopeNode& a = nodes[e.a];
-  const RopeNode& b = nodes[e.a + 1];
-  const bool first = setting.first;
-  const V relative = first ? V{} : b.u - a.u;
-  const V d = b.x - a.x + h * relative;
-  const double l = length(d);
-  e.n = direction(d, l);
-
-  const bool rigid = e.limited || std::isinf(e.stiffness);
-  const double s = e.damping + h * e.stiffness;
-  const double bias = rigid ? 1.0 / h : (s > 0 ? e.stiffness / s : 0.0);
-  const double lighter = lighter_end(a, b);
-  e.gamma = std::max(rigid ? 0.0 : 1.0 / (h * s), setting.compliance / lighter);
-  const double c = l - (e.limited ? e.limit : e.rest);
-
-  const double g = h * h * std::max(0.0, e.tension_bound) / e.rest;
-  const double floor = kTransverseFloor * lighter;
-  const double beta = first ? (1.0 + kDamping) * g + floor : g + floor;
-  const V turned = (kDamping * g / beta) * cross(setting.turning, e.rest * e.n);
-  const V kept = ((g + floor) / beta) * across(e.n, b.v_before - a.v_before);
-  const V transverse = first ? kept + across(e.n, turned) : across(e.n, relative);
-  e.offset = (bias * (h * dot(e.n, relative) - c)) * e.n + transverse;
-  e.compliance = math::axial(e.n, e.gamma, 1.0 / beta);
+  const auto row = wide::HWY_NAMESPACE::linearized<double>(
+      state_of(e, nodes[e.a], nodes[e.a + 1]),
+      {setting.compliance, setting.first ? 1.0 : 0.0, lane_of(setting.turning)}, h);
+  e.n = vector_of(row.n);
+  e.offset = vector_of(row.offset);
+  e.gamma = row.gamma;
+  e.beta = row.beta;
+  e.compliance = math::axial(e.n, e.gamma, 1.0 / e.beta);
 }
 
 M grip_of(const RopeTouch& t, const RopeNode& node) {
@@ -193,49 +207,51 @@ V push_of(const RopeTouch& t, const RopeNode& node, double h) {
   return normal + (t.slides ? (t.friction * t.normal) * t.against : t.f0);
 }
 
+NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h) {
+  NodeHold hold = {M::diagonal(node.mass), node.mass * node.v_free};
+  for (const RopeTouch& t : at_node) {
+    if (!t.active) continue;
+    const M grip = grip_of(t, node);
+    hold.mass = hold.mass + grip;
+    hold.impulse += push_of(t, node, h);
+    if (t.body < 0) hold.impulse += grip * t.surface;
+  }
+  return hold;
+}
+
 void hold_nodes(double h, RopeScratch& s) {
   for (RopeNode& node : s.nodes) {
     node.inverse = M::diagonal(node.w);
     node.target = node.v_free;
   }
-  for (std::size_t i = 0; i < s.touches.size();) {
-    const std::uint32_t index = s.touches[i].node;
-    RopeNode& node = s.nodes[index];
-    M mass = M::diagonal(node.mass);
-    V impulse = node.mass * node.v_free;
-    for (; i < s.touches.size() && s.touches[i].node == index; ++i) {
-      const RopeTouch& t = s.touches[i];
-      if (!t.active) continue;
-      const M grip = grip_of(t, node);
-      mass = mass + grip;
-      impulse += push_of(t, node, h);
-      if (t.body < 0) impulse += grip * t.surface;
-    }
-    if (!(node.w > 0)) continue;
-    node.inverse = math::inverse(mass);
-    node.target = node.inverse * impulse;
+  for_each_touched(s.touches, [&](std::span<RopeTouch> at_node) {
+    RopeNode& node = s.nodes[at_node.front().node];
+    const NodeHold hold = hold_of(at_node, node, h);
+    node.inverse = math::inverse(hold.mass);
+    node.target = node.inverse * hold.impulse;
+  });
+}
+
+bool update_touch(double h, const RopeNode& node, RopeTouch& t) {
+  const double approach = approach_of(t, node.u, h);
+  const double rho = kContactStiffness * node.mass;
+  const bool was_active = t.active;
+  const bool slid = t.slides;
+  if (t.active) {
+    t.normal = std::max(0.0, t.n0 - rho * approach);
+    t.active = t.normal > 0;
+    update_friction(t, node.u, rho);
+  } else {
+    t.normal = 0;
+    t.f = {};
+    t.active = approach < 0;
   }
+  return was_active != t.active || slid != t.slides || t.slides;
 }
 
 bool update_touches(double h, RopeScratch& s) {
   bool unsettled = false;
-  for (RopeTouch& t : s.touches) {
-    const RopeNode& node = s.nodes[t.node];
-    const double approach = approach_of(t, node.u, h);
-    const double rho = kContactStiffness * node.mass;
-    const bool was_active = t.active;
-    const bool slid = t.slides;
-    if (t.active) {
-      t.normal = std::max(0.0, t.n0 - rho * approach);
-      t.active = t.normal > 0;
-      update_friction(t, node.u, rho);
-    } else {
-      t.normal = 0;
-      t.f = {};
-      t.active = approach < 0;
-    }
-    unsettled = unsettled || was_active != t.active || slid != t.slides || t.slides;
-  }
+  for (RopeTouch& t : s.touches) unsettled = update_touch(h, s.nodes[t.node], t) || unsettled;
   return unsettled;
 }
 
@@ -244,37 +260,34 @@ double check_segments(double h, RopeScratch& s, bool& limits_changed) {
   for (RopeSegment& e : s.segments) {
     const RopeNode& a = s.nodes[e.a];
     const RopeNode& b = s.nodes[e.a + 1];
-    const V relative = b.u - a.u;
-    const double l = length(b.x - a.x + h * relative);
-    const double pull = dot(e.n, e.q);
-    e.tension_bound = std::max(e.tension_bound, pull / h);
-    if (!(a.w > 0) && !(b.w > 0)) continue;
-
-    const bool firm =
-        e.limited || std::isinf(e.stiffness) || e.gamma * h * (e.damping + h * e.stiffness) > 1.0001;
-    const double expected =
-        firm ? h * e.gamma * pull : (pull / h - e.damping * dot(e.n, relative)) / e.stiffness;
-    const double error = l - (e.limited ? e.limit : e.rest) - expected;
-    worst = std::max(worst, std::abs(error) / e.rest);
-
-    const bool over = !e.limited && l > e.limit * (1.0 + kLimitTolerance);
-    const bool released = e.limited && pull < h * e.stiffness * (e.limit - e.rest);
-    limits_changed = limits_changed || over || released;
-    e.limited = over || (e.limited && !released);
+    const bool held = !(a.w > 0) && !(b.w > 0);
+    const auto check = wide::HWY_NAMESPACE::checked<double>(
+        state_of(e, a, b), {lane_of(e.n), lane_of(e.offset), e.gamma, e.beta}, dot(e.n, e.q),
+        held ? 1.0 : 0.0, h);
+    e.tension_bound = check.tension_bound;
+    e.limited = check.limited > 0;
+    limits_changed = limits_changed || check.limit_changed > 0;
+    worst = std::max(worst, check.error);
   }
   return worst;
 }
 
-int least_solves(const RopeScratch& s, bool unsettled) {
-  const bool touches =
-      std::any_of(s.touches.begin(), s.touches.end(), [](const RopeTouch& t) { return t.active; });
-  if (!touches && !unsettled) return 1;
+int least_solves(std::span<const RopeTouch> touches, bool unsettled) {
+  const bool active =
+      std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; });
+  if (!active && !unsettled) return 1;
   return unsettled ? kSlidingSolves : kLeastContactSolves;
 }
 
 bool is_finite(const RopeScratch& s) {
   return std::all_of(s.nodes.begin(), s.nodes.end(),
                      [](const RopeNode& node) { return hooke::is_finite(node.u); });
+}
+
+void store_tension(std::size_t row, double tension, bool limited, state::Segments& segments) {
+  segments.tension[row] = static_cast<Real>(tension);
+  segments.mean_tension[row] += segments.tension[row];
+  segments.limited[row] = limited ? 1 : 0;
 }
 
 void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
@@ -284,17 +297,13 @@ void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_se
     if (node.w > 0) particles.velocity[chain.first_particle + i].v = vector_cast<Real>(node.u);
   }
   for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-    const std::size_t row = chain.first_segment + i;
     const RopeSegment& e = s.segments[first_segment + i];
-    const auto tension = static_cast<Real>(dot(e.n, e.q) / h);
-    segments.tension[row] = tension;
-    segments.mean_tension[row] += tension;
-    segments.limited[row] = e.limited ? 1 : 0;
+    store_tension(chain.first_segment + i, dot(e.n, e.q) / h, e.limited, segments);
   }
 }
 
-void store_touches(double h, const RopeScratch& s, state::Contacts& contacts) {
-  for (const RopeTouch& t : s.touches) {
+void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts) {
+  for (const RopeTouch& t : touches) {
     contacts.normal_force[t.row] = static_cast<Real>(t.normal / h);
     contacts.friction_force[t.row] = vector_cast<Real>((1.0 / h) * t.f);
   }

@@ -3,12 +3,14 @@
 #include "math/symmetric.h"
 #include "solver/chains.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
-/// Ropes in solver form: what solving one alone (chains.cpp) and solving several with what they hang on
-/// (bundles.cpp) have in common. Equations: chains.h.
+/// Ropes in solver form: what solving them alone (chains.cpp) and with what they hang on (bundles.cpp) have
+/// in common. Equations: chains.h.
 
 namespace hooke::solver {
 
@@ -24,11 +26,10 @@ struct RopeSegment {
   std::uint32_t a = 0;  ///< Node; b is the next one.
   DVec3 n, offset;
   math::Symmetric3<double> compliance;  ///< E
-  math::Symmetric3<double> k;           ///< (X + W)^-1
-  DVec3 s, q;                           ///< Free velocity of the rope behind, impulse.
+  DVec3 q;                              ///< Impulse.
   double rest = 0, stiffness = 0, damping = 0, limit = 0;
   double tension_bound = 0;  ///< T+
-  double gamma = 0;
+  double gamma = 0, beta = 0;
   bool limited = false;
 };
 
@@ -91,23 +92,61 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
                const state::Particles& particles, const state::Segments& segments,
                const state::Contacts& contacts, RopeScratch& s);
 
+/// One segment, as load_rope makes it, but for its node.
+[[nodiscard]] RopeSegment load_segment(std::size_t row, const state::Segments& segments);
+
+/// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Particles& particles,
+                  const state::Contacts& contacts, std::vector<RopeTouch>& touches);
+
+/// Bending between two segments of these lengths [m]. At a clamp, the end of two held nodes, only half a
+/// segment bends.
+[[nodiscard]] RopeBend load_bend(const Chain& chain, double before, double behind, bool held_before,
+                                 bool held_behind);
+
+/// Mass of the lighter end that moves; 1 if neither does [kg].
+[[nodiscard]] double lighter_end(const RopeNode& a, const RopeNode& b);
+
 /// One node, as load_rope makes it.
 [[nodiscard]] RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& particles);
 
-/// How the rope that was loaded last, from node `first_node` on, is linearized at the start of a substep.
-[[nodiscard]] RopeSetting first_setting(std::size_t first_node, const RopeScratch& s);
+/// How a rope of length `rest` [m] is linearized at the start of a substep; `line` and `speed` go from its
+/// first node to its last.
+[[nodiscard]] RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, DVec3 line,
+                                        DVec3 speed);
+/// The same for the rope that was loaded last.
+[[nodiscard]] RopeSetting first_setting(std::size_t first_node, std::size_t first_segment,
+                                        std::size_t first_touch, const RopeScratch& s);
 
 /// The segment's equation u_b - u_a = offset + compliance q.
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                RopeSegment& segment);
 
 /// Bends of a rope whose nodes begin at `first_node`, as rows of a substep of length h [s]: implicit Euler,
-/// as for springs (solver/springs.h). At a clamp, the end of two held nodes, only half a segment bends.
+/// as for springs (solver/springs.h).
 void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
                 RopeScratch& s);
 
 /// W and v* of every node, with what touches it.
 void hold_nodes(double h, RopeScratch& s);
+
+/// Calls visit(touches) for those of each node that has any; they are in order of nodes.
+template <class Visit>
+void for_each_touched(std::span<RopeTouch> touches, Visit&& visit) {
+  for (std::size_t first = 0; first < touches.size();) {
+    std::size_t end = first;
+    while (end < touches.size() && touches[end].node == touches[first].node) ++end;
+    visit(touches.subspan(first, end - first));
+    first = end;
+  }
+}
+
+/// A node with what touches it: its mass with their grips, and the impulse that makes it go v*.
+struct NodeHold {
+  math::Symmetric3<double> mass;
+  DVec3 impulse;
+};
+[[nodiscard]] NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h);
 
 /// The mass that a contact adds to its node: the change of the impulse on it per velocity.
 [[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch, const RopeNode& node);
@@ -115,23 +154,27 @@ void hold_nodes(double h, RopeScratch& s);
 /// The impulse of a contact on its node, less what `grip_of` says of velocities.
 [[nodiscard]] DVec3 push_of(const RopeTouch& touch, const RopeNode& node, double h);
 
-/// Contact forces that follow from u. True if the set of active contacts changed or a node slides.
+/// The contact's force that follows from u. True if it came into effect or out of it, or slides.
+bool update_touch(double h, const RopeNode& node, RopeTouch& touch);
+
+/// The same for all. True for any.
 bool update_touches(double h, RopeScratch& s);
 
 /// Largest relative length error left; raises T+ and moves segments onto or off their limits.
 double check_segments(double h, RopeScratch& s, bool& limits_changed);
 
 /// How many solutions a substep takes at least, by what update_touches said.
-[[nodiscard]] int least_solves(const RopeScratch& s, bool unsettled);
+[[nodiscard]] int least_solves(std::span<const RopeTouch> touches, bool unsettled);
 
 [[nodiscard]] bool is_finite(const RopeScratch& s);
 
-/// Writes back one rope, which begins at node `first_node` and segment `first_segment`; its mean tension is
-/// summed over the step.
+/// Writes back the tension of a segment [N]; its mean is summed over the step.
+void store_tension(std::size_t row, double tension, bool limited, state::Segments& segments);
+
+/// Writes back one rope, which begins at node `first_node` and segment `first_segment`.
 void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
                 const RopeScratch& s, state::Particles& particles, state::Segments& segments);
 
-/// Writes back all contacts.
-void store_touches(double h, const RopeScratch& s, state::Contacts& contacts);
+void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts);
 
 }  // namespace hooke::solver

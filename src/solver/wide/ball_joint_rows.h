@@ -16,11 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 template <class Number>
-HWY_INLINE Triple<Number> sum(const Triple<Number>& a, const Triple<Number>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-template <class Number>
 HWY_INLINE Scale<Number> get6(const Real (&from)[6][kLanes], int i) {
   return {get<Number>(from[0] + i), get<Number>(from[1] + i), get<Number>(from[2] + i),
           get<Number>(from[3] + i), get<Number>(from[4] + i), get<Number>(from[5] + i)};

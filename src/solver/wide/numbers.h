@@ -1,8 +1,9 @@
-/// The arithmetic of rows between bodies, once for one lane (Number is Real) and for a vector of lanes.
+/// Arithmetic once for one lane (Number is Real or double) and for a vector of lanes.
 /// Included anew for each instruction set: Highway compiles what stands between its two macros for the set in
 /// turn.
 ///
-/// A Number has + - *, Number(Real), and these functions, given below for Real and in vectors.h for vectors:
+/// A Number has + - *, Number(Real), and these functions, given below for one lane, in vectors.h and
+/// double_vectors.h for vectors:
 ///   read, write      from and to consecutive lanes
 ///   above, choose    a comparison and a choice by it
 ///   quotient, root   exact division and square root
@@ -22,6 +23,8 @@
 #include "solver/spring_blocks.h"
 
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <hwy/highway.h>
 
@@ -48,22 +51,28 @@ struct Displacement {
   Triple<Number> dx, theta;
 };
 
-HWY_INLINE void read(const Real* from, Real& to) {
+template <std::floating_point Lane>
+HWY_INLINE void read(const Lane* from, Lane& to) {
   to = *from;
 }
-HWY_INLINE void write(Real value, Real* to) {
+template <std::floating_point Lane>
+HWY_INLINE void write(Lane value, Lane* to) {
   *to = value;
 }
-HWY_INLINE bool above(Real a, Real b) {
+template <std::floating_point Lane>
+HWY_INLINE bool above(Lane a, Lane b) {
   return a > b;
 }
-HWY_INLINE Real choose(bool condition, Real yes, Real no) {
+template <std::floating_point Lane>
+HWY_INLINE Lane choose(bool condition, Lane yes, Lane no) {
   return condition ? yes : no;
 }
-HWY_INLINE Real quotient(Real a, Real b) {
+template <std::floating_point Lane>
+HWY_INLINE Lane quotient(Lane a, Lane b) {
   return a / b;
 }
-HWY_INLINE Real root(Real a) {
+template <std::floating_point Lane>
+HWY_INLINE Lane root(Lane a) {
   return std::sqrt(a);
 }
 HWY_INLINE void read_quad(const Real* base, const std::uint32_t* line, Quad<Real>& q) {
@@ -81,20 +90,20 @@ HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t*
 template <class Number>
 constexpr int kLanesOf = 1;
 
-template <class Number>
-HWY_INLINE Number get(const Real* from) {
+template <class Number, class Lane>
+HWY_INLINE Number get(const Lane* from) {
   Number value;
   read(from, value);
   return value;
 }
 
 /// Lanes of a vector quantity, from lane `i` on.
-template <class Number>
-HWY_INLINE Triple<Number> get3(const Real (&from)[3][kLanes], int i) {
+template <class Number, class Lane, std::size_t kCount>
+HWY_INLINE Triple<Number> get3(const Lane (&from)[3][kCount], int i) {
   return {get<Number>(from[0] + i), get<Number>(from[1] + i), get<Number>(from[2] + i)};
 }
-template <class Number>
-HWY_INLINE void put3(const Triple<Number>& value, Real (&to)[3][kLanes], int i) {
+template <class Number, class Lane, std::size_t kCount>
+HWY_INLINE void put3(const Triple<Number>& value, Lane (&to)[3][kCount], int i) {
   write(value.x, to[0] + i);
   write(value.y, to[1] + i);
   write(value.z, to[2] + i);
@@ -115,6 +124,10 @@ HWY_INLINE Number dot(const Triple<Number>& a, const Triple<Number>& b) {
 template <class Number>
 HWY_INLINE Triple<Number> cross(const Triple<Number>& a, const Triple<Number>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Number>
+HWY_INLINE Triple<Number> sum(const Triple<Number>& a, const Triple<Number>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class Number>
 HWY_INLINE Triple<Number> difference(const Triple<Number>& a, const Triple<Number>& b) {
