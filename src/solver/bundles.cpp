@@ -51,16 +51,12 @@ void BundleSolution::load_hooks() {
     };
     JointBody a = end_of(0);
     if (hook.kind == HookKind::kRopeSlide) a.rotation = turn_of_slide(t_, hook);
-    const JointBody b = end_of(1);
-    const int count = make_joint_rows(hook, a, b, h_, rows);
-    // Nothing of the bundle moves these ends: how fast they open the row is given.
     const bool a_given = b_.ends[i][0] < 0 && !hook.a.is_point();
     const bool b_given = b_.ends[i][1] < 0 && !hook.b.is_point();
+    const int count = make_rows(hook, a, end_of(1), a_given, b_given, h_, rows);
     for (int k = 0; k < count; ++k) {
       const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
       b_.rows[row] = rows[k];
-      if (a_given) b_.rows[row].target += dot(rows[k].n, a.v) + dot(rows[k].j_a, a.omega_scaled);
-      if (b_given) b_.rows[row].target -= dot(rows[k].n, b.v) + dot(rows[k].j_b, b.omega_scaled);
       b_.lambda[row] = static_cast<double>(hook.row_impulse[k]);
       b_.bound[row] = first_bound(rows[k], b_.lambda[row]);
     }

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -83,13 +84,18 @@ struct Bundle {
   std::vector<double> right_side;  ///< Then the solution.
 };
 
+/// The share of a hook row's diagonal that it has as compliance.
+inline constexpr double kHookCompliance = 1e-6;
+
 struct Bundles {
   std::vector<Bundle> bundles;
+  std::vector<RopeAnchor> anchors;       ///< Of ropes outside bundles, by chain and node.
   std::vector<std::uint32_t> signature;  ///< Of what they were made from.
 };
 
 /// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has
-/// changed since they were made. Marks the chains that belong to one.
+/// changed since they were made. Marks the chains that belong to one. A rope that hangs by ball hooks on what
+/// does not give way, and on nothing else, needs none: those are its anchors.
 void build_bundles(const state::Tables& tables, std::vector<Chain>& chains, Bundles& bundles);
 
 /// Puts the ends of hooks that slide along a rope where the other ends are nearest to them, searching from
@@ -101,6 +107,10 @@ void slide_hooks(state::Tables& tables);
 
 /// An end of a hook now: of a body, the world, or the place between particles, which has no rotation.
 [[nodiscard]] JointBody joint_end(const state::Tables& tables, const state::HookPlace& place);
+
+/// Rows of a hook (joint_rows.h) between ends of which some have their motion given: that is in the targets.
+int make_rows(state::Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
+              std::span<JointRow, state::Hook::kMaxRows> rows);
 
 /// While elastic rows are solved, a hooked point of a cloth, solid or group of particles has the mass of what
 /// it is tied to as well: it is as hard to move as that. `weigh_points` notes the points' own state and gives

@@ -91,11 +91,54 @@ void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t
   points.insert(points.end(), end.particle.begin(), end.particle.begin() + end.particle_count);
 }
 
-/// Members of all bundles, in order of the first hook, then of the first contact that makes one.
-std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
+/// Whether a hook can be an anchor of a rope that has no other hooks.
+bool may_be_anchor(const Tables& t, const Hook& hook) {
+  const HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
+  const HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
+  return hook.kind == HookKind::kBall && count_joint_rows(hook) == 3 && point.particle_count == 1 &&
+         t.objects[point.object].kind == PointRef::Kind::kRope && !other.is_point() &&
+         !gives_way(t.bodies, other.body);
+}
+
+/// Anchors of the chains, which are in order of their particles as ropes are.
+void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std::vector<Chain>& chains,
+                  std::vector<RopeAnchor>& anchors) {
+  anchors.clear();
+  for (const std::uint32_t row : hooks) {
+    const Hook& hook = t.hooks[row];
+    const std::uint32_t particle = (hook.a.is_point() ? hook.a : hook.b).particle[0];
+    const auto behind =
+        std::upper_bound(chains.begin(), chains.end(), particle,
+                         [](std::uint32_t p, const Chain& chain) { return p < chain.first_particle; });
+    const auto chain = static_cast<std::uint32_t>(behind - chains.begin()) - 1;
+    anchors.push_back({chain, particle - chains[chain].first_particle, row, hook.b.is_point()});
+  }
+  std::stable_sort(anchors.begin(), anchors.end(), [](const RopeAnchor& a, const RopeAnchor& b) {
+    return a.chain != b.chain ? a.chain < b.chain : a.node < b.node;
+  });
+  std::uint32_t next = 0;
+  for (std::uint32_t c = 0; c < chains.size(); ++c) {
+    chains[c].first_anchor = next;
+    while (next < anchors.size() && anchors[next].chain == c) ++next;
+    chains[c].end_anchor = next;
+  }
+}
+
+/// Members of all bundles, in order of the first hook, then of the first contact that makes one. Hooks that
+/// are anchors go to `anchors`.
+std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains,
+                                 std::vector<std::uint32_t>& anchors) {
   Groups groups(t);
   std::vector<Bundle> bundles;
-  std::vector<std::uint32_t> bundle_of(t.bodies.motion.size() + t.particles.position.size(), kNone);
+  const std::size_t group_count = t.bodies.motion.size() + t.particles.position.size();
+  std::vector<char> tied(group_count, 0);
+  for (const Hook& hook : t.hooks) {
+    if (hook.holds_point() && !may_be_anchor(t, hook)) tied[groups.of_hook(hook)] = 1;
+  }
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
+    if (joins(t, row)) tied[groups.of_contact(row)] = 1;
+  }
+  std::vector<std::uint32_t> bundle_of(group_count, kNone);
   const auto bundle_at = [&](std::uint32_t group) -> Bundle& {
     if (bundle_of[group] == kNone) {
       bundle_of[group] = static_cast<std::uint32_t>(bundles.size());
@@ -106,6 +149,10 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains) {
   for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
     const Hook& hook = t.hooks[i];
     if (!hook.holds_point()) continue;
+    if (tied[groups.of_hook(hook)] == 0) {
+      anchors.push_back(i);
+      continue;
+    }
     Bundle& bundle = bundle_at(groups.of_hook(hook));
     bundle.hooks.push_back(i);
     for (const HookPlace& end : {hook.a, hook.b}) {
@@ -299,7 +346,9 @@ void build_bundles(const Tables& tables, std::vector<Chain>& chains, Bundles& bu
   std::vector<std::uint32_t> signature = signature_of(tables);
   if (signature != bundles.signature) {
     bundles.signature = std::move(signature);
-    bundles.bundles = sort_members(tables, chains);
+    std::vector<std::uint32_t> anchors;
+    bundles.bundles = sort_members(tables, chains, anchors);
+    list_anchors(tables, anchors, chains, bundles.anchors);
     for (Bundle& bundle : bundles.bundles) make_pattern(tables, chains, bundle);
   }
   for (Bundle& bundle : bundles.bundles) set_slide_weights(tables, bundle);

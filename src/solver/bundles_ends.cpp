@@ -145,6 +145,16 @@ JointBody joint_end(const Tables& t, const HookPlace& place) {
   return end;
 }
 
+int make_rows(Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
+              std::span<JointRow, Hook::kMaxRows> rows) {
+  const int count = make_joint_rows(hook, a, b, h, rows);
+  for (JointRow& row : rows.first(static_cast<std::size_t>(count))) {
+    if (a_given) row.target += dot(row.n, a.v) + dot(row.j_a, a.omega_scaled);
+    if (b_given) row.target -= dot(row.n, b.v) + dot(row.j_b, b.omega_scaled);
+  }
+  return count;
+}
+
 void slide_hooks(Tables& t) {
   for (Hook& hook : t.hooks) {
     if (hook.kind == HookKind::kRopeSlide) slide(t, hook);

@@ -13,8 +13,6 @@ namespace {
 using math::Symmetric3;
 using Incident = Bundle::Incident;
 
-constexpr double kCompliance = 1e-6;  ///< Share of a hook row's diagonal.
-
 std::array<double, 9> entries_of(const Symmetric3<double>& m) {
   return {m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz};
 }
@@ -82,7 +80,7 @@ void BundleSolution::assemble_hooks() {
       const Numbers coupled = numbers(block, body_block(body));
       for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
     }
-    diagonal += b_.rows[row].gamma + kCompliance * mobility;
+    diagonal += b_.rows[row].gamma + kHookCompliance * mobility;
   });
 }
 

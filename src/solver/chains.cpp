@@ -3,6 +3,7 @@
 
 #include "solver/chains.h"
 
+#include "solver/bundles.h"
 #include "solver/rope_rows.h"
 #include "solver/wide/ropes.h"
 
@@ -19,11 +20,18 @@ using wide::RopeLanes;
 constexpr int kFewestForLanes = 2;  ///< Below that one after another is faster.
 
 struct Source {
+  std::span<const RopeAnchor> anchors;
   const std::vector<Vec3>& before;
   double h;
-  state::Particles& particles;
-  state::Segments& segments;
-  state::Contacts& contacts;
+  state::Tables& tables;
+};
+
+/// A ball hook at a node, as rows of a substep.
+struct AnchorRows {
+  std::uint32_t node = 0, hook = 0;
+  double sign = 1;  ///< How the rows' speed goes with the node's: 1 as end b, -1 as a.
+  std::array<JointRow, 3> rows = {};
+  std::array<double, 3> gamma = {};  ///< Compliance of each.
 };
 
 template <int kCount>
@@ -88,12 +96,17 @@ class Group {
     for (std::uint32_t i = 0; i < ropes_.bends.size(); ++i) {
       for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source.h);
     }
-    for (int lane = 0; lane < kCount; ++lane) begin(*chain[lane], rest[lane], lane, source);
+    for (int lane = 0; lane < kCount; ++lane) {
+      touches_[lane].clear();
+      anchors_[lane].clear();
+      if (static_cast<std::size_t>(lane) < chains.size()) load_ties(*chain[lane], lane, source);
+      begin(rest[lane], lane);
+    }
   }
 
   RopeNode load_node_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
     const std::uint32_t row = chain.first_particle + i;
-    const RopeNode node = load_node(row, source.before[row], source.particles);
+    const RopeNode node = load_node(row, source.before[row], source.tables.particles);
     wide::RopeNodeLanes<kCount>& to = ropes_.nodes[i];
     put(node.x, to.x, lane);
     put(node.v_free, to.v_free, lane);
@@ -103,10 +116,14 @@ class Group {
     return node;
   }
 
-  /// Contacts, and how the first step is linearized.
-  void begin(const Chain& chain, double rest, int lane, const Source& source) {
-    touches_[lane].clear();
-    load_touches(chain, 0, source.h, source.particles, source.contacts, touches_[lane]);
+  void load_ties(const Chain& chain, int lane, const Source& source) {
+    load_touches(chain, 0, source.h, source.tables.particles, source.tables.contacts, touches_[lane]);
+    for (std::uint32_t i = chain.first_anchor; i < chain.end_anchor; ++i)
+      load_anchor(source.anchors[i], lane, source);
+  }
+
+  /// How the first step is linearized.
+  void begin(double rest, int lane) {
     const auto& first = ropes_.nodes.front();
     const auto& last = ropes_.nodes.back();
     const RopeSetting setting = first_setting(touches_[lane], rest, get(last.x, lane) - get(first.x, lane),
@@ -119,7 +136,7 @@ class Group {
   /// Segment i; its length.
   double load_between(const Chain& chain, std::uint32_t i, const RopeNode& a, const RopeNode& b, int lane,
                       const Source& source) {
-    const RopeSegment e = load_segment(chain.first_segment + i, source.segments);
+    const RopeSegment e = load_segment(chain.first_segment + i, source.tables.segments);
     wide::RopeSegmentLanes<kCount>& to = ropes_.segments[i];
     to.rest[lane] = e.rest;
     to.stiffness[lane] = e.stiffness;
@@ -130,6 +147,24 @@ class Group {
     to.tension_bound[lane] = e.tension_bound;
     to.limited[lane] = e.limited ? 1 : 0;
     return e.rest;
+  }
+
+  void load_anchor(const RopeAnchor& anchor, int lane, const Source& source) {
+    const double w = ropes_.nodes[anchor.node].w[lane];
+    if (!(w > 0)) return;
+    state::Hook& hook = source.tables.hooks[anchor.hook];
+    std::array<JointRow, state::Hook::kMaxRows> rows;
+    make_rows(hook, joint_end(source.tables, hook.a), joint_end(source.tables, hook.b), anchor.node_is_b,
+              !anchor.node_is_b, source.h, rows);
+    AnchorRows made;
+    made.node = anchor.node;
+    made.hook = anchor.hook;
+    made.sign = anchor.node_is_b ? 1 : -1;
+    for (int k = 0; k < 3; ++k) {
+      made.rows[k] = rows[k];
+      made.gamma[k] = rows[k].gamma + kHookCompliance * w;
+    }
+    anchors_[lane].push_back(made);
   }
 
   void load_bend_at(const Chain& chain, std::uint32_t i, int lane, double h) {
@@ -153,16 +188,39 @@ class Group {
   }
 
   void hold(double h) {
+    std::fill(ropes_.held.begin(), ropes_.held.end(), 0);
     for (int lane = 0; lane < kCount; ++lane) {
       for_each_touched(touches_[lane], [&](std::span<const RopeTouch> at_node) {
         const std::uint32_t i = at_node.front().node;
-        if (ropes_.held[i] == 0) {
-          ropes_.held[i] = 1;
-          for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(i, k), h), i, k);
-        }
+        note_held(i, h);
         put_hold(hold_of(at_node, node_at(i, lane), h), i, lane);
       });
     }
+    for (int lane = 0; lane < kCount; ++lane) {
+      for (const AnchorRows& anchor : anchors_[lane]) {
+        note_held(anchor.node, h);
+        NodeHold hold = hold_at(anchor.node, lane);
+        for (int k = 0; k < 3; ++k) {
+          const double grip = 1 / anchor.gamma[k];
+          hold.mass = hold.mass + math::axial(anchor.rows[k].n, grip, 0.0);
+          hold.impulse += (grip * anchor.sign * anchor.rows[k].target) * anchor.rows[k].n;
+        }
+        put_hold(hold, anchor.node, lane);
+      }
+    }
+  }
+
+  /// From now on `holds` counts for a node; nothing touches it yet.
+  void note_held(std::uint32_t i, double h) {
+    if (ropes_.held[i] != 0) return;
+    ropes_.held[i] = 1;
+    for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(i, k), h), i, k);
+  }
+
+  [[nodiscard]] NodeHold hold_at(std::uint32_t i, int lane) const {
+    const auto& m = ropes_.holds[i].mass;
+    return {{m[0][lane], m[1][lane], m[2][lane], m[3][lane], m[4][lane], m[5][lane]},
+            get(ropes_.holds[i].impulse, lane)};
   }
 
   void put_hold(const NodeHold& hold, std::uint32_t i, int lane) {
@@ -191,18 +249,30 @@ class Group {
     for (std::uint32_t i = 0; i < chain.node_count; ++i) {
       const wide::RopeNodeLanes<kCount>& node = ropes_.nodes[i];
       if (node.w[lane] > 0)
-        source.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(get(node.u, lane));
+        source.tables.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(get(node.u, lane));
     }
     for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
       const wide::RopeSegmentLanes<kCount>& e = ropes_.segments[i];
       store_tension(chain.first_segment + i, dot(get(e.n, lane), get(e.q, lane)) / source.h,
-                    e.limited[lane] > 0, source.segments);
+                    e.limited[lane] > 0, source.tables.segments);
     }
-    store_touches(source.h, touches_[lane], source.contacts);
+    store_touches(source.h, touches_[lane], source.tables.contacts);
+    for (const AnchorRows& anchor : anchors_[lane]) {
+      const DVec3 u = get(ropes_.nodes[anchor.node].u, lane);
+      std::array<double, 3> lambda;
+      for (int k = 0; k < 3; ++k) {
+        const JointRow& row = anchor.rows[k];
+        lambda[k] = (row.target - anchor.sign * dot(row.n, u)) / anchor.gamma[k];
+      }
+      state::Hook& hook = source.tables.hooks[anchor.hook];
+      store_joint_impulses(anchor.rows, lambda, hook);
+      add_up_impulses(static_cast<Real>(source.h), hook);
+    }
   }
 
   RopeLanes<kCount> ropes_;
   std::array<std::vector<RopeTouch>, kCount> touches_;
+  std::array<std::vector<AnchorRows>, kCount> anchors_;
 };
 
 bool fits(const Chain& a, const Chain& b) {
@@ -211,12 +281,12 @@ bool fits(const Chain& a, const Chain& b) {
 
 }  // namespace
 
-void solve_chains(std::span<Chain> chains, const std::vector<Vec3>& before, Real h,
-                  state::Particles& particles, state::Segments& segments, state::Contacts& contacts) {
+void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
+                  const std::vector<Vec3>& before, Real h, state::Tables& tables) {
   thread_local Group<wide::kRopeLanes> together;
   thread_local Group<1> alone;
   thread_local std::vector<Chain*> members;
-  const Source source = {before, static_cast<double>(h), particles, segments, contacts};
+  const Source source = {anchors, before, static_cast<double>(h), tables};
   const auto finish = [&] {
     if (members.size() >= kFewestForLanes) {
       together.solve(members, source);

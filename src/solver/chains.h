@@ -1,10 +1,6 @@
 #pragma once
 
-#include "parallel/range.h"
-#include "state/contacts.h"
-#include "state/objects.h"
-#include "state/particles.h"
-#include "state/springs.h"
+#include "state/tables.h"
 
 #include <cstdint>
 #include <span>
@@ -12,17 +8,26 @@
 
 namespace hooke::solver {
 
+/// A ball hook that holds a node of a rope to what does not give way.
+struct RopeAnchor {
+  std::uint32_t chain = 0, node = 0;
+  std::uint32_t hook = 0;  ///< Row.
+  bool node_is_b = false;  ///< Else it is the hook's end a.
+};
+
 /// One rope as the solver sees it. Its nodes are particles [first_particle, first_particle + node_count), its
 /// segments rows [first_segment, first_segment + node_count - 1), its contacts rows [first_contact,
-/// end_contact).
+/// end_contact), its anchors [first_anchor, end_anchor).
 struct Chain {
   std::uint32_t first_particle = 0;
   std::uint32_t node_count = 0;
   std::uint32_t first_segment = 0;
-  double bend_stiffness = 0;  ///< EI [N m^2]; with it the rope is a bundle (solver/bundles.h).
+  double bend_stiffness = 0;  ///< EI [N m^2]
   double bend_damping = 0;    ///< Over EI [s].
   std::uint32_t first_contact = 0;
   std::uint32_t end_contact = 0;
+  std::uint32_t first_anchor = 0;  ///< Written by build_bundles.
+  std::uint32_t end_anchor = 0;
   std::uint32_t solves = 0;  ///< Newton steps since the frame began; written by solve_chains.
   bool in_bundle = false;    ///< Solved with what it is tied to; written by build_bundles (solver/bundles.h).
   bool unconverged = false;  ///< A length error above 1 % was left in this frame; written by solve_chains.
@@ -42,17 +47,25 @@ struct Chain {
 /// explode. The share d = 0.2 of it damps what moves unlike the line between the rope's ends, which turns at
 /// omega: waves, not swings. chi is 1e-7 in the air and 1e-5 in contact.
 ///
-/// A sweep from the first node condenses everything behind it to u = s + X q (compliance form: exact for
-/// k = infinity), a sweep back gives q and u. The solve repeats, linearized anew, while a length error
-/// exceeds 0.1 %, at most 8 times; more than 1 % left is reported.
+/// At an inner node of a rope that resists bending, with the segments' vectors over their lengths m_d, m_e
+/// before and behind it, and EI over the length between their middles B:
+///
+///   bending      M = -B (c / h + d r_c),  c = m_e - m_d at the end of the substep, r_c its rate, d the
+///   damping
+///
+/// A sweep from the first node eliminates one after the other (wide/rope_sweep.h; exact for k = infinity), a
+/// sweep back gives u and q. The solve repeats, linearized anew, while a length error exceeds 0.1 %, at most
+/// 8 times; more than 1 % left is reported. Ropes of equally many nodes are solved together, one in each lane
+/// of a vector.
 ///
 /// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), rho = 1000 m, u relative to the surface,
-/// N0 carried over substeps; friction holds likewise up to mu N and is mu N against the motion beyond.
+/// N0 carried over substeps; friction holds likewise up to mu N and is mu N against the motion beyond. An
+/// anchor holds its node by the hook's rows (joint_rows.h), with a compliance of 1e-6 of the node's own.
 ///
 /// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable constrained
 /// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's
 /// segments differ in compliance by a factor of 1e10. `before` holds velocities from before the forces.
-void solve_chains(std::span<Chain> chains, const std::vector<Vec3>& before, Real h,
-                  state::Particles& particles, state::Segments& segments, state::Contacts& contacts);
+void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
+                  const std::vector<Vec3>& before, Real h, state::Tables& tables);
 
 }  // namespace hooke::solver

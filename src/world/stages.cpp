@@ -232,8 +232,8 @@ void solve_ropes(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   solver::release_points(world.hooked_points, tables.particles);
   for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows) {
-    solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.velocity_before, h,
-                         tables.particles, tables.segments, tables.contacts);
+    solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.bundles.anchors,
+                         world.velocity_before, h, tables);
   });
   for_ranges(*world.pool, static_cast<int>(world.bundles.bundles.size()), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {

@@ -1,8 +1,11 @@
+#include "solver/wide/wide.h"
 #include "world/make.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 namespace hooke {
 
@@ -212,6 +215,47 @@ TEST_SUITE("world/rope") {
       if (!steep) CHECK(std::abs(way) < 1e-5);
       CHECK(world.measure().largest_penetration < 1e-4);
     }
+  }
+
+  TEST_CASE("ropes side by side move as each alone, to the bit, with every instruction set") {
+    const auto rope_of = [](int k) {
+      RopeDesc desc;
+      for (int i = 0; i <= 12; ++i)
+        desc.points.push_back({0.1 * k + 0.02 * i, 0.35 + 0.03 * k, 0.01 * k * i});
+      desc.total_mass = Real(0.01 * (1 + k));
+      desc.stiffness = k % 3 == 0 ? kRigid : Real(10 * (k + 1));
+      desc.extension_max = k % 3 == 1 ? Real(0.05) : kRigid;
+      desc.bend_stiffness = k % 2 == 0 ? Real(0) : Real(1e-4);
+      if (k % 4 == 0) desc.pins = {};
+      return desc;
+    };
+    const auto places = [](const World& world, RopeId rope) {
+      std::vector<DVec3> points;
+      for (std::size_t i = 0; i < 13; ++i) points.push_back(world.positions(rope)[i]);
+      return points;
+    };
+    const auto add_floor = [](World& world) {
+      take(world.add_body({.kind = BodyKind::kStatic, .shape = {.kind = ShapeKind::kHalfSpace}}));
+    };
+    constexpr int kCount = 19;
+    std::vector<std::vector<DVec3>> alone;
+    for (int k = 0; k < kCount; ++k) {
+      World world = make_world();
+      add_floor(world);
+      const RopeId rope = take(world.add_rope(rope_of(k)));
+      run(world, 90);
+      alone.push_back(places(world, rope));
+    }
+    for (const std::string& target : solver::wide::targets()) {
+      REQUIRE(solver::wide::use_target(target));
+      World world = make_world();
+      add_floor(world);
+      std::vector<RopeId> ropes;
+      for (int k = 0; k < kCount; ++k) ropes.push_back(take(world.add_rope(rope_of(k))));
+      run(world, 90);
+      for (int k = 0; k < kCount; ++k) CHECK_MESSAGE(places(world, ropes[k]) == alone[k], target, " ", k);
+    }
+    solver::wide::use_target("");
   }
 }
 

@@ -65,6 +65,35 @@ TEST_SUITE("world/ties") {
     CHECK(d(world.hook_gap(hook)) < 1e-4);
   }
 
+  TEST_CASE("ropes that hang on what does not give way pull with their weight and follow where it goes") {
+    World world = make_world(without_air());
+    const BodyId beam = take(world.add_body({.kind = BodyKind::kKinematic,
+                                             .shape = {.kind = ShapeKind::kBox, .half_extents = {1, 1, 1}},
+                                             .position = {0, 5, 0}}));
+    std::vector<RopeId> ropes;
+    std::vector<HookId> hooks;
+    for (int k = 0; k < 10; ++k) {
+      const DVec3 top = {-0.9 + 0.2 * k, 4, 0};
+      ropes.push_back(add_rope(world, top, top - DVec3{0, 1, 0}, 16, static_cast<Real>(1 + k)));
+      hooks.push_back(
+          k % 2 == 0 ? tie(world, beam, point(ropes.back(), 0))
+                     : take(world.add_hook({.a = {.point = point(ropes.back(), 0)}, .b = {.body = beam}})));
+    }
+    run(world, 120);
+    for (int k = 0; k < 10; ++k) {
+      // On b, which is the rope's end or the beam.
+      const double sign = k % 2 == 0 ? 1 : -1;
+      CHECK(d(world.hook_force(hooks[k]).force.y) ==
+            doctest::Approx(sign * (1 + k) * kGravity).epsilon(1e-3));
+    }
+    REQUIRE(world.set_velocity(beam, {Real(0.5), 0, 0}));
+    run(world, 60);
+    for (int k = 0; k < 10; ++k) {
+      CHECK(world.positions(ropes[k])[0].x == doctest::Approx(-0.9 + 0.2 * k + 0.5).epsilon(1e-3));
+      CHECK(world.positions(ropes[k])[0].y == doctest::Approx(4).epsilon(1e-4));
+    }
+  }
+
   TEST_CASE("a table hangs on four ropes, each with its share") {
     for (const int particle_substeps : {1, 2}) {
       WorldDesc desc = without_air();

@@ -49,7 +49,7 @@ template <class Number>
 HWY_INLINE Scale<Number> scaled(Number s, const Scale<Number>& a) {
   return {s * a.xx, s * a.xy, s * a.xz, s * a.yy, s * a.yz, s * a.zz};
 }
-/// By cofactors.
+/// By cofactors, as math::inverse; what stands there is not compiled for the instruction set.
 template <class Number>
 HWY_INLINE Scale<Number> inverse(const Scale<Number>& m) {
   const Number xx = m.yy * m.zz - m.yz * m.yz;
@@ -150,8 +150,8 @@ class RopeSweep {
     Triple<Number> impulse;
 
     HWY_INLINE void add(const Pivot& other) {
-      mass = wide::HWY_NAMESPACE::sum(mass, other.mass);
-      impulse = wide::HWY_NAMESPACE::sum(impulse, other.impulse);
+      mass = sum(mass, other.mass);
+      impulse = sum(impulse, other.impulse);
     }
   };
 
@@ -260,7 +260,7 @@ class RopeSweep {
     const Triple<Number>& f = pivots[0].impulse;
     const Triple<Number> v = get3<Number>(node.v_free, lane_);
     const Number moves = one_if_above(get<Number>(node.w + lane_), Number(0.0));
-    const Scale<Number> p = scaled(moves, inverse(wide::HWY_NAMESPACE::sum(pivots[0].mass, diagonal(b))));
+    const Scale<Number> p = scaled(moves, inverse(sum(pivots[0].mass, diagonal(b))));
     const Triple<Number> r = p.times(n);
     const Number tau = quotient(k, Number(1.0) + k * dot(n, r));
     put6(p, node.inverse, lane_);
@@ -270,19 +270,18 @@ class RopeSweep {
 
     const auto is_free = above(moves, Number(0.0));
     const Triple<Number> t = difference(n, scaled(b, r));
-    const Number eta = choose(is_free, dot(r, f) + dot(t, o), dot(n, wide::HWY_NAMESPACE::sum(v, o)));
+    const Number eta = choose(is_free, dot(r, f) + dot(t, o), dot(n, sum(v, o)));
     const Triple<Number> z =
         choose3(moves, difference(p.times(difference(f, scaled(b, o))), scaled(tau * eta, r)), v);
-    const Triple<Number> given = wide::HWY_NAMESPACE::sum(scaled(b, o), scaled(tau * eta, n));
+    const Triple<Number> given = sum(scaled(b, o), scaled(tau * eta, n));
     if constexpr (kBends) {
       put9(meeting.next, node.meets, lane_);
       write(meeting.outer, node.outer + lane_);
       Columns3<Number> meets = meeting.next;
       add_diagonal(Number(0.0) - b, meets);
       const Columns3<Number> pb = product(p, meets);
-      const Triple<Number> t_bent = wide::HWY_NAMESPACE::sum(n, meets.transposed_times(r));
-      pivots[1].add({wide::HWY_NAMESPACE::sum(difference(diagonal(b), symmetric_product(meets, pb)),
-                                              square(tau, t_bent)),
+      const Triple<Number> t_bent = sum(n, meets.transposed_times(r));
+      pivots[1].add({sum(difference(diagonal(b), symmetric_product(meets, pb)), square(tau, t_bent)),
                      difference(given, meets.transposed_times(z))});
       const Number c = meeting.outer;
       const Scale<Number> far = difference(p, square(moves * tau, r));
@@ -291,8 +290,8 @@ class RopeSweep {
       meeting.next = meeting.following;
       meeting.following = full(diagonal(Number(0.0)));
     } else {
-      pivots[1].add({wide::HWY_NAMESPACE::sum(difference(diagonal(b), scaled(b * b, p)), square(tau, t)),
-                     wide::HWY_NAMESPACE::sum(given, scaled(b, z))});
+      pivots[1].add(
+          {sum(difference(diagonal(b), scaled(b * b, p)), square(tau, t)), sum(given, scaled(b, z))});
     }
   }
 
@@ -329,7 +328,7 @@ class RopeSweep {
       const Number delta = choose(above(moves, zero), dot(r, f) - dot(difference(n, scaled(b, r)), w),
                                   dot(n, difference(v, w)));
       const Number pull = get<Number>(node.tau + lane_) * delta;
-      const Triple<Number> pushed = wide::HWY_NAMESPACE::sum(f, scaled(b, w));
+      const Triple<Number> pushed = sum(f, scaled(b, w));
       const Triple<Number> u =
           choose3(moves, difference(get6<Number>(node.inverse, lane_).times(pushed), scaled(pull, r)), v);
       put3(u, node.u, lane_);
