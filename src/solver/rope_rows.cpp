@@ -66,6 +66,10 @@ void update_friction(RopeTouch& t, V u, double rho) {
   if (t.slides) t.f = (t.friction * t.normal) * t.against;
 }
 
+wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
+  return {h, 1 / h, 1 / setting.compliance, setting.first ? 1.0 : 0.0, lane_of(setting.turning)};
+}
+
 RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Contacts& contacts) {
   RopeTouch t;
   t.row = static_cast<std::uint32_t>(row);
@@ -186,14 +190,13 @@ RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std
 }
 
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeSegment& e) {
-  const auto row = wide::HWY_NAMESPACE::linearized<double>(
-      state_of(e, nodes[e.a], nodes[e.a + 1]),
-      {setting.compliance, setting.first ? 1.0 : 0.0, lane_of(setting.turning)}, h);
+  const auto row =
+      wide::HWY_NAMESPACE::linearized<double>(state_of(e, nodes[e.a], nodes[e.a + 1]), terms_of(setting, h));
   e.n = vector_of(row.n);
   e.offset = vector_of(row.offset);
-  e.gamma = row.gamma;
-  e.beta = row.beta;
-  e.compliance = math::axial(e.n, e.gamma, 1.0 / e.beta);
+  e.along = row.along;
+  e.across = row.across;
+  e.compliance = math::axial(e.n, 1.0 / e.along, 1.0 / e.across);
 }
 
 M grip_of(const RopeTouch& t, const RopeNode& node) {
@@ -262,8 +265,8 @@ double check_segments(double h, RopeScratch& s, bool& limits_changed) {
     const RopeNode& b = s.nodes[e.a + 1];
     const bool held = !(a.w > 0) && !(b.w > 0);
     const auto check = wide::HWY_NAMESPACE::checked<double>(
-        state_of(e, a, b), {lane_of(e.n), lane_of(e.offset), e.gamma, e.beta}, dot(e.n, e.q),
-        held ? 1.0 : 0.0, h);
+        state_of(e, a, b), {lane_of(e.n), lane_of(e.offset), e.along, e.across}, dot(e.n, e.q),
+        held ? 1.0 : 0.0, terms_of({}, h));
     e.tension_bound = check.tension_bound;
     e.limited = check.limited > 0;
     limits_changed = limits_changed || check.limit_changed > 0;

@@ -14,6 +14,10 @@
 
 namespace hooke::solver {
 
+inline constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
+inline constexpr double kComplianceInContact =
+    1e-5;  ///< Rigid segments between stuck nodes are undetermined.
+
 struct RopeNode {
   DVec3 x, v_free, v_before;         ///< Position, velocity with forces, velocity before forces.
   double mass = 0, w = 0;            ///< w = 0: held.
@@ -28,8 +32,8 @@ struct RopeSegment {
   math::Symmetric3<double> compliance;  ///< E
   DVec3 q;                              ///< Impulse.
   double rest = 0, stiffness = 0, damping = 0, limit = 0;
-  double tension_bound = 0;  ///< T+
-  double gamma = 0, beta = 0;
+  double tension_bound = 0;      ///< T+
+  double along = 0, across = 0;  ///< Of E^-1.
   bool limited = false;
 };
 
@@ -59,7 +63,7 @@ struct RopeTouch {
 
 /// How a rope's segments are linearized.
 struct RopeSetting {
-  double compliance = 0;
+  double compliance = kComplianceInAir;
   DVec3 turning = {};  ///< Angular velocity of the line between the rope's ends [rad/s].
   bool first = true;   ///< At the start of the substep; later about the last result.
 };
@@ -79,9 +83,6 @@ struct RopeScratch {
   }
 };
 
-inline constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
-inline constexpr double kComplianceInContact =
-    1e-5;                                         ///< Rigid segments between stuck nodes are undetermined.
 inline constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
 inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
 inline constexpr double kReportedError = 0.01;

@@ -18,7 +18,7 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 constexpr double kWaveDamping = 0.2;       ///< Share of the geometric stiffness that damps waves.
 constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
 constexpr double kLimitTolerance = 1e-4;
-constexpr double kFirmer = 1.0001;        ///< Than its stiffness says, by the floor under gamma.
+constexpr double kFirmer = 1.0001;        ///< Than its stiffness says, by the most that `along` may be.
 constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
 
 template <class Number>
@@ -28,16 +28,18 @@ struct SegmentState {
   Number limited, tension_bound;
 };
 
-/// u_b - u_a = offset + E q, E = gamma along n, 1 / beta across it.
+/// q = K (u_b - u_a - offset), K = `along` n, `across` beside it: 1 / gamma and beta.
 template <class Number>
 struct SegmentRow {
   Triple<Number> n, offset;
-  Number gamma, beta;
+  Number along, across;
 };
 
+/// What the segments of a rope have in common; h and 1 / h.
 template <class Number>
 struct RopeTerms {
-  Number compliance, first;  ///< `first` is 1 or 0.
+  Number h, per_h;
+  Number most_along, first;  ///< `along` over the lighter mass, at most; 1 or 0.
   Triple<Number> turning;
 };
 
@@ -71,10 +73,9 @@ HWY_INLINE Number is_rigid(const SegmentState<Number>& at) {
 }
 
 template <class Number>
-HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const RopeTerms<Number>& terms,
-                                         Number h) {
+HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const RopeTerms<Number>& terms) {
   const Number zero(0.0);
-  const Number one(1.0);
+  const Number h = terms.h;
   const auto first = above(terms.first, zero);
   const Triple<Number> relative = choose3(terms.first, Triple<Number>{zero, zero, zero}, at.relative);
   const Triple<Number> d = sum(at.line, scaled(h, relative));
@@ -84,17 +85,18 @@ HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const R
 
   const auto rigid = above(is_rigid(at), zero);
   const Number s = at.damping + h * at.stiffness;
-  const Number per_h = quotient(one, h);
-  const Number bias = choose(rigid, per_h, choose(above(s, zero), quotient(at.stiffness, s), zero));
-  row.gamma = larger(choose(rigid, zero, quotient(one, h * s)), quotient(terms.compliance, at.lighter));
+  const Number bias = choose(rigid, terms.per_h, choose(above(s, zero), quotient(at.stiffness, s), zero));
+  const Number most = terms.most_along * at.lighter;
+  row.along = choose(rigid, most, smaller(h * s, most));
   const Number c = length - choose(above(at.limited, zero), at.limit, at.rest);
 
   const Number g = quotient(h * h * larger(zero, at.tension_bound), at.rest);
   const Number floor = Number(kTransverseFloor) * at.lighter;
-  row.beta = choose(first, Number(1 + kWaveDamping) * g + floor, g + floor);
+  row.across = choose(first, Number(1 + kWaveDamping) * g + floor, g + floor);
+  const Number yields = quotient(Number(1.0), row.across);
   const Triple<Number> turned =
-      scaled(quotient(Number(kWaveDamping) * g, row.beta), cross(terms.turning, scaled(at.rest, row.n)));
-  const Triple<Number> kept = scaled(quotient(g + floor, row.beta), across(row.n, at.before));
+      scaled(Number(kWaveDamping) * g * yields, cross(terms.turning, scaled(at.rest, row.n)));
+  const Triple<Number> kept = scaled((g + floor) * yields, across(row.n, at.before));
   const Triple<Number> transverse =
       choose3(terms.first, sum(kept, across(row.n, turned)), across(row.n, relative));
   row.offset = sum(scaled(bias * (h * dot(row.n, relative) - c), row.n), transverse);
@@ -110,14 +112,15 @@ struct SegmentCheck {
 /// After a solution, `at` with its velocities. `pull` is n.q; `held` is 1 if neither end moves.
 template <class Number>
 HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentRow<Number>& row,
-                                        Number pull, Number held, Number h) {
+                                        Number pull, Number held, const RopeTerms<Number>& terms) {
   const Number zero(0.0);
+  const Number h = terms.h;
   const Triple<Number> d = sum(at.line, scaled(h, at.relative));
   const Number length = root(dot(d, d));
-  const Number tension = quotient(pull, h);
+  const Number tension = terms.per_h * pull;
   const Number s = at.damping + h * at.stiffness;
-  const Number firm = larger(is_rigid(at), one_if_above(row.gamma * h * s, Number(kFirmer)));
-  const Number expected = choose(above(firm, zero), h * row.gamma * pull,
+  const Number firm = larger(is_rigid(at), one_if_above(h * s, Number(kFirmer) * row.along));
+  const Number expected = choose(above(firm, zero), quotient(h * pull, row.along),
                                  quotient(tension - at.damping * dot(row.n, at.relative), at.stiffness));
   const auto limited = above(at.limited, zero);
   const Number error = length - choose(limited, at.limit, at.rest) - expected;

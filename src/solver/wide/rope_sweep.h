@@ -132,10 +132,10 @@ template <class Number, int kCount, bool kBends>
 class RopeSweep {
  public:
   HWY_INLINE RopeSweep(double h, RopeLanes<kCount>& ropes, int lane)
-      : h_(h),
-        ropes_(ropes),
+      : ropes_(ropes),
         lane_(lane),
-        terms_{get<Number>(ropes.compliance + lane), get<Number>(ropes.first + lane),
+        terms_{Number(h), quotient(Number(1.0), Number(h)),
+               quotient(Number(1.0), get<Number>(ropes.compliance + lane)), get<Number>(ropes.first + lane),
                get3<Number>(ropes.turning, lane)} {}
 
   HWY_INLINE void run() {
@@ -189,13 +189,13 @@ class RopeSweep {
   HWY_INLINE Segment linearize(std::size_t i) {
     const Triple<Number> relative =
         difference(get3<Number>(ropes_.nodes[i + 1].u, lane_), get3<Number>(ropes_.nodes[i].u, lane_));
-    const SegmentRow<Number> row = linearized(state_of(i, relative), terms_, Number(h_));
+    const SegmentRow<Number> row = linearized(state_of(i, relative), terms_);
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     put3(row.n, segment.n, lane_);
     put3(row.offset, segment.offset, lane_);
-    write(row.gamma, segment.gamma + lane_);
-    write(row.beta, segment.beta + lane_);
-    return {row.n, row.offset, quotient(Number(1.0), row.gamma) - row.beta, row.beta};
+    write(row.along, segment.along + lane_);
+    write(row.across, segment.across + lane_);
+    return {row.n, row.offset, row.along - row.across, row.across};
   }
 
   /// How nodes meet but for segments: a node and the next, the next two, and the outer ones.
@@ -317,7 +317,7 @@ class RopeSweep {
       const Number moves = one_if_above(get<Number>(node.w + lane_), zero);
       const Triple<Number> v = get3<Number>(node.v_free, lane_);
       const Triple<Number> n = get3<Number>(segment.n, lane_);
-      const Number b = get<Number>(segment.beta + lane_);
+      const Number b = get<Number>(segment.across + lane_);
       const Triple<Number> r = get3<Number>(node.along, lane_);
       const Triple<Number> w = difference(next, get3<Number>(segment.offset, lane_));
       Triple<Number> f = get3<Number>(node.impulse, lane_);
@@ -347,17 +347,16 @@ class RopeSweep {
                                 Number& error, Number& changed) {
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     const SegmentRow<Number> row = {get3<Number>(segment.n, lane_), get3<Number>(segment.offset, lane_),
-                                    get<Number>(segment.gamma + lane_), get<Number>(segment.beta + lane_)};
+                                    get<Number>(segment.along + lane_), get<Number>(segment.across + lane_)};
     put3(q, segment.q, lane_);
     const SegmentCheck<Number> check =
-        checked(state_of(i, relative), row, dot(row.n, q), get<Number>(segment.held + lane_), Number(h_));
+        checked(state_of(i, relative), row, dot(row.n, q), get<Number>(segment.held + lane_), terms_);
     write(check.tension_bound, segment.tension_bound + lane_);
     write(check.limited, segment.limited + lane_);
     error = larger(check.error, error);
     changed = larger(check.limit_changed, changed);
   }
 
-  double h_;
   RopeLanes<kCount>& ropes_;
   int lane_;
   RopeTerms<Number> terms_;

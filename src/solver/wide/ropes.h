@@ -38,7 +38,7 @@ struct RopeSegmentLanes {
   double tension_bound[kCount];  ///< T+
   double limited[kCount];        ///< 1 if it is at its limit.
   double n[3][kCount], q[3][kCount];
-  double offset[3][kCount], gamma[kCount], beta[kCount];
+  double offset[3][kCount], along[kCount], across[kCount];
 };
 
 /// Bending at node i + 1, as RopeBend. Its compliance and target in one: `pull` is what it gives for each
