@@ -14,6 +14,7 @@ import struct
 import sys
 
 from concave_scenes import chain_of_links, gears, torus_on_peg
+from field_scenes import FIELD_SCENES
 from hook_scenes import HOOK_SCENES
 from paper_scenes import fig5, fig6, rollback_room, wall
 from scene_kit import (DT, G, TONES, Random, X, Y, Z, add, at_point, body, box, cross, dot, fall,
@@ -812,7 +813,7 @@ SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
-    *ROPE_SCENES, *SOLID_SCENES
+    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES
 ]
 PAPER = [fig5, fig6, fig7, wall, rollback_room, gears, torus_on_peg, chain_of_links,
          bsp_walk]  # in the folder paper

@@ -154,6 +154,9 @@ struct BodyDesc {
   Real drag_coefficient = Real(0);    ///< C_d of the area it shows to the flow of air (WindDesc), 0 to 1e6.
   Real magnus_coefficient = Real(0);  ///< C of the lift C rho V omega x v of a body that spins in air, V its
                                       ///< volume; within 1e6. A smooth ball at low speed: 0.75.
+  Vec3 dipole_moment = {};  ///< Magnetic, at the center of mass, in the body's frame [A m^2]; at most 1e9
+                            ///< long. A body that has one never sleeps. Magnetic fields turn and pull it, and
+                            ///< all others that have one, whatever their kind.
   ContactDesc contact = {};
   FilterDesc filter = {};
   bool collides = true;  ///< False: only drawn.
@@ -401,22 +404,28 @@ struct FieldDesc {
   enum class Kind : std::uint8_t {
     kUniform,        ///< Acceleration `vector` [m/s^2].
     kInverseSquare,  ///< Acceleration -strength (x - center) / |x - center|^3; none at the center itself.
-    kMagnetic,       ///< Force q v x `vector` [T] on charged particles; bodies have no charge.
-    kLiquid,   ///< At rest below y = `height`, or flowing with `vector` [m/s]. Lifts by the weight of what
-               ///< is displaced, at its center, and drags: velocity and spin of a body that displaces
-               ///< its own mass decay at the rate `drag`. The liquid itself does not move.
-    kSuction,  ///< Acceleration `strength` (1 - r / reach)^falloff towards `center`, r the distance from it.
-    kVortex,   ///< The same about the axis `vector` through `center`, r the distance from the axis:
-               ///< across it, counter-clockwise seen from its tip.
+    kMagnetic,  ///< Flux density B [T]: `vector` at `center`, and along it more by `strength` [T/m], across
+                ///< it less by half of that: B = vector + strength (3 (a.d) a - d) / 2, d = x - center, a the
+                ///< direction of `vector`. Force q v x B on charged particles; on bodies with a dipole
+                ///< moment m torque m x B and force grad (m.B).
+    kLiquid,    ///< At rest below y = `height`, or flowing with `vector` [m/s]. Lifts by the weight of what
+                ///< is displaced, at its center, and drags: velocity and spin of a body that displaces
+                ///< its own mass decay at the rate `drag`. The liquid itself does not move.
+    kSuction,   ///< Acceleration `strength` (1 - r / reach)^falloff towards `center`, r the distance from it.
+    kVortex,    ///< The same about the axis `vector` through `center`, r the distance from the axis:
+                ///< across it, counter-clockwise seen from its tip.
     kExplosion,  ///< At `time` the velocity changes by `strength` (1 - r / reach)^falloff away from `center`,
                  ///< at the start of the step in which that falls. Once; never if the time is over.
+    kDipole,     ///< A magnetic dipole of moment `vector` [A m^2], at most 1e9 long, at rest at `center`: its
+                 ///< flux density acts as that of kMagnetic does. None closer than 1e-6 m.
   };
 
   Kind kind = Kind::kUniform;
   Vec3 vector = {};
   DVec3 center = {};        ///< [m]
   double strength = 0.0;    ///< kInverseSquare: [m^3/s^2]; positive attracts. kSuction, kVortex: [m/s^2].
-                            ///< kExplosion: [m/s].
+                            ///< kExplosion: [m/s]. kMagnetic: [T/m], within 1e9; not zero only with a
+                            ///< direction to go by.
   double reach = 1.0;       ///< [m], 1e-6 to 1e9: from there on nothing is felt.
   int falloff = 1;          ///< 0 to 8; 0: as strong everywhere within reach.
   double height = 0.0;      ///< kLiquid [m].

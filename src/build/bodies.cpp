@@ -262,13 +262,14 @@ state::BodyTraits traits_of(const BodyDesc& desc, const std::vector<Part>& parts
                               .collides = desc.collides,
                               .sensor = desc.sensor,
                               .bullet = desc.bullet,
-                              .can_sleep = desc.can_sleep,
+                              .can_sleep = desc.can_sleep && desc.dipole_moment == Vec3{},
                               .reports_contacts = desc.reports_contacts,
                               .hit_speed = desc.hit_speed,
                               .linear_damping = desc.linear_damping,
                               .angular_damping = desc.angular_damping,
                               .gravity_scale = desc.gravity_scale,
                               .drag_coefficient = desc.drag_coefficient,
+                              .dipole_moment = desc.dipole_moment,
                               .filter = desc.filter};
   for (const Part& part : parts) {
     traits.magnus_volume += desc.magnus_coefficient * static_cast<Real>(part.solid.volume);
@@ -318,6 +319,8 @@ Result<void> validate(const BodyDesc& body) {
       .finite("gravity_scale", static_cast<double>(body.gravity_scale))
       .in_range("drag_coefficient", static_cast<double>(body.drag_coefficient), 0, 1e6)
       .in_range("magnus_coefficient", static_cast<double>(body.magnus_coefficient), -1e6, 1e6)
+      .require(length(vector_cast<double>(body.dipole_moment)) <= 1e9, "dipole_moment",
+               "must be at most 1e9 long")
       .require(body.hit_speed >= Real(0), "hit_speed", static_cast<double>(body.hit_speed),
                "must be zero, positive or infinite");
   if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);

@@ -43,9 +43,14 @@ Result<void> validate(const FieldDesc& field) {
       .in_range("density", field.density, 0, 1e6)
       .in_range("drag", field.drag, 0, 1e6)
       .finite("time", field.time);
-  if (field.kind == FieldDesc::Kind::kVortex) {
-    const double axis = length(vector_cast<double>(field.vector));
-    checks.require(axis >= 1e-6 && axis <= 1e6, "vector", "must be an axis, 1e-6 to 1e6 long");
+  const double size = length(vector_cast<double>(field.vector));
+  if (field.kind == FieldDesc::Kind::kVortex)
+    checks.require(size >= 1e-6 && size <= 1e6, "vector", "must be an axis, 1e-6 to 1e6 long");
+  if (field.kind == FieldDesc::Kind::kDipole)
+    checks.require(size <= 1e9, "vector", "must be at most 1e9 long");
+  if (field.kind == FieldDesc::Kind::kMagnetic) {
+    checks.in_range("strength", field.strength, -1e9, 1e9)
+        .require(size > 0 || field.strength == 0, "vector", "must say along which axis the field changes");
   }
   return checks.result();
 }

@@ -3,6 +3,8 @@
 #include "hooke/desc.h"
 #include "hooke/math.h"
 
+#include "elements/dipoles.h"
+
 #include <cmath>
 
 namespace hooke::elements {
@@ -59,8 +61,25 @@ inline DVec3 acceleration(const FieldDesc& field, DVec3 x) {
     case FieldDesc::Kind::kMagnetic:
     case FieldDesc::Kind::kLiquid:
     case FieldDesc::Kind::kExplosion:
+    case FieldDesc::Kind::kDipole:
       break;
   }
+  return {};
+}
+
+/// What the gradient of a magnetic field makes of d, a way [m] or a moment [A m^2]: of the moment it makes
+/// the force [N]. Traceless and symmetric, as a field without currents is.
+inline DVec3 times_gradient(const FieldDesc& field, DVec3 d) {
+  const DVec3 axis = normalize(vector_cast<double>(field.vector));
+  return (0.5 * field.strength) * (3 * dot(axis, d) * axis - d);
+}
+
+/// At x [T]; zero of a field that is not magnetic.
+inline DVec3 flux_density(const FieldDesc& field, DVec3 x) {
+  if (field.kind == FieldDesc::Kind::kMagnetic)
+    return vector_cast<double>(field.vector) + times_gradient(field, x - field.center);
+  if (field.kind == FieldDesc::Kind::kDipole)
+    return dipole_field(vector_cast<double>(field.vector), x - field.center);
   return {};
 }
 

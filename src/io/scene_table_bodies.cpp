@@ -135,6 +135,9 @@ std::vector<Field> body_rows() {
       field<desc, &BodyDesc::magnus_coefficient>(
           "magnus_coefficient", "", between(-1e6, 1e6),
           "C of the lift C rho V omega x v in air, V its volume; of a ball 0.75 (Rubinow and Keller)."),
+      field<desc, &BodyDesc::dipole_moment>(
+          "dipole_moment", "A m^2", kAny,
+          "Magnetic, in the body's frame: magnetic fields and other dipoles turn and pull it."),
       field<desc, &BodyDesc::contact, &ContactDesc::surface_velocity>(
           "surface_velocity", "m/s", kAny, "Of a conveyor belt, in the body's frame."),
       field<desc, &BodyDesc::filter, &FilterDesc::category>("category", "", kAny, "Bits of its categories."),

@@ -377,10 +377,29 @@ const Kind& inverse_square_kind() {
 }
 
 const Kind& magnetic_kind() {
+  constexpr auto desc = &SceneField::desc;
   static const Kind kind = {
       .name = "magnetic",
-      .help = "Force q v x B on charged particles.",
-      .fields = {required(field<&SceneField::desc, &FieldDesc::vector>("flux_density", "T", kAny, "B."))},
+      .help =
+          "Force q v x B on charged particles; turns bodies with a dipole moment, and pulls them up a "
+          "gradient.",
+      .fields = {required(field<desc, &FieldDesc::vector>("flux_density", "T", kAny, "B at the center.")),
+                 field<desc, &FieldDesc::strength>(
+                     "gradient", "T/m", between(-1e9, 1e9),
+                     "Of B along its own direction; across it B falls by half of that."),
+                 field<desc, &FieldDesc::center>("center", "m", kAny, "Where B is as given.")},
+      .defaults = defaults_of<SceneField>};
+  return kind;
+}
+
+const Kind& dipole_kind() {
+  constexpr auto desc = &SceneField::desc;
+  static const Kind kind = {
+      .name = "dipole",
+      .help = "A magnet at rest, small against the way to it.",
+      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it is."),
+                 required(field<desc, &FieldDesc::vector>("moment", "A m^2", kAny,
+                                                          "From its south pole to its north pole."))},
       .defaults = defaults_of<SceneField>};
   return kind;
 }
@@ -465,7 +484,7 @@ const Kind& kind_of<SceneField>() {
       .name = "field",
       .help =
           "A force on every particle and body of the world. One of `uniform`, `inverse_square`, `magnetic`, "
-          "`liquid`, `suction`, `vortex`, `explosion`.",
+          "`liquid`, `suction`, `vortex`, `explosion`, `dipole`.",
       .fields = {field<&SceneField::name>("name", "", kNotEmpty, "Unique."),
                  choice<FieldDesc::Kind::kUniform, desc, &FieldDesc::kind>(
                      group("uniform", uniform_kind, "Like gravity.")),
@@ -480,7 +499,9 @@ const Kind& kind_of<SceneField>() {
                  choice<FieldDesc::Kind::kVortex, desc, &FieldDesc::kind>(
                      group("vortex", vortex_kind, "Round an axis.")),
                  choice<FieldDesc::Kind::kExplosion, desc, &FieldDesc::kind>(
-                     group("explosion", explosion_kind, "Away from a point, once."))},
+                     group("explosion", explosion_kind, "Away from a point, once.")),
+                 choice<FieldDesc::Kind::kDipole, desc, &FieldDesc::kind>(
+                     group("dipole", dipole_kind, "A small magnet's."))},
       .defaults = defaults_of<SceneField>,
       .check = check_field};
   return kind;
@@ -501,6 +522,7 @@ std::span<const Kind* const> object_kinds() {
                                    &suction_kind(),
                                    &vortex_kind(),
                                    &explosion_kind(),
+                                   &dipole_kind(),
                                    &kind_of<ScenePin>(),
                                    &kind_of<SceneLoad>(),
                                    &kind_of<MotionDesc>(),

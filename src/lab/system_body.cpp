@@ -88,6 +88,8 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
   system.note_fields(tables);
   if (traits.drag_coefficient != Real(0) || traits.magnus_volume != Real(0))
     system.left_out_.emplace_back("air: bodies do not feel it here");
+  if (traits.dipole_moment != Vec3{})
+    system.left_out_.emplace_back("dipole moments: bodies are not magnetic here");
   return system;
 }
 

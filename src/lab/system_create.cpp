@@ -70,9 +70,13 @@ PointRow System::add_fields(const state::Tables& tables) {
 }
 
 void System::note_fields(const state::Tables& tables) {
-  const auto unknown = [](const state::Field& field) { return field.desc.kind > FieldDesc::Kind::kMagnetic; };
+  const auto unknown = [](const state::Field& field) {
+    const bool magnetic = field.desc.kind == FieldDesc::Kind::kMagnetic;
+    return field.desc.kind > FieldDesc::Kind::kMagnetic || (magnetic && field.desc.strength != 0);
+  };
   if (std::any_of(tables.fields.begin(), tables.fields.end(), unknown))
-    left_out_.emplace_back("liquids, suction, vortices and explosions: the laboratory has none");
+    left_out_.emplace_back(
+        "liquids, suction, vortices, explosions, dipoles and magnetic gradients: the laboratory has none");
 }
 
 void System::add_points(const state::Tables& tables, const state::Deformable& object) {

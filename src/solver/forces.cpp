@@ -17,9 +17,8 @@ double displaced_mass(const FieldDesc& liquid, double y, Real radius) {
   return liquid.density * geometry::cap_volume(r, std::clamp(r + (liquid.height - y), 0.0, 2 * r));
 }
 
-/// `v` turned about the field by the angle a charge of q/m turns in h.
-Vec3 turn(Vec3 v, Vec3 field, double charge_per_mass, double h) {
-  const DVec3 b = vector_cast<double>(field);
+/// `v` turned about the flux density b by the angle a charge of q/m turns in h.
+Vec3 turn(Vec3 v, DVec3 b, double charge_per_mass, double h) {
   const double size = length(b);
   if (!(size > 0)) return v;
   const DVec3 axis = (1.0 / size) * b;
@@ -55,9 +54,9 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
         v = field.desc.vector + (Real(1) / (Real(1) + h * k)) * (v - field.desc.vector);
         v -= (h * static_cast<Real>(ratio)) * inputs.gravity;
       }
-      if (field.desc.kind == FieldDesc::Kind::kMagnetic && particles.charge[p] != Real(0)) {
-        v = turn(v, field.desc.vector, static_cast<double>(particles.charge[p]) * static_cast<double>(w),
-                 static_cast<double>(h));
+      if (particles.charge[p] != Real(0)) {
+        v = turn(v, elements::flux_density(field.desc, x),
+                 static_cast<double>(particles.charge[p]) * static_cast<double>(w), static_cast<double>(h));
       }
     }
   }

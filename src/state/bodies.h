@@ -70,6 +70,7 @@ struct BodyTraits {
   Real gravity_scale = Real(1);
   Real drag_coefficient = Real(0);
   Real magnus_volume = Real(0);  ///< Magnus coefficient times the volume of the shapes [m^3].
+  Vec3 dipole_moment = {};       ///< In the body's frame [A m^2].
   Real radius = Real(0);         ///< Of the smallest sphere about the center of mass around all shapes [m].
   Real inner_radius = Real(0);   ///< Of a sphere that fits into the largest shape [m]: how thin it is.
   FilterDesc filter = {};

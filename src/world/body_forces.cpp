@@ -12,6 +12,8 @@ namespace hooke::world {
 
 namespace {
 
+constexpr int kDipoleGrain = 16;
+
 /// Who is pushed by force laws over bodies.
 void list_law_bodies(WorldData& world) {
   const state::Tables& tables = world.tables;
@@ -20,6 +22,15 @@ void list_law_bodies(WorldData& world) {
   if (std::none_of(tables.force_laws.begin(), tables.force_laws.end(), asks)) return;
   std::copy_if(world.awake.begin(), world.awake.end(), std::back_inserter(world.law_bodies),
                [&](std::uint32_t body) { return is_dynamic(tables.bodies, body); });
+}
+
+void force_dipoles(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  solver::gather_dipoles(tables.fields, world.dipole_bodies, tables.bodies, world.dipoles);
+  parallel::for_ranges(
+      *world.pool, static_cast<int>(world.dipoles.size()), kDipoleGrain, [&](parallel::Range range) {
+        solver::add_dipole_forces(range, world.dipoles, tables.fields, static_cast<double>(h), tables.bodies);
+      });
 }
 
 void set_off(const FieldDesc& explosion, state::Tables& tables) {
@@ -58,8 +69,9 @@ void begin_body_forces(WorldData& world) {
     return traits.drag_coefficient > Real(0) || traits.magnus_volume != Real(0);
   };
   list_law_bodies(world);
-  world.bodies_surrounded =
-      !tables.fields.empty() || std::any_of(world.awake.begin(), world.awake.end(), in_air);
+  world.dipole_bodies = solver::bodies_with_dipoles(tables.bodies);
+  world.bodies_surrounded = !tables.fields.empty() || !world.dipole_bodies.empty() ||
+                            std::any_of(world.awake.begin(), world.awake.end(), in_air);
   if (world.law_bodies.empty() && !world.bodies_surrounded) return;
   world.given_force = tables.bodies.force;
   world.given_torque = tables.bodies.torque;
@@ -78,6 +90,7 @@ void force_bodies(WorldData& world, double time, Real h) {
                                          .time = time,
                                          .h = h};
     for_bodies(world, [&](auto rows) { solver::add_body_forces(rows, around, tables.bodies); });
+    if (!world.dipole_bodies.empty()) force_dipoles(world, h);
   }
   if (world.law_bodies.empty()) return;
   BodyForceView view = ForceViewAccess::make(world, time);

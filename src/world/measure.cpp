@@ -52,6 +52,12 @@ void measure_particles(const Tables& t, Measurement& m) {
   }
 }
 
+double potential_of_dipoles(const Tables& t) {
+  std::vector<solver::Dipole> dipoles;
+  solver::gather_dipoles(t.fields, solver::bodies_with_dipoles(t.bodies), t.bodies, dipoles);
+  return solver::dipole_energy(t.fields, dipoles);
+}
+
 /// Kinetic energy p^2 / 2 m + L I^-1 L / 2.
 void measure_bodies(const Tables& t, Measurement& m) {
   for (const std::uint32_t body : t.moving_bodies) {
@@ -181,6 +187,7 @@ Measurement World::measure() const {
   Stretch stretch;
   measure_particles(t, m);
   measure_bodies(t, m);
+  m.energy.potential += potential_of_dipoles(t);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
                      measure_tetrahedra(t) + measure_gas(t);
   m.largest_stretch = stretch.largest;

@@ -78,7 +78,7 @@ constexpr const char* kEverything = R"({
     {"shape": {"mesh": "inline"}},
     {"name": "top", "kind": "dynamic", "shape": {"cone": {"radius": 0.25, "half_height": 1}}, "velocity": [1, 2, 3],
      "angular_velocity": [3, 2, 1], "density": 500, "linear_damping": 0.1, "angular_damping": 0.2,
-     "gravity_scale": 0.5, "drag_coefficient": 0.5, "magnus_coefficient": 0.75, "category": 2, "mask": 5, "group": -1, "bullet": true, "can_sleep": false,
+     "gravity_scale": 0.5, "drag_coefficient": 0.5, "magnus_coefficient": 0.75, "dipole_moment": [1, 2, 3], "category": 2, "mask": 5, "group": -1, "bullet": true, "can_sleep": false,
      "array": {"list": [[0, 0, 0], [1, 0.5, 0]], "rotations": [[0, 0, 1, 0], [0, 1, 0, 0]]}},
     {"kind": "dynamic", "mass": 3, "shape": {"parts": [
       {"shape": {"capsule": {"radius": 0.1, "half_height": 0.25}}, "position": [1, 0, 0], "rotation": [1, 0, 0, 0],
@@ -111,11 +111,12 @@ constexpr const char* kEverything = R"({
       {"position": [1, 0, 0]}], "springs": [{"a": 0, "b": 1, "stiffness": 5, "damping": 1, "rest_length": 2}],
      "direction": "predicted", "damping": "isotropic", "air_friction": 0.1, "drag_coefficient": 0.4, "pins": [1]}],
   "fields": [{"name": "up", "uniform": {"acceleration": [0, 1, 0]}},
-             {"inverse_square": {"center": [0, 1, 0], "strength": 2}}, {"magnetic": {"flux_density": [0, 0, 1]}},
+             {"inverse_square": {"center": [0, 1, 0], "strength": 2}}, {"magnetic": {"flux_density": [0, 0, 1], "gradient": 0.5, "center": [0, 2, 0]}},
              {"liquid": {"height": 0.5, "density": 900, "drag": 2, "flow": [1, 0, 0]}},
              {"suction": {"strength": 3, "reach": 2, "falloff": 2}},
              {"vortex": {"axis": [0, 1, 0], "strength": 3, "reach": 2}},
-             {"explosion": {"center": [1, 0, 0], "time": 0.5, "strength": 3, "reach": 2, "falloff": 0}}],
+             {"explosion": {"center": [1, 0, 0], "time": 0.5, "strength": 3, "reach": 2, "falloff": 0}},
+             {"dipole": {"center": [0, 1, 0], "moment": [0, 0, 4]}}],
   "hooks": [
     {"name": "hook", "kind": "wheel", "a": "ground", "b": "top[0]", "anchor": [1, 2, 3], "axis": [0, 0, 1],
      "second_axis": [1, 0, 0], "limits": {"lower": -0.5}, "cone": 1.5, "spring": {"stiffness": 5, "damping": 2,

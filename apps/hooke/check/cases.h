@@ -18,9 +18,10 @@ Rows quadratic_drag(const CheckSetting& setting);
 Rows kepler_orbit(const CheckSetting& setting);
 Rows charge_in_magnetic_field(const CheckSetting& setting);
 
-// cases_fields.cpp: bodies in liquid and in air
+// cases_fields.cpp: bodies in liquid, in air and in magnetic fields
 Rows floating_bodies_in_water(const CheckSetting& setting);
 Rows bodies_in_air(const CheckSetting& setting);
+Rows magnetic_dipoles(const CheckSetting& setting);
 
 // cases_springs.cpp: particles and springs
 Rows simple_oscillator(const CheckSetting& setting);

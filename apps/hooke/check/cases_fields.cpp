@@ -1,4 +1,4 @@
-/// Bodies in liquid and in air.
+/// Bodies in liquid, in air and in magnetic fields.
 
 #include "cases.h"
 #include "rig.h"
@@ -90,6 +90,53 @@ Rows bodies_in_air(const CheckSetting& setting) {
   return {row("terminal speed of a ball", "m/s", terminal, -falling.velocity(falls).y),
           row("speed upward, backspin", "m/s", expected, rise(30)),
           row("speed upward, topspin", "m/s", -expected, rise(-30))};
+}
+
+/// Two dipoles m a way r apart on one axis: F = 3 mu0 m^2 / (2 pi r^4), here as the speed after a short time;
+/// side by side half of that, apart. A needle with inertia I in a uniform field: T = 2 pi sqrt(I / (m B)). A
+/// disc floats above another, poles opposed, where F is its weight.
+Rows magnetic_dipoles(const CheckSetting& setting) {
+  constexpr double kMu0 = 2e-7 * kTau;  ///< [T m / A]
+  const double moment = 100;
+  const double mass = 2;
+  const double apart = 0.4;
+  const auto magnet = [&](DVec3 position, DVec3 own) {
+    BodyDesc desc = thrown_ball(0.03, mass);
+    desc.position = position;
+    desc.dipole_moment = real(own);
+    return desc;
+  };
+  const double force = 3 * kMu0 * moment * moment / (kTau * std::pow(apart, 4));
+  const double seconds = 0.05;
+  const auto pull = [&](DVec3 axis) {
+    Rig rig(setting, weightless());
+    rig.add(magnet({}, moment * axis));
+    const BodyId id = rig.add(magnet({apart, 0, 0}, moment * axis));
+    rig.run(seconds);
+    return mass * rig.velocity(id).x / rig.time();
+  };
+
+  const double field = 0.01;
+  Rig swinging(setting, weightless());
+  must(swinging.world().add_field({.kind = FieldDesc::Kind::kMagnetic, .vector = {real(field), 0, 0}}));
+  BodyDesc needle = magnet({}, {1, 0, 0});
+  needle.rotation = quaternion_about(Vec3{0, real(1), 0}, real(-0.02));
+  const BodyId id = swinging.add(needle);
+  const Curve way = record(swinging, 4, [&] { return swinging.direction(id, {1, 0, 0}).z; });
+  const double inertia = 0.4 * mass * 0.03 * 0.03;
+
+  Rig floating(setting, without_air());
+  must(floating.world().add_field({.kind = FieldDesc::Kind::kDipole, .vector = {0, real(-500), 0}}));
+  BodyDesc disc = magnet({0, 0.3, 0}, {0, 500, 0});
+  disc.linear_damping = real(3);
+  const BodyId floats = floating.add(disc);
+  must(floating.world().add_hook({.kind = HookKind::kSlider, .b = {floats}, .axis = {0, 1, 0}}));
+  floating.run(8);
+  const double height = std::pow(3 * kMu0 * 500 * 500 / (kTau * mass * kGravity), 0.25);
+  return {row("force on one axis", "N", -force, pull({1, 0, 0})),
+          row("force side by side", "N", force / 2, pull({0, 1, 0})),
+          row("period of a needle", "s", kTau * std::sqrt(inertia / field), way.period()),
+          row("height of a floating disc", "m", height, floating.center(floats).y)};
 }
 
 }  // namespace hooke::check

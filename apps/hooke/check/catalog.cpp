@@ -97,6 +97,7 @@ const std::vector<CheckCase>& check_cases() {
       {"I19", "Table on four ropes", table_on_ropes},
       {"I20", "Rollback in the laboratory", rollback},
       {"I21", "Bodies in the laboratory", bodies_by_rk4},
+      {"I22", "Magnetic dipoles", magnetic_dipoles},
   };
   return cases;
 }
