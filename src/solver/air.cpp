@@ -1,5 +1,7 @@
 #include "solver/air.h"
 
+#include <algorithm>
+
 namespace hooke::solver {
 
 void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads) {
@@ -42,7 +44,8 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
         pressure * (object.drag_coefficient * flow + (object.lift_coefficient * speed) * lift);
     const Real stiffening =
         air.h * pressure * (object.drag_coefficient + object.lift_coefficient) / triangles.areal_density[row];
-    loads.corner_impulse[row] = (third * air.h * Real(0.5) * area2 / (Real(1) + stiffening)) * per_area;
+    loads.corner_impulse[row] =
+        (third * air.h * Real(0.5) * area2 / std::max(Real(1), stiffening)) * per_area;
   }
 }
 
@@ -77,7 +80,7 @@ void push_segments(const state::Deformable& object, const state::Segments& segme
                       segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
     const auto change_of = [&](std::size_t p) {
       const Real w = particles.velocity[p].inverse_mass;
-      return (w * h * Real(0.5) * drag / (Real(1) + w * h * drag)) * across;
+      return (Real(0.5) * std::min(w * h * drag, Real(1))) * across;
     };
     particles.velocity[a].v = v_a + (on_a + change_of(a));
     on_a = change_of(b);

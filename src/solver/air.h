@@ -30,8 +30,9 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
 ///
 ///     F = rho A |u| cos(a) (C_d u + C_l |u| e) / 2,   cos(a) = |n . u| / |u|,  e = n - (n . u) u / |u|^2
 ///
-/// with n turned to the side the air comes out of. Divided by 1 + h F / (m |u|), the implicit form, so that
-/// no wind is too strong for a light cloth. `range` counts the triangles of `object`.
+/// with n turned to the side the air comes out of. Where h F / (m |u|) > 1 it is divided by that: within a
+/// substep no wind does more than to carry a light cloth along. Below, it is not weakened: what is held
+/// against the wind feels all of it. `range` counts the triangles of `object`.
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads);
 
@@ -40,7 +41,7 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
 void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles);
 
 /// Drag of the segments of one rope: F = rho C_d d L |u_t| u_t / 2, u_t across the segment; half to each end,
-/// implicit as above.
+/// limited as above.
 void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
                    state::Particles& particles);
 

@@ -49,7 +49,7 @@ TEST_SUITE("world/dipoles") {
       const BodyId b = take(world.add_body(magnet(turned ? DVec3{} : far, {0, Real(25), 0})));
       run(world, 1, Real(1e-3));
       const double force = 3 * kMu0 * 40 * 25 / (2 * std::numbers::pi * std::pow(0.3, 4));
-      CHECK(world.velocity(a).y == doctest::Approx((turned ? -1 : 1) * 1e-3 * force).epsilon(1e-5));
+      CHECK(world.velocity(a).y == doctest::Approx((turned ? -1 : 1) * 1e-3 * force).epsilon(1e-5).scale(0));
       CHECK(world.velocity(b) == -world.velocity(a));
       CHECK(world.angular_velocity(a) == Vec3{});
     }
@@ -61,12 +61,12 @@ TEST_SUITE("world/dipoles") {
     const BodyId b = take(world.add_body(magnet({0.3, 0, 0}, {0, Real(25), 0})));
     run(world, 1, Real(1e-3));
     const double force = 3 * kMu0 * 40 * 25 / (4 * std::numbers::pi * std::pow(0.3, 4));
-    CHECK(world.velocity(b).x == doctest::Approx(1e-3 * force).epsilon(1e-5));
+    CHECK(world.velocity(b).x == doctest::Approx(1e-3 * force).epsilon(1e-5).scale(0));
     CHECK(world.velocity(a) == -world.velocity(b));
 
     // Above a magnet that points up the field points up, beside it down.
-    CHECK(elements::dipole_field({0, 1, 0}, {0, 2, 0}).y == doctest::Approx(2e-7 / 8));
-    CHECK(elements::dipole_field({0, 1, 0}, {2, 0, 0}).y == doctest::Approx(-1e-7 / 8));
+    CHECK(elements::dipole_field({0, 1, 0}, {0, 2, 0}).y == doctest::Approx(2e-7 / 8).scale(0));
+    CHECK(elements::dipole_field({0, 1, 0}, {2, 0, 0}).y == doctest::Approx(-1e-7 / 8).scale(0));
     CHECK(elements::dipole_field({0, 1, 0}, {}) == DVec3{});
     CHECK(elements::dipole_force({0, 1, 0}, {0, 1, 0}, {0, 1e-9, 0}) == DVec3{});
   }
@@ -80,7 +80,7 @@ TEST_SUITE("world/dipoles") {
     const double step = 1e-5;
     for (const DVec3 axis : {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}}) {
       const double slope = (energy(d + step * axis) - energy(d - step * axis)) / (2 * step);
-      CHECK(dot(force, axis) == doctest::Approx(-slope).epsilon(1e-6));
+      CHECK(dot(force, axis) == doctest::Approx(-slope).epsilon(1e-6).scale(0));
     }
     CHECK(elements::dipole_force(b, a, -d) == -force);
     // Both torques and the pair of forces turn nothing as a whole.
@@ -121,7 +121,8 @@ TEST_SUITE("world/dipoles") {
     const BodyId needle = take(world.add_body(desc));
     const double inertia = 0.4 * 0.02 * 0.02;
     const double period = 2 * std::numbers::pi * std::sqrt(inertia / (0.5 * 0.02));
-    CHECK(period_of_needle(world, needle, Real(1.0 / 240)) == doctest::Approx(period).epsilon(1e-3));
+    // Started at rest it is half a substep late, four times: 1.3e-3 of the period.
+    CHECK(period_of_needle(world, needle, Real(1.0 / 240)) == doctest::Approx(period).epsilon(2e-3).scale(0));
     CHECK(world.velocity(needle) == Vec3{});
   }
 
@@ -165,7 +166,7 @@ TEST_SUITE("world/dipoles") {
     const ParticlesId particle = take(world.add_particles({.particles = {charged}}));
     run(world, 1, Real(1e-3));
     // q v x B, with B = -mu0 m / (4 pi r^3) beside the magnet.
-    CHECK(world.velocities(particle)[0].z == doctest::Approx(-1e-3 * 0.1).epsilon(1e-3));
+    CHECK(world.velocities(particle)[0].z == doctest::Approx(-1e-3 * 0.1).epsilon(3e-3).scale(0));
   }
 
   TEST_CASE("a body without a moment is untouched, and so is one that forces do not move") {
