@@ -13,6 +13,7 @@ import pathlib
 import struct
 import sys
 
+from cloth_scenes import CLOTH_SCENES
 from concave_scenes import chain_of_links, gears, torus_on_peg
 from field_scenes import FIELD_SCENES
 from hook_scenes import HOOK_SCENES
@@ -813,7 +814,7 @@ SCENES = [
     slope_crate, fig1, dominoes_100, domino_spiral, pool_break, newtons_cradle, wall_hit, card_house, arch_25,
     stack_10, stack_heavy_top, stack_100, pyramid_30, large_pyramid, many_pyramids, pile, mixpile, spheres,
     convex_pile, junkyard, washer, tumbler, hulls_on_mesh, gyroscope, tippy_handle, *HOOK_SCENES,
-    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES
+    *ROPE_SCENES, *SOLID_SCENES, *FIELD_SCENES, *CLOTH_SCENES
 ]
 PAPER = [fig5, fig6, fig7, wall, rollback_room, gears, torus_on_peg, chain_of_links,
          bsp_walk]  # in the folder paper

@@ -19,6 +19,7 @@ PALETTE = {  # linear
     "steel": {"color": [0.62, 0.64, 0.68], "shininess": 100},
     "rose": {"color": [0.60, 0.10, 0.14], "shininess": 90},
     "felt": {"color": [0.50, 0.62, 0.06], "shininess": 4},
+    "silk": {"color": [0.62, 0.10, 0.20], "shininess": 80},
     "rubber": {"color": [0.03, 0.04, 0.06], "shininess": 60},
     "trampoline": {"color": [0.05, 0.09, 0.30], "shininess": 20},
     "cable": {"color": [0.10, 0.10, 0.11], "shininess": 60},

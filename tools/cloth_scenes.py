@@ -1,0 +1,246 @@
+"""Scenes of cloth in wind, on ropes and over things; make_scenes.py writes them."""
+import math
+
+from rope_scenes import line, rope, tension, tie
+from scene_kit import DT, G, X, Y, Z, add, at_point, body, box, ground, promise, scaled, scene, turn
+
+AIR = 1.225  # kg/m^3
+
+
+def strip(pull, weight, wind, length, parts=2000):
+    """The way (z, y) along a strip of cloth that is pulled by `pull` (z, y) [N/m] at its beginning, and what pulls it
+    on at its end. Its weight [N/m^2] acts on its length, the wind along z on its height alone."""
+    z = y = 0.0
+    tz, ty = pull
+    ds = length / parts
+    for _ in range(parts):
+        t = math.hypot(tz, ty)
+        z, y = z + ds * tz / t, y + ds * ty / t
+        tz, ty = tz - wind * ds * abs(ty) / t, ty + weight * ds
+    return [z, y], [tz, ty]
+
+
+def held_strip(start, end, length, string, weight, wind=0.0, foot=0.0, guess=(100.0, -100.0)):
+    """A strip from `start` with a weight `foot` [N/m] at its lower edge, which a light string ties to `end`: the pull
+    at the start, where the foot is, the pull of the string, all per width. By Newton's method on the string's
+    length and direction."""
+
+    def solve(pull):
+        way, (tz, ty) = strip(pull, weight, wind, length)
+        ty += foot
+        dz, dy = end[0] - start[0] - way[0], end[1] - start[1] - way[1]
+        size = math.hypot(tz, ty)
+        return (math.hypot(dz, dy) - string, (tz * dy - ty * dz) / size), way, size
+
+    pull, e = list(guess), 1e-4
+    for _ in range(60):
+        f, way, size = solve(pull)
+        if math.hypot(*f) < 1e-12:
+            break
+        fz, fy = solve([pull[0] + e, pull[1]])[0], solve([pull[0], pull[1] + e])[0]
+        a, b, c, d = (fz[0] - f[0]) / e, (fy[0] - f[0]) / e, (fz[1] - f[1]) / e, (fy[1] - f[1]) / e
+        step = [(b * f[1] - d * f[0]) / (a * d - b * c), (c * f[0] - a * f[1]) / (a * d - b * c)]
+        limit = min(1.0, 0.2 * math.hypot(*pull) / (math.hypot(*step) + 1e-12))
+        pull = [p + limit * s for p, s in zip(pull, step)]
+    assert math.hypot(*f) < 1e-9
+    return pull, [start[0] + way[0], start[1] + way[1]], size
+
+
+def slack_line(a, b, length, aside, segments):
+    """Two straight halves of this length together, their middle to one side."""
+    reach = math.dist(a, b)
+    elbow = add(scaled(0.5, add(a, b)), scaled(math.sqrt(length**2 - reach**2) / 2, aside))
+    return line(a, elbow, segments // 2) + line(elbow, b, segments // 2)[1:]
+
+
+def sail():
+    """A square sail between a yard and a boom; two sheets hold the boom against the wind."""
+    width, length, density, boom_mass = 2.4, 2.2, 0.4, 6.0
+    speed, drag = 11.0, 1.2
+    yard, cleat, sheet = [0, 3.6, 0], [0, 0.25, -0.9], 1.7
+    wind = 0.5 * AIR * drag * speed**2
+    _, foot, pull = held_strip([yard[2], yard[1]], [cleat[2], cleat[1]], length, sheet, density * G, wind,
+                               boom_mass * G / width)
+    half = [width / 2 + 0.1, 0.03, 0.03]
+    sides = (("port", -1), ("starboard", 1))
+    columns, rows = 17, 15
+    start = [yard[1] - length, yard[2]]  # y, z of the boom: the sail hangs straight, the sheets are slack
+    ropes, hooks = [], []
+    for name, side in sides:
+        low, high = [side * half[0], *cleat[1:]], [side * half[0], *start]
+        ropes.append(rope(f"sheet_{name}", "hemp", slack_line(low, high, sheet, [side, 0, 0], 12), 0.05, 0.012))
+        hooks.append(tie(f"knot_{name}", "boom", f"sheet_{name}", b_point="last"))
+    hooks += [tie(f"lace_{k}", "boom", "sail", b_point=(rows - 1) * columns + k) for k in range(columns)]
+    return scene(
+        "Square sail",
+        "A wind of 11 m/s fills a sail that hangs from a yard. Its foot is laced to a boom, and two sheets hold that. "
+        "The sail takes the form in which its tension carries the wind and its weight, and that is what the sheets feel.",
+        12, [4.4, 2.6, 5.2], [0, 2.2, 0.2],
+        {"ground": {}, "oak": {}, "hemp": {}, "ivory": {}}, [
+            ground(),
+            body("deck", "oak", box(1.7, 0.1, 1.5), [0, 0.1, -0.3], "static"),
+            body("mast", "oak", {"cylinder": {"radius": 0.06, "half_height": 1.95}}, [0, 2.1, -0.35], "static", collides=False),
+            body("yard", "oak", box(width / 2 + 0.15, 0.035, 0.035), add(yard, [0, 0.035, 0]), "static", collides=False),
+            body("boom", "oak", box(*half), [0, *start], mass=boom_mass, linear_damping=0.5, angular_damping=0.5,
+                 collides=False),
+        ], [
+            *(tension(pull * width / 2, f"sheet_{name}", 6, 0.01) for name, _ in sides),
+            promise("height", "==", foot[1], "boom", 0.01),
+            promise("z", "==", foot[0], "boom", 0.01),
+        ],
+        world={"particle_substeps": 4, "wind": {"velocity": [0, 0, speed], "air_density": AIR}},
+        ropes=ropes,
+        hooks=hooks,
+        cloths=[{
+            "name": "sail", "material": "ivory", "columns": columns, "rows": rows, "corner": [-width / 2, yard[1], 0],
+            "width": width, "height": length, "areal_density": density, "drag_coefficient": drag, "lift_coefficient": 0,
+            "stretch_stiffness": 1e5, "shear_stiffness": 2e3, "damping": 2, "bend_stiffness": 1e-3, "tethers": True, "pins": [{"row": 0}]
+        }])
+
+
+def large_flag():
+    """24 000 points."""
+    columns, rows, width, height, density, top = 200, 120, 6.0, 3.6, 0.18, 9.0
+    mass = density * width * height
+    return scene(
+        "Large flag",
+        "A flag of 6 m by 3.6 m, 200 x 120 points, in gusts. The wind carries it: its middle stays near the middle of "
+        "its pole's part, so that its potential energy is m g times that height.",
+        1.5, [7.5, 5.2, 11.5], [2.6, 6.6, 0], {"ground": {}, "steel": {}, "rose": {}}, [
+            ground(),
+            body("pole", "steel", {"cylinder": {"radius": 0.07, "half_height": top / 2 + 0.1}}, [-0.08, top / 2 + 0.1, 0],
+                 "static", collides=False),
+            body("knob", "steel", {"sphere": {"radius": 0.13}}, [-0.08, top + 0.3, 0], "static", collides=False),
+        ], [
+            promise("potential_energy", "within", mass * G * (top - height / 2), None, 0.08),
+            at_point("x", "<", 1.02 * width, "large_flag", columns - 1),
+            promise("lowest", ">", top - height - 1.5, "large_flag"),
+            promise("highest", "<", top + 1.0, "large_flag"),
+            promise("mean_stretch", "<", 0.03),
+        ],
+        world={"substeps": 4, "particle_substeps": 5, "wind": {"velocity": [7, 0, 1.2], "gust": 0.4, "side_gust": 0.3, "correlation_time": 0.7}},
+        cloths=[{
+            "name": "large_flag", "material": "rose", "columns": columns, "rows": rows, "corner": [0, top, 0],
+            "width": width, "height": height, "areal_density": density, "tethers": True, "pins": [{"column": 0}]
+        }])
+
+
+def tent():
+    """Two panels on a ridge pole over two uprights that only stand; guys draw the eaves down."""
+    ridge, length, panel, density = 1.9, 3.6, 1.7, 0.35
+    columns, rows = 25, 13
+    spar_mass, upright_mass, lantern = 3.0, 2.0, 1.5
+    eave = [1.35, ridge - math.sqrt(panel**2 - 1.35**2)]  # z, y
+    reach = eave[1] / (ridge - eave[1])
+    peg = [eave[0] * (1 + reach), 0.0]
+    guy = 1.02 * reach * panel
+    pull, foot, _ = held_strip([0, ridge], peg, panel, guy, density * G, guess=(40.0, -40.0))
+    on_upright = -pull[1] * length + (spar_mass / 2 + lantern / 2) * G
+    xs = [k * 4 for k in range(7)]  # columns with guys
+    ropes, hooks, cloths, bodies = [], [], [], []
+    for name, side in (("l", -1), ("r", 1)):
+        cloths.append({
+            "name": f"panel_{name}", "material": "ivory", "columns": columns, "rows": rows,
+            "corner": [-length / 2, ridge, side * 0.0], "column_direction": X,
+            "row_direction": [0, eave[1] - ridge, side * eave[0]], "width": length, "height": panel,
+            "areal_density": density, "stretch_stiffness": 3e4, "shear_stiffness": 5e3, "bend_stiffness": 1e-3, "damping": 1,
+            "air_friction": 0.5
+        })
+        hooks += [tie(f"lace_{name}{k}", "spar", f"panel_{name}", b_point=k) for k in range(0, columns, 2)]
+        for n, k in enumerate(xs):
+            x = length * (k / (columns - 1) - 0.5)
+            low, high = [x, 0, side * peg[0]], [x, eave[1], side * eave[0]]
+            ropes.append(rope(f"guy_{name}{n}", "hemp", slack_line(low, high, guy, X, 8), 0.02, 0.006))
+            hooks.append(tie(f"eyelet_{name}{n}", f"panel_{name}", f"guy_{name}{n}", a_point=(rows - 1) * columns + k,
+                             b_point="last"))
+            bodies.append(body(f"peg_{name}{n}", "oak", {"cylinder": {"radius": 0.02, "half_height": 0.08}},
+                               [x, 0.04, side * (peg[0] + 0.02)], "static", collides=False))
+    for name, side in (("w", -1), ("e", 1)):
+        top, low = [side * length / 2, ridge, 0], [side * (length / 2 + 1.7), 0, 0]
+        half = (ridge - 0.03) / 2
+        bodies += [
+            body(f"upright_{name}", "oak", {"cylinder": {"radius": 0.03, "half_height": half}}, [top[0], half, 0],
+                 mass=upright_mass),
+            body(f"peg_{name}", "oak", {"cylinder": {"radius": 0.02, "half_height": 0.08}}, add(low, [side * 0.02, 0.04, 0]),
+                 "static", collides=False)
+        ]
+        hooks.append(tie(f"top_{name}", f"upright_{name}", "spar", anchor=top))
+        distance = math.dist(low, top)
+        ropes.append(rope(f"end_{name}", "hemp", slack_line(low, top, 1.0005 * distance, Z, 10), 0.02, 0.006))
+        hooks.append(tie(f"end_knot_{name}", "spar", f"end_{name}", b_point="last"))
+    bodies += [
+        body("spar", "oak", box(length / 2 + 0.05, 0.025, 0.025), [0, ridge, 0], mass=spar_mass, collides=False),
+        body("lantern", "rose", {"cylinder": {"radius": 0.08, "half_height": 0.12}}, [0, ridge - 0.5, 0], mass=lantern)
+    ]
+    ropes.append(rope("cord", "hemp", line([0, ridge, 0], [0, ridge - 0.38, 0], 4), 0.01, 0.005, pins=[]))
+    hooks += [tie("cord_top", "spar", "cord", b_point=0), tie("cord_end", "lantern", "cord", b_point="last")]
+    return scene(
+        "Tent",
+        "Two panels hang from a ridge pole on two uprights, which stand on the ground and are held by nothing else; ten "
+        "guys draw the eaves down. The panels sag as catenaries, and each upright carries half of what they pull. After "
+        "six seconds a breeze comes up.",
+        10, [4.6, 2.6, 5.6], [0, 0.9, 0],
+        {"ground": {"friction": 0.7}, "oak": {"friction": 0.7}, "hemp": {}, "ivory": {}, "rose": {}}, [ground(), *bodies], [
+            *(promise("force", "within", on_upright, f"top_{name}", 0.03, 360) for name in "we"),
+            promise("force", "within", lantern * G, "cord_end", 0.01, 360),
+            *(at_point("height", "==", foot[1], f"panel_{name}", (rows - 1) * columns + 12, 0.02, 360) for name in "lr"),
+            promise("height", "==", ridge, "spar", 0.02),
+            promise("gap", "<", 0.01),
+        ],
+        world={"particle_substeps": 2, "wind": {"velocity": [0, 0, 0]}},
+        ropes=ropes,
+        cloths=cloths,
+        hooks=hooks,
+        timeline=[{"at_step": 360, "wind": {"velocity": [1.5, 0, 4], "gust": 0.4}}])
+
+
+def silk_and_felt():
+    """Half of the cloth is silk, half felt, sewn together over a ball."""
+    radius, middle, side, gap = 0.4, 0.95, 1.3, 0.12
+    columns, rows, thickness, drag = 21, 41, 0.006, 1.2
+    kinds = {
+        "silk": {"areal_density": 0.1, "bend_stiffness": 2e-6, "stretch_stiffness": 5e3, "shear_stiffness": 5e2},
+        "felt": {"areal_density": 0.3, "bend_stiffness": 1e-4, "stretch_stiffness": 1e4, "shear_stiffness": 4e3}
+    }
+    top = middle + radius + thickness / 2
+    cloths = [{
+        "name": name, "material": name, "columns": columns, "rows": rows, "corner": [x, top + gap, -side / 2],
+        "column_direction": X, "row_direction": Z, "width": side / 2, "height": side, "damping": 0.05,
+        "bend_damping": 0.02, "drag_coefficient": drag, "thickness": thickness
+    } | kinds[name] for name, x in (("silk", -side / 2), ("felt", 0))]
+
+    def fallen(kind, step):
+        """Flat against the air: m dv/dt = m g - rho C A v^2 / 2, while the ball is not reached."""
+        t, fastest = step * DT, math.sqrt(2 * kinds[kind]["areal_density"] * G / (AIR * drag))
+        return fastest**2 / G * math.log(math.cosh(G * t / fastest))
+
+    middle_of = (rows // 2) * columns
+    return scene(
+        "Silk and felt",
+        "Two cloths of the same size, sewn together, fall over one ball: left silk of 100 g/m^2 that hardly resists "
+        "bending, right felt, three times as heavy and far stiffer. The silk falls into folds, the felt stands off.",
+        4, [0.75, 1.65, 2.1], [0, 0.85, 0],
+        {"ground": {}, "slate": {"friction": 0.6}, "silk": {}, "felt": {}}, [
+            ground(),
+            body("ball", "slate", {"sphere": {"radius": radius}}, [0, middle, 0], "static"),
+            body("foot", "slate", {"cylinder": {"radius": 0.1, "half_height": (middle - radius) / 2 + 0.03}},
+                 [0, (middle - radius) / 2 + 0.03, 0], "static", collides=False),
+        ], [
+            at_point("height", "==", top + gap - fallen("silk", 8), "silk", middle_of + 6, 0.003, 8),
+            at_point("height", "==", top + gap - fallen("felt", 8), "felt", middle_of + columns - 7, 0.003, 8),
+            promise("highest", "==", top, "silk", 0.012),
+            promise("highest", "==", top, "felt", 0.012),
+            promise("lowest", ">", middle - 2 * radius, "silk"),
+            at_point("x", ">", -1.3 * radius, "silk", middle_of),
+            at_point("x", ">", 1.35 * radius, "felt", middle_of + columns - 1),
+            promise("mean_stretch", "<", 0.01),
+            promise("penetration", "<", 0.003),
+            promise("gap", "<", 0.003),
+        ],
+        world={"particle_substeps": 2},
+        cloths=cloths,
+        hooks=[tie(f"stitch_{k}", "silk", "felt", a_point=(k + 1) * columns - 1, b_point=k * columns)
+               for k in range(rows)])
+
+
+CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt]
