@@ -16,25 +16,27 @@ inline constexpr double kMagneticConstant = 1e-7;
 /// Closer to a dipole than this [m] it has no field: there is no direction to tell.
 inline constexpr double kDipoleGap = 1e-6;
 
-/// Flux density at d from a dipole [T], n = d / |d|: mu_0 / 4 pi (3 (m.n) n - m) / |d|^3.
-inline DVec3 dipole_field(DVec3 moment, DVec3 d) {
-  const double r = length(d);
-  if (!(r >= kDipoleGap)) return {};
-  const DVec3 n = (1 / r) * d;
-  return (kMagneticConstant / (r * r * r)) * (3 * dot(moment, n) * n - moment);
+/// Flux density in the unit direction n from a dipole, at a distance of 1 / `inverse` [T]:
+/// mu_0 / 4 pi (3 (m.n) n - m) inverse^3.
+inline DVec3 dipole_field(DVec3 moment, DVec3 n, double inverse) {
+  return (kMagneticConstant * (inverse * inverse * inverse)) * (3 * dot(moment, n) * n - moment);
 }
 
-/// Force on dipole b at d from dipole a [N]:
-/// 3 mu_0 / 4 pi ((a.n) b + (b.n) a + (a.b) n - 5 (a.n) (b.n) n) / |d|^4. With a and b exchanged and d turned
-/// round it is the opposite to the last bit.
-inline DVec3 dipole_force(DVec3 a, DVec3 b, DVec3 d) {
-  const double r = length(d);
-  if (!(r >= kDipoleGap)) return {};
-  const DVec3 n = (1 / r) * d;
+/// Force on dipole b, which lies in the unit direction n from dipole a at a distance of 1 / `inverse` [N]:
+/// 3 mu_0 / 4 pi ((a.n) b + (b.n) a + (a.b) n - 5 (a.n) (b.n) n) inverse^4. With a and b exchanged and n
+/// turned round it is the opposite to the last bit.
+inline DVec3 dipole_force(DVec3 a, DVec3 b, DVec3 n, double inverse) {
   const double along_a = dot(a, n);
   const double along_b = dot(b, n);
   const DVec3 sum = along_a * b + along_b * a + (dot(a, b) - 5 * (along_a * along_b)) * n;
-  return (3 * kMagneticConstant / ((r * r) * (r * r))) * sum;
+  const double square = inverse * inverse;
+  return (3 * kMagneticConstant * (square * square)) * sum;
+}
+
+/// Flux density at d from a dipole [T]; none closer than kDipoleGap.
+inline DVec3 dipole_field(DVec3 moment, DVec3 d) {
+  const double r = length(d);
+  return r >= kDipoleGap ? dipole_field(moment, (1 / r) * d, 1 / r) : DVec3{};
 }
 
 }  // namespace hooke::elements

@@ -18,7 +18,8 @@ struct Pull {
 
 /// Share of a rate omega^2 [1/s^2] that a substep of length h follows.
 double followed(double rate, double h) {
-  return std::min(1.0, 1 / (h * h * rate));  // rate 0: infinity is not less than 1
+  const double turn = h * h * rate;
+  return turn > 1 ? 1 / turn : 1;
 }
 
 /// Mean of 1 / I about the axes across the moment.
@@ -38,6 +39,7 @@ Dipole dipole_of(const state::Bodies& bodies, std::uint32_t row) {
   return {.row = row,
           .center = pose.position,
           .moment = rotate(math::in_double(pose.rotation), moment),
+          .size = length(moment),
           .inverse_mass = static_cast<double>(bodies.mass[row].inverse_mass),
           .inverse_inertia = inverse_inertia_across(bodies.mass[row], moment)};
 }
@@ -47,17 +49,19 @@ Pull pull_of_pair(const Dipole& own, const Dipole& other, double h) {
   const DVec3 d = own.center - other.center;
   const double r = length(d);
   if (!(r >= elements::kDipoleGap)) return {};
-  const double size = elements::kMagneticConstant * (length(own.moment) * length(other.moment)) / (r * r * r);
+  const double inverse = 1 / r;
+  const DVec3 n = inverse * d;
+  const double size = elements::kMagneticConstant * (own.size * other.size) * (inverse * inverse * inverse);
   const double turning = 2 * (own.inverse_inertia + other.inverse_inertia);
-  const double moving = 24 * (own.inverse_mass + other.inverse_mass) / (r * r);
+  const double moving = 24 * (own.inverse_mass + other.inverse_mass) * (inverse * inverse);
   const double share = followed(size * std::max(turning, moving), h);
-  return {.force = share * elements::dipole_force(other.moment, own.moment, d),
-          .torque = share * cross(own.moment, elements::dipole_field(other.moment, d))};
+  return {.force = share * elements::dipole_force(other.moment, own.moment, n, inverse),
+          .torque = share * cross(own.moment, elements::dipole_field(other.moment, n, inverse))};
 }
 
 Pull pull_of_field(const Dipole& own, const FieldDesc& field, double h) {
   const DVec3 b = elements::flux_density(field, own.center);
-  const double share = followed(length(own.moment) * length(b) * own.inverse_inertia, h);
+  const double share = followed(own.size * length(b) * own.inverse_inertia, h);
   return {.force = elements::times_gradient(field, own.moment), .torque = share * cross(own.moment, b)};
 }
 
@@ -77,7 +81,8 @@ void gather_dipoles(const std::vector<state::Field>& fields, std::span<const std
   dipoles.clear();
   for (const state::Field& field : fields) {
     if (field.desc.kind != FieldDesc::Kind::kDipole) continue;
-    dipoles.push_back({.center = field.desc.center, .moment = vector_cast<double>(field.desc.vector)});
+    const DVec3 moment = vector_cast<double>(field.desc.vector);
+    dipoles.push_back({.center = field.desc.center, .moment = moment, .size = length(moment)});
   }
   for (const std::uint32_t row : rows) dipoles.push_back(dipole_of(bodies, row));
 }

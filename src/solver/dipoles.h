@@ -19,6 +19,7 @@ struct Dipole {
   std::uint32_t row = kFixed;  ///< Of the body; kFixed: a field.
   DVec3 center = {};           ///< [m]; of a body its center of mass.
   DVec3 moment = {};           ///< In the world's axes [A m^2].
+  double size = 0;             ///< Of the moment [A m^2].
   double inverse_mass = 0;     ///< [1/kg]; 0: forces do not move it.
   double inverse_inertia = 0;  ///< Mean across the moment [1/(kg m^2)].
 };

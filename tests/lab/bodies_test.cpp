@@ -191,6 +191,18 @@ TEST_SUITE("lab/bodies") {
     CHECK(length(back) < 1e-6);
   }
 
+  TEST_CASE("a magnet and the gradient of a field are reported as left out") {
+    World world = make_world(test::empty_space());
+    BodyDesc desc = {.kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.1))};
+    desc.dipole_moment = {Real(1), Real(0), Real(0)};
+    take(world.add_body(desc));
+    take(world.add_field(
+        {.kind = FieldDesc::Kind::kMagnetic, .vector = {Real(1), Real(0), Real(0)}, .strength = 2}));
+    const lab::Run run = make_run(world, {.stepper = "rk4", .dt = 0.01});
+    REQUIRE(run.report().size() == 1);
+    CHECK(run.report()[0].left_out.size() == 2);
+  }
+
   TEST_CASE("a kinematic body goes as told") {
     World world = make_world();
     BodyDesc arm = {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(1), Real(0.5), Real(0.5)})};
