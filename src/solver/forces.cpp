@@ -38,10 +38,10 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
     if (!(w > Real(0))) continue;
     Vec3& v = particles.velocity[p].v;
     if (object.feels_air) {
-      const Vec3 flow = v - inputs.wind[p];
+      const Vec3 flow = v - inputs.wind[p].v;
       const Real drag =
           particles.viscous_drag[p] + inputs.air_density * particles.drag_area[p] * length(flow);
-      v = inputs.wind[p] + (Real(1) / (Real(1) + h * w * drag)) * flow;
+      v = inputs.wind[p].v + (Real(1) / (Real(1) + h * w * drag)) * flow;
     }
     if (inputs.any_force) v += (h * w) * particles.force[p];
     for (const state::Field& field : inputs.fields) {

@@ -3,6 +3,7 @@
 #include "hooke/desc.h"
 
 #include "parallel/range.h"
+#include "solver/air.h"
 #include "state/objects.h"
 #include "state/particles.h"
 
@@ -20,7 +21,7 @@ namespace hooke::solver {
 /// `object`; gravity is not among these (it is added to all at once).
 struct ForceInputs {
   const std::vector<state::Field>& fields;
-  const std::vector<Vec3>& wind;
+  const std::vector<AirLine>& wind;
   Real air_density = Real(0);
   bool any_force = false;  ///< Some external force is set.
   Vec3 gravity = {};       ///< [m/s^2]; for the lift of liquids only.

@@ -35,7 +35,7 @@ void read_wind(WorldData& world, double time) {
       for (int i = range.begin; i < range.end; ++i) {
         const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
         const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
-        world.wind[p] = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
+        world.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
       }
     });
   }
@@ -93,7 +93,7 @@ void refresh_derived(WorldData& world) {
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
   world.velocity_before.assign(count, Vec3{});
-  world.wind.assign(count, Vec3{});
+  world.wind.assign(count, solver::AirLine{});
   world.law_force.assign(count, Vec3{});
 }
 

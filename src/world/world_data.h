@@ -77,7 +77,7 @@ struct WorldData {
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
   std::vector<Vec3> velocity_before;         ///< Of rope nodes, before the substep's forces.
-  std::vector<Vec3> wind;                    ///< At each particle [m/s].
+  std::vector<solver::AirLine> wind;         ///< At each particle [m/s].
   std::vector<Vec3> law_force;               ///< What force laws ask for [N].
   std::vector<std::uint32_t> law_bodies;     ///< What force laws see: rows in ascending order.
   std::vector<std::uint32_t> dipole_bodies;  ///< Those with a dipole moment: rows in ascending order.

@@ -1,0 +1,57 @@
+/// The air over lanes, then the dispatch. The arithmetic stands in air_triangles.h.
+
+#include "solver/wide/air.h"
+#include "solver/wide/wide.h"
+
+#ifndef HOOKE_DOUBLE_PRECISION
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "solver/wide/air_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// After Highway, which includes this file anew for each instruction set.
+#include "solver/wide/air_triangles.h"
+#include "solver/wide/vectors.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hooke::solver::wide::HWY_NAMESPACE {
+
+void load_triangles_here(const TriangleAir& air, parallel::Range rows) {
+#if HWY_TARGET == HWY_SCALAR
+  load_triangles_scalar(air, rows);
+#else
+  int row = rows.begin;
+  for (; row + kStride <= rows.end; row += kStride)
+    load_triangle_lanes<Wide>(air, static_cast<std::uint32_t>(row));
+  for (; row < rows.end; ++row) load_triangle_lanes<float>(air, static_cast<std::uint32_t>(row));
+#endif
+}
+
+}  // namespace hooke::solver::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hooke::solver::wide {
+
+HWY_EXPORT(load_triangles_here);
+
+void load_triangles(const TriangleAir& air, parallel::Range rows) {
+  if (is_scalar()) return load_triangles_scalar(air, rows);
+  HWY_DYNAMIC_DISPATCH(load_triangles_here)(air, rows);
+}
+
+}  // namespace hooke::solver::wide
+#endif  // HWY_ONCE
+
+#else  // HOOKE_DOUBLE_PRECISION: the scalar twins are the kernels
+
+namespace hooke::solver::wide {
+
+void load_triangles(const TriangleAir& air, parallel::Range rows) {
+  load_triangles_scalar(air, rows);
+}
+
+}  // namespace hooke::solver::wide
+
+#endif  // HOOKE_DOUBLE_PRECISION
