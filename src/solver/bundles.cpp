@@ -197,7 +197,7 @@ bool BundleSolution::is_sound() const {
 
 void BundleSolution::run(std::vector<Chain>& chains) {
   double error = 0;
-  for (int solves = 1; solves <= kMostRopeSolves; ++solves) {
+  for (int solves = 1; solves == 1 || solve_again(solves - 1, error, b_.ropes.touches); ++solves) {
     std::size_t segment = 0;
     for (std::size_t k = 0; k < b_.chains.size(); ++k) {
       Chain& chain = chains[b_.chains[k]];

@@ -54,14 +54,15 @@ class Group {
     resize(*chains.front());
     load(chains, source);
     std::array<bool, kCount> done = {};
-    for (int solves = 1; solves <= kMostRopeSolves; ++solves) {
+    for (int solves = 1;; ++solves) {
       hold(source.h);
       wide::solve_ropes(source.h, ropes_);
       bool all_done = true;
       for (int lane = 0; lane < count; ++lane) {
         if (done[lane]) continue;
         ++chains[lane]->solves;
-        done[lane] = settle(lane, solves, source.h) || solves == kMostRopeSolves;
+        done[lane] =
+            settle(lane, solves, source.h) || !solve_again(solves, ropes_.error[lane], touches_[lane]);
         if (done[lane]) store(*chains[lane], lane, source);
         all_done = all_done && done[lane];
       }

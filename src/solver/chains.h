@@ -55,8 +55,8 @@ struct Chain {
 ///
 /// A sweep from the first node eliminates one after the other (wide/rope_sweep.h; exact for k = infinity), a
 /// sweep back gives u and q. The solve repeats, linearized anew, while a length error exceeds 0.1 %, at most
-/// 8 times; more than 1 % left is reported. Ropes of equally many nodes are solved together, one in each lane
-/// of a vector.
+/// 8 times; with more than 1 % left, 8 times more without friction. What is left then is reported. Ropes of
+/// equally many nodes are solved together, one in each lane of a vector.
 ///
 /// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), rho = 1000 m, u relative to the surface,
 /// N0 carried over substeps; friction holds likewise up to mu N and is mu N against the motion beyond. An

@@ -282,6 +282,17 @@ int least_solves(std::span<const RopeTouch> touches, bool unsettled) {
   return unsettled ? kSlidingSolves : kLeastContactSolves;
 }
 
+bool solve_again(int solves, double error, std::span<RopeTouch> touches) {
+  if (solves != kMostRopeSolves) return solves < 2 * kMostRopeSolves;
+  if (error <= kReportedError || touches.empty()) return false;
+  for (RopeTouch& t : touches) {
+    t.friction = 0;
+    t.f0 = t.f = {};
+    t.slides = true;
+  }
+  return true;
+}
+
 bool is_finite(const RopeScratch& s) {
   return std::all_of(s.nodes.begin(), s.nodes.end(),
                      [](const RopeNode& node) { return hooke::is_finite(node.u); });

@@ -167,6 +167,11 @@ double check_segments(double h, RopeScratch& s, bool& limits_changed);
 /// How many solutions a substep takes at least, by what update_touches said.
 [[nodiscard]] int least_solves(std::span<const RopeTouch> touches, bool unsettled);
 
+/// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its length
+/// because friction pushes nodes that no longer move against it, which makes energy: after kMostRopeSolves it
+/// is let go for this substep, and the rope gets as many solutions without.
+[[nodiscard]] bool solve_again(int solves, double error, std::span<RopeTouch> touches);
+
 [[nodiscard]] bool is_finite(const RopeScratch& s);
 
 /// Writes back the tension of a segment [N]; its mean is summed over the step.
