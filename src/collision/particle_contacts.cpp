@@ -18,6 +18,7 @@ namespace {
 
 constexpr Real kParticleMargin = Real(0.02);  ///< [m]
 constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not hold now [m].
+constexpr Real kRounding = Real(1e-4);        ///< Of a side near an object, seen from its origin, at most [m].
 
 /// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
@@ -27,6 +28,7 @@ struct Frame {
   Vec3 center = {};         ///< Of the body's mass.
   Vec3 belt_velocity = {};  ///< Of a conveyor's surface against its body [m/s].
   Real speed = Real(0);     ///< Of the body's fastest point, at most [m/s].
+  geometry::Box box = {};   ///< Holds the shape on its way in this step.
 
   [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
   [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
@@ -36,13 +38,17 @@ Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Defo
   const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);
   const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
   const std::uint32_t row = t.colliders.body[collider];
+  const geometry::Box& bounds = t.colliders.bounds[collider];
+  const Vec3 rounding = {kRounding, kRounding, kRounding};
   return {.shape = &t.colliders.shape[collider],
           .rotation = body.rotation * t.colliders.rotation[collider],
           .offset = vector_cast<Real>(body.position + arm - object.origin),
           .center = vector_cast<Real>(body.position - object.origin),
           .belt_velocity = rotate(body.rotation, t.colliders.surface[collider].surface_velocity),
           .speed = length(t.bodies.motion[row].v) +
-                   length(t.bodies.angular_velocity[row]) * t.bodies.traits[row].radius};
+                   length(t.bodies.angular_velocity[row]) * t.bodies.traits[row].radius,
+          .box = {vector_cast<Real>(vector_cast<double>(bounds.lower) - object.origin) - rounding,
+                  vector_cast<Real>(vector_cast<double>(bounds.upper) - object.origin) + rounding}};
 }
 
 /// Rows of the colliders that particles may touch, in ascending order.
@@ -150,9 +156,12 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const
                Real step, Finder& finder) {
   const state::ColliderShape& shape = *frame.shape;
   const std::uint32_t body = t.colliders.body[pair.collider];
-  if (is_hooked(finder.hooked, pair.particle, body)) return;
-  const Vec3 x = frame.to_shape(t.particles.position[pair.particle].x);
+  const Vec3 place = t.particles.position[pair.particle].x;
   const Real reach = t.particles.position[pair.particle].radius + way + frame.speed * step + kParticleMargin;
+  const Vec3 reach_to_all = {reach, reach, reach};
+  if (!overlap(frame.box, geometry::Box{place - reach_to_all, place + reach_to_all})) return;
+  if (is_hooked(finder.hooked, pair.particle, body)) return;
+  const Vec3 x = frame.to_shape(place);
   const Real friction =
       std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
   if (shape.shape.kind != ShapeKind::kMesh) {
