@@ -330,7 +330,8 @@ struct ClothDesc {
 
 /// A soft solid of tetrahedra: a box of cells, the inside of a closed mesh, or tetrahedra as given. Its
 /// material keeps its law at any deformation: psi = mu / 2 tr(F^T F) + lambda / 2 (det F - 1 - mu / lambda)^2
-/// (stable neo-Hookean, Smith, de Goes and Kim 2018), and comes back from being turned inside out.
+/// (stable neo-Hookean, Smith, de Goes and Kim 2018), and comes back from being turned inside out; not from a
+/// point: below (1 - 2 nu) / (2 - 2 nu) of its size it shrinks.
 ///
 /// A substep of h seconds carries a wave through a cell, not farther: where mu is above about
 /// density (edge / 4 h)^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.

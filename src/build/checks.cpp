@@ -1,5 +1,6 @@
 #include "build/checks.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace hooke::build {
@@ -31,7 +32,9 @@ Checks& Checks::require(bool good, const std::string& field, const char* must) {
 }
 
 Checks& Checks::in_range(const std::string& field, double value, double least, double most) {
-  if ((value >= least && value <= most) || error_) return *this;
+  // A bound like 0.499 is met by the number of type Real that is nearest to it, above it or not.
+  const auto real = [](double bound) { return static_cast<double>(static_cast<Real>(bound)); };
+  if ((value >= std::min(least, real(least)) && value <= std::max(most, real(most))) || error_) return *this;
   const std::string must = "must be " + number(least) + " to " + number(most);
   return require(false, field, value, must.c_str());
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Real kParticleMargin = Real(0.02);  ///< [m]
 constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not hold now [m].
-constexpr Real kRounding = Real(1e-4);        ///< Of a side near an object, seen from its origin, at most [m].
+constexpr Real kRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
 
 /// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
