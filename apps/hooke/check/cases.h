@@ -34,6 +34,8 @@ Rows hanging_weight(const CheckSetting& setting);
 Rows series_and_parallel(const CheckSetting& setting);
 Rows catenary(const CheckSetting& setting);
 Rows elastic_catenary(const CheckSetting& setting);
+Rows cantilevers(const CheckSetting& setting);
+Rows bent_to_circle(const CheckSetting& setting);
 Rows elastica(const CheckSetting& setting);
 Rows euler_columns(const CheckSetting& setting);
 Rows atwood(const CheckSetting& setting);
@@ -65,8 +67,14 @@ Rows sliding_block(const CheckSetting& setting);
 // cases_solids.cpp: tetrahedra
 Rows pulled_bar(const CheckSetting& setting);
 Rows hanging_bar(const CheckSetting& setting);
-Rows cantilever(const CheckSetting& setting);
+Rows cantilever_of_jelly(const CheckSetting& setting);
 Rows jelly_wave(const CheckSetting& setting);
+Rows patch_test(const CheckSetting& setting);
+Rows pushed_cubes(const CheckSetting& setting);
+
+// cases_cloth.cpp: sheets and closed skins
+Rows balloon(const CheckSetting& setting);
+Rows picture_frame(const CheckSetting& setting);
 
 // cases_time.cpp: the same physics at any rate
 Rows display_rate(const CheckSetting& setting);

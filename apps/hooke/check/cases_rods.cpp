@@ -81,6 +81,64 @@ Rows elastica(const CheckSetting& setting) {
   return rows;
 }
 
+/// P L^3 / 3 EI at the end of a clamped rod, of any stiffness: the load times the bend's inverse stays.
+Rows cantilevers(const CheckSetting& setting) {
+  Rows rows;
+  for (const double stiffness : {0.1, 10.0, 1000.0}) {
+    const int segments = 32;
+    RopeDesc desc = rod({1, 0, 0}, segments, true, false);
+    desc.bend_stiffness = real(stiffness);
+    desc.pins = {{.point = 0}, {.point = 1}};
+    desc.bend_damping = real(0.3);
+    desc.loads = {{.point = segments + 1, .mass = real(0.03 * stiffness / kGravity)}};
+    desc.total_mass = real(1e-6 * stiffness);
+    Rig rig(setting, without_air());
+    const RopeId id = rig.add(desc);
+    rig.run(6);
+    const std::string title = stiffness < 1 ? "EI = 0.1" : "EI = " + std::to_string(std::lround(stiffness));
+    rows.push_back(relative_row("rod of " + title + ", P L^2 / EI = 0.03: way of the end down", "m", 0.01,
+                                -rig.positions(id).back().y, 0.01));
+  }
+  for (CheckRow& row : rows) row.solver = "rope";
+  const Rows jelly = cantilever_of_jelly(setting);
+  rows.insert(rows.end(), jelly.begin(), jelly.end());
+  return rows;
+}
+
+/// A rod bent by nothing but a moment M at its end is an arc of curvature M / EI, a circle at 2 pi EI / L
+/// (Euler). The moment is a pair of forces at its last two points, which turns with them.
+Rows bent_to_circle(const CheckSetting& setting) {
+  const int segments = 32;
+  RopeDesc desc = rod({1, 0, 0}, segments, true, true);
+  desc.pins = {{.point = 0}, {.point = 1}};
+  desc.bend_damping = real(0.1);
+  desc.total_mass = real(0.01);
+  desc.air_friction = real(2);
+  WorldDesc still = without_air();
+  still.gravity = {};
+  Rig rig(setting, still);
+  const RopeId id = rig.add(desc);
+  const auto last = static_cast<std::uint32_t>(desc.points.size()) - 1;
+  const double full = kTau * kGravity;
+  while (rig.time() < 12 && rig.healthy()) {
+    const std::vector<DVec3> x = rig.positions(id);
+    const DVec3 along = x[last] - x[last - 1];
+    const double l2 = length_squared(along);
+    const double force = full * std::min(1.0, rig.time() / 6) / l2;
+    const Vec3 push = real(force * DVec3{-along.y, along.x, 0});
+    must(rig.world().apply_force(point(id, last), push));
+    must(rig.world().apply_force(point(id, last - 1), -push));
+    rig.step();
+  }
+  const std::vector<DVec3> x = rig.positions(id);
+  double top = 0;
+  for (const DVec3& p : x) top = std::max(top, p.y);
+  Rows rows = {absolute_row("gap of the circle, over L", "", 0, length(x[last - 1] - x[1]), 0.01),
+               relative_row("its diameter", "m", 2 / kTau, top, 0.01)};
+  for (CheckRow& row : rows) row.solver = "rope";
+  return rows;
+}
+
 /// pi^2 EI / (K L)^2 (Euler 1744), by halving an interval of 10 % to either side.
 Rows euler_columns(const CheckSetting& setting) {
   const std::array<Column, 4> columns = {

@@ -67,11 +67,14 @@ const std::vector<CheckCase>& check_cases() {
       {"V59", "Pairs without a clear normal", degenerate_pairs},
       {"V60", "Seams in floors", seams_in_floors},
       {"V61", "Dominoes at any scale", domino_scaling},
-      {"V62", "Cantilever of jelly", cantilever},
+      {"V62", "Cantilevers", cantilevers},
       {"V63", "Elastica", elastica},
       {"V65", "Columns that buckle", euler_columns},
       {"V70", "Bar of jelly under its own weight", hanging_bar},
       {"V71", "Pulled bar of jelly", pulled_bar},
+      {"V73", "Patch test of tetrahedra", patch_test},
+      {"V74", "Balloon", balloon},
+      {"V76", "Picture frame", picture_frame},
       {"V81", "Floating bodies", floating_bodies_in_water},
       {"V83", "Bodies in air", bodies_in_air},
       {"V86", "Any display rate", display_rate, 2e-4, 1.0 / 60},
@@ -98,6 +101,8 @@ const std::vector<CheckCase>& check_cases() {
       {"I20", "Rollback in the laboratory", rollback},
       {"I21", "Bodies in the laboratory", bodies_by_rk4},
       {"I22", "Magnetic dipoles", magnetic_dipoles},
+      {"T74", "Cubes pushed by 10 kN", pushed_cubes},
+      {"T79", "Rod bent into a circle", bent_to_circle},
   };
   return cases;
 }
