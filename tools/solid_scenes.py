@@ -125,14 +125,14 @@ def dropped_ball(title, description, ball, look, rebound, tolerance, apex, passe
 
 def tennis_ball():
     ball = {"radius": 0.033, "total_mass": 0.0577, "pressure": 82700, "thickness": 0.001, "stretch_stiffness": 30000,
-            "shear_stiffness": 0, "bend_stiffness": 0.02, "bend_damping": 0.0006, "damping": 3, "drag_coefficient": 0, "lift_coefficient": 0}
+            "shear_stiffness": 0, "bend_stiffness": 0.12, "bend_damping": 0.0006, "damping": 3, "drag_coefficient": 0, "lift_coefficient": 0}
     return dropped_ball("Tennis ball", "Rubber and felt with gas at 12 psi. From 100 inches on concrete the rules "
                         "ask for a rebound of 1.35 to 1.47 m.", ball, "felt", 1.41, 0.06, 76, 32)
 
 
 def squash_ball():
     ball = {"radius": 0.02, "total_mass": 0.024, "pressure": 0, "thickness": 0.001, "stretch_stiffness": 7000,
-            "shear_stiffness": 0, "bend_stiffness": 0.02, "damping": 7, "drag_coefficient": 0, "lift_coefficient": 0}
+            "shear_stiffness": 0, "bend_stiffness": 0.12, "damping": 7, "drag_coefficient": 0, "lift_coefficient": 0}
     return dropped_ball("Squash ball", "Rubber of 4 mm, warm. From 100 inches the rules ask for a rebound of 26 to "
                         "33 %, 0.66 to 0.84 m.", ball, "rubber", 0.75, 0.09, 66, 8)
 

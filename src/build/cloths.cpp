@@ -207,8 +207,9 @@ void append_springs(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   }
 }
 
-/// Stiffness 3 |e|^2 k_b / (A_1 + A_2): the hinge energy of discrete shells (Grinspun et al. 2003) for a
-/// flexural rigidity k_b, twice over, as E = k C^2 / 2 here.
+/// Stiffness |e|^2 B / (A_1 + A_2) of E = k C^2 / 2 for a flexural rigidity B: hinges of length |e| across
+/// strips of the width (A_1 + A_2) / |e| bend a sheet of squares about its lines, and one of equilateral
+/// triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does.
 void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
   if (desc.bend != ClothDesc::Bend::kAngle || !(desc.bend_stiffness > Real(0))) return;
   state::Deformable& object = tables.objects.back();
@@ -225,8 +226,7 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
     const auto d = elements::dihedral(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
     if (!d.valid) continue;
     const double areas = area_of(s, t) + area_of(s, s.triangles[sides.triangles[1]]);
-    const double stiffness =
-        6.0 * length_squared(p[b] - p[a]) / areas * static_cast<double>(desc.bend_stiffness);
+    const double stiffness = length_squared(p[b] - p[a]) / areas * static_cast<double>(desc.bend_stiffness);
     tables.bends.stencil.push_back({row_of(tables, object, a), row_of(tables, object, b),
                                     row_of(tables, object, sides.opposite[0]),
                                     row_of(tables, object, sides.opposite[1])});

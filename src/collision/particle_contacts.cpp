@@ -18,7 +18,7 @@ namespace {
 
 constexpr Real kParticleMargin = Real(0.02);  ///< [m]
 constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not hold now [m].
-constexpr Real kRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
+constexpr Real kBoxRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
 
 /// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {
@@ -39,7 +39,7 @@ Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Defo
   const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
   const std::uint32_t row = t.colliders.body[collider];
   const geometry::Box& bounds = t.colliders.bounds[collider];
-  const Vec3 rounding = {kRounding, kRounding, kRounding};
+  const Vec3 rounding = {kBoxRounding, kBoxRounding, kBoxRounding};
   return {.shape = &t.colliders.shape[collider],
           .rotation = body.rotation * t.colliders.rotation[collider],
           .offset = vector_cast<Real>(body.position + arm - object.origin),

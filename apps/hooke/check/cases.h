@@ -74,6 +74,7 @@ Rows pushed_cubes(const CheckSetting& setting);
 
 // cases_cloth.cpp: sheets and closed skins
 Rows balloon(const CheckSetting& setting);
+Rows overhanging_cloth(const CheckSetting& setting);
 Rows picture_frame(const CheckSetting& setting);
 
 // cases_time.cpp: the same physics at any rate

@@ -101,6 +101,7 @@ const std::vector<CheckCase>& check_cases() {
       {"I20", "Rollback in the laboratory", rollback},
       {"I21", "Bodies in the laboratory", bodies_by_rk4},
       {"I22", "Magnetic dipoles", magnetic_dipoles},
+      {"I23", "Overhanging cloth", overhanging_cloth},
       {"T74", "Cubes pushed by 10 kN", pushed_cubes},
       {"T79", "Rod bent into a circle", bent_to_circle},
   };
