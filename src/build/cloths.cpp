@@ -237,12 +237,12 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
   }
 }
 
-void append_triangles(const Surface& s, Real areal_density, state::Tables& tables) {
+void append_triangles(const Surface& s, double areal_density, state::Tables& tables) {
   state::Deformable& object = tables.objects.back();
   for (const Triangle& t : s.triangles) {
     tables.triangles.corners.push_back(
         {row_of(tables, object, t[0]), row_of(tables, object, t[1]), row_of(tables, object, t[2])});
-    tables.triangles.areal_density.push_back(areal_density);
+    tables.triangles.mass.push_back(static_cast<Real>(areal_density * area_of(s, t)));
     ++object.triangles.count;
   }
 }
@@ -352,7 +352,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   append_bends(surface, desc, tables);
   const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
                                       : area * static_cast<double>(desc.areal_density);
-  append_triangles(surface, static_cast<Real>(mass / area), tables);
+  append_triangles(surface, mass / area, tables);
   append_tethers(surface, desc, tables);
   return {};
 }

@@ -27,7 +27,7 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
   const auto numbers = [](auto& lines) { return reinterpret_cast<const Real*>(lines.data()); };
   const wide::TriangleAir on_triangles = {
       .corners = reinterpret_cast<const std::uint32_t*>(triangles.corners.data()),
-      .areal_density = triangles.areal_density.data(),
+      .mass = triangles.mass.data(),
       .position = numbers(particles.position),
       .velocity = numbers(particles.velocity),
       .wind = numbers(air.wind),

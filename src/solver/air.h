@@ -37,9 +37,9 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
 ///
 ///     F = rho A |u| cos(a) (C_d u + C_l |u| e) / 2,   cos(a) = |n . u| / |u|,  e = n - (n . u) u / |u|^2
 ///
-/// with n turned to the side the air comes out of. Where h F / (m |u|) > 1 it is divided by that: within a
-/// substep no wind does more than to carry a light cloth along. Below, it is not weakened: what is held
-/// against the wind feels all of it. `range` counts the triangles of `object`.
+/// with n turned to the side the air comes out of. Where h F / (m |u|) > 1, m the mass of the triangle, it is
+/// divided by that: within a substep no wind does more than to carry a light cloth along. Below, it is not
+/// weakened: what is held against the wind feels all of it. `range` counts the triangles of `object`.
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads);
 

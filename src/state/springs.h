@@ -79,14 +79,14 @@ struct Triangles {
     std::uint32_t a, b, c;
   };
   std::vector<Corners> corners;
-  std::vector<Real> areal_density;  ///< [kg/m^2]
+  std::vector<Real> mass;  ///< [kg]
 
   [[nodiscard]] int count() const { return static_cast<int>(corners.size()); }
 
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit&& visit) {
     visit(self.corners);
-    visit(self.areal_density);
+    visit(self.mass);
   }
 };
 

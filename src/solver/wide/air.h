@@ -11,7 +11,7 @@ namespace hooke::solver::wide {
 /// The air on triangles: where the columns begin, as numbers. Particles, wind and impulses are lines of four.
 struct TriangleAir {
   const std::uint32_t* corners;  ///< Three particles a triangle.
-  const Real* areal_density;     ///< [kg/m^2]
+  const Real* mass;              ///< [kg]
   const Real* position;
   const Real* velocity;
   const Real* wind;

@@ -26,14 +26,16 @@ HWY_INLINE Triple<Number> read_line(const Real* base, const std::uint32_t* line)
 /// Triangles from `row` on, one for each lane. With N the sum of the normal's parts, twice the area long, and
 /// c = |N.u| / |N|, the impulse on a corner is
 ///
-///     h rho / 12 |N.u| ((C_d - C_l c / |u|) u + C_l |u| n) / max(1, h rho c (C_d + C_l) / (2 sigma))
+///     h rho / 12 |N.u| ((C_d - C_l c / |u|) u + C_l |u| n) / max(1, h rho |N.u| (C_d + C_l) / 4 m)
 template <class Number>
 HWY_INLINE void load_triangle_lanes(const TriangleAir& air, std::uint32_t row) {
   std::uint32_t line[3][kLanesOf<Number>];
   std::uint32_t out[kLanesOf<Number>];
+  alignas(64) Real masses[kLanesOf<Number>];  // a triangle's row may begin anywhere
   for (std::uint32_t k = 0; k < kLanesOf<Number>; ++k) {
     for (int j = 0; j < 3; ++j) line[j][k] = 4 * air.corners[3 * (row + k) + static_cast<std::uint32_t>(j)];
     out[k] = 4 * (row + k);
+    masses[k] = air.mass[row + k];
   }
   const auto flow_at = [&](int j) HWY_ATTR {
     return difference(read_line<Number>(air.wind, line[j]), read_line<Number>(air.velocity, line[j]));
@@ -50,8 +52,9 @@ HWY_INLINE void load_triangle_lanes(const TriangleAir& air, std::uint32_t row) {
   const Number across = larger(through, zero - through);
   const Number per_size = quotient(one, size);
   const Number c = across * per_size;
-  const Number stiffening = Number(air.h * Real(0.5) * air.density * (air.drag + air.lift)) * c;
-  const Number limit = larger(one, quotient(stiffening, get<Number>(air.areal_density + row)));
+  const Number rate = Number(air.h * Real(0.25) * air.density * (air.drag + air.lift)) * across;
+  const Number mass = get<Number>(masses);
+  const Number limit = choose(above(rate, mass), quotient(rate, mass), one);
   const Number lift(air.lift);
   const Number strength = quotient(Number(air.h * air.density / Real(12)) * across, limit);
   // The normal on the side that the air comes out of.
