@@ -25,7 +25,7 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
     const std::size_t first = b_.ropes.nodes.size();
     const std::size_t first_segment = b_.ropes.segments.size();
     const std::size_t first_touch = b_.ropes.touches.size();
-    load_rope(chains[c], before, h_, t_.particles, t_.segments, t_.contacts, b_.ropes);
+    load_rope(chains[c], before, h_, t_, b_.ropes);
     load_bends(chains[c], first, first_segment, h_, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
   }
@@ -225,7 +225,7 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
   std::size_t node = 0;
   std::size_t segment = 0;
   for (const std::uint32_t c : b_.chains) {
-    store_rope(chains[c], node, segment, h_, b_.ropes, t_.particles, t_.segments);
+    store_rope(chains[c], node, segment, h_, b_.ropes, t_);
     node += chains[c].node_count;
     segment += chains[c].node_count - 1;
   }

@@ -108,19 +108,18 @@ RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& 
           .inverse = {}};
 }
 
-void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
-               const state::Particles& particles, const state::Segments& segments,
-               const state::Contacts& contacts, RopeScratch& s) {
+void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
+               RopeScratch& s) {
   const auto first = static_cast<std::uint32_t>(s.nodes.size());
   for (std::uint32_t i = 0; i < chain.node_count; ++i) {
     const std::uint32_t row = chain.first_particle + i;
-    s.nodes.push_back(load_node(row, before[row], particles));
+    s.nodes.push_back(load_node(row, before[row], tables.particles));
   }
   for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-    s.segments.push_back(load_segment(chain.first_segment + i, segments));
+    s.segments.push_back(load_segment(chain.first_segment + i, tables.segments));
     s.segments.back().a = first + i;
   }
-  load_touches(chain, first, h, particles, contacts, s.touches);
+  load_touches(chain, first, h, tables.particles, tables.contacts, s.touches);
 }
 
 RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
@@ -305,14 +304,14 @@ void store_tension(std::size_t row, double tension, bool limited, state::Segment
 }
 
 void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
-                const RopeScratch& s, state::Particles& particles, state::Segments& segments) {
+                const RopeScratch& s, state::Tables& tables) {
   for (std::uint32_t i = 0; i < chain.node_count; ++i) {
     const RopeNode& node = s.nodes[first_node + i];
-    if (node.w > 0) particles.velocity[chain.first_particle + i].v = vector_cast<Real>(node.u);
+    if (node.w > 0) tables.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(node.u);
   }
   for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
     const RopeSegment& e = s.segments[first_segment + i];
-    store_tension(chain.first_segment + i, dot(e.n, e.q) / h, e.limited, segments);
+    store_tension(chain.first_segment + i, dot(e.n, e.q) / h, e.limited, tables.segments);
   }
 }
 

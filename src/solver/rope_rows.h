@@ -89,9 +89,8 @@ inline constexpr double kReportedError = 0.01;
 inline constexpr int kMostRopeSolves = 8;
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
-void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h,
-               const state::Particles& particles, const state::Segments& segments,
-               const state::Contacts& contacts, RopeScratch& s);
+void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
+               RopeScratch& s);
 
 /// One segment, as load_rope makes it, but for its node.
 [[nodiscard]] RopeSegment load_segment(std::size_t row, const state::Segments& segments);
@@ -179,7 +178,7 @@ void store_tension(std::size_t row, double tension, bool limited, state::Segment
 
 /// Writes back one rope, which begins at node `first_node` and segment `first_segment`.
 void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
-                const RopeScratch& s, state::Particles& particles, state::Segments& segments);
+                const RopeScratch& s, state::Tables& tables);
 
 void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts);
 

@@ -287,8 +287,7 @@ class RopeSweep {
       const Scale<Number> far = difference(p, square(moves * tau, r));
       pivots[2].add({scaled(Number(0.0) - c * c, far), scaled(Number(0.0) - c, z)});
       add_fill(c, pb, scaled(tau, r), t_bent, meeting.following);
-      meeting.next = meeting.following;
-      meeting.following = full(diagonal(Number(0.0)));
+      meeting = {meeting.following, full(diagonal(Number(0.0))), Number(0.0)};
     } else {
       pivots[1].add(
           {sum(difference(diagonal(b), scaled(b * b, p)), square(tau, t)), sum(given, scaled(b, z))});
