@@ -94,7 +94,7 @@ def sail():
         cloths=[{
             "name": "sail", "material": "ivory", "columns": columns, "rows": rows, "corner": [-width / 2, yard[1], 0],
             "width": width, "height": length, "areal_density": density, "drag_coefficient": drag, "lift_coefficient": 0,
-            "stretch_stiffness": 1e5, "shear_stiffness": 2e3, "damping": 2, "bend_stiffness": 1e-3, "tethers": True, "pins": [{"row": 0}]
+            "stretch_stiffness": 1e5, "shear_stiffness": 2e3, "damping": 2, "bend_stiffness": 6e-3, "tethers": True, "pins": [{"row": 0}]
         }])
 
 
@@ -143,7 +143,7 @@ def tent():
             "name": f"panel_{name}", "material": "ivory", "columns": columns, "rows": rows,
             "corner": [-length / 2, ridge, side * 0.0], "column_direction": X,
             "row_direction": [0, eave[1] - ridge, side * eave[0]], "width": length, "height": panel,
-            "areal_density": density, "stretch_stiffness": 3e4, "shear_stiffness": 5e3, "bend_stiffness": 1e-3, "damping": 1,
+            "areal_density": density, "stretch_stiffness": 3e4, "shear_stiffness": 5e3, "bend_stiffness": 6e-3, "damping": 1,
             "air_friction": 0.5
         })
         hooks += [tie(f"lace_{name}{k}", "spar", f"panel_{name}", b_point=k) for k in range(0, columns, 2)]
@@ -199,8 +199,8 @@ def silk_and_felt():
     radius, middle, side, gap = 0.4, 0.95, 1.3, 0.12
     columns, rows, thickness, drag = 21, 41, 0.006, 1.2
     kinds = {
-        "silk": {"areal_density": 0.1, "bend_stiffness": 2e-6, "stretch_stiffness": 5e3, "shear_stiffness": 5e2},
-        "felt": {"areal_density": 0.3, "bend_stiffness": 1e-4, "stretch_stiffness": 1e4, "shear_stiffness": 4e3}
+        "silk": {"areal_density": 0.1, "bend_stiffness": 1.2e-5, "stretch_stiffness": 5e3, "shear_stiffness": 5e2},
+        "felt": {"areal_density": 0.3, "bend_stiffness": 6e-4, "stretch_stiffness": 1e4, "shear_stiffness": 4e3}
     }
     top = middle + radius + thickness / 2
     cloths = [{
