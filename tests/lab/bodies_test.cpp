@@ -152,13 +152,16 @@ TEST_SUITE("lab/bodies") {
       return std::pair(std::abs(run.energy().total() / before - 1),
                        length(momentum - top.momentum) / length(top.momentum));
     };
-    for (const auto& [stepper, order] :
-         {std::pair<std::string, double>{"euler", 1}, {"heun", 2}, {"rk4", 4}}) {
-      CAPTURE(stepper);
-      const auto coarse = drift(stepper, 1.0 / 120);
-      const auto fine = drift(stepper, 1.0 / 240);
-      CHECK(std::log2(coarse.first / fine.first) > order - 0.2);
-      CHECK(std::log2(coarse.second / fine.second) > order - 0.2);
+    struct Method {
+      std::string stepper;
+      double order;
+    };
+    for (const Method& method : {Method{"euler", 1}, Method{"heun", 2}, Method{"rk4", 4}}) {
+      CAPTURE(method.stepper);
+      const auto coarse = drift(method.stepper, 1.0 / 120);
+      const auto fine = drift(method.stepper, 1.0 / 240);
+      CHECK(std::log2(coarse.first / fine.first) > method.order - 0.2);
+      CHECK(std::log2(coarse.second / fine.second) > method.order - 0.2);
     }
   }
 

@@ -27,7 +27,10 @@ MeshDesc make_floor() {
   return floor;
 }
 
-using Defect = std::pair<const char*, std::function<void(MeshDesc&)>>;
+struct Defect {
+  const char* name;
+  std::function<void(MeshDesc&)> spoil;
+};
 
 /// Adds a triangle with corners of its own.
 void add_triangle(MeshDesc& mesh, Vec3 a, Vec3 b, Vec3 c) {
@@ -137,11 +140,11 @@ bool names_triangle(const std::string& where) {
 TEST_SUITE("world/bad_mesh") {
   TEST_CASE("a floor with any defect that files have holds what falls on it, with all of them too") {
     MeshDesc all = make_floor();
-    for (const auto& [name, spoil] : make_defects()) {
-      CAPTURE(std::string(name));
+    for (const Defect& defect : make_defects()) {
+      CAPTURE(defect.name);
       MeshDesc floor = make_floor();
-      spoil(floor);
-      spoil(all);
+      defect.spoil(floor);
+      defect.spoil(all);
       const auto [lowest, highest] = heights_of_rest(floor);
       CHECK(lowest == doctest::Approx(0.1).epsilon(1e-2));
       CHECK(highest == doctest::Approx(0.1).epsilon(1e-2));
