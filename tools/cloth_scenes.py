@@ -2,7 +2,7 @@
 import math
 
 from rope_scenes import line, rope, tension, tie
-from scene_kit import DT, G, X, Y, Z, add, at_point, body, box, ground, promise, scaled, scene, turn
+from scene_kit import DT, G, X, Y, Z, add, at_point, body, box, fall, ground, promise, scaled, scene, turn
 
 AIR = 1.225  # kg/m^3
 
@@ -243,4 +243,108 @@ def silk_and_felt():
                for k in range(rows)])
 
 
-CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt]
+def sling(length, span, radius):
+    """A roller of this radius hangs in a sling between two bars: how far its axis is below them, or above."""
+    low, high = 0.0, math.pi / 2
+    for _ in range(80):  # the angle that the sling turns by on either side
+        turned = 0.5 * (low + high)
+        free = length / 2 - radius * turned
+        low, high = (turned, high) if radius * math.sin(turned) + free * math.cos(turned) > span / 2 else (low, turned)
+    return radius * math.cos(low) - (length / 2 - radius * low) * math.sin(low)
+
+
+def hammock():
+    """A roller, 140 times as heavy as the cloth, lies in it."""
+    columns, rows, width, length, span, bars = 19, 41, 1.1, 2.3, 1.9, 1.5
+    radius, half, mass, density, thickness = 0.2, 0.3, 80.0, 0.25, 0.008
+    sag = math.sqrt(length**2 - span**2) / 2
+    start = bars - sag + radius + 0.45
+    depth = sling(length, span, radius + thickness / 2)
+    vertices, triangles = [], []
+    for r in range(rows):
+        part = 2 * r / (rows - 1) - 1
+        for c in range(columns):
+            vertices.append([width * (c / (columns - 1) - 0.5), -sag * (1 - abs(part)), part * span / 2])
+    for r in range(rows - 1):
+        for c in range(columns - 1):
+            a, b = r * columns + c, (r + 1) * columns + c
+            triangles += [[a, b, a + 1], [a + 1, b, b + 1]] if (r + c) % 2 else [[a, b, b + 1], [a, b + 1, a + 1]]
+    return scene(
+        "Hammock",
+        "A roller of 80 kg drops into a hammock of half a kilogram. Cloth that does not stretch lies around it and "
+        "goes straight to both bars: that says how deep it hangs.",
+        8, [2.9, 1.9, 2.5], [0, 0.85, 0], {"ground": {}, "steel": {}, "clay": {"friction": 0.6}, "ivory": {}}, [
+            ground(),
+            *(body(f"bar_{name}", "steel", {"capsule": {"radius": 0.03, "half_height": width / 2 + 0.05}},
+                   [0, bars, side * (span / 2 + 0.025)], "static", rotation=turn(Z, math.pi / 2), collides=False)
+              for name, side in (("n", -1), ("s", 1))),
+            *(body(f"post_{name}{k}", "steel", {"cylinder": {"radius": 0.04, "half_height": bars / 2}},
+                   [x, bars / 2, side * (span / 2 + 0.025)], "static", collides=False)
+              for name, side in (("n", -1), ("s", 1)) for k, x in enumerate((-width / 2 - 0.1, width / 2 + 0.1))),
+            body("roller", "clay", {"capsule": {"radius": radius, "half_height": half}}, [0, start, 0],
+                 mass=mass, rotation=turn(Z, math.pi / 2), angular_damping=0.5),
+        ], [
+            promise("height", "==", bars + depth, "roller", 0.05 * -depth),
+            promise("z", "==", 0, "roller", 0.05),
+            promise("speed", "<", 0.1, "roller"),
+            promise("mean_stretch", "<", 0.01),
+            fall("roller", start, 16),
+        ],
+        world={"substeps": 8, "particle_substeps": 2},
+        meshes={"sling": {"vertices": vertices, "triangles": triangles}},
+        cloths=[{
+            "name": "hammock", "material": "ivory", "mesh": "sling", "position": [0, bars, 0], "areal_density": density,
+            "thickness": thickness, "stretch_stiffness": 1e5, "shear_stiffness": 5e3, "bend_stiffness": 1e-3, "damping": 2,
+            "tethers": True, "pins": [*range(columns), *range((rows - 1) * columns, rows * columns)]
+        }])
+
+
+def tablecloth():
+    """The cloth is drawn from under the plates."""
+    top, long, wide, overhang = 0.75, 1.2, 0.8, 0.15
+    columns, rows, thickness = 49, 29, 0.004
+    length, width = long + overhang, wide - 0.04
+    begin, ramp, speed, friction, cloth_friction = 0.5, 0.15, 6.0, 0.25, 0.5
+    plates = [("plate", [-0.2, 0.18], 0.12, 0.012, 0.7, "ivory"), ("bowl", [0.2, -0.15], 0.09, 0.03, 0.5, "clay"),
+              ("vase", [0.1, 0.2], 0.05, 0.07, 0.6, "slate")]
+    drawn = 0.5 * speed * ramp
+    back = 0.02 - long / 2  # where the cloth ends
+
+    def dragged(x):
+        """The cloth drags a thing until its own end is under the middle; the table stops it."""
+        way = x - back
+        time = math.sqrt(2 * way * ramp / speed) if way < drawn else ramp + (way - drawn) / speed
+        fast = math.sqrt(friction * cloth_friction) * G * time
+        return x + 0.5 * fast * time + fast**2 / (2 * friction * G)
+
+    pulled = [{"time": begin + ramp * k / 6, "offset": [drawn * (k / 6)**2, 0, 0]} for k in range(7)]
+    pulled.append({"time": begin + ramp + 0.4, "offset": [drawn + 0.4 * speed, 0, 0]})
+    gap = 0.001
+    return scene(
+        "Tablecloth",
+        "A cloth is drawn from under a plate, a bowl and a vase at six meters per second. Friction drags them along only "
+        "as long as the cloth slides under them, and the table stops them.",
+        3, [1.5, 1.45, 1.7], [0.1, 0.7, 0],
+        {"ground": {}, "oak": {"friction": friction}, "silk": {}} |
+        {plate[5]: {"friction": friction} for plate in plates}, [
+            ground(),
+            body("table", "oak", box(long / 2, 0.02, wide / 2), [0, top - 0.02, 0], "static"),
+            *(body(f"leg_{k}", "oak", box(0.03, top / 2 - 0.02, 0.03), [x * 0.54, top / 2 - 0.02, z * 0.34], "static",
+                   collides=False) for k, (x, z) in enumerate(((-1, -1), (-1, 1), (1, -1), (1, 1)))),
+            *(body(name, tone, {"cylinder": {"radius": radius, "half_height": half}},
+                   [x, top + thickness + half + gap, z], mass=mass) for name, (x, z), radius, half, mass, tone in plates),
+        ], [
+            *(promise("height", "==", top + half, name, 0.002) for name, _, _, half, _, _ in plates),
+            *(promise("x", "==", dragged(x), name, 0.2 * (dragged(x) - x)) for name, (x, _), *_ in plates[:2]),
+            promise("speed", "<", 0.01, "plate"),
+        ],
+        world={"particle_substeps": 4},
+        cloths=[{
+            "name": "tablecloth", "material": "silk", "columns": columns, "rows": rows, "corner": [back, top + (thickness + gap) / 2, -width / 2],
+            "column_direction": X, "row_direction": Z, "width": length, "height": width, "areal_density": 0.2,
+            "thickness": thickness, "stretch_stiffness": 2e4, "shear_stiffness": 2e3, "bend_stiffness": 1e-4, "damping": 0.5,
+            "pins": [{"column": columns - 1, "motion": {"keyframes": pulled}}]
+        }])
+
+
+CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt, hammock, tablecloth]

@@ -26,33 +26,54 @@ std::vector<double> distances_from(const TetherSurface& surface, std::uint32_t p
   return result;
 }
 
+struct NearestPin {
+  double length = std::numeric_limits<double>::infinity();
+  std::uint32_t pin = 0;
+};
+
+/// Of each point the nearest of the pins for which counts(point, pin).
+template <class Counts>
+std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::span<const std::uint32_t> pins,
+                                          Counts&& counts) {
+  std::vector<NearestPin> nearest(surface.points.size());
+  for (const std::uint32_t pin : pins) {
+    const std::vector<double> distance = distances_from(surface, pin);
+    for (std::uint32_t i = 0; i < nearest.size(); ++i) {
+      if (distance[i] < nearest[i].length && counts(i, pin)) nearest[i] = {distance[i], pin};
+    }
+  }
+  return nearest;
+}
+
+/// Whether `other` lies on the other side of the point than `pin`: by more than a right angle, which
+/// no two pins on one straight edge are.
+bool is_opposite(const TetherSurface& surface, std::uint32_t point, std::uint32_t pin, std::uint32_t other) {
+  const DVec3 to_pin = surface.points[pin] - surface.points[point];
+  const DVec3 to_other = surface.points[other] - surface.points[point];
+  return dot(to_pin, to_other) < 0;
+}
+
 }  // namespace
 
 std::vector<Tether> find_tethers(const TetherSurface& surface, std::span<const std::uint32_t> pins) {
-  const double inf = std::numeric_limits<double>::infinity();
-  struct Best {
-    double length[2];
-    std::uint32_t pin[2];
-  };
-  std::vector<Best> best(surface.points.size(), {{inf, inf}, {0, 0}});
   std::vector<bool> is_pin(surface.points.size(), false);
+  std::vector<std::uint32_t> distinct;
   for (const std::uint32_t pin : pins) {
-    if (is_pin[pin]) continue;
+    if (!is_pin[pin]) distinct.push_back(pin);
     is_pin[pin] = true;
-    const std::vector<double> distance = distances_from(surface, pin);
-    for (std::size_t i = 0; i < best.size(); ++i) {
-      Best& b = best[i];
-      const int place = distance[i] < b.length[0] ? 0 : (distance[i] < b.length[1] ? 1 : 2);
-      if (place == 0) b = {{distance[i], b.length[0]}, {pin, b.pin[0]}};
-      if (place == 1) b = {{b.length[0], distance[i]}, {b.pin[0], pin}};
-    }
   }
+  const bool few = pins.size() <= kMostPinsWithSecond;
+  const std::vector<NearestPin> first =
+      find_nearest_pins(surface, distinct, [](std::uint32_t, std::uint32_t) { return true; });
+  const std::vector<NearestPin> second =
+      find_nearest_pins(surface, distinct, [&](std::uint32_t point, std::uint32_t pin) {
+        return few ? pin != first[point].pin : is_opposite(surface, point, first[point].pin, pin);
+      });
   std::vector<Tether> tethers;
-  const int rounds = pins.size() > kMostPinsWithSecond ? 1 : 2;
-  for (int round = 0; round < rounds; ++round) {
-    for (std::uint32_t i = 0; i < best.size(); ++i) {
-      if (is_pin[i] || std::isinf(best[i].length[round])) continue;
-      tethers.push_back({i, best[i].pin[round], static_cast<Real>(best[i].length[round])});
+  for (const std::vector<NearestPin>& round : {first, second}) {
+    for (std::uint32_t i = 0; i < round.size(); ++i) {
+      if (is_pin[i] || std::isinf(round[i].length)) continue;
+      tethers.push_back({i, round[i].pin, static_cast<Real>(round[i].length)});
     }
   }
   return tethers;

@@ -41,6 +41,7 @@ class BundleSolution {
 
  private:
   // Loading and checking.
+  void load_points();
   void load_hooks();
   bool stiffen();
   void solve_with_bounds();
@@ -48,6 +49,7 @@ class BundleSolution {
   void read_solution();
   void move_nodes();
   [[nodiscard]] bool is_sound() const;
+  void push_out_points();
 
   // The matrix and its right side.
   void assemble();
@@ -58,6 +60,7 @@ class BundleSolution {
   void assemble_bodies();
   void assemble_touches();
   void assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node);
+  void assemble_point(int body, std::span<const RopeTouch> at_node);
   void fill_right_side();
   [[nodiscard]] std::vector<BodyRow> start_of_bodies() const;
   void give_impulses(std::vector<BodyRow>& start);

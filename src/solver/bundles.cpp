@@ -4,6 +4,7 @@
 
 #include "math/rotation.h"
 #include "solver/bundle_solution.h"
+#include "solver/contacts.h"
 #include "solver/geometric_stiffness.h"
 
 #include <algorithm>
@@ -29,16 +30,36 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
     load_bends(chains[c], first, first_segment, h_, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
   }
-  for (const std::uint32_t p : b_.points)
-    b_.ropes.nodes.push_back(load_node(p, t_.particles.velocity[p].v, t_.particles));
+  load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const JointBody body = joint_body_now(t_.bodies, b_.bodies[i]);
     b_.moving[i] = {
         .body = body, .stiffness = {}, .excess = {}, .v = body.v, .omega_scaled = body.omega_scaled};
   }
-  for (RopeTouch& touch : b_.ropes.touches) touch.body = b_.body_of(t_.contacts.body[touch.row]);
+  for (RopeTouch& touch : b_.ropes.touches)
+    touch.body = touch.row == RopeTouch::kTether ? -1 : b_.body_of(t_.contacts.body[touch.row]);
   load_hooks();
   stiffen();
+}
+
+/// Points that touch nothing which gives way are held by what they touch after all ropes (solver/contacts.h).
+void BundleSolution::load_points() {
+  const std::vector<std::uint32_t>& particle = t_.contacts.particle;
+  auto row = particle.begin();
+  for (std::size_t i = 0; i < b_.points.size(); ++i) {
+    const std::uint32_t p = b_.points[i];
+    const auto node = static_cast<std::uint32_t>(b_.ropes.nodes.size());
+    b_.ropes.nodes.push_back(load_node(p, t_.particles.velocity[p].v, t_.particles));
+    row = std::lower_bound(row, particle.end(), p);
+    const auto first = static_cast<std::size_t>(row - particle.begin());
+    row = std::upper_bound(row, particle.end(), p);
+    const auto end = static_cast<std::size_t>(row - particle.begin());
+    if (!(b_.ropes.nodes.back().w > 0) || !touches_what_gives_way(t_.bodies, t_.contacts, first, end))
+      continue;
+    const std::span<const std::uint32_t> tethers =
+        std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
+    load_point_touches(node, b_.ropes.nodes.back().v_free, first, end, tethers, h_, t_, b_.ropes.touches);
+  }
 }
 
 void BundleSolution::load_hooks() {
@@ -115,7 +136,7 @@ void BundleSolution::move_nodes() {
   for (RopeTouch& touch : b_.ropes.touches) {
     if (touch.body < 0) continue;
     const BundleBody& m = b_.moving[touch.body];
-    touch.surface = m.v + cross(m.body.scale * m.omega_scaled, touch.lever);
+    touch.surface = touch.belt + m.v + cross(m.body.scale * m.omega_scaled, touch.lever);
   }
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     RopeNode& node = b_.ropes.nodes[n];
@@ -134,7 +155,7 @@ void BundleSolution::move_nodes() {
   for (const RopeTouch& touch : b_.ropes.touches) {
     if (touch.body < 0 || !touch.active) continue;
     RopeNode& node = b_.ropes.nodes[touch.node];
-    node.u += node.inverse * (grip_of(touch, node) * touch.surface);
+    node.u += node.inverse * (grip_of(touch) * (touch.surface - touch.belt));
   }
 }
 
@@ -197,7 +218,11 @@ bool BundleSolution::is_sound() const {
 
 void BundleSolution::run(std::vector<Chain>& chains) {
   double error = 0;
-  for (int solves = 1; solves == 1 || solve_again(solves - 1, error, b_.ropes.touches); ++solves) {
+  Unsettled unsettled;
+  const auto again = [&](int solves) {
+    return (unsettled.points && solves < 2 * kMostRopeSolves) || solve_again(solves, error, b_.ropes.touches);
+  };
+  for (int solves = 1; solves == 1 || again(solves - 1); ++solves) {
     std::size_t segment = 0;
     for (std::size_t k = 0; k < b_.chains.size(); ++k) {
       Chain& chain = chains[b_.chains[k]];
@@ -208,12 +233,13 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     solve_with_bounds();
     if (!is_sound()) break;
 
-    const bool unsettled = update_touches(h_, b_.ropes);
+    unsettled = update_touches(h_, solves >= kMostRopeSolves, b_.ropes);
     bool limits_changed = false;
     error = check_segments(h_, b_.ropes, limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
-    if (long_enough && !grew && solves >= least_solves(b_.ropes.touches, unsettled)) break;
+    const bool settled = !unsettled.points && solves >= least_solves(b_.ropes.touches, unsettled.ropes);
+    if (long_enough && !grew && settled) break;
     for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;
   }
   for (const std::uint32_t c : b_.chains)
@@ -234,6 +260,7 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
     ++node;
   }
   store_touches(h_, b_.ropes.touches, t_.contacts);
+  push_out_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const BundleBody& m = b_.moving[i];
     set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);
@@ -245,6 +272,15 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
     store_joint_impulses(std::span(b_.rows).subspan(first, count), std::span(b_.lambda).subspan(first, count),
                          hook);
     add_up_impulses(static_cast<Real>(h_), hook);
+  }
+}
+
+/// As in solver/contacts.h: overlap of points leaves by place, not by speed.
+void BundleSolution::push_out_points() {
+  const std::size_t first_point = b_.ropes.nodes.size() - b_.points.size();
+  for (const RopeTouch& touch : b_.ropes.touches) {
+    if (touch.node >= first_point && touch.row != RopeTouch::kTether)
+      push_out(touch.row, static_cast<Real>(h_), t_.contacts, t_.particles);
   }
 }
 

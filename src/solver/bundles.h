@@ -16,8 +16,8 @@
 #include <vector>
 
 /// \file
-/// Ropes with what they are tied to. A rope alone is a chain (solver/chains.h); what hooks at points, or a
-/// rope that lies on a moving body, join to each other is a bundle and solved as a whole.
+/// Ropes with what they are tied to. A rope alone is a chain (solver/chains.h); what hooks at points
+/// join, or a rope or particle that lies on a moving body, is a bundle and solved as a whole.
 
 namespace hooke::solver {
 
@@ -46,15 +46,20 @@ struct BundleBody {
 /// A rope that resists bending has a vector row at each inner node, the change of direction there, with the
 /// compliance of a spring of EI over the length between the middles of the two segments.
 ///
+/// Particles of cloths, solids and groups that touch a body which gives way are points without rows, held by
+/// their contacts and tethers alone: docs/decisions/0011-ties.md.
+///
 /// A share of 1e-6 of each hook row's diagonal is added as compliance: it decides what loops of rigid ropes
 /// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
 /// direction at b is that of its points blended along the segment.
 struct Bundle {
-  std::vector<std::uint32_t> chains;     ///< In order.
-  std::vector<std::uint32_t> points;     ///< Particles of no rope, in order of rows.
-  std::vector<std::uint32_t> hooks;      ///< Rows, in order.
-  std::vector<std::uint32_t> bodies;     ///< Rows, in order.
-  std::vector<std::array<int, 2>> ends;  ///< Of each hook a and b: index into `bodies`, or -1.
+  std::vector<std::uint32_t> chains;        ///< In order.
+  std::vector<std::uint32_t> points;        ///< Particles of no rope, in order of rows.
+  std::vector<std::uint32_t> hooks;         ///< Rows, in order.
+  std::vector<std::uint32_t> bodies;        ///< Rows, in order.
+  std::vector<std::array<int, 2>> ends;     ///< Of each hook a and b: index into `bodies`, or -1.
+  std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
+  std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
 
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;

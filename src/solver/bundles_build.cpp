@@ -19,10 +19,14 @@ using state::Tables;
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 constexpr double kNoBudget = std::numeric_limits<double>::infinity();
 
-/// A contact that joins its rope to a body.
+bool is_of_rope(const Tables& t, std::size_t contact) {
+  return t.objects[t.contacts.object[contact]].kind == PointRef::Kind::kRope;
+}
+
+/// A contact that joins its rope, or its particle, to a body.
 bool joins(const Tables& t, std::size_t contact) {
-  const std::uint32_t object = t.contacts.object[contact];
-  return t.objects[object].kind == PointRef::Kind::kRope && gives_way(t.bodies, t.contacts.body[contact]);
+  if (!gives_way(t.bodies, t.contacts.body[contact])) return false;
+  return is_of_rope(t, contact) || t.particles.velocity[t.contacts.particle[contact]].inverse_mass > Real(0);
 }
 
 std::vector<std::uint32_t> signature_of(const Tables& t) {
@@ -161,7 +165,10 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains,
     }
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-    if (joins(t, row)) bundle_at(groups.of_contact(row)).bodies.push_back(t.contacts.body[row]);
+    if (!joins(t, row)) continue;
+    Bundle& bundle = bundle_at(groups.of_contact(row));
+    bundle.bodies.push_back(t.contacts.body[row]);
+    if (!is_of_rope(t, row)) bundle.points.push_back(t.contacts.particle[row]);
   }
   std::uint32_t chain = 0;
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
@@ -319,6 +326,29 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, Bundle& bun
     bundle.ends.push_back({bundle.body_of(t.hooks[hook].a.body), bundle.body_of(t.hooks[hook].b.body)});
 }
 
+/// Tethers of a bundle's points, of which `by_particle` has all in order of their particles.
+void list_tethers(const Tables& t, const std::vector<std::uint32_t>& by_particle, Bundle& bundle) {
+  auto at = by_particle.begin();
+  for (const std::uint32_t p : bundle.points) {
+    bundle.first_tether.push_back(static_cast<std::uint32_t>(bundle.tethers.size()));
+    const auto before = [&](std::uint32_t row, std::uint32_t of) { return t.springs.particle_a[row] < of; };
+    at = std::lower_bound(at, by_particle.end(), p, before);
+    for (; at != by_particle.end() && t.springs.particle_a[*at] == p; ++at) bundle.tethers.push_back(*at);
+  }
+  bundle.first_tether.push_back(static_cast<std::uint32_t>(bundle.tethers.size()));
+}
+
+std::vector<std::uint32_t> tethers_by_particle(const Tables& t) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < t.springs.kind.size(); ++row) {
+    if (t.springs.kind[row] == state::SpringClass::kTether) rows.push_back(row);
+  }
+  std::stable_sort(rows.begin(), rows.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return t.springs.particle_a[a] < t.springs.particle_a[b];
+  });
+  return rows;
+}
+
 /// The two nodes at which a hook slides along its rope follow its weights.
 void set_slide_weights(const Tables& t, Bundle& bundle) {
   const auto vectors =
@@ -349,7 +379,11 @@ void build_bundles(const Tables& tables, std::vector<Chain>& chains, Bundles& bu
     std::vector<std::uint32_t> anchors;
     bundles.bundles = sort_members(tables, chains, anchors);
     list_anchors(tables, anchors, chains, bundles.anchors);
-    for (Bundle& bundle : bundles.bundles) make_pattern(tables, chains, bundle);
+    const std::vector<std::uint32_t> tethers = tethers_by_particle(tables);
+    for (Bundle& bundle : bundles.bundles) {
+      make_pattern(tables, chains, bundle);
+      list_tethers(tables, tethers, bundle);
+    }
   }
   for (Bundle& bundle : bundles.bundles) set_slide_weights(tables, bundle);
 }

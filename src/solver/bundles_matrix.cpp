@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hooke::solver {
 
@@ -25,6 +26,17 @@ BodyRow row_along(DVec3 n, DVec3 lever, const JointBody& body) {
 DVec3 column_at(int m, DVec3 lever, const JointBody& body) {
   return {row_along(kAxes[0], lever, body).at(m), row_along(kAxes[1], lever, body).at(m),
           row_along(kAxes[2], lever, body).at(m)};
+}
+
+/// The one body that active contacts of a node are with, if it is one.
+std::optional<int> only_body_of(std::span<const RopeTouch> at_node) {
+  std::optional<int> body;
+  for (const RopeTouch& touch : at_node) {
+    if (!touch.active || touch.body < 0) continue;
+    if (body && *body != touch.body) return std::nullopt;
+    body = touch.body;
+  }
+  return body;
 }
 
 }  // namespace
@@ -96,10 +108,31 @@ void BundleSolution::assemble_bodies() {
   }
 }
 
+/// At a node without rows that touches one body: -J^T (P - P W P) J on the body's own block, where P is the
+/// grip of all that body's contacts there.
+void BundleSolution::assemble_point(int body, std::span<const RopeTouch> at_node) {
+  Symmetric3<double> grip;
+  DVec3 lever;  // the same of all: to the particle
+  for (const RopeTouch& touch : at_node) {
+    if (!touch.active || touch.body != body) continue;
+    grip = grip + grip_of(touch);
+    lever = touch.lever;
+  }
+  const Symmetric3<double>& inverse = b_.ropes.nodes[at_node.front().node].inverse;
+  const Symmetric3<double> held = grip + scaled(-1, symmetric_product(grip, inverse, grip));
+  std::array<DVec3, 6> columns;
+  for (int m = 0; m < 6; ++m) columns[m] = column_at(m, lever, b_.moving[body].body);
+  const Numbers own = numbers(body_block(body), body_block(body));
+  for (int m = 0; m < 6; ++m) {
+    const DVec3 moved = held * columns[m];
+    for (int k = 0; k < 6; ++k) own(k, m) -= dot(columns[k], moved);
+  }
+}
+
 /// R = P J couples the rows at the node to the body, the body to itself, and to others that touch the node.
 void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node) {
   const RopeNode& node = b_.ropes.nodes[touch.node];
-  const Symmetric3<double> grip = grip_of(touch, node);
+  const Symmetric3<double> grip = grip_of(touch);
   const JointBody& body = b_.moving[touch.body].body;
   const std::uint32_t block = body_block(touch.body);
   for (int m = 0; m < 6; ++m) {
@@ -115,7 +148,7 @@ void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const Rope
     for (const RopeTouch& other : at_node) {
       if (other.body < touch.body || !other.active) continue;
       const JointBody& to = b_.moving[other.body].body;
-      const DVec3 gripped = grip_of(other, node) * moved_by;
+      const DVec3 gripped = grip_of(other) * moved_by;
       const Numbers coupled = numbers(body_block(other.body), block);
       for (int k = 0; k < 6; ++k) coupled(k, m) += dot(column_at(k, other.lever, to), gripped);
     }
@@ -124,6 +157,12 @@ void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const Rope
 
 void BundleSolution::assemble_touches() {
   for_each_touched(b_.ropes.touches, [&](std::span<const RopeTouch> at_node) {
+    if (incidents_of(at_node.front().node).empty()) {
+      if (const std::optional<int> body = only_body_of(at_node)) {
+        assemble_point(*body, at_node);
+        return;
+      }
+    }
     for (const RopeTouch& touch : at_node) {
       if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
     }
@@ -201,7 +240,7 @@ void BundleSolution::fill_right_side() {
   for (const RopeTouch& touch : b_.ropes.touches) {
     if (touch.body < 0 || !touch.active) continue;
     const RopeNode& node = b_.ropes.nodes[touch.node];
-    const DVec3 on_node = push_of(touch, node, h_) - grip_of(touch, node) * node.target;
+    const DVec3 on_node = push_of(touch, h_) + grip_of(touch) * (touch.belt - node.target);
     const JointBody& body = b_.moving[touch.body].body;
     start[touch.body] +=
         {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(touch.lever, on_node))};

@@ -118,7 +118,7 @@ class Group {
   }
 
   void load_ties(const Chain& chain, int lane, const Source& source) {
-    load_touches(chain, 0, source.h, source.tables.particles, source.tables.contacts, touches_[lane]);
+    load_touches(chain, 0, source.h, source.tables, touches_[lane]);
     for (std::uint32_t i = chain.first_anchor; i < chain.end_anchor; ++i)
       load_anchor(source.anchors[i], lane, source);
   }

@@ -1,50 +1,23 @@
 #include "solver/contacts.h"
 
-#include "solver/bodies.h"
-#include "state/body_frames.h"
-
 #include <algorithm>
 
 namespace hooke::solver {
 
 namespace {
 
-/// One row. `yields`: its body gives way.
-void solve_row(std::size_t row, Real h, bool yields, state::Bodies& bodies, state::Contacts& contacts,
-               state::Particles& particles) {
-  state::VelocityLine& particle = particles.velocity[contacts.particle[row]];
-  const std::uint32_t body = contacts.body[row];
+void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::VelocityLine& particle) {
   const Vec3 n = contacts.normal[row];
-  const Vec3 lever = contacts.lever[row];
-  // What yields may have been pushed since update_contacts.
-  const Vec3 surface = yields ? velocity_now(bodies, body, lever) + contacts.belt_velocity[row]
-                              : contacts.surface_velocity[row];
-  const auto inverse_mass = [&](Vec3 direction) {
-    return particle.inverse_mass + (yields ? inverse_mass_at(bodies, body, direction, lever) : Real(0));
-  };
-  const Vec3 relative = particle.v - surface;
+  const Vec3 relative = particle.v - contacts.surface_velocity[row];
   const Real speed = dot(n, relative);
   const Real change = -(speed + std::max(contacts.separation[row], Real(0)) / h);
   if (!(change > Real(0))) return;
 
-  const Real push = change / inverse_mass(n);
-  Vec3 impulse = push * n;
+  particle.v += change * n;
   const Vec3 sliding = relative - speed * n;
   const Real rate = length(sliding);
-  if (rate > Real(0)) {
-    const Vec3 along = (Real(1) / rate) * sliding;
-    impulse -= std::min(rate / inverse_mass(along), contacts.friction[row] * push) * along;
-  }
-  particle.v += particle.inverse_mass * impulse;
-  if (yields) push_body(body, -impulse, lever, bodies);
-  contacts.normal_force[row] += push / h;
-}
-
-void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
-  const Real overlap = -contacts.separation[row];
-  if (!(overlap > Real(0))) return;
-  particles.position[contacts.particle[row]].x +=
-      std::min(overlap, Real(kPushOutSpeed) * h) * contacts.normal[row];
+  if (rate > Real(0)) particle.v -= std::min(Real(1), contacts.friction[row] * change / rate) * sliding;
+  contacts.normal_force[row] += change / (h * particle.inverse_mass);
 }
 
 /// Calls solve(first, end) with the rows of each particle that belongs to the range, is no rope's, and is
@@ -63,39 +36,41 @@ void for_particles(const std::vector<state::Deformable>& objects, parallel::Rang
   }
 }
 
-bool any_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,
-                   std::size_t end) {
-  return std::any_of(contacts.body.begin() + static_cast<std::ptrdiff_t>(first),
-                     contacts.body.begin() + static_cast<std::ptrdiff_t>(end),
-                     [&](std::uint32_t body) { return gives_way(bodies, body); });
-}
-
 /// Rows [first, end) of one particle.
-void solve_rows(std::size_t first, std::size_t end, Real h, state::Bodies& bodies, state::Contacts& contacts,
+void solve_rows(std::size_t first, std::size_t end, Real h, state::Contacts& contacts,
                 state::Particles& particles) {
-  for (std::size_t i = first; i < end; ++i) contacts.normal_force[i] = Real(0);
+  for (std::size_t i = first; i < end; ++i) {
+    contacts.normal_force[i] = Real(0);
+    contacts.friction_force[i] = {};
+  }
   const int sweeps = end - first > 1 ? 2 : 1;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (std::size_t i = first; i < end; ++i)
-      solve_row(i, h, gives_way(bodies, contacts.body[i]), bodies, contacts, particles);
+      solve_row(i, h, contacts, particles.velocity[contacts.particle[first]]);
   }
   for (std::size_t i = first; i < end; ++i) push_out(i, h, contacts, particles);
 }
 
 }  // namespace
 
-void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
-                    state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
-  for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
-    if (!any_gives_way(bodies, contacts, first, end)) solve_rows(first, end, h, bodies, contacts, particles);
-  });
+void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
+  const Real overlap = -contacts.separation[row];
+  if (!(overlap > Real(0))) return;
+  particles.position[contacts.particle[row]].x +=
+      std::min(overlap, Real(kPushOutSpeed) * h) * contacts.normal[row];
 }
 
-void solve_moving_contacts(const std::vector<state::Deformable>& objects, Real h, state::Bodies& bodies,
-                           state::Contacts& contacts, state::Particles& particles) {
-  const parallel::Range all = {0, contacts.count()};
-  for_particles(objects, all, contacts, particles, [&](std::size_t first, std::size_t end) {
-    if (any_gives_way(bodies, contacts, first, end)) solve_rows(first, end, h, bodies, contacts, particles);
+bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,
+                            std::size_t end) {
+  return std::any_of(contacts.body.begin() + static_cast<std::ptrdiff_t>(first),
+                     contacts.body.begin() + static_cast<std::ptrdiff_t>(end),
+                     [&](std::uint32_t body) { return gives_way(bodies, body); });
+}
+
+void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
+                    const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
+  for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
+    if (!touches_what_gives_way(bodies, contacts, first, end)) solve_rows(first, end, h, contacts, particles);
   });
 }
 

@@ -21,14 +21,16 @@ constexpr double kPushOutSpeed = 1;  ///< Overlap of particles leaves no faster 
 ///   friction        the tangential velocity is reduced by at most mu times the normal change
 ///
 /// Rows of one particle are solved in order, twice when there are several. Ranges may begin anywhere: a
-/// particle's rows belong to the range that holds the first of them. Particles that touch a body which forces
-/// move, and which is awake, are left to solve_moving_contacts.
+/// particle's rows belong to the range that holds the first of them. Particles that touch a body which gives
+/// way are solved with it (solver/bundles.h).
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
-                    state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles);
+                    const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles);
 
-/// The same of particles that touch bodies which give way: each row pushes its body as much as its particle.
-/// One after the other, in order of rows.
-void solve_moving_contacts(const std::vector<state::Deformable>& objects, Real h, state::Bodies& bodies,
-                           state::Contacts& contacts, state::Particles& particles);
+/// Whether any of the rows [first, end) is with a body that gives way.
+[[nodiscard]] bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts,
+                                          std::size_t first, std::size_t end);
+
+/// Moves the particle of a row out of what it overlaps.
+void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles);
 
 }  // namespace hooke::solver

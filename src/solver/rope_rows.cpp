@@ -15,6 +15,9 @@ using V = DVec3;
 using M = math::Symmetric3<double>;
 
 constexpr double kSlidingShare = 0.9999;  ///< Of mu N: a node whose friction was this large was sliding.
+constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
+constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
+constexpr double kSettledDrag = 0.1;      ///< Share by which drag may still change.
 constexpr int kLeastContactSolves = 2;
 constexpr int kSlidingSolves = 4;
 
@@ -51,14 +54,14 @@ double approach_of(const RopeTouch& t, V u, double h) {
 }
 
 /// Friction of an active contact: holds with f0 - rho u_t up to mu N, slides against u_t beyond.
-void update_friction(RopeTouch& t, V u, double rho) {
+void update_friction(RopeTouch& t, V u) {
   const V sliding = across(t.n, u - t.surface);
   const double speed = length(sliding);
   if (t.slides) {
     t.slides = dot(sliding, t.against) <= 0;
     if (t.slides && speed > 0) t.against = (-1.0 / speed) * sliding;
   } else {
-    t.f = t.f0 - rho * sliding;
+    t.f = t.f0 - t.rho * sliding;
     const double size = length(t.f);
     t.slides = size > t.friction * t.normal;
     if (t.slides) t.against = (1.0 / size) * t.f;
@@ -66,17 +69,39 @@ void update_friction(RopeTouch& t, V u, double rho) {
   if (t.slides) t.f = (t.friction * t.normal) * t.against;
 }
 
+/// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
+double drag_of(const RopeTouch& t, V u) {
+  if (!(t.normal > 0)) return 0;
+  const double speed = length(across(t.n, u - t.surface));
+  return speed * t.rho > t.friction * t.normal ? t.friction * t.normal / speed : t.rho;
+}
+
+/// True if it came into effect or out of it, or if its friction is not yet what its force allows.
+bool update_point_touch(double h, bool let_go, V u, RopeTouch& t) {
+  const bool was_active = t.active;
+  const double drag = t.drag;
+  const double approach = approach_of(t, u, h);
+  t.normal = t.active ? std::max(0.0, -t.rho * approach) : 0;
+  t.active = t.active ? t.normal > 0 : approach < 0 && !let_go;
+  t.drag = drag_of(t, u);
+  t.f = -drag * across(t.n, u - t.surface);
+  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kSettledDrag * drag);
+}
+
 wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
   return {h, 1 / h, 1 / setting.compliance, setting.first ? 1.0 : 0.0, lane_of(setting.turning)};
 }
 
-RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Contacts& contacts) {
+RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
+  const state::Contacts& contacts = tables.contacts;
   RopeTouch t;
   t.row = static_cast<std::uint32_t>(row);
   t.node = node;
+  t.rho = kContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
   t.n = vector_cast<double>(contacts.normal[row]);
   t.surface = vector_cast<double>(contacts.surface_velocity[row]);
   t.lever = vector_cast<double>(contacts.lever[row]);
+  t.belt = vector_cast<double>(contacts.belt_velocity[row]);
   t.separation = static_cast<double>(contacts.separation[row]);
   t.friction = static_cast<double>(contacts.friction[row]);
   t.n0 = h * static_cast<double>(contacts.normal_force[row]);
@@ -86,6 +111,23 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
   t.normal = t.n0;
   t.slides = size > 0 && size >= kSlidingShare * t.friction * t.n0;
   if (t.slides) t.against = (1.0 / size) * t.f0;
+  return t;
+}
+
+/// A tether that is a spring row from a free particle to a pin.
+RopeTouch load_tether(std::uint32_t row, std::uint32_t node, const state::Tables& tables) {
+  const state::Springs& springs = tables.springs;
+  const std::uint32_t particle = springs.particle_a[row];
+  const std::uint32_t pin = springs.particle_b[row];
+  const V way = vector_cast<double>(tables.particles.position[pin].x - tables.particles.position[particle].x);
+  const double distance = length(way);
+  RopeTouch t;
+  t.row = RopeTouch::kTether;
+  t.node = node;
+  t.n = distance > 0 ? (1.0 / distance) * way : V{0, 1, 0};
+  t.surface = vector_cast<double>(tables.particles.velocity[pin].v);
+  t.separation = static_cast<double>(springs.rest_length[row]) - distance;
+  t.active = t.separation <= 0;
   return t;
 }
 
@@ -119,7 +161,7 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, co
     s.segments.push_back(load_segment(chain.first_segment + i, tables.segments));
     s.segments.back().a = first + i;
   }
-  load_touches(chain, first, h, tables.particles, tables.contacts, s.touches);
+  load_touches(chain, first, h, tables, s.touches);
 }
 
 RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
@@ -133,12 +175,42 @@ RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
   return e;
 }
 
-void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Particles& particles,
-                  const state::Contacts& contacts, std::vector<RopeTouch>& touches) {
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
+                  std::vector<RopeTouch>& touches) {
   for (std::uint32_t row = chain.first_contact; row < chain.end_contact; ++row) {
-    const std::uint32_t particle = contacts.particle[row];
-    if (particles.velocity[particle].inverse_mass > Real(0))
-      touches.push_back(load_touch(row, first_node + particle - chain.first_particle, h, contacts));
+    const std::uint32_t particle = tables.contacts.particle[row];
+    if (tables.particles.velocity[particle].inverse_mass > Real(0))
+      touches.push_back(load_touch(row, first_node + particle - chain.first_particle, h, tables));
+  }
+}
+
+void load_point_touches(std::uint32_t node, V u, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
+                        std::vector<RopeTouch>& touches) {
+  const auto own = static_cast<double>(tables.particles.mass[tables.contacts.particle[first]]);
+  double heaviest = own;
+  for (std::size_t row = first; row < end; ++row) {
+    const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
+    if (w > 0) heaviest = std::max(heaviest, 1 / w);
+  }
+  const std::size_t first_touch = touches.size();
+  for (std::size_t row = first; row < end; ++row) {
+    RopeTouch t = load_touch(row, node, h, tables);
+    t.separation = std::max(t.separation, 0.0);
+    t.n0 = 0;
+    t.f0 = {};
+    t.slides = false;
+    touches.push_back(t);
+  }
+  for (const std::uint32_t row : tethers) {
+    const bool still_pinned =
+        tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
+    if (still_pinned) touches.push_back(load_tether(row, node, tables));
+  }
+  for (RopeTouch& t : std::span(touches).subspan(first_touch)) {
+    t.of_point = true;
+    t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
+    t.drag = drag_of(t, u);
   }
 }
 
@@ -198,14 +270,13 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
   e.compliance = math::axial(e.n, 1.0 / e.along, 1.0 / e.across);
 }
 
-M grip_of(const RopeTouch& t, const RopeNode& node) {
-  const double rho = kContactStiffness * node.mass;
-  return math::axial(t.n, rho, t.slides ? 0.0 : rho);
+M grip_of(const RopeTouch& t) {
+  if (t.of_point) return math::axial(t.n, t.rho, t.drag);
+  return math::axial(t.n, t.rho, t.slides ? 0.0 : t.rho);
 }
 
-V push_of(const RopeTouch& t, const RopeNode& node, double h) {
-  const double rho = kContactStiffness * node.mass;
-  const V normal = (t.n0 - rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
+V push_of(const RopeTouch& t, double h) {
+  const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
   return normal + (t.slides ? (t.friction * t.normal) * t.against : t.f0);
 }
 
@@ -213,10 +284,9 @@ NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, doubl
   NodeHold hold = {M::diagonal(node.mass), node.mass * node.v_free};
   for (const RopeTouch& t : at_node) {
     if (!t.active) continue;
-    const M grip = grip_of(t, node);
+    const M grip = grip_of(t);
     hold.mass = hold.mass + grip;
-    hold.impulse += push_of(t, node, h);
-    if (t.body < 0) hold.impulse += grip * t.surface;
+    hold.impulse += push_of(t, h) + grip * (t.body < 0 ? t.surface : t.belt);
   }
   return hold;
 }
@@ -236,13 +306,12 @@ void hold_nodes(double h, RopeScratch& s) {
 
 bool update_touch(double h, const RopeNode& node, RopeTouch& t) {
   const double approach = approach_of(t, node.u, h);
-  const double rho = kContactStiffness * node.mass;
   const bool was_active = t.active;
   const bool slid = t.slides;
   if (t.active) {
-    t.normal = std::max(0.0, t.n0 - rho * approach);
+    t.normal = std::max(0.0, t.n0 - t.rho * approach);
     t.active = t.normal > 0;
-    update_friction(t, node.u, rho);
+    update_friction(t, node.u);
   } else {
     t.normal = 0;
     t.f = {};
@@ -251,9 +320,13 @@ bool update_touch(double h, const RopeNode& node, RopeTouch& t) {
   return was_active != t.active || slid != t.slides || t.slides;
 }
 
-bool update_touches(double h, RopeScratch& s) {
-  bool unsettled = false;
-  for (RopeTouch& t : s.touches) unsettled = update_touch(h, s.nodes[t.node], t) || unsettled;
+Unsettled update_touches(double h, bool let_go, RopeScratch& s) {
+  Unsettled unsettled;
+  for (RopeTouch& t : s.touches) {
+    const RopeNode& node = s.nodes[t.node];
+    bool& of = t.of_point ? unsettled.points : unsettled.ropes;
+    of = (t.of_point ? update_point_touch(h, let_go, node.u, t) : update_touch(h, node, t)) || of;
+  }
   return unsettled;
 }
 
@@ -317,6 +390,7 @@ void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_se
 
 void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts) {
   for (const RopeTouch& t : touches) {
+    if (t.row == RopeTouch::kTether) continue;
     contacts.normal_force[t.row] = static_cast<Real>(t.normal / h);
     contacts.friction_force[t.row] = vector_cast<Real>((1.0 / h) * t.f);
   }

@@ -49,16 +49,23 @@ struct RopeBend {
   DVec3 impulse;  ///< [N m s]
 };
 
-/// A contact of a node.
+/// A contact of a node, or a tether: what holds a point within a distance of its pin holds it as a plane
+/// across its way would, without friction.
 struct RopeTouch {
+  static constexpr std::uint32_t kTether = 0xFFFFFFFF;
+
   std::uint32_t row = 0, node = 0;
+  double rho = 0;  ///< How hard it holds [kg].
   DVec3 n, f0, f;
   DVec3 against;  ///< Direction of friction on a node that slides.
   DVec3 surface;  ///< Velocity of what is touched, at the contact [m/s].
   int body = -1;  ///< Of a net, whose velocity is solved for; -1: `surface` is given.
   DVec3 lever;    ///< From that body's center [m].
+  DVec3 belt;     ///< Velocity of the surface against that body [m/s].
   double separation = 0, friction = 0, n0 = 0, normal = 0;
   bool active = false, slides = false;
+  bool of_point = false;  ///< Of a particle that is no rope's.
+  double drag = 0;        ///< Of such a one, rho across the normal: at most mu N over its speed [kg].
 };
 
 /// How a rope's segments are linearized.
@@ -83,7 +90,7 @@ struct RopeScratch {
   }
 };
 
-inline constexpr double kContactStiffness = 1e3;  ///< rho over the node's mass.
+inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that it holds.
 inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
 inline constexpr double kReportedError = 0.01;
 inline constexpr int kMostRopeSolves = 8;
@@ -96,8 +103,14 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, co
 [[nodiscard]] RopeSegment load_segment(std::size_t row, const state::Segments& segments);
 
 /// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
-void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Particles& particles,
-                  const state::Contacts& contacts, std::vector<RopeTouch>& touches);
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
+                  std::vector<RopeTouch>& touches);
+
+/// Appends the contacts of one particle that is no rope's, rows [first, end), and the tether `spring`s that
+/// hold it. Overlap does not become speed (solver/contacts.h).
+void load_point_touches(std::uint32_t node, DVec3 u, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
+                        std::vector<RopeTouch>& touches);
 
 /// Bending between two segments of these lengths [m]. At a clamp, the end of two held nodes, only half a
 /// segment bends.
@@ -149,16 +162,20 @@ struct NodeHold {
 [[nodiscard]] NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h);
 
 /// The mass that a contact adds to its node: the change of the impulse on it per velocity.
-[[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch, const RopeNode& node);
+[[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch);
 
 /// The impulse of a contact on its node, less what `grip_of` says of velocities.
-[[nodiscard]] DVec3 push_of(const RopeTouch& touch, const RopeNode& node, double h);
+[[nodiscard]] DVec3 push_of(const RopeTouch& touch, double h);
 
-/// The contact's force that follows from u. True if it came into effect or out of it, or slides.
+/// The contact's force that follows from u, of a rope. True if it came into effect or out of it, or slides.
 bool update_touch(double h, const RopeNode& node, RopeTouch& touch);
 
-/// The same for all. True for any.
-bool update_touches(double h, RopeScratch& s);
+/// The same for all, of ropes and of points. Once points may only be `let_go`, no contact of theirs comes
+/// into effect any more: the last solution must have none that pulls.
+struct Unsettled {
+  bool ropes = false, points = false;
+};
+[[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
 
 /// Largest relative length error left; raises T+ and moves segments onto or off their limits.
 double check_segments(double h, RopeScratch& s, bool& limits_changed);

@@ -117,7 +117,6 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
-  solver::solve_moving_contacts(t.objects, h, t.bodies, t.contacts, t.particles);
 
   for_ranges(*w.pool, t.particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
