@@ -75,6 +75,8 @@ Rows pushed_cubes(const CheckSetting& setting);
 // cases_cloth.cpp: sheets and closed skins
 Rows balloon(const CheckSetting& setting);
 Rows overhanging_cloth(const CheckSetting& setting);
+Rows cusick_drape(const CheckSetting& setting);
+Rows flag_flutter(const CheckSetting& setting);
 Rows picture_frame(const CheckSetting& setting);
 
 // cases_time.cpp: the same physics at any rate
