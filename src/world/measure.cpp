@@ -1,6 +1,7 @@
 #include "collision/particle_contacts.h"
 #include "elements/dihedral.h"
 #include "elements/tetrahedron.h"
+#include "solver/rope_rows.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -135,6 +136,30 @@ double measure_segments(const Tables& t, Stretch& stretch) {
   return energy;
 }
 
+/// Ropes that resist bending.
+double measure_rope_bends(const Tables& t) {
+  double energy = 0;
+  for (const state::Deformable& rope : t.objects) {
+    if (!(rope.bend_stiffness > Real(0)) || rope.kind != PointRef::Kind::kRope) continue;
+    const solver::Chain chain = {.bend_stiffness = static_cast<double>(rope.bend_stiffness)};
+    const auto rest = [&](std::uint32_t i) {
+      return static_cast<double>(t.segments.rest_length[rope.segments.first + i]);
+    };
+    for (std::uint32_t i = 1; i + 1 < rope.particles.count; ++i) {
+      const std::uint32_t p = rope.particles.first + i;
+      const auto held = [&](std::uint32_t q) {
+        return !(t.particles.velocity[p].inverse_mass > Real(0)) &&
+               !(t.particles.velocity[q].inverse_mass > Real(0));
+      };
+      const solver::RopeBend bend = solver::load_bend(chain, rest(i - 1), rest(i), held(p - 1), held(p + 1));
+      const DVec3 change = bend.behind * (middle_of(t, p + 1) - middle_of(t, p)) -
+                           bend.before * (middle_of(t, p) - middle_of(t, p - 1));
+      energy += 0.5 * bend.stiffness * length_squared(change);
+    }
+  }
+  return energy;
+}
+
 double measure_bends(const Tables& t) {
   double energy = 0;
   for (int i = 0; i < t.bends.count(); ++i) {
@@ -189,7 +214,7 @@ Measurement World::measure() const {
   measure_bodies(t, m);
   m.energy.potential += potential_of_dipoles(t);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
-                     measure_tetrahedra(t) + measure_gas(t);
+                     measure_rope_bends(t) + measure_tetrahedra(t) + measure_gas(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));

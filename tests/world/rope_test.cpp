@@ -191,6 +191,22 @@ TEST_SUITE("world/rope") {
     CHECK(m.largest_stretch < 0.01);
   }
 
+  TEST_CASE("a rod bent to a quarter circle holds EI L / 2 R^2") {
+    World world = make_world(test::empty_space());
+    RopeDesc desc;
+    desc.bend_stiffness = Real(0.3);
+    desc.pins = {};
+    for (std::uint32_t i = 0; i <= 64; ++i) {
+      const double angle = std::numbers::pi / 2 * i / 64;
+      desc.points.push_back({2 * std::sin(angle), 2 * std::cos(angle), 0});
+      desc.pins.push_back({.point = i});
+    }
+    take(world.add_rope(desc));
+    // 63 of 64 parts: at its ends it does not bend.
+    const double length = std::numbers::pi * 63 / 64;
+    CHECK(world.measure().energy.elastic == doctest::Approx(0.3 * length / 8).epsilon(1e-3));
+  }
+
   TEST_CASE("a rope lies still on the ground and slides down a slope that is too steep for it") {
     for (const bool steep : {false, true}) {
       World world = make_world(without_air());
