@@ -274,6 +274,14 @@ struct RopeDesc {
   /// Where its first or last two points are pinned it is clamped.
   Real bend_stiffness = Real(0);
   Real bend_damping = Real(0);  ///< Of bending, over EI [s], not negative.
+  /// GJ [N m^2], not negative: resists twist between places that hold it against twist, where two neighboring
+  /// points or more are pinned, or hooked by balls to the world or to one body. Needs a bend_stiffness.
+  Real twist_stiffness = Real(0);
+  Real twist = Real(0);  ///< Of the whole rope at the start, even over its length [rad].
+  /// E [Pa], positive: replaces the stiffness, of the rope, and those against bending and twist by EA, E pi
+  /// r^4 / 4 and G pi r^4 / 2 of a round rod of `radius` r, G = E / 2 (1 + poisson_ratio).
+  std::optional<Real> youngs_modulus = {};
+  Real poisson_ratio = Real(0.3);  ///< [-0.99, 0.5]
   std::vector<DVec3> points =
       {};  ///< Replaces hook_point, direction, masses, length_at_rest; taken as at rest.
   std::vector<PinDesc> pins = {{}};  ///< The first point by default; `{}` for none.

@@ -100,7 +100,7 @@ struct StepReport {
 struct Energy {
   double kinetic = 0;    ///< [J]
   double potential = 0;  ///< [J] in gravity, uniform and inverse square fields; zero at the origin.
-  double elastic = 0;    ///< [J] in springs, ropes and bends of finite stiffness, in solids and in gas.
+  double elastic = 0;    ///< [J] in springs, bends and ropes of finite stiffness, in solids and in gas.
 
   [[nodiscard]] double total() const { return kinetic + potential + elastic; }
 };
@@ -251,6 +251,11 @@ class World {
   [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;
+  /// Twist of each segment of a rope, from the first point on [rad]; right-handed is positive. 0 where
+  /// nothing holds it (RopeDesc::twist_stiffness).
+  [[nodiscard]] std::vector<Real> twists(RopeId id) const;
+  /// Torque of each segment along it [N m], with the sign of its twist. Mean over the last step.
+  [[nodiscard]] std::vector<Real> torques(RopeId id) const;
   /// The triangles of a cloth as indices into its points.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(ClothId id) const;
   /// Pressure of the gas in a closed cloth above that of the air around it [Pa]; 0 for a cloth without.

@@ -2,6 +2,7 @@
 #include "build/common.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace hooke::build {
 
@@ -18,12 +19,18 @@ Checks check(const RopeDesc& desc) {
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
       .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
       .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
+      .not_negative("twist_stiffness", static_cast<double>(desc.twist_stiffness))
+      .finite("twist", static_cast<double>(desc.twist))
+      .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), -0.99, 0.5)
       .positive("radius", static_cast<double>(desc.radius))
       .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
       .finite("charge", static_cast<double>(desc.charge))
       .finite("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
+  if (desc.youngs_modulus) checks.positive("youngs_modulus", static_cast<double>(*desc.youngs_modulus));
+  checks.require(!(desc.twist_stiffness > Real(0)) || desc.bend_stiffness > Real(0) || desc.youngs_modulus,
+                 "twist_stiffness", "needs a bend_stiffness");
   if (desc.points.empty()) {
     checks.in_range("masses", desc.masses, 2, kMostNodes)
         .positive("length_at_rest", static_cast<double>(desc.length_at_rest))
@@ -52,6 +59,21 @@ std::vector<DVec3> node_positions(const RopeDesc& desc) {
   return points;
 }
 
+/// With the stiffnesses of a round rod where a material is given.
+RopeDesc of_material(const RopeDesc& given) {
+  RopeDesc desc = given;
+  if (!given.youngs_modulus) return desc;
+  const auto e = static_cast<double>(*given.youngs_modulus);
+  const auto r = static_cast<double>(given.radius);
+  const double g = 0.5 * e / (1 + static_cast<double>(given.poisson_ratio));
+  const double area = std::numbers::pi * r * r;
+  desc.axial_stiffness = static_cast<Real>(e * area);
+  desc.stiffness_of = RopeDesc::StiffnessOf::kRope;
+  desc.bend_stiffness = static_cast<Real>(e * area * r * r / 4);
+  desc.twist_stiffness = static_cast<Real>(g * area * r * r / 2);
+  return desc;
+}
+
 void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, double total,
                      state::Tables& tables) {
   const double stiffness = desc.axial_stiffness ? static_cast<double>(*desc.axial_stiffness) / total
@@ -73,9 +95,10 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
 
 }  // namespace
 
-Result<void> add_rope(const RopeDesc& desc, state::Tables& tables) {
-  const Checks checks = check(desc);
+Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
+  const Checks checks = check(given);
   if (!checks.good()) return checks.result();
+  const RopeDesc desc = of_material(given);
 
   const std::vector<DVec3> nodes = node_positions(desc);
   std::vector<double> lengths;
@@ -103,6 +126,8 @@ Result<void> add_rope(const RopeDesc& desc, state::Tables& tables) {
   object.friction = desc.contact.friction;
   object.bend_stiffness = desc.bend_stiffness;
   object.bend_damping = desc.bend_damping;
+  object.twist_stiffness = desc.twist_stiffness;
+  object.twist_rate = static_cast<Real>(static_cast<double>(desc.twist) / total);
   object.drag_coefficient = desc.drag_coefficient;
   object.feels_air = object.feels_air || desc.drag_coefficient > Real(0);
   append_segments(desc, lengths, total, tables);

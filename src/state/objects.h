@@ -46,10 +46,12 @@ struct Deformable {
   Rows segments = {};
   Rows tetrahedra = {};
   std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
-  double gas = 0;                 ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
-  double gas_volume = 0;          ///< V when it was filled [m^3].
-  Real bend_stiffness = Real(0);  ///< Of a rope: EI [N m^2].
-  Real bend_damping = Real(0);    ///< Over EI [s].
+  double gas = 0;                  ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
+  double gas_volume = 0;           ///< V when it was filled [m^3].
+  Real bend_stiffness = Real(0);   ///< Of a rope: EI [N m^2].
+  Real bend_damping = Real(0);     ///< Over EI [s].
+  Real twist_stiffness = Real(0);  ///< Of a rope: GJ [N m^2].
+  Real twist_rate = Real(0);       ///< Twist per length that it was made with [rad/m]; 0 once spans have it.
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

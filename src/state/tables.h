@@ -14,6 +14,7 @@
 #include "state/slot_table.h"
 #include "state/springs.h"
 #include "state/tetrahedra.h"
+#include "state/twists.h"
 
 #include <cstdint>
 #include <memory>
@@ -40,6 +41,7 @@ struct Tables {
   Triangles triangles;
   Segments segments;
   Tetrahedra tetrahedra;
+  std::vector<TwistSpan> twists;  ///< In order of ropes, and along each.
   Contacts contacts;
   std::vector<Pin> pins;  ///< In order of particle.
   Bodies bodies;

@@ -78,8 +78,9 @@ void begin_body_forces(WorldData& world) {
 }
 
 void force_bodies(WorldData& world, double time, Real h) {
-  if (world.law_bodies.empty() && !world.bodies_surrounded) return;
   state::Tables& tables = world.tables;
+  solver::twist_bodies(static_cast<double>(h) / tables.desc.particle_substeps, tables, world.twist_rows);
+  if (world.law_bodies.empty() && !world.bodies_surrounded) return;
   tables.bodies.force = world.given_force;
   tables.bodies.torque = world.given_torque;
   if (world.bodies_surrounded) {

@@ -11,7 +11,7 @@ void set_off_explosions(WorldData& world, double dt);
 void begin_body_forces(WorldData& world);
 
 /// The force and torque on bodies for the substep of length h that begins at `time`: what was given for the
-/// step, what fields do, and what the user's laws over bodies ask for.
+/// step, what twisted ropes and fields do, and what the user's laws over bodies ask for.
 void force_bodies(WorldData& world, double time, Real h);
 
 }  // namespace hooke::world

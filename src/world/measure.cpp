@@ -2,6 +2,7 @@
 #include "elements/dihedral.h"
 #include "elements/tetrahedron.h"
 #include "solver/rope_rows.h"
+#include "solver/rope_twist.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -160,6 +161,16 @@ double measure_rope_bends(const Tables& t) {
   return energy;
 }
 
+/// The angle of the middle is the mean of those before and after the last substep.
+double measure_twists(const Tables& t) {
+  double energy = 0;
+  for (const state::TwistSpan& span : t.twists) {
+    const double angle = 0.5 * (span.angle + solver::twist_now(t, span));
+    energy += 0.5 * solver::twist_stiffness(t, span) * angle * angle;
+  }
+  return energy;
+}
+
 double measure_bends(const Tables& t) {
   double energy = 0;
   for (int i = 0; i < t.bends.count(); ++i) {
@@ -214,7 +225,7 @@ Measurement World::measure() const {
   measure_bodies(t, m);
   m.energy.potential += potential_of_dipoles(t);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
-                     measure_rope_bends(t) + measure_tetrahedra(t) + measure_gas(t);
+                     measure_rope_bends(t) + measure_twists(t) + measure_tetrahedra(t) + measure_gas(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));

@@ -88,6 +88,8 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   erase_rows(t.tetrahedra, gone.tetrahedra);
   std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.object == row; });
   for (state::Pin& pin : t.pins) pin.object -= pin.object > row ? 1 : 0;
+  std::erase_if(t.twists, [&](const state::TwistSpan& span) { return span.object == row; });
+  for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
   renumber_particles(t, gone.particles);
   t.contacts = {};  // detect finds them again
 

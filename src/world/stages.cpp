@@ -67,10 +67,19 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   }
 }
 
+/// Pins and hooks say where ropes are held against twist.
+void refresh_twists(WorldData& world) {
+  const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
+  if (world.twists_revision == revision) return;
+  world.twists_revision = revision;
+  solver::find_twist_spans(world.tables);
+}
+
 }  // namespace
 
 void refresh_derived(WorldData& world) {
   state::Tables& tables = world.tables;
+  refresh_twists(world);
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
@@ -112,6 +121,7 @@ void begin_step(WorldData& world, double dt) {
   begin_body_forces(world);
 
   std::fill(tables.segments.mean_tension.begin(), tables.segments.mean_tension.end(), Real(0));
+  for (state::TwistSpan& span : tables.twists) span.mean_torque = Real(0);
   std::size_t row = 0;
   const state::Contacts& contacts = tables.contacts;
   for (solver::Chain& chain : world.chains) {
@@ -222,6 +232,7 @@ void solve_solids(WorldData& world, Real h) {
 }
 
 void begin_ties(WorldData& world, Real h, bool first) {
+  if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_bundles(world.tables, world.chains, world.bundles);
   share_out_gravity(world, h, first);
@@ -231,6 +242,7 @@ void begin_ties(WorldData& world, Real h, bool first) {
 void solve_ropes(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   solver::release_points(world.hooked_points, tables.particles);
+  solver::twist_nodes(world.twist_rows, tables);
   for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows) {
     solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.bundles.anchors,
                          world.velocity_before, h, tables);
@@ -240,6 +252,7 @@ void solve_ropes(WorldData& world, Real h) {
       solver::solve_bundle(world.velocity_before, h, world.bundles.bundles[i], world.chains, tables);
     }
   });
+  solver::note_twist_rates(static_cast<double>(h), world.twist_rows, tables);
 }
 
 void end_step(WorldData& world, double dt, StepReport& report) {
@@ -247,6 +260,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
   const Real share = Real(1) / static_cast<Real>(substeps);
   for (Real& tension : tables.segments.mean_tension) tension *= share;
+  for (state::TwistSpan& span : tables.twists) span.mean_torque *= share;
   for (const solver::Chain& chain : world.chains) {
     report.chain_solves += chain.solves;
     report.chains_unconverged += chain.unconverged ? 1 : 0;

@@ -7,6 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "solver/forces.h"
 #include "solver/gas.h"
+#include "solver/rope_twist.h"
 #include "solver/wind.h"
 #include "world/hooks.h"
 #include "world/objects.h"
@@ -41,6 +42,21 @@ PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& s
   constexpr bool kPlaces = std::is_same_v<Line, state::PositionLine>;
   return {kPlaces ? object.origin : DVec3{}, reinterpret_cast<const std::byte*>(column.data() + first),
           object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
+}
+
+/// figure(span, rest length) for each segment of a rope that is in a span, 0 for others.
+template <class Figure>
+std::vector<Real> twist_figures(const state::Tables& t, RopeId id, Figure&& figure) {
+  const std::uint32_t row = t.rope_slots.find(id);
+  if (row == t.rope_slots.kNone) return {};
+  const state::Rows segments = t.objects[row].segments;
+  std::vector<Real> figures(segments.count, Real(0));
+  for (const state::TwistSpan& span : t.twists) {
+    if (span.object != row) continue;
+    for (std::uint32_t i = span.a.segment + 1; i < span.b.segment; ++i)
+      figures[i] = figure(span, static_cast<double>(t.segments.rest_length[segments.first + i]));
+  }
+  return figures;
 }
 
 Error no_function() {
@@ -222,6 +238,17 @@ std::vector<Real> World::tensions(RopeId id) const {
   return {first, first + rows.count};
 }
 
+std::vector<Real> World::twists(RopeId id) const {
+  return twist_figures(data_->tables, id, [&](const state::TwistSpan& span, double rest) {
+    return static_cast<Real>(solver::twist_now(data_->tables, span) * rest / span.length);
+  });
+}
+
+std::vector<Real> World::torques(RopeId id) const {
+  return twist_figures(data_->tables, id,
+                       [](const state::TwistSpan& span, double) { return span.mean_torque; });
+}
+
 std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
   const std::uint32_t row = data_->tables.cloth_slots.find(id);
   if (row == data_->tables.cloth_slots.kNone) return {};
@@ -379,6 +406,11 @@ std::uint64_t World::state_hash() const {
   hash.add(t.particles.velocity);
   hash.add(t.segments.tension);
   hash.add(t.segments.limited);
+  for (const state::TwistSpan& span : t.twists) {
+    hash.add(span.angle);
+    hash.add(span.expected);
+    hash.add(span.reaction);
+  }
   hash.add(t.contacts.particle);
   hash.add(t.contacts.normal_force);
   hash.add(t.contacts.friction_force);

@@ -13,6 +13,7 @@
 #include "solver/gas.h"
 #include "solver/hard_islands.h"
 #include "solver/joints.h"
+#include "solver/rope_twist.h"
 #include "solver/spring_blocks.h"
 #include "solver/tetrahedra.h"
 #include "state/tables.h"
@@ -48,6 +49,8 @@ struct WorldData {
   std::vector<solver::Chain> chains;               ///< One per rope, in order of creation.
   solver::Bundles bundles;                         ///< Of ropes with what they are tied to.
   std::vector<solver::HookedPoint> hooked_points;  ///< Lives for one substep.
+  std::uint64_t twists_revision = 0;               ///< Sum of both revisions, which only grow.
+  std::vector<solver::TwistRow> twist_rows;        ///< Lives for one substep.
 
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
