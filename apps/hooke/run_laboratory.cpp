@@ -34,9 +34,10 @@ using Quantity = SceneExpectation::Quantity;
 
 /// Figures that only a step of the solver leaves.
 bool is_of_solver(Quantity quantity) {
-  constexpr Quantity kFigures[] = {
-      Quantity::kTension, Quantity::kPenetration, Quantity::kContacts, Quantity::kAsleep, Quantity::kForce,
-      Quantity::kTorque,  Quantity::kAngle,       Quantity::kWay,      Quantity::kGap,    Quantity::kBroken};
+  constexpr Quantity kFigures[] = {Quantity::kTension, Quantity::kPenetration, Quantity::kContacts,
+                                   Quantity::kAsleep,  Quantity::kForce,       Quantity::kTorque,
+                                   Quantity::kTwist,   Quantity::kAngle,       Quantity::kWay,
+                                   Quantity::kGap,     Quantity::kBroken};
   return std::find(std::begin(kFigures), std::end(kFigures), quantity) != std::end(kFigures);
 }
 

@@ -252,6 +252,7 @@ struct SceneExpectation {
     kLargestStretch,
     kMeanStretch,
     kTension,
+    kTwist,  ///< Of a rope's segment, or of all of them [rad].
     kLowest,
     kHighest,
     kTotalEnergy,
@@ -263,7 +264,7 @@ struct SceneExpectation {
     kContacts,
     kAsleep,  ///< Number of bodies that sleep.
     kForce,   ///< Size of what a hook does to b, mean over the last step [N].
-    kTorque,  ///< [N m]
+    kTorque,  ///< The same [N m]; or the largest of a rope's segments (World::torques), or of one.
     kAngle,   ///< World::hook_value of a hinge [rad].
     kWay,     ///< World::hook_value of a slider, a wheel or a distance [m].
     kGap,     ///< World::hook_gap; of the world, the largest [m].
@@ -280,7 +281,7 @@ struct SceneExpectation {
 
   Quantity quantity = Quantity::kHeight;
   std::string of = {};                   ///< Name of an object; empty for the world.
-  std::optional<ScenePoint> point = {};  ///< Of the object; of a tension, the segment.
+  std::optional<ScenePoint> point = {};  ///< Of the object; of a tension, twist or torque, the segment.
   Op op = Op::kLess;
   double value = 0;
   double tolerance = 0;

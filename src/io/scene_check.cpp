@@ -22,7 +22,7 @@ struct NamedObject {
 };
 
 /// What a quantity is measured on.
-enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kHookOrWorld };
+enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kHookOrRope, kHookOrWorld };
 
 class Checker {
  public:
@@ -337,9 +337,11 @@ Subject subject_of(SceneExpectation::Quantity quantity) {
       return Subject::kObject;
     case Quantity::kExtension:
     case Quantity::kTension:
+    case Quantity::kTwist:
       return Subject::kRope;
-    case Quantity::kForce:
     case Quantity::kTorque:
+      return Subject::kHookOrRope;
+    case Quantity::kForce:
     case Quantity::kAngle:
     case Quantity::kWay:
       return Subject::kHook;
@@ -358,6 +360,7 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
     fail(path + ".of", ErrorCode::kOutOfRange, in_quotes(expectation.of) + reason);
   };
   const bool body = object.kind == Kind::kBody;
+  if (subject == Subject::kHookOrRope) subject = object.kind == Kind::kRope ? Subject::kRope : Subject::kHook;
   if (subject == Subject::kHook || subject == Subject::kHookOrWorld) {
     if (object.kind != Kind::kHook) wrong(" is not a hook");
   } else if (subject == Subject::kBody) {
@@ -369,7 +372,7 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
   } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
   } else if (expectation.point.has_value() && object.points > 0) {
-    const bool segment = expectation.quantity == SceneExpectation::Quantity::kTension;
+    const bool segment = subject == Subject::kRope;
     check_point(*expectation.point, object.points - (segment ? 1 : 0), path + ".point");
   }
 }

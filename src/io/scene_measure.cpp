@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace hooke::io {
 
@@ -63,15 +64,23 @@ double point_figure(const World& world, const SceneObject& object, const SceneEx
   return length(vector_cast<double>(view.offset(index)));
 }
 
-double rope_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
-  if (wanted.quantity == Quantity::kTension) {
-    const std::vector<Real> tensions = world.tensions(object.rope);
-    if (tensions.empty()) return kNothing;
-    if (!wanted.point.has_value())
-      return static_cast<double>(*std::max_element(tensions.begin(), tensions.end()));
-    const std::size_t index = wanted.point->last ? tensions.size() - 1 : wanted.point->index;
-    return index < tensions.size() ? static_cast<double>(tensions[index]) : kNothing;
+/// Of the segment that is asked for; of the whole rope, the largest tension or torque and the sum of twists.
+double segment_figure(const World& world, RopeId rope, const SceneExpectation& wanted) {
+  const std::vector<Real> figures = wanted.quantity == Quantity::kTension ? world.tensions(rope)
+                                    : wanted.quantity == Quantity::kTwist ? world.twists(rope)
+                                                                          : world.torques(rope);
+  if (figures.empty()) return kNothing;
+  if (wanted.point.has_value()) {
+    const std::size_t index = wanted.point->last ? figures.size() - 1 : wanted.point->index;
+    return index < figures.size() ? static_cast<double>(figures[index]) : kNothing;
   }
+  if (wanted.quantity == Quantity::kTwist) return std::accumulate(figures.begin(), figures.end(), 0.0);
+  const bool signs_count = wanted.quantity == Quantity::kTension;
+  const auto less = [&](Real a, Real b) { return signs_count ? a < b : std::abs(a) < std::abs(b); };
+  return static_cast<double>(*std::max_element(figures.begin(), figures.end(), less));
+}
+
+double extension_of(const World& world, const SceneObject& object) {
   const PointView view = world.positions(object.rope);
   if (view.empty()) return kNothing;
   double sum = 0;
@@ -111,8 +120,11 @@ double object_figure(const World& world, const SceneObject& object, const SceneE
     case Quantity::kHighest:
       return extreme_height(world, object, wanted.quantity == Quantity::kHighest);
     case Quantity::kExtension:
+      return extension_of(world, object);
     case Quantity::kTension:
-      return rope_figure(world, object, wanted);
+    case Quantity::kTwist:
+    case Quantity::kTorque:
+      return segment_figure(world, object.rope, wanted);
     default:
       return point_figure(world, object, wanted);
   }
@@ -191,7 +203,8 @@ std::string sentence(const SceneExpectation& wanted, double achieved) {
   std::string text = word_of(wanted.quantity);
   if (!wanted.of.empty()) text += " of " + in_quotes(wanted.of);
   if (wanted.point.has_value()) {
-    const bool segment = wanted.quantity == Quantity::kTension;
+    const bool segment = wanted.quantity == Quantity::kTension || wanted.quantity == Quantity::kTwist ||
+                         wanted.quantity == Quantity::kTorque;
     text += segment ? " segment " : " point ";
     text += wanted.point->last ? "last" : std::to_string(wanted.point->index);
   }

@@ -326,7 +326,8 @@ const Kind& kind_of<SceneExpectation>() {
       .fields =
           {required(field<&SceneExpectation::quantity>("quantity", "", kAny, "What is measured.")),
            field<&SceneExpectation::of>("of", "", kNotEmpty, "Name of an object; the world without it."),
-           field<&SceneExpectation::point>("point", "", kAny, "Of the object; of a tension, the segment."),
+           field<&SceneExpectation::point>("point", "", kAny,
+                                           "Of the object; of a tension, twist or torque, the segment."),
            required(field<&SceneExpectation::op>("op", "", kAny,
                                                  "`==`: not further away than `tolerance`; `within`: not "
                                                  "further than `tolerance` times the value.")),
@@ -503,6 +504,7 @@ std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
                                        {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
                                        {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
                                        {"tension", static_cast<int>(Quantity::kTension)},
+                                       {"twist", static_cast<int>(Quantity::kTwist)},
                                        {"lowest", static_cast<int>(Quantity::kLowest)},
                                        {"highest", static_cast<int>(Quantity::kHighest)},
                                        {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},

@@ -175,6 +175,17 @@ std::vector<Field> rope_rows() {
           "bend_stiffness", "N m^2", kNotNegative,
           "EI: resistance to bending; straight at rest, clamped where two end points are pinned."),
       field<desc, &RopeDesc::bend_damping>("bend_damping", "s", kNotNegative, "Of bending, over EI."),
+      field<desc, &RopeDesc::twist_stiffness>(
+          "twist_stiffness", "N m^2", kNotNegative,
+          "GJ: resistance to twist between places where two neighboring points or more are pinned, or hooked "
+          "by balls to the world or to one body. Needs `bend_stiffness`."),
+      field<desc, &RopeDesc::twist>("twist", "rad", kAny,
+                                    "Of the whole rope at the start, even over its length."),
+      field<desc, &RopeDesc::youngs_modulus>("youngs_modulus", "Pa", kPositive,
+                                             "E: replaces the stiffness and those against bending and twist "
+                                             "by those of a round rod of `radius`."),
+      field<desc, &RopeDesc::poisson_ratio>("poisson_ratio", "", between(-0.99, 0.5),
+                                            "Of `youngs_modulus`: G = E / 2 (1 + `poisson_ratio`)."),
       field<desc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
                                               "EA; replaces `stiffness` by EA / `length_at_rest`."),
       field<desc, &RopeDesc::points>(

@@ -191,8 +191,8 @@ const BadScene kBadScenes[] = {
      {"1:27: expect[0]: this quantity needs 'of', the name of an object"}},
     {R"({"version": 1, "expect": [{"quantity": "weight", "op": "<", "value": 1}]})",
      {"1:40: expect[0].quantity: 'weight' is not one of 'x', 'y', 'z', 'height', 'speed', "
-      "'angular_speed', 'tilt', 'extension', 'largest_stretch', 'mean_stretch', 'tension', 'lowest', "
-      "'highest', 'total_energy', 'kinetic_energy', "
+      "'angular_speed', 'tilt', 'extension', 'largest_stretch', 'mean_stretch', 'tension', 'twist', "
+      "'lowest', 'highest', 'total_energy', 'kinetic_energy', "
       "'potential_energy', 'elastic_energy', 'momentum', 'penetration', 'contacts', 'asleep', 'force', "
       "'torque', 'angle', 'way', 'gap', 'broken'"}},
     {R"({"version": 1, "hooks": [{"b": "x"}]})",
