@@ -529,7 +529,60 @@ def hair_wind():
         timeline=[{"at_step": 240, "wind": {"velocity": [-4, 0, 1.5], "gust": 0.4}}])
 
 
+def twisted_cable():
+    """A cable that is turned at one end until it throws a loop, and a disk on a wire."""
+    ei, gj, turns_per_second, steps = 0.05, 0.04, 0.5, 250
+    height, span, sag, segments = 1.1, 0.5, 0.21, 48
+    pitch = span / segments
+    cable = [[-span / 2 + span * s, height - sag * (1 - math.cos(2 * math.pi * s)), 0]
+             for s in (i / segments for i in range(segments + 1))]
+    cable = [[-span / 2 - pitch, height, 0], *cable, [span / 2 + pitch, height, 0]]
+
+    top, wire_length, wire_segments, wire_gj, start = 1.5, 0.8, 16, 0.02, 2.5
+    wire_pitch, mass, wire_mass, half = wire_length / wire_segments, 0.5, 0.01, [0.12, 0.02, 0.12]
+    wire = line([0.1, top + wire_pitch, -0.6], [0.1, top - wire_length - wire_pitch, -0.6], wire_segments + 2)
+    inertia = mass / 3 * (half[0]**2 + half[2]**2)
+    omega = math.sqrt(wire_gj / (wire_length * inertia))
+
+    def swing(at_step):
+        return start * math.cos(omega * DT * at_step)
+
+    hooks = [tie(f"post_{i}", "post", "cable", b_point=i) for i in (0, 1)]
+    hooks += [tie(f"hand_{i}", "hand", "cable", b_point=segments + 1 + i) for i in (0, 1)]
+    hooks += [tie(f"beam_{i}", "beam", "wire", b_point=i) for i in (0, 1)]
+    hooks += [tie(f"disk_{i}", "disk", "wire", b_point=wire_segments + 1 + i) for i in (0, 1)]
+    return scene(
+        "Twisted cable",
+        "A slack cable with EI = 0.05 and GJ = 0.04 N m^2 is turned at one end, half a turn a second. It bows out of "
+        "its plane and throws a loop, which takes a turn of twist away, and passes through itself later. Behind it a disk "
+        "on a twisted wire swings with omega = sqrt(GJ / L I).",
+        steps * DT, [0.4, 1.1, 1.5], [0.02, 1.0, -0.1], {"ground": {}, "slate": {}, "steel": {}, "cable": {}, "clay": {}, "oak": {}}, [
+            ground(),
+            body("post", "slate", box(0.04, 0.6, 0.04), [-span / 2 - pitch - 0.04, 0.6, 0], "static", collides=False),
+            body("hand", "clay", box(0.04, 0.07, 0.02), [span / 2 + pitch + 0.04, height, 0], "kinematic",
+                 collides=False, angular_velocity=[2 * math.pi * turns_per_second, 0, 0]),
+            body("beam", "slate", box(0.4, 0.04, 0.04), [0.1, top + 0.04, -0.6], "static", collides=False),
+            body("disk", "oak", box(*half), [0.1, top - wire_length - wire_pitch, -0.6], mass=mass, can_sleep=False),
+        ], [
+            tension((mass + wire_mass * (1 - 8.5 / (wire_segments + 2))) * G, "wire", 8, 0.002),
+            *(promise("twist", "==", swing(at_step), "wire", 0.02, at_step) for at_step in (100, 200)),
+            promise("torque", "within", wire_gj * swing(steps) / wire_length, "wire", 0.005),
+            # Twist is link less writhe, and a loop has about one turn of that.
+            promise("twist", "==", 2 * math.pi * (turns_per_second * DT * steps - 1), "cable", 0.2 * 2 * math.pi),
+            promise("gap", "<", 0.001),
+            promise("largest_stretch", "<", 0.001)
+        ],
+        ropes=[
+            rope("cable", "cable", cable, 0.06, 0.008, pins=[], bend_stiffness=ei, twist_stiffness=gj, bend_damping=0.05,
+                 air_friction=0.05),
+            rope("wire", "steel", wire, wire_mass, 0.003, pins=[], bend_stiffness=0.02, twist_stiffness=wire_gj,
+                 twist=start * (1 + 2 / wire_segments), drag_coefficient=0)
+        ],
+        hooks=hooks)
+
+
 ROPE_SCENES = [
     crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge, trampoline, curtain_rings,
-    catch_net, washing_line, cable_and_hair, hair_wind
+    catch_net, washing_line, cable_and_hair, hair_wind,
+    twisted_cable
 ]
