@@ -45,6 +45,11 @@ Rows table_on_ropes(const CheckSetting& setting);
 Rows resolution_of_rope(const CheckSetting& setting);
 Rows heavy_load(const CheckSetting& setting);
 
+// cases_twist.cpp: ropes that resist twist
+Rows bent_and_twisted(const CheckSetting& setting);
+Rows torsion(const CheckSetting& setting);
+Rows link_of_loop(const CheckSetting& setting);
+
 // cases_rope_motion.cpp
 Rows wave_speeds(const CheckSetting& setting);
 Rows crane(const CheckSetting& setting);
