@@ -89,6 +89,7 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
     s.tension.push_back(Real(0));
     s.mean_tension.push_back(Real(0));
     s.limited.push_back(0);
+    s.clamped.push_back(0);
     ++tables.objects.back().segments.count;
   }
 }

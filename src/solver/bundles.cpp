@@ -27,7 +27,7 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
     const std::size_t first_segment = b_.ropes.segments.size();
     const std::size_t first_touch = b_.ropes.touches.size();
     load_rope(chains[c], before, h_, t_, b_.ropes);
-    load_bends(chains[c], first, first_segment, h_, b_.ropes);
+    load_bends(chains[c], first, h_, t_.segments, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
   }
   load_points();

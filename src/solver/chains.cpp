@@ -95,7 +95,7 @@ class Group {
       }
     }
     for (std::uint32_t i = 0; i < ropes_.bends.size(); ++i) {
-      for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source.h);
+      for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source);
     }
     for (int lane = 0; lane < kCount; ++lane) {
       touches_[lane].clear();
@@ -168,9 +168,9 @@ class Group {
     anchors_[lane].push_back(made);
   }
 
-  void load_bend_at(const Chain& chain, std::uint32_t i, int lane, double h) {
-    const RopeBend bend = load_bend(chain, ropes_.segments[i].rest[lane], ropes_.segments[i + 1].rest[lane],
-                                    ropes_.segments[i].held[lane] > 0, ropes_.segments[i + 1].held[lane] > 0);
+  void load_bend_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+    const double h = source.h;
+    const RopeBend bend = load_bend(chain, chain.first_segment + i, source.tables.segments);
     wide::RopeBendLanes<kCount>& to = ropes_.bends[i];
     to.before[lane] = bend.before;
     to.behind[lane] = bend.behind;

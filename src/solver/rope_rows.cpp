@@ -214,8 +214,11 @@ void load_point_touches(std::uint32_t node, V u, std::size_t first, std::size_t 
   }
 }
 
-RopeBend load_bend(const Chain& chain, double before, double behind, bool held_before, bool held_behind) {
-  const double length = 0.5 * ((held_before ? 0 : before) + (held_behind ? 0 : behind));
+RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments) {
+  const auto before = static_cast<double>(segments.rest_length[row]);
+  const auto behind = static_cast<double>(segments.rest_length[row + 1]);
+  const double length =
+      0.5 * ((segments.clamped[row] != 0 ? 0 : before) + (segments.clamped[row + 1] != 0 ? 0 : behind));
   RopeBend bend;
   bend.before = 1 / before;
   bend.behind = 1 / behind;
@@ -224,14 +227,12 @@ RopeBend load_bend(const Chain& chain, double before, double behind, bool held_b
   return bend;
 }
 
-void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+void load_bends(const Chain& chain, std::size_t first_node, double h, const state::Segments& segments,
                 RopeScratch& s) {
   if (!(chain.bend_stiffness > 0)) return;
   for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
     const RopeNode* node = &s.nodes[first_node + i];
-    const auto held = [&](std::ptrdiff_t step) { return !(node[0].w > 0) && !(node[step].w > 0); };
-    RopeBend bend = load_bend(chain, s.segments[first_segment + i - 1].rest,
-                              s.segments[first_segment + i].rest, held(-1), held(1));
+    RopeBend bend = load_bend(chain, chain.first_segment + i - 1, segments);
     bend.node = static_cast<std::uint32_t>(first_node + i);
     bend.gamma = 1 / (h * (bend.damping + h * bend.stiffness));
     const V change = bend.behind * (node[1].x - node[0].x) - bend.before * (node[0].x - node[-1].x);

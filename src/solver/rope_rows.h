@@ -112,10 +112,9 @@ void load_point_touches(std::uint32_t node, DVec3 u, std::size_t first, std::siz
                         std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
                         std::vector<RopeTouch>& touches);
 
-/// Bending between two segments of these lengths [m]. At a clamp, the end of two held nodes, only half a
-/// segment bends.
-[[nodiscard]] RopeBend load_bend(const Chain& chain, double before, double behind, bool held_before,
-                                 bool held_behind);
+/// Bending between the segments of `row` and the next. At a clamp (solver/rope_clamps.h) only half a segment
+/// bends.
+[[nodiscard]] RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments);
 
 /// Mass of the lighter end that moves; 1 if neither does [kg].
 [[nodiscard]] double lighter_end(const RopeNode& a, const RopeNode& b);
@@ -137,7 +136,7 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
 
 /// Bends of a rope whose nodes begin at `first_node`, as rows of a substep of length h [s]: implicit Euler,
 /// as for springs (solver/springs.h).
-void load_bends(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+void load_bends(const Chain& chain, std::size_t first_node, double h, const state::Segments& segments,
                 RopeScratch& s);
 
 /// W and v* of every node, with what touches it.

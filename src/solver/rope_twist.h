@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "solver/rope_clamps.h"
 #include "state/tables.h"
 
 #include <vector>
@@ -13,10 +14,9 @@
 
 namespace hooke::solver {
 
-/// Sorts ropes that resist twist into spans between clamps: two neighboring points or more that one thing
-/// holds, by pins, by ball hooks to the world or by ball hooks to the same body. Spans that were there before
-/// keep their state; new ones get the twist that their segments had.
-void find_twist_spans(state::Tables& tables);
+/// Sorts ropes that resist twist into spans between clamps (solver/rope_clamps.h). Spans that were there
+/// before keep their state; new ones get the twist that their segments had.
+void find_twist_spans(const std::vector<Holder>& holders, state::Tables& tables);
 
 /// The vector v across the unit vector t after the turn about t x u that takes t to the unit vector u. Where
 /// u points back along t, v stays.

@@ -2,6 +2,7 @@
 
 #include "math/rotation.h"
 #include "solver/joint_rows.h"
+#include "solver/rope_clamps.h"
 #include "solver/rope_twist.h"
 
 #include <algorithm>
@@ -15,39 +16,6 @@ using state::HookPlace;
 using state::Tables;
 using state::TwistClamp;
 using state::TwistSpan;
-
-/// What holds a particle.
-struct Holder {
-  bool holds = false;
-  std::uint32_t body = HookPlace::kWorld;
-};
-
-/// Of every particle; of several the first counts, pins before hooks.
-std::vector<Holder> list_holders(const Tables& t) {
-  std::vector<Holder> holders(static_cast<std::size_t>(t.particles.count()));
-  for (const state::Pin& pin : t.pins) holders[pin.particle] = {true, HookPlace::kWorld};
-  for (const state::Hook& hook : t.hooks) {
-    const HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
-    const HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
-    if (hook.kind != HookKind::kBall || hook.broken || point.particle_count != 1 || other.is_point())
-      continue;
-    Holder& holder = holders[point.particle[0]];
-    if (!holder.holds) holder = {true, other.body};
-  }
-  return holders;
-}
-
-/// Calls visit(first, last, holder) for the nodes of each clamp of a rope.
-template <class Visit>
-void for_each_clamp(const state::Deformable& rope, const std::vector<Holder>& holders, Visit&& visit) {
-  const Holder* of = &holders[rope.particles.first];
-  const std::uint32_t count = rope.particles.count;
-  for (std::uint32_t first = 0, next = 0; first < count; first = next) {
-    next = first + 1;
-    while (of[first].holds && next < count && of[next].holds && of[next].body == of[first].body) ++next;
-    if (next - first > 1) visit(first, next - 1, of[first]);
-  }
-}
 
 TwistClamp clamp_at(const Tables& t, std::uint32_t segment, Holder holder) {
   const std::uint32_t slot = holder.body == HookPlace::kWorld ? 0 : t.bodies.slot[holder.body];
@@ -124,12 +92,7 @@ TwistSpan span_between(const Tables& t, std::uint32_t object, const TwistClamp& 
 
 }  // namespace
 
-void find_twist_spans(Tables& t) {
-  const bool any = std::any_of(t.objects.begin(), t.objects.end(), [](const state::Deformable& object) {
-    return object.twist_stiffness > Real(0);
-  });
-  if (!any) return;
-  const std::vector<Holder> holders = list_holders(t);
+void find_twist_spans(const std::vector<Holder>& holders, Tables& t) {
   const std::vector<TwistSpan> before = std::move(t.twists);
   t.twists.clear();
   for (std::uint32_t i = 0; i < t.objects.size(); ++i) {

@@ -100,6 +100,7 @@ struct Segments {
   std::vector<Real> mean_tension;  ///< Over the last step [N]; written by solve_chains.
   std::vector<std::uint8_t>
       limited;  ///< 1 while the segment is held at its largest length; written by solve_chains.
+  std::vector<std::uint8_t> clamped;  ///< 1 if one thing holds both ends; written by note_clamps.
 
   [[nodiscard]] int count() const { return static_cast<int>(rest_length.size()); }
 
@@ -112,6 +113,7 @@ struct Segments {
     visit(self.tension);
     visit(self.mean_tension);
     visit(self.limited);
+    visit(self.clamped);
   }
 };
 

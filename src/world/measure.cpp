@@ -143,16 +143,9 @@ double measure_rope_bends(const Tables& t) {
   for (const state::Deformable& rope : t.objects) {
     if (!(rope.bend_stiffness > Real(0)) || rope.kind != PointRef::Kind::kRope) continue;
     const solver::Chain chain = {.bend_stiffness = static_cast<double>(rope.bend_stiffness)};
-    const auto rest = [&](std::uint32_t i) {
-      return static_cast<double>(t.segments.rest_length[rope.segments.first + i]);
-    };
     for (std::uint32_t i = 1; i + 1 < rope.particles.count; ++i) {
       const std::uint32_t p = rope.particles.first + i;
-      const auto held = [&](std::uint32_t q) {
-        return !(t.particles.velocity[p].inverse_mass > Real(0)) &&
-               !(t.particles.velocity[q].inverse_mass > Real(0));
-      };
-      const solver::RopeBend bend = solver::load_bend(chain, rest(i - 1), rest(i), held(p - 1), held(p + 1));
+      const solver::RopeBend bend = solver::load_bend(chain, rope.segments.first + i - 1, t.segments);
       const DVec3 change = bend.behind * (middle_of(t, p + 1) - middle_of(t, p)) -
                            bend.before * (middle_of(t, p) - middle_of(t, p - 1));
       energy += 0.5 * bend.stiffness * length_squared(change);

@@ -67,19 +67,21 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   }
 }
 
-/// Pins and hooks say where ropes are held against twist.
-void refresh_twists(WorldData& world) {
+/// Pins and hooks say where ropes are held against bending and twist.
+void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
-  if (world.twists_revision == revision) return;
-  world.twists_revision = revision;
-  solver::find_twist_spans(world.tables);
+  if (world.clamps_revision == revision) return;
+  world.clamps_revision = revision;
+  const std::vector<solver::Holder> holders = solver::list_holders(world.tables);
+  solver::note_clamps(holders, world.tables);
+  solver::find_twist_spans(holders, world.tables);
 }
 
 }  // namespace
 
 void refresh_derived(WorldData& world) {
   state::Tables& tables = world.tables;
-  refresh_twists(world);
+  refresh_clamps(world);
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);

@@ -49,7 +49,7 @@ struct WorldData {
   std::vector<solver::Chain> chains;               ///< One per rope, in order of creation.
   solver::Bundles bundles;                         ///< Of ropes with what they are tied to.
   std::vector<solver::HookedPoint> hooked_points;  ///< Lives for one substep.
-  std::uint64_t twists_revision = 0;               ///< Sum of both revisions, which only grow.
+  std::uint64_t clamps_revision = 0;               ///< Sum of both revisions, which only grow.
   std::vector<solver::TwistRow> twist_rows;        ///< Lives for one substep.
 
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.

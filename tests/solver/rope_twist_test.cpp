@@ -23,7 +23,7 @@ Tables curved_rope(double twist) {
   desc.pins = {{.point = 0}, {.point = 1}, {.point = 11}, {.point = 12}};
   Tables t;
   REQUIRE(build::add_rope(desc, t).has_value());
-  solver::find_twist_spans(t);
+  solver::find_twist_spans(solver::list_holders(t), t);
   REQUIRE(t.twists.size() == 1);
   return t;
 }
