@@ -248,7 +248,9 @@ struct HookDesc {
   std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y, z, then angles.
   Real break_force = kRigid;                 ///< [N], positive: lets go above this in two substeps.
   Real break_torque = kRigid;                ///< [N m], positive.
-  bool collide = false;                      ///< Whether the two bodies may touch each other.
+  /// Whether the two bodies may touch each other; of a body and a point, the point and what of its object was
+  /// inside the body when it was hooked.
+  bool collide = false;
 };
 
 /// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on

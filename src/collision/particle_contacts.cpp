@@ -1,5 +1,6 @@
 #include "collision/particle_contacts.h"
 
+#include "base/sort_unique.h"
 #include "collision/shape_gap.h"
 #include "geometry/box.h"
 #include "state/body_frames.h"
@@ -122,15 +123,17 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint3
 /// A particle and a body that a hook keeps from touching.
 using Hooked = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Those held together by hooks; all of a rope along which a body slides. Sorted.
+/// Those held together by hooks, with what was inside the body; all of a rope along which a body slides.
+/// Sorted.
 std::vector<Hooked> hooked_of(const state::Tables& t) {
   std::vector<Hooked> hooked;
   const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
     if (!point.is_point() || body == state::HookPlace::kWorld) return;
     for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
+    const state::Rows object = t.objects[point.object].particles;
+    for (const std::uint32_t i : hook.inside) hooked.emplace_back(object.first + i, body);
     if (hook.kind != HookKind::kRopeSlide) return;
-    const state::Rows rope = t.objects[point.object].particles;
-    for (std::uint32_t p = rope.first; p < rope.end(); ++p) hooked.emplace_back(p, body);
+    for (std::uint32_t p = object.first; p < object.end(); ++p) hooked.emplace_back(p, body);
   };
   for (const state::Hook& hook : t.hooks) {
     if (hook.collide) continue;
@@ -233,6 +236,26 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t object_row,
+                                         std::uint32_t body) {
+  const state::Deformable& object = t.objects[object_row];
+  std::vector<std::uint32_t> inside;
+  for (const std::uint32_t c : solid_colliders(t)) {
+    if (t.colliders.body[c] != body) continue;
+    const Frame frame = frame_of(t, c, object);
+    for (std::uint32_t i = 0; i < object.particles.count; ++i) {
+      const state::PositionLine& at = t.particles.position[object.particles.first + i];
+      const Vec3 x = frame.to_shape(at.x);
+      const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
+      const Real distance =
+          mesh ? distance_to_mesh(*frame.shape->mesh, x, at.radius) : gap_to_shape(*frame.shape, x).distance;
+      if (distance < Real(0.5) * at.radius) inside.push_back(i);
+    }
+  }
+  base::sort_unique(inside);
+  return inside;
+}
 
 void find_contacts(state::Tables& t, double dt) {
   const auto step = static_cast<Real>(dt);

@@ -3,6 +3,9 @@
 #include "parallel/range.h"
 #include "state/tables.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace hooke::collision {
 
 /// Finds the particles that may touch the shape of a body within the next `dt` and makes their contact rows,
@@ -16,6 +19,11 @@ void find_contacts(state::Tables& tables, double dt);
 /// `range` counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the
 /// range that holds the first of them.
 void update_contacts(parallel::Range range, state::Tables& tables);
+
+/// Points of an object, counted within it, whose centers are less than half their radius outside a body, or
+/// inside it. In order.
+[[nodiscard]] std::vector<std::uint32_t> points_inside(const state::Tables& tables, std::uint32_t object,
+                                                       std::uint32_t body);
 
 /// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Looks at all
 /// pairs.

@@ -17,6 +17,8 @@ using M = math::Symmetric3<double>;
 constexpr double kSlidingShare = 0.9999;  ///< Of mu N: a node whose friction was this large was sliding.
 constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
 constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
+constexpr double kTetherRecovery = 10;    ///< Share of what a tether is too long by, per second [1/s].
+constexpr double kTetherSpeed = 0.1;      ///< At most [m/s].
 constexpr double kSettledDrag = 0.1;      ///< Share by which drag may still change.
 constexpr int kLeastContactSolves = 2;
 constexpr int kSlidingSolves = 4;
@@ -115,7 +117,7 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
 }
 
 /// A tether that is a spring row from a free particle to a pin.
-RopeTouch load_tether(std::uint32_t row, std::uint32_t node, const state::Tables& tables) {
+RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Springs& springs = tables.springs;
   const std::uint32_t particle = springs.particle_a[row];
   const std::uint32_t pin = springs.particle_b[row];
@@ -126,8 +128,10 @@ RopeTouch load_tether(std::uint32_t row, std::uint32_t node, const state::Tables
   t.node = node;
   t.n = distance > 0 ? (1.0 / distance) * way : V{0, 1, 0};
   t.surface = vector_cast<double>(tables.particles.velocity[pin].v);
-  t.separation = static_cast<double>(springs.rest_length[row]) - distance;
-  t.active = t.separation <= 0;
+  const double slack = static_cast<double>(springs.rest_length[row]) - distance;
+  t.active = slack <= 0;
+  // A heavy body drawn back at once would get energy by it.
+  t.separation = slack > 0 ? slack : h * std::max(slack * kTetherRecovery, -kTetherSpeed);
   return t;
 }
 
@@ -205,7 +209,7 @@ void load_point_touches(std::uint32_t node, V u, std::size_t first, std::size_t 
   for (const std::uint32_t row : tethers) {
     const bool still_pinned =
         tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
-    if (still_pinned) touches.push_back(load_tether(row, node, tables));
+    if (still_pinned) touches.push_back(load_tether(row, node, h, tables));
   }
   for (RopeTouch& t : std::span(touches).subspan(first_touch)) {
     t.of_point = true;

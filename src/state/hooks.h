@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace hooke::state {
 
@@ -56,6 +57,9 @@ struct Hook {
   /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
 
+  /// Points of the object at an end, counted within it, that were inside the body at the other end when they
+  /// were hooked, as where a rope ends at the middle of a crate: they do not touch it.
+  std::vector<std::uint32_t> inside = {};
   Real cone = kRigid;            ///< kBall: largest angle between the x axes [rad].
   Real rest_distance = Real(0);  ///< kDistance: of the anchors when they were hooked [m].
 };

@@ -3,6 +3,7 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "collision/particle_contacts.h"
 #include "solver/bundles.h"
 #include "solver/joint_rows.h"
 #include "world/hooks.h"
@@ -72,6 +73,10 @@ Result<HookId> World::add_hook(const HookDesc& desc) {
   Hook& hook = t.hooks.back();
   const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(t.hooks.size()) - 1);
   hook.slot = id.slot;
+  const state::HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
+  const std::uint32_t body = hook.a.is_point() ? hook.b.body : hook.a.body;
+  if (point.is_point() && body != state::HookPlace::kWorld && !hook.collide)
+    hook.inside = collision::points_inside(t, point.object, body);
   world::wake_ends(hook, t.bodies);
   return id;
 }

@@ -136,6 +136,38 @@ TEST_SUITE("world/ties") {
     CHECK(after.energy.total() > 0.9 * before.energy.total());
   }
 
+  TEST_CASE("a rope or a cloth hooked to the middles of two bodies is not pushed out of them") {
+    for (const bool is_rope : {true, false}) {
+      CAPTURE(is_rope);
+      World world = make_world(empty_space());
+      const BodyId light = add_box(world, {-1, 0, 0}, 1);
+      const BodyId heavy = add_box(world, {1, 0, 0}, 3);
+      if (is_rope) {
+        const RopeId rope = add_rope(world, {-1, 0, 0}, {1, 0, 0}, 20, Real(0.1));
+        tie(world, light, point(rope, 0));
+        tie(world, heavy, point(rope, 20));
+      } else {
+        const ClothId cloth = take(world.add_cloth({.columns = 11,
+                                                    .rows = 5,
+                                                    .corner = {-1, 0, 0},
+                                                    .width = Real(2),
+                                                    .height = Real(0.4),
+                                                    .damping = Real(1)}));
+        tie(world, light, point(cloth, 0));
+        tie(world, heavy, point(cloth, 10));
+      }
+      REQUIRE(world.set_velocity(light, {0, 1, 0}).has_value());
+      REQUIRE(world.set_velocity(heavy, {0, -1, 0}).has_value());
+      const Measurement before = world.measure();
+      run(world, 120);
+      const Measurement after = world.measure();
+      CHECK(length(after.momentum - before.momentum) < 1e-5 * 4);
+      CHECK(length(after.angular_momentum - before.angular_momentum) <
+            1e-4 * length(before.angular_momentum));
+      CHECK(after.energy.kinetic < 1.001 * before.energy.kinetic);
+    }
+  }
+
   TEST_CASE("Atwood's machine with a massive pulley accelerates as the textbook says") {
     World world = make_world(without_air());
     const BodyId wheel = take(world.add_body(
