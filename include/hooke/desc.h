@@ -322,6 +322,8 @@ struct ClothDesc {
   Real bend_stiffness = Real(1e-4);     ///< See Bend.
   Real damping = Real(0);               ///< Of each stretch and shear spring [N s/m].
   Real bend_damping = Real(0);          ///< Of each bend row, in units of bend_stiffness times s.
+  Real yield_angle = kRigid;  ///< A pair of triangles bent farther than this [rad] from its form at rest
+                              ///< keeps the rest of it: a fold. Bend::kAngle only; positive, or kRigid.
   Bend bend = Bend::kAngle;
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
   bool tethers = false;  ///< Hold every point within its rest distance of the pins: inextensible cloth.
@@ -363,6 +365,10 @@ struct SolidDesc {
   /// Viscosity over stiffness [s]: a wave of angular frequency w is damped by w damping / 2 of critical.
   /// [0, 0.1]
   Real damping = Real(0.002);
+  /// sigma_y [Pa], positive, or kRigid: von Mises' stress, sqrt(3/2) |dev tau|, above which the solid flows,
+  /// at constant volume and without hardening. A bar pulled by its end yields at sigma_y / E. The stress
+  /// of `damping` comes on top. No part is stretched for good beyond 5 times or below a fifth.
+  Real yield_stress = kRigid;
   Real thickness = Real(0.004);  ///< [m]: points keep half of it from what they touch. Positive.
   Real air_friction = Real(0);   ///< Viscous drag of the whole solid [N s/m], shared out by volume.
   std::vector<PinDesc> pins = {};

@@ -52,6 +52,9 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
       .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
       .not_negative("damping", static_cast<double>(desc.damping))
       .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
+      .stiffness("yield_angle", static_cast<double>(desc.yield_angle))
+      .require(desc.yield_angle == kRigid || desc.bend == ClothDesc::Bend::kAngle, "yield_angle",
+               "needs bends by angle")
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
       .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
       .not_negative("lift_coefficient", static_cast<double>(desc.lift_coefficient))
@@ -345,6 +348,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.gas = filled.gas;
   object.gas_volume = filled.gas_volume;
   object.friction = desc.contact.friction;
+  object.yield_angle = desc.yield_angle;
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;
   object.feels_air = object.feels_air || desc.drag_coefficient > Real(0) || desc.lift_coefficient > Real(0);

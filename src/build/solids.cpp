@@ -45,6 +45,7 @@ Checks check(const SolidDesc& desc) {
       .in_range("young_modulus", static_cast<double>(desc.young_modulus), 0, 1e12)
       .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), 0, 0.499)
       .in_range("damping", static_cast<double>(desc.damping), 0, 0.1)
+      .stiffness("yield_stress", static_cast<double>(desc.yield_stress))
       .positive("thickness", static_cast<double>(desc.thickness))
       .not_negative("air_friction", static_cast<double>(desc.air_friction))
       .finite("charge", static_cast<double>(desc.charge))
@@ -234,6 +235,16 @@ void append_tetrahedra(const TetrahedralMesh& mesh, const SolidDesc& desc, state
   }
 }
 
+std::shared_ptr<const state::RestEdges> rest_edges_of(const TetrahedralMesh& mesh) {
+  auto edges = std::make_shared<state::RestEdges>();
+  const auto& x = mesh.points;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    const auto edge = [&](int k) { return vector_cast<Real>(x[t[k]] - x[t[0]]); };
+    edges->push_back({edge(1), edge(2), edge(3)});
+  }
+  return edges;
+}
+
 }  // namespace
 
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
@@ -252,6 +263,8 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   if (!checks.good()) return checks.result();
   state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  object.yield_stress = desc.yield_stress;
+  if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);
   object.skin = body.value().skin;
   append_tetrahedra(mesh, desc, tables);
   return {};

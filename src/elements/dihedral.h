@@ -5,6 +5,7 @@
 #include "math/trig.h"
 
 #include <array>
+#include <numbers>
 
 namespace hooke::elements {
 
@@ -22,6 +23,15 @@ struct Dihedral {
   std::array<Vector3<T>, 4> gradient = {};
   bool valid = false;
 };
+
+/// The same angle in (-pi, pi]; `angle` within a turn of that.
+template <class T>
+constexpr T wrapped(T angle) {
+  constexpr T kPi = std::numbers::pi_v<T>;
+  if (angle > kPi) angle = angle - T(2) * kPi;
+  if (angle <= -kPi) angle = angle + T(2) * kPi;
+  return angle;
+}
 
 template <class T>
 Dihedral<T> dihedral(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vector3<T> x3) {

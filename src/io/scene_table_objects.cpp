@@ -228,6 +228,8 @@ std::vector<Field> cloth_rows() {
       field<desc, &ClothDesc::damping>("damping", "N s/m", kNotNegative, "Of each stretch and shear spring."),
       field<desc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
                                             "Of each bend row, in units of `bend_stiffness`."),
+      field<desc, &ClothDesc::yield_angle>("yield_angle", "rad", kPositiveOrRigid,
+                                           "What an edge is bent beyond this it keeps, as a fold."),
       field<desc, &ClothDesc::bend>(
           "bend", "", kAny,
           "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
@@ -269,6 +271,8 @@ std::vector<Field> solid_rows() {
                                              "How far it narrows when it is pulled; near 0.5 it keeps its "
                                              "volume."),
       field<desc, &SolidDesc::damping>("damping", "s", between(0, 0.1), "Viscosity over stiffness."),
+      field<desc, &SolidDesc::yield_stress>("yield_stress", "Pa", kPositiveOrRigid,
+                                            "Above this von Mises' stress it flows and keeps its new form."),
       field<desc, &SolidDesc::thickness>("thickness", "m", kPositive,
                                          "Points keep half of it from what they touch."),
       field<desc, &SolidDesc::air_friction>("air_friction", "N s/m", kNotNegative,

@@ -191,6 +191,7 @@ void System::note(const state::Tables& tables, const state::Deformable& object) 
   velocity_dependent_ = damped;
   ballistic_ = !damped && springs_.empty() && bends_.empty() && attractors_->empty();
   note_fields(tables);
+  if (object.yield_angle < kRigid) left_out_.emplace_back("folds that stay: bends are elastic here");
   if (tables.any_force) left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
 }
 

@@ -2,6 +2,8 @@
 
 #include "hooke/math.h"
 
+#include <cmath>
+
 namespace hooke::math {
 
 /// Symmetric 3x3 matrix.
@@ -43,6 +45,23 @@ constexpr Symmetric3<T> inverse(const Symmetric3<T>& m) {
           s * (m.xx * m.zz - m.xz * m.xz),
           s * (m.xy * m.xz - m.xx * m.yz),
           s * (m.xx * m.yy - m.xy * m.xy)};
+}
+
+template <class T>
+constexpr T determinant(const Symmetric3<T>& m) {
+  return m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
+         m.xz * (m.xy * m.yz - m.yy * m.xz);
+}
+
+/// The lower triangular L with L L^T = m, a positive definite matrix; not finite for others.
+template <class T>
+Matrix3<T> cholesky(const Symmetric3<T>& m) {
+  const T xx = std::sqrt(m.xx);
+  const T yx = m.xy / xx;
+  const T zx = m.xz / xx;
+  const T yy = std::sqrt(m.yy - yx * yx);
+  const T zy = (m.yz - zx * yx) / yy;
+  return {{xx, yx, zx}, {T(0), yy, zy}, {T(0), T(0), std::sqrt(m.zz - zx * zx - zy * zy)}};
 }
 
 /// The symmetric part of a b c.

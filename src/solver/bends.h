@@ -21,6 +21,7 @@ struct BendBlock {
 
 /// What prepare_bends makes the coefficients of a block from. Unlike springs, bends of one cloth differ.
 struct BendLaws {
+  std::uint32_t row[kLanes];  ///< Of the table; lanes that fill a block have that of the row they copy.
   Real stiffness[kLanes];
   Real damping[kLanes];
 };

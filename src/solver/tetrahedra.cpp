@@ -68,10 +68,10 @@ void build_tetrahedra(const state::Tetrahedra& t, const state::Particles& partic
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return color[a] < color[b]; });
 
-  std::vector<Real> volume_at(static_cast<std::size_t>(particles.count()), Real(0));
+  out.volume_at.assign(static_cast<std::size_t>(particles.count()), Real(0));
   for (std::size_t i = 0; i < order.size(); ++i) {
     for (const std::uint32_t p : {t.corners[i].a, t.corners[i].b, t.corners[i].c, t.corners[i].d})
-      volume_at[p] += t.volume[i];
+      out.volume_at[p] += t.volume[i];
   }
   for (const std::size_t i : order) {
     const int row = static_cast<int>(out.rows.size());
@@ -79,30 +79,44 @@ void build_tetrahedra(const state::Tetrahedra& t, const state::Particles& partic
       out.passes.push_back({row, row});
     out.passes.back().end = row + 1;
     const state::Tetrahedra::Corners& c = t.corners[i];
-    out.rows.push_back({.particle = {c.a, c.b, c.c, c.d}, .b = t.shape_gradient[i]});
-    out.laws.push_back({.volume = t.volume[i],
+    out.rows.push_back({.particle = {c.a, c.b, c.c, c.d}});
+    out.laws.push_back({.row = static_cast<std::uint32_t>(i),
+                        .volume = t.volume[i],
                         .shear_modulus = t.shear_modulus[i],
                         .volume_modulus = t.volume_modulus[i],
-                        .damping_time = t.damping_time[i],
-                        .stiffest = stiffest_of(t, i, volume_at, particles)});
+                        .damping_time = t.damping_time[i]});
+    take_shape(t, particles, out.rows.size() - 1, out);
   }
+}
+
+void take_shape(const state::Tetrahedra& t, const state::Particles& particles, std::size_t row,
+                TetrahedronRows& out) {
+  TetrahedronLaw& law = out.laws[row];
+  out.rows[row].b = t.shape_gradient[law.row];
+  law.stiffest = stiffest_of(t, law.row, out.volume_at, particles);
+}
+
+Real shear_modulus_of(const TetrahedronLaw& law, Real h) {
+  return std::min(law.shear_modulus, law.stiffest / (h * h));
+}
+
+void prepare_tetrahedron(const TetrahedronLaw& law, Real h, TetrahedronRow& row) {
+  const Real shear = shear_modulus_of(law, h);
+  const Real stiffness = h * law.volume;  // times a modulus and a time: 1 / gamma
+  const Real damping = stiffness * law.damping_time;
+  row.shift = Real(1) + shear / law.volume_modulus;
+  row.gamma_volume = Real(1) / (stiffness * h * law.volume_modulus);
+  row.gamma_shape = Real(1) / (stiffness * h * shear);
+  row.gamma_trace = inverse_or_infinite(damping * (law.volume_modulus - shear));
+  row.gamma_rate = inverse_or_infinite(damping * shear);
 }
 
 void prepare_tetrahedra(TetrahedronRows& tetrahedra, Real h) {
   tetrahedra.inverse_h = Real(1) / h;
   tetrahedra.any_damping = false;
   for (std::size_t i = 0; i < tetrahedra.rows.size(); ++i) {
-    const TetrahedronLaw& law = tetrahedra.laws[i];
-    TetrahedronRow& row = tetrahedra.rows[i];
-    const Real shear = std::min(law.shear_modulus, law.stiffest / (h * h));
-    const Real stiffness = h * law.volume;  // times a modulus and a time: 1 / gamma
-    const Real damping = stiffness * law.damping_time;
-    row.shift = Real(1) + shear / law.volume_modulus;
-    row.gamma_volume = Real(1) / (stiffness * h * law.volume_modulus);
-    row.gamma_shape = Real(1) / (stiffness * h * shear);
-    row.gamma_trace = inverse_or_infinite(damping * (law.volume_modulus - shear));
-    row.gamma_rate = inverse_or_infinite(damping * shear);
-    tetrahedra.any_damping = tetrahedra.any_damping || law.damping_time > Real(0);
+    prepare_tetrahedron(tetrahedra.laws[i], h, tetrahedra.rows[i]);
+    tetrahedra.any_damping = tetrahedra.any_damping || tetrahedra.laws[i].damping_time > Real(0);
   }
 }
 

@@ -24,6 +24,7 @@ struct TetrahedronRow {
 
 /// What prepare_tetrahedra makes the coefficients of a row from.
 struct TetrahedronLaw {
+  std::uint32_t row = 0;  ///< Of the table.
   Real volume = Real(0);
   Real shear_modulus = Real(0);
   Real volume_modulus = Real(0);
@@ -41,13 +42,18 @@ struct TetrahedronRows {
   std::vector<TetrahedronRow> rows;
   std::vector<TetrahedronLaw> laws;  ///< One per row.
   std::vector<TetrahedronPass> passes;
-  Real inverse_h = Real(0);  ///< 1 / h [1/s]; written by prepare_tetrahedra.
-  bool any_damping = false;  ///< Some row is damped.
+  std::vector<Real> volume_at;  ///< Of the tetrahedra about each particle [m^3].
+  Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
+  bool any_damping = false;     ///< Some row is damped.
 };
 
 /// Colors the rows greedily in the order of the table.
 void build_tetrahedra(const state::Tetrahedra& tetrahedra, const state::Particles& particles,
                       TetrahedronRows& rows);
+
+/// Takes the shape at rest of `row` from the table, and how stiff it may be.
+void take_shape(const state::Tetrahedra& tetrahedra, const state::Particles& particles, std::size_t row,
+                TetrahedronRows& rows);
 
 /// The coefficients of every row for a substep of `h` [s].
 ///
@@ -55,6 +61,11 @@ void build_tetrahedra(const state::Tetrahedra& tetrahedra, const state::Particle
 /// tetrahedron is stiffer, its mu is lowered to what keeps it at 2; lambda, which is implicit, keeps its
 /// value. More substeps carry a stiffer jelly.
 void prepare_tetrahedra(TetrahedronRows& tetrahedra, Real h);
+/// Of one row.
+void prepare_tetrahedron(const TetrahedronLaw& law, Real h, TetrahedronRow& row);
+
+/// mu of a row in a substep of `h` [s], lowered or not [Pa].
+[[nodiscard]] Real shear_modulus_of(const TetrahedronLaw& law, Real h);
 
 /// Corrects velocities by the stress of each tetrahedron. One pass.
 ///

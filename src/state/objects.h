@@ -34,6 +34,9 @@ struct Skin {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
+using RestEdges = std::vector<std::array<Vec3, 3>>;
+
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
@@ -52,6 +55,9 @@ struct Deformable {
   Real bend_damping = Real(0);     ///< Over EI [s].
   Real twist_stiffness = Real(0);  ///< Of a rope: GJ [N m^2].
   Real twist_rate = Real(0);       ///< Twist per length that it was made with [rad/m]; 0 once spans have it.
+  Real yield_angle = kRigid;       ///< Of a cloth's bends [rad].
+  Real yield_stress = kRigid;      ///< Of a solid [Pa].
+  std::shared_ptr<const RestEdges> rest_edges = {};  ///< Of a solid that yields; by its tetrahedra.
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

@@ -170,7 +170,8 @@ double measure_bends(const Tables& t) {
     const state::Bends::Stencil& s = t.bends.stencil[i];
     const auto d = elements::dihedral(middle_of(t, s.edge_a), middle_of(t, s.edge_b), middle_of(t, s.wing_a),
                                       middle_of(t, s.wing_b));
-    const double angle = d.valid ? d.angle - static_cast<double>(t.bends.rest_angle[i]) : 0.0;
+    const double angle =
+        d.valid ? elements::wrapped(d.angle - static_cast<double>(t.bends.rest_angle[i])) : 0.0;
     energy += elastic(static_cast<double>(t.bends.stiffness[i]), angle);
   }
   return energy;

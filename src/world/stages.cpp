@@ -87,6 +87,7 @@ void refresh_derived(WorldData& world) {
   solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
   solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
+  solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.gas_objects.clear();
   for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
@@ -231,6 +232,17 @@ void solve_solids(WorldData& world, Real h) {
                         world.gas_volumes[i], tables.particles);
     }
   });
+}
+
+void flow_solids(WorldData& world, Real h) {
+  for_ranges(
+      *world.pool, static_cast<int>(world.yields.tetrahedra.size()), kTetrahedronGrain,
+      [&](Range rows) { solver::flow_tetrahedra(world.yields, rows, h, world.tables, world.tetrahedra); });
+}
+
+void flow_cloths(WorldData& world) {
+  for_ranges(*world.pool, static_cast<int>(world.yields.bends.size()), kTriangleGrain,
+             [&](Range rows) { solver::flow_bends(world.yields, rows, world.tables, world.bend_blocks); });
 }
 
 void begin_ties(WorldData& world, Real h, bool first) {

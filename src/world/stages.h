@@ -34,6 +34,13 @@ void solve_ropes(WorldData& world, Real h);
 /// Tetrahedra of solids, color after color; then the gas in closed cloths.
 void solve_solids(WorldData& world, Real h);
 
+/// What is stressed in solids beyond their yield stress takes on its new form; in each particle substep, as a
+/// blow may be over within a step.
+void flow_solids(WorldData& world, Real h);
+
+/// What is bent in cloths beyond their yield angle takes on its new angle.
+void flow_cloths(WorldData& world);
+
 /// Puts rows that are not finite back to where they began the step, at rest. Returns how many.
 std::uint32_t quarantine_non_finite(WorldData& world);
 

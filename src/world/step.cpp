@@ -3,7 +3,7 @@
 ///   detect    who is near whom, and where they touch             collision/, world/bodies
 ///   prepare   rows in solver form, colored; the wind             solver/, world/stages
 ///   substep   force, correct, move; a few per step               solver/
-///   finish    bounces, quarantine, sleep, origins, report        world/
+///   finish    bounces, quarantine, folds, sleep, origins, report world/
 ///
 /// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, under 200 lines.
 /// A stage reads the tables it takes by const reference and writes the ones it takes by reference.
@@ -120,6 +120,7 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
 
   for_ranges(*w.pool, t.particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
+  world::flow_solids(w, h);
 }
 
 /// Bodies: contacts with bias, or as a whole in hard islands; hooks, then everything that is tied to them;
@@ -165,6 +166,7 @@ void finish(WorldData& w, double dt, StepReport& report) {
   report.rows_quarantined = world::quarantine_bodies(w);
   finish_bodies(w, dt);
   report.rows_quarantined += world::quarantine_non_finite(w);
+  world::flow_cloths(w);
   world::rebase_origins(w);
   world::end_step(w, dt, report);
 }

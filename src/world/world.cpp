@@ -59,6 +59,19 @@ std::vector<Real> twist_figures(const state::Tables& t, RopeId id, Figure&& figu
   return figures;
 }
 
+/// Of objects whose form at rest changes.
+void hash_rest_forms(const state::Tables& t, base::StateHash& hash) {
+  for (const state::Deformable& object : t.objects) {
+    if (object.yield_angle < kRigid) {
+      for (std::uint32_t i = object.bends.first; i < object.bends.end(); ++i) hash.add(t.bends.rest_angle[i]);
+    }
+    if (object.yield_stress < kRigid) {
+      for (std::uint32_t i = object.tetrahedra.first; i < object.tetrahedra.end(); ++i)
+        hash.add(t.tetrahedra.shape_gradient[i]);
+    }
+  }
+}
+
 Error no_function() {
   return {ErrorCode::kOutOfRange, "force_law", "must be a function"};
 }
@@ -404,6 +417,7 @@ std::uint64_t World::state_hash() const {
   for (const state::Deformable& object : t.objects) hash.add(object.origin);
   hash.add(t.particles.position);
   hash.add(t.particles.velocity);
+  hash_rest_forms(t, hash);
   hash.add(t.segments.tension);
   hash.add(t.segments.limited);
   for (const state::TwistSpan& span : t.twists) {

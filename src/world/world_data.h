@@ -13,6 +13,7 @@
 #include "solver/gas.h"
 #include "solver/hard_islands.h"
 #include "solver/joints.h"
+#include "solver/plasticity.h"
 #include "solver/rope_twist.h"
 #include "solver/spring_blocks.h"
 #include "solver/tetrahedra.h"
@@ -43,6 +44,7 @@ struct WorldData {
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
   solver::TetrahedronRows tetrahedra;
+  solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;

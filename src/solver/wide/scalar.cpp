@@ -1,9 +1,9 @@
+#include "elements/dihedral.h"
 #include "math/trig.h"
 #include "solver/wide/wide.h"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 // The order of every operation here is that of kernels.cpp.
 
@@ -28,15 +28,6 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
   const Vec3 p = {d.x * s, d.y * s, d.z * s};
   velocity[a].v -= velocity[a].inverse_mass * p;
   if (!material.anchored) velocity[b].v += velocity[b].inverse_mass * p;
-}
-
-/// theta - theta_0 in (-pi, pi].
-Real wrapped_error(Real angle, Real rest_angle) {
-  constexpr Real kPi = std::numbers::pi_v<Real>;
-  Real c = angle - rest_angle;
-  if (c > kPi) c = c - Real(2) * kPi;
-  if (c <= -kPi) c = c + Real(2) * kPi;
-  return c;
 }
 
 /// The names are those of solver/bends.h.
@@ -70,7 +61,7 @@ void solve_row(const BendBlock& block, int lane, const state::PositionLine* posi
   const Real rate = (dot(g[0], v[0]->v) + dot(g[1], v[1]->v)) - (dot(g[2], v[2]->v) + dot(g[3], v[3]->v));
   const Real w = (v[0]->inverse_mass * dot(g[0], g[0]) + v[1]->inverse_mass * dot(g[1], g[1])) +
                  (v[2]->inverse_mass * inverse_aa + v[3]->inverse_mass * inverse_bb);
-  const Real numerator = l * rate + block.bias[lane] * wrapped_error(angle, block.rest_angle[lane]);
+  const Real numerator = l * rate + block.bias[lane] * elements::wrapped(angle - block.rest_angle[lane]);
   const Real denominator = l2 * w + block.gamma[lane];
   const Real s = denominator > Real(0) ? l * (numerator / denominator) : Real(0);
   v[0]->v -= (v[0]->inverse_mass * s) * g[0];
