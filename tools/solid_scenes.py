@@ -137,4 +137,44 @@ def squash_ball():
                         "33 %, 0.66 to 0.84 m.", ball, "rubber", 0.75, 0.09, 66, 8)
 
 
-SOLID_SCENES = [jelly_cube, jelly_model, tennis_ball, squash_ball]
+def dents():
+    """Two balls as stiff as each other, of which one flows; two sheets over an edge, of which one takes the fold."""
+    radius, start, step, apex = 0.15, 1.0, 20, 50
+    ball = {"mesh": "ball", "cell": 0.06, "young_modulus": 1e5, "poisson_ratio": 0.4}
+    balls = (("clay_ball", "clay", 0.1, {"yield_stress": 5000}), ("rubber_ball", "rose", 0.6, {}))
+    top, edge, thickness, cell, out = 0.5, -0.5, 0.004, 0.05, 4  # the sheets stand out by so many cells
+    rigidity, density = 0.02, 0.2
+    sheet = {
+        "columns": 2 * out + 1, "rows": 6, "column_direction": X, "row_direction": Z, "width": 2 * out * cell,
+        "height": 5 * cell, "areal_density": density, "thickness": thickness, "stretch_stiffness": 5e3,
+        "shear_stiffness": 1e3, "bend_stiffness": rigidity, "bend_damping": 0.02, "damping": 0.1, "drag_coefficient": 0,
+        "lift_coefficient": 0, "pins": [{"column": k} for k in range(out + 1)]
+    }
+    sheets = (("paper", "ivory", -0.2, {"yield_angle": 0.3}), ("spring_sheet", "steel", 0.2, {}))
+    plank = [{"time": t, "offset": [0, y, 0]} for t, y in ((0.5, 0), (1.5, -0.2), (2, -0.2), (3.5, 0.15))]
+    # Each edge across the sheet bends by M cell / rigidity under the weight of what is beyond it.
+    sag = sum(density * G * (k * cell)**2 / 2 * cell / rigidity * k * cell for k in range(1, out + 1))
+    tip = 2 * out
+    return scene(
+        "Dents and folds",
+        "A ball of clay and one of rubber, as stiff as each other, fall 1 m: one jumps, one stays where it fell, flat. A "
+        "plank bends two sheets over the edge of a table and goes up again: one springs back, one keeps the fold.", 5,
+        [1.1, 0.95, 1.5], [0, 0.3, 0], {"ground": {"friction": 0.6}, "oak": {}, "steel": {}, "ivory": {}, "clay": {}, "rose": {}}, [
+            ground(),
+            body("table", "oak", box(0.2, top / 2, 0.4), [edge - 0.2, top / 2, 0], "static"),
+            body("plank", "oak", box(0.05, 0.02, 0.4), [edge + 0.16, top + 0.04, 0], "kinematic", motion={"keyframes": plank}),
+        ], [
+            *(promise("lowest", "==", start - G * (step * DT)**2 / 2, name, 0.012, step) for name, *_ in balls),
+            promise("lowest", ">", 0.3 * start, "rubber_ball", at_step=apex),
+            promise("lowest", "<", 0.01, "clay_ball", at_step=apex),
+            promise("highest", ">", 0.9 * 2 * radius, "rubber_ball"),
+            promise("highest", "<", 0.6 * 2 * radius, "clay_ball"),
+            at_point("height", "==", top - sag, "spring_sheet", tip, 0.02),
+            at_point("height", "<", top - sag - 0.06, "paper", tip),
+        ], world={"particle_substeps": 4}, meshes={"ball": icosphere(radius, 2)},
+        solids=[{"name": name, "material": look, "position": [x, start + radius, 0]} | ball | more for name, look, x, more in balls],
+        cloths=[{"name": name, "material": look, "corner": [edge - out * cell, top + thickness / 2, z - 2.5 * cell]} | sheet | more
+                for name, look, z, more in sheets])
+
+
+SOLID_SCENES = [jelly_cube, jelly_model, dents, tennis_ball, squash_ball]
