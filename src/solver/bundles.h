@@ -96,6 +96,8 @@ struct Bundles {
   std::vector<Bundle> bundles;
   std::vector<RopeAnchor> anchors;       ///< Of ropes outside bundles, by chain and node.
   std::vector<std::uint32_t> signature;  ///< Of what they were made from.
+  std::vector<std::uint32_t> tethers;    ///< All there are, in order of the particles that they hold.
+  std::uint64_t tethers_revision = 0;    ///< Of the tables that they are of.
 };
 
 /// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has

@@ -379,10 +379,11 @@ void build_bundles(const Tables& tables, std::vector<Chain>& chains, Bundles& bu
     std::vector<std::uint32_t> anchors;
     bundles.bundles = sort_members(tables, chains, anchors);
     list_anchors(tables, anchors, chains, bundles.anchors);
-    const std::vector<std::uint32_t> tethers = tethers_by_particle(tables);
+    if (bundles.tethers_revision != tables.revision) bundles.tethers = tethers_by_particle(tables);
+    bundles.tethers_revision = tables.revision;
     for (Bundle& bundle : bundles.bundles) {
       make_pattern(tables, chains, bundle);
-      list_tethers(tables, tethers, bundle);
+      list_tethers(tables, bundles.tethers, bundle);
     }
   }
   for (Bundle& bundle : bundles.bundles) set_slide_weights(tables, bundle);
