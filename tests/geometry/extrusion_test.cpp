@@ -41,8 +41,10 @@ TEST_SUITE("geometry/extrusion") {
     int apart = 0;
     for (int i = 0; i < 400; ++i) {
       CAPTURE(i);
-      const ConvexSolid a = geometry::placed(solids[i % 4], rotation(), vector(1));
-      const ConvexSolid b = geometry::placed(solids[i / 4 % 4], rotation(), vector(2));
+      const DVec3 at_a = vector(1);  // one after the other: compilers differ in the order of arguments
+      const ConvexSolid a = geometry::placed(solids[i % 4], rotation(), at_a);
+      const DVec3 at_b = vector(2);
+      const ConvexSolid b = geometry::placed(solids[i / 4 % 4], rotation(), at_b);
       const DVec3 way = vector(2);
       const double swept = gap_between(extruded(a, way), b).distance;
       double nearest = 1e9;
