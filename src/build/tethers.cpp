@@ -36,10 +36,16 @@ template <class Counts>
 std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::span<const std::uint32_t> pins,
                                           Counts&& counts) {
   std::vector<NearestPin> nearest(surface.points.size());
+  std::vector<std::uint32_t> points;  // for which the pin counts
   for (const std::uint32_t pin : pins) {
-    const std::vector<double> distance = distances_from(surface, pin);
+    points.clear();
     for (std::uint32_t i = 0; i < nearest.size(); ++i) {
-      if (distance[i] < nearest[i].length && counts(i, pin)) nearest[i] = {distance[i], pin};
+      if (counts(i, pin)) points.push_back(i);
+    }
+    if (points.empty()) continue;  // distances along a curved surface take long
+    const std::vector<double> distance = distances_from(surface, pin);
+    for (const std::uint32_t i : points) {
+      if (distance[i] < nearest[i].length) nearest[i] = {distance[i], pin};
     }
   }
   return nearest;

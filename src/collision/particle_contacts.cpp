@@ -52,13 +52,24 @@ Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Defo
                   vector_cast<Real>(vector_cast<double>(bounds.upper) - object.origin) + rounding}};
 }
 
+/// Distance from a shape to a place; looked for up to `reach` from a mesh [m].
+Real distance_to(const Frame& frame, Vec3 place, Real reach) {
+  const Vec3 x = frame.to_shape(place);
+  const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
+  return mesh ? distance_to_mesh(*frame.shape->mesh, x, reach) : gap_to_shape(*frame.shape, x).distance;
+}
+
+/// Whether particles may touch the body.
+bool is_solid(const state::Tables& t, std::uint32_t body) {
+  return t.bodies.traits[body].collides && !t.bodies.traits[body].sensor;
+}
+
 /// Rows of the colliders that particles may touch, in ascending order.
 std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
   std::vector<std::uint32_t> rows;
   for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
     const std::uint32_t body = t.colliders.body[c];
-    if (body == state::Colliders::kNoBody) continue;
-    if (t.bodies.traits[body].collides && !t.bodies.traits[body].sensor) rows.push_back(c);
+    if (body != state::Colliders::kNoBody && is_solid(t, body)) rows.push_back(c);
   }
   return rows;
 }
@@ -241,16 +252,12 @@ std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t o
                                          std::uint32_t body) {
   const state::Deformable& object = t.objects[object_row];
   std::vector<std::uint32_t> inside;
-  for (const std::uint32_t c : solid_colliders(t)) {
-    if (t.colliders.body[c] != body) continue;
+  if (!is_solid(t, body)) return inside;
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) {
     const Frame frame = frame_of(t, c, object);
     for (std::uint32_t i = 0; i < object.particles.count; ++i) {
       const state::PositionLine& at = t.particles.position[object.particles.first + i];
-      const Vec3 x = frame.to_shape(at.x);
-      const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
-      const Real distance =
-          mesh ? distance_to_mesh(*frame.shape->mesh, x, at.radius) : gap_to_shape(*frame.shape, x).distance;
-      if (distance < Real(0.5) * at.radius) inside.push_back(i);
+      if (distance_to(frame, at.x, at.radius) < Real(0.5) * at.radius) inside.push_back(i);
     }
   }
   base::sort_unique(inside);
@@ -322,12 +329,8 @@ double largest_penetration(const state::Tables& t) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
       for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Frame& frame = frames[i];
         if (is_hooked(hooked, p, t.colliders.body[colliders[i]])) continue;
-        const Vec3 x = frame.to_shape(t.particles.position[p].x);
-        const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
-        const Real distance =
-            mesh ? distance_to_mesh(*frame.shape->mesh, x, radius) : gap_to_shape(*frame.shape, x).distance;
+        const Real distance = distance_to(frames[i], t.particles.position[p].x, radius);
         deepest = std::max(deepest, static_cast<double>(radius - distance));
       }
     }

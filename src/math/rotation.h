@@ -33,6 +33,12 @@ Quaternion<T> quaternion_of(Vector3<T> phi) {
   return {s * half.x, s * half.y, s * half.z, angle.cos};
 }
 
+/// The whole turns nearest to an angle [rad].
+inline double whole_turns(double angle) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return kTurn * std::floor(angle / kTurn + 0.5);
+}
+
 /// The turn about one axis that leads from `before` to `after`, of those the one nearest to `about` [rad]:
 /// there is one for each number of whole turns.
 template <class T>

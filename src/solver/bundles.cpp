@@ -277,9 +277,8 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
 
 /// As in solver/contacts.h: overlap of points leaves by place, not by speed.
 void BundleSolution::push_out_points() {
-  const std::size_t first_point = b_.ropes.nodes.size() - b_.points.size();
   for (const RopeTouch& touch : b_.ropes.touches) {
-    if (touch.node >= first_point && touch.row != RopeTouch::kTether)
+    if (touch.of_point && touch.row != RopeTouch::kTether)
       push_out(touch.row, static_cast<Real>(h_), t_.contacts, t_.particles);
   }
 }

@@ -60,7 +60,7 @@ class Groups {
     }
   }
 
-  std::uint32_t of_hook(const Hook& hook) { return sets_.root(of_end(hook.a.is_point() ? hook.a : hook.b)); }
+  std::uint32_t of_hook(const Hook& hook) { return sets_.root(of_end(hook.point_end())); }
   std::uint32_t of_contact(std::size_t row) {
     return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
   }
@@ -97,8 +97,8 @@ void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t
 
 /// Whether a hook can be an anchor of a rope that has no other hooks.
 bool may_be_anchor(const Tables& t, const Hook& hook) {
-  const HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
-  const HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
+  const HookPlace& point = hook.point_end();
+  const HookPlace& other = hook.other_end();
   return hook.kind == HookKind::kBall && count_joint_rows(hook) == 3 && point.particle_count == 1 &&
          t.objects[point.object].kind == PointRef::Kind::kRope && !other.is_point() &&
          !gives_way(t.bodies, other.body);
@@ -110,7 +110,7 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std:
   anchors.clear();
   for (const std::uint32_t row : hooks) {
     const Hook& hook = t.hooks[row];
-    const std::uint32_t particle = (hook.a.is_point() ? hook.a : hook.b).particle[0];
+    const std::uint32_t particle = hook.point_end().particle[0];
     const auto behind =
         std::upper_bound(chains.begin(), chains.end(), particle,
                          [](std::uint32_t p, const Chain& chain) { return p < chain.first_particle; });

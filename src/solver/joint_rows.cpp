@@ -21,7 +21,6 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
 constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
 constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
@@ -36,10 +35,6 @@ constexpr int kFreedoms = 7;
 Symmetric3<double> to_double(const Symmetric3<Real>& m) {
   return {static_cast<double>(m.xx), static_cast<double>(m.xy), static_cast<double>(m.xz),
           static_cast<double>(m.yy), static_cast<double>(m.yz), static_cast<double>(m.zz)};
-}
-
-double whole_turns(double angle) {
-  return 2 * kPi * std::floor(angle / (2 * kPi) + 0.5);
 }
 
 /// Directions and values of a hook's freedoms.
@@ -123,7 +118,7 @@ void take_twist(DQuat a, DQuat b, Freedoms& f) {
   const DQuat q = conjugate(a) * b;
   const DVec3 sum = x_axis(a) + x_axis(b);
   f.value[kTwist] = 2 * math::atan2(q.x, q.w);
-  f.value[kTwist] -= whole_turns(f.value[kTwist]);
+  f.value[kTwist] -= math::whole_turns(f.value[kTwist]);
   f.axis[kTwist] = (2 / std::max(length_squared(sum), kLeastCosine)) * sum;
 }
 
@@ -135,7 +130,7 @@ void take_cone(DQuat a, DQuat b, Freedoms& f) {
 
 /// Angles go on beyond whole turns: of those that look alike, the one next to the last.
 void count_turns(const Hook& hook, Freedoms& f) {
-  for (int i = 3; i < 6; ++i) f.value[i] += whole_turns(hook.value[i] - f.value[i]);
+  for (int i = 3; i < 6; ++i) f.value[i] += math::whole_turns(hook.value[i] - f.value[i]);
 }
 
 Freedoms find_freedoms(const Hook& hook, const JointBody& a, const JointBody& b) {
@@ -273,7 +268,7 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     row.c = f.value[i] - static_cast<double>(freedom.spring.target);
     switch (role) {
       case RowRole::kLock:
-        if (!is_way) row.c -= whole_turns(row.c);
+        if (!is_way) row.c -= math::whole_turns(row.c);
         row.rate = 1 / h;
         row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;

@@ -10,8 +10,8 @@ std::vector<Holder> list_holders(const state::Tables& t) {
   std::vector<Holder> holders(static_cast<std::size_t>(t.particles.count()));
   for (const state::Pin& pin : t.pins) holders[pin.particle] = {true, HookPlace::kWorld};
   for (const state::Hook& hook : t.hooks) {
-    const HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
-    const HookPlace& other = hook.a.is_point() ? hook.b : hook.a;
+    const HookPlace& point = hook.point_end();
+    const HookPlace& other = hook.other_end();
     if (hook.kind != HookKind::kBall || hook.broken || point.particle_count != 1 || other.is_point())
       continue;
     Holder& holder = holders[point.particle[0]];

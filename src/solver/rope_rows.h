@@ -106,8 +106,8 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, co
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
                   std::vector<RopeTouch>& touches);
 
-/// Appends the contacts of one particle that is no rope's, rows [first, end), and the tether `spring`s that
-/// hold it. Overlap does not become speed (solver/contacts.h).
+/// Appends the contacts of one particle that is no rope's and has the velocity u, rows [first, end), and the
+/// tethers that hold it, rows of springs. Overlap does not become speed (solver/contacts.h).
 void load_point_touches(std::uint32_t node, DVec3 u, std::size_t first, std::size_t end,
                         std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
                         std::vector<RopeTouch>& touches);
@@ -169,11 +169,12 @@ struct NodeHold {
 /// The contact's force that follows from u, of a rope. True if it came into effect or out of it, or slides.
 bool update_touch(double h, const RopeNode& node, RopeTouch& touch);
 
-/// The same for all, of ropes and of points. Once points may only be `let_go`, no contact of theirs comes
-/// into effect any more: the last solution must have none that pulls.
+/// Whose contacts have changed.
 struct Unsettled {
   bool ropes = false, points = false;
 };
+/// The same for all. Where points may only `let_go`, no contact of theirs comes into effect any more: the
+/// last solution must have none that pulls.
 [[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
 
 /// Largest relative length error left; raises T+ and moves segments onto or off their limits.

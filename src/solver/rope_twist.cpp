@@ -1,5 +1,6 @@
 #include "solver/rope_twist.h"
 
+#include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/joint_rows.h"
 
@@ -13,8 +14,6 @@ namespace {
 using state::Tables;
 using state::TwistClamp;
 using state::TwistSpan;
-
-constexpr double kTwoPi = 6.283185307179586;
 
 /// 1 + cos of the sharpest bend that counts, 172 degrees: the curvature of a fold is infinite.
 constexpr double kSharpest = 0.01;
@@ -57,7 +56,7 @@ void for_each_corner(const Tables& t, const TwistSpan& span, Visit&& visit) {
 double angle_at_end(const Tables& t, const TwistSpan& span, DVec3 tangent, DVec3 carried) {
   const DVec3 end = director_now(t, span.b, tangent);
   const double angle = math::atan2(dot(tangent, cross(carried, end)), dot(carried, end));
-  return angle + kTwoPi * std::floor((span.expected - angle) / kTwoPi + 0.5);
+  return angle + math::whole_turns(span.expected - angle);
 }
 
 bool moves(const Tables& t, const TwistClamp& clamp) {

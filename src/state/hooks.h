@@ -56,6 +56,9 @@ struct Hook {
   std::array<HookFreedom, 6> freedom = {};
   /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
+  /// Of such a hook, the end at particles, the first if both are, and the other one.
+  [[nodiscard]] const HookPlace& point_end() const { return a.is_point() ? a : b; }
+  [[nodiscard]] const HookPlace& other_end() const { return a.is_point() ? b : a; }
 
   /// Points of the object at an end, counted within it, that were inside the body at the other end when they
   /// were hooked, as where a rope ends at the middle of a crate: they do not touch it.

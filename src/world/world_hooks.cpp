@@ -73,10 +73,9 @@ Result<HookId> World::add_hook(const HookDesc& desc) {
   Hook& hook = t.hooks.back();
   const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(t.hooks.size()) - 1);
   hook.slot = id.slot;
-  const state::HookPlace& point = hook.a.is_point() ? hook.a : hook.b;
-  const std::uint32_t body = hook.a.is_point() ? hook.b.body : hook.a.body;
-  if (point.is_point() && body != state::HookPlace::kWorld && !hook.collide)
-    hook.inside = collision::points_inside(t, point.object, body);
+  const std::uint32_t body = hook.other_end().body;
+  if (hook.holds_point() && body != state::HookPlace::kWorld && !hook.collide)
+    hook.inside = collision::points_inside(t, hook.point_end().object, body);
   world::wake_ends(hook, t.bodies);
   return id;
 }

@@ -12,6 +12,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::empty_space;
 using test::kGravity;
 using test::make_world;
@@ -20,10 +21,6 @@ using test::take;
 using test::without_air;
 
 namespace {
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 BodyDesc box_at(DVec3 position, Real mass, Vec3 half) {
   return {.kind = BodyKind::kDynamic,

@@ -8,6 +8,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::kGravity;
 using test::make_world;
 using test::run;
@@ -16,10 +17,6 @@ using test::take;
 namespace {
 
 const Shape kBall = Shape::sphere(Real(0.5));
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 BodyDesc ball_at(DVec3 position) {
   BodyDesc desc;

@@ -20,6 +20,10 @@ T take(Result<T> result) {
   return std::move(result).value();
 }
 
+inline double d(Real x) {
+  return static_cast<double>(x);
+}
+
 inline void run(World& world, int steps, Real dt = Real(1) / Real(60)) {
   for (int i = 0; i < steps; ++i) REQUIRE(world.step(dt).healthy());
 }

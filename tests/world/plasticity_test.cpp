@@ -13,6 +13,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::empty_space;
 using test::kPi;
 using test::make_world;
@@ -21,10 +22,6 @@ using test::take;
 using test::without_air;
 
 namespace {
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 /// |a / b - 1|
 double apart(double a, double b) {

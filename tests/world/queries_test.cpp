@@ -12,6 +12,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::make_world;
 using test::run;
 using test::take;
@@ -21,10 +22,6 @@ namespace {
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 const Shape kCube = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
 const Shape kBall = Shape::sphere(Real(0.5));
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 BodyId add(World& world, const Shape& shape, DVec3 position, BodyKind kind = BodyKind::kStatic) {
   return take(world.add_body({.kind = kind, .shape = shape, .position = position}));

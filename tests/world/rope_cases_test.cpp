@@ -11,6 +11,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::kGravity;
 using test::kPi;
 using test::make_world;
@@ -19,10 +20,6 @@ using test::take;
 using test::without_air;
 
 namespace {
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 BodyId add_box(World& world, DVec3 position, double mass, Vec3 half) {
   return take(world.add_body({.kind = BodyKind::kDynamic,

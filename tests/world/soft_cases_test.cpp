@@ -14,6 +14,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::empty_space;
 using test::kGravity;
 using test::kPi;
@@ -23,10 +24,6 @@ using test::take;
 using test::without_air;
 
 namespace {
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 /// Of a closed surface [m^3].
 double volume_of(const World& world, ClothId id) {

@@ -9,6 +9,7 @@
 
 namespace hooke {
 
+using test::d;
 using test::empty_space;
 using test::kGravity;
 using test::make_world;
@@ -17,10 +18,6 @@ using test::take;
 using test::without_air;
 
 namespace {
-
-double d(Real x) {
-  return static_cast<double>(x);
-}
 
 BodyId add_box(World& world, DVec3 position, Real mass, Vec3 half = {Real(0.2), Real(0.2), Real(0.2)}) {
   return take(world.add_body({.kind = BodyKind::kDynamic,

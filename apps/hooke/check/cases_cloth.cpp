@@ -1,4 +1,4 @@
-/// Cloth and closed skins: gas in them, what their rows add up to as a sheet, how they drape and flutter.
+/// Cloth and closed skins: gas in them, what their rows add up to as a sheet.
 
 #include "cases.h"
 #include "rig.h"
