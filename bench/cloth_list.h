@@ -1,5 +1,6 @@
 #pragma once
 
+#include "elements/isometric_bend.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
@@ -54,10 +55,12 @@ inline ClothList cloth_100(int side = 100) {
   return list;
 }
 
-/// The inner edges of the same cloth with both diagonals by turns, its rows waved by 5 mm so that they fold.
-inline state::Bends wave_cloth(ClothList& list, int side = 100) {
+/// The inner edges of the same cloth with both diagonals by turns, its rows waved by 5 mm so that they fold;
+/// bends by angle, or isometric ones.
+inline state::Bends wave_cloth(ClothList& list, bool isometric, int side = 100) {
   state::Bends bends;
   const auto point = [side](int column, int row) { return static_cast<std::uint32_t>(row * side + column); };
+  const std::vector<state::PositionLine> flat = list.particles.position;
   for (auto& line : list.particles.position) {
     const auto row = static_cast<int>(&line - list.particles.position.data()) * 7 / 3 % 5;
     line.x.z = Real(0.005) * static_cast<Real>(row);
@@ -68,6 +71,11 @@ inline state::Bends wave_cloth(ClothList& list, int side = 100) {
     bends.rest_angle.push_back(Real(0));
     bends.stiffness.push_back(Real(1e-3));
     bends.damping.push_back(Real(1e-5));
+    bends.weights.push_back({});
+    if (!isometric) return;
+    const auto weights =
+        elements::isometric_bend(flat[edge_a].x, flat[edge_b].x, flat[wing_a].x, flat[wing_b].x);
+    bends.weights.back() = weights;
   };
   for (int row = 0; row + 1 < side; ++row) {
     for (int column = 0; column + 1 < side; ++column) {

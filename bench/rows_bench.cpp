@@ -1,12 +1,13 @@
 /// One pass over the rows of a 100 x 100 cloth, one thread, for each instruction set of this machine.
 ///
 /// `springs` is scene "cloth": spacing 2 cm, 19 800 structural, 19 602 shear and 19 600 bend springs. `bends`
-/// is the same cloth, waved, with an angle at each of its 29 205 inner edges. The report's time is for the
-/// whole list; `ns_per_row` divides it by the number of rows, `bytes_per_row` is what the solver reads of
-/// each.
+/// is the same cloth, waved, with an angle at each of its 29 205 inner edges; `hinges` has an isometric bend
+/// at each, with the springs that lie there. The report's time is for the whole list; `ns_per_row` divides it
+/// by the number of rows, `bytes_per_row` is what the solver reads of each.
 
 #include "cloth_list.h"
 #include "solver/bends.h"
+#include "solver/hinges.h"
 #include "solver/springs.h"
 #include "solver/wide/wide.h"
 
@@ -30,8 +31,8 @@ void count_rows(benchmark::State& state, const Blocks& blocks, int rows) {
 void springs(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   solver::SpringBlocks blocks;
-  solver::build_spring_blocks(cloth.springs, cloth.particles, blocks);
-  solver::prepare_springs(blocks, kSubstep);
+  solver::build_spring_blocks(cloth.springs, cloth.particles, {}, blocks);
+  solver::prepare_springs(blocks.materials, kSubstep);
   for (auto _ : state) {
     for (const solver::SpringPass& pass : blocks.passes) {
       solver::solve_springs(blocks, pass, {pass.first, pass.end}, kSubstep, cloth.particles);
@@ -43,13 +44,28 @@ void springs(benchmark::State& state) {
 
 void bends(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
-  const state::Bends list = bench::wave_cloth(cloth);
+  const state::Bends list = bench::wave_cloth(cloth, false);
   solver::BendBlocks blocks;
   solver::build_bend_blocks(list, cloth.particles.count(), blocks);
   solver::prepare_bends(blocks, kSubstep);
   for (auto _ : state) {
     for (const solver::BendPass& pass : blocks.passes) {
       solver::solve_bends(blocks, pass, {pass.first, pass.end}, cloth.particles);
+    }
+    benchmark::ClobberMemory();
+  }
+  count_rows(state, blocks, list.count());
+}
+
+void hinges(benchmark::State& state) {
+  bench::ClothList cloth = bench::cloth_100();
+  const state::Bends list = bench::wave_cloth(cloth, true);
+  solver::HingeBlocks blocks;
+  solver::build_hinge_blocks(list, cloth.springs, cloth.particles.count(), blocks);
+  solver::prepare_hinges(blocks, kSubstep);
+  for (auto _ : state) {
+    for (const solver::HingePass& pass : blocks.passes) {
+      solver::solve_hinges(blocks, pass, {pass.first, pass.end}, cloth.particles);
     }
     benchmark::ClobberMemory();
   }
@@ -70,6 +86,7 @@ int main(int argc, char** argv) {
   for (const std::string& target : hooke::solver::wide::targets()) {
     add_benchmark("springs", target, springs);
     add_benchmark("bends", target, bends);
+    add_benchmark("hinges", target, hinges);
   }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

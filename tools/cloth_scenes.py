@@ -306,7 +306,7 @@ def tablecloth():
     length, width = long + overhang, wide - 0.04
     begin, ramp, speed, friction, cloth_friction = 0.5, 0.15, 6.0, 0.25, 0.5
     plates = [("plate", [-0.2, 0.18], 0.12, 0.012, 0.7, "ivory"), ("bowl", [0.2, -0.15], 0.09, 0.03, 0.5, "clay"),
-              ("vase", [0.1, 0.2], 0.05, 0.07, 0.6, "slate")]
+              ("vase", [0.1, 0.2], 0.075, 0.05, 0.6, "slate")]
     drawn = 0.5 * speed * ramp
     back = 0.02 - long / 2  # where the cloth ends
 
@@ -338,7 +338,7 @@ def tablecloth():
             *(promise("x", "==", dragged(x), name, 0.2 * (dragged(x) - x)) for name, (x, _), *_ in plates[:2]),
             promise("speed", "<", 0.01, "plate"),
         ],
-        world={"particle_substeps": 4},
+        world={"particle_substeps": 6},
         cloths=[{
             "name": "tablecloth", "material": "silk", "columns": columns, "rows": rows, "corner": [back, top + (thickness + gap) / 2, -width / 2],
             "column_direction": X, "row_direction": Z, "width": length, "height": width, "areal_density": 0.2,

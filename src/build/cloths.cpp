@@ -5,6 +5,7 @@
 #include "build/common.h"
 #include "build/tethers.h"
 #include "elements/dihedral.h"
+#include "elements/isometric_bend.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/vertex_order.h"
 
@@ -210,11 +211,32 @@ void append_springs(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   }
 }
 
+/// Isometric bends know no form at rest but flat.
+Result<void> check_flat(const Surface& s) {
+  constexpr double kFlat = 0.01;  // [rad]
+  for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
+    const EdgeSides& sides = s.topology.edge_sides[e];
+    if (sides.triangle_count != 2) continue;
+    const auto [a, b] = s.topology.edges[e];
+    const auto& p = s.points;
+    const auto d = elements::dihedral(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
+    if (!d.valid || std::abs(d.angle) < kFlat) continue;
+    return Error{ErrorCode::kOutOfRange, "cloth.bend",
+                 "isometric needs a surface that is flat at rest; triangles " +
+                     std::to_string(sides.triangles[0]) + " and " + std::to_string(sides.triangles[1]) +
+                     " meet at an angle"};
+  }
+  return {};
+}
+
 /// Stiffness |e|^2 B / (A_1 + A_2) of E = k C^2 / 2 for a flexural rigidity B: hinges of length |e| across
 /// strips of the width (A_1 + A_2) / |e| bend a sheet of squares about its lines, and one of equilateral
 /// triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does.
+/// An isometric bend, |q| = |e| theta, has the same energy by a stiffness B / (A_1 + A_2).
 void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
-  if (desc.bend != ClothDesc::Bend::kAngle || !(desc.bend_stiffness > Real(0))) return;
+  const bool isometric = desc.bend == ClothDesc::Bend::kIsometric;
+  if (!isometric && desc.bend != ClothDesc::Bend::kAngle) return;
+  if (!(desc.bend_stiffness > Real(0))) return;
   state::Deformable& object = tables.objects.back();
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
@@ -229,13 +251,21 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
     const auto d = elements::dihedral(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
     if (!d.valid) continue;
     const double areas = area_of(s, t) + area_of(s, s.triangles[sides.triangles[1]]);
-    const double stiffness = length_squared(p[b] - p[a]) / areas * static_cast<double>(desc.bend_stiffness);
+    const double stiffness =
+        (isometric ? 1.0 : length_squared(p[b] - p[a])) / areas * static_cast<double>(desc.bend_stiffness);
+    std::array<Real, 4> weights = {};
+    if (isometric) {
+      const auto exact = elements::isometric_bend(p[a], p[b], p[sides.opposite[0]], p[sides.opposite[1]]);
+      for (std::size_t k = 0; k < 4; ++k) weights[k] = static_cast<Real>(exact[k]);
+    }
     tables.bends.stencil.push_back({row_of(tables, object, a), row_of(tables, object, b),
                                     row_of(tables, object, sides.opposite[0]),
                                     row_of(tables, object, sides.opposite[1])});
     tables.bends.rest_angle.push_back(static_cast<Real>(d.angle));
     tables.bends.stiffness.push_back(static_cast<Real>(stiffness));
-    tables.bends.damping.push_back(static_cast<Real>(stiffness) * desc.bend_damping);
+    tables.bends.damping.push_back(isometric ? desc.bend_damping
+                                             : static_cast<Real>(stiffness) * desc.bend_damping);
+    tables.bends.weights.push_back(weights);
     ++object.bends.count;
   }
 }
@@ -338,6 +368,10 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
                    "vertex " + std::to_string(i) + " belongs to no area"};
     }
   }
+  if (desc.bend == ClothDesc::Bend::kIsometric) {
+    const Result<void> flat = check_flat(surface);
+    if (!flat) return flat.error();
+  }
   state::Deformable filled;
   if (desc.pressure) {
     const Result<void> gas = fill_with_gas(surface, static_cast<double>(*desc.pressure), filled);
@@ -351,7 +385,6 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.yield_angle = desc.yield_angle;
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;
-  object.feels_air = object.feels_air || desc.drag_coefficient > Real(0) || desc.lift_coefficient > Real(0);
   append_springs(surface, desc, tables);
   append_bends(surface, desc, tables);
   const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)

@@ -79,7 +79,8 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
     particles.charge[row] = points.charge[i];
     particles.viscous_drag[row] = points.viscous_drag[i];
     particles.drag_area[row] = points.drag_area[i];
-    object.feels_air = object.feels_air || points.viscous_drag[i] > Real(0) || points.drag_area[i] > Real(0);
+    object.points_drag =
+        object.points_drag || points.viscous_drag[i] > Real(0) || points.drag_area[i] > Real(0);
   }
 
   const auto object_row = static_cast<std::uint32_t>(tables.objects.size());

@@ -130,7 +130,6 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
   object.twist_stiffness = desc.twist_stiffness;
   object.twist_rate = static_cast<Real>(static_cast<double>(desc.twist) / total);
   object.drag_coefficient = desc.drag_coefficient;
-  object.feels_air = object.feels_air || desc.drag_coefficient > Real(0);
   append_segments(desc, lengths, total, tables);
   return {};
 }

@@ -32,6 +32,9 @@ struct Frame {
   geometry::Box box = {};   ///< Holds the shape on its way in this step.
 
   [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
+  [[nodiscard]] Vec3 to_shape_direction(Vec3 direction) const {
+    return rotate(conjugate(rotation), direction);
+  }
   [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
 };
 
@@ -206,6 +209,24 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
   contacts.separation[row] = gap.distance - radius;
 }
 
+/// The gap at x, or if a sphere there would meet the shape on its `way`, the gap where it does, less that
+/// part of the way: a plane that is right when it is touched. By conservative advancement; rounds are
+/// bounded, and what has not met the shape by then is taken where it is.
+Gap gap_on_way(const state::ColliderShape& shape, Vec3 x, Vec3 way, Real radius) {
+  constexpr int kRounds = 8;
+  Gap gap = gap_to_shape(shape, x);
+  const Real length_of_way = length(way);
+  const Real near = Real(0.01) * radius;
+  if (!(gap.distance - radius > near) || !(-dot(gap.normal, way) > gap.distance - radius)) return gap;
+  Real share = Real(0);
+  for (int i = 0; i < kRounds && gap.distance - radius > near && share < Real(1); ++i) {
+    share = std::min(share + (gap.distance - radius) / length_of_way, Real(1));
+    gap = gap_to_shape(shape, x + share * way);
+  }
+  gap.distance -= share * dot(gap.normal, way);
+  return gap;
+}
+
 /// Where forces between the two act and how the body moves there. That is at the particle's center, `arm`
 /// from the body's: a particle has no rotation that could take the torque of friction at its surface.
 void set_surface(state::Tables& t, std::size_t row, Vec3 arm, Vec3 belt_velocity) {
@@ -290,7 +311,7 @@ void find_contacts(state::Tables& t, double dt) {
   t.contacts = std::move(finder.contacts);
 }
 
-void update_contacts(parallel::Range range, state::Tables& t) {
+void update_contacts(parallel::Range range, Real h, state::Tables& t) {
   state::Contacts& contacts = t.contacts;
   const std::size_t count = contacts.particle.size();
   const auto same_pair = [&](std::size_t a, std::size_t b) {
@@ -309,7 +330,9 @@ void update_contacts(parallel::Range range, state::Tables& t) {
     const Vec3 x = frame.to_shape(place);
     const Real radius = t.particles.position[particle].radius;
     if (shape.shape.kind != ShapeKind::kMesh) {
-      set_row(contacts, first, frame, gap_to_shape(shape, x), radius);
+      const Vec3 surface = state::velocity_now(t.bodies, contacts.body[first], place - frame.center);
+      const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - surface);
+      set_row(contacts, first, frame, gap_on_way(shape, x, way, radius), radius);
     } else {
       gaps.clear();
       for (std::size_t i = first; i < row; ++i)

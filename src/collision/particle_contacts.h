@@ -15,10 +15,12 @@ namespace hooke::collision {
 /// is pulled farther than that within one step is found one step late.
 void find_contacts(state::Tables& tables, double dt);
 
-/// Normal, separation and surface of each row at the present place of the particle and of the body.
-/// `range` counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the
-/// range that holds the first of them.
-void update_contacts(parallel::Range range, state::Tables& tables);
+/// Normal, separation and surface of each row at the present place of the particle and of the body. Where a
+/// particle comes to a convex shape within the next `h` [s], the row is that of the place where it will
+/// touch: what slides along a face, past its rim, must not be stopped by the rim's normal of before. `range`
+/// counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the range that
+/// holds the first of them.
+void update_contacts(parallel::Range range, Real h, state::Tables& tables);
 
 /// Points of an object, counted within it, whose centers are less than half their radius outside a body, or
 /// inside it. In order.

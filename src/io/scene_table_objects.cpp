@@ -613,7 +613,8 @@ template <>
 std::span<const EnumName> names_of<ClothDesc::Bend>() {
   static constexpr EnumName names[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
                                        {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
-                                       {"none", static_cast<int>(ClothDesc::Bend::kNone)}};
+                                       {"none", static_cast<int>(ClothDesc::Bend::kNone)},
+                                       {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)}};
   return names;
 }
 

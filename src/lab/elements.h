@@ -5,6 +5,7 @@
 #include "elements/air.h"
 #include "elements/dihedral.h"
 #include "elements/fields.h"
+#include "elements/isometric_bend.h"
 #include "elements/spring.h"
 #include "lab/turn.h"
 
@@ -69,6 +70,27 @@ struct BendRow {
     constexpr double kPi = std::numbers::pi;
     const T c = angle - rest_angle;
     return c > T(kPi) ? c - 2 * kPi : (c < T(-kPi) ? c + 2 * kPi : c);
+  }
+};
+
+/// E = k |q|^2 / 2, F_i = -k K_i (1 + tau |q|' / |q|) q, see elements::isometric_bend.
+struct CurvatureRow {
+  static constexpr int kPoints = 4;
+  std::array<std::uint32_t, 4> at = {};  ///< The ends of the edge, then the wings.
+  double stiffness = 0;                  ///< k [N/m]
+  double damping = 0;                    ///< tau [s]
+  std::array<double, 4> weights = {};
+
+  template <class T>
+  Forces<T, 4> force(const Points<T, 4>& p) const {
+    const Vector3<T> q = elements::curvature(weights, p.x);
+    T pull = T(stiffness);
+    const T q2 = dot(q, q);
+    if (damping > 0 && q2 > T(0))
+      pull = pull + stiffness * damping * dot(q, elements::curvature(weights, p.v)) / q2;
+    Forces<T, 4> f;
+    for (int i = 0; i < 4; ++i) f[i] = (-weights[i] * pull) * q;
+    return f;
   }
 };
 

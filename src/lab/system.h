@@ -166,6 +166,7 @@ class System {
   void for_each_row(Visit&& visit) const {
     for (const SpringRow& row : springs_) visit(row);
     for (const BendRow& row : bends_) visit(row);
+    for (const CurvatureRow& row : curvatures_) visit(row);
     for (const SailRow& row : sails_) visit(row);
     for (const StrandRow& row : strands_) visit(row);
     for (const PointRow& row : points_) visit(row);
@@ -178,6 +179,7 @@ class System {
   std::vector<SpringRow> springs_;  ///< Of the table, then the segments of a rope.
   std::vector<std::string> spring_names_;
   std::vector<BendRow> bends_;
+  std::vector<CurvatureRow> curvatures_;
   std::vector<SailRow> sails_;
   std::vector<StrandRow> strands_;
   std::vector<PointRow> points_;

@@ -43,7 +43,7 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   system.slot_ = object.slot;
   system.wind_ = tables.desc.wind;
   system.wind_step_ = tables.step_count;
-  system.feels_air_ = object.feels_air;
+  system.feels_air_ = object.feels_air();
   system.add_points(tables, object);
   if (const Result<void> added = system.add_springs(tables, object); !added) return added.error();
   if (const Result<void> added = system.add_segments(tables, object); !added) return added.error();
@@ -96,7 +96,7 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
     point.at = {row};
     point.mass = mass_.back();
     point.charge = number(p.charge[i]);
-    if (object.feels_air) {
+    if (object.points_drag) {
       point.viscous = number(p.viscous_drag[i]);
       point.half_rho_area = number(tables.desc.wind.air_density) * number(p.drag_area[i]);
     }
@@ -154,10 +154,15 @@ void System::add_bends(const state::Tables& tables, const state::Deformable& obj
   const std::uint32_t first = object.particles.first;
   for (std::uint32_t i = object.bends.first; i < object.bends.end(); ++i) {
     const state::Bends::Stencil& s = tables.bends.stencil[i];
-    bends_.push_back({.at = {s.edge_a - first, s.edge_b - first, s.wing_a - first, s.wing_b - first},
-                      .stiffness = number(tables.bends.stiffness[i]),
-                      .damping = number(tables.bends.damping[i]),
-                      .rest_angle = number(tables.bends.rest_angle[i])});
+    const std::array<std::uint32_t, 4> at = {s.edge_a - first, s.edge_b - first, s.wing_a - first,
+                                             s.wing_b - first};
+    const double stiffness = number(tables.bends.stiffness[i]);
+    const double damping = number(tables.bends.damping[i]);
+    if (tables.bends.is_isometric(i)) {
+      curvatures_.push_back({at, stiffness, damping, tables.bends.weights_of(i)});
+    } else {
+      bends_.push_back({at, stiffness, damping, number(tables.bends.rest_angle[i])});
+    }
   }
 }
 
@@ -181,15 +186,16 @@ void System::add_air(const state::Tables& tables, const state::Deformable& objec
 /// What the methods want to know of the forces as a whole.
 void System::note(const state::Tables& tables, const state::Deformable& object) {
   const WindDesc& wind = tables.desc.wind;
-  gusts_ = object.feels_air && (wind.gust != Real(0) || wind.side_gust != Real(0));
+  gusts_ = object.feels_air() && (wind.gust != Real(0) || wind.side_gust != Real(0));
   if (gusts_ && wind.gusts == WindDesc::Gusts::kPaper)
     left_out_.emplace_back("the change of the paper's gusts: they are drawn per step of a World, here once");
-  bool damped = object.feels_air || laws_ != nullptr;
+  bool damped = object.feels_air() || laws_ != nullptr;
   for (const SpringRow& row : springs_) damped = damped || row.spring.damping > 0;
   for (const BendRow& row : bends_) damped = damped || row.damping > 0;
+  for (const CurvatureRow& row : curvatures_) damped = damped || row.damping > 0;
   for (const PointRow& row : points_) damped = damped || (row.charge != 0 && row.magnetic != DVec3{});
   velocity_dependent_ = damped;
-  ballistic_ = !damped && springs_.empty() && bends_.empty() && attractors_->empty();
+  ballistic_ = !damped && springs_.empty() && bends_.empty() && curvatures_.empty() && attractors_->empty();
   note_fields(tables);
   if (object.yield_angle < kRigid) left_out_.emplace_back("folds that stay: bends are elastic here");
   if (tables.any_force) left_out_.emplace_back("forces of World::apply_force: they last one step of a World");

@@ -145,6 +145,12 @@ Energy System::energy(double t, const State& y) const {
     const double opening = bend.valid ? row.opening(bend.angle) : 0.0;
     energy.elastic += 0.5 * row.stiffness * opening * opening;
   }
+  for (const CurvatureRow& row : curvatures_) {
+    const auto& at = row.at;
+    const DVec3 q =
+        elements::curvature<double>(row.weights, {m.x[at[0]], m.x[at[1]], m.x[at[2]], m.x[at[3]]});
+    energy.elastic += 0.5 * row.stiffness * length_squared(q);
+  }
   return energy;
 }
 
@@ -160,6 +166,11 @@ std::vector<Oscillation> System::oscillations(double t, const State& y) const {
     std::array<double, 4> size = {};
     for (int i = 0; i < 4 && bend.valid; ++i) size[i] = length(bend.gradient[i]);
     rows.add<4>(at, size, row.stiffness, row.damping, number++);
+  }
+  for (const CurvatureRow& row : curvatures_) {
+    std::array<double, 4> size = {};
+    for (int i = 0; i < 4; ++i) size[i] = std::abs(row.weights[i]);
+    rows.add<4>(row.at, size, row.stiffness, row.damping * row.stiffness, number++);
   }
   for (const PointRow& row : points_) rows.add_damping(row.at[0], row.viscous);
 
@@ -179,6 +190,9 @@ std::string System::row_name(std::size_t number) const {
   } else if (number - springs_.size() < bends_.size()) {
     std::snprintf(text, sizeof(text), "bend %zu of %s (k = %.4g N m)", number - springs_.size(),
                   name().c_str(), bends_[number - springs_.size()].stiffness);
+  } else if (const std::size_t i = number - springs_.size() - bends_.size(); i < curvatures_.size()) {
+    std::snprintf(text, sizeof(text), "bend %zu of %s (k = %.4g N/m)", i, name().c_str(),
+                  curvatures_[i].stiffness);
   } else {
     return "air friction of " + name();
   }

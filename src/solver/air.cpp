@@ -19,6 +19,7 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
     for (const std::uint32_t p : {t.a, t.b, t.c}) loads.triangle_of[next[p]++] = i;
   }
   loads.corner_impulse.assign(triangles.corners.size(), AirLine{});
+  loads.change.assign(static_cast<std::size_t>(particle_count), AirLine{});
 }
 
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
@@ -40,14 +41,22 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
   wide::load_triangles(on_triangles, {first + range.begin, first + range.end});
 }
 
-void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles) {
+void gather_loads(const state::Particles& particles, Real share, parallel::Range range, AirLoads& loads) {
   for (int p = range.begin; p < range.end; ++p) {
     Vec3 sum = {};
     for (std::uint32_t i = loads.first_of[p]; i < loads.first_of[p + 1]; ++i) {
       sum += loads.corner_impulse[loads.triangle_of[i]].v;
     }
-    particles.velocity[p].v += particles.velocity[p].inverse_mass * sum;
+    loads.change[p].v = (share * particles.velocity[p].inverse_mass) * sum;
   }
+}
+
+void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles) {
+  // As plain numbers, which compilers take by the vector: the inverse masses beside the velocities get zero.
+  static_assert(sizeof(AirLine) == sizeof(state::VelocityLine));
+  const Real* change = &loads.change[range.begin].v.x;
+  Real* velocity = &particles.velocity[range.begin].v.x;
+  for (int i = 0; i < 4 * range.count(); ++i) velocity[i] += change[i];
 }
 
 void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,

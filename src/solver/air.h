@@ -20,7 +20,8 @@ struct AirLoads {
   std::vector<std::uint32_t> first_of;  ///< Per particle, into `triangle_of`; one end marker.
   std::vector<std::uint32_t> triangle_of;
   std::vector<AirLine>
-      corner_impulse;  ///< A third of each triangle's impulse [N s]; written by load_triangles.
+      corner_impulse;           ///< A third of each triangle's impulse [N s]; written by load_triangles.
+  std::vector<AirLine> change;  ///< Of each particle's velocity [m/s]; written by gather_loads.
 };
 
 /// What the air does in one substep.
@@ -43,8 +44,11 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads);
 
-/// Adds the impulses of a particle's triangles in the order of the table. `range` counts particles of the
-/// world.
+/// `share` of what the impulses of a particle's triangles, added in the order of the table, change its
+/// velocity by. `range` counts particles of the world.
+void gather_loads(const state::Particles& particles, Real share, parallel::Range range, AirLoads& loads);
+
+/// Adds what gather_loads found. `range` counts particles of the world.
 void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles);
 
 /// Drag of the segments of one rope: F = rho C_d d L |u_t| u_t / 2, u_t across the segment; half to each end,

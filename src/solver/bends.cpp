@@ -3,7 +3,6 @@
 #include "solver/wide/wide.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace hooke::solver {
@@ -24,7 +23,14 @@ void set_lane(const state::Bends& bends, std::size_t row, int lane, BendBlock& b
 
 void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks& blocks) {
   blocks = {};
-  const std::vector<int> color = color_fours(bends.stencil, particle_count);
+  std::vector<std::size_t> rows;
+  std::vector<state::Bends::Stencil> stencils;
+  for (std::size_t row = 0; row < bends.stencil.size(); ++row) {
+    if (bends.is_isometric(row)) continue;
+    rows.push_back(row);
+    stencils.push_back(bends.stencil[row]);
+  }
+  const std::vector<int> color = color_fours(stencils, particle_count);
   std::vector<std::size_t> order(color.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -40,7 +46,7 @@ void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks
       pass.last_count = 0;
       for (int lane = 0; lane < kLanes; ++lane) {
         const bool more = i < order.size() && color[order[i]] == head;
-        set_lane(bends, order[more ? i++ : i - 1], lane, block, laws);
+        set_lane(bends, rows[order[more ? i++ : i - 1]], lane, block, laws);
         if (more) ++pass.last_count;
       }
     }
@@ -52,10 +58,9 @@ void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks
 void prepare_bends(BendBlocks& bends, Real h) {
   for (std::size_t i = 0; i < bends.blocks.size(); ++i) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Real k = bends.laws[i].stiffness[lane];
-      const Real s = bends.laws[i].damping[lane] + h * k;
-      bends.blocks[i].bias[lane] = s > Real(0) ? k / s : Real(0);
-      bends.blocks[i].gamma[lane] = s > Real(0) ? Real(1) / (h * s) : std::numeric_limits<Real>::infinity();
+      const Softness soft = softness(bends.laws[i].stiffness[lane], bends.laws[i].damping[lane], h);
+      bends.blocks[i].bias[lane] = soft.bias;
+      bends.blocks[i].gamma[lane] = soft.gamma;
     }
   }
 }

@@ -39,7 +39,8 @@ struct BendBlocks {
   std::vector<BendPass> passes;
 };
 
-/// Colors the rows greedily in the order of the table, 16 to a block.
+/// Colors the rows by angle greedily in the order of the table, 16 to a block. Isometric ones are hinges, see
+/// solver/hinges.h.
 void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks& blocks);
 
 /// b and gamma of every row for a substep of `h` [s].

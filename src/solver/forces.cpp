@@ -37,7 +37,7 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
     const Real w = particles.velocity[p].inverse_mass;
     if (!(w > Real(0))) continue;
     Vec3& v = particles.velocity[p].v;
-    if (object.feels_air) {
+    if (object.points_drag) {
       const Vec3 flow = v - inputs.wind[p].v;
       const Real drag =
           particles.viscous_drag[p] + inputs.air_density * particles.drag_area[p] * length(flow);

@@ -38,27 +38,20 @@ SpringMaterial material_of(const state::Springs& springs, std::size_t row) {
           .gamma = Real(0)};
 }
 
-std::uint32_t find_or_add(std::vector<SpringMaterial>& materials, const SpringMaterial& material) {
-  const auto found = std::find(materials.rbegin(), materials.rend(), material);
-  if (found != materials.rend())
-    return static_cast<std::uint32_t>(std::distance(found, materials.rend()) - 1);
-  materials.push_back(material);
-  return static_cast<std::uint32_t>(materials.size() - 1);
-}
-
 /// Colors one class: rows of a color share no particle.
-void color_class(const state::Springs& springs, const state::Particles& particles, SpringClass kind,
+void color_class(const state::Springs& springs, const state::Particles& particles,
+                 std::span<const std::uint8_t> taken, SpringClass kind,
                  std::vector<SpringMaterial>& materials, std::vector<Place>& places) {
   std::vector<std::uint64_t> used(static_cast<std::size_t>(particles.count()), 0);
   int lone_color = 64;
   for (std::size_t row = 0; row < springs.kind.size(); ++row) {
-    if (springs.kind[row] != kind) continue;
+    if (springs.kind[row] != kind || (!taken.empty() && taken[row] != 0)) continue;
     const std::uint32_t ends[2] = {springs.particle_a[row], springs.particle_b[row]};
     const bool anchored = kind == SpringClass::kTether;
     if (anchored && particles.velocity[ends[1]].inverse_mass > Real(0)) continue;
     int color = take_color(used, ends, anchored ? 1 : 2);
     if (color >= 64) color = lone_color++;
-    const std::uint32_t material = find_or_add(materials, material_of(springs, row));
+    const std::uint32_t material = find_or_add_material(springs, row, materials);
     places.push_back({kind, color, material, static_cast<std::uint32_t>(row)});
   }
 }
@@ -74,6 +67,16 @@ void fill_lanes(SpringBlock& block, int count) {
 
 }  // namespace
 
+std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
+                                   std::vector<SpringMaterial>& materials) {
+  const SpringMaterial material = material_of(springs, row);
+  const auto found = std::find(materials.rbegin(), materials.rend(), material);
+  if (found != materials.rend())
+    return static_cast<std::uint32_t>(std::distance(found, materials.rend()) - 1);
+  materials.push_back(material);
+  return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
 int take_color(std::vector<std::uint64_t>& used, const std::uint32_t* particles, int count) {
   std::uint64_t taken = 0;
   for (int i = 0; i < count; ++i) taken |= used[particles[i]];
@@ -84,13 +87,13 @@ int take_color(std::vector<std::uint64_t>& used, const std::uint32_t* particles,
 }
 
 void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
-                         SpringBlocks& blocks) {
+                         std::span<const std::uint8_t> taken, SpringBlocks& blocks) {
   blocks = {};
   std::vector<Place> places;
   places.reserve(springs.kind.size());
   for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kShear, SpringClass::kBend,
                                  SpringClass::kTether, SpringClass::kLimit}) {
-    color_class(springs, particles, kind, blocks.materials, places);
+    color_class(springs, particles, taken, kind, blocks.materials, places);
   }
   std::sort(places.begin(), places.end());
 
@@ -117,13 +120,18 @@ void build_spring_blocks(const state::Springs& springs, const state::Particles& 
   }
 }
 
-void prepare_springs(SpringBlocks& blocks, Real h) {
-  for (SpringMaterial& material : blocks.materials) {
-    const bool rigid = std::isinf(material.stiffness);
-    const Real s = material.damping + h * material.stiffness;
-    material.bias = rigid ? Real(1) / h : (s > Real(0) ? material.stiffness / s : Real(0));
-    material.gamma =
-        rigid ? Real(0) : (s > Real(0) ? Real(1) / (h * s) : std::numeric_limits<Real>::infinity());
+Softness softness(Real stiffness, Real damping, Real h) {
+  if (std::isinf(stiffness)) return {.bias = Real(1) / h, .gamma = Real(0)};
+  const Real s = damping + h * stiffness;
+  if (!(s > Real(0))) return {.bias = Real(0), .gamma = std::numeric_limits<Real>::infinity()};
+  return {.bias = stiffness / s, .gamma = Real(1) / (h * s)};
+}
+
+void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
+  for (SpringMaterial& material : materials) {
+    const Softness soft = softness(material.stiffness, material.damping, h);
+    material.bias = soft.bias;
+    material.gamma = soft.gamma;
   }
 }
 

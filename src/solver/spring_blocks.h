@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -38,6 +39,14 @@ struct SpringMaterial {
   friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
 };
 
+/// What an implicit Euler step of h [s] makes of a stiffness k and a damping c, see solver/springs.h.
+struct Softness {
+  Real bias = Real(0);  ///< b = k / (c + h k) [1/s]; 1 / h where k is infinite, 0 where both are zero.
+  Real gamma =
+      Real(0);  ///< 1 / (h (c + h k)), in the units of an inverse mass; infinite where both are zero.
+};
+[[nodiscard]] Softness softness(Real stiffness, Real damping, Real h);
+
 /// Blocks [first, end) hold rows of one color and one material: no two rows share a particle that is written.
 struct SpringPass {
   std::uint32_t material = 0;
@@ -53,13 +62,17 @@ struct SpringBlocks {
   std::vector<SpringPass> passes;  ///< In the order they are solved; passes of one color follow each other.
 };
 
-/// Colors the rows of each class greedily in the order of the table, 16 to a block. A tether whose anchor is
-/// not pinned is left out.
+/// Colors the rows of each class greedily in the order of the table, 16 to a block. Left out are rows that
+/// `taken` marks, if it has any, and tethers whose anchor is not pinned.
 void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
-                         SpringBlocks& blocks);
+                         std::span<const std::uint8_t> taken, SpringBlocks& blocks);
+
+/// The material of a row, by its place in the list.
+std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
+                                   std::vector<SpringMaterial>& materials);
 
 /// b and gamma of every material for a substep of `h` [s].
-void prepare_springs(SpringBlocks& blocks, Real h);
+void prepare_springs(std::vector<SpringMaterial>& materials, Real h);
 
 /// The smallest color in 0..63 that no particle of a row uses yet, and marks it; 64 and above mean a row
 /// alone in its color (a hub of more than 64 rows). `used[particle]` is a bit mask.

@@ -61,7 +61,11 @@ struct Deformable {
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
-  bool feels_air = false;  ///< Some drag of any kind.
+  bool points_drag = false;  ///< Some particle feels the air by itself: as a sphere, or by air friction.
+
+  [[nodiscard]] bool feels_air() const {
+    return points_drag || drag_coefficient > Real(0) || lift_coefficient > Real(0);
+  }
 };
 
 /// A point that is held, and how it moves.

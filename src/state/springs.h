@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -51,7 +52,8 @@ struct Springs {
   }
 };
 
-/// One row per inner edge that resists folding.
+/// One row per inner edge that resists folding: by the angle between its triangles, or by their isometric
+/// bend.
 struct Bends {
   struct Stencil {
     std::uint32_t edge_a, edge_b;  ///< Ends of the shared edge.
@@ -59,10 +61,19 @@ struct Bends {
   };
   std::vector<Stencil> stencil;
   std::vector<Real> rest_angle;  ///< theta_0 [rad]; 0 is flat.
-  std::vector<Real> stiffness;   ///< k [N m / rad], of the energy k (theta - theta_0)^2 / 2.
-  std::vector<Real> damping;     ///< c [N m s / rad]
+  std::vector<Real> stiffness;   ///< k [N m / rad], of the energy k (theta - theta_0)^2 / 2; or k [N/m], of
+                                 ///< the energy k |q|^2 / 2 of an isometric bend.
+  std::vector<Real> damping;     ///< c [N m s / rad]; of an isometric bend tau = c / k [s], of |q|.
+  std::vector<std::array<Real, 4>> weights;  ///< See elements::isometric_bend; all zero for a bend by angle.
 
   [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
+  /// The weights of wings are never zero.
+  [[nodiscard]] bool is_isometric(std::size_t row) const { return weights[row][2] != Real(0); }
+  [[nodiscard]] std::array<double, 4> weights_of(std::size_t row) const {
+    const auto& k = weights[row];
+    return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2]),
+            static_cast<double>(k[3])};
+  }
 
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit&& visit) {
@@ -70,6 +81,7 @@ struct Bends {
     visit(self.rest_angle);
     visit(self.stiffness);
     visit(self.damping);
+    visit(self.weights);
   }
 };
 

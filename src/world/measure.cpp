@@ -1,5 +1,6 @@
 #include "collision/particle_contacts.h"
 #include "elements/dihedral.h"
+#include "elements/isometric_bend.h"
 #include "elements/tetrahedron.h"
 #include "solver/rope_rows.h"
 #include "solver/rope_twist.h"
@@ -168,8 +169,14 @@ double measure_bends(const Tables& t) {
   double energy = 0;
   for (int i = 0; i < t.bends.count(); ++i) {
     const state::Bends::Stencil& s = t.bends.stencil[i];
-    const auto d = elements::dihedral(middle_of(t, s.edge_a), middle_of(t, s.edge_b), middle_of(t, s.wing_a),
-                                      middle_of(t, s.wing_b));
+    const std::array<DVec3, 4> x = {middle_of(t, s.edge_a), middle_of(t, s.edge_b), middle_of(t, s.wing_a),
+                                    middle_of(t, s.wing_b)};
+    if (t.bends.is_isometric(i)) {
+      const DVec3 q = elements::curvature(t.bends.weights_of(i), x);
+      energy += elastic(static_cast<double>(t.bends.stiffness[i]), length(q));
+      continue;
+    }
+    const auto d = elements::dihedral(x[0], x[1], x[2], x[3]);
     const double angle =
         d.valid ? elements::wrapped(d.angle - static_cast<double>(t.bends.rest_angle[i])) : 0.0;
     energy += elastic(static_cast<double>(t.bends.stiffness[i]), angle);

@@ -1,6 +1,7 @@
 #include "world/stages.h"
 
 #include "solver/forces.h"
+#include "solver/springs.h"
 #include "solver/wind.h"
 #include "world/access.h"
 #include "world/body_forces.h"
@@ -18,6 +19,7 @@ using parallel::Range;
 constexpr int kParticleGrain = 1024;
 constexpr int kTriangleGrain = 512;
 constexpr int kTetrahedronGrain = 64;
+constexpr int kBlockGrain = 16;
 
 /// An object is moved back to its origin when its first particle is farther than this from it [m].
 constexpr Real kFarFromOrigin = Real(64);
@@ -30,7 +32,7 @@ bool air_moves(const state::Tables& tables, const state::Deformable& object) {
 void read_wind(WorldData& world, double time) {
   const state::Tables& tables = world.tables;
   for (const state::Deformable& object : tables.objects) {
-    if (!object.feels_air) continue;
+    if (!object.feels_air()) continue;
     for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain, [&](Range range) {
       for (int i = range.begin; i < range.end; ++i) {
         const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
@@ -49,6 +51,29 @@ void for_tetrahedra(WorldData& world, Kernel kernel) {
       kernel(world.tetrahedra, {pass.first + range.begin, pass.first + range.end}, world.tables.particles);
     });
   }
+}
+
+/// Calls `work` with ranges of the world's particles.
+template <class Work>
+void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
+  const auto first = static_cast<int>(object.particles.first);
+  for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain, [&](Range range) {
+    work(Range{first + range.begin, first + range.end});
+  });
+}
+
+/// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
+/// more slowly than stretched cloth swings, which is what these are for.
+void weigh_triangles(WorldData& world, const state::Deformable& object, Real h) {
+  state::Tables& tables = world.tables;
+  const auto count = static_cast<Real>(tables.desc.particle_substeps);
+  const solver::Air air = {world.wind, tables.desc.wind.air_density, count * h};
+  for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
+    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.air_loads);
+  });
+  for_particles(world, object, [&](Range rows) {
+    solver::gather_loads(tables.particles, Real(1) / count, rows, world.air_loads);
+  });
 }
 
 /// Bodies have had the gravity of all particle substeps at once. Those that hang on ropes get it as the ropes
@@ -84,7 +109,9 @@ void refresh_derived(WorldData& world) {
   refresh_clamps(world);
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
-  solver::build_spring_blocks(tables.springs, tables.particles, world.spring_blocks);
+  const std::vector<std::uint8_t> in_hinges =
+      solver::build_hinge_blocks(tables.bends, tables.springs, tables.particles.count(), world.hinge_blocks);
+  solver::build_spring_blocks(tables.springs, tables.particles, in_hinges, world.spring_blocks);
   solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
   solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
@@ -110,7 +137,8 @@ void refresh_derived(WorldData& world) {
 }
 
 void prepare_rows(WorldData& world, Real h) {
-  solver::prepare_springs(world.spring_blocks, h);
+  solver::prepare_springs(world.spring_blocks.materials, h);
+  solver::prepare_hinges(world.hinge_blocks, h);
   solver::prepare_bends(world.bend_blocks, h);
   solver::prepare_tetrahedra(world.tetrahedra, h);
 }
@@ -155,29 +183,47 @@ void apply_forces(WorldData& world, Real h) {
   const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
                                       tables.any_force, tables.desc.gravity};
   for (const state::Deformable& object : tables.objects) {
-    if (tables.fields.empty() && !tables.any_force && !object.feels_air) continue;
+    if (tables.fields.empty() && !tables.any_force && !object.points_drag) continue;
     for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
                [&](Range range) { solver::apply_forces(object, inputs, h, range, tables.particles); });
   }
 }
 
-void apply_wind(WorldData& world, Real h) {
+void apply_wind(WorldData& world, Real h, bool first) {
   state::Tables& tables = world.tables;
-  const solver::Air air = {world.wind, tables.desc.wind.air_density, h};
-  bool any_triangles = false;
   for (const state::Deformable& object : tables.objects) {
     if (!air_moves(tables, object)) continue;
-    for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
-      solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.air_loads);
-    });
-    any_triangles = any_triangles || object.triangles.count > 0;
     if (object.segments.count > 0) {
+      const solver::Air air = {world.wind, tables.desc.wind.air_density, h};
       solver::push_segments(object, tables.segments, air, tables.particles);
     }
+    if (object.triangles.count == 0) continue;
+    if (first) weigh_triangles(world, object, h);
+    for_particles(world, object,
+                  [&](Range rows) { solver::push_particles(world.air_loads, rows, tables.particles); });
   }
-  if (!any_triangles) return;
-  for_ranges(*world.pool, tables.particles.count(), kParticleGrain,
-             [&](Range range) { solver::push_particles(world.air_loads, range, tables.particles); });
+}
+
+void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
+  for (const solver::SpringPass& pass : world.spring_blocks.passes) {
+    if (pass.kind < first || pass.kind > last) continue;
+    for_ranges(*world.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
+      const Range rows = {pass.first + blocks.begin, pass.first + blocks.end};
+      solver::solve_springs(world.spring_blocks, pass, rows, h, world.tables.particles);
+    });
+  }
+}
+
+void solve_bends(WorldData& world) {
+  const auto solve = [&world](const auto& rows, auto solve_pass) {
+    for (const auto& pass : rows.passes) {
+      for_ranges(*world.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
+        solve_pass(rows, pass, {pass.first + blocks.begin, pass.first + blocks.end}, world.tables.particles);
+      });
+    }
+  };
+  solve(world.bend_blocks, solver::solve_bends);
+  solve(world.hinge_blocks, solver::solve_hinges);
 }
 
 void call_force_laws(WorldData& world, double time, Real h) {

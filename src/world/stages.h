@@ -21,10 +21,17 @@ void begin_step(WorldData& world, double dt);
 /// damped.
 void begin_particle_substep(WorldData& world);
 
-/// The wind on triangles and segments; drag, forces, fields on particles; the user's force laws.
-void apply_wind(WorldData& world, Real h);
+/// The wind on triangles and segments; drag, forces, fields on particles; the user's force laws. Triangles
+/// are weighed by the wind in the `first` particle substep of a substep and pushed by the same force in all
+/// of them.
+void apply_wind(WorldData& world, Real h, bool first);
 void apply_forces(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
+
+/// Springs of the classes from `first` to `last`; bends, with the springs that lie in hinges. Rows of one
+/// pass share no particle, so their order does not matter; passes follow one another.
+void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last);
+void solve_bends(WorldData& world);
 
 /// What is tied to what, in a substep of length h [s], the `first` of those that bodies share.
 void begin_ties(WorldData& world, Real h, bool first);

@@ -13,14 +13,12 @@
 #include "base/float_environment.h"
 #include "collision/particle_contacts.h"
 #include "parallel/thread_pool.h"
-#include "solver/bends.h"
 #include "solver/bodies.h"
 #include "solver/body_contacts.h"
 #include "solver/contacts.h"
 #include "solver/forces.h"
 #include "solver/hard_islands.h"
 #include "solver/joints.h"
-#include "solver/springs.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
 #include "world/body_forces.h"
@@ -46,7 +44,6 @@ using world::for_contact_colors;
 
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
-constexpr int kBlockGrain = 16;
 constexpr int kContactGrain = 256;
 
 void detect(WorldData& w, double dt) {
@@ -70,30 +67,10 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-/// Rows of one pass share no particle, so their order does not matter; passes follow one another.
-void solve_springs(WorldData& w, Real h, SpringClass first, SpringClass last) {
-  for (const solver::SpringPass& pass : w.spring_blocks.passes) {
-    if (pass.kind < first || pass.kind > last) continue;
-    for_ranges(*w.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
-      const Range rows = {pass.first + blocks.begin, pass.first + blocks.end};
-      solver::solve_springs(w.spring_blocks, pass, rows, h, w.tables.particles);
-    });
-  }
-}
-
-void solve_bends(WorldData& w) {
-  for (const solver::BendPass& pass : w.bend_blocks.passes) {
-    for_ranges(*w.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
-      const Range rows = {pass.first + blocks.begin, pass.first + blocks.end};
-      solver::solve_bends(w.bend_blocks, pass, rows, w.tables.particles);
-    });
-  }
-}
-
-void apply_forces(WorldData& w, double time, Real h) {
+void apply_forces(WorldData& w, double time, Real h, bool first) {
   state::Particles& particles = w.tables.particles;
   world::begin_particle_substep(w);
-  world::apply_wind(w, h);
+  world::apply_wind(w, h, first);
   world::apply_forces(w, h);
   for_ranges(*w.pool, particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::accelerate(w.tables.desc.gravity, h, rows, particles); });
@@ -105,14 +82,14 @@ void apply_forces(WorldData& w, double time, Real h) {
 /// among the writers of velocity.
 void substep_particles(WorldData& w, double time, Real h, bool first) {
   state::Tables& t = w.tables;
-  apply_forces(w, time, h);
+  apply_forces(w, time, h, first);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
-             [&](Range rows) { collision::update_contacts(rows, t); });
+             [&](Range rows) { collision::update_contacts(rows, h, t); });
   world::begin_ties(w, h, first);
-  solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
-  solve_bends(w);
+  world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
+  world::solve_bends(w);
   world::solve_solids(w, h);
-  solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
+  world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::solve_ropes(w, h);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);

@@ -12,6 +12,7 @@
 #include "solver/dipoles.h"
 #include "solver/gas.h"
 #include "solver/hard_islands.h"
+#include "solver/hinges.h"
 #include "solver/joints.h"
 #include "solver/plasticity.h"
 #include "solver/rope_twist.h"
@@ -43,6 +44,7 @@ struct WorldData {
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
+  solver::HingeBlocks hinge_blocks;
   solver::TetrahedronRows tetrahedra;
   solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.

@@ -1,8 +1,7 @@
 #include "solver/springs.h"
 
-#include "solver/wide/wide.h"
+#include "solver/target_bits.h"
 
-#include <cstring>
 #include <doctest/doctest.h>
 #include <limits>
 
@@ -39,8 +38,8 @@ Pair make_pair(const PairDesc& d) {
 
 void solve(Pair& pair) {
   SpringBlocks blocks;
-  build_spring_blocks(pair.springs, pair.particles, blocks);
-  prepare_springs(blocks, kSubstep);
+  build_spring_blocks(pair.springs, pair.particles, {}, blocks);
+  prepare_springs(blocks.materials, kSubstep);
   for (const SpringPass& pass : blocks.passes) {
     solve_springs(blocks, pass, {pass.first, pass.end}, kSubstep, pair.particles);
   }
@@ -152,7 +151,7 @@ TEST_SUITE("solver/springs") {
   TEST_CASE("rows of one pass share no particle that is written") {
     const Pair net = random_net(300, 1500, state::SpringClass::kStretch);
     SpringBlocks blocks;
-    build_spring_blocks(net.springs, net.particles, blocks);
+    build_spring_blocks(net.springs, net.particles, {}, blocks);
     std::size_t rows = 0;
     for (const SpringPass& pass : blocks.passes) {
       std::vector<int> uses(300, 0);
@@ -189,21 +188,11 @@ TEST_SUITE("solver/springs") {
   TEST_CASE("every instruction set gives the bits of the scalar twin") {
     using state::SpringClass;
     for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kLimit, SpringClass::kTether}) {
-      const Pair start = random_net(200, 777, kind);
-      std::vector<state::VelocityLine> scalar;
-      for (const std::string& target : wide::targets()) {
-        REQUIRE(wide::use_target(target));
-        Pair net = start;
-        for (int i = 0; i < 3; ++i) {
-          solve(net);
-          wide::accelerate({Real(0.1), Real(-9.81), Real(0.3)}, kSubstep, {3, 200}, net.particles);
-          wide::move(kSubstep, {0, 199}, net.particles);
-        }
-        if (scalar.empty()) scalar = net.particles.velocity;
-        const std::size_t bytes = scalar.size() * sizeof(scalar[0]);
-        CHECK_MESSAGE(std::memcmp(scalar.data(), net.particles.velocity.data(), bytes) == 0, target);
-      }
-      wide::use_target("");
+      check_bits_of_targets(random_net(200, 777, kind), [](Pair& net) {
+        solve(net);
+        wide::accelerate({Real(0.1), Real(-9.81), Real(0.3)}, kSubstep, {3, 200}, net.particles);
+        wide::move(kSubstep, {0, 199}, net.particles);
+      });
     }
     CHECK_FALSE(wide::use_target("abacus"));
   }

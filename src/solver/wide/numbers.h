@@ -8,6 +8,7 @@
 ///   above, choose    a comparison and a choice by it
 ///   quotient, root   exact division and square root
 ///   read_quad, write_quad   four numbers of each lane from and to different places
+///   read_offset      the difference of two such places
 ///   kLanesOf         how many lanes it stands for
 
 #if defined(HOOKE_SOLVER_WIDE_NUMBERS_H) == defined(HWY_TARGET_TOGGLE)
@@ -78,6 +79,13 @@ HWY_INLINE Lane root(Lane a) {
 HWY_INLINE void read_quad(const Real* base, const std::uint32_t* line, Quad<Real>& q) {
   const Real* from = base + *line;
   q = {from[0], from[1], from[2], from[3]};
+}
+/// The first three numbers of one line less those of another.
+HWY_INLINE void read_offset(const Real* base, const std::uint32_t* to, const std::uint32_t* from,
+                            Triple<Real>& offset) {
+  const Real* end = base + *to;
+  const Real* start = base + *from;
+  offset = {end[0] - start[0], end[1] - start[1], end[2] - start[2]};
 }
 HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t* line) {
   Real* to = base + *line;
