@@ -326,6 +326,8 @@ class World {
   Result<void> set_workers(int workers);
 
   /// Advances time by `dt` [s], usually 1/60. Anything that is not a positive finite number moves nothing.
+  /// Allocates only where something came, went or broke since the last step, or where there is more of
+  /// something (contacts, islands) than there ever was.
   StepReport step(Real dt);
 
   [[nodiscard]] double time() const;               ///< Sum of all dt [s].

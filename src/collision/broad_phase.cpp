@@ -1,6 +1,7 @@
 #include "collision/broad_phase.h"
 
 #include "base/assert.h"
+#include "base/take_turns.h"
 
 #include <algorithm>
 #include <array>
@@ -156,7 +157,15 @@ void BroadPhase::remove(std::uint32_t collider) {
 }
 
 void BroadPhase::clear() {
-  *this = {};
+  entries_.clear();
+  tight_.clear();
+  fat_.clear();
+  companies_.clear();
+  standing_.clear();
+  moving_.clear();
+  unbounded_.clear();
+  changed_.clear();
+  candidates_.clear();
 }
 
 void BroadPhase::update() {
@@ -171,7 +180,7 @@ void BroadPhase::find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair
     merge_candidates();
   }
   pairs.resize(candidates_.size());
-  std::vector<std::size_t> ends(blocks_of(candidates_.size(), kCandidatesPerBlock));
+  ends_.resize(blocks_of(candidates_.size(), kCandidatesPerBlock));
   for_blocks(pool, candidates_.size(), kCandidatesPerBlock,
              [&](std::size_t block, std::size_t begin, std::size_t end) {
                std::size_t kept = begin;
@@ -180,12 +189,12 @@ void BroadPhase::find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair
                  pairs[kept] = pair;
                  kept += overlap_unpredictably(tight_[pair.first], tight_[pair.second]) ? 1 : 0;
                }
-               ends[block] = kept;
+               ends_[block] = kept;
              });
   auto out = pairs.begin();
-  for (std::size_t block = 0; block < ends.size(); ++block) {
+  for (std::size_t block = 0; block < ends_.size(); ++block) {
     const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(block * kCandidatesPerBlock);
-    out = std::move(begin, pairs.begin() + static_cast<std::ptrdiff_t>(ends[block]), out);
+    out = std::move(begin, pairs.begin() + static_cast<std::ptrdiff_t>(ends_[block]), out);
   }
   pairs.erase(out, pairs.end());
 }
@@ -298,7 +307,8 @@ void BroadPhase::merge_candidates() {
   });
   sorted_.resize(candidates_.size() + fresh_.size());
   std::merge(candidates_.begin(), candidates_.end(), fresh_.begin(), fresh_.end(), sorted_.begin());
-  candidates_.swap(sorted_);
+  base::take_turns(sorted_, candidates_);
+  fresh_.reserve(sorted_.capacity());  // takes turns with it where fresh pairs are sorted
   for (const std::uint32_t collider : changed_) entries_[collider].changed = false;
   changed_.clear();
 }

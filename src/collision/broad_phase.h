@@ -43,6 +43,7 @@ class BroadPhase {
   void set(std::uint32_t collider, const geometry::Box& box, bool moves, std::int32_t company = 0);
   /// Does nothing for a collider that has no box.
   void remove(std::uint32_t collider);
+  /// As if new, but for its memory.
   void clear();
 
   /// Brings the trees up to date. find_pairs does it too; queries are right without it, but slower after many
@@ -114,6 +115,7 @@ class BroadPhase {
   std::vector<std::vector<ColliderPair>> found_;  // by each block of searches
   std::vector<ColliderPair> fresh_;
   std::vector<ColliderPair> sorted_;
+  std::vector<std::size_t> ends_;  // of what is kept of each block of candidates
 };
 
 template <class Visit>

@@ -94,7 +94,12 @@ void BroadPhaseTree::move(std::uint32_t value, const Box& box) {
 }
 
 void BroadPhaseTree::clear() {
-  *this = {};
+  nodes_.assign(1, {});
+  loose_.clear();
+  place_.clear();
+  leaf_count_ = 0;
+  change_count_ = 0;
+  built_cost_ = 0;
 }
 
 void BroadPhaseTree::update() {

@@ -34,6 +34,7 @@ class BroadPhaseTree {
   void erase(std::uint32_t value);
   /// A new box for a `value` that is in the tree.
   void move(std::uint32_t value, const geometry::Box& box);
+  /// As if new, but for its memory.
   void clear();
 
   /// Puts loose leaves into nodes, fits nodes to their leaves where many changed, and builds the tree anew
@@ -88,7 +89,12 @@ class BroadPhaseTree {
     std::uint32_t node = 0;
     double bound = 0;  // no leaf below is entered before
   };
-  struct Task;
+  /// Leaves that are to lie below a node.
+  struct Task {
+    std::uint32_t node = 0;
+    std::span<Leaf> leaves = {};
+    int depth = 0;
+  };
 
   /// What a lane of a node holds.
   struct Child {
@@ -107,10 +113,11 @@ class BroadPhaseTree {
   void fit();
   void rebuild();
   void build(std::span<Leaf> leaves);
-  void build_node(const Task& task, std::vector<Task>& tasks);
+  void build_node(const Task& task);
 
   std::vector<Node> nodes_ = std::vector<Node>(1);  // the root is always there
   std::vector<Leaf> loose_;
+  std::vector<Task> tasks_;           // of build
   std::vector<std::uint32_t> place_;  // of each value: node * kLanes + lane, or kLooseBit and a row, or kNone
   std::size_t leaf_count_ = 0;
   std::size_t change_count_ = 0;  // since the nodes were fitted

@@ -91,25 +91,18 @@ std::size_t split(std::span<BroadPhaseTree::Leaf> leaves, int depth) {
 
 }  // namespace
 
-/// Leaves that are to lie below a node.
-struct BroadPhaseTree::Task {
-  std::uint32_t node = 0;
-  std::span<Leaf> leaves = {};
-  int depth = 0;
-};
-
 void BroadPhaseTree::build(std::span<Leaf> leaves) {
   nodes_.assign(1, {});
-  std::vector<Task> tasks = {{0, leaves, 0}};
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    build_node(task, tasks);
+  tasks_.assign(1, {0, leaves, 0});
+  while (!tasks_.empty()) {
+    const Task task = tasks_.back();
+    tasks_.pop_back();
+    build_node(task);
   }
 }
 
 /// Cuts the largest part in two until there are eight parts or all fit into one node each.
-void BroadPhaseTree::build_node(const Task& task, std::vector<Task>& tasks) {
+void BroadPhaseTree::build_node(const Task& task) {
   if (task.leaves.size() <= kLanes) {
     for (const Leaf& leaf : task.leaves) add_lane(task.node, child_of(leaf));
     return;
@@ -137,7 +130,7 @@ void BroadPhaseTree::build_node(const Task& task, std::vector<Task>& tasks) {
     }
     nodes_.emplace_back();
     add_lane(task.node, child);
-    tasks.push_back({child.child, part, task.depth + 1});
+    tasks_.push_back({child.child, part, task.depth + 1});
   }
 }
 

@@ -1,7 +1,6 @@
 #include "collision/continuous.h"
 
 #include <algorithm>
-#include <queue>
 #include <tuple>
 
 namespace hooke::collision {
@@ -20,16 +19,17 @@ struct Event {
   ColliderPair pair = {};
   int bends = 0;
 
-  /// For a queue that gives the first: the last in order of time, then of pair.
+  /// For a heap that gives the first: the last in order of time, then of pair.
   friend bool operator<(const Event& a, const Event& b) {
     return std::tie(a.impact.time, a.pair) > std::tie(b.impact.time, b.pair);
   }
 };
 
-/// Memory of one thread.
-struct Scratch {
-  std::vector<ColliderPair> pairs = {};
+/// Of some bodies that one thread looks at.
+struct WaySearch {
+  WayScratch way = {};
   SweepScratch sweep = {};
+  std::vector<Event> found = {};
 };
 
 /// Whether two bodies cannot pass each other in what is left of the step, as long as neither gives way.
@@ -37,17 +37,32 @@ bool go_together(const Path& a, const Path& b, Real time) {
   return (Real(1) - time) * relative_way(a, b) <= kUnseenWay * std::min(a.inner, b.inner);
 }
 
+}  // namespace
+
+struct ContinuousScratch::Buffers {
+  std::vector<WaySearch> searches = {};  ///< One for each part of a parallel loop.
+  std::vector<Event> queue = {};         ///< A heap.
+};
+
+namespace {
+
 class ImpactQueue {
  public:
-  ImpactQueue(const state::Colliders& colliders, const FindPairs& find_pairs, SweptBodies& bodies)
-      : colliders_(colliders), find_pairs_(find_pairs), bodies_(bodies) {}
+  ImpactQueue(const state::Colliders& colliders, const FindPairs& find_pairs,
+              ContinuousScratch::Buffers& buffers, SweptBodies& bodies)
+      : colliders_(colliders),
+        find_pairs_(find_pairs),
+        searches_(buffers.searches),
+        queue_(buffers.queue),
+        bodies_(bodies) {}
 
   std::uint32_t run(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
     find_first(pool, fast);
     std::uint32_t count = 0;
     while (!queue_.empty()) {
-      const Event event = queue_.top();
-      queue_.pop();
+      const Event event = queue_.front();
+      std::pop_heap(queue_.begin(), queue_.end());
+      queue_.pop_back();
       if (event.bends == bends_of(event.pair)) count += meet_at(event);
     }
     return count;
@@ -68,26 +83,32 @@ class ImpactQueue {
       events.push_back({*impact, pair, bends_of(pair)});
   }
 
+  void take_up(std::span<const Event> events) {
+    for (const Event& event : events) {
+      queue_.push_back(event);
+      std::push_heap(queue_.begin(), queue_.end());
+    }
+  }
+
   /// Each pair once: from its first fast body.
   void find_first(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
-    std::vector<std::vector<Event>> found(fast.size());
-    for_ranges(pool, static_cast<int>(fast.size()), kSweepGrain, [&](Range range) {
-      Scratch scratch;
+    queue_.clear();
+    searches_.resize(static_cast<std::size_t>(pool.workers()));
+    for (WaySearch& search : searches_) search.found.clear();
+    for_ranges(pool, static_cast<int>(fast.size()), kSweepGrain, [&](Range range, int part) {
+      WaySearch& search = searches_[static_cast<std::size_t>(part)];
       for (int i = range.begin; i < range.end; ++i) {
         const std::uint32_t body = fast[static_cast<std::size_t>(i)];
-        scratch.pairs.clear();
-        find_pairs_(body, scratch.pairs);
-        for (const ColliderPair pair : scratch.pairs) {
+        find_pairs_(body, search.way);
+        for (const ColliderPair pair : search.way.pairs) {
           const std::uint32_t first = body_of(pair.first);
           const std::uint32_t other = first == body ? body_of(pair.second) : first;
           if (other < body && std::binary_search(fast.begin(), fast.end(), other)) continue;
-          sweep(pair, Real(0), scratch.sweep, found[static_cast<std::size_t>(i)]);
+          sweep(pair, Real(0), search.sweep, search.found);
         }
       }
     });
-    for (const std::vector<Event>& events : found) {
-      for (const Event& event : events) queue_.push(event);
-    }
+    for (const WaySearch& search : searches_) take_up(search.found);
   }
 
   /// Returns how many of the two bodies give way.
@@ -144,27 +165,31 @@ class ImpactQueue {
   }
 
   void sweep_again(std::uint32_t body, Real time) {
-    scratch_.pairs.clear();
-    events_.clear();
-    find_pairs_(body, scratch_.pairs);
-    for (const ColliderPair pair : scratch_.pairs) sweep(pair, time, scratch_.sweep, events_);
-    for (const Event& event : events_) queue_.push(event);
+    WaySearch& search = searches_.front();
+    search.found.clear();
+    find_pairs_(body, search.way);
+    for (const ColliderPair pair : search.way.pairs) sweep(pair, time, search.sweep, search.found);
+    take_up(search.found);
   }
 
   const state::Colliders& colliders_;
   const FindPairs& find_pairs_;
+  std::vector<WaySearch>& searches_;
+  std::vector<Event>& queue_;
   SweptBodies& bodies_;
-  std::priority_queue<Event> queue_;
-  Scratch scratch_;
-  std::vector<Event> events_;
 };
 
 }  // namespace
 
+ContinuousScratch::ContinuousScratch() : buffers_(std::make_unique<Buffers>()) {}
+ContinuousScratch::~ContinuousScratch() = default;
+ContinuousScratch::ContinuousScratch(ContinuousScratch&&) noexcept = default;
+ContinuousScratch& ContinuousScratch::operator=(ContinuousScratch&&) noexcept = default;
+
 std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
                                   std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
-                                  SweptBodies& bodies) {
-  return ImpactQueue(colliders, find_pairs, bodies).run(pool, fast);
+                                  ContinuousScratch& scratch, SweptBodies& bodies) {
+  return ImpactQueue(colliders, find_pairs, scratch.buffers(), bodies).run(pool, fast);
 }
 
 }  // namespace hooke::collision

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,30 @@ struct SweptBodies {
   std::vector<Bends> bends = {};
 };
 
-/// Appends the pairs of a body's colliders with all that may be in their way.
-using FindPairs = std::function<void(std::uint32_t body, std::vector<ColliderPair>& pairs)>;
+/// What is in the way of a body.
+struct WayScratch {
+  std::vector<ColliderPair> pairs = {};
+  std::vector<std::uint32_t> near = {};  ///< Colliders; for FindPairs to use.
+};
+
+/// Replaces `scratch.pairs` by the pairs of a body's colliders with all that may be in their way.
+using FindPairs = std::function<void(std::uint32_t body, WayScratch& scratch)>;
+
+/// Memory of give_way_at_impacts.
+class ContinuousScratch {
+ public:
+  struct Buffers;  // continuous.cpp
+
+  ContinuousScratch();
+  ~ContinuousScratch();
+  ContinuousScratch(ContinuousScratch&&) noexcept;
+  ContinuousScratch& operator=(ContinuousScratch&&) noexcept;
+
+  [[nodiscard]] Buffers& buffers() { return *buffers_; }
+
+ private:
+  std::unique_ptr<Buffers> buffers_;
+};
 
 /// Sweeps the `fast` bodies (rows, ascending) along their paths against what `find_pairs` finds, and lets
 /// bodies give way where they would go through each other: impacts in order of time, then of pair; whoever
@@ -52,6 +75,6 @@ using FindPairs = std::function<void(std::uint32_t body, std::vector<ColliderPai
 /// bodies gave way. The result does not depend on the pool's number of threads.
 std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
                                   std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
-                                  SweptBodies& bodies);
+                                  ContinuousScratch& scratch, SweptBodies& bodies);
 
 }  // namespace hooke::collision

@@ -1,11 +1,14 @@
+#include "base/assert.h"
 #include "collision/manifold_axes.h"
 #include "collision/manifold_features.h"
 #include "collision/manifold_points.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <vector>
+#include <new>
+#include <span>
 
 namespace hooke::collision {
 
@@ -75,14 +78,29 @@ PlacedEdge place_edge(const Convex& c, std::size_t i) {
           c.axes * c.hull->faces[e.face_b].normal, static_cast<std::uint32_t>(i)};
 }
 
+/// Room for the edges of the largest hull, on the stack and not filled with zeros: most hulls have few.
+class EdgeList {
+ public:
+  void add(const PlacedEdge& edge) {
+    HOOKE_ASSERT(count_ < kMost);
+    ::new (memory_ + count_++ * sizeof(PlacedEdge)) PlacedEdge(edge);
+  }
+  [[nodiscard]] std::span<const PlacedEdge> edges() const {
+    return {std::launder(reinterpret_cast<const PlacedEdge*>(memory_)), count_};
+  }
+
+ private:
+  static constexpr std::size_t kMost = 3 * ConvexHull::kMaxVertices - 6;  // Euler's, of triangles alone
+  alignas(PlacedEdge) std::byte memory_[kMost * sizeof(PlacedEdge)];
+  std::size_t count_ = 0;
+};
+
 /// The edges of `own` that may hold `other` off by more than `least`. Normals of an edge lie between those of
 /// its faces; none of them is farther along than the whole of the part across the edge.
-std::vector<PlacedEdge> edges_toward(const Convex& own, const Convex& other, Real least) {
+void find_edges_toward(const Convex& own, const Convex& other, Real least, EdgeList& edges) {
   const ConvexHull& hull = *own.hull;
   const Vec3 middle = transpose(own.axes) * (middle_of(other) - own.center);
   const Real reach = other.hull->inner_radius + least;
-  std::vector<PlacedEdge> edges;
-  edges.reserve(hull.edges.size());
   for (std::size_t i = 0; i < hull.edges.size(); ++i) {
     const ConvexHull::Edge& e = hull.edges[i];
     const Vec3 d = middle - hull.vertices[e.vertex_a];
@@ -90,9 +108,8 @@ std::vector<PlacedEdge> edges_toward(const Convex& own, const Convex& other, Rea
     const bool behind =
         dot(hull.faces[e.face_a].normal, d) <= Real(0) && dot(hull.faces[e.face_b].normal, d) <= Real(0);
     const Real squared = behind ? Real(0) : length_squared(d) - along * along;
-    if (reach < Real(0) || squared > reach * reach) edges.push_back(place_edge(own, i));
+    if (reach < Real(0) || squared > reach * reach) edges.add(place_edge(own, i));
   }
-  return edges;
 }
 
 /// Whether the normals of edge p of A and the opposite ones of edge q of B cross on the sphere of directions:
@@ -109,11 +126,13 @@ bool arcs_cross(const PlacedEdge& p, const PlacedEdge& q) {
 
 void offer_edges(HullPair& pair) {
   const Real least = pair.score + pair.prefer_faces - pair.keep;
-  const std::vector<PlacedEdge> edges_a = edges_toward(pair.a, pair.b, least);
-  const std::vector<PlacedEdge> edges_b = edges_toward(pair.b, pair.a, least);
+  EdgeList edges_a;
+  EdgeList edges_b;
+  find_edges_toward(pair.a, pair.b, least, edges_a);
+  find_edges_toward(pair.b, pair.a, least, edges_b);
   const Vec3 middle = middle_of(pair.a);
-  for (const PlacedEdge& p : edges_a) {
-    for (const PlacedEdge& q : edges_b) {
+  for (const PlacedEdge& p : edges_a.edges()) {
+    for (const PlacedEdge& q : edges_b.edges()) {
       if (!arcs_cross(p, q)) continue;
       const Vec3 across = cross(p.along, q.along);
       const Real squared = length_squared(across);

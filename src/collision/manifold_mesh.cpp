@@ -1,11 +1,13 @@
 #include "collision/manifold_mesh.h"
 
+#include "base/take_turns.h"
 #include "collision/manifold_axes.h"
 #include "collision/manifold_features.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 namespace hooke::collision {
@@ -133,13 +135,21 @@ void add_to_patches(const SurfaceContact& contact, std::span<const MeetingPoint>
 }
 
 /// Joins patches whose normals are less than the angle with this cosine apart to the deepest of them.
-void join_patches(Real cosine, std::vector<PatchMeeting>& patches) {
-  std::vector<PatchMeeting> order = std::move(patches);
-  std::stable_sort(order.begin(), order.end(), [](const PatchMeeting& p, const PatchMeeting& q) {
-    return p.meeting.separation < q.meeting.separation;
+void join_patches(Real cosine, MeshScratch& scratch) {
+  std::vector<PatchMeeting>& patches = scratch.patches;
+  const std::vector<PatchMeeting>& unjoined = scratch.unjoined;
+  std::vector<std::uint32_t>& order = scratch.order;
+  base::take_turns(patches, scratch.unjoined);
+  order.resize(unjoined.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
+    const Real gap_p = unjoined[p].meeting.separation;
+    const Real gap_q = unjoined[q].meeting.separation;
+    return gap_p != gap_q ? gap_p < gap_q : p < q;
   });
   patches.clear();
-  for (const PatchMeeting& patch : order) {
+  for (const std::uint32_t i : order) {
+    const PatchMeeting& patch = unjoined[i];
     const auto near = std::find_if(patches.begin(), patches.end(), [&](const PatchMeeting& p) {
       return dot(p.meeting.normal, patch.meeting.normal) >= cosine;
     });
@@ -186,7 +196,7 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& s
                    scratch.patches);
   }
   for (const Real cosine : {Real(0.999), Real(0.99), Real(0.9), Real(0.5), Real(-1)}) {
-    if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch.patches);
+    if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch);
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
             [](const PatchMeeting& p, const PatchMeeting& q) { return p.patch < q.patch; });

@@ -38,6 +38,8 @@ struct MeshScratch {
   std::vector<MeetingPoint> points = {};      // of all contacts, one after the other
   std::vector<std::size_t> first_point = {};  // of each contact, and the number of all
   std::vector<PatchMeeting> patches = {};
+  std::vector<PatchMeeting> unjoined = {};  // patches, before some are joined
+  std::vector<std::uint32_t> order = {};    // of those
 };
 
 /// A is a mesh, one-sided: only what is in front of a triangle meets it. Replaces scratch.patches, in

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase.h"
 
+#include "base/take_turns.h"
 #include "collision/continuous_sweep.h"
 #include "collision/distance.h"
 #include "collision/manifold_match.h"
@@ -37,9 +38,9 @@ struct Scene {
   const state::Colliders& colliders;
   std::span<const MaterialPairDesc> materials;
   Real dt;
-  std::vector<Convex> placed = {};  ///< Of each collider, from its body's center of mass.
-  std::vector<Manifold> old = {};
-  std::vector<SmallMotion> motions = {};  ///< Of each body, since the last step.
+  std::span<const Convex> placed;  ///< Of each collider, from its body's center of mass.
+  std::span<const Manifold> old;
+  std::span<const SmallMotion> motions;  ///< Of each body, since the last step.
 };
 
 /// What the pairs of a chunk produced, in their order.
@@ -52,6 +53,15 @@ struct Chunk {
   Meeting meeting = {};
   MeshScratch mesh = {};
   SweepScratch sweep = {};
+
+  /// As if new, but for its memory.
+  void clear() {
+    manifolds.clear();
+    manifolds.reserve(kChunk);
+    counts = {};
+    meeting = {};
+    sweep.meeting = {};
+  }
 };
 
 /// Whether the body stays where it is in this step.
@@ -338,8 +348,8 @@ bool is_held(const Scene& scene, std::uint32_t collider) {
 }
 
 /// Not those of later in the step: only places of one time can be compared.
-std::vector<Support> find_supports(const Scene& scene, const state::Pairs& pairs) {
-  std::vector<Support> supports;
+void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Support>& supports) {
+  supports.clear();
   for (const Pair& pair : pairs.pair) {
     const bool a_held = is_held(scene, pair.collider_a);
     if (pair.time > Real(0) || a_held == is_held(scene, pair.collider_b)) continue;
@@ -349,8 +359,14 @@ std::vector<Support> find_supports(const Scene& scene, const state::Pairs& pairs
   std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
     return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
   });
-  return supports;
 }
+
+/// Memory for empty_ghosts.
+struct GhostScratch {
+  std::vector<Support> supports = {};
+  std::vector<SurfaceContact> contacts = {};
+  std::vector<std::uint32_t> ghosts = {};
+};
 
 /// The manifold as a contact with a piece of surface, in the neighborhood of the held body.
 SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& support) {
@@ -373,10 +389,10 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
 }
 
 /// Empties the manifolds that others of the same collider cover. Returns how many.
-std::uint32_t empty_ghosts(const Scene& scene, state::Pairs& pairs) {
-  const std::vector<Support> supports = find_supports(scene, pairs);
-  std::vector<SurfaceContact> contacts;
-  std::vector<std::uint32_t> ghosts;
+std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
+  auto& [supports, contacts, ghosts] = scratch;
+  find_supports(scene, pairs, supports);
+  ghosts.clear();
   for (std::size_t begin = 0, end = 0; begin < supports.size(); begin = end) {
     while (end < supports.size() && supports[end].held == supports[begin].held) ++end;
     if (end - begin < 2) continue;
@@ -407,9 +423,9 @@ void remove_empty(state::Pairs& pairs) {
   pairs.manifold.resize(kept);
 }
 
-std::vector<Convex> place_all(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                              const state::Colliders& colliders) {
-  std::vector<Convex> placed(colliders.body.size());
+void place_all(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
+               std::vector<Convex>& placed) {
+  placed.resize(colliders.body.size());
   for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto row = static_cast<std::size_t>(i);
@@ -417,7 +433,6 @@ std::vector<Convex> place_all(parallel::ThreadPool& pool, const state::Bodies& b
         placed[row] = place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
     }
   });
-  return placed;
 }
 
 Range pairs_of(std::size_t chunk, std::size_t pair_count) {
@@ -426,9 +441,10 @@ Range pairs_of(std::size_t chunk, std::size_t pair_count) {
 }
 
 /// Puts the chunks' manifolds behind each other. Returns the sum of their counts.
-NarrowPhaseCounts join(parallel::ThreadPool& pool, const std::vector<Chunk>& chunks, state::Pairs& pairs) {
+NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks,
+                       std::vector<std::size_t>& first, state::Pairs& pairs) {
   NarrowPhaseCounts counts;
-  std::vector<std::size_t> first = {0};
+  first.assign(1, 0);
   for (const Chunk& chunk : chunks) {
     first.push_back(first.back() + chunk.manifolds.size());
     counts.tested += chunk.counts.tested;
@@ -451,29 +467,43 @@ NarrowPhaseCounts join(parallel::ThreadPool& pool, const std::vector<Chunk>& chu
 
 }  // namespace
 
-NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                                   const state::Colliders& colliders,
-                                   std::span<const MaterialPairDesc> materials, Real dt,
-                                   state::Pairs& pairs) {
-  const Scene scene = {bodies,
-                       colliders,
-                       materials,
-                       dt,
-                       place_all(pool, bodies, colliders),
-                       std::exchange(pairs.manifold, {}),
-                       motions_since(pool, bodies, pairs.seen)};
-  std::vector<Chunk> chunks((pairs.pair.size() + kChunk - 1) / kChunk);
+struct NarrowPhase::Buffers {
+  std::vector<Convex> placed = {};
+  std::vector<Manifold> old = {};
+  std::vector<SmallMotion> motions = {};
+  std::vector<Chunk> chunks = {};
+  std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
+  GhostScratch ghosts = {};
+};
+
+NarrowPhase::NarrowPhase() : buffers_(std::make_unique<Buffers>()) {}
+NarrowPhase::~NarrowPhase() = default;
+NarrowPhase::NarrowPhase(NarrowPhase&&) noexcept = default;
+NarrowPhase& NarrowPhase::operator=(NarrowPhase&&) noexcept = default;
+
+NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                                const state::Colliders& colliders,
+                                                std::span<const MaterialPairDesc> materials, Real dt,
+                                                state::Pairs& pairs) {
+  auto& [placed, old, motions, all_chunks, first_manifold, ghosts] = *buffers_;
+  place_all(pool, bodies, colliders, placed);
+  find_motions(pool, bodies, pairs.seen, motions);
+  base::take_turns(pairs.manifold, old);
+  const Scene scene = {bodies, colliders, materials, dt, placed, old, motions};
+  const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
+  if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);
+  const std::span<Chunk> chunks = std::span(all_chunks).first(chunk_count);
   for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
     for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
       const Range of = pairs_of(c, pairs.pair.size());
-      chunks[c].manifolds.reserve(kChunk);
+      chunks[c].clear();
       for (int i = of.begin; i < of.end; ++i) {
         update_pair(scene, pairs.pair[static_cast<std::size_t>(i)], chunks[c]);
       }
     }
   });
-  NarrowPhaseCounts counts = join(pool, chunks, pairs);
-  counts.ghosts = empty_ghosts(scene, pairs);
+  NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
+  counts.ghosts = empty_ghosts(scene, ghosts, pairs);
   if (counts.ghosts > 0) remove_empty(pairs);
   return counts;
 }

@@ -45,9 +45,9 @@ void add_motion(const state::SeenPose& before, const state::SeenPose& now, Small
 
 }  // namespace
 
-std::vector<SmallMotion> motions_since(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                                       std::vector<state::SeenPose>& seen) {
-  std::vector<SmallMotion> motions(static_cast<std::size_t>(bodies.count()));
+void find_motions(parallel::ThreadPool& pool, const state::Bodies& bodies, std::vector<state::SeenPose>& seen,
+                  std::vector<SmallMotion>& motions) {
+  motions.resize(static_cast<std::size_t>(bodies.count()));
   seen.resize(motions.size());
   parallel::for_ranges(pool, bodies.count(), kBodyGrain, [&](parallel::Range range) {
     for (auto row = static_cast<std::size_t>(range.begin); row < static_cast<std::size_t>(range.end); ++row) {
@@ -61,7 +61,6 @@ std::vector<SmallMotion> motions_since(parallel::ThreadPool& pool, const state::
       seen[row] = now;
     }
   });
-  return motions;
 }
 
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift) {

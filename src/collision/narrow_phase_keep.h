@@ -27,9 +27,9 @@ struct SmallMotion {
   bool calm = false;         ///< And of a large island.
 };
 
-/// The motions of all bodies since `seen`, which becomes what is seen now.
-std::vector<SmallMotion> motions_since(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                                       std::vector<state::SeenPose>& seen);
+/// Replaces `motions` by those of all bodies since `seen`, which becomes what is seen now.
+void find_motions(parallel::ThreadPool& pool, const state::Bodies& bodies, std::vector<state::SeenPose>& seen,
+                  std::vector<SmallMotion>& motions);
 
 /// Adds what the two moved.
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);

@@ -1,24 +1,21 @@
+#include "base/take_turns.h"
 #include "collision/narrow_phase.h"
-
-#include <utility>
-#include <vector>
 
 namespace hooke::collision {
 
-void merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs) {
-  std::vector<state::Pair> merged;
-  merged.reserve(found.size());
+void NarrowPhase::merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs) {
+  merged_.clear();
   auto old = pairs.pair.begin();
   for (const ColliderPair& f : found) {
     const auto key_of = [](const state::Pair& p) { return ColliderPair{p.collider_a, p.collider_b}; };
     while (old != pairs.pair.end() && key_of(*old) < f) ++old;
     if (old != pairs.pair.end() && key_of(*old) == f) {
-      merged.push_back(*old);
+      merged_.push_back(*old);
     } else {
-      merged.push_back({.collider_a = f.first, .collider_b = f.second});
+      merged_.push_back({.collider_a = f.first, .collider_b = f.second});
     }
   }
-  pairs.pair = std::move(merged);
+  base::take_turns(merged_, pairs.pair);
 }
 
 }  // namespace hooke::collision

@@ -68,18 +68,17 @@ bool is_solid(const state::Tables& t, std::uint32_t body) {
 }
 
 /// Rows of the colliders that particles may touch, in ascending order.
-std::vector<std::uint32_t> solid_colliders(const state::Tables& t) {
-  std::vector<std::uint32_t> rows;
+void list_solid_colliders(const state::Tables& t, std::vector<std::uint32_t>& rows) {
+  rows.clear();
   for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
     const std::uint32_t body = t.colliders.body[c];
     if (body != state::Colliders::kNoBody && is_solid(t, body)) rows.push_back(c);
   }
-  return rows;
 }
 
 /// Those whose boxes, which hold their ways in this step, come within `reach` [m] of the object's points.
-std::vector<std::uint32_t> near_colliders(const state::Tables& t, const std::vector<std::uint32_t>& colliders,
-                                          const state::Deformable& object, Real reach) {
+void list_near_colliders(const state::Tables& t, std::span<const std::uint32_t> colliders,
+                         const state::Deformable& object, Real reach, std::vector<std::uint32_t>& near) {
   DVec3 lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
   DVec3 upper = -lower;
   for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
@@ -90,21 +89,19 @@ std::vector<std::uint32_t> near_colliders(const state::Tables& t, const std::vec
   const auto margin = static_cast<double>(reach);
   const geometry::Box3<double> box = {object.origin + lower - DVec3{margin, margin, margin},
                                       object.origin + upper + DVec3{margin, margin, margin}};
-  std::vector<std::uint32_t> near;
+  near.clear();
   for (const std::uint32_t c : colliders) {
     const geometry::Box& bounds = t.colliders.bounds[c];
     if (overlap(box, {vector_cast<double>(bounds.lower), vector_cast<double>(bounds.upper)}))
       near.push_back(c);
   }
-  return near;
 }
 
 /// The frames of `colliders` as one object sees them: made once for all of its particles.
-std::vector<Frame> frames_of(const state::Tables& t, const std::vector<std::uint32_t>& colliders,
-                             const state::Deformable& object) {
-  std::vector<Frame> frames;
+void make_frames(const state::Tables& t, std::span<const std::uint32_t> colliders,
+                 const state::Deformable& object, std::vector<Frame>& frames) {
+  frames.clear();
   for (const std::uint32_t c : colliders) frames.push_back(frame_of(t, c, object));
-  return frames;
 }
 
 struct Key {
@@ -139,8 +136,8 @@ using Hooked = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Those held together by hooks, with what was inside the body; all of a rope along which a body slides.
 /// Sorted.
-std::vector<Hooked> hooked_of(const state::Tables& t) {
-  std::vector<Hooked> hooked;
+void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
+  hooked.clear();
   const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
     if (!point.is_point() || body == state::HookPlace::kWorld) return;
     for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
@@ -155,18 +152,27 @@ std::vector<Hooked> hooked_of(const state::Tables& t) {
     add(hook, hook.b, hook.a.body);
   }
   std::sort(hooked.begin(), hooked.end());
-  return hooked;
 }
 
 bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body) {
   return std::binary_search(hooked.begin(), hooked.end(), Hooked{particle, body});
 }
 
-struct Finder {
+}  // namespace
+
+struct ParticleContactScratch::Buffers {
+  std::vector<std::uint32_t> colliders;  // that particles may touch
   std::vector<Hooked> hooked;
-  state::Contacts contacts;
+  std::vector<std::uint32_t> near;       // colliders, of one object
+  std::vector<Frame> frames;             // of those
   std::vector<std::uint32_t> triangles;  // of one query
+  state::Contacts contacts;              // those found; then those of the step before
+  std::vector<TriangleGap> gaps;         // of each contact with a mesh
 };
+
+namespace {
+
+using Finder = ParticleContactScratch::Buffers;
 
 /// Appends the rows of one particle against one shape.
 void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame, Real way,
@@ -202,6 +208,18 @@ void carry_forces(const state::Contacts& from, state::Contacts& to) {
     to.normal_force[row] = from.normal_force[old];
     to.friction_force[row] = from.friction_force[old];
   }
+}
+
+/// Both get room for as many rows as either has had: they take turns.
+void take_turns(state::Contacts& found, state::Contacts& before) {
+  std::size_t room = 0;
+  const auto measure = [&](const auto& column) { room = std::max(room, column.capacity()); };
+  const auto reserve = [&](auto& column) { column.reserve(room); };
+  state::Contacts::for_each_column(found, measure);
+  state::Contacts::for_each_column(before, measure);
+  state::Contacts::for_each_column(found, reserve);
+  state::Contacts::for_each_column(before, reserve);
+  std::swap(found, before);
 }
 
 void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap gap, Real radius) {
@@ -269,6 +287,11 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
 
 }  // namespace
 
+ParticleContactScratch::ParticleContactScratch() : buffers_(std::make_unique<Buffers>()) {}
+ParticleContactScratch::~ParticleContactScratch() = default;
+ParticleContactScratch::ParticleContactScratch(ParticleContactScratch&&) noexcept = default;
+ParticleContactScratch& ParticleContactScratch::operator=(ParticleContactScratch&&) noexcept = default;
+
 std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t object_row,
                                          std::uint32_t body) {
   const state::Deformable& object = t.objects[object_row];
@@ -285,39 +308,41 @@ std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t o
   return inside;
 }
 
-void find_contacts(state::Tables& t, double dt) {
+void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
   const auto way_of = [&](std::uint32_t p) {
     return Real(2) * length(t.particles.velocity[p].v) * step + fall;
   };
-  Finder finder;
-  finder.hooked = hooked_of(t);
-  const std::vector<std::uint32_t> colliders = solid_colliders(t);
+  Finder& finder = scratch.buffers();
+  auto& [colliders, hooked, near, frames, triangles, contacts, gaps] = finder;
+  list_solid_colliders(t, colliders);
+  list_hooked(t, hooked);
+  state::Contacts::for_each_column(contacts, [](auto& column) { column.clear(); });
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     const state::Rows particles = t.objects[o].particles;
     Real reach = Real(0);
     for (std::uint32_t p = particles.first; p < particles.end(); ++p)
       reach = std::max(reach, t.particles.position[p].radius + way_of(p) + kParticleMargin);
-    const std::vector<std::uint32_t> near = near_colliders(t, colliders, t.objects[o], reach);
-    const std::vector<Frame> frames = frames_of(t, near, t.objects[o]);
+    list_near_colliders(t, colliders, t.objects[o], reach, near);
+    make_frames(t, near, t.objects[o], frames);
     for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
       const Real way = way_of(p);
       for (std::size_t i = 0; i < near.size(); ++i)
         find_pair(t, {p, near[i], 0}, o, frames[i], way, step, finder);
     }
   }
-  carry_forces(t.contacts, finder.contacts);
-  t.contacts = std::move(finder.contacts);
+  carry_forces(t.contacts, contacts);
+  take_turns(contacts, t.contacts);
+  gaps.resize(t.contacts.particle.size());
 }
 
-void update_contacts(parallel::Range range, Real h, state::Tables& t) {
+void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& t) {
   state::Contacts& contacts = t.contacts;
   const std::size_t count = contacts.particle.size();
   const auto same_pair = [&](std::size_t a, std::size_t b) {
     return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
   };
-  std::vector<TriangleGap> gaps;  // of one particle to one mesh
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
   while (row < static_cast<std::size_t>(range.end)) {
@@ -334,9 +359,9 @@ void update_contacts(parallel::Range range, Real h, state::Tables& t) {
       const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - surface);
       set_row(contacts, first, frame, gap_on_way(shape, x, way, radius), radius);
     } else {
-      gaps.clear();
+      const std::span<TriangleGap> gaps = std::span(scratch.buffers().gaps).subspan(first, row - first);
       for (std::size_t i = first; i < row; ++i)
-        gaps.push_back(gap_to_triangle(*shape.mesh, contacts.feature[i], x));
+        gaps[i - first] = gap_to_triangle(*shape.mesh, contacts.feature[i], x);
       update_mesh_rows(contacts, first, gaps, is_inside(*shape.mesh, x), frame, radius);
     }
     for (std::size_t i = first; i < row; ++i) set_surface(t, i, place - frame.center, frame.belt_velocity);
@@ -345,10 +370,13 @@ void update_contacts(parallel::Range range, Real h, state::Tables& t) {
 
 double largest_penetration(const state::Tables& t) {
   double deepest = 0;
-  const std::vector<std::uint32_t> colliders = solid_colliders(t);
-  const std::vector<Hooked> hooked = hooked_of(t);
+  std::vector<std::uint32_t> colliders;
+  std::vector<Hooked> hooked;
+  std::vector<Frame> frames;
+  list_solid_colliders(t, colliders);
+  list_hooked(t, hooked);
   for (const state::Deformable& object : t.objects) {
-    const std::vector<Frame> frames = frames_of(t, colliders, object);
+    make_frames(t, colliders, object, frames);
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const Real radius = t.particles.position[p].radius;
       for (std::size_t i = 0; i < frames.size(); ++i) {

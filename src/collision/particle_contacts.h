@@ -4,23 +4,40 @@
 #include "state/tables.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace hooke::collision {
+
+/// Memory of find_contacts, and what it leaves to update_contacts.
+class ParticleContactScratch {
+ public:
+  struct Buffers;  // particle_contacts.cpp
+
+  ParticleContactScratch();
+  ~ParticleContactScratch();
+  ParticleContactScratch(ParticleContactScratch&&) noexcept;
+  ParticleContactScratch& operator=(ParticleContactScratch&&) noexcept;
+
+  [[nodiscard]] Buffers& buffers() { return *buffers_; }
+
+ private:
+  std::unique_ptr<Buffers> buffers_;
+};
 
 /// Finds the particles that may touch the shape of a body within the next `dt` and makes their contact rows,
 /// in order of particle, body and triangle. Rows that were there before keep their forces.
 ///
 /// Reach: twice the way of the particle at its speed, plus those of gravity and of the body, plus 2 cm. What
 /// is pulled farther than that within one step is found one step late.
-void find_contacts(state::Tables& tables, double dt);
+void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& tables);
 
 /// Normal, separation and surface of each row at the present place of the particle and of the body. Where a
 /// particle comes to a convex shape within the next `h` [s], the row is that of the place where it will
 /// touch: what slides along a face, past its rim, must not be stopped by the rim's normal of before. `range`
 /// counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the range that
 /// holds the first of them.
-void update_contacts(parallel::Range range, Real h, state::Tables& tables);
+void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& tables);
 
 /// Points of an object, counted within it, whose centers are less than half their radius outside a body, or
 /// inside it. In order.

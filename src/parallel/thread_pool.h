@@ -31,17 +31,24 @@ class ThreadPool {
   std::unique_ptr<Shared> shared_;
 };
 
-/// Calls `kernel(range)` over disjoint ranges that cover [0, count). Ranges start at multiples of `grain`,
-/// the size below which a job is not worth splitting. Kernels of one call must not write a row that another
-/// range reads.
+template <class Kernel>
+void call_kernel(Kernel& kernel, Range range, [[maybe_unused]] int part) {
+  if constexpr (std::is_invocable_v<Kernel&, Range, int>) {
+    kernel(range, part);
+  } else {
+    kernel(range);
+  }
+}
+
+/// Calls `kernel(range)`, or `kernel(range, part)`, over disjoint ranges that cover [0, count). Ranges start
+/// at multiples of `grain`, the size below which a job is not worth splitting. Kernels of one call must not
+/// write a row that another range reads. `part`, in [0, workers), is the number of the range: a part has the
+/// same rows every time, whichever thread does it, and so has memory that is kept for it.
 template <class Kernel>
 void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
   if (count <= 0) return;
   const int blocks = (count + grain - 1) / grain;
-  if (pool.workers() == 1 || blocks == 1) {
-    kernel(Range{0, count});
-    return;
-  }
+  if (pool.workers() == 1 || blocks == 1) return call_kernel(kernel, {0, count}, 0);
   struct Context {
     std::remove_reference_t<Kernel>* kernel;
     int count, grain, blocks, workers;
@@ -55,7 +62,7 @@ void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
           return row < c.count ? static_cast<int>(row) : c.count;
         };
         const Range range{edge(part), edge(part + 1)};
-        if (range.begin < range.end) (*c.kernel)(range);
+        if (range.begin < range.end) call_kernel(*c.kernel, range, part);
       },
       &context);
 }

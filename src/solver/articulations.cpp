@@ -1,7 +1,6 @@
 #include "solver/articulations.h"
 
 #include "base/assert.h"
-#include "base/sort_unique.h"
 #include "math/rotation.h"
 #include "solver/geometric_stiffness.h"
 
@@ -218,7 +217,8 @@ bool turns_fast(const Articulation& art, double h) {
 /// Writes the stiffness of all links under the impulses of their hooks, where it grows; true if it grew so
 /// much that a solution found without it is not to be trusted.
 bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
-  std::vector<Symmetric3<double>> found(art.links.size());
+  std::vector<Symmetric3<double>>& found = art.stiffness_found;
+  found.assign(art.links.size(), {});
   for (const Articulation::Joint& joint : art.joints) {
     if (joint.is_weld()) continue;
     const Hook& hook = hooks[joint.hook];
@@ -373,7 +373,7 @@ void solve_free_rows(Articulation& art) {
       if (art.bound[i] == 0) art.right_side.push_back(shortfall(art, joint, art.rows[i]));
     }
   }
-  factor(art.pattern, art.factors);
+  factor(art.pattern, art.factors, art.factor_scratch);
   solve(art.pattern, art.factors, art.right_side);
   for (std::size_t k = 0; k < art.free.size(); ++k) art.lambda[art.free[k]] = art.right_side[k];
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);
@@ -457,20 +457,19 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
   for (const Articulation::Joint& joint : frame.joints)
     sizes.push_back(joint.is_weld() ? kWeldRows : count_joint_rows(hooks[joint.hook]));
 
-  std::vector<std::vector<std::uint32_t>> neighbors(frame.joints.size());
+  BlockGraph graph;
+  graph.reset(frame.joints.size());
   for (const std::vector<std::uint32_t>& group : joints_of_links(frame, bodies)) {
-    for (const std::uint32_t i : group) neighbors[i].insert(neighbors[i].end(), group.begin(), group.end());
-  }
-  for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
-    base::sort_unique(neighbors[i]);
-    std::erase(neighbors[i], i);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      for (std::size_t j = 0; j < k; ++j) {
+        if (group[j] != group[k]) graph.join(group[j], group[k]);
+      }
+    }
   }
   Articulation art;
   art.has_loops = has_loops(frame, bodies);
-  std::optional<BlockPattern> pattern =
-      make_block_pattern(neighbors, sizes, art.has_loops ? budget : kTreesMayTake * budget);
-  if (!pattern) return std::nullopt;
-  art.pattern = std::move(*pattern);
+  if (!make_block_pattern(graph, sizes, art.has_loops ? budget : kTreesMayTake * budget, art.pattern))
+    return std::nullopt;
   for (int i = 0; i < art.pattern.node_count(); ++i) {
     Articulation::Joint joint = frame.joints[art.pattern.order[i]];
     joint.first = art.pattern.first[i];
@@ -485,6 +484,11 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
   art.rows.resize(row_count);
   art.lambda.resize(row_count);
   art.bound.resize(row_count);
+  art.free.reserve(row_count);
+  art.columns.reserve(9 * row_count);
+  art.right_side.reserve(row_count);
+  art.factors.reserve(art.pattern.number_count);
+  art.factor_scratch.reserve(art.pattern.number_count);
   return art;
 }
 

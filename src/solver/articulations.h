@@ -91,7 +91,9 @@ struct Articulation {
   std::vector<int> free_sizes;  ///< How many each joint has.
   std::vector<double> columns;  ///< Of each joint: n, then the lever on a, then on b; x of all, y, z.
   std::vector<double> factors;
+  std::vector<double> factor_scratch;
   std::vector<double> right_side;
+  std::vector<math::Symmetric3<double>> stiffness_found;  ///< Of each link.
 };
 
 /// How much more a tree may take: it costs in proportion to its hooks, and nets do worst on large stars.

@@ -136,8 +136,7 @@ void for_each_range(parallel::ThreadPool& pool, BallJoints& joints, SweepOrder o
 }
 
 /// Blocks of the hooks of one color that are awake: those with two bodies that move, then the others.
-void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies, BallJoints& joints,
-                std::vector<std::pair<std::size_t, std::size_t>>& plan) {
+void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies, BallJoints& joints) {
   for (const bool anchored : {false, true}) {
     std::size_t begin = joints.hook_of.size();
     for (int i = joints.color_begin[color]; i < joints.color_begin[color + 1]; ++i) {
@@ -149,12 +148,12 @@ void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies,
       }
       joints.hook_of.push_back(row);
       if (joints.hook_of.size() - begin < kLanes) continue;
-      plan.emplace_back(begin, kLanes);
+      joints.plan.emplace_back(begin, kLanes);
       begin = joints.hook_of.size();
     }
-    if (joints.hook_of.size() > begin) plan.emplace_back(begin, joints.hook_of.size() - begin);
+    if (joints.hook_of.size() > begin) joints.plan.emplace_back(begin, joints.hook_of.size() - begin);
   }
-  joints.block_begin.push_back(static_cast<int>(plan.size()));
+  joints.block_begin.push_back(static_cast<int>(joints.plan.size()));
 }
 
 }  // namespace
@@ -181,13 +180,13 @@ void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& 
   joints.resting.clear();
   joints.block_begin.assign(1, 0);
   joints.fresh = true;
-  std::vector<std::pair<std::size_t, std::size_t>> plan;
+  joints.plan.clear();
   for (int color = 0; color + 1 < static_cast<int>(joints.color_begin.size()); ++color)
-    plan_color(color, hooks, bodies, joints, plan);
-  joints.blocks.resize(plan.size());
-  parallel::for_ranges(pool, static_cast<int>(plan.size()), kFillGrain, [&](Range range) {
+    plan_color(color, hooks, bodies, joints);
+  joints.blocks.resize(joints.plan.size());
+  parallel::for_ranges(pool, static_cast<int>(joints.plan.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
-      const auto [begin, count] = plan[i];
+      const auto [begin, count] = joints.plan[i];
       fill_block(h, joints, begin, count, hooks, bodies, joints.blocks[i]);
     }
   });

@@ -8,6 +8,7 @@
 #include "state/hooks.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -57,10 +58,11 @@ struct BallJoints {
 
   // Of the hooks that are awake in this step.
   std::vector<BallBlock> blocks;
-  std::vector<int> block_begin = {0};  ///< Of each color; one more at the end.
-  std::vector<std::uint32_t> hook_of;  ///< The hook row of each lane.
-  std::vector<std::uint32_t> resting;  ///< Hook rows that are asleep.
-  bool fresh = true;                   ///< No substep yet.
+  std::vector<int> block_begin = {0};                     ///< Of each color; one more at the end.
+  std::vector<std::uint32_t> hook_of;                     ///< The hook row of each lane.
+  std::vector<std::uint32_t> resting;                     ///< Hook rows that are asleep.
+  std::vector<std::pair<std::size_t, std::size_t>> plan;  ///< Of each block: first lane, number of lanes.
+  bool fresh = true;                                      ///< No substep yet.
 };
 
 /// Whether the blocks know the hook: three locked ways and nothing else, between bodies that do not tumble

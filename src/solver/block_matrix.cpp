@@ -1,72 +1,24 @@
 #include "solver/block_matrix.h"
 
+#include "base/sort_unique.h"
+
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <limits>
-#include <set>
-#include <utility>
 
 namespace hooke::solver {
 
 namespace {
 
-using Neighbors = std::vector<std::vector<std::uint32_t>>;
-
-/// The nodes that are left when a node is eliminated and adjacent to it by then: its column of the factor.
-struct Elimination {
-  std::vector<std::uint32_t> order;
-  Neighbors below;  ///< Of each node, by its old number.
-  double operations = 0;
-};
-
 double cost_of(int own, double below) {
   return own * own * own / 6.0 + own * own * below + 0.5 * own * below * below;
 }
 
-std::optional<Elimination> eliminate(Neighbors graph, const std::vector<int>& sizes, double budget) {
-  Elimination e;
-  std::set<std::pair<std::size_t, std::uint32_t>> queue;
-  for (std::uint32_t i = 0; i < graph.size(); ++i) queue.insert({graph[i].size(), i});
-  e.below.resize(graph.size());
-  while (!queue.empty()) {
-    const std::uint32_t node = queue.begin()->second;
-    queue.erase(queue.begin());
-    std::vector<std::uint32_t> clique = std::move(graph[node]);
-    double below = 0;
-    for (const std::uint32_t i : clique) below += sizes[i];
-    e.operations += cost_of(sizes[node], below);
-    if (e.operations > budget) return std::nullopt;
-    for (const std::uint32_t i : clique) {
-      queue.erase({graph[i].size(), i});
-      std::vector<std::uint32_t> joined;
-      std::set_union(graph[i].begin(), graph[i].end(), clique.begin(), clique.end(),
-                     std::back_inserter(joined));
-      std::erase_if(joined, [&](std::uint32_t k) { return k == i || k == node; });
-      graph[i] = std::move(joined);
-      queue.insert({graph[i].size(), i});
-    }
-    e.order.push_back(node);
-    e.below[node] = std::move(clique);
-  }
-  return e;
-}
-
-void list_blocks(const Elimination& e, BlockPattern& p) {
-  std::vector<std::uint32_t> place(e.order.size());
-  for (std::uint32_t i = 0; i < e.order.size(); ++i) place[e.order[i]] = i;
-  p.column_begin.push_back(0);
-  for (std::uint32_t j = 0; j < e.order.size(); ++j) {
-    std::vector<std::uint32_t> rows = {j};
-    for (const std::uint32_t node : e.below[e.order[j]]) rows.push_back(place[node]);
-    std::sort(rows.begin(), rows.end());
-    for (const std::uint32_t i : rows) p.block.push_back({i, j});
-    p.column_begin.push_back(static_cast<std::uint32_t>(p.block.size()));
-  }
-}
-
 void list_updates(BlockPattern& p) {
-  p.update_begin.push_back(0);
+  p.update.clear();
+  p.update_begin.assign(1, 0);
   for (std::uint32_t j = 0; j < p.order.size(); ++j) {
     for (std::uint32_t left = p.column_begin[j] + 1; left < p.column_begin[j + 1]; ++left) {
       for (std::uint32_t right = p.column_begin[j] + 1; right <= left; ++right) {
@@ -201,20 +153,77 @@ void substitute_back(const BlockPattern& p, std::span<const double> numbers, std
 
 }  // namespace
 
-std::optional<BlockPattern> make_block_pattern(const Neighbors& neighbors, const std::vector<int>& sizes,
-                                               double budget) {
-  std::optional<Elimination> e = eliminate(neighbors, sizes, budget);
-  if (!e) return std::nullopt;
-  BlockPattern p;
-  p.operations = e->operations;
-  list_blocks(*e, p);
-  std::vector<int> in_order;
-  for (const std::uint32_t node : e->order) in_order.push_back(sizes[node]);
-  resize_blocks(in_order, p);
-  p.order = std::move(e->order);
+void BlockGraph::reset(std::size_t count) {
+  count_ = count;
+  if (neighbors_.size() < count) neighbors_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) neighbors_[i].clear();
+}
+
+void BlockGraph::sort() {
+  for (std::size_t i = 0; i < count_; ++i) base::sort_unique(neighbors_[i]);
+}
+
+/// Its neighbors become adjacent to each other.
+void BlockGraph::eliminate_node(std::uint32_t node) {
+  const std::vector<std::uint32_t>& clique = neighbors_[node];
+  for (const std::uint32_t i : clique) {
+    std::vector<std::uint32_t>& own = neighbors_[i];
+    joined_.clear();
+    std::set_union(own.begin(), own.end(), clique.begin(), clique.end(), std::back_inserter(joined_));
+    std::erase_if(joined_, [&](std::uint32_t k) { return k == i || k == node; });
+    own.assign(joined_.begin(), joined_.end());
+    queue_.emplace_back(own.size(), i);
+    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+  }
+}
+
+bool BlockGraph::eliminate(std::span<const int> sizes, double budget, BlockPattern& p) {
+  eliminated_.assign(count_, 0);
+  queue_.clear();
+  for (std::uint32_t i = 0; i < count_; ++i) queue_.emplace_back(neighbors_[i].size(), i);
+  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
+  p.order.clear();
+  p.operations = 0;
+  while (!queue_.empty()) {
+    const auto [degree, node] = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+    queue_.pop_back();
+    if (eliminated_[node] != 0 || degree != neighbors_[node].size()) continue;
+    eliminated_[node] = 1;
+    double below = 0;
+    for (const std::uint32_t i : neighbors_[node]) below += sizes[i];
+    p.operations += cost_of(sizes[node], below);
+    if (p.operations > budget) return false;
+    eliminate_node(node);
+    p.order.push_back(node);
+  }
+  return true;
+}
+
+void BlockGraph::list_blocks(BlockPattern& p) {
+  place_.resize(count_);
+  for (std::uint32_t i = 0; i < p.order.size(); ++i) place_[p.order[i]] = i;
+  p.block.clear();
+  p.column_begin.assign(1, 0);
+  for (std::uint32_t j = 0; j < p.order.size(); ++j) {
+    joined_.assign(1, j);
+    for (const std::uint32_t node : neighbors_[p.order[j]]) joined_.push_back(place_[node]);
+    std::sort(joined_.begin(), joined_.end());
+    for (const std::uint32_t i : joined_) p.block.push_back({i, j});
+    p.column_begin.push_back(static_cast<std::uint32_t>(p.block.size()));
+  }
+}
+
+bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double budget, BlockPattern& p) {
+  graph.sort();
+  if (!graph.eliminate(sizes, budget, p)) return false;
+  graph.list_blocks(p);
+  graph.sizes_in_order_.clear();
+  for (const std::uint32_t node : p.order) graph.sizes_in_order_.push_back(sizes[node]);
+  resize_blocks(graph.sizes_in_order_, p);
   p.sign.assign(p.order.size(), 1);
   list_updates(p);
-  return p;
+  return true;
 }
 
 void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
@@ -240,8 +249,7 @@ std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t
   return static_cast<std::uint32_t>(found - p.block.begin());
 }
 
-void factor(const BlockPattern& p, std::span<double> numbers) {
-  std::vector<double> scaled;
+void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double>& scaled) {
   for (int j = 0; j < p.node_count(); ++j) {
     double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
     factor_diagonal(p.sign[j], diagonal, p.size[j]);

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -41,10 +42,43 @@ struct BlockPattern {
   [[nodiscard]] int node_count() const { return static_cast<int>(size.size()); }
 };
 
-/// Minimum degree, ties to the lowest node: chains and trees have no fill. `neighbors` of each node are
-/// sorted, without itself. Nothing if one factorization takes more than `budget` multiplications.
-[[nodiscard]] std::optional<BlockPattern> make_block_pattern(
-    const std::vector<std::vector<std::uint32_t>>& neighbors, const std::vector<int>& sizes, double budget);
+/// Which nodes of a matrix meet, and the memory to find an order of elimination with.
+class BlockGraph {
+ public:
+  /// `count` nodes that meet no other.
+  void reset(std::size_t count);
+  /// Nodes a and b meet. Each pair may be told often; a node and itself never.
+  void join(std::uint32_t a, std::uint32_t b) {
+    neighbors_[a].push_back(b);
+    neighbors_[b].push_back(a);
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+ private:
+  friend bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double budget,
+                                 BlockPattern& pattern);
+
+  void sort();
+  bool eliminate(std::span<const int> sizes, double budget, BlockPattern& pattern);
+  void list_blocks(BlockPattern& pattern);
+  void eliminate_node(std::uint32_t node);
+
+  std::size_t count_ = 0;
+  /// Of each node; once that is eliminated: those left that were adjacent to it by then, its column of the
+  /// factor.
+  std::vector<std::vector<std::uint32_t>> neighbors_;
+  // Scratch, to be used again.
+  std::vector<std::pair<std::size_t, std::uint32_t>> queue_;  ///< A heap, with entries that are out of date.
+  std::vector<std::uint8_t> eliminated_;                      ///< Of each node.
+  std::vector<std::uint32_t> joined_;
+  std::vector<std::uint32_t> place_;
+  std::vector<int> sizes_in_order_;
+};
+
+/// Replaces `pattern`: minimum degree, ties to the lowest node: chains and trees have no fill. Uses the graph
+/// up. False, and a pattern of no use, if one factorization takes more than `budget` multiplications.
+[[nodiscard]] bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double budget,
+                                      BlockPattern& pattern);
 
 /// Gives the block rows other sizes, which may be 0; `operations` stays what it was.
 void resize_blocks(std::span<const int> sizes, BlockPattern& pattern);
@@ -57,8 +91,8 @@ void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& pattern)
 [[nodiscard]] std::uint32_t find_block(const BlockPattern& pattern, std::uint32_t row, std::uint32_t column);
 
 /// A = L D L^T in place: L below the diagonals (unit lower triangles), D on them. A pivot that has not the
-/// sign of its row counts as infinite, so that its row gets zero.
-void factor(const BlockPattern& pattern, std::span<double> numbers);
+/// sign of its row counts as infinite, so that its row gets zero. `scaled` is scratch.
+void factor(const BlockPattern& pattern, std::span<double> numbers, std::vector<double>& scaled);
 
 /// x := A^-1 x, by the factors.
 void solve(const BlockPattern& pattern, std::span<const double> numbers, std::span<double> x);

@@ -13,22 +13,6 @@
 
 namespace hooke::solver {
 
-/// How a body's velocity V = (sqrt(m) v, omega~) moves a place along a direction: row . V; and such a V.
-struct BodyRow {
-  DVec3 linear, angular;
-
-  [[nodiscard]] double at(int i) const { return component(i < 3 ? linear : angular, i % 3); }
-  BodyRow& operator+=(const BodyRow& other) {
-    linear += other.linear;
-    angular += other.angular;
-    return *this;
-  }
-  friend BodyRow operator*(double s, const BodyRow& row) { return {s * row.linear, s * row.angular}; }
-  friend double dot(const BodyRow& a, const BodyRow& b) {
-    return hooke::dot(a.linear, b.linear) + hooke::dot(a.angular, b.angular);
-  }
-};
-
 inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
 
 class BundleSolution {
@@ -62,8 +46,8 @@ class BundleSolution {
   void assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node);
   void assemble_point(int body, std::span<const RopeTouch> at_node);
   void fill_right_side();
-  [[nodiscard]] std::vector<BodyRow> start_of_bodies() const;
-  void give_impulses(std::vector<BodyRow>& start);
+  void start_bodies();
+  void give_impulses();
 
   [[nodiscard]] BodyRow hook_row(const JointRow& row, int end, const JointBody& body) const {
     const double sign = end == 1 ? 1 : -1;

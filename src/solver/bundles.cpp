@@ -33,8 +33,12 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
   load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const JointBody body = joint_body_now(t_.bodies, b_.bodies[i]);
-    b_.moving[i] = {
-        .body = body, .stiffness = {}, .excess = {}, .v = body.v, .omega_scaled = body.omega_scaled};
+    b_.moving[i] = {.body = body,
+                    .stiffness = {},
+                    .excess = {},
+                    .found = {},
+                    .v = body.v,
+                    .omega_scaled = body.omega_scaled};
   }
   for (RopeTouch& touch : b_.ropes.touches)
     touch.body = touch.row == RopeTouch::kTether ? -1 : b_.body_of(t_.contacts.body[touch.row]);
@@ -87,7 +91,7 @@ void BundleSolution::load_hooks() {
 /// Geometric stiffness of the forces found last. True if it has grown so much that the solution must be
 /// repeated.
 bool BundleSolution::stiffen() {
-  std::vector<Symmetric3<double>> found(b_.moving.size());
+  for (BundleBody& body : b_.moving) body.found = {};
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     const Hook& hook = t_.hooks[b_.hooks[i]];
     DVec3 force;
@@ -97,19 +101,18 @@ bool BundleSolution::stiffen() {
       const int body = b_.ends[i][end];
       const DVec3 anchor = end == 0 ? hook.a.anchor : hook.b.anchor;
       if (body < 0 || force == DVec3{} || anchor == DVec3{}) continue;
-      const JointBody& at = b_.moving[body].body;
-      found[body] =
-          found[body] + stiffness_of(rotate(at.rotation, anchor), end == 0 ? -force : force, at, h_);
+      BundleBody& at = b_.moving[body];
+      at.found =
+          at.found + stiffness_of(rotate(at.body.rotation, anchor), end == 0 ? -force : force, at.body, h_);
     }
   }
   bool grew = false;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    BundleBody& moving = b_.moving[i];
+  for (BundleBody& moving : b_.moving) {
     const double before = trace(moving.stiffness);
-    if (trace(found[i]) <= before) continue;
-    grew = grew || trace(found[i]) > std::max(kStiffnessGrowth * before, kStiffnessLeft);
-    moving.stiffness = found[i];
-    moving.excess = excess_of(found[i]);
+    if (trace(moving.found) <= before) continue;
+    grew = grew || trace(moving.found) > std::max(kStiffnessGrowth * before, kStiffnessLeft);
+    moving.stiffness = moving.found;
+    moving.excess = excess_of(moving.found);
   }
   return grew;
 }
@@ -161,13 +164,13 @@ void BundleSolution::move_nodes() {
 
 /// As in articulations: rows beyond a bound go to it, rows that it holds back are let go if `release`.
 bool BundleSolution::revise_bounds(bool release) {
-  std::vector<double> speed(b_.rows.size());  // of opening
+  b_.speed.assign(b_.rows.size(), 0);
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     for (const Bundle::Incident& at : incidents_of(n)) {
       if (at.block < vector_count()) continue;
       const std::uint32_t hook = at.block - vector_count();
       for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row)
-        speed[row] += at.weight * dot(b_.rows[row].n, b_.ropes.nodes[n].u);
+        b_.speed[row] += at.weight * dot(b_.rows[row].n, b_.ropes.nodes[n].u);
     }
   }
   bool changed = false;
@@ -178,7 +181,7 @@ bool BundleSolution::revise_bounds(bool release) {
     if (bound == 0) {
       bound = side_of(b_.lambda[row], of.low, of.high);
     } else if (release) {
-      double lacks = of.target - of.gamma * b_.lambda[row] - speed[row];
+      double lacks = of.target - of.gamma * b_.lambda[row] - b_.speed[row];
       for (int end = 0; end < 2; ++end) {
         const int body = b_.ends[hook][end];
         if (body < 0) continue;
@@ -201,7 +204,7 @@ void BundleSolution::solve_with_bounds() {
     hold_nodes(h_, b_.ropes);
     fill_right_side();
     assemble();
-    factor(b_.pattern, b_.numbers);
+    factor(b_.pattern, b_.numbers, b_.factor_scratch);
     solve(b_.pattern, b_.numbers, b_.right_side);
     read_solution();
     if (!is_sound()) return;

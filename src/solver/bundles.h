@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "base/disjoint_sets.h"
 #include "math/symmetric.h"
 #include "solver/block_matrix.h"
 #include "solver/chains.h"
@@ -21,11 +22,28 @@
 
 namespace hooke::solver {
 
+/// How a body's velocity V = (sqrt(m) v, omega~) moves a place along a direction: row . V; and such a V.
+struct BodyRow {
+  DVec3 linear, angular;
+
+  [[nodiscard]] double at(int i) const { return component(i < 3 ? linear : angular, i % 3); }
+  BodyRow& operator+=(const BodyRow& other) {
+    linear += other.linear;
+    angular += other.angular;
+    return *this;
+  }
+  friend BodyRow operator*(double s, const BodyRow& row) { return {s * row.linear, s * row.angular}; }
+  friend double dot(const BodyRow& a, const BodyRow& b) {
+    return hooke::dot(a.linear, b.linear) + hooke::dot(a.angular, b.angular);
+  }
+};
+
 /// A body of a bundle while it is solved.
 struct BundleBody {
   JointBody body;                      ///< Before the solution.
   math::Symmetric3<double> stiffness;  ///< h^2 S K S of the hooks' forces.
   math::Symmetric3<double> excess;     ///< What of it is implicit.
+  math::Symmetric3<double> found;      ///< The stiffness of the forces found last.
   DVec3 v = {};                        ///< The result.
   DVec3 omega_scaled = {};
 };
@@ -85,19 +103,45 @@ struct Bundle {
   std::vector<std::uint32_t> first_row;  ///< Of each hook; one more at the end.
   std::vector<std::int8_t> bound;        ///< Of rows, as Articulation::bound.
   std::vector<double> lambda;            ///< Of rows.
+  std::vector<double> speed;             ///< Of rows: of opening.
   std::vector<double> numbers;
+  std::vector<double> factor_scratch;
   std::vector<double> right_side;  ///< Then the solution.
+  std::vector<BodyRow> start;      ///< Of bodies.
+
+  /// No members, no matrix; keeps its memory.
+  void clear();
 };
 
 /// The share of a hook row's diagonal that it has as compliance.
 inline constexpr double kHookCompliance = 1e-6;
 
+/// Memory to lay out bundles in.
+struct BundleScratch {
+  std::vector<std::uint32_t> signature;
+  base::DisjointSets sets;               ///< Bodies, then particles.
+  std::vector<std::uint8_t> tied;        ///< Of each set: whether it is a bundle.
+  std::vector<std::uint32_t> bundle_of;  ///< Of each set.
+  std::vector<std::uint32_t> anchors;    ///< Hooks.
+  std::vector<std::vector<Bundle::Incident>> at_node;
+  std::vector<std::uint32_t> first_node;              ///< Of each chain, then of the points.
+  std::vector<std::vector<std::uint32_t>> bodies_at;  ///< Blocks of bodies that touch a node.
+  BlockGraph matrix;
+  std::vector<int> sizes;          ///< Of blocks.
+  std::vector<std::int8_t> signs;  ///< Of blocks.
+  std::vector<int> counts;         ///< Of a bundle's hooks or bodies.
+};
+
 struct Bundles {
-  std::vector<Bundle> bundles;
+  std::vector<Bundle> bundles;  ///< The first `count` are those of now.
+  std::size_t count = 0;
   std::vector<RopeAnchor> anchors;       ///< Of ropes outside bundles, by chain and node.
   std::vector<std::uint32_t> signature;  ///< Of what they were made from.
   std::vector<std::uint32_t> tethers;    ///< All there are, in order of the particles that they hold.
   std::uint64_t tethers_revision = 0;    ///< Of the tables that they are of.
+  BundleScratch scratch;
+
+  [[nodiscard]] std::span<Bundle> live() { return {bundles.data(), count}; }
 };
 
 /// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has
@@ -128,7 +172,7 @@ struct HookedPoint {
   Real inverse_mass = Real(0);
   Vec3 velocity = {};
 };
-void weigh_points(const Bundles& bundles, state::Tables& tables, std::vector<HookedPoint>& points);
+void weigh_points(Bundles& bundles, state::Tables& tables, std::vector<HookedPoint>& points);
 void release_points(const std::vector<HookedPoint>& points, state::Particles& particles);
 
 /// Velocities of everything in a bundle for a substep of length h [s]. `before` holds velocities of particles

@@ -3,10 +3,12 @@
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
 #include "base/sort_unique.h"
+#include "base/take_turns.h"
 #include "solver/bundles.h"
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace hooke::solver {
 
@@ -29,8 +31,8 @@ bool joins(const Tables& t, std::size_t contact) {
   return is_of_rope(t, contact) || t.particles.velocity[t.contacts.particle[contact]].inverse_mass > Real(0);
 }
 
-std::vector<std::uint32_t> signature_of(const Tables& t) {
-  std::vector<std::uint32_t> s;
+void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
+  s.clear();
   for (const std::uint64_t revision : {t.revision, t.hook_revision}) {
     s.push_back(static_cast<std::uint32_t>(revision));
     s.push_back(static_cast<std::uint32_t>(revision >> 32U));
@@ -44,14 +46,13 @@ std::vector<std::uint32_t> signature_of(const Tables& t) {
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
   }
-  return s;
 }
 
 /// Bodies, then particles; a rope is its first particle.
 class Groups {
  public:
-  explicit Groups(const Tables& t)
-      : tables_(t), sets_(t.bodies.motion.size() + static_cast<std::size_t>(t.particles.count())) {
+  Groups(const Tables& t, base::DisjointSets& sets) : tables_(t), sets_(sets) {
+    sets_.reset(t.bodies.motion.size() + static_cast<std::size_t>(t.particles.count()));
     for (const Hook& hook : t.hooks) {
       if (hook.holds_point()) join(hook);
     }
@@ -87,7 +88,7 @@ class Groups {
   }
 
   const Tables& tables_;
-  base::DisjointSets sets_;
+  base::DisjointSets& sets_;
 };
 
 void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t>& points) {
@@ -117,8 +118,8 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std:
     const auto chain = static_cast<std::uint32_t>(behind - chains.begin()) - 1;
     anchors.push_back({chain, particle - chains[chain].first_particle, row, hook.b.is_point()});
   }
-  std::stable_sort(anchors.begin(), anchors.end(), [](const RopeAnchor& a, const RopeAnchor& b) {
-    return a.chain != b.chain ? a.chain < b.chain : a.node < b.node;
+  std::sort(anchors.begin(), anchors.end(), [](const RopeAnchor& a, const RopeAnchor& b) {
+    return std::tie(a.chain, a.node, a.hook) < std::tie(b.chain, b.node, b.hook);
   });
   std::uint32_t next = 0;
   for (std::uint32_t c = 0; c < chains.size(); ++c) {
@@ -129,32 +130,35 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std:
 }
 
 /// Members of all bundles, in order of the first hook, then of the first contact that makes one. Hooks that
-/// are anchors go to `anchors`.
-std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains,
-                                 std::vector<std::uint32_t>& anchors) {
-  Groups groups(t);
-  std::vector<Bundle> bundles;
+/// are anchors go to `scratch.anchors`.
+void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles) {
+  Groups groups(t, bundles.scratch.sets);
   const std::size_t group_count = t.bodies.motion.size() + t.particles.position.size();
-  std::vector<char> tied(group_count, 0);
+  std::vector<std::uint8_t>& tied = bundles.scratch.tied;
+  tied.assign(group_count, 0);
   for (const Hook& hook : t.hooks) {
     if (hook.holds_point() && !may_be_anchor(t, hook)) tied[groups.of_hook(hook)] = 1;
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) tied[groups.of_contact(row)] = 1;
   }
-  std::vector<std::uint32_t> bundle_of(group_count, kNone);
+  std::vector<std::uint32_t>& bundle_of = bundles.scratch.bundle_of;
+  bundle_of.assign(group_count, kNone);
+  bundles.count = 0;
+  bundles.scratch.anchors.clear();
   const auto bundle_at = [&](std::uint32_t group) -> Bundle& {
     if (bundle_of[group] == kNone) {
-      bundle_of[group] = static_cast<std::uint32_t>(bundles.size());
-      bundles.emplace_back();
+      bundle_of[group] = static_cast<std::uint32_t>(bundles.count++);
+      if (bundles.bundles.size() < bundles.count) bundles.bundles.emplace_back();
+      bundles.bundles[bundle_of[group]].clear();
     }
-    return bundles[bundle_of[group]];
+    return bundles.bundles[bundle_of[group]];
   };
   for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
     const Hook& hook = t.hooks[i];
     if (!hook.holds_point()) continue;
     if (tied[groups.of_hook(hook)] == 0) {
-      anchors.push_back(i);
+      bundles.scratch.anchors.push_back(i);
       continue;
     }
     Bundle& bundle = bundle_at(groups.of_hook(hook));
@@ -176,14 +180,20 @@ std::vector<Bundle> sort_members(const Tables& t, std::vector<Chain>& chains,
     const std::uint32_t group = groups.of_particle(o, t.objects[o].particles.first);
     const std::uint32_t bundle = bundle_of[group];
     chains[chain].in_bundle = bundle != kNone;
-    if (bundle != kNone) bundles[bundle].chains.push_back(chain);
+    if (bundle != kNone) bundles.bundles[bundle].chains.push_back(chain);
     ++chain;
   }
-  for (Bundle& bundle : bundles) {
+  for (Bundle& bundle : bundles.live()) {
     base::sort_unique(bundle.points);
     base::sort_unique(bundle.bodies);
   }
-  return bundles;
+}
+
+/// So many empty lists, at least.
+template <class T>
+void reset_lists(std::size_t count, std::vector<std::vector<T>>& lists) {
+  if (lists.size() < count) lists.resize(count);
+  for (std::size_t i = 0; i < count; ++i) lists[i].clear();
 }
 
 /// Finds the nodes of a bundle, and the blocks at them.
@@ -191,9 +201,11 @@ struct Layout {
   const Tables& tables;
   const std::vector<Chain>& chains;
   Bundle& bundle;
-  std::vector<std::vector<Bundle::Incident>> at_node = {};
-  std::vector<std::uint32_t> first_node = {};  ///< Of each chain, then of the points.
-  std::uint32_t vector_count = 0;              ///< Segments, then bends.
+  BundleScratch& scratch;
+  std::vector<std::vector<Bundle::Incident>>& at_node = scratch.at_node;
+  std::vector<std::uint32_t>& first_node = scratch.first_node;
+  std::size_t node_count = 0;
+  std::uint32_t vector_count = 0;  ///< Segments, then bends.
 
   [[nodiscard]] std::uint32_t node_of(std::uint32_t particle) const {
     for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
@@ -207,12 +219,14 @@ struct Layout {
 
   void list_incidents() {
     std::uint32_t nodes = 0;
+    first_node.clear();
     for (const std::uint32_t c : bundle.chains) {
       first_node.push_back(nodes);
       nodes += chains[c].node_count;
     }
     first_node.push_back(nodes);
-    at_node.resize(nodes + bundle.points.size());
+    node_count = nodes + bundle.points.size();
+    reset_lists(node_count, at_node);
     for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
       for (std::uint32_t i = 0; i + 1 < chains[bundle.chains[k]].node_count; ++i) {
         at_node[first_node[k] + i].push_back({vector_count, 1});
@@ -253,20 +267,19 @@ struct Layout {
   }
 
   /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
-  [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighbors() const {
-    std::vector<std::vector<std::uint32_t>> of(vector_count + bundle.hooks.size() + bundle.bodies.size());
+  void join_blocks() {
+    scratch.matrix.reset(vector_count + bundle.hooks.size() + bundle.bodies.size());
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
-      if (a == b || a == kNone || b == kNone) return;
-      of[a].push_back(b);
-      of[b].push_back(a);
+      if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
     };
-    std::vector<std::vector<std::uint32_t>> bodies_at(at_node.size());
+    std::vector<std::vector<std::uint32_t>>& bodies_at = scratch.bodies_at;
+    reset_lists(node_count, bodies_at);
     for (std::size_t row = 0; row < tables.contacts.particle.size(); ++row) {
       if (!joins(tables, row)) continue;
       const std::uint32_t block = body_block(tables.contacts.body[row]);
       if (block != kNone) bodies_at[node_of(tables.contacts.particle[row])].push_back(block);
     }
-    for (std::size_t node = 0; node < at_node.size(); ++node) {
+    for (std::size_t node = 0; node < node_count; ++node) {
       for (const Bundle::Incident& a : at_node[node]) {
         for (const Bundle::Incident& b : at_node[node]) meet(a.block, b.block);
         for (const std::uint32_t body : bodies_at[node]) meet(a.block, body);
@@ -279,13 +292,12 @@ struct Layout {
       for (const HookPlace& end : {tables.hooks[bundle.hooks[i]].a, tables.hooks[bundle.hooks[i]].b})
         meet(vector_count + i, body_block(end.body));
     }
-    for (std::vector<std::uint32_t>& list : of) base::sort_unique(list);
-    return of;
   }
 };
 
 void list_pairs(const Layout& layout, Bundle& bundle) {
-  for (const std::vector<Bundle::Incident>& at : layout.at_node) {
+  for (std::size_t node = 0; node < layout.node_count; ++node) {
+    const std::vector<Bundle::Incident>& at = layout.at_node[node];
     bundle.first_incident.push_back(static_cast<std::uint32_t>(bundle.incidents.size()));
     bundle.first_pair.push_back(static_cast<std::uint32_t>(bundle.pair_block.size()));
     bundle.incidents.insert(bundle.incidents.end(), at.begin(), at.end());
@@ -299,22 +311,23 @@ void list_pairs(const Layout& layout, Bundle& bundle) {
   bundle.first_incident.push_back(static_cast<std::uint32_t>(bundle.incidents.size()));
 }
 
-void make_pattern(const Tables& t, const std::vector<Chain>& chains, Bundle& bundle) {
-  Layout layout = {t, chains, bundle};
+void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScratch& scratch, Bundle& bundle) {
+  Layout layout = {t, chains, bundle, scratch};
   layout.list_incidents();
-  std::vector<int> sizes(layout.vector_count, 3);
+  layout.join_blocks();
+  std::vector<int>& sizes = scratch.sizes;
+  sizes.assign(layout.vector_count, 3);
   bundle.first_row.assign(1, 0);
   for (const std::uint32_t hook : bundle.hooks) {
     sizes.push_back(count_joint_rows(t.hooks[hook]));
     bundle.first_row.push_back(bundle.first_row.back() + static_cast<std::uint32_t>(sizes.back()));
   }
-  std::vector<std::int8_t> signs(sizes.size(), 1);
+  scratch.signs.assign(sizes.size(), 1);
   sizes.resize(sizes.size() + bundle.bodies.size(), 6);
-  signs.resize(sizes.size(), -1);
-  std::optional<BlockPattern> pattern = make_block_pattern(layout.neighbors(), sizes, kNoBudget);
-  HOOKE_ASSERT(pattern.has_value());
-  bundle.pattern = std::move(*pattern);
-  set_signs(signs, bundle.pattern);
+  scratch.signs.resize(sizes.size(), -1);
+  [[maybe_unused]] const bool made = make_block_pattern(scratch.matrix, sizes, kNoBudget, bundle.pattern);
+  HOOKE_ASSERT(made);
+  set_signs(scratch.signs, bundle.pattern);
   bundle.place.resize(sizes.size());
   for (std::uint32_t i = 0; i < sizes.size(); ++i) bundle.place[bundle.pattern.order[i]] = i;
   list_pairs(layout, bundle);
@@ -350,14 +363,14 @@ std::vector<std::uint32_t> tethers_by_particle(const Tables& t) {
 }
 
 /// The two nodes at which a hook slides along its rope follow its weights.
-void set_slide_weights(const Tables& t, Bundle& bundle) {
+void set_slide_weights(const Tables& t, std::vector<int>& seen, Bundle& bundle) {
   const auto vectors =
       static_cast<std::uint32_t>(bundle.place.size() - bundle.hooks.size() - bundle.bodies.size());
   const auto slides = [&](const Bundle::Incident& at) {
     return at.block >= vectors && at.block < vectors + bundle.hooks.size() && at.weight <= 0 &&
            t.hooks[bundle.hooks[at.block - vectors]].kind == HookKind::kRopeSlide;
   };
-  std::vector<int> seen(bundle.hooks.size(), 0);
+  seen.assign(bundle.hooks.size(), 0);
   for (Bundle::Incident& at : bundle.incidents) {
     if (!slides(at)) continue;
     const std::uint32_t hook = at.block - vectors;
@@ -372,21 +385,28 @@ int Bundle::body_of(std::uint32_t row) const {
   return at != bodies.end() && *at == row ? static_cast<int>(at - bodies.begin()) : -1;
 }
 
+void Bundle::clear() {
+  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &bodies, &tethers, &first_tether,
+                                           &first_incident, &pair_block, &first_pair})
+    list->clear();
+  ends.clear();
+  incidents.clear();
+}
+
 void build_bundles(const Tables& tables, std::vector<Chain>& chains, Bundles& bundles) {
-  std::vector<std::uint32_t> signature = signature_of(tables);
-  if (signature != bundles.signature) {
-    bundles.signature = std::move(signature);
-    std::vector<std::uint32_t> anchors;
-    bundles.bundles = sort_members(tables, chains, anchors);
-    list_anchors(tables, anchors, chains, bundles.anchors);
+  write_signature(tables, bundles.scratch.signature);
+  if (bundles.scratch.signature != bundles.signature) {
+    base::take_turns(bundles.signature, bundles.scratch.signature);
+    sort_members(tables, chains, bundles);
+    list_anchors(tables, bundles.scratch.anchors, chains, bundles.anchors);
     if (bundles.tethers_revision != tables.revision) bundles.tethers = tethers_by_particle(tables);
     bundles.tethers_revision = tables.revision;
-    for (Bundle& bundle : bundles.bundles) {
-      make_pattern(tables, chains, bundle);
+    for (Bundle& bundle : bundles.live()) {
+      make_pattern(tables, chains, bundles.scratch, bundle);
       list_tethers(tables, bundles.tethers, bundle);
     }
   }
-  for (Bundle& bundle : bundles.bundles) set_slide_weights(tables, bundle);
+  for (Bundle& bundle : bundles.live()) set_slide_weights(tables, bundles.scratch.counts, bundle);
 }
 
 }  // namespace hooke::solver

@@ -96,10 +96,11 @@ Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
 
 }  // namespace
 
-void weigh_points(const Bundles& bundles, Tables& t, std::vector<HookedPoint>& points) {
+void weigh_points(Bundles& bundles, Tables& t, std::vector<HookedPoint>& points) {
   points.clear();
-  for (const Bundle& bundle : bundles.bundles) {
-    std::vector<int> shares(bundle.bodies.size() + 1, 0);
+  std::vector<int>& shares = bundles.scratch.counts;
+  for (const Bundle& bundle : bundles.live()) {
+    shares.assign(bundle.bodies.size() + 1, 0);
     const auto shares_of = [&](std::uint32_t body) -> int& { return shares[bundle.body_of(body) + 1]; };
     for (const std::uint32_t row : bundle.hooks) {
       for (const HookPlace& end : {t.hooks[row].a, t.hooks[row].b}) ++shares_of(end.body);

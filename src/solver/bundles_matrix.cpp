@@ -187,22 +187,21 @@ void BundleSolution::assemble() {
 }
 
 /// V0 as geometric stiffness has it.
-std::vector<BodyRow> BundleSolution::start_of_bodies() const {
-  std::vector<BodyRow> start;
+void BundleSolution::start_bodies() {
+  b_.start.clear();
   for (const BundleBody& m : b_.moving) {
-    start.push_back({(1 / std::sqrt(m.body.inverse_mass)) * m.body.v,
-                     m.body.omega_scaled + m.excess * m.body.omega_scaled});
+    b_.start.push_back({(1 / std::sqrt(m.body.inverse_mass)) * m.body.v,
+                        m.body.omega_scaled + m.excess * m.body.omega_scaled});
   }
-  return start;
 }
 
 /// Rows at a bound give its impulse, like a force from outside.
-void BundleSolution::give_impulses(std::vector<BodyRow>& start) {
+void BundleSolution::give_impulses() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
     if (b_.bound[row] == 0 || b_.lambda[row] == 0) return;
     for (int end = 0; end < 2; ++end) {
       const int body = b_.ends[hook][end];
-      if (body >= 0) start[body] += b_.lambda[row] * hook_row(b_.rows[row], end, b_.moving[body].body);
+      if (body >= 0) b_.start[body] += b_.lambda[row] * hook_row(b_.rows[row], end, b_.moving[body].body);
     }
   });
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
@@ -220,8 +219,8 @@ void BundleSolution::give_impulses(std::vector<BodyRow>& start) {
 
 void BundleSolution::fill_right_side() {
   b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
-  std::vector<BodyRow> start = start_of_bodies();
-  give_impulses(start);
+  start_bodies();
+  give_impulses();
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     for (const Incident& at : incidents_of(n)) {
       for (int k = 0; k < size_of(at.block); ++k)
@@ -242,11 +241,11 @@ void BundleSolution::fill_right_side() {
     const RopeNode& node = b_.ropes.nodes[touch.node];
     const DVec3 on_node = push_of(touch, h_) + grip_of(touch) * (touch.belt - node.target);
     const JointBody& body = b_.moving[touch.body].body;
-    start[touch.body] +=
+    b_.start[touch.body] +=
         {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(touch.lever, on_node))};
   }
-  for (int i = 0; i < static_cast<int>(start.size()); ++i) {
-    for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -start[i].at(m);
+  for (int i = 0; i < static_cast<int>(b_.start.size()); ++i) {
+    for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -b_.start[i].at(m);
   }
 }
 

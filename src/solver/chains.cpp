@@ -282,13 +282,22 @@ bool fits(const Chain& a, const Chain& b) {
 
 }  // namespace
 
+struct ChainScratch::Groups {
+  Group<wide::kRopeLanes> together;
+  Group<1> alone;
+  std::vector<Chain*> members;
+};
+
+ChainScratch::ChainScratch() : groups_(std::make_unique<Groups>()) {}
+ChainScratch::~ChainScratch() = default;
+ChainScratch::ChainScratch(ChainScratch&&) noexcept = default;
+ChainScratch& ChainScratch::operator=(ChainScratch&&) noexcept = default;
+
 void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
-                  const std::vector<Vec3>& before, Real h, state::Tables& tables) {
-  thread_local Group<wide::kRopeLanes> together;
-  thread_local Group<1> alone;
-  thread_local std::vector<Chain*> members;
+                  const std::vector<Vec3>& before, Real h, ChainScratch& scratch, state::Tables& tables) {
+  auto& [together, alone, members] = scratch.groups();
   const Source source = {anchors, before, static_cast<double>(h), tables};
-  const auto finish = [&] {
+  const auto finish = [&, &together = together, &alone = alone, &members = members] {
     if (members.size() >= kFewestForLanes) {
       together.solve(members, source);
     } else if (!members.empty()) {

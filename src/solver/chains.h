@@ -3,6 +3,7 @@
 #include "state/tables.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,22 @@ struct Chain {
   std::uint32_t solves = 0;  ///< Newton steps since the frame began; written by solve_chains.
   bool in_bundle = false;    ///< Solved with what it is tied to; written by build_bundles (solver/bundles.h).
   bool unconverged = false;  ///< A length error above 1 % was left in this frame; written by solve_chains.
+};
+
+/// Memory of solve_chains.
+class ChainScratch {
+ public:
+  struct Groups;  // chains.cpp
+
+  ChainScratch();
+  ~ChainScratch();
+  ChainScratch(ChainScratch&&) noexcept;
+  ChainScratch& operator=(ChainScratch&&) noexcept;
+
+  [[nodiscard]] Groups& groups() { return *groups_; }
+
+ private:
+  std::unique_ptr<Groups> groups_;
 };
 
 /// The whole rope at once: velocities such that every segment carries the force of its stiffness at the end
@@ -66,6 +83,6 @@ struct Chain {
 /// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's
 /// segments differ in compliance by a factor of 1e10. `before` holds velocities from before the forces.
 void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
-                  const std::vector<Vec3>& before, Real h, state::Tables& tables);
+                  const std::vector<Vec3>& before, Real h, ChainScratch& scratch, state::Tables& tables);
 
 }  // namespace hooke::solver

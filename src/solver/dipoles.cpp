@@ -67,13 +67,12 @@ Pull pull_of_field(const Dipole& own, const FieldDesc& field, double h) {
 
 }  // namespace
 
-std::vector<std::uint32_t> bodies_with_dipoles(const state::Bodies& bodies) {
-  std::vector<std::uint32_t> rows;
+void list_bodies_with_dipoles(const state::Bodies& bodies, std::vector<std::uint32_t>& rows) {
+  rows.clear();
   for (std::uint32_t row = 0; row < bodies.traits.size(); ++row) {
     const state::BodyTraits& traits = bodies.traits[row];
     if (traits.alive && traits.dipole_moment != Vec3{}) rows.push_back(row);
   }
-  return rows;
 }
 
 void gather_dipoles(const std::vector<state::Field>& fields, std::span<const std::uint32_t> rows,

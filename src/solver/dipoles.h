@@ -24,8 +24,9 @@ struct Dipole {
   double inverse_inertia = 0;  ///< Mean across the moment [1/(kg m^2)].
 };
 
-/// Rows of all bodies with a dipole moment, also of those that forces do not move, in ascending order.
-std::vector<std::uint32_t> bodies_with_dipoles(const state::Bodies& bodies);
+/// Replaces `rows` by those of all bodies with a dipole moment, also of those that forces do not move, in
+/// ascending order.
+void list_bodies_with_dipoles(const state::Bodies& bodies, std::vector<std::uint32_t>& rows);
 
 /// Lists all dipoles that there are: those of fields, then those of the bodies in `rows`.
 void gather_dipoles(const std::vector<state::Field>& fields, std::span<const std::uint32_t> rows,

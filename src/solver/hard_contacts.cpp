@@ -191,7 +191,7 @@ void make_factors(bool slides, HardIsland& island, std::vector<double>& h) {
     const HardRow* friction = &island.rows[c.first + c.points];
     if (slides && !friction->holds) add_sliding(c, friction[0], friction[1], h);
   }
-  factor(p, h);
+  factor(p, h, island.factor_scratch);
 }
 
 double largest(const std::vector<double>& x) {

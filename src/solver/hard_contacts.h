@@ -98,6 +98,7 @@ struct HardIsland {
   std::vector<double> velocity;   ///< u
   std::vector<double> direction;  ///< Of search; gradient before that.
   std::vector<double> factors;
+  std::vector<double> factor_scratch;
   double stiffness = 0;
   std::vector<std::uint8_t> kept;  ///< Which rows hold in kept_factors.
   std::vector<double> kept_factors;

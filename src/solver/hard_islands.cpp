@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace hooke::solver {
 
@@ -165,19 +164,16 @@ void list_edges(const std::vector<Manifold>& manifolds, const Bodies& bodies, Ha
   }
 }
 
-/// The pattern of an island's matrix; false if it costs too much.
-bool make_pattern(const HardGraph& graph, HardIsland& island) {
-  std::vector<std::vector<std::uint32_t>> neighbors(graph.bodies.size());
-  for (const auto& [a, b] : graph.edges) {
-    neighbors[a].push_back(b);
-    neighbors[b].push_back(a);
+/// The pattern of an island's matrix; false if it costs too much, and then the island is of nobody.
+bool make_pattern(const HardGraph& graph, HardIslands& hard, HardIsland& island) {
+  hard.matrix.reset(graph.bodies.size());
+  for (const auto& [a, b] : graph.edges) hard.matrix.join(a, b);
+  hard.sizes.assign(graph.bodies.size(), 6);
+  if (!make_block_pattern(hard.matrix, hard.sizes, kHardIslandBudget, island.pattern)) {
+    island.graph.bodies.clear();
+    return false;
   }
-  for (std::vector<std::uint32_t>& of : neighbors) std::sort(of.begin(), of.end());
-  std::optional<BlockPattern> pattern =
-      make_block_pattern(neighbors, std::vector<int>(graph.bodies.size(), 6), kHardIslandBudget);
-  if (!pattern) return false;
   island.graph = graph;
-  island.pattern = std::move(*pattern);
   island.place.resize(graph.bodies.size());
   for (std::uint32_t i = 0; i < island.place.size(); ++i) island.place[island.pattern.order[i]] = i;
   return true;
@@ -194,7 +190,7 @@ void take_islands(Bodies& bodies, HardIslands& hard) {
     if (static_cast<int>(hard.islands.size()) == taken) hard.islands.emplace_back();
     HardIsland& island = hard.islands[taken];
     const bool fits = graph.bodies.size() <= kMaxHardBodies &&
-                      (island.graph == graph || make_pattern(graph, island)) &&
+                      (island.graph == graph || make_pattern(graph, hard, island)) &&
                       cost + island.pattern.operations <= kHardBudget;
     for (const std::uint32_t body : graph.bodies) {
       hard.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;

@@ -66,6 +66,8 @@ struct HardIslands {
   base::DisjointSets sets;
   std::vector<std::uint32_t> island_of;  ///< By body row.
   std::vector<HardGraph> found;
+  BlockGraph matrix;                  ///< Of one island.
+  std::vector<int> sizes;             ///< Of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
 
   [[nodiscard]] std::span<HardIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }

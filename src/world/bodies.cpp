@@ -1,6 +1,5 @@
 #include "world/bodies.h"
 
-#include "collision/narrow_phase.h"
 #include "collision/shape_bounds.h"
 #include "solver/forces.h"
 #include "world/events.h"
@@ -39,12 +38,11 @@ void update_bounds(Tables& t, std::uint32_t body, Real dt) {
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
 }
 
-std::vector<std::uint32_t> all_bodies(const state::Bodies& bodies) {
-  std::vector<std::uint32_t> rows;
+template <class Visit>
+void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
   for (std::uint32_t body = 0; body < bodies.traits.size(); ++body) {
-    if (bodies.traits[body].alive) rows.push_back(body);
+    if (bodies.traits[body].alive) visit(body);
   }
-  return rows;
 }
 
 /// Bodies that were added, or put elsewhere by hand, since the last step.
@@ -52,7 +50,8 @@ void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
   if (world.broad_phase_stale) {
     world.broad_phase.clear();
-    world.bodies_placed = all_bodies(t.bodies);
+    world.bodies_placed.clear();
+    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.bodies_placed.push_back(body); });
     world.broad_phase_stale = false;
   }
   for (const std::uint32_t body : world.bodies_placed) {
@@ -92,7 +91,7 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
   };
   if (world.broad_phase_stale) {
     world.broad_phase.clear();
-    for (const std::uint32_t body : all_bodies(t.bodies)) enter(body);
+    for_all_bodies(t.bodies, enter);
   } else {
     for (const std::uint32_t body : world.bodies_placed) enter(body);
     for (const std::uint32_t body : t.moving_bodies) {
@@ -122,8 +121,8 @@ void find_body_contacts(WorldData& world, Real dt) {
   for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
-  collision::merge_pairs(world.pairs_found, t.pairs);
-  collision::update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
+  world.narrow_phase.merge_pairs(world.pairs_found, t.pairs);
+  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {

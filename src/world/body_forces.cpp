@@ -69,7 +69,7 @@ void begin_body_forces(WorldData& world) {
     return traits.drag_coefficient > Real(0) || traits.magnus_volume != Real(0);
   };
   list_law_bodies(world);
-  world.dipole_bodies = solver::bodies_with_dipoles(tables.bodies);
+  solver::list_bodies_with_dipoles(tables.bodies, world.dipole_bodies);
   world.bodies_surrounded = !tables.fields.empty() || !world.dipole_bodies.empty() ||
                             std::any_of(world.awake.begin(), world.awake.end(), in_air);
   if (world.law_bodies.empty() && !world.bodies_surrounded) return;

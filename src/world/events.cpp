@@ -1,5 +1,6 @@
 #include "world/events.h"
 
+#include "base/take_turns.h"
 #include "collision/queries.h"
 #include "state/body_frames.h"
 #include "world/objects.h"
@@ -53,7 +54,7 @@ void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Ev
                       comes_first);
   std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(ends),
                       comes_first);
-  before.swap(now);
+  base::take_turns(now, before);
 }
 
 ContactEvent parts_of(const Tables& t, const Manifold& m) {
@@ -62,13 +63,15 @@ ContactEvent parts_of(const Tables& t, const Manifold& m) {
   return parts;
 }
 
-void gather_contacts(Tables& t, Events& events) {
-  std::vector<ContactEvent> now;
+void gather_contacts(WorldData& world) {
+  Tables& t = world.tables;
+  std::vector<ContactEvent>& now = world.touches_now;
+  now.clear();
   const auto asks = [&](std::uint32_t body) { return t.bodies.traits[body].reports_contacts; };
   for (const Manifold& m : t.pairs.manifold) {
     if (m.touching && (asks(m.body_a) || asks(m.body_b))) now.push_back(parts_of(t, m));
   }
-  compare(now, t.touches, events.contact_begins, events.contact_ends);
+  compare(now, t.touches, world.events.contact_begins, world.events.contact_ends);
 }
 
 void gather_hits(const WorldData& world, Events& events) {
@@ -107,8 +110,10 @@ bool overlap(const Tables& t, state::Pair& pair) {
   return pair.gap < Real(0);
 }
 
-void gather_visits(Tables& t, Events& events) {
-  std::vector<SensorEvent> now;
+void gather_visits(WorldData& world) {
+  Tables& t = world.tables;
+  std::vector<SensorEvent>& now = world.visits_now;
+  now.clear();
   for (state::Pair& pair : t.pairs.pair) {
     const std::uint32_t a = t.colliders.body[pair.collider_a];
     const std::uint32_t b = t.colliders.body[pair.collider_b];
@@ -116,7 +121,7 @@ void gather_visits(Tables& t, Events& events) {
     if (!(senses_a || t.bodies.traits[b].sensor) || !overlap(t, pair)) continue;
     now.push_back(senses_a ? SensorEvent{id_of(t, a), id_of(t, b)} : SensorEvent{id_of(t, b), id_of(t, a)});
   }
-  compare(now, t.visits, events.sensor_enters, events.sensor_leaves);
+  compare(now, t.visits, world.events.sensor_enters, world.events.sensor_leaves);
 }
 
 void gather_sleep(WorldData& world) {
@@ -185,11 +190,17 @@ void note_approaches(WorldData& world, Real dt) {
   }
 }
 
+void clear_events(Events& events) {
+  const auto clear = [](auto&... lists) { (lists.clear(), ...); };
+  clear(events.contact_begins, events.contact_ends, events.hits, events.sensor_enters, events.sensor_leaves,
+        events.fell_asleep, events.woke_up);
+}
+
 void gather_events(WorldData& world) {
   if (world.tables.any_reports) {
-    gather_contacts(world.tables, world.events);
+    gather_contacts(world);
     gather_hits(world, world.events);
-    gather_visits(world.tables, world.events);
+    gather_visits(world);
   }
   gather_sleep(world);
 }

@@ -13,4 +13,7 @@ void note_approaches(WorldData& world, Real dt);
 /// Fills `events`, once everything has moved; writes `touches`, `visits` and the bodies' `slept`.
 void gather_events(WorldData& world);
 
+/// Nothing has happened. Keeps the memory.
+void clear_events(Events& events);
+
 }  // namespace hooke::world

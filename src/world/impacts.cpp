@@ -113,15 +113,15 @@ void enter_ways(WorldData& world, const std::vector<std::uint32_t>& fast, collis
 }
 
 /// What a body's colliders may run into.
-void find_in_the_way(const WorldData& world, std::uint32_t body, std::vector<ColliderPair>& pairs) {
+void find_in_the_way(const WorldData& world, std::uint32_t body, collision::WayScratch& scratch) {
   const state::Tables& t = world.tables;
-  std::vector<std::uint32_t> found;
+  scratch.pairs.clear();
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-    world.broad_phase.query_for(c, t.colliders.bounds[c], found);
-    for (const std::uint32_t other : found) {
+    world.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
+    for (const std::uint32_t other : scratch.near) {
       const ColliderPair pair = {std::min(c, other), std::max(c, other)};
       const bool solid = !t.bodies.traits[t.colliders.body[other]].sensor;
-      if (solid && may_collide(world, pair)) pairs.push_back(pair);
+      if (solid && may_collide(world, pair)) scratch.pairs.push_back(pair);
     }
   }
 }
@@ -161,17 +161,19 @@ void begin_motion(WorldData& world, Real dt) {
 
 void give_way_at_impacts(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
-  std::vector<std::uint32_t> fast;
+  std::vector<std::uint32_t>& fast = world.fast_bodies;
+  fast.clear();
   for (const std::uint32_t body : world.awake) {
     if (is_fast(bodies, body)) fast.push_back(body);
   }
   if (fast.empty()) return;
-  collision::SweptBodies swept;
+  collision::SweptBodies& swept = world.swept;
   enter_ways(world, fast, swept);
-  const auto find_pairs = [&world](std::uint32_t body, std::vector<ColliderPair>& pairs) {
-    find_in_the_way(world, body, pairs);
+  const auto find_pairs = [&world](std::uint32_t body, collision::WayScratch& scratch) {
+    find_in_the_way(world, body, scratch);
   };
-  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, fast, find_pairs, swept) == 0)
+  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, fast, find_pairs, world.continuous,
+                                     swept) == 0)
     return;
   for (const std::uint32_t body : world.awake) {
     if (swept.bends[body].count > 0) follow(swept.path[body], swept.bends[body].first, body, bodies);

@@ -56,8 +56,10 @@ void measure_particles(const Tables& t, Measurement& m) {
 }
 
 double potential_of_dipoles(const Tables& t) {
+  std::vector<std::uint32_t> rows;
   std::vector<solver::Dipole> dipoles;
-  solver::gather_dipoles(t.fields, solver::bodies_with_dipoles(t.bodies), t.bodies, dipoles);
+  solver::list_bodies_with_dipoles(t.bodies, rows);
+  solver::gather_dipoles(t.fields, rows, t.bodies, dipoles);
   return solver::dipole_energy(t.fields, dipoles);
 }
 

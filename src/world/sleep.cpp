@@ -1,11 +1,9 @@
 #include "world/sleep.h"
 
-#include "base/disjoint_sets.h"
 #include "world/hooks.h"
 
 #include <algorithm>
 #include <limits>
-#include <vector>
 
 namespace hooke::world {
 
@@ -70,16 +68,15 @@ bool wake_struck(WorldData& world) {
 }
 
 /// For how long each island has been at rest: the least over its members, at its root.
-std::vector<Real> rest_time_of_islands(const WorldData& world, base::DisjointSets& islands) {
+void find_rest_of_islands(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
-  std::vector<Real> rest(bodies.motion.size(), std::numeric_limits<Real>::infinity());
+  world.island_rest.assign(bodies.motion.size(), std::numeric_limits<Real>::infinity());
   for (const std::uint32_t body : world.awake) {
     if (!is_dynamic(bodies, body)) continue;
     const Real own = bodies.traits[body].can_sleep ? bodies.rest_time[body] : Real(0);
-    Real& least = rest[islands.root(body)];
+    Real& least = world.island_rest[world.islands.root(body)];
     least = std::min(least, own);
   }
-  return rest;
 }
 
 }  // namespace
@@ -126,7 +123,8 @@ void put_to_sleep(WorldData& world, Real dt) {
     any_rests = any_rests || !(bodies.rest_time[body] < kRestTime);
   }
   if (!any_rests) return;
-  base::DisjointSets islands(bodies.motion.size());
+  base::DisjointSets& islands = world.islands;
+  islands.reset(bodies.motion.size());
   for (const Manifold& m : t.pairs.manifold) {
     if (touches(m) && is_dynamic(bodies, m.body_a) && is_dynamic(bodies, m.body_b))
       islands.merge(m.body_a, m.body_b);
@@ -135,9 +133,9 @@ void put_to_sleep(WorldData& world, Real dt) {
     if (is_dynamic(bodies, hook.a.body) && is_dynamic(bodies, hook.b.body))
       islands.merge(hook.a.body, hook.b.body);
   }
-  const std::vector<Real> rest = rest_time_of_islands(world, islands);
+  find_rest_of_islands(world);
   for (const std::uint32_t body : world.awake) {
-    if (!is_dynamic(bodies, body) || rest[islands.root(body)] < kRestTime) continue;
+    if (!is_dynamic(bodies, body) || world.island_rest[islands.root(body)] < kRestTime) continue;
     bodies.asleep[body] = 1;
     world.bodies_placed.push_back(body);  // its box is still that of its last way
     bodies.motion[body].v = {};

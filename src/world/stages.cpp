@@ -83,7 +83,7 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
   if (others == Real(0)) return;
   const Real time = first ? -others * h : h;
-  for (const solver::Bundle& bundle : world.bundles.bundles) {
+  for (const solver::Bundle& bundle : world.bundles.live()) {
     for (const std::uint32_t body : bundle.bodies) {
       const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
       tables.bodies.motion[body].v += change;
@@ -303,11 +303,12 @@ void solve_ropes(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   solver::release_points(world.hooked_points, tables.particles);
   solver::twist_nodes(world.twist_rows, tables);
-  for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows) {
+  world.chain_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
+  for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows, int part) {
     solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.bundles.anchors,
-                         world.velocity_before, h, tables);
+                         world.velocity_before, h, world.chain_scratch[part], tables);
   });
-  for_ranges(*world.pool, static_cast<int>(world.bundles.bundles.size()), 1, [&](Range rows) {
+  for_ranges(*world.pool, static_cast<int>(world.bundles.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
       solver::solve_bundle(world.velocity_before, h, world.bundles.bundles[i], world.chains, tables);
     }

@@ -53,7 +53,7 @@ void detect(WorldData& w, double dt) {
   world::list_awake_bodies(w);
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
-  collision::find_contacts(w.tables, dt);
+  collision::find_contacts(dt, w.particle_contacts, w.tables);
 }
 
 void prepare(WorldData& w, double dt, Real h) {
@@ -84,7 +84,7 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
   state::Tables& t = w.tables;
   apply_forces(w, time, h, first);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
-             [&](Range rows) { collision::update_contacts(rows, h, t); });
+             [&](Range rows) { collision::update_contacts(rows, h, w.particle_contacts, t); });
   world::begin_ties(w, h, first);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);

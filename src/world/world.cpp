@@ -9,6 +9,7 @@
 #include "solver/gas.h"
 #include "solver/rope_twist.h"
 #include "solver/wind.h"
+#include "world/events.h"
 #include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
@@ -443,7 +444,7 @@ Result<void> World::restore(const Snapshot& snapshot) {
   world::restore_tables(snapshot.data_->tables, data_->tables);
   data_->broad_phase_stale = true;
   data_->boxes_are_current = false;
-  data_->events = {};
+  world::clear_events(data_->events);
   data_->broken_hooks.clear();
   return {};
 }

@@ -2,7 +2,11 @@
 
 #include "hooke/world.h"
 
+#include "base/disjoint_sets.h"
 #include "collision/broad_phase.h"
+#include "collision/continuous.h"
+#include "collision/narrow_phase.h"
+#include "collision/particle_contacts.h"
 #include "parallel/thread_pool.h"
 #include "solver/air.h"
 #include "solver/bends.h"
@@ -50,11 +54,12 @@ struct WorldData {
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;
-  std::vector<solver::Chain> chains;               ///< One per rope, in order of creation.
-  solver::Bundles bundles;                         ///< Of ropes with what they are tied to.
-  std::vector<solver::HookedPoint> hooked_points;  ///< Lives for one substep.
-  std::uint64_t clamps_revision = 0;               ///< Sum of both revisions, which only grow.
-  std::vector<solver::TwistRow> twist_rows;        ///< Lives for one substep.
+  std::vector<solver::Chain> chains;                ///< One per rope, in order of creation.
+  std::vector<solver::ChainScratch> chain_scratch;  ///< One per part of a parallel loop.
+  solver::Bundles bundles;                          ///< Of ropes with what they are tied to.
+  std::vector<solver::HookedPoint> hooked_points;   ///< Lives for one substep.
+  std::uint64_t clamps_revision = 0;                ///< Sum of both revisions, which only grow.
+  std::vector<solver::TwistRow> twist_rows;         ///< Lives for one substep.
 
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
@@ -75,7 +80,16 @@ struct WorldData {
   // Lives for one step.
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<collision::ColliderPair> pairs_found;
-  std::vector<Approach> approaches;  ///< In order of manifolds.
+  collision::NarrowPhase narrow_phase;
+  collision::ParticleContactScratch particle_contacts;
+  std::vector<Approach> approaches;       ///< In order of manifolds.
+  std::vector<ContactEvent> touches_now;  ///< Of those that ask.
+  std::vector<SensorEvent> visits_now;
+  base::DisjointSets islands;              ///< Of bodies that may fall asleep together.
+  std::vector<Real> island_rest;           ///< For how long each has been at rest, at its root [s].
+  std::vector<std::uint32_t> fast_bodies;  ///< That may pass through others: rows in ascending order.
+  collision::SweptBodies swept;
+  collision::ContinuousScratch continuous;
   std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;

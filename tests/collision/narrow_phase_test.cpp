@@ -258,9 +258,10 @@ TEST_SUITE("collision/narrow_phase") {
 
   TEST_CASE("merged pairs keep what they remember, in order") {
     hooke::state::Pairs pairs;
-    merge_pairs(std::vector<hooke::collision::ColliderPair>{{1, 2}, {1, 4}, {3, 4}}, pairs);
+    hooke::collision::NarrowPhase narrow_phase;
+    narrow_phase.merge_pairs(std::vector<hooke::collision::ColliderPair>{{1, 2}, {1, 4}, {3, 4}}, pairs);
     pairs.pair[1].gap = Real(5);
-    merge_pairs(std::vector<hooke::collision::ColliderPair>{{0, 9}, {1, 4}, {2, 4}}, pairs);
+    narrow_phase.merge_pairs(std::vector<hooke::collision::ColliderPair>{{0, 9}, {1, 4}, {2, 4}}, pairs);
     REQUIRE(pairs.pair.size() == 3);
     CHECK(pairs.pair[0].collider_b == 9);
     CHECK(pairs.pair[1].gap == Real(5));
@@ -283,8 +284,8 @@ TEST_SUITE("collision/narrow_phase") {
         for (std::uint32_t a = 0; a < 41; ++a) {
           for (std::uint32_t b = a + 1; b < 41; ++b) found.push_back({a, b});
         }
-        merge_pairs(found, scene.pairs);
-        hooke::collision::update_manifolds(pool, scene.bodies, scene.colliders, {}, Real(0.01), scene.pairs);
+        scene.narrow_phase.merge_pairs(found, scene.pairs);
+        scene.narrow_phase.update_manifolds(pool, scene.bodies, scene.colliders, {}, Real(0.01), scene.pairs);
         for (std::uint32_t body = 1; body < 41; ++body) scene.move(body, {0.001 * body, -0.002, 0});
       }
       return scene.pairs;

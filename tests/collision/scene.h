@@ -16,6 +16,7 @@ struct PairScene {
   state::Pairs pairs;
   std::vector<MaterialPairDesc> materials;
   parallel::ThreadPool pool{1};
+  collision::NarrowPhase narrow_phase;
   collision::NarrowPhaseCounts counts;
 
   std::uint32_t add(BodyKind kind, const Shape& shape, DVec3 position, Quat rotation = {}) {
@@ -54,8 +55,8 @@ struct PairScene {
         if (moves) found.push_back({a, b});
       }
     }
-    collision::merge_pairs(found, pairs);
-    counts = collision::update_manifolds(pool, bodies, colliders, materials, dt, pairs);
+    narrow_phase.merge_pairs(found, pairs);
+    counts = narrow_phase.update_manifolds(pool, bodies, colliders, materials, dt, pairs);
   }
 };
 

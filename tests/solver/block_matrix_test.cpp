@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <doctest/doctest.h>
+#include <optional>
 #include <vector>
 
 namespace hooke::solver {
@@ -19,9 +20,22 @@ double element(int i, int j) {
   return i == j ? 10.0 + i : std::sin(1.0 + 3.0 * low + 7.0 * high);
 }
 
+/// Nothing if it costs too much.
+std::optional<BlockPattern> pattern_of(const Neighbors& neighbors, const std::vector<int>& sizes,
+                                       double budget = 1e9) {
+  BlockGraph graph;
+  graph.reset(neighbors.size());
+  for (std::uint32_t i = 0; i < neighbors.size(); ++i) {
+    for (const std::uint32_t k : neighbors[i]) graph.join(i, k);
+  }
+  BlockPattern pattern;
+  if (!make_block_pattern(graph, sizes, budget, pattern)) return std::nullopt;
+  return pattern;
+}
+
 /// The largest error of A x - b over a system of these blocks.
 double residual(const Neighbors& neighbors, const std::vector<int>& sizes) {
-  const BlockPattern p = *make_block_pattern(neighbors, sizes, 1e9);
+  const BlockPattern p = *pattern_of(neighbors, sizes);
   std::vector<double> numbers(p.number_count);
   std::vector<std::vector<double>> dense(p.first.back(), std::vector<double>(p.first.back()));
   for (const BlockPattern::Block& block : p.block) {
@@ -38,7 +52,8 @@ double residual(const Neighbors& neighbors, const std::vector<int>& sizes) {
   }
   std::vector<double> x(p.first.back());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::cos(static_cast<double>(i));
-  factor(p, numbers);
+  std::vector<double> scratch;
+  factor(p, numbers, scratch);
   solve(p, numbers, x);
   double worst = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -70,16 +85,37 @@ TEST_SUITE("solver/block_matrix") {
   }
 
   TEST_CASE("chains and trees have no fill") {
-    const BlockPattern line = *make_block_pattern(chain(100), std::vector<int>(100, 3), 1e9);
+    const BlockPattern line = *pattern_of(chain(100), std::vector<int>(100, 3));
     CHECK(line.block.size() == 100 + 99);
     const Neighbors tree = {{1, 2, 3}, {0, 4, 5}, {0}, {0}, {1}, {1}};
-    CHECK(make_block_pattern(tree, std::vector<int>(6, 3), 1e9)->block.size() == 6 + 5);
+    CHECK(pattern_of(tree, std::vector<int>(6, 3))->block.size() == 6 + 5);
+  }
+
+  TEST_CASE("a graph that is used again gives what a new one gives") {
+    BlockGraph graph;
+    BlockPattern again;
+    for (const std::uint32_t count : {9U, 5U, 7U}) {
+      graph.reset(count);
+      for (std::uint32_t i = 0; i + 1 < count; ++i) graph.join(i + 1, i);
+      graph.join(0, count - 1);
+      const std::vector<int> sizes(count, 3);
+      REQUIRE(make_block_pattern(graph, sizes, 1e9, again));
+      Neighbors ring = chain(count);
+      ring[0].push_back(count - 1);
+      const BlockPattern fresh = *pattern_of(ring, sizes);
+      CHECK(again.order == fresh.order);
+      CHECK(again.column_begin == fresh.column_begin);
+      CHECK(again.update_begin == fresh.update_begin);
+      CHECK(again.first == fresh.first);
+      CHECK(again.number_count == fresh.number_count);
+      CHECK(again.operations == fresh.operations);
+    }
   }
 
   TEST_CASE("what costs more than the budget is refused") {
-    const double cost = make_block_pattern(chain(100), std::vector<int>(100, 3), 1e9)->operations;
-    CHECK(make_block_pattern(chain(100), std::vector<int>(100, 3), cost).has_value());
-    CHECK_FALSE(make_block_pattern(chain(100), std::vector<int>(100, 3), cost - 1).has_value());
+    const double cost = pattern_of(chain(100), std::vector<int>(100, 3))->operations;
+    CHECK(pattern_of(chain(100), std::vector<int>(100, 3), cost).has_value());
+    CHECK_FALSE(pattern_of(chain(100), std::vector<int>(100, 3), cost - 1).has_value());
   }
 }
 
