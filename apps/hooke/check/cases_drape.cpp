@@ -119,6 +119,9 @@ Drape drape_of(const CheckSetting& setting, const Fabric& fabric, std::uint32_t 
   return drape;
 }
 
+/// Flutter is not regular: so long that its mean frequency is known to a few percent.
+constexpr double kFlutterSeconds = 20;
+
 /// What the middle of the free edge of a flag does across the wind.
 struct Flutter {
   double frequency = 0;  ///< [Hz]
@@ -140,15 +143,20 @@ Flutter flutter_of(const CheckSetting& setting, double speed) {
   const ClothId id = rig.add(flag);
   rig.run(3);
   std::vector<double> way;
-  rig.run(10, [&] { way.push_back(rig.positions(id)[10 * 33 + 32].z); });
+  rig.run(kFlutterSeconds, [&] { way.push_back(rig.positions(id)[10 * 33 + 32].z); });
   double mean = 0, square = 0;
   for (const double z : way) mean += z / static_cast<double>(way.size());
+  for (const double z : way) square += (z - mean) * (z - mean) / static_cast<double>(way.size());
+  // From one side to the other: ripples about the middle are no turns.
+  const double aside = 0.2 * std::sqrt(square);
   int turns = 0;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    square += (way[i] - mean) * (way[i] - mean) / static_cast<double>(way.size());
-    turns += i > 0 && (way[i] > mean) != (way[i - 1] > mean) ? 1 : 0;
+  double side = 0;
+  for (const double z : way) {
+    if (std::abs(z - mean) < aside || (z - mean) * side > 0) continue;
+    turns += side != 0 ? 1 : 0;
+    side = z - mean;
   }
-  return {0.5 * turns / 10, std::sqrt(8 * square)};
+  return {0.5 * turns / kFlutterSeconds, std::sqrt(8 * square)};
 }
 
 }  // namespace
