@@ -40,7 +40,8 @@ Vec3 any_direction(Random& random) {
 }
 
 Quat any_rotation(Random& random) {
-  return quaternion_about(any_direction(random), static_cast<Real>(between(random, 0, 6)));
+  const auto angle = static_cast<Real>(between(random, 0, 6));  // compilers choose the order of arguments
+  return quaternion_about(any_direction(random), angle);
 }
 
 /// A cube of 2 m whose corners are cut into triangles that look inward: sheets without any thickness.
@@ -109,8 +110,10 @@ Shape any_shape(Random& random, MeshId octahedron) {
   switch (random() % 5) {
     case 0:
       return Shape::sphere(size(0.005, 0.2));
-    case 1:
-      return Shape::capsule(size(0.005, 0.1), size(0.01, 0.2));
+    case 1: {
+      const Real half_height = size(0.01, 0.2);
+      return Shape::capsule(size(0.005, 0.1), half_height);
+    }
     case 2:
       return Shape::box({size(0.005, 0.15), size(0.005, 0.15), size(0.005, 0.15)});
     case 3:
@@ -136,8 +139,11 @@ BodyDesc shot(World& world, Random& random) {
   body.filter.group = -1;
   body.position = {0.4 * signed_unit(random), 0.4 * signed_unit(random), 0.4 * signed_unit(random)};
   body.rotation = any_rotation(random);
-  body.velocity = static_cast<Real>(over_decades(random, 1, 5000)) * any_direction(random);
-  body.angular_velocity = static_cast<Real>(over_decades(random, 0.5, 500)) * any_direction(random);
+  // One after the other: compilers choose the order within an expression.
+  const Vec3 way = any_direction(random);
+  body.velocity = static_cast<Real>(over_decades(random, 1, 5000)) * way;
+  const Vec3 axis = any_direction(random);
+  body.angular_velocity = static_cast<Real>(over_decades(random, 0.5, 500)) * axis;
   body.contact.restitution = static_cast<Real>(random() % 2 == 0 ? 0 : unit(random));
   body.contact.friction = static_cast<Real>(unit(random));
   return body;
