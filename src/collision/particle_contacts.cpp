@@ -31,10 +31,10 @@ struct Frame {
   Real speed = Real(0);     ///< Of the body's fastest point, at most [m/s].
   geometry::Box box = {};   ///< Holds the shape on its way in this step.
 
-  [[nodiscard]] Vec3 to_shape(Vec3 x) const { return rotate(conjugate(rotation), x - offset); }
   [[nodiscard]] Vec3 to_shape_direction(Vec3 direction) const {
     return rotate(conjugate(rotation), direction);
   }
+  [[nodiscard]] Vec3 to_shape(Vec3 x) const { return to_shape_direction(x - offset); }
   [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
 };
 
@@ -245,15 +245,14 @@ Gap gap_on_way(const state::ColliderShape& shape, Vec3 x, Vec3 way, Real radius)
   return gap;
 }
 
-/// Where forces between the two act and how the body moves there. That is at the particle's center, `arm`
-/// from the body's: a particle has no rotation that could take the torque of friction at its surface.
-void set_surface(state::Tables& t, std::size_t row, Vec3 arm, Vec3 belt_velocity) {
-  state::Contacts& contacts = t.contacts;
+/// Where forces between the two act and how the body moves there, `velocity`. That is at the particle's
+/// center, `arm` from the body's: a particle has no rotation that could take the torque of friction at its
+/// surface.
+void set_surface(state::Contacts& contacts, std::size_t row, Vec3 arm, Vec3 velocity, Vec3 belt_velocity) {
   const Vec3 n = contacts.normal[row];
   contacts.lever[row] = arm;
   contacts.belt_velocity[row] = belt_velocity - dot(belt_velocity, n) * n;
-  contacts.surface_velocity[row] =
-      state::velocity_now(t.bodies, contacts.body[row], contacts.lever[row]) + contacts.belt_velocity[row];
+  contacts.surface_velocity[row] = velocity + contacts.belt_velocity[row];
 }
 
 /// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
@@ -354,9 +353,10 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
     const Vec3 place = t.particles.position[particle].x;
     const Vec3 x = frame.to_shape(place);
     const Real radius = t.particles.position[particle].radius;
+    const Vec3 arm = place - frame.center;
+    const Vec3 velocity = state::velocity_now(t.bodies, contacts.body[first], arm);
     if (shape.shape.kind != ShapeKind::kMesh) {
-      const Vec3 surface = state::velocity_now(t.bodies, contacts.body[first], place - frame.center);
-      const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - surface);
+      const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - velocity);
       set_row(contacts, first, frame, gap_on_way(shape, x, way, radius), radius);
     } else {
       const std::span<TriangleGap> gaps = std::span(scratch.buffers().gaps).subspan(first, row - first);
@@ -364,7 +364,7 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
         gaps[i - first] = gap_to_triangle(*shape.mesh, contacts.feature[i], x);
       update_mesh_rows(contacts, first, gaps, is_inside(*shape.mesh, x), frame, radius);
     }
-    for (std::size_t i = first; i < row; ++i) set_surface(t, i, place - frame.center, frame.belt_velocity);
+    for (std::size_t i = first; i < row; ++i) set_surface(contacts, i, arm, velocity, frame.belt_velocity);
   }
 }
 

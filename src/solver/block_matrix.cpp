@@ -1,5 +1,6 @@
 #include "solver/block_matrix.h"
 
+#include "base/reset_lists.h"
 #include "base/sort_unique.h"
 
 #include <algorithm>
@@ -155,8 +156,7 @@ void substitute_back(const BlockPattern& p, std::span<const double> numbers, std
 
 void BlockGraph::reset(std::size_t count) {
   count_ = count;
-  if (neighbors_.size() < count) neighbors_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) neighbors_[i].clear();
+  base::reset_lists(count, neighbors_);
 }
 
 void BlockGraph::sort() {

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
+#include "base/reset_lists.h"
 #include "base/sort_unique.h"
 #include "base/take_turns.h"
 #include "solver/bundles.h"
@@ -189,13 +190,6 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
   }
 }
 
-/// So many empty lists, at least.
-template <class T>
-void reset_lists(std::size_t count, std::vector<std::vector<T>>& lists) {
-  if (lists.size() < count) lists.resize(count);
-  for (std::size_t i = 0; i < count; ++i) lists[i].clear();
-}
-
 /// Finds the nodes of a bundle, and the blocks at them.
 struct Layout {
   const Tables& tables;
@@ -226,7 +220,7 @@ struct Layout {
     }
     first_node.push_back(nodes);
     node_count = nodes + bundle.points.size();
-    reset_lists(node_count, at_node);
+    base::reset_lists(node_count, at_node);
     for (std::size_t k = 0; k < bundle.chains.size(); ++k) {
       for (std::uint32_t i = 0; i + 1 < chains[bundle.chains[k]].node_count; ++i) {
         at_node[first_node[k] + i].push_back({vector_count, 1});
@@ -273,7 +267,7 @@ struct Layout {
       if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
     };
     std::vector<std::vector<std::uint32_t>>& bodies_at = scratch.bodies_at;
-    reset_lists(node_count, bodies_at);
+    base::reset_lists(node_count, bodies_at);
     for (std::size_t row = 0; row < tables.contacts.particle.size(); ++row) {
       if (!joins(tables, row)) continue;
       const std::uint32_t block = body_block(tables.contacts.body[row]);

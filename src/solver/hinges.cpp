@@ -57,7 +57,6 @@ struct Hinge {
   std::uint32_t bend = 0;
   Spring edge, wings;
   int color = 0;
-
   Real damping = Real(0);
 
   [[nodiscard]] auto key() const { return std::tie(color, edge.material, wings.material, damping); }

@@ -29,13 +29,27 @@ bool air_moves(const state::Tables& tables, const state::Deformable& object) {
          (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
 }
 
+/// Calls `work` with ranges that cover the rows [first, end) of a table.
+template <class Work>
+void for_rows(const WorldData& world, int first, int end, int grain, Work work) {
+  for_ranges(*world.pool, end - first, grain, [&](Range range) {
+    work(Range{first + range.begin, first + range.end});
+  });
+}
+
+/// The same, with an object's particles.
+template <class Work>
+void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
+  for_rows(world, static_cast<int>(object.particles.first), static_cast<int>(object.particles.end()),
+           kParticleGrain, work);
+}
+
 void read_wind(WorldData& world, double time) {
   const state::Tables& tables = world.tables;
   for (const state::Deformable& object : tables.objects) {
     if (!object.feels_air()) continue;
-    for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain, [&](Range range) {
-      for (int i = range.begin; i < range.end; ++i) {
-        const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
+    for_particles(world, object, [&](Range rows) {
+      for (int p = rows.begin; p < rows.end; ++p) {
         const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
         world.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
       }
@@ -47,19 +61,9 @@ void read_wind(WorldData& world, double time) {
 template <class Kernel>
 void for_tetrahedra(WorldData& world, Kernel kernel) {
   for (const solver::TetrahedronPass& pass : world.tetrahedra.passes) {
-    for_ranges(*world.pool, pass.end - pass.first, kTetrahedronGrain, [&](Range range) {
-      kernel(world.tetrahedra, {pass.first + range.begin, pass.first + range.end}, world.tables.particles);
-    });
+    for_rows(world, pass.first, pass.end, kTetrahedronGrain,
+             [&](Range rows) { kernel(world.tetrahedra, rows, world.tables.particles); });
   }
-}
-
-/// Calls `work` with ranges of the world's particles.
-template <class Work>
-void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
-  const auto first = static_cast<int>(object.particles.first);
-  for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain, [&](Range range) {
-    work(Range{first + range.begin, first + range.end});
-  });
 }
 
 /// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
@@ -207,9 +211,8 @@ void apply_wind(WorldData& world, Real h, bool first) {
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
   for (const solver::SpringPass& pass : world.spring_blocks.passes) {
     if (pass.kind < first || pass.kind > last) continue;
-    for_ranges(*world.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
-      const Range rows = {pass.first + blocks.begin, pass.first + blocks.end};
-      solver::solve_springs(world.spring_blocks, pass, rows, h, world.tables.particles);
+    for_rows(world, pass.first, pass.end, kBlockGrain, [&](Range blocks) {
+      solver::solve_springs(world.spring_blocks, pass, blocks, h, world.tables.particles);
     });
   }
 }
@@ -217,9 +220,8 @@ void solve_springs(WorldData& world, Real h, state::SpringClass first, state::Sp
 void solve_bends(WorldData& world) {
   const auto solve = [&world](const auto& rows, auto solve_pass) {
     for (const auto& pass : rows.passes) {
-      for_ranges(*world.pool, pass.end - pass.first, kBlockGrain, [&](Range blocks) {
-        solve_pass(rows, pass, {pass.first + blocks.begin, pass.first + blocks.end}, world.tables.particles);
-      });
+      for_rows(world, pass.first, pass.end, kBlockGrain,
+               [&](Range blocks) { solve_pass(rows, pass, blocks, world.tables.particles); });
     }
   };
   solve(world.bend_blocks, solver::solve_bends);

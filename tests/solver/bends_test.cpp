@@ -1,6 +1,7 @@
 #include "solver/bends.h"
 
 #include "elements/dihedral.h"
+#include "solver/pass_rows.h"
 #include "solver/target_bits.h"
 
 #include <array>
@@ -162,18 +163,7 @@ TEST_SUITE("solver/bends") {
     const Net net = random_net(200, 777);
     BendBlocks blocks;
     build_bend_blocks(net.bends, 200, blocks);
-    std::size_t rows = 0;
-    for (const BendPass& pass : blocks.passes) {
-      std::vector<int> uses(200, 0);
-      for (int i = pass.first; i < pass.end; ++i) {
-        const int count = i + 1 == pass.end ? pass.last_count : kLanes;
-        rows += static_cast<std::size_t>(count);
-        for (int lane = 0; lane < count; ++lane) {
-          for (const auto& line : blocks.blocks[i].line) CHECK(++uses[line[lane] / 4] == 1);
-        }
-      }
-    }
-    CHECK(rows == net.bends.stencil.size());
+    CHECK(count_rows_apart(blocks, 200) == net.bends.stencil.size());
   }
 
   TEST_CASE("every instruction set gives the bits of the scalar twin") {

@@ -51,19 +51,6 @@ struct Vectors {
   Vector x, y, z;
 };
 
-/// Differences of kWidth lines: of positions, without their radii.
-HWY_INLINE Vectors load_offsets(const float* position, const std::uint32_t* to, const std::uint32_t* from) {
-  const auto offset = [&](int j) HWY_ATTR {
-    return hn::Sub(load_lines(kTag, position, to + j), load_lines(kTag, position, from + j));
-  };
-  Vector x = offset(0);
-  Vector y = offset(1);
-  Vector z = offset(2);
-  Vector radii = offset(3);
-  transpose(x, y, z, radii);
-  return {x, y, z};
-}
-
 /// kWidth rows between their loads and their stores.
 struct Rows {
   Vector dx, dy, dz, s;
@@ -74,7 +61,7 @@ HWY_INLINE void load_rows(const SpringBlock& block, int first, const float* posi
                           Rows& rows) {
   const std::uint32_t* a = block.line_a + first;
   const std::uint32_t* b = block.line_b + first;
-  const Vectors d = load_offsets(position, a, b);
+  const Columns d = load_offsets(position, a, b);
   rows.dx = d.x;
   rows.dy = d.y;
   rows.dz = d.z;
@@ -237,9 +224,13 @@ struct Hinges {
 
 HWY_INLINE void load_hinges(Place<BendBlock> at, const float* position, Hinges& rows) {
   const std::uint32_t* x0 = at.block->line[0] + at.first;
-  const Vectors e = load_offsets(position, at.block->line[1] + at.first, x0);
-  const Vectors d2 = load_offsets(position, at.block->line[2] + at.first, x0);
-  const Vectors d3 = load_offsets(position, at.block->line[3] + at.first, x0);
+  const auto from_x0 = [&](int k) HWY_ATTR {
+    const Columns d = load_offsets(position, at.block->line[k] + at.first, x0);
+    return Vectors{d.x, d.y, d.z};
+  };
+  const Vectors e = from_x0(1);
+  const Vectors d2 = from_x0(2);
+  const Vectors d3 = from_x0(3);
   const Vectors na = cross(e, d2);
   const Vectors nb = cross(d3, e);
   const Vector aa = dot(na, na);

@@ -77,6 +77,16 @@ HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
   return c;
 }
 
+/// Components of lines less others, subtracted before the transposition, which is one less then.
+HWY_INLINE Columns load_offsets(const float* base, const std::uint32_t* to, const std::uint32_t* from) {
+  const auto offset = [&](int j) HWY_ATTR {
+    return hn::Sub(load_lines(kTag, base, to + j), load_lines(kTag, base, from + j));
+  };
+  Columns c = {offset(0), offset(1), offset(2), offset(3)};
+  transpose(c.x, c.y, c.z, c.w);
+  return c;
+}
+
 HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index) {
   transpose(c.x, c.y, c.z, c.w);
   store_lines(kTag, c.x, base, index);

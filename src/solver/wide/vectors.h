@@ -92,16 +92,10 @@ HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wid
   }
 }
 
-/// Subtracted before the transposition, which is one less then.
 HWY_INLINE void read_offset(const float* base, const std::uint32_t* to, const std::uint32_t* from,
                             Triple<Wide>& offset) {
   for (int i = 0; i < kVectors; ++i) {
-    const auto line = [&](int j) HWY_ATTR {
-      return hn::Sub(load_lines(kTag, base, to + i * kWidth + j),
-                     load_lines(kTag, base, from + i * kWidth + j));
-    };
-    Columns c = {line(0), line(1), line(2), line(3)};
-    transpose(c.x, c.y, c.z, c.w);
+    const Columns c = load_offsets(base, to + i * kWidth, from + i * kWidth);
     offset.x.raw[i] = c.x;
     offset.y.raw[i] = c.y;
     offset.z.raw[i] = c.z;
