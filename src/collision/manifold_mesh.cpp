@@ -189,7 +189,7 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& s
     if (meet_triangle(triangle, b, margin, meeting)) append_contact(triangle, index, meeting, scratch);
   }
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    if (is_ghost(scratch.contacts[i], scratch.contacts)) continue;
+    if (is_ghost(scratch.contacts[i], scratch.contacts, Pieces::kOfOneMesh)) continue;
     const std::size_t first = scratch.first_point[i];
     add_to_patches(scratch.contacts[i],
                    std::span(scratch.points).subspan(first, scratch.first_point[i + 1] - first),

@@ -10,6 +10,7 @@
 #include "collision/narrow_phase_keep.h"
 #include "collision/pair_surface.h"
 #include "collision/placement.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <array>
@@ -37,10 +38,12 @@ struct Scene {
   const state::Bodies& bodies;
   const state::Colliders& colliders;
   std::span<const MaterialPairDesc> materials;
-  Real dt;
-  std::span<const Convex> placed;  ///< Of each collider, from its body's center of mass.
-  std::span<const Manifold> old;
-  std::span<const SmallMotion> motions;  ///< Of each body, since the last step.
+  Real dt;  ///< Of what is looked ahead: a step, or a substep.
+  int substeps = 1;
+  std::span<const Convex> placed = {};  ///< Of each collider, from its body's center of mass.
+  std::span<const Manifold> old = {};
+  std::span<const SmallMotion> motions = {};    ///< Of each body, since the last step.
+  std::span<const std::uint32_t> company = {};  ///< Of each body; see find_company.
 };
 
 /// What the pairs of a chunk produced, in their order.
@@ -146,6 +149,20 @@ void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const Mee
   if (m.point_count == 0) chunk.manifolds.pop_back();
 }
 
+/// Manifolds that a lively pair has at least: one for each patch that it may come upon.
+constexpr std::uint32_t kLivelyPatches = 4;
+
+/// Manifolds without points, for those that a lively pair will have within the step.
+void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bool mesh, Chunk& chunk) {
+  const std::uint32_t wanted = mesh ? kLivelyPatches : 1;
+  while (chunk.manifolds.size() < begin + wanted) {
+    Manifold& m = chunk.manifolds.emplace_back();
+    describe(scene, pair, Manifold::kNoPatch, m);
+    m.normal = {Real(0), Real(1), Real(0)};
+  }
+  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i) chunk.manifolds[i].lively = true;
+}
+
 /// The shapes of a pair, each from the center of mass of its body.
 struct View {
   const Convex& a;
@@ -243,6 +260,77 @@ bool goes_on_touching(const Scene& scene, const Pair& pair) {
 
 constexpr Real kMiddle = Real(0.5);  // of the step
 
+Real restitution_of(const Scene& scene, const Pair& pair) {
+  return surface_of(scene.colliders.surface[pair.collider_a], scene.colliders.surface[pair.collider_b],
+                    scene.materials)
+      .restitution;
+}
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kSeveral = 0xFFFFFFFE;
+constexpr std::uint32_t kStandingCollider = 0x80000000;
+
+bool is_moved(const Scene& scene, std::uint32_t collider) {
+  return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
+}
+
+/// What each body that moves is near to: one other body, one collider of what nothing moves, or several.
+void find_company(const Scene& scene, std::span<const Pair> pairs, std::vector<std::uint32_t>& company) {
+  company.assign(scene.bodies.traits.size(), kNone);
+  const auto meet = [&](std::uint32_t collider, std::uint32_t other) {
+    if (!is_moved(scene, collider)) return;
+    const std::uint32_t one =
+        is_moved(scene, other) ? scene.colliders.body[other] : other | kStandingCollider;
+    std::uint32_t& known = company[scene.colliders.body[collider]];
+    known = known == kNone || known == one ? one : kSeveral;
+  };
+  for (const Pair& pair : pairs) {
+    meet(pair.collider_a, pair.collider_b);
+    meet(pair.collider_b, pair.collider_a);
+  }
+}
+
+/// Whether each of the pair's bodies is near to nothing but the other.
+bool is_alone(const Scene& scene, const Pair& pair) {
+  return scene.company[scene.colliders.body[pair.collider_a]] != kSeveral &&
+         scene.company[scene.colliders.body[pair.collider_b]] != kSeveral;
+}
+
+/// Whether rows of the step's start would be wrong before its end; see update_manifolds. Not if a substep is
+/// too long for them as well: then the pair is held where it is now, or where it will be hit. Not in a crowd
+/// either, where it would cost most and help least; and where several colliders hold one, nobody looks in the
+/// middle of the step which of them cover which.
+bool is_lively(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair, Chunk& chunk) {
+  constexpr Real kTouching = Real(5e-3);  // [m]
+  constexpr Real kStill = Real(1e-3);     // a turn by which the surface hardly moves [m]
+  if (!is_alone(scene, pair)) return false;
+  const Convex& shape_a = scene.placed[a.row];
+  const Convex& shape_b = scene.placed[b.row];
+  const Real thin_a = thinness_of(shape_a);
+  const Real thin_b = thinness_of(shape_b);
+  const Real turn_a = turning_reach(a);
+  const Real turn_b = turning_reach(b);
+  const Real way = length(b.path.way - a.path.way);
+  if (way + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
+    return false;
+  const bool turns = (spins(a.path) && turn_a > kStill) || (spins(b.path) && turn_b > kStill);
+  const bool flat =
+      shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
+  if (!turns && (flat || way < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
+  if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know the step's start only
+  if (turns) return true;
+  const std::size_t before = chunk.manifolds.size();
+  test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
+  const bool touches =
+      std::any_of(chunk.manifolds.begin() + static_cast<std::ptrdiff_t>(before), chunk.manifolds.end(),
+                  [](const Manifold& m) {
+                    return std::any_of(m.point.begin(), m.point.begin() + m.point_count,
+                                       [](const state::ContactPoint& p) { return p.separation < kTouching; });
+                  });
+  chunk.manifolds.resize(before);
+  return touches;
+}
+
 /// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
 void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const Convex& now_a = scene.placed[pair.collider_a];
@@ -252,7 +340,8 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
   const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
   chunk.time = Real(0);
-  if (is_fast(a, b, now_a, now_b)) {
+  pair.lively = is_lively(scene, a, b, pair, chunk);
+  if (!pair.lively && is_fast(a, b, now_a, now_b)) {
     const auto impact =
         find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
     chunk.time = impact ? impact->time : Real(0);
@@ -261,7 +350,8 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (chunk.time < kMiddle && (spins(path_a) || spins(path_b)) && goes_on_touching(scene, pair)) {
+  if (!pair.lively && chunk.time < kMiddle && (spins(path_a) || spins(path_b)) &&
+      goes_on_touching(scene, pair)) {
     chunk.time = kMiddle;
     pair.time = Real(0);
   }
@@ -283,7 +373,7 @@ bool is_mesh(const Scene& scene, std::uint32_t collider) {
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
 /// the last test, and will not come as far as to points that were too far apart to be kept.
 bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
-  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0)) return false;
+  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.lively) return false;
   if (margin > Real(1.5) * kMargin) return false;
   if (is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b)) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
@@ -328,6 +418,9 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
+      if (pair.lively)
+        append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
+                      chunk);
       pair.odometer = odometer;
       pair.drift = {};
       pair.tested = true;
@@ -337,24 +430,88 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
 }
 
+constexpr std::size_t kLivelyChunk = 8;    // lively pairs of one buffer
+constexpr std::uint32_t kMostPlaces = 64;  // manifolds of a lively pair: more patches than a mesh makes
+
+/// The manifold that a new one replaces: the one of the same patch, or else of the most similar normal; or
+/// else one that is free. `taken` are those that have been replaced.
+std::uint32_t find_place(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
+                         std::uint64_t taken) {
+  const std::uint32_t count = std::min(pair.manifold_count, kMostPlaces);
+  std::uint32_t best = kMostPlaces;
+  Real closest = Real(-2);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((taken >> i & 1u) != 0) continue;
+    const Manifold& old = manifolds[pair.first_manifold + i];
+    if (old.point_count > 0 && old.patch == m.patch) return i;
+    const Real likeness = old.point_count > 0 ? dot(old.normal, m.normal) : Real(0.99);
+    if (!(likeness > closest)) continue;
+    best = i;
+    closest = likeness;
+  }
+  return best;
+}
+
+/// Halfway between the surfaces.
+void center_anchors(Manifold& m) {
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
+    const Vec3 half = (Real(0.5) * p.separation) * m.normal;
+    p.anchor_a += half;
+    p.anchor_b -= half;
+  }
+}
+
+/// Replaces the manifolds of the pair, in place, by those of other poses.
+void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair& pair, Chunk& chunk,
+                std::vector<Manifold>& manifolds) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  const Convex shape_a = place(scene.colliders, pair.collider_a, pose_a.rotation);
+  const Convex shape_b = place(scene.colliders, pair.collider_b, pose_b.rotation);
+  chunk.manifolds.clear();
+  chunk.margin = margin_of(scene, a, b);
+  chunk.time = Real(0);
+  test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
+  std::uint64_t taken = 0;
+  // All are matched with the old ones before those are replaced.
+  std::array<std::uint32_t, kMostPlaces> place_of = {};
+  for (std::size_t i = 0; i < chunk.manifolds.size() && i < place_of.size(); ++i) {
+    place_of[i] = find_place(pair, chunk.manifolds[i], manifolds, taken);
+    if (place_of[i] < kMostPlaces) taken |= std::uint64_t{1} << place_of[i];
+  }
+  for (std::uint32_t i = 0; i < pair.manifold_count; ++i) {
+    Manifold& m = manifolds[pair.first_manifold + i];
+    m.point_count = 0;
+    m.friction_impulse = {};
+    m.twist_impulse = Real(0);
+  }
+  for (std::size_t i = 0; i < chunk.manifolds.size() && i < place_of.size(); ++i) {
+    if (place_of[i] == kMostPlaces) continue;
+    Manifold& m = manifolds[pair.first_manifold + place_of[i]];
+    const Real largest = m.largest_impulse;
+    m = chunk.manifolds[i];
+    m.largest_impulse = largest;
+    m.lively = pair.lively;
+    center_anchors(m);
+  }
+}
+
 /// A manifold with something that nothing moves, seen from the collider that it holds.
 struct Support {
   std::uint32_t held = 0;  ///< Collider.
   std::uint32_t manifold = 0;
 };
 
-bool is_held(const Scene& scene, std::uint32_t collider) {
-  return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
-}
-
 /// Not those of later in the step: only places of one time can be compared.
 void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Support>& supports) {
   supports.clear();
   for (const Pair& pair : pairs.pair) {
-    const bool a_held = is_held(scene, pair.collider_a);
-    if (pair.time > Real(0) || a_held == is_held(scene, pair.collider_b)) continue;
+    const bool a_moved = is_moved(scene, pair.collider_a);
+    if (pair.time > Real(0) || a_moved == is_moved(scene, pair.collider_b)) continue;
     for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
-      supports.push_back({a_held ? pair.collider_a : pair.collider_b, i});
+      if (pairs.manifold[i].point_count > 0)
+        supports.push_back({a_moved ? pair.collider_a : pair.collider_b, i});
   }
   std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
     return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
@@ -388,7 +545,23 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   return contact;
 }
 
-/// Empties the manifolds that others of the same collider cover. Returns how many.
+/// Closes the gaps that manifolds without points leave; those of lively pairs stay.
+void remove_empty(state::Pairs& pairs) {
+  std::uint32_t kept = 0;
+  for (Pair& pair : pairs.pair) {
+    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
+    const std::uint32_t first = kept;
+    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
+      if (pairs.manifold[i].point_count == 0 && !pair.lively) continue;
+      pairs.manifold[kept++] = pairs.manifold[i];
+    }
+    pair.first_manifold = first;
+    pair.manifold_count = kept - first;
+  }
+  pairs.manifold.resize(kept);
+}
+
+/// Removes the manifolds that others of the same collider cover. Returns how many.
 std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
   auto& [supports, contacts, ghosts] = scratch;
   find_supports(scene, pairs, supports);
@@ -401,26 +574,12 @@ std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pai
       contacts.push_back(contact_of(scene, pairs.manifold[supports[i].manifold], supports[i]));
     }
     for (const SurfaceContact& contact : contacts) {
-      if (is_ghost(contact, contacts)) ghosts.push_back(contact.index);
+      if (is_ghost(contact, contacts, Pieces::kOfMany)) ghosts.push_back(contact.index);
     }
   }
   for (const std::uint32_t i : ghosts) pairs.manifold[i].point_count = 0;
+  if (!ghosts.empty()) remove_empty(pairs);
   return static_cast<std::uint32_t>(ghosts.size());
-}
-
-/// Closes the gaps that manifolds without points leave.
-void remove_empty(state::Pairs& pairs) {
-  std::uint32_t kept = 0;
-  for (Pair& pair : pairs.pair) {
-    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
-    const std::uint32_t first = kept;
-    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
-      if (pairs.manifold[i].point_count > 0) pairs.manifold[kept++] = pairs.manifold[i];
-    }
-    pair.first_manifold = first;
-    pair.manifold_count = kept - first;
-  }
-  pairs.manifold.resize(kept);
 }
 
 void place_all(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
@@ -471,9 +630,13 @@ struct NarrowPhase::Buffers {
   std::vector<Convex> placed = {};
   std::vector<Manifold> old = {};
   std::vector<SmallMotion> motions = {};
+  std::vector<std::uint32_t> company = {};
   std::vector<Chunk> chunks = {};
   std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
   GhostScratch ghosts = {};
+  std::vector<std::uint32_t> lively = {};  ///< Rows of lively pairs, ascending.
+  std::vector<Chunk> lively_chunks = {};
+  Chunk look = {};  ///< Of look_at.
 };
 
 NarrowPhase::NarrowPhase() : buffers_(std::make_unique<Buffers>()) {}
@@ -484,12 +647,15 @@ NarrowPhase& NarrowPhase::operator=(NarrowPhase&&) noexcept = default;
 NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                                 const state::Colliders& colliders,
                                                 std::span<const MaterialPairDesc> materials, Real dt,
-                                                state::Pairs& pairs) {
-  auto& [placed, old, motions, all_chunks, first_manifold, ghosts] = *buffers_;
+                                                int substeps, state::Pairs& pairs) {
+  auto& [placed, old, motions, company, all_chunks, first_manifold, ghosts, lively, lively_chunks, look] =
+      *buffers_;
   place_all(pool, bodies, colliders, placed);
   find_motions(pool, bodies, pairs.seen, motions);
   base::take_turns(pairs.manifold, old);
-  const Scene scene = {bodies, colliders, materials, dt, placed, old, motions};
+  Scene scene = {bodies, colliders, materials, dt, substeps, placed, old, motions};
+  find_company(scene, pairs.pair, company);
+  scene.company = company;
   const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
   if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);
   const std::span<Chunk> chunks = std::span(all_chunks).first(chunk_count);
@@ -504,8 +670,42 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
   });
   NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
   counts.ghosts = empty_ghosts(scene, ghosts, pairs);
-  if (counts.ghosts > 0) remove_empty(pairs);
+  lively.clear();
+  for (std::uint32_t i = 0; i < pairs.pair.size(); ++i) {
+    if (pairs.pair[i].lively && pairs.pair[i].manifold_count > 0) lively.push_back(i);
+  }
   return counts;
+}
+
+void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                          const state::Colliders& colliders,
+                                          std::span<const MaterialPairDesc> materials, Real h,
+                                          state::Pairs& pairs) {
+  const std::vector<std::uint32_t>& rows = buffers_->lively;
+  std::vector<Chunk>& chunks = buffers_->lively_chunks;
+  const Scene scene = {
+      .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
+  const std::size_t count = (rows.size() + kLivelyChunk - 1) / kLivelyChunk;
+  if (chunks.size() < count) chunks.resize(count);
+  for_ranges(pool, static_cast<int>(count), kChunkGrain, [&](Range range) {
+    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
+      const std::size_t end = std::min((c + 1) * kLivelyChunk, rows.size());
+      for (std::size_t i = c * kLivelyChunk; i < end; ++i) {
+        Pair& pair = pairs.pair[rows[i]];
+        const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
+        const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
+        look_again(scene, a, b, pair, chunks[c], pairs.manifold);
+      }
+    }
+  });
+}
+
+void NarrowPhase::look_at(const state::Bodies& bodies, const state::Colliders& colliders,
+                          std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
+                          std::uint32_t pair, state::Pairs& pairs) {
+  const Scene scene = {
+      .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
+  look_again(scene, a, b, pairs.pair[pair], buffers_->look, pairs.manifold);
 }
 
 }  // namespace hooke::collision

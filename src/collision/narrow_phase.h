@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hooke/desc.h"
+#include "hooke/world.h"
 
 #include "collision/broad_phase.h"
 #include "parallel/thread_pool.h"
@@ -44,10 +45,30 @@ class NarrowPhase {
   /// farther. A pair whose bodies both sleep or stand keeps its manifolds as they are. A pair that was apart
   /// is tested again when the odometers of its bodies say that they may have met. Manifolds of convex shapes
   /// that hardly moved against each other are carried along.
+  ///
+  /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
+  /// body turns by more than 0.2 rad, or the pair touches and one goes over the other by more than it is
+  /// thick; and which `substeps` looks are enough for. It has at least one manifold, a mesh some more, which
+  /// may be without points until update_lively_manifolds finds some.
   NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                      const state::Colliders& colliders,
-                                     std::span<const MaterialPairDesc> materials, Real dt,
+                                     std::span<const MaterialPairDesc> materials, Real dt, int substeps,
                                      state::Pairs& pairs);
+
+  /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,
+  /// with separations of now and the impulses of the points that are still there. Anchors of A and B are the
+  /// same place but for their way along the normal, halfway between the surfaces: an impulse there keeps the
+  /// angular momentum. Points farther apart than 2 cm and what the bodies can come together in `h` [s] are
+  /// left out.
+  void update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                               const state::Colliders& colliders, std::span<const MaterialPairDesc> materials,
+                               Real h, state::Pairs& pairs);
+
+  /// The same for one pair, lively or not, with its bodies in these poses, of their centers of mass. Not to
+  /// be called by several threads at once.
+  void look_at(const state::Bodies& bodies, const state::Colliders& colliders,
+               std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
+               std::uint32_t pair, state::Pairs& pairs);
 
  private:
   struct Buffers;  // narrow_phase.cpp

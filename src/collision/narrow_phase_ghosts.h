@@ -27,10 +27,19 @@ inline constexpr Real kFlush = Real(5e-4);
 /// Normals that differ by less than 1e-4 hold in the same direction.
 [[nodiscard]] bool is_same_direction(Vec3 a, Vec3 b);
 
+/// Where pieces of a surface are from: those of several bodies may lie flush but for a small step.
+enum class Pieces : std::uint8_t { kOfOneMesh, kOfMany };
+
 /// Whether another contact covers this one: the whole piece is behind the plane of that contact, so that what
 /// touches the front of the plane can feel no more of the piece than its rim, which is no obstacle. Of two
 /// that cover each other (both sides of an edge), the one that holds the shape farther off stays. Needs no
 /// neighborhood: pieces may be triangles with or without common vertices, T-junctions, or whole bodies.
-[[nodiscard]] bool is_ghost(const SurfaceContact& contact, std::span<const SurfaceContact> all);
+///
+/// Of two triangles of a mesh that cover each other only because they are flush, the one that covers better
+/// stays. The normal at the rim of a triangle leans towards the shape; in a hollow of narrow strips each rim
+/// is farther from the shape than the one before, so that all would be covered by the last, which is not
+/// near.
+[[nodiscard]] bool is_ghost(const SurfaceContact& contact, std::span<const SurfaceContact> all,
+                            Pieces pieces);
 
 }  // namespace hooke::collision

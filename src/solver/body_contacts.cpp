@@ -1,6 +1,7 @@
 #include "solver/body_contacts.h"
 
 #include "solver/wide/body_contacts.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -40,36 +41,6 @@ void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bod
   block.w_b[lane] = block.anchored ? Real(0) : bodies.motion[b].inverse_mass;
 }
 
-/// Acceleration of a body by all but contacts.
-Vec3 free_acceleration(const Bodies& bodies, std::uint32_t row, Vec3 gravity) {
-  return bodies.traits[row].gravity_scale * gravity + bodies.motion[row].inverse_mass * bodies.force[row];
-}
-
-/// Slower impacts do not bounce [m^2/s^2]: gravity gives a body that rests as much within a step.
-constexpr Real kBounceSpeedSquared = Real(0.2) * Real(0.2);
-
-void fill_bounce(const Manifold& m, const Bodies& bodies, const ContactStep& step, int lane,
-                 const ContactBlock& block, BounceBlock& bounce) {
-  const std::uint32_t a = block.line_a[lane] / 16;
-  const std::uint32_t b = block.line_b[lane] / 16;
-  const Vec3 n = vector_of(block.normal, lane);
-  const Vec3 pull = block.anchored ? Vec3{} : free_acceleration(bodies, b, step.gravity);
-  const Real acceleration = dot(n, pull - free_acceleration(bodies, a, step.gravity));
-  const Real approach = dot(n, bodies.motion[b].v - bodies.motion[a].v);
-  bounce.acceleration[lane] = acceleration;
-  bounce.restitution[lane] = m.restitution;
-  for (int k = 0; k < block.point_count; ++k) {
-    const ContactBlock::Point& p = block.point[k];
-    const Real v = approach + dot(vector_of(p.j_b, lane), bodies.motion[b].omega_scaled) -
-                   dot(vector_of(p.j_a, lane), bodies.motion[a].omega_scaled);
-    const Real now = v + Real(0.5) * step.h * acceleration;
-    const Real impact = now * now - Real(2) * acceleration * p.separation[lane];
-    const bool bounces = m.restitution > Real(0) && now < Real(0) && impact > kBounceSpeedSquared;
-    bounce.impact_speed[k][lane] = bounces ? impact : Real(0);
-    bounce.largest_impulse[k][lane] = Real(0);
-  }
-}
-
 /// S^2, the inverse of the inertia.
 math::Symmetric3<Real> square(const math::Symmetric3<Real>& s) {
   const Vec3 x = {s.xx, s.xy, s.xz};
@@ -94,8 +65,8 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
   contacts.color_begin = {0};
   contacts.manifold_of.clear();
   contacts.rolling.clear();
+  contacts.lively.clear();
   std::size_t block_count = 0;
-  int bounce_count = 0;
   for (std::size_t color = 0; color + 1 < colors.begin.size(); ++color) {
     int i = colors.begin[color];
     while (i < colors.begin[color + 1]) {
@@ -107,23 +78,26 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
       block.point_count = manifolds[first_manifold].point_count;
       block.first_rolling = static_cast<int>(contacts.rolling.size());
       block.count = 0;
-      bool bounces = false;
+      block.bounces = false;
       const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
       for (; i < end && colors.members[i].anchored == anchored && colors.members[i].hard == hard; ++i) {
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
-        bounces = bounces || m.restitution > Real(0);
+        block.bounces = block.bounces || m.restitution > Real(0);
+        if (m.lively && !hard) {
+          block.point_count = Manifold::kMaxPoints;
+          contacts.lively.push_back(
+              {static_cast<int>(block_count) - 1, block.count, colors.members[i].manifold});
+        }
         if (m.rolling_friction > Real(0)) contacts.rolling.push_back({.lane = block.count});
         ++block.count;
       }
       contacts.manifold_of.resize(block_count * kContactLanes, BodyContacts::kNoManifold);
       block.rolling_count = static_cast<int>(contacts.rolling.size()) - block.first_rolling;
-      block.bounces = bounces ? bounce_count++ : -1;
     }
     contacts.color_begin.push_back(static_cast<int>(block_count));
   }
   contacts.blocks.resize(block_count);
-  contacts.bounces.resize(static_cast<std::size_t>(bounce_count));
 }
 
 void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies& bodies,
@@ -137,8 +111,6 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
   for (int lane = 0; lane < kContactLanes; ++lane)
     fill_lane(rows[std::min(lane, block.count - 1)], contacts.colors, bodies, lane, source, block);
   wide::compute_contact_rows(source, block);
-  for (int lane = 0; block.bounces >= 0 && lane < block.count; ++lane)
-    fill_bounce(manifolds[rows[lane]], bodies, step, lane, block, contacts.bounces[block.bounces]);
   for (int i = 0; i < block.rolling_count; ++i) {
     RollingRow& row = contacts.rolling[block.first_rolling + i];
     fill_rolling(manifolds[rows[row.lane]], bodies, step, block, row);
@@ -177,15 +149,6 @@ void roll(const ContactBlock& block, RollingRow& row, Bodies& bodies) {
   if (!block.anchored) omega_b += bodies.scale[b] * change;
 }
 
-void note_largest(const ContactBlock& block, BounceBlock& bounce) {
-  for (int k = 0; k < block.point_count; ++k) {
-    for (int lane = 0; lane < kContactLanes; ++lane) {
-      bounce.largest_impulse[k][lane] =
-          std::max(bounce.largest_impulse[k][lane], block.point[k].impulse[lane]);
-    }
-  }
-}
-
 std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
   return {contacts.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())};
 }
@@ -198,13 +161,83 @@ std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   return all.first(static_cast<std::size_t>(hard - all.begin()));
 }
 
-void note_impulses(std::span<const ContactBlock> blocks, BodyContacts& contacts) {
-  for (const ContactBlock& block : blocks) {
-    if (block.bounces >= 0) note_largest(block, contacts.bounces[block.bounces]);
+/// What a lane's impulses have done to the bodies is to be of free motion (`sign` 1), or no longer (-1).
+void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodies) {
+  const Vec3 n = vector_of(block.normal, lane);
+  const Vec3 t_1 = vector_of(block.tangent, lane);
+  const Real twist = block.twist_impulse[lane];
+  const Real along = block.friction_impulse[0][lane];
+  const Real across = block.friction_impulse[1][lane];
+  Vec3 push = along * t_1 + across * cross(n, t_1);
+  Vec3 turn_a = twist * vector_of(block.twist_j_a, lane) + along * vector_of(block.friction_j_a[0], lane) +
+                across * vector_of(block.friction_j_a[1], lane);
+  Vec3 turn_b = twist * vector_of(block.twist_j_b, lane) + along * vector_of(block.friction_j_b[0], lane) +
+                across * vector_of(block.friction_j_b[1], lane);
+  for (int k = 0; k < block.point_count; ++k) {
+    const Real impulse = block.point[k].impulse[lane];
+    push += impulse * n;
+    turn_a += impulse * vector_of(block.point[k].j_a, lane);
+    turn_b += impulse * vector_of(block.point[k].j_b, lane);
+  }
+  const auto change = [&](std::uint32_t body, Vec3 v, Vec3 turn) {
+    bodies.free_motion[body].v += v;
+    bodies.free_motion[body].omega_scaled += turn;
+    if (state::tumbles_now(bodies, body))
+      bodies.angular_momentum[body] += math::inverse(bodies.scale[body]) * turn;
+  };
+  change(block.line_a[lane] / 16, (-sign * block.w_a[lane]) * push, -sign * turn_a);
+  if (!block.anchored) change(block.line_b[lane] / 16, (sign * block.w_b[lane]) * push, sign * turn_b);
+}
+
+/// From separations of `time` from now to those of the start of the step, along the rows' straight lines.
+void bring_to_start(const Bodies& bodies, Real time, int lane, ContactBlock& block) {
+  const state::MotionLine& a = bodies.motion[block.line_a[lane] / 16];
+  const state::MotionLine& b = bodies.motion[block.line_b[lane] / 16];
+  const Real way = dot(vector_of(block.normal, lane), (b.dx + time * b.v) - (a.dx + time * a.v));
+  const Vec3 turn_a = a.theta_scaled + time * a.omega_scaled;
+  const Vec3 turn_b = b.theta_scaled + time * b.omega_scaled;
+  for (int k = 0; k < block.point_count; ++k) {
+    ContactBlock::Point& p = block.point[k];
+    p.separation[lane] -= way + (dot(vector_of(p.j_b, lane), turn_b) - dot(vector_of(p.j_a, lane), turn_a));
   }
 }
 
+/// The last lane with a manifold stands in all those behind it, too.
+int end_of(const ContactBlock& block, int lane) {
+  return lane + 1 == block.count ? kContactLanes : lane + 1;
+}
+
+void refill_lane(const ContactLane& at, const std::vector<Manifold>& manifolds, Real time, Bodies& bodies,
+                 BodyContacts& contacts) {
+  ContactBlock& block = contacts.blocks[at.block];
+  move_impulses(block, at.lane, Real(1), bodies);
+  const Real pushed = block.pushed[at.lane];
+  wide::ContactSource source;
+  source.manifolds = manifolds.data();
+  source.scale = bodies.scale.data();
+  for (int lane = at.lane; lane < end_of(block, at.lane); ++lane) {
+    fill_lane(at.manifold, contacts.colors, bodies, lane, source, block);
+    wide::compute_contact_lane_scalar(source, lane, block);
+    bring_to_start(bodies, time, lane, block);
+    block.pushed[lane] = pushed;
+  }
+  move_impulses(block, at.lane, Real(-1), bodies);
+}
+
+void store_friction(const ContactBlock& block, int lane, Manifold& m) {
+  const Vec3 t_1 = vector_of(block.tangent, lane);
+  const Vec3 friction = block.friction_impulse[0][lane] * t_1 +
+                        block.friction_impulse[1][lane] * cross(vector_of(block.normal, lane), t_1);
+  m.friction_impulse = (is_swapped(m, block, lane) ? Real(-1) : Real(1)) * friction;
+  m.twist_impulse = block.twist_impulse[lane];
+}
+
 }  // namespace
+
+Vec3 free_acceleration(const Bodies& bodies, std::uint32_t row, Vec3 gravity) {
+  if (!is_moved(bodies, row)) return {};
+  return bodies.traits[row].gravity_scale * gravity + bodies.motion[row].inverse_mass * bodies.force[row];
+}
 
 ContactSoftness contact_softness(const ContactStep& step, bool anchored) {
   const Real limit = Real(1) / ((step.sweeps > 1 ? Real(4) : Real(8)) * step.h);
@@ -247,7 +280,6 @@ void solve_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
   };
   wide::solve_contacts(all.first(pairs), pass(false), bodies.motion.data());
   wide::solve_contacts(all.subspan(pairs), pass(true), bodies.motion.data());
-  note_impulses(all, contacts);
 }
 
 void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
@@ -256,9 +288,29 @@ void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
     for (int i = 0; i < block.rolling_count; ++i)
       roll(block, contacts.rolling[block.first_rolling + i], bodies);
   }
-  const wide::ContactPass pass = {.softness = {}, .inverse_h = Real(1) / step.h, .friction = true};
+  // What comes near and will be struck in the next substep must not be slower by then.
+  const wide::ContactPass pass = {
+      .softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
   wide::solve_contacts(soft_blocks_of(contacts, blocks), pass, bodies.motion.data());
-  note_impulses(all, contacts);
+}
+
+void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,
+                 std::vector<Manifold>& manifolds) {
+  for (const auto& [index, lane, row] : lanes) {
+    const ContactBlock& block = contacts.blocks[index];
+    Manifold& m = manifolds[row];
+    if (block.hard) continue;
+    const int count = std::min(m.point_count, block.point_count);
+    for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
+    store_friction(block, lane, m);
+  }
+}
+
+void refill_lanes(std::span<const ContactLane> lanes, const std::vector<Manifold>& manifolds, Real time,
+                  Bodies& bodies, BodyContacts& contacts) {
+  for (const ContactLane& lane : lanes) {
+    if (!contacts.blocks[lane.block].hard) refill_lane(lane, manifolds, time, bodies, contacts);
+  }
 }
 
 void store_body_contacts(Range blocks, const BodyContacts& contacts, std::vector<Manifold>& manifolds) {
@@ -267,24 +319,11 @@ void store_body_contacts(Range blocks, const BodyContacts& contacts, std::vector
     const std::size_t first = static_cast<std::size_t>(kContactLanes) * index;
     for (int lane = 0; lane < block.count; ++lane) {
       Manifold& m = manifolds[contacts.manifold_of[first + lane]];
-      bool any_bounced = false;
       m.largest_impulse = block.pushed[lane];
-      for (int k = 0; k < m.point_count; ++k) {
-        const bool has_bounced = bounced(contacts, block, k, lane);
-        m.point[k].normal_impulse = has_bounced ? Real(0) : block.point[k].impulse[lane];
-        any_bounced = any_bounced || has_bounced;
-        if (has_bounced) {
-          m.largest_impulse +=
-              contacts.bounces[block.bounces].impulse[k][lane] - block.point[k].impulse[lane];
-        }
-      }
+      const int count = std::min(m.point_count, block.point_count);
+      for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
       m.touching = block.pushed[lane] > Real(0);
-      const Vec3 t_1 = vector_of(block.tangent, lane);
-      const Vec3 friction = block.friction_impulse[0][lane] * t_1 +
-                            block.friction_impulse[1][lane] * cross(vector_of(block.normal, lane), t_1);
-      const Real sign = any_bounced ? Real(0) : is_swapped(m, block, lane) ? Real(-1) : Real(1);
-      m.friction_impulse = sign * friction;
-      m.twist_impulse = any_bounced ? Real(0) : block.twist_impulse[lane];
+      store_friction(block, lane, m);
     }
     for (int i = 0; i < block.rolling_count; ++i) {
       const RollingRow& row = contacts.rolling[block.first_rolling + i];

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -24,7 +25,6 @@
 ///   solve_body_contacts, each color, `sweeps` times
 ///   move_bodies
 ///   relax_body_contacts, each color                                substeps times
-///   restitute_body_contacts, each color, kRestitutionPasses times, if any_bounce
 ///   finish_bodies, store_body_contacts                             once
 ///
 /// One point, with n the normal from A to B, s its separation, v = n.(v_b - v_a) + j_b.omega_b - j_a.omega_a
@@ -32,6 +32,7 @@
 ///
 ///   separation   s = s_0 + n.(dx_b - dx_a) + j_b.theta_b - j_a.theta_a     linear within a step
 ///   apart        s > 0:   lambda' = max(0, lambda - m (v + s/h))           reach the surface, and no farther
+///                relax:   lambda' = 0 in blocks that bounce: hits.h wants the speed of what comes
 ///   overlapping  bias:    lambda' = max(0, lambda - m (mu v + max(mu beta s, -3 m/s)) - gamma lambda)
 ///                relax:   lambda' = max(0, lambda - m v)                   takes out what the bias put in
 ///
@@ -47,8 +48,9 @@ namespace hooke::solver {
 
 inline constexpr int kContactLanes = 16;
 
-/// Passes of restitute_body_contacts after the last relaxation.
-inline constexpr int kRestitutionPasses = 5;
+/// Slower impacts do not bounce [m/s].
+inline constexpr Real kLeastHit = Real(0.03);
+inline constexpr Real kLeastHitInCrowd = Real(0.2);
 
 /// Rows of up to 16 manifolds of one color: no two of them share a body that moves. A's side always moves;
 /// where only one body does, it is made A. The last lane that holds a manifold is repeated up to the end, so
@@ -86,7 +88,7 @@ struct alignas(64) ContactBlock {
   int point_count = 0;    ///< The largest of the lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
   bool hard = false;      ///< Its manifolds are of hard islands: only rolling is solved here.
-  int bounces = -1;       ///< Its BounceBlock, if some lane has restitution.
+  bool bounces = false;   ///< Some lane has restitution.
   int first_rolling = 0;  ///< Its rolling rows.
   int rolling_count = 0;
 };
@@ -96,17 +98,6 @@ inline Vec3 vector_of(const ContactBlock::Lane (&from)[3], int lane) {
   return {from[0][lane], from[1][lane], from[2][lane]};
 }
 
-/// What restitution needs to know of a block's points.
-struct BounceBlock {
-  using Lane = ContactBlock::Lane;
-
-  Lane acceleration;                                  ///< Of the free bodies, along the normal [m/s^2].
-  Lane restitution;                                   ///< 0: the lane does not bounce.
-  Lane impact_speed[state::Manifold::kMaxPoints];     ///< Squared, at zero separation; 0: too slow to bounce.
-  Lane largest_impulse[state::Manifold::kMaxPoints];  ///< Of the step [N s].
-  Lane impulse[state::Manifold::kMaxPoints];          ///< The point's during restitution [N s].
-};
-
 /// Resistance to rolling: relative angular velocity across the normal, within lever times normal impulse.
 struct RollingRow {
   int lane = 0;
@@ -115,18 +106,24 @@ struct RollingRow {
   Vec3 impulse = {};                    ///< On B [N m s].
 };
 
+/// One lane of a block.
+struct ContactLane {
+  int block = 0;
+  int lane = 0;
+  std::uint32_t manifold = 0;  ///< Its row.
+};
+
 struct BodyContacts {
   static constexpr std::uint32_t kNoManifold = 0xFFFFFFFF;
 
   std::vector<ContactBlock> blocks;
   std::vector<int> color_begin = {0};      ///< Blocks of color c are [color_begin[c], color_begin[c + 1]).
   std::vector<std::uint32_t> manifold_of;  ///< Row of each lane's manifold; kNoManifold where there is none.
-  std::vector<BounceBlock> bounces;
   std::vector<RollingRow> rolling;
+  std::vector<ContactLane> lively;  ///< Lanes of lively manifolds that soft contacts solve.
   ContactColors colors;
 
   [[nodiscard]] int color_count() const { return static_cast<int>(color_begin.size()) - 1; }
-  [[nodiscard]] bool any_bounce() const { return !bounces.empty(); }
 };
 
 /// The same for all contacts in a step.
@@ -165,19 +162,20 @@ void solve_body_contacts(parallel::Range blocks, const ContactStep& step, BodyCo
 void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
 
-/// Gives points that were hit in this step the speed they leave with: pass 0 moves each manifold as a whole,
-/// passes 1 to 4 its points. Exact for constant acceleration a along the normal, as V = v + h a / 2 is the
-/// speed at the time of the position in a semi-implicit step:
-///
-///   at the start   V_c^2 = V^2 - 2 a s_0                          speed at the surface
-///   at the end     V' = sqrt(max(0, e^2 V_c^2 + 2 a s)),  v' = V' - h a / 2
-void restitute_body_contacts(parallel::Range blocks, int pass, const ContactStep& step,
-                             BodyContacts& contacts, state::Bodies& bodies);
+/// In the middle of a step, the impulses of some lanes, but hard ones, to their manifolds.
+void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,
+                 std::vector<state::Manifold>& manifolds);
 
-/// Whether a point was hit in this step hard enough to bounce.
-[[nodiscard]] bool bounced(const BodyContacts& contacts, const ContactBlock& block, int point, int lane);
+/// Then the rows of these lanes from their new manifolds, whose separations are those of `time` [s] from now.
+/// What contacts have done in this substep is, as warm start of the next, as if they had done it with the new
+/// rows; the velocities, and angular momenta, remain what the old ones have made of them.
+void refill_lanes(std::span<const ContactLane> lanes, const std::vector<state::Manifold>& manifolds,
+                  Real time, state::Bodies& bodies, BodyContacts& contacts);
 
-/// Impulses back to the manifolds. Points that bounced keep none: they leave.
+/// Acceleration of a body by all but contacts; zero if they do not move it [m/s^2].
+[[nodiscard]] Vec3 free_acceleration(const state::Bodies& bodies, std::uint32_t row, Vec3 gravity);
+
+/// Impulses back to the manifolds.
 void store_body_contacts(parallel::Range blocks, const BodyContacts& contacts,
                          std::vector<state::Manifold>& manifolds);
 

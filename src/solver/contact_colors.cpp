@@ -1,5 +1,6 @@
 #include "solver/contact_colors.h"
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 
@@ -45,7 +46,8 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 }
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
-  if (m.point_count == 0 || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor) return false;
+  if ((m.point_count == 0 && !m.lively) || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor)
+    return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
 }
 
@@ -76,7 +78,7 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
   const auto key = [&](std::size_t i) {
     const Manifold& m = manifolds[i];
     const int kind = (is_hard(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
-    return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - m.point_count;
+    return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - std::max(m.point_count, 1);
   };
   colors.place.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
   for (std::size_t i = 0; i < manifolds.size(); ++i) {

@@ -30,7 +30,7 @@ struct ContactColors {
 /// Whether contacts move the body in `row`.
 [[nodiscard]] bool is_moved(const state::Bodies& bodies, std::uint32_t row);
 
-/// Whether the manifold has points that push, and a body they move.
+/// Whether the manifold has points that push, or may get some within the step, and a body they move.
 [[nodiscard]] bool has_contact_rows(const state::Manifold& manifold, const state::Bodies& bodies);
 
 /// Takes the manifolds in order. One with two bodies that move takes the lowest color free in both, below 56;

@@ -23,6 +23,7 @@ struct ContactPoint {
 /// Up to four points with one normal. A convex pair has one at most; a body on a mesh has one per patch.
 struct Manifold {
   static constexpr int kMaxPoints = 4;
+  static constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;  ///< Of a manifold that has never had points.
 
   std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
   std::uint32_t collider_b = 0;
@@ -45,6 +46,7 @@ struct Manifold {
   Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
   Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
+  bool lively = false;               ///< Looked at anew in each substep: may have no points now.
 };
 
 /// How two bodies moved since something was looked at.
@@ -68,6 +70,7 @@ struct Pair {
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
   Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
+  bool lively = false;  ///< Its manifolds are made anew in each substep (collision/narrow_phase.h).
 };
 
 /// Where the narrow phase saw a body last.

@@ -2,6 +2,7 @@
 
 #include "collision/shape_bounds.h"
 #include "solver/forces.h"
+#include "state/body_frames.h"
 #include "world/events.h"
 #include "world/hooks.h"
 
@@ -122,7 +123,8 @@ void find_body_contacts(WorldData& world, Real dt) {
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
   world.narrow_phase.merge_pairs(world.pairs_found, t.pairs);
-  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt, t.pairs);
+  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt,
+                                      t.desc.substeps, t.pairs);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {
@@ -140,16 +142,36 @@ void prepare_body_contacts(WorldData& world, Real h) {
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
                                 world.body_contacts);
   solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);
+  solver::list_hits(t.pairs, t.bodies, world.body_contacts, world.hits);
   note_approaches(world, h * static_cast<Real>(desc.substeps));
+}
+
+void resolve_hits(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  solver::BodyContacts& contacts = world.body_contacts;
+  if (!solver::foresee_hits(world.contact_step, contacts, t.bodies, world.hits)) return;
+  while (const std::optional<solver::Hit> hit = solver::next_hit(world.hits)) {
+    const solver::HitPair& pair = world.hits.pairs[hit->index];
+    solver::store_lanes(solver::lanes_of(pair, world.hits), contacts, t.pairs.manifold);
+    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
+                               state::pose_after(t.bodies, pair.a, hit->time),
+                               state::pose_after(t.bodies, pair.b, hit->time), pair.pair, t.pairs);
+    solver::take_hit(*hit, world.contact_step, t.pairs, contacts, t.bodies, world.hits);
+  }
+}
+
+void renew_lively_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  if (world.body_contacts.lively.empty()) return;
+  solver::BodyContacts& contacts = world.body_contacts;
+  solver::store_lanes(contacts.lively, contacts, t.pairs.manifold);
+  world.narrow_phase.update_lively_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
+                                             t.pairs);
+  solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
 }
 
 void finish_body_contacts(WorldData& world) {
   Tables& t = world.tables;
-  for (int pass = 0; world.body_contacts.any_bounce() && pass < solver::kRestitutionPasses; ++pass) {
-    for_contact_colors(world, [&](parallel::Range blocks) {
-      solver::restitute_body_contacts(blocks, pass, world.contact_step, world.body_contacts, t.bodies);
-    });
-  }
   parallel::for_ranges(*world.pool, static_cast<int>(world.body_contacts.blocks.size()), kContactBlockGrain,
                        [&](parallel::Range blocks) {
                          solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);

@@ -56,7 +56,13 @@ void find_body_contacts(WorldData& world, Real dt);
 /// How contacts are solved in this step, with substeps of length `h`; their rows, soft or of hard islands.
 void prepare_body_contacts(WorldData& world, Real h);
 
-/// After the last substep: rebounds, and what contacts did, for the next step and for those who ask.
+/// Hits that bounce within the substep of length `h` that begins, in the order of their times.
+void resolve_hits(WorldData& world, Real h);
+
+/// After bodies have moved by a substep of length `h`: rows of lively contacts from where bodies are now.
+void renew_lively_contacts(WorldData& world, Real h);
+
+/// After the last substep: what contacts did, for the next step and for those who ask.
 void finish_body_contacts(WorldData& world);
 
 /// Velocities that bring kinematic bodies to where their paths want them at `time`, `h` from now.

@@ -2,8 +2,8 @@
 ///
 ///   detect    who is near whom, and where they touch             collision/, world/bodies
 ///   prepare   rows in solver form, colored; the wind             solver/, world/stages
-///   substep   force, correct, move; a few per step               solver/
-///   finish    bounces, quarantine, folds, sleep, origins, report world/
+///   substep   force, hit, correct, move; a few per step               solver/
+///   finish    quarantine, folds, sleep, origins, report world/
 ///
 /// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, under 200 lines.
 /// A stage reads the tables it takes by const reference and writes the ones it takes by reference.
@@ -94,15 +94,14 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
-
   for_ranges(*w.pool, t.particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::move(h, rows, t.particles); });
   world::flow_solids(w, h);
 }
 
-/// Bodies: contacts with bias, or as a whole in hard islands; hooks, then everything that is tied to them;
-/// poses; last the contacts again without bias, which takes out the speed that pushed overlaps apart, and
-/// friction.
+/// Bodies: hits that bounce, in the order of time; contacts with bias, or as a whole in hard islands; hooks,
+/// then everything that is tied to them; poses, and where lively contacts are then; last the contacts again
+/// without bias, which takes out the speed that pushed overlaps apart, and friction.
 void substep(WorldData& w, int i, double time, Real h) {
   state::Bodies& bodies = w.tables.bodies;
   const int particle_substeps = w.tables.desc.particle_substeps;
@@ -111,6 +110,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   world::force_bodies(w, time, h);
   const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
   for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
+  world::resolve_hits(w, h);
   for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {
     for_contact_colors(w, [&](Range blocks) {
       solver::solve_body_contacts(blocks, w.contact_step, w.body_contacts, bodies);
@@ -122,6 +122,7 @@ void substep(WorldData& w, int i, double time, Real h) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
     for_bodies(w, [&](auto rows) { solver::move_bodies(rows, particle_h, bodies); });
   }
+  world::renew_lively_contacts(w, h);
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(
       w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });

@@ -17,6 +17,7 @@
 #include "solver/gas.h"
 #include "solver/hard_islands.h"
 #include "solver/hinges.h"
+#include "solver/hits.h"
 #include "solver/joints.h"
 #include "solver/plasticity.h"
 #include "solver/rope_twist.h"
@@ -93,6 +94,7 @@ struct WorldData {
   std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
+  solver::Hits hits;
   solver::HardIslands hard_islands;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.

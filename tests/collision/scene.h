@@ -56,7 +56,7 @@ struct PairScene {
       }
     }
     narrow_phase.merge_pairs(found, pairs);
-    counts = narrow_phase.update_manifolds(pool, bodies, colliders, materials, dt, pairs);
+    counts = narrow_phase.update_manifolds(pool, bodies, colliders, materials, dt, 8, pairs);
   }
 };
 

@@ -101,9 +101,6 @@ struct BodyScene {
     prepare_bodies(awake, bodies);
     prepare_body_contacts(pool, manifolds, bodies, settings, contacts);
     for (int i = 0; i < substeps; ++i) substep(i == 0);
-    for (int pass = 0; contacts.any_bounce() && pass < kRestitutionPasses; ++pass) {
-      each_color([&](parallel::Range r) { restitute_body_contacts(r, pass, settings, contacts, bodies); });
-    }
     finish_bodies(awake, bodies);
     each_color([&](parallel::Range r) { store_body_contacts(r, contacts, manifolds); });
   }

@@ -124,7 +124,8 @@ Rolled roll_down(const CheckSetting& setting, double friction, const Wheel& whee
   return {speed, (speed + 0.1 * rig.spin(id).z) / speed};
 }
 
-/// Through a loop of 1440 flat strips, radius 1 m, with `speed` at the bottom: does the ball keep to it?
+/// Through a loop of 1440 flat strips, radius 1 m, with `speed` at the bottom: is the ball fast enough at the
+/// top? One that has left the track shortly before has hardly gone away from it, but is slower there.
 bool loops(const CheckSetting& setting, double speed, double ball) {
   constexpr int kStrips = 1440;
   Rig rig(setting, sleepless());
@@ -147,8 +148,9 @@ bool loops(const CheckSetting& setting, double speed, double ball) {
   bool over = false;
   rig.run(2, [&] {
     const DVec3 arm = rig.center(id) - DVec3{0, 1, 0};
-    over = over || (on_track && arm.x < 0 && arm.y > 0);
-    on_track = on_track && length(arm) > 0.97 * (1 - ball);
+    const bool passes = on_track && arm.x < 0 && arm.y > 0;
+    over = over || (passes && length_squared(rig.velocity(id)) >= kGravity * (1 - ball));
+    on_track = on_track && !passes && length(arm) > 0.97 * (1 - ball);
   });
   return over;
 }
@@ -288,11 +290,9 @@ Rows rolling_down(const CheckSetting& setting) {
                                 roll_down(setting, 1, wheel, 1).speed));
   }
   const WeightedWheel rim = {.ring = 0.078, .ball = 0.02};
-  rows.push_back(known_miss(
-      relative_row("speed after 2 s: drum with weights 2 mm below its rim", "m/s",
-                   2 * kGravity * std::sin(angle) / (1 + rim.inertia()),
-                   roll_down(setting, 1, {"", rim.inertia(), rim.desc()}, 2).speed),
-      "distances are linear within a step: a part that comes down in an arc is thought to come through"));
+  rows.push_back(relative_row("speed after 2 s: drum with weights 2 mm below its rim", "m/s",
+                              2 * kGravity * std::sin(angle) / (1 + rim.inertia()),
+                              roll_down(setting, 1, {"", rim.inertia(), rim.desc()}, 2).speed));
   const Wheel ball = wheels()[0];
   const double least = std::tan(angle) * ball.inertia / (1 + ball.inertia);
   const double found = bisect(1.2 * least, 0.8 * least, 10, [&](double mu) {
@@ -348,7 +348,7 @@ Rows loop_the_loop(const CheckSetting& setting) {
       bisect(1.3 * expected, 0.9 * expected, 10, [&](double speed) { return loops(setting, speed, ball); });
   return {known_miss(relative_row("lowest start for a loop, over its radius", "", 2.7,
                                   0.7 * found * found / (kGravity * way), 0.01),
-                     "the tangents of the start of a step are kept for 12 cm of way")};
+                     "1.5 % of the height are lost on the strips, with 16 and 32 substeps too")};
 }
 
 /// A rod that slides on its lower end with friction above 4/3 has no force that Coulomb's law allows

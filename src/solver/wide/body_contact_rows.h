@@ -26,6 +26,8 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
   const Number w_b = get<Number>(block.w_b + lane);
   const Number w = kAnchored ? w_a : w_a + w_b;
   const Triple<Number> n = get3<Number>(block.normal, lane);
+  constexpr Real kNeverReached = Real(1e12);
+  const Number inverse_h(pass.foresees || !block.bounces ? pass.inverse_h : kNeverReached);
   const Number approach = dot(n, difference(moved_b.dx, moved_a.dx));
   Number rate = dot(n, difference(bodies.b.v, bodies.a.v));
   Number total(Real(0));
@@ -37,7 +39,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
                      (approach + (dot(j_b, moved_b.theta) - dot(j_a, moved_a.theta)));
     const auto apart = above(s, zero);
     const Number undo = larger(Number(pass.softness.rate) * s, Number(Real(-3)));
-    const Number bias = choose(apart, Number(pass.inverse_h) * s, undo);
+    const Number bias = choose(apart, inverse_h * s, undo);
     const Number mass_scale = choose(apart, Number(Real(1)), Number(pass.softness.mass_scale));
     const Number impulse_scale = choose(apart, zero, Number(pass.softness.impulse_scale));
 
@@ -268,7 +270,8 @@ HWY_INLINE MeanAnchors<Number> mean_anchors(const Inputs<Number>& inputs, int po
     add(weight, inputs.anchor_a[k], mean.a);
     add(weight, inputs.anchor_b[k], mean.b);
   }
-  const Number share = quotient(one, sum);
+  // A lively manifold may have no points now.
+  const Number share = quotient(one, larger(sum, Number(Real(0.5) * kLeast)));
   return {scaled(share, mean.a), scaled(share, mean.b)};
 }
 

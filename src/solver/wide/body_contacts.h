@@ -21,10 +21,11 @@ struct alignas(64) ContactSource {
   Real impulse_scale = Real(1);                   ///< Of impulses carried over.
 };
 
-/// How a pass treats overlap and friction.
+/// How a pass treats overlap, gaps and friction.
 struct ContactPass {
   ContactSoftness softness;
-  Real inverse_h = Real(0);
+  Real inverse_h = Real(0);  ///< Points that are apart reach the surface within h, and no farther.
+  bool foresees = true;      ///< False: but in blocks that bounce nothing is done about gaps.
   bool friction = false;
 };
 
@@ -38,6 +39,7 @@ void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, sta
 void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* free_motion);
 
 // The scalar twins.
+void compute_contact_lane_scalar(const ContactSource& source, int lane, ContactBlock& block);
 void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block);
 void solve_contacts_scalar(std::span<ContactBlock> blocks, const ContactPass& pass,
                            state::MotionLine* motion);

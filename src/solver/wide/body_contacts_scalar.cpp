@@ -4,14 +4,16 @@
 
 namespace hooke::solver::wide {
 
-void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block) {
-  for (int lane = 0; lane < kContactLanes; ++lane) {
-    if (block.anchored) {
-      HWY_NAMESPACE::compute_lanes<Real, true>(source, lane, block);
-    } else {
-      HWY_NAMESPACE::compute_lanes<Real, false>(source, lane, block);
-    }
+void compute_contact_lane_scalar(const ContactSource& source, int lane, ContactBlock& block) {
+  if (block.anchored) {
+    HWY_NAMESPACE::compute_lanes<Real, true>(source, lane, block);
+  } else {
+    HWY_NAMESPACE::compute_lanes<Real, false>(source, lane, block);
   }
+}
+
+void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block) {
+  for (int lane = 0; lane < kContactLanes; ++lane) compute_contact_lane_scalar(source, lane, block);
 }
 
 void solve_contacts_scalar(std::span<ContactBlock> blocks, const ContactPass& pass,

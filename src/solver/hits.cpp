@@ -1,0 +1,277 @@
+#include "solver/hits.h"
+
+#include "solver/strike.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Bodies;
+using state::Manifold;
+using state::MotionLine;
+
+constexpr int kMostLooks = 5;            // for one hit
+constexpr int kMostHits = 16;            // of a pair in a substep; what then still comes together stops
+constexpr int kMostHitsInCrowd = 1;      // in a step
+constexpr std::uint32_t kCrowd = 3;      // pairs of a body
+constexpr Real kTouching = Real(1e-3);   // what rests is nearer to its support [m]
+constexpr Real kAgainst = Real(0.2);     // cosine between impulse and support
+constexpr Real kTimeShare = Real(1e-3);  // how well a time has to be known, of h
+
+bool is_later(const Hit& a, const Hit& b) {
+  return a.time != b.time ? a.time > b.time : a.index > b.index;
+}
+
+/// Where contacts that do not bounce hold bodies.
+void find_supports(const std::vector<Manifold>& manifolds, const Bodies& bodies, Hits& hits) {
+  hits.supports.clear();
+  for (const Manifold& m : manifolds) {
+    if (m.restitution > Real(0)) continue;
+    const auto end = m.point.begin() + m.point_count;
+    if (std::none_of(m.point.begin(), end, [](const auto& p) { return p.separation < kTouching; })) continue;
+    if (is_moved(bodies, m.body_a)) hits.supports.push_back({m.body_a, m.body_b, m.normal});
+    if (is_moved(bodies, m.body_b)) hits.supports.push_back({m.body_b, m.body_a, -m.normal});
+  }
+  std::sort(hits.supports.begin(), hits.supports.end(),
+            [](const auto& p, const auto& q) { return p.body < q.body; });
+}
+
+/// Whether an impulse along `push` presses the body against what does not give way, at most so many bodies
+/// behind it.
+bool is_backed(std::uint32_t body, Vec3 push, int behind, const Bodies& bodies, const Hits& hits) {
+  const auto first = std::lower_bound(hits.supports.begin(), hits.supports.end(), body,
+                                      [](const Hits::Support& s, std::uint32_t row) { return s.body < row; });
+  for (auto s = first; s != hits.supports.end() && s->body == body; ++s) {
+    if (!(dot(push, s->outward) > kAgainst)) continue;
+    if (!is_moved(bodies, s->other)) return true;
+    if (behind > 0 && is_backed(s->other, push, behind - 1, bodies, hits)) return true;
+  }
+  return false;
+}
+
+/// Lanes that have restitution, by the row of their manifold; -1 elsewhere. False if there are none.
+bool find_lanes(const BodyContacts& contacts, const std::vector<Manifold>& manifolds,
+                std::vector<std::int32_t>& lane_of) {
+  bool any = false;
+  for (std::size_t i = 0; i < contacts.blocks.size(); ++i) {
+    const ContactBlock& block = contacts.blocks[i];
+    if (!block.bounces) continue;
+    if (!any) lane_of.assign(manifolds.size(), -1);
+    any = true;
+    for (int lane = 0; lane < block.count; ++lane) {
+      const auto place = static_cast<std::int32_t>(i * kContactLanes) + lane;
+      const std::uint32_t row = contacts.manifold_of[static_cast<std::size_t>(place)];
+      if (manifolds[row].restitution > Real(0)) lane_of[row] = place;
+    }
+  }
+  return any;
+}
+
+void list_pairs(const state::Pairs& pairs, Hits& hits) {
+  for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
+    const state::Pair& pair = pairs.pair[row];
+    const auto first = static_cast<std::uint32_t>(hits.lanes.size());
+    for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+      const std::int32_t place = hits.lane_of[i];
+      if (place >= 0) hits.lanes.push_back({place / kContactLanes, place % kContactLanes, i});
+    }
+    const auto count = static_cast<std::uint32_t>(hits.lanes.size()) - first;
+    if (count == 0) continue;
+    const Manifold& m = pairs.manifold[pair.first_manifold];
+    hits.pairs.push_back(
+        {.pair = row, .a = m.body_a, .b = m.body_b, .first_lane = first, .lane_count = count});
+  }
+}
+
+void find_backed_bodies(const std::vector<Manifold>& manifolds, const Bodies& bodies, Hits& hits) {
+  constexpr int kMostBehind = 8;
+  for (HitPair& pair : hits.pairs) {
+    const Vec3 n = manifolds[hits.lanes[pair.first_lane].manifold].normal;
+    pair.a_is_backed = is_backed(pair.a, -n, kMostBehind, bodies, hits);
+    pair.b_is_backed = is_backed(pair.b, n, kMostBehind, bodies, hits);
+  }
+}
+
+/// Where bodies are in a crowd, only what did not touch in the last step bounces.
+void calm_crowds(const std::vector<Manifold>& manifolds, const Bodies& bodies, Hits& hits) {
+  const auto is_in_crowd = [&](std::uint32_t body) {
+    return is_moved(bodies, body) && hits.pairs_begin[body + 1] - hits.pairs_begin[body] >= kCrowd;
+  };
+  for (HitPair& pair : hits.pairs) pair.in_crowd = is_in_crowd(pair.a) || is_in_crowd(pair.b);
+  std::erase_if(hits.pairs, [&](const HitPair& pair) {
+    const auto lanes = lanes_of(pair, hits);
+    return pair.in_crowd && std::any_of(lanes.begin(), lanes.end(), [&](const ContactLane& lane) {
+             return manifolds[lane.manifold].touching;
+           });
+  });
+}
+
+/// Fills pairs_begin and pairs_of_body.
+void index_bodies(std::size_t body_count, Hits& hits) {
+  hits.pairs_begin.assign(body_count + 1, 0);
+  for (const HitPair& pair : hits.pairs) {
+    ++hits.pairs_begin[pair.a];
+    ++hits.pairs_begin[pair.b];
+  }
+  std::partial_sum(hits.pairs_begin.begin(), hits.pairs_begin.end(), hits.pairs_begin.begin());
+  hits.pairs_of_body.resize(2 * hits.pairs.size());
+  for (auto i = static_cast<std::uint32_t>(hits.pairs.size()); i-- > 0;) {
+    hits.pairs_of_body[--hits.pairs_begin[hits.pairs[i].a]] = i;
+    hits.pairs_of_body[--hits.pairs_begin[hits.pairs[i].b]] = i;
+  }
+}
+
+Real least_speed(const HitPair& pair) {
+  return pair.in_crowd ? kLeastHitInCrowd : kLeastHit;
+}
+
+/// When a point of a lane meets, from `since` on and no slower than `least`: see the head of hits.h.
+Real meeting_time(Real gap, Real v, Real a, Real since, Real h, Real least) {
+  const auto speed = [&](Real t) { return v + a * (t - Real(0.5) * h); };
+  const Real b = v - Real(0.5) * a * h;
+  const Real gap_since = gap + since * (b + Real(0.5) * a * since);
+  if (gap_since <= Real(0)) return speed(since) < -least ? since : Hits::kNever;
+  // The earlier root of 0 = gap_since + u t + a t^2 / 2.
+  const Real u = speed(since);
+  const Real square = u * u - Real(2) * a * gap_since;
+  if (square <= least * least) return Hits::kNever;
+  const Real root = std::sqrt(square);
+  if (root <= u) return Hits::kNever;
+  const Real time = since + Real(2) * gap_since / (root - u);
+  return time <= h ? time : Hits::kNever;
+}
+
+Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep& step,
+               const BodyContacts& contacts, const Bodies& bodies) {
+  const ContactBlock& block = contacts.blocks[static_cast<std::size_t>(at.block)];
+  const int lane = at.lane;
+  const MotionLine& a = bodies.motion[block.line_a[lane] / 16];
+  const MotionLine& b = bodies.motion[block.line_b[lane] / 16];
+  const Vec3 n = vector_of(block.normal, lane);
+  const Real pull = dot(n, free_acceleration(bodies, block.line_b[lane] / 16, step.gravity) -
+                               free_acceleration(bodies, block.line_a[lane] / 16, step.gravity));
+  const Real approach = dot(n, b.v - a.v);
+  const Real way = dot(n, b.dx - a.dx);
+  Real earliest = Hits::kNever;
+  for (int k = 0; k < block.point_count; ++k) {
+    const ContactBlock::Point& p = block.point[k];
+    if (!(p.mass[lane] > Real(0))) continue;
+    const Vec3 j_a = vector_of(p.j_a, lane);
+    const Vec3 j_b = vector_of(p.j_b, lane);
+    const Real gap = p.separation[lane] + way + (dot(j_b, b.theta_scaled) - dot(j_a, a.theta_scaled));
+    const Real v = approach + (dot(j_b, b.omega_scaled) - dot(j_a, a.omega_scaled));
+    earliest = std::min(earliest, meeting_time(gap, v, pull, since, step.h, least));
+  }
+  return earliest;
+}
+
+/// Whether no point of the body is as fast as half of what bounces: what rests is not looked at.
+bool is_slow(const Bodies& bodies, std::uint32_t body) {
+  constexpr Real kSlow = Real(0.5) * kLeastHit;
+  const MotionLine& m = bodies.motion[body];
+  const Real turning = bodies.traits[body].radius * length(bodies.scale[body] * m.omega_scaled);
+  return length(m.v) + turning < kSlow;
+}
+
+/// The pair's next time.
+Real time_of(const HitPair& pair, const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies,
+             const Hits& hits) {
+  if (pair.count >= (pair.in_crowd ? kMostHitsInCrowd : kMostHits)) return Hits::kNever;
+  if (is_slow(bodies, pair.a) && is_slow(bodies, pair.b)) return Hits::kNever;
+  const Real since = std::max(hits.since[pair.a], hits.since[pair.b]);
+  Real earliest = Hits::kNever;
+  for (const ContactLane& lane : lanes_of(pair, hits))
+    earliest = std::min(earliest, lane_time(lane, since, least_speed(pair), step, contacts, bodies));
+  return earliest;
+}
+
+void await(std::uint32_t index, Real time, Hits& hits) {
+  hits.pairs[index].time = time;
+  if (time == Hits::kNever) return;
+  hits.queue.push_back({index, time});
+  std::push_heap(hits.queue.begin(), hits.queue.end(), is_later);
+}
+
+/// What else the bodies of a hit will meet.
+void look_ahead(std::uint32_t body, const ContactStep& step, const BodyContacts& contacts,
+                const Bodies& bodies, Hits& hits) {
+  for (std::uint32_t k = hits.pairs_begin[body]; k < hits.pairs_begin[body + 1]; ++k) {
+    const std::uint32_t index = hits.pairs_of_body[k];
+    hits.pairs[index].looks = 0;
+    await(index, time_of(hits.pairs[index], step, contacts, bodies, hits), hits);
+  }
+}
+
+}  // namespace
+
+std::span<const ContactLane> lanes_of(const HitPair& pair, const Hits& hits) {
+  return std::span(hits.lanes).subspan(pair.first_lane, pair.lane_count);
+}
+
+void list_hits(const state::Pairs& pairs, const Bodies& bodies, const BodyContacts& contacts, Hits& hits) {
+  hits.pairs.clear();
+  hits.lanes.clear();
+  if (!find_lanes(contacts, pairs.manifold, hits.lane_of)) return;
+  list_pairs(pairs, hits);
+  index_bodies(bodies.motion.size(), hits);
+  calm_crowds(pairs.manifold, bodies, hits);
+  index_bodies(bodies.motion.size(), hits);
+  find_supports(pairs.manifold, bodies, hits);
+  find_backed_bodies(pairs.manifold, bodies, hits);
+  hits.since.assign(bodies.motion.size(), Real(0));
+}
+
+bool foresee_hits(const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies, Hits& hits) {
+  hits.queue.clear();
+  for (const std::uint32_t body : hits.struck) hits.since[body] = Real(0);
+  hits.struck.clear();
+  for (std::uint32_t i = 0; i < hits.pairs.size(); ++i) {
+    HitPair& pair = hits.pairs[i];
+    pair.looks = 0;
+    if (!pair.in_crowd) pair.count = 0;
+    await(i, time_of(pair, step, contacts, bodies, hits), hits);
+  }
+  return !hits.queue.empty();
+}
+
+std::optional<Hit> next_hit(Hits& hits) {
+  while (!hits.queue.empty()) {
+    std::pop_heap(hits.queue.begin(), hits.queue.end(), is_later);
+    const Hit hit = hits.queue.back();
+    hits.queue.pop_back();
+    if (hits.pairs[hit.index].time == hit.time) return hit;
+  }
+  return std::nullopt;
+}
+
+void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs, BodyContacts& contacts,
+              Bodies& bodies, Hits& hits) {
+  HitPair& pair = hits.pairs[hit.index];
+  const std::span<const ContactLane> lanes = lanes_of(pair, hits);
+  refill_lanes(lanes, pairs.manifold, hit.time, bodies, contacts);
+  const Real time = time_of(pair, step, contacts, bodies, hits);
+  const bool is_there = std::abs(time - hit.time) <= kTimeShare * step.h;
+  if (!is_there && (time == Hits::kNever || ++pair.looks < kMostLooks)) {
+    await(hit.index, time, hits);
+    return;
+  }
+  pair.time = Hits::kNever;
+  if (!strike({lanes, pair.in_crowd, pair.a_is_backed, pair.b_is_backed}, pairs.manifold, hit.time, step,
+              contacts, bodies))
+    return;
+  ++pair.count;
+  for (const std::uint32_t body : {pair.a, pair.b}) {
+    hits.since[body] = hit.time;
+    hits.struck.push_back(body);
+  }
+  for (const std::uint32_t body : {pair.a, pair.b}) {
+    if (is_moved(bodies, body)) look_ahead(body, step, contacts, bodies, hits);
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,290 @@
+#include "solver/strike.h"
+
+#include "math/rotation.h"
+#include "solver/joint_rows.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Bodies;
+using state::Manifold;
+using state::MotionLine;
+
+constexpr std::size_t kMostPoints = 32;  // of an impact
+constexpr double kTogether = 1e-4;       // points that are nearer meet at once [m]
+/// How long an impact is iterated, and to what share of its fastest speed.
+struct Effort {
+  int sweeps = 60;
+  int friction_rounds = 8;
+  double converged = 1e-9;
+};
+constexpr Effort kFull = {};
+constexpr Effort kInCrowd = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
+
+constexpr double kLeastResponse = 1e-12;  // 1/kg; one has to give way
+
+/// A body in an impact.
+struct Struck {
+  JointBody body;
+  DVec3 v = {};
+  DVec3 omega = {};
+  DVec3 backed = {};  ///< Direction along which it does not give way; zero: it gives way in all, and turns.
+
+  [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(omega, lever); }
+
+  /// Change of the velocity at `lever` by an impulse there.
+  [[nodiscard]] DVec3 response(DVec3 lever, DVec3 impulse) const {
+    if (!(body.inverse_mass > 0)) return {};
+    if (!(backed == DVec3{})) return body.inverse_mass * (impulse - dot(backed, impulse) * backed);
+    return body.inverse_mass * impulse + cross(body.scale * (body.scale * cross(lever, impulse)), lever);
+  }
+
+  void push(DVec3 impulse, DVec3 lever) {
+    if (!(body.inverse_mass > 0)) return;
+    if (!(backed == DVec3{})) {
+      v += response(lever, impulse);
+      return;
+    }
+    v += body.inverse_mass * impulse;
+    omega += body.scale * (body.scale * cross(lever, impulse));
+  }
+};
+
+Struck struck(const Bodies& bodies, std::uint32_t row) {
+  JointBody now = joint_body_now(bodies, row);
+  if (!is_moved(bodies, row)) now.inverse_mass = 0;
+  return {.body = now, .v = now.v, .omega = now.scale * now.omega_scaled};
+}
+
+/// From the centers of mass to a place [m].
+struct Levers {
+  DVec3 a = {};
+  DVec3 b = {};
+};
+
+struct Point {
+  Levers at = {};
+  DVec3 n = {};
+  std::size_t lane = 0;
+  double lag = 0;       ///< Speed at the time of the hit less that of now [m/s].
+  double approach = 0;  ///< Speed before, at that time; negative [m/s].
+  double target = 0;    ///< Speed of now after it [m/s].
+  double mass = 0;      ///< Effective [kg].
+  double impulse = 0;   ///< [N s]
+};
+
+/// Friction of a lane's points, at their middle.
+struct Grip {
+  std::size_t lane = 0;
+  Levers at = {};
+  DVec3 n = {};
+  DVec3 surface = {};                  ///< Velocity of B's against A's [m/s].
+  math::Symmetric3<double> mass = {};  ///< Effective, across the normal [kg].
+  DVec3 before = {};                   ///< Sliding velocity [m/s].
+  DVec3 impulse = {};                  ///< On B [N s].
+  double friction = 0;
+  double static_friction = 0;
+};
+
+/// Two bodies while they hit each other.
+struct Impact {
+  Struck a;
+  Struck b;
+  std::array<Point, kMostPoints> point_memory = {};
+  std::array<Grip, kMostPoints> grip_memory = {};
+  std::size_t point_count = 0;
+  std::size_t grip_count = 0;
+  Effort effort;
+  double fastest = 0;  ///< Of the points' approaches [m/s].
+
+  [[nodiscard]] std::span<Point> points() { return std::span(point_memory).first(point_count); }
+  [[nodiscard]] std::span<Grip> grips() { return std::span(grip_memory).first(grip_count); }
+
+  [[nodiscard]] DVec3 velocity(const Levers& at) const { return b.velocity_at(at.b) - a.velocity_at(at.a); }
+
+  /// Change of the relative velocity at a place by an impulse there.
+  [[nodiscard]] DVec3 response(const Levers& at, DVec3 impulse) const {
+    return b.response(at.b, impulse) + a.response(at.a, impulse);
+  }
+
+  void push(DVec3 impulse, const Levers& at) {
+    a.push(-impulse, at.a);
+    b.push(impulse, at.b);
+  }
+
+  [[nodiscard]] DVec3 sliding(const Grip& grip) const {
+    const DVec3 v = velocity(grip.at) + grip.surface;
+    return v - dot(grip.n, v) * grip.n;
+  }
+};
+
+/// The points of a lane's manifold that meet.
+void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact) {
+  const DVec3 n = vector_cast<double>(m.normal);
+  for (int k = 0; k < m.point_count && impact.point_count < kMostPoints; ++k) {
+    const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
+    const Levers at = {vector_cast<double>(p.anchor_a), vector_cast<double>(p.anchor_b)};
+    const double approach = dot(n, impact.velocity(at)) + lag;
+    if (static_cast<double>(p.separation) > kTogether || !(approach < 0)) continue;
+    impact.point_memory[impact.point_count++] = {
+        .at = at,
+        .n = n,
+        .lane = lane,
+        .lag = lag,
+        .approach = approach,
+        .target = -static_cast<double>(m.restitution) * approach - lag,
+        .mass = 1 / std::max(kLeastResponse, dot(n, impact.response(at, n)))};
+    impact.fastest = std::min(impact.fastest, approach);
+  }
+}
+
+/// Gauss and Seidel's iteration: the velocities it ends with are unique, though impulses may not be.
+void push_points(Impact& impact) {
+  const double enough = impact.effort.converged * -impact.fastest;
+  double change = -impact.fastest;
+  for (int sweep = 0; sweep < impact.effort.sweeps && change > enough; ++sweep) {
+    change = 0;
+    for (Point& p : impact.points()) {
+      const double lacks = p.target - dot(p.n, impact.velocity(p.at));
+      const double after = std::max(0.0, p.impulse + p.mass * lacks);
+      impact.push((after - p.impulse) * p.n, p.at);
+      change = std::max(change, std::abs(after - p.impulse) / p.mass);
+      p.impulse = after;
+    }
+  }
+}
+
+double load_of(std::size_t lane, Impact& impact) {
+  double load = 0;
+  for (const Point& p : impact.points()) load += p.lane == lane ? p.impulse : 0;
+  return load;
+}
+
+/// The matrix of response(), and 1 along the normal, inverted.
+math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& impact) {
+  const auto column = [&](DVec3 axis) {
+    const DVec3 across = axis - dot(n, axis) * n;
+    const DVec3 v = impact.response(at, across);
+    return v - dot(n, v) * n + dot(n, axis) * n;
+  };
+  const DVec3 x = column({1, 0, 0});
+  const DVec3 y = column({0, 1, 0});
+  const DVec3 z = column({0, 0, 1});
+  return math::inverse(math::Symmetric3<double>{x.x, x.y, x.z, y.y, y.z, z.z});
+}
+
+/// `before` is the impact without impulses.
+void add_grip(const Manifold& m, std::size_t lane, const Impact& before, Impact& impact) {
+  const double load = load_of(lane, impact);
+  if (!(load > 0) || !(std::max(m.static_friction, m.friction) > Real(0))) return;
+  Grip grip = {.lane = lane,
+               .n = vector_cast<double>(m.normal),
+               .surface = vector_cast<double>(m.surface_velocity),
+               .friction = static_cast<double>(m.friction),
+               .static_friction = static_cast<double>(m.static_friction)};
+  for (const Point& p : impact.points()) {
+    if (p.lane != lane) continue;
+    grip.at.a += (p.impulse / load) * p.at.a;
+    grip.at.b += (p.impulse / load) * p.at.b;
+  }
+  grip.mass = mass_across(grip.at, grip.n, impact);
+  grip.before = before.sliding(grip);
+  impact.grip_memory[impact.grip_count++] = grip;
+}
+
+void hold(Grip& grip, Impact& impact) {
+  const double load = load_of(grip.lane, impact);
+  DVec3 after = grip.impulse - grip.mass * impact.sliding(grip);
+  after = after - dot(grip.n, after) * grip.n;
+  const double size = length(after);
+  if (size > grip.static_friction * load) after = (grip.friction * load / size) * after;
+  impact.push(after - grip.impulse, grip.at);
+  grip.impulse = after;
+}
+
+/// Whether impulses do more work than rounding explains; conveyors aside.
+bool gains_energy(Impact& impact) {
+  double gain = 0;
+  double exchanged = 0;
+  for (const Point& p : impact.points()) {
+    gain += p.impulse * (p.approach + dot(p.n, impact.velocity(p.at)) + p.lag);
+    exchanged -= p.impulse * p.approach;
+  }
+  for (const Grip& grip : impact.grips()) gain += dot(grip.impulse, grip.before + impact.sliding(grip));
+  return gain > 1e-9 * exchanged;
+}
+
+/// Adds friction, a share of what it may be. True if that gains energy.
+bool rub(double share, Impact& impact) {
+  for (Grip& grip : impact.grips()) {
+    grip.friction *= share;
+    grip.static_friction *= share;
+  }
+  for (int round = 0; impact.grip_count > 0 && share > 0 && round < impact.effort.friction_rounds; ++round) {
+    for (Grip& grip : impact.grips()) hold(grip, impact);
+    push_points(impact);
+  }
+  return gains_energy(impact);
+}
+
+/// The body's velocities of now, and its line as if it had had them after `time` only.
+void set_struck(const Struck& after, std::uint32_t row, Real time, Bodies& bodies) {
+  if (!(after.body.inverse_mass > 0)) return;
+  MotionLine& m = bodies.motion[row];
+  const Vec3 v = m.v;
+  const Vec3 omega_scaled = m.omega_scaled;
+  set_joint_velocity(after.body, after.v, math::inverse(after.body.scale) * after.omega, row, bodies);
+  m.dx += time * (v - m.v);
+  const Vec3 turn = time * (omega_scaled - m.omega_scaled);
+  m.theta_scaled += turn;
+  if (state::tumbles_now(bodies, row))
+    bodies.rotation[row] = normalize(math::quaternion_of(bodies.scale[row] * turn) * bodies.rotation[row]);
+}
+
+}  // namespace
+
+bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real time,
+            const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
+  const std::span<const ContactLane> lanes = pair.lanes;
+  const Manifold& first = manifolds[lanes.front().manifold];
+  Impact impact = {.a = struck(bodies, first.body_a),
+                   .b = struck(bodies, first.body_b),
+                   .effort = pair.in_crowd ? kInCrowd : kFull};
+  // Two that are both backed are struck as if neither were: one of them has to give way.
+  if (pair.a_is_backed != pair.b_is_backed)
+    (pair.a_is_backed ? impact.a : impact.b).backed = vector_cast<double>(first.normal);
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    const Manifold& m = manifolds[lanes[i].manifold];
+    const Vec3 pull =
+        free_acceleration(bodies, m.body_b, step.gravity) - free_acceleration(bodies, m.body_a, step.gravity);
+    const Real lag = dot(m.normal, pull) * (time - Real(0.5) * step.h);
+    add_points(m, i, static_cast<double>(lag), impact);
+  }
+  if (!(impact.fastest < -static_cast<double>(pair.in_crowd ? kLeastHitInCrowd : kLeastHit))) return false;
+  const Impact before = impact;
+  push_points(impact);
+  for (std::size_t i = 0; i < lanes.size() && impact.grip_count < kMostPoints; ++i)
+    add_grip(manifolds[lanes[i].manifold], i, before, impact);
+  const Impact smooth = impact;
+  bool gains = rub(1, impact);
+  for (const double share : {0.5, 0.25, 0.0}) {
+    if (!gains) break;
+    impact = smooth;
+    gains = rub(share, impact);
+  }
+  set_struck(impact.a, first.body_a, time, bodies);
+  set_struck(impact.b, first.body_b, time, bodies);
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    Real& pushed = contacts.blocks[static_cast<std::size_t>(lanes[i].block)].pushed[lanes[i].lane];
+    pushed = std::max(pushed, static_cast<Real>(load_of(i, impact)));
+  }
+  return true;
+}
+
+}  // namespace hooke::solver
