@@ -119,6 +119,12 @@ Rows painleve_rod(const CheckSetting& setting);
 Rows leaning_ladder(const CheckSetting& setting);
 Rows resisted_balls(const CheckSetting& setting);
 
+// cases_rattleback.cpp
+Rows rattleback(const CheckSetting& setting);
+
+// cases_silo.cpp
+Rows silo(const CheckSetting& setting);
+
 // cases_stacks.cpp
 Rows stack_force(const CheckSetting& setting);
 Rows tall_stacks(const CheckSetting& setting);
