@@ -48,14 +48,14 @@ def crane():
             promise("gap", "<", 0.0005)
         ],
         ropes=[rope("rope", "steel", line(top, end, segments), own, 0.02)],
-        hooks=[tie("hook", "load", "rope", b_point="last")])
+        hooks=[tie("hook", "load.top", "rope.end")])
 
 
 def hanging_table():
     board, bowl, own, segments = 40.0, 10.0, 1.0, 20
     top, half = 3.0, [0.7, 0.03, 0.5]
     height = 1.2
-    ropes, hooks = [], []
+    ropes, hooks, eyes = [], [], {}
     drop = top - height - half[1]
     splay = 0.15
     for sx in (-1, 1):
@@ -65,7 +65,9 @@ def hanging_table():
             ropes.append(
                 rope(name, "hemp", line(add(corner, [sx * splay, drop, 0]), corner, segments), own, 0.012,
                      axial_stiffness=1e6))
-            hooks.append(tie("hook_" + name[5:], "board", name, b_point="last"))
+            eye = name[5:]
+            eyes[eye] = [corner[0], half[1], corner[2]]
+            hooks.append(tie("hook_" + eye, "board." + eye, name + ".end"))
     share = (board + bowl) * G / 4 * math.hypot(1, splay / drop)
     return scene(
         "Hanging table",
@@ -75,7 +77,7 @@ def hanging_table():
             ground(),
             body("beam_back", "slate", box(1.1, 0.06, 0.06), [0, top + 0.06, -half[2] * 0.9], "static"),
             body("beam_front", "slate", box(1.1, 0.06, 0.06), [0, top + 0.06, half[2] * 0.9], "static"),
-            body("board", "oak", box(*half), [0, height, 0], mass=board),
+            body("board", "oak", box(*half), [0, height, 0], mass=board, connection_points=eyes),
             body("weight", "rose", {"cylinder": {"radius": 0.18, "half_height": 0.08}},
                  [0, height + half[1] + 0.08, 0], mass=bowl),
         ], [
@@ -210,8 +212,8 @@ def pulley():
         ropes=[rope("rope", "hemp", points, 0.002, strand, pins=[]) | {"material": "oak"}],
         hooks=[
             {"name": "axle", "kind": "hinge", "b": "wheel", "anchor": [0, axle, 0], "axis": Z},
-            tie("left", "light", "rope", b_point=0),
-            tie("right", "heavy", "rope", b_point="last")
+            tie("left", "light.top", "rope.start"),
+            tie("right", "heavy.top", "rope.end")
         ])
 
 
@@ -237,7 +239,7 @@ def tug_of_war():
             promise("largest_stretch", "<", 0.001)
         ],
         ropes=[rope("rope", "hemp", line([half - reach, height, 0], [reach - half, height, 0], 20), 0.5, 0.02, pins=[])],
-        hooks=[tie("hook_left", "left", "rope", b_point=0), tie("hook_right", "right", "rope", b_point="last")],
+        hooks=[tie("hook_left", "left.right", "rope.start"), tie("hook_right", "right.left", "rope.end")],
         timeline=[{"at_step": 0, "force": {"object": "left", "point": 0, "force": [-f1, 0, 0], "steps": 72}},
                   {"at_step": 0, "force": {"object": "right", "point": 0, "force": [f2, 0, 0], "steps": 72}}])
 

@@ -72,7 +72,8 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
   scene.meshes.push_back({.name = "model", .file = path.filename().string(), .import = import});
   scene.materials.push_back({.name = "ground", .color = {0.13F, 0.16F, 0.14F}});
   scene.objects.bodies.push_back({.tag = {.name = "ground", .material = "ground"}});
-  SceneBody body = {.tag = {.name = "model"}, .mesh = "model"};
+  SceneBody body;
+  body.tag.name = body.mesh = "model";
   body.desc.shape.kind = ShapeKind::kMesh;
   body.desc.position = {0, -static_cast<double>(lowest), 0};
   scene.objects.bodies.push_back(std::move(body));

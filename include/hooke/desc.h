@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 /// \file
@@ -100,6 +101,28 @@ struct LoadDesc {
   Real mass = Real(1);  ///< [kg], not negative.
 };
 
+/// A place of an object that hooks may name (HookEnd::connection_point). Every object has those of its kind
+/// too, unless one of its own has the same name:
+///
+/// - bodies: `center` (of mass) and `origin` (of the frame). Boxes: `left` (-x), `right`, `bottom` (-y),
+/// `top`,
+///   `back` (-z) and `front`, the centers of faces, and the corners, from `bottom_left_back` to
+///   `top_right_front`. Spheres, capsules and cylinders: the six that lie on the axes. Cones: `top`,
+///   `bottom`;
+/// - ropes: `start`, `middle`, `end`;
+/// - cloths on a grid, seen with columns to the right and rows downward: `top_left`, `top_right`,
+/// `bottom_left`,
+///   `bottom_right`, the middles of edges `left`, `right`, `top`, `bottom`, and `center`;
+/// - boxes of solid: what boxes have, without `origin`;
+/// - particles: where there are springs, `start` of the first and `end` of the last; a single one, `center`.
+struct ConnectionPointDesc {
+  std::string name = {};  ///< 1 to 64 bytes; no two of an object are the same.
+  /// [m]: in the frame of a body, of a cloth's mesh, of a solid; in the world of what has no frame: ropes,
+  /// grids, particles. Of all but bodies the nearest place is meant, as by PointRef::kNearest.
+  DVec3 position = {};
+  std::optional<std::uint32_t> point = {};  ///< A point of the object instead; not of a body.
+};
+
 /// How a surface or a point answers a contact. Of two surfaces: friction sqrt(a b), the larger restitution,
 /// the larger rolling and spinning friction, the sum of the surface velocities; unless the world's table of
 /// materials lists the pair.
@@ -167,6 +190,7 @@ struct BodyDesc {
   Real hit_speed = kRigid;        ///< What meets it faster than this [m/s] is listed (Events). Not negative;
                                   ///< infinite: nothing. Of two bodies the lower one counts.
   MotionDesc motion = {};         ///< kKinematic: its path from the start; rotation by `angular_velocity`.
+  std::vector<ConnectionPointDesc> connection_points = {};
 };
 
 /// What a hook holds on one side: a body, a point of a rope, cloth, solid or group of particles, or, where
@@ -174,6 +198,9 @@ struct BodyDesc {
 struct HookEnd {
   BodyId body = {};
   PointRef point = {};  ///< Of a deformable object; its index may be PointRef::kNearest.
+  /// The name of a place of either (ConnectionPointDesc): the hook is there, whatever its anchor and the
+  /// point's index. Not of the world.
+  std::string connection_point = {};
 };
 
 enum class HookKind : std::uint8_t {
@@ -223,6 +250,9 @@ struct HookFreedom {
 };
 
 /// Holds two ends together. Anchor and axes are given in the world, as things stand when the hook is made.
+///
+/// An end that names a connection point is held there, and an end that says nothing at the same place as the
+/// other one; two that are named are drawn together, as two points are.
 ///
 /// Points have no rotation: between a point and anything, kBall, kDistance, kRopeSlide, and kSlider with a
 /// body or the world as a. A point is held where it is, whatever `anchor` says, and what it is hooked to at
@@ -288,6 +318,7 @@ struct RopeDesc {
       {};  ///< Replaces hook_point, direction, masses, length_at_rest; taken as at rest.
   std::vector<PinDesc> pins = {{}};  ///< The first point by default; `{}` for none.
   std::vector<LoadDesc> loads = {};
+  std::vector<ConnectionPointDesc> connection_points = {};
   Real radius = Real(0.005);          ///< Of the strand [m]: for contact, wind and drawing. Positive.
   Real drag_coefficient = Real(1.1);  ///< Of a cylinder across the flow. Not negative.
   Real charge = Real(0);              ///< [C], shared out by mass.
@@ -337,6 +368,7 @@ struct ClothDesc {
   Real air_friction = Real(0);  ///< Viscous drag of the whole cloth [N s/m], shared out by area.
   std::vector<PinDesc> pins = {};
   std::vector<LoadDesc> loads = {};
+  std::vector<ConnectionPointDesc> connection_points = {};
   Real charge = Real(0);  ///< [C], shared out by mass.
   Vec3 velocity = {};     ///< Of all points at the start [m/s].
   ContactDesc contact = {};
@@ -375,6 +407,7 @@ struct SolidDesc {
   Real air_friction = Real(0);   ///< Viscous drag of the whole solid [N s/m], shared out by volume.
   std::vector<PinDesc> pins = {};
   std::vector<LoadDesc> loads = {};
+  std::vector<ConnectionPointDesc> connection_points = {};
   Real charge = Real(0);  ///< [C], shared out by volume.
   Vec3 velocity = {};     ///< Of all points at the start [m/s].
   ContactDesc contact = {};
@@ -415,6 +448,7 @@ struct ParticlesDesc {
   Real air_friction = Real(0);      ///< Viscous drag of each particle [N s/m].
   Real drag_coefficient = Real(0);  ///< Quadratic drag of each particle as a sphere of its radius.
   std::vector<PinDesc> pins = {};
+  std::vector<ConnectionPointDesc> connection_points = {};
   ContactDesc contact = {};
 };
 

@@ -55,6 +55,8 @@ struct SceneMesh {
   ImportOptions import = {};
   MeshTree tree = MeshTree::kBoxes;  ///< For World::add_mesh.
   MeshDesc mesh = {};
+  /// Of every object that is made of it, in its frame; the numbers are of vertices.
+  std::vector<ConnectionPointDesc> connection_points = {};
 };
 
 /// A point of an object: an index, or the last one.
@@ -166,7 +168,8 @@ struct SceneHook {
   std::string name = {};             ///< As SceneTag::name.
   HookDesc desc = {};                ///< All but `a`, `b` and `anchor`.
   std::optional<DVec3> anchor = {};  ///< HookDesc::anchor; needed unless a point says where.
-  std::string a = {};                ///< Name of what it holds; empty for the world.
+  /// Name of what it holds, or "name.point" with one of its connection points; empty for the world.
+  std::string a = {};
   std::string b = {};
   std::optional<ScenePoint> a_point = {};  ///< Of a rope, cloth, solid or particles; the place nearest to the
                                            ///< anchor without it.

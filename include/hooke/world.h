@@ -245,6 +245,11 @@ class World {
   [[nodiscard]] Real hook_value(HookId id) const;
   /// Where a hook holds a and b now [m].
   [[nodiscard]] std::array<DVec3, 2> hook_anchors(HookId id) const;
+  /// The names that HookEnd::connection_point may have, the object's own first. Empty for the world.
+  [[nodiscard]] std::vector<std::string> connection_points(const HookEnd& of) const;
+  /// Where an end is now [m]: a connection point, a point, or the origin of a body's frame. Errors: a stale
+  /// id, a name or a point that the object has not, PointRef::kNearest without a name, the world.
+  [[nodiscard]] Result<DVec3> find_place(const HookEnd& end) const;
   /// How far b is from the nearest place at which the hook holds it [m]; a spring holds nothing.
   [[nodiscard]] Real hook_gap(HookId id) const;
   /// The hooks that broke in the last step, in order of creation. They are gone.

@@ -2,6 +2,7 @@
 
 #include "build/build.h"
 #include "build/checks.h"
+#include "build/connection_points.h"
 #include "geometry/mass_properties.h"
 #include "state/body_frames.h"
 
@@ -326,6 +327,7 @@ Result<void> validate(const BodyDesc& body) {
   if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);
   const std::vector<PartDesc> parts = parts_of(body);
   checks.require(!parts.empty(), "parts", "needs at least one part");
+  check_connection_points(checks, body.connection_points, 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string prefix = prefix_of(body, i);
     checks.finite(prefix + "position", parts[i].position)
@@ -362,6 +364,7 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.path[row] = desc.motion;
   b.path_start[row] = b.center[row];
   b.path_time[row] = t.time;
+  b.connection_points[row] = connection_points_of(desc.connection_points, mass.center);
   add_colliders(parts, mass.center, row, t);
   t.any_reports = t.any_reports || desc.sensor || desc.reports_contacts || std::isfinite(desc.hit_speed);
   if (moves)

@@ -3,6 +3,7 @@
 
 #include "build/build.h"
 #include "build/common.h"
+#include "build/connection_points.h"
 #include "build/tethers.h"
 #include "elements/dihedral.h"
 #include "elements/isometric_bend.h"
@@ -66,6 +67,7 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
   if (desc.pressure) checks.in_range("pressure", static_cast<double>(*desc.pressure), -1e5, 1e8);
   if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
   check_points(checks, desc.pins, desc.loads, count);
+  check_connection_points(checks, desc.connection_points, count);
   return checks;
 }
 
@@ -391,6 +393,14 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
                                       : area * static_cast<double>(desc.areal_density);
   append_triangles(surface, mass / area, tables);
   append_tethers(surface, desc, tables);
+  if (surface.is_grid) {
+    append_connection_points(
+        desc.connection_points, {},
+        places_of_grid(static_cast<std::uint32_t>(surface.columns), static_cast<std::uint32_t>(surface.rows)),
+        tables);
+  } else {
+    append_connection_points(desc.connection_points, {desc.position, desc.rotation}, {}, tables);
+  }
   return {};
 }
 

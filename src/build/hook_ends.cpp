@@ -1,5 +1,7 @@
 #include "build/hook_ends.h"
 
+#include "build/common.h"
+#include "build/connection_points.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -78,42 +80,83 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
   for (std::uint32_t i = 0; i < object.particles.count; ++i) nearest.try_particle(object.particles.first + i);
 }
 
-Result<FoundEnd> find_point(PointRef point, DVec3 anchor, const char* where, const Tables& t) {
+/// The rows of a named place.
+HookPlace rows_of(const state::NamedPlace& named, const Deformable& object, const Tables& t) {
+  HookPlace place;
+  for (std::size_t i = 0; i < named.points.size(); ++i) {
+    if (!(named.weights[i] > Real(0))) continue;
+    place.particle[place.particle_count] = row_of(t, object, named.points[i]);
+    place.weight[place.particle_count++] = named.weights[i];
+  }
+  return place;
+}
+
+Error stale_end(const char* where) {
+  return {ErrorCode::kStaleId, where, "refers to nothing that is in the world"};
+}
+
+Result<FoundEnd> find_point(const HookEnd& end, DVec3 anchor, const char* where, const Tables& t) {
+  const PointRef point = end.point;
   const std::uint32_t row = state::object_row(t, point);
-  if (row == Tables::kNoRow)
-    return Error{ErrorCode::kStaleId, where, "refers to nothing that is in the world"};
+  if (row == Tables::kNoRow) return stale_end(where);
   const Deformable& object = t.objects[row];
-  Nearest nearest = {t, anchor - object.origin};
-  if (point.index == PointRef::kNearest) {
-    find_nearest(object, nearest);
+  FoundEnd found = {.is_given = true, .position = object.origin};
+  if (!end.connection_point.empty()) {
+    const Result<state::NamedPlace> named =
+        find_named_place(*object.connection_points, end.connection_point, where);
+    if (!named) return named.error();
+    found.place = rows_of(named.value(), object, t);
+  } else if (point.index == PointRef::kNearest) {
+    found.place = nearest_place(t, object, anchor);
   } else if (point.index < object.particles.count) {
-    const std::uint32_t first = object.particles.first;
-    nearest.try_particle(first + t.particles.row_of[first + point.index]);
+    found.place.particle_count = 1;
+    found.place.particle[0] = row_of(t, object, point.index);
+    found.place.weight[0] = Real(1);
   } else {
     return Error{ErrorCode::kOutOfRange, where,
                  "names point " + std::to_string(point.index) + " of " +
                      std::to_string(object.particles.count) + "; the first is 0"};
   }
-  FoundEnd end = {.place = nearest.place, .position = object.origin};
-  end.place.object = row;
-  for (std::uint32_t i = 0; i < end.place.particle_count; ++i)
-    end.position += static_cast<double>(end.place.weight[i]) * nearest.at(end.place.particle[i]);
-  return end;
+  found.place.object = row;
+  for (std::uint32_t i = 0; i < found.place.particle_count; ++i) {
+    const Vec3 x = t.particles.position[found.place.particle[i]].x;
+    found.position += static_cast<double>(found.place.weight[i]) * vector_cast<double>(x);
+  }
+  return found;
+}
+
+Result<FoundEnd> find_body(const HookEnd& end, const char* where, const Tables& t) {
+  FoundEnd found;
+  const std::uint32_t body = t.body_slots.find(end.body);
+  if (body == Tables::kNoRow) return stale_end(where);
+  found.place.body = body;
+  if (end.connection_point.empty()) return found;
+  const Result<state::NamedPlace> named =
+      find_named_place(places_of_body(body, t), end.connection_point, where);
+  if (!named) return named.error();
+  found.is_given = true;
+  found.position =
+      t.bodies.center[body] + vector_cast<double>(rotate(t.bodies.rotation[body], named.value().position));
+  return found;
 }
 
 }  // namespace
+
+HookPlace nearest_place(const Tables& t, const Deformable& object, DVec3 wanted) {
+  Nearest nearest = {t, wanted - object.origin};
+  find_nearest(object, nearest);
+  return nearest.place;
+}
 
 Result<FoundEnd> find_end(const HookEnd& end, DVec3 anchor, const char* where, const Tables& t) {
   const bool names_body = end.body != BodyId{};
   if (end.point.kind != PointRef::Kind::kNone) {
     if (names_body) return Error{ErrorCode::kOutOfRange, where, "names a body and a point: one is meant"};
-    return find_point(end.point, anchor, where, t);
+    return find_point(end, anchor, where, t);
   }
-  FoundEnd found;
-  if (!names_body) return found;
-  found.place.body = t.body_slots.find(end.body);
-  if (found.place.body != Tables::kNoRow) return found;
-  return Error{ErrorCode::kStaleId, where, "refers to nothing that is in the world"};
+  if (names_body) return find_body(end, where, t);
+  if (end.connection_point.empty()) return FoundEnd{};
+  return Error{ErrorCode::kOutOfRange, where, "is the world, which has no connection points"};
 }
 
 }  // namespace hooke::build

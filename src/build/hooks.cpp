@@ -187,14 +187,21 @@ struct Anchors {
   DVec3 a, b;
 };
 
-/// Points are held where they are, and bodies at the place of the point they are hooked to.
+/// Points and named places are held where they are, and what they are hooked to at the same place.
 Anchors anchors_of(const HookDesc& desc, DVec3 wanted_b, const FoundEnd& a, const FoundEnd& b) {
-  Anchors anchors = {a.place.is_point() ? a.position : desc.anchor,
-                     b.place.is_point() ? b.position : wanted_b};
+  Anchors anchors = {a.is_given ? a.position : desc.anchor, b.is_given ? b.position : wanted_b};
   if (desc.kind == HookKind::kDistance || desc.kind == HookKind::kRopeSlide) return anchors;
-  if (a.place.is_point() && !b.place.is_point()) anchors.b = a.position;
-  if (b.place.is_point() && !a.place.is_point()) anchors.a = b.position;
+  if (a.is_given && !b.is_given) anchors.b = a.position;
+  if (b.is_given && !a.is_given) anchors.a = b.position;
   return anchors;
+}
+
+/// Where an end begins to look for the nearest place: at the other end, if that is named, or at the anchor.
+Result<DVec3> place_to_look_from(const HookEnd& other, DVec3 anchor, const char* where, const Tables& t) {
+  if (other.connection_point.empty()) return anchor;
+  const Result<FoundEnd> found = find_end(other, anchor, where, t);
+  if (!found) return found.error();
+  return found.value().position;
 }
 
 /// Both points of the segment at which the hook begins; solver::slide_hooks gives them their weights.
@@ -263,9 +270,13 @@ Result<void> add_hook(const HookDesc& desc, Tables& t) {
   const Result<void> good = validate(desc);
   if (!good) return good.error();
   const DVec3 wanted_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
-  const Result<FoundEnd> a = find_end(desc.a, desc.anchor, "hook.a", t);
+  const Result<DVec3> near_a = place_to_look_from(desc.b, desc.anchor, "hook.b", t);
+  if (!near_a) return near_a.error();
+  const Result<FoundEnd> a = find_end(desc.a, near_a.value(), "hook.a", t);
   if (!a) return a.error();
-  const Result<FoundEnd> b = find_end(desc.b, wanted_b, "hook.b", t);
+  const Result<DVec3> near_b = place_to_look_from(desc.a, wanted_b, "hook.a", t);
+  if (!near_b) return near_b.error();
+  const Result<FoundEnd> b = find_end(desc.b, near_b.value(), "hook.b", t);
   if (!b) return b.error();
   const Result<void> fits = check_ends(desc.kind, a.value().place, b.value().place, t);
   if (!fits) return fits.error();

@@ -1,5 +1,6 @@
 #include "build/build.h"
 #include "build/common.h"
+#include "build/connection_points.h"
 
 #include <numbers>
 
@@ -38,6 +39,7 @@ Checks check(const ParticlesDesc& desc) {
     if (s.rest_length) checks.not_negative(where + ".rest_length", static_cast<double>(*s.rest_length));
   }
   check_points(checks, desc.pins, {}, count);
+  check_connection_points(checks, desc.connection_points, count);
   return checks;
 }
 
@@ -47,6 +49,12 @@ state::SpringForm form_of(const ParticlesDesc& desc) {
     return predicted ? state::SpringForm::kPredictedIsotropic : state::SpringForm::kExplicitIsotropic;
   }
   return predicted ? state::SpringForm::kPredicted : state::SpringForm::kExplicit;
+}
+
+state::NamedPlaces standard_places(const ParticlesDesc& desc) {
+  if (desc.particles.size() == 1) return {named_point("center", 0)};
+  if (desc.springs.empty()) return {};
+  return {named_point("start", desc.springs.front().a), named_point("end", desc.springs.back().b)};
 }
 
 }  // namespace
@@ -79,6 +87,7 @@ Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables) {
                    .form = form_of(desc)},
                   tables);
   }
+  append_connection_points(desc.connection_points, {}, standard_places(desc), tables);
   return {};
 }
 

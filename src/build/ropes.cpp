@@ -1,5 +1,6 @@
 #include "build/build.h"
 #include "build/common.h"
+#include "build/connection_points.h"
 
 #include <cmath>
 #include <numbers>
@@ -47,6 +48,7 @@ Checks check(const RopeDesc& desc) {
   }
   const std::size_t count = desc.points.empty() ? static_cast<std::size_t>(desc.masses) : desc.points.size();
   check_points(checks, desc.pins, desc.loads, count);
+  check_connection_points(checks, desc.connection_points, count);
   return checks;
 }
 
@@ -94,6 +96,17 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
   }
 }
 
+state::NamedPlaces standard_places(std::size_t count) {
+  const auto last = static_cast<std::uint32_t>(count) - 1;
+  const std::uint32_t half = last / 2;
+  state::NamedPlace middle = named_point("middle", half);
+  if (last % 2 != 0) {
+    middle.points[1] = half + 1;
+    middle.weights = {Real(0.5), Real(0.5)};
+  }
+  return {named_point("start", 0), middle, named_point("end", last)};
+}
+
 }  // namespace
 
 Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
@@ -131,6 +144,7 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
   object.twist_rate = static_cast<Real>(static_cast<double>(desc.twist) / total);
   object.drag_coefficient = desc.drag_coefficient;
   append_segments(desc, lengths, total, tables);
+  append_connection_points(desc.connection_points, {}, standard_places(points.position.size()), tables);
   return {};
 }
 

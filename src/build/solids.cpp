@@ -2,6 +2,7 @@
 
 #include "build/build.h"
 #include "build/common.h"
+#include "build/connection_points.h"
 #include "elements/tetrahedron.h"
 #include "geometry/tetrahedral_mesh.h"
 #include "geometry/vertex_order.h"
@@ -34,6 +35,11 @@ struct SolidBody {
 bool is_turn(Quat q) {
   const Real size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
   return std::isfinite(size) && size > Real(0);
+}
+
+/// Neither a mesh nor tetrahedra as given.
+bool is_box(const SolidDesc& desc) {
+  return !desc.mesh && desc.tetrahedra.empty() && desc.points.empty();
 }
 
 Checks check(const SolidDesc& desc) {
@@ -156,8 +162,7 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const Me
 
 Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) {
   SolidBody body;
-  const Checks checks =
-      desc.mesh || !desc.tetrahedra.empty() || !desc.points.empty() ? check(desc) : check_box(desc);
+  const Checks checks = is_box(desc) ? check_box(desc) : check(desc);
   if (!checks.good()) return checks.result().error();
   if (desc.mesh) {
     const std::uint32_t row = tables.mesh_slots.find(desc.mesh);
@@ -171,8 +176,7 @@ Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) 
     body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
     body.skin = skin_of(body.mesh, surface);
   } else {
-    const bool given = !desc.tetrahedra.empty() || !desc.points.empty();
-    Result<TetrahedralMesh> mesh = given ? take_given(desc) : Result<TetrahedralMesh>(fill_box(desc));
+    Result<TetrahedralMesh> mesh = is_box(desc) ? Result<TetrahedralMesh>(fill_box(desc)) : take_given(desc);
     if (!mesh) return mesh.error();
     body.mesh = std::move(mesh).value();
     body.volume = volume_of(body.mesh);
@@ -252,6 +256,7 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   if (!body) return body.error();
   Checks checks("solid");
   check_points(checks, desc.pins, desc.loads, body.value().mesh.points.size());
+  check_connection_points(checks, desc.connection_points, body.value().mesh.points.size());
   if (!checks.good()) return checks.result();
   const TetrahedralMesh& mesh = body.value().mesh;
   for (std::size_t i = 0; checks.good() && i < mesh.tetrahedra.size(); ++i)
@@ -267,6 +272,8 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);
   object.skin = body.value().skin;
   append_tetrahedra(mesh, desc, tables);
+  append_connection_points(desc.connection_points, {desc.position, desc.rotation},
+                           is_box(desc) ? places_of_box(desc.cells) : state::NamedPlaces{}, tables);
   return {};
 }
 

@@ -33,6 +33,9 @@ class Builder {
   [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
   /// Fills in what a body's description names: its material, its mesh, its parts.
   [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
+  /// Those of an object, and under other names those of a mesh it is made of, which is placed in its frame.
+  void add_places_of(const std::string& mesh, Vec3 position, Quat rotation,
+                     std::vector<ConnectionPointDesc>& points) const;
   /// What is drawn for a shape that refers to a mesh of this name; null for other shapes.
   std::shared_ptr<const Model> drawn_model(ShapeKind kind, const std::string& mesh);
   std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
@@ -41,6 +44,8 @@ class Builder {
   /// The object that copy `i` of a hook names; null for the world.
   Result<const SceneObject*> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
   [[nodiscard]] HookEnd end_at(const SceneObject* object, const std::optional<ScenePoint>& point) const;
+  /// The name of an end as an object, or the first copy of an array, and a point.
+  [[nodiscard]] EndName split_end(const std::string& name) const;
   template <class IdType>
   bool keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added);
   /// Points of one instance that a pin holds.
@@ -92,13 +97,28 @@ BodyDesc Builder::resolve(const SceneBody& body) const {
   desc.contact = surface_of(body.tag.material, desc.contact);
   desc.contact.friction = friction_of(body.tag);
   desc.shape.mesh = mesh_of(body.mesh);
+  add_places_of(body.mesh, {}, {}, desc.connection_points);
   for (const ScenePart& part : body.parts) {
     PartDesc made = part.desc;
     made.shape.mesh = mesh_of(part.mesh);
     made.contact = part.material.empty() ? desc.contact : surface_of(part.material, made.contact);
     desc.parts.push_back(made);
+    add_places_of(part.mesh, made.position, normalize(made.rotation), desc.connection_points);
   }
   return desc;
+}
+
+void Builder::add_places_of(const std::string& mesh, Vec3 position, Quat rotation,
+                            std::vector<ConnectionPointDesc>& points) const {
+  const auto found = data_.models.find(mesh);
+  if (found == data_.models.end()) return;
+  const Quaternion<double> turn = {rotation.x, rotation.y, rotation.z, rotation.w};
+  for (ConnectionPointDesc point : found->second.connection_points) {
+    const auto same = [&](const ConnectionPointDesc& one) { return one.name == point.name; };
+    if (std::any_of(points.begin(), points.end(), same)) continue;
+    point.position = vector_cast<double>(position) + rotate(turn, point.position);
+    points.push_back(point);
+  }
 }
 
 /// Polygons as fans, every face flat; null for points without a hull, of which the world says why.
@@ -255,6 +275,12 @@ std::vector<DVec3> points_of(const ClothDesc& cloth, const Model* model) {
   return points;
 }
 
+/// Of a copy of an object whose places are in the world.
+std::vector<ConnectionPointDesc> moved(std::vector<ConnectionPointDesc> points, DVec3 offset) {
+  for (ConnectionPointDesc& point : points) point.position += offset;
+  return points;
+}
+
 double length_of(const std::vector<DVec3>& points) {
   double sum = 0;
   for (std::size_t i = 1; i < points.size(); ++i) sum += length(points[i] - points[i - 1]);
@@ -288,6 +314,7 @@ void Builder::build(const SceneRope& rope, const std::string& path) {
     const DVec3 offset = rope.tag.array.offset(i);
     desc.hook_point = rope.desc.hook_point + offset;
     for (std::size_t k = 0; k < desc.points.size(); ++k) desc.points[k] = rope.desc.points[k] + offset;
+    desc.connection_points = moved(rope.desc.connection_points, offset);
     SceneObject object = make_object(rope.tag, SceneObject::Kind::kRope, path, i);
     object.radius = desc.radius;
     object.rest_length = desc.points.empty() ? static_cast<double>(desc.length_at_rest) : length_of(points);
@@ -301,6 +328,7 @@ void Builder::build(const SceneCloth& cloth, const std::string& path) {
   if (!cloth.mesh.empty()) {
     model = data_.models[cloth.mesh];
     desc.mesh = model.id;
+    add_places_of(cloth.mesh, {}, {}, desc.connection_points);
   }
   const std::vector<DVec3> points = points_of(desc, model.model.get());
   const std::size_t columns = model.model == nullptr ? static_cast<std::size_t>(desc.columns) : 0;
@@ -311,6 +339,7 @@ void Builder::build(const SceneCloth& cloth, const std::string& path) {
     if (!reserve(points.size(), path)) return;
     desc.corner = cloth.desc.corner + cloth.tag.array.offset(i);
     desc.position = cloth.desc.position + cloth.tag.array.offset(i);
+    if (columns > 0) desc.connection_points = moved(cloth.desc.connection_points, cloth.tag.array.offset(i));
     SceneObject object = make_object(cloth.tag, SceneObject::Kind::kCloth, path, i);
     object.radius = Real(0.5) * desc.thickness;
     object.columns = static_cast<std::uint32_t>(columns);
@@ -326,6 +355,7 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
   if (!solid.mesh.empty()) {
     desc.mesh = data_.models[solid.mesh].id;
     model = data_.models[solid.mesh].model;
+    add_places_of(solid.mesh, {}, {}, desc.connection_points);
   }
   desc.contact.friction = friction_of(solid.tag);
   for (std::size_t i = 0; i < solid.tag.array.count() && !full(); ++i) {
@@ -355,6 +385,7 @@ void Builder::build(const SceneParticles& particles, const std::string& path) {
     if (!reserve(points.size(), path)) return;
     const DVec3 offset = particles.tag.array.offset(i);
     for (std::size_t k = 0; k < points.size(); ++k) desc.particles[k].position = points[k] + offset;
+    desc.connection_points = moved(particles.desc.connection_points, offset);
     SceneObject object = make_object(particles.tag, SceneObject::Kind::kParticles, path, i);
     object.radius = desc.particles.front().radius;
     if (!keep(object, &SceneObject::particles, data_.world.add_particles(desc))) return;
@@ -387,6 +418,11 @@ Result<const SceneObject*> Builder::find_end(const std::string& name, const Scen
   return Error{ErrorCode::kStaleId, "", "there is no object " + in_quotes(name) + " any more"};
 }
 
+EndName Builder::split_end(const std::string& name) const {
+  const bool is_object = data_.row_of.contains(name) || data_.row_of.contains(indexed(name, 0));
+  return is_object ? EndName{name} : take_end_name(name);
+}
+
 HookEnd Builder::end_at(const SceneObject* object, const std::optional<ScenePoint>& wanted) const {
   if (object == nullptr) return {};
   if (object->kind == SceneObject::Kind::kBody) return {.body = object->body};
@@ -399,14 +435,18 @@ void Builder::build(const SceneHook& hook, const std::string& path) {
   HookDesc desc = hook.desc;
   for (std::size_t i = 0; i < hook.array.count() && !full(); ++i) {
     if (!reserve(1, path)) return;
-    const Result<const SceneObject*> a = find_end(hook.a, hook.array, i);
-    const Result<const SceneObject*> b = find_end(hook.b, hook.array, i);
+    const EndName name_a = split_end(hook.a);
+    const EndName name_b = split_end(hook.b);
+    const Result<const SceneObject*> a = find_end(name_a.object, hook.array, i);
+    const Result<const SceneObject*> b = find_end(name_b.object, hook.array, i);
     if (!a || !b) {
       const Error& error = a ? b.error() : a.error();
       return fail(path + (a ? ".b" : ".a"), error.code, error.message);
     }
     desc.a = end_at(a.value(), hook.a_point);
     desc.b = end_at(b.value(), hook.b_point);
+    desc.a.connection_point = name_a.connection_point;
+    desc.b.connection_point = name_b.connection_point;
     const std::array<std::string, 2> held = {a.value() != nullptr ? a.value()->name : "",
                                              b.value() != nullptr ? b.value()->name : ""};
     const DVec3 offset = hook.array.offset(i);
@@ -425,6 +465,24 @@ Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
   const Result<std::string> file = locate_file(scene.path, mesh.file);
   if (!file) return file.error();
   return import_model(file.value(), mesh.import);
+}
+
+/// The connection points of a mesh, all as places: what it becomes has its points in another order. Numbers
+/// are those of vertices as they stand in the scene, or as the model was read.
+Result<std::vector<ConnectionPointDesc>> places_of(const SceneMesh& mesh, const MeshDesc& model) {
+  const MeshDesc& read = mesh.file.empty() ? mesh.mesh : model;
+  std::vector<ConnectionPointDesc> places = mesh.connection_points;
+  for (ConnectionPointDesc& place : places) {
+    if (!place.point) continue;
+    if (*place.point >= read.positions.size()) {
+      return Error{ErrorCode::kOutOfRange, "mesh.connection_points." + place.name,
+                   std::to_string(*place.point) + " is out of range, must be 0 to " +
+                       std::to_string(read.positions.size() - 1)};
+    }
+    place.position = vector_cast<double>(read.positions[*place.point]);
+    place.point.reset();
+  }
+  return places;
 }
 
 template <class T>
@@ -465,7 +523,13 @@ void build_meshes(SimulationData& data, std::vector<Error>& errors) {
       errors.push_back(scene_error(data.scene, path, added.error()));
       continue;
     }
-    data.models[mesh.name] = {.id = added.value(), .model = std::move(model)};
+    const Result<std::vector<ConnectionPointDesc>> places = places_of(mesh, model->mesh);
+    if (!places) {
+      errors.push_back(scene_error(data.scene, path, places.error()));
+      continue;
+    }
+    data.models[mesh.name] = {
+        .id = added.value(), .model = std::move(model), .connection_points = places.value()};
   }
 }
 

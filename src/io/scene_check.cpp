@@ -54,7 +54,7 @@ class Checker {
   void check_mesh_name(const std::string& name, const std::string& path);
   void check_references(const SceneObjects& objects, const std::string& prefix);
   void check_hook(const SceneHook& hook, const std::string& path);
-  void check_hook_end(const SceneHook& hook, const std::string& name, const std::optional<ScenePoint>& point,
+  void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
@@ -63,6 +63,8 @@ class Checker {
   /// The object of a name or of the name of its array, whatever its copy; null after an error.
   const NamedObject* find_named(const std::string& name, const std::string& path);
   const NamedObject* find_object(const std::string& name, const std::string& path);
+  /// Whether an object or array has this name, or a copy of one.
+  [[nodiscard]] bool is_known(const std::string& name) const;
   void check_point(ScenePoint point, std::size_t count, const std::string& path);
   void check_pins(const std::vector<ScenePin>& pins, std::size_t count, const ClothDesc* grid,
                   const std::string& path);
@@ -246,8 +248,19 @@ const NamedObject* Checker::find_object(const std::string& name, const std::stri
   return object;
 }
 
-void Checker::check_hook_end(const SceneHook& hook, const std::string& name,
+bool Checker::is_known(const std::string& name) const {
+  const std::optional<CopyName> copy = take_copy_name(name);
+  return objects_.contains(name) || (copy && objects_.contains(copy->array));
+}
+
+void Checker::check_hook_end(const SceneHook& hook, const std::string& end,
                              const std::optional<ScenePoint>& point, const std::string& path) {
+  const EndName split = is_known(end) ? EndName{end} : take_end_name(end);
+  const std::string& name = split.object;
+  if (point && !split.connection_point.empty()) {
+    fail(path + "_point", ErrorCode::kOutOfRange, in_quotes(end) + " names a point already");
+    return;
+  }
   const bool single = hook.array.kind == SceneArray::Kind::kSingle;
   const NamedObject* object = single ? find_object(name, path) : find_named(name, path);
   if (object == nullptr) return;
@@ -274,6 +287,13 @@ void Checker::check_hook_end(const SceneHook& hook, const std::string& name,
 
 void Checker::check_hook(const SceneHook& hook, const std::string& path) {
   if (is_damaged(path)) return;
+  const auto names_point = [&](const std::string& end) {
+    return !is_known(end) && !take_end_name(end).connection_point.empty();
+  };
+  if (!hook.anchor && !hook.a_point && !hook.b_point && !names_point(hook.a) && !names_point(hook.b)) {
+    fail(path, ErrorCode::kOutOfRange, "needs 'anchor', or a point of what it holds");
+    return;
+  }
   if (!hook.a.empty()) check_hook_end(hook, hook.a, hook.a_point, path + ".a");
   check_hook_end(hook, hook.b, hook.b_point, path + ".b");
 }
@@ -556,6 +576,12 @@ void Checker::check_total() {
 }
 
 }  // namespace
+
+EndName take_end_name(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos) return {name};
+  return {name.substr(0, dot), name.substr(dot + 1)};
+}
 
 std::optional<CopyName> take_copy_name(const std::string& name) {
   const std::size_t bracket = name.rfind('[');

@@ -18,6 +18,14 @@ struct CopyName {
 };
 [[nodiscard]] std::optional<CopyName> take_copy_name(const std::string& name);
 
+/// "crane.tip" taken apart: an object and one of its connection points. Names have no dots; the place of an
+/// object that has none may, as "timeline[0].add.ropes[0]".
+struct EndName {
+  std::string object = {};
+  std::string connection_point = {};  ///< Empty for none.
+};
+[[nodiscard]] EndName take_end_name(const std::string& name);
+
 /// Number of points of one instance; 0 for the cloth or solid of a mesh, which is known once the mesh is
 /// read.
 [[nodiscard]] std::size_t point_count(const SceneRope& rope);

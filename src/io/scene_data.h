@@ -19,6 +19,7 @@ struct SceneModel {
   MeshId id = {};
   std::shared_ptr<const Model> model = {};
   std::shared_ptr<const Model> hull = {};  ///< Of its points; made when the first body asks for it.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< All as places.
 };
 
 /// What a Simulation owns. Built by scene_build.cpp, stepped by scene_simulation.cpp, measured by

@@ -206,7 +206,10 @@ const Kind& kind_of<SceneMesh>() {
                      "which is solid then."),
                  field<&SceneMesh::mesh, &MeshDesc::positions>("vertices", "m", kAny, "Instead of a file."),
                  field<&SceneMesh::mesh, &MeshDesc::triangles>(
-                     "triangles", "", kAny, "Three indices each, counter-clockwise seen from outside.")},
+                     "triangles", "", kAny, "Three indices each, counter-clockwise seen from outside."),
+                 field<&SceneMesh::connection_points>(
+                     "connection_points", "m", kAny,
+                     "Of all that is made of it: places in its frame, or vertices, that hooks may name.")},
       .defaults = defaults_of<SceneMesh>,
       .check = check_mesh};
   return kind;

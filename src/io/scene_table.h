@@ -26,6 +26,18 @@ struct Codec<ScenePoint> {
   static std::string type() { return "whole number or `\"last\"`"; }
 };
 
+/// A place, or the number of a point; the name is the key.
+template <>
+inline constexpr bool kByName<ConnectionPointDesc> = true;
+template <>
+struct Codec<ConnectionPointDesc> {
+  static bool read(Reader& reader, const JsonNode& node, const Rule& rule, ConnectionPointDesc& value);
+  static JsonNode write(const ConnectionPointDesc& value);
+  static bool same(const ConnectionPointDesc& a, const ConnectionPointDesc& b);
+  static JsonNode schema(const Rule& rule);
+  static std::string type() { return "[x, y, z] or whole number"; }
+};
+
 /// A point, or an object of kind "pin". A still point is written in the short form.
 template <>
 struct Codec<ScenePin> {

@@ -14,9 +14,6 @@ bool check_hook(Reader& reader, const JsonNode& node, const void* object) {
   if (!hook.array.rotations.empty()) {
     return reader.fail(node, ErrorCode::kOutOfRange, "only an array of bodies has 'rotations'");
   }
-  if (!hook.anchor && !hook.a_point && !hook.b_point) {
-    return reader.fail(node, ErrorCode::kOutOfRange, "needs 'anchor', or a point of what it holds");
-  }
   return check_named(reader, node, hook.name);
 }
 
@@ -30,8 +27,10 @@ std::vector<Field> hook_rows() {
           "One point in common; turning about `axis`; sliding along it; moving as "
           "one; a distance; a wheel; what `freedoms` says; or b sliding along rope a. "
           "With points: ball, distance, rope_slide, slider."),
-      field<&SceneHook::a>("a", "", kNotEmpty,
-                           "Name of a body, rope, cloth, solid or particles; the world without it."),
+      field<&SceneHook::a>(
+          "a", "", kNotEmpty,
+          "Name of a body, rope, cloth, solid or particles, also with one of its connection points, "
+          "as `rope.end`; the world without it."),
       required(field<&SceneHook::b>("b", "", kNotEmpty, "The same; never the world.")),
       field<&SceneHook::a_point>(
           "a_point", "", kAny,

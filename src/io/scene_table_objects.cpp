@@ -580,6 +580,31 @@ JsonNode Codec<ScenePoint>::schema(const Rule& rule) {
   return schema;
 }
 
+bool Codec<ConnectionPointDesc>::read(Reader& reader, const JsonNode& node, const Rule& rule,
+                                      ConnectionPointDesc& value) {
+  if (node.kind == JsonNode::Kind::kArray) return Codec<DVec3>::read(reader, node, rule, value.position);
+  if (node.kind == JsonNode::Kind::kNumber)
+    return Codec<std::optional<std::uint32_t>>::read(reader, node, rule, value.point);
+  return reader.fail_type(node, "a place [x, y, z] or the number of a point");
+}
+
+JsonNode Codec<ConnectionPointDesc>::write(const ConnectionPointDesc& value) {
+  return value.point ? make_integer(*value.point) : Codec<DVec3>::write(value.position);
+}
+
+bool Codec<ConnectionPointDesc>::same(const ConnectionPointDesc& a, const ConnectionPointDesc& b) {
+  return a.point == b.point && a.position == b.position;
+}
+
+JsonNode Codec<ConnectionPointDesc>::schema(const Rule& rule) {
+  JsonNode forms = make_array();
+  forms.add(Codec<DVec3>::schema(rule));
+  forms.add(Codec<std::uint32_t>::schema(rule));
+  JsonNode schema = make_object();
+  schema.add("anyOf", std::move(forms));
+  return schema;
+}
+
 bool Codec<ScenePin>::read(Reader& reader, const JsonNode& node, const Rule& rule, ScenePin& value) {
   if (node.kind == JsonNode::Kind::kObject) return read_object(reader, node, kind_of<ScenePin>(), &value);
   value = {};

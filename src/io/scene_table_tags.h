@@ -42,6 +42,12 @@ void add_tag_rows(std::vector<Field>& rows) {
         "stepper", "", kNotEmpty,
         "How the laboratory integrates it, as `rk4`, or `auto`; `hooke compare --help` lists them."));
   }
+  rows.push_back(field<&T::desc, &decltype(T::desc)::connection_points>(
+      "connection_points", "m", kAny,
+      std::is_same_v<T, SceneBody>
+          ? "Places in its frame that hooks may name as `object.name`."
+          : "Places that hooks may name as `object.name`: points, or what is nearest to a place, in the "
+            "frame of its `position`, of ropes, grids and particles in the world."));
   rows.push_back(
       field<&T::tag, &SceneTag::array>("array", "", kAny, "Copies, named `name[0]`, `name[1]`, ..."));
 }

@@ -4,8 +4,10 @@
 #include "hooke/math.h"
 
 #include "math/symmetric.h"
+#include "state/objects.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 /// \file
@@ -103,6 +105,7 @@ struct Bodies {
   std::vector<MotionDesc> path;     ///< Of kinematic bodies.
   std::vector<DVec3> path_start;    ///< Where the center was when the path began [m].
   std::vector<double> path_time;    ///< When it began [s].
+  std::vector<std::shared_ptr<const NamedPlaces>> connection_points;  ///< Its own; null for none.
 
   [[nodiscard]] int count() const { return static_cast<int>(motion.size()); }
 
@@ -131,6 +134,7 @@ struct Bodies {
     visit(self.path);
     visit(self.path_start);
     visit(self.path_time);
+    visit(self.connection_points);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 /// \file
@@ -34,6 +35,15 @@ struct Skin {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// A place of an object under its name (ConnectionPointDesc). Never changes after it was made.
+struct NamedPlace {
+  std::string name;
+  Vec3 position = {};                        ///< Of a body: from its center of mass, in its frame [m].
+  std::array<std::uint32_t, 4> points = {};  ///< Of a deformable: points in the maker's order,
+  std::array<Real, 4> weights = {};          ///< with the sum 1; 0 for places that are not used.
+};
+using NamedPlaces = std::vector<NamedPlace>;
+
 /// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
 using RestEdges = std::vector<std::array<Vec3, 3>>;
 
@@ -49,6 +59,7 @@ struct Deformable {
   Rows segments = {};
   Rows tetrahedra = {};
   std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
+  std::shared_ptr<const NamedPlaces> connection_points = {};
   double gas = 0;                  ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
   double gas_volume = 0;           ///< V when it was filled [m^3].
   Real bend_stiffness = Real(0);   ///< Of a rope: EI [N m^2].

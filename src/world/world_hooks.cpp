@@ -3,6 +3,8 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "build/connection_points.h"
+#include "build/hook_ends.h"
 #include "collision/particle_contacts.h"
 #include "solver/bundles.h"
 #include "solver/joint_rows.h"
@@ -109,6 +111,33 @@ std::array<DVec3, 2> World::hook_anchors(HookId id) const {
     return body.center + rotate(body.rotation, end.anchor);
   };
   return {place(hook->a), place(hook->b)};
+}
+
+std::vector<std::string> World::connection_points(const HookEnd& of) const {
+  const Tables& t = data_->tables;
+  const std::uint32_t object = state::object_row(t, of.point);
+  const std::uint32_t body = t.body_slots.find(of.body);
+  std::vector<std::string> names;
+  const auto list = [&](const state::NamedPlaces& places) {
+    for (const state::NamedPlace& place : places) names.push_back(place.name);
+  };
+  if (object != Tables::kNoRow) {
+    list(*t.objects[object].connection_points);
+  } else if (body != Tables::kNoRow) {
+    list(build::places_of_body(body, t));
+  }
+  return names;
+}
+
+Result<DVec3> World::find_place(const HookEnd& end) const {
+  const Tables& t = data_->tables;
+  const Result<build::FoundEnd> found = build::find_end(end, {}, "end", t);
+  if (!found) return found.error();
+  const std::uint32_t body = found.value().place.body;
+  const bool nearest = end.connection_point.empty() && end.point.index == PointRef::kNearest;
+  if (nearest || (!found.value().is_given && body == state::HookPlace::kWorld))
+    return Error{ErrorCode::kOutOfRange, "end", "does not say which place is meant"};
+  return found.value().is_given ? found.value().position : pose(end.body).position;
 }
 
 Real World::hook_gap(HookId id) const {

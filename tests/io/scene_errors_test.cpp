@@ -205,6 +205,16 @@ const BadScene kBadScenes[] = {
      {"1:80: hooks[0].b_point: 16 is out of range, must be 0 to 15"}},
     {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}], "hooks": [{"b": "ball", "b_point": 0}]})",
      {"1:106: hooks[0].b_point: 'ball' is a body, which has no points"}},
+    {R"({"version": 1, "ropes": [{"name": "rope"}], "hooks": [{"b": "rope.end", "b_point": 1}]})",
+     {"1:84: hooks[0].b_point: 'rope.end' names a point already"}},
+    {R"({"version": 1, "ropes": [{"name": "rope"}], "hooks": [{"b": "rop.end"}]})",
+     {"1:61: hooks[0].b: there is no object 'rop', did you mean 'rope'?"}},
+    {R"({"version": 1, "ropes": [{"connection_points": {"eye": "end"}}]})",
+     {"1:56: ropes[0].connection_points.eye: 'end' is a string, must be a place [x, y, z] or the number of a "
+      "point"}},
+    {R"({"version": 1, "ropes": [{"connection_points": {"e.e": 1}}]})",
+     {"1:56: ropes[0].connection_points.e.e: 'e.e' has a character that a name must not have ([ ] . or "
+      "control)"}},
     {R"({"version": 1, "bodies": [{"name": "ball", "shape": {"sphere": {}}}],)"
      R"( "hooks": [{"kind": "joint", "b": "bal", "anchor": [0, 0, 0]}]})",
      {"1:90: hooks[0].kind: 'joint' is not one of 'ball', 'hinge', 'slider', 'fixed', 'distance', 'wheel', "

@@ -150,6 +150,26 @@ TEST_SUITE("io/scene_simulation") {
           "demo.json:3:37: hooks[0].limits: must have lower not above upper");
     CHECK(complaint(R"("b": "ball", "kind": "distance", "limits": {"upper": -1})") ==
           "demo.json:3:57: hooks[0].limits: must allow some distance");
+    CHECK(complaint(R"("b": "ball.tip")") ==
+          "demo.json:3:19: hooks[0].b: has no connection point 'tip', there are center, origin, left, right, "
+          "bottom, top, back, front");
+  }
+
+  TEST_CASE("what the world says against a connection point stands at its place in the file") {
+    const auto complaint = [](const std::string& rest) {
+      auto scene = hooke::parse_scene(R"({"version": 1, )" + rest + "}", "demo.json");
+      REQUIRE(scene);
+      const auto simulation = hooke::Simulation::create(std::move(*scene.value));
+      REQUIRE(simulation.errors.size() == 1);
+      return hooke::to_line(simulation.errors.front());
+    };
+    CHECK(complaint(R"("ropes": [{"masses": 3, "connection_points": {"eye": 3}}])") ==
+          "demo.json:1:69: ropes[0].connection_points.eye: 3 is out of range, must be 0 to 2");
+    CHECK(complaint(R"("bodies": [{"shape": {"box": {}}, "connection_points": {"eye": 3}}])") ==
+          "demo.json:1:79: bodies[0].connection_points.eye: must be a place [x, y, z]: a body has no points");
+    CHECK(complaint(R"("meshes": {"leaf": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+                       "triangles": [[0, 1, 2]], "connection_points": {"eye": 3}}})") ==
+          "demo.json:2:79: meshes.leaf.connection_points.eye: 3 is out of range, must be 0 to 2");
   }
 
   TEST_CASE("hooks hold points by number, the last one, and the place nearest to their anchor") {
@@ -167,6 +187,52 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(anchors("end") == std::array{hooke::DVec3{4, 2, 0}, hooke::DVec3{4, 2, 0}});
     CHECK(anchors("second") == std::array{hooke::DVec3{1, 2, 0}, hooke::DVec3{4, 1, 0}});
     CHECK(anchors("between")[1] == hooke::DVec3{2.25, 2, 0});
+  }
+
+  TEST_CASE("hooks hold connection points by their names, of copies and of what is made of a mesh too") {
+    const hooke::Simulation simulation = simulate(R"({
+      "version": 1,
+      "meshes": {"kite": {"vertices": [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
+        "triangles": [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
+        "connection_points": {"tip": 2, "tail": [0, -1, 0]}}},
+      "ropes": [{"name": "rope", "hook_point": [0, 9, 0], "direction": [1, 0, 0], "masses": 5,
+                 "length_at_rest": 4, "connection_points": {"second": 1, "low": [3.25, 8, 0]},
+                 "array": {"grid": [1, 1, 2], "spacing": [0, 0, 3]}}],
+      "bodies": [{"name": "kite", "kind": "dynamic", "shape": {"hull": "kite"}, "position": [0, 5, 0],
+                  "rotation": {"axis": [0, 0, 1], "angle_deg": 90},
+                  "array": {"grid": [2, 1, 1], "spacing": [20, 0, 0]}},
+                 {"name": "pair", "kind": "dynamic", "position": [0, 20, 0], "shape": {"parts": [
+                   {"shape": {"box": {}}}, {"shape": {"hull": "kite"}, "position": [0, 2, 0]}]},
+                  "connection_points": {"tail": [0, 0.5, 0]}}],
+      "cloths": [{"name": "skin", "mesh": "kite", "position": [0, 0, 7]}],
+      "solids": [{"name": "jelly", "mesh": "kite", "cell": 0.4, "position": [0, 0, -9],
+                  "rotation": {"axis": [1, 0, 0], "angle_deg": 180}}],
+      "timeline": [{"at_step": 0, "add": {"ropes": [{"hook_point": [0, 30, 0]}],
+                    "hooks": [{"name": "late", "a": "timeline[0].add.ropes[0].end", "b": "kite[0].tip"}]}}],
+      "hooks": [{"name": "one", "a": "rope[1].low", "b": "kite[1].tip"},
+                {"name": "each", "a": "rope.second", "b": "kite.tail", "array": {"grid": [2, 1, 1]}},
+                {"name": "on", "b": "pair.tip"}, {"name": "own", "b": "pair.tail"},
+                {"name": "sewn", "a": "skin.tip", "b": "jelly.tip"}]
+    })");
+    const auto anchors = [&](const char* hook) {
+      return simulation.world().hook_anchors(simulation.find(hook)->hook);
+    };
+    const auto near = [](hooke::DVec3 a, hooke::DVec3 b) { return length(a - b) < 2e-6; };
+    CHECK(near(anchors("one")[0], {3.25, 9, 3}));
+    CHECK(near(anchors("one")[1], {19, 5, 0}));
+    CHECK(near(anchors("each[0]")[0], {1, 9, 0}));
+    CHECK(near(anchors("each[1]")[0], {1, 9, 3}));
+    CHECK(near(anchors("each[1]")[1], {21, 5, 0}));
+    CHECK(simulation.find("each[1]")->hooked == std::array<std::string, 2>{"rope[1]", "kite[1]"});
+    CHECK(near(anchors("on")[1], {0, 23, 0}));
+    CHECK(near(anchors("own")[1], {0, 20.5, 0}));
+    CHECK(near(anchors("sewn")[0], {0, 1, 7}));
+    CHECK(length(anchors("sewn")[1] - hooke::DVec3{0, -1, -9}) < 0.1);  // cells of 0.4 m round the tip off
+    hooke::Simulation later = simulate(hooke::write_scene(simulation.scene()));
+    step(later, 1);
+    CHECK(later.errors().empty());
+    REQUIRE(later.find("late") != nullptr);
+    CHECK(later.find("late")->hooked[0] == "timeline[0].add.ropes[0]");
   }
 
   TEST_CASE("an array of hooks counts through arrays of bodies, from the copy that is named") {
