@@ -239,8 +239,7 @@ def silk_and_felt():
         ],
         world={"particle_substeps": 2},
         cloths=cloths,
-        hooks=[tie(f"stitch_{k}", "silk", "felt", a_point=(k + 1) * columns - 1, b_point=k * columns)
-               for k in range(rows)])
+        seams=[{"name": "seam", "a": "silk.right", "b": "felt.left"}])
 
 
 def sling(length, span, radius):

@@ -283,6 +283,25 @@ struct HookDesc {
   bool collide = false;
 };
 
+/// A line of points of a cloth or solid, to be sewn: an edge by its name, or points.
+struct SeamEdge {
+  PointRef object = {};  ///< Of a cloth or solid; its index does not count.
+  /// Of a cloth: on a grid `left`, `right`, `top`, `bottom` (ConnectionPointDesc); where there is one border,
+  /// `border`, else `border_0`, ... by their lowest points: all around, as triangles run.
+  std::string edge = {};
+  std::vector<std::uint32_t> points = {};  ///< Instead: at least 2, one after the other along the line; the
+                                           ///< first once more at the end if it is closed.
+};
+
+/// Sews two lines together from end to end: each point of the one that has more of them is hooked to the
+/// place of the other line that is at the same share of its length. Open lines begin with the ends that are
+/// nearer to each other; closed ones with the first point of `a` and the point of `b` that is nearest to it.
+struct SeamDesc {
+  SeamEdge a = {};
+  SeamEdge b = {};
+  Real strength = kRigid;  ///< [N/m], positive: a stitch lets go above this times its share of the length.
+};
+
 /// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on
 /// it. The paper's builder: `masses` points laid from `hook_point` along `direction`.
 struct RopeDesc {

@@ -176,6 +176,17 @@ struct SceneHook {
   std::optional<ScenePoint> b_point = {};
   SceneArray array = {};  ///< Offsets of the anchors.
 };
+/// Two lines sewn together. The stitches are hooks named `name[0]`, ... In an array, copy i sews copy i of
+/// `a` and of `b` as those of a hook are held, and its stitches follow those of the copy before.
+struct SceneSeam {
+  std::string name = {};                     ///< As SceneTag::name.
+  std::string a = {};                        ///< "cloth.edge" as in SeamEdge, or what `a_points` are of.
+  std::vector<std::uint32_t> a_points = {};  ///< SeamEdge::points.
+  std::string b = {};
+  std::vector<std::uint32_t> b_points = {};
+  Real strength = kRigid;  ///< SeamDesc::strength.
+  SceneArray array = {};
+};
 struct SceneField {
   std::string name = {};
   FieldDesc desc = {};
@@ -189,6 +200,7 @@ struct SceneObjects {
   std::vector<SceneParticles> particles = {};
   std::vector<SceneField> fields = {};
   std::vector<SceneHook> hooks = {};
+  std::vector<SceneSeam> seams = {};
 };
 
 /// Something that happens just before a step.

@@ -195,6 +195,8 @@ class World {
   [[nodiscard]] Result<BodyId> add_body(const BodyDesc& desc);
   /// Holds two bodies, or a body and the world, together; one end at least is a body that forces move.
   [[nodiscard]] Result<HookId> add_hook(const HookDesc& desc);
+  /// The stitches of a seam, ball hooks, in order from the first point of `a`.
+  [[nodiscard]] Result<std::vector<HookId>> sew(const SeamDesc& desc);
   [[nodiscard]] Result<RopeId> add_rope(const RopeDesc& desc);
   [[nodiscard]] Result<ClothId> add_cloth(const ClothDesc& desc);
   [[nodiscard]] Result<SolidId> add_solid(const SolidDesc& desc);

@@ -32,6 +32,9 @@ void remove_body(std::uint32_t row, state::Tables& tables);
 /// The new hook is the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
 
+/// The number of new hooks; they are the last of `tables.hooks`, their slots are not set.
+Result<std::uint32_t> sew(const SeamDesc& desc, state::Tables& tables);
+
 /// The one freedom of a kDistance hook whose anchors were `distance` apart [m]: its target becomes a length,
 /// and where nothing is said it is a rod.
 [[nodiscard]] HookFreedom line_freedom(HookFreedom line, Real distance);

@@ -15,6 +15,14 @@ std::string number(double value) {
 
 }  // namespace
 
+Error no_such_name(const char* what, const std::string& name, const std::vector<std::string>& names,
+                   const char* where) {
+  std::string list;
+  for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
+  list = list.empty() ? "there are none" : "there are " + list;
+  return {ErrorCode::kOutOfRange, where, "has no " + std::string(what) + " '" + name + "', " + list};
+}
+
 std::string indexed(const std::string& name, std::size_t i) {
   return name + std::string("[") + std::to_string(i) + std::string("]");
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace hooke::build {
 
@@ -51,6 +52,10 @@ class Checks {
   std::string object_;
   std::optional<Error> error_;
 };
+
+/// "has no edge 'to', there are left, right".
+[[nodiscard]] Error no_such_name(const char* what, const std::string& name,
+                                 const std::vector<std::string>& names, const char* where);
 
 /// "name[i]"
 [[nodiscard]] std::string indexed(const std::string& name, std::size_t i);

@@ -385,6 +385,7 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.gas_volume = filled.gas_volume;
   object.friction = desc.contact.friction;
   object.yield_angle = desc.yield_angle;
+  object.columns = static_cast<std::uint32_t>(surface.columns);
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;
   append_springs(surface, desc, tables);

@@ -232,13 +232,12 @@ NamedPlaces places_of_body(std::uint32_t body, const Tables& t) {
 }
 
 Result<NamedPlace> find_named_place(const NamedPlaces& places, const std::string& name, const char* where) {
-  std::string names;
+  std::vector<std::string> names;
   for (const NamedPlace& place : places) {
     if (place.name == name) return place;
-    names += (names.empty() ? "" : ", ") + place.name;
+    names.push_back(place.name);
   }
-  names = names.empty() ? "there are none" : "there are " + names;
-  return Error{ErrorCode::kOutOfRange, where, "has no connection point '" + name + "', " + names};
+  return no_such_name("connection point", name, names, where);
 }
 
 }  // namespace hooke::build

@@ -19,6 +19,9 @@ struct FoundEnd {
 [[nodiscard]] Result<FoundEnd> find_end(const HookEnd& end, DVec3 anchor, const char* where,
                                         const state::Tables& tables);
 
+/// Appends a hook of ends that were found and that its kind can hold; its slot is not set.
+void append_hook(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b, state::Tables& tables);
+
 /// The place of an object that is nearest to `wanted` [m]: in a tetrahedron, on a triangle or a segment, or
 /// at a particle where there are none of them. Without the object's row.
 [[nodiscard]] state::HookPlace nearest_place(const state::Tables& tables, const state::Deformable& object,

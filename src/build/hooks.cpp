@@ -187,9 +187,13 @@ struct Anchors {
   DVec3 a, b;
 };
 
+DVec3 wanted_anchor_b(const HookDesc& desc) {
+  return desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
+}
+
 /// Points and named places are held where they are, and what they are hooked to at the same place.
-Anchors anchors_of(const HookDesc& desc, DVec3 wanted_b, const FoundEnd& a, const FoundEnd& b) {
-  Anchors anchors = {a.is_given ? a.position : desc.anchor, b.is_given ? b.position : wanted_b};
+Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
+  Anchors anchors = {a.is_given ? a.position : desc.anchor, b.is_given ? b.position : wanted_anchor_b(desc)};
   if (desc.kind == HookKind::kDistance || desc.kind == HookKind::kRopeSlide) return anchors;
   if (a.is_given && !b.is_given) anchors.b = a.position;
   if (b.is_given && !a.is_given) anchors.a = b.position;
@@ -266,26 +270,13 @@ Result<void> validate(const HookDesc& desc) {
   return checks.result();
 }
 
-Result<void> add_hook(const HookDesc& desc, Tables& t) {
-  const Result<void> good = validate(desc);
-  if (!good) return good.error();
-  const DVec3 wanted_b = desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
-  const Result<DVec3> near_a = place_to_look_from(desc.b, desc.anchor, "hook.b", t);
-  if (!near_a) return near_a.error();
-  const Result<FoundEnd> a = find_end(desc.a, near_a.value(), "hook.a", t);
-  if (!a) return a.error();
-  const Result<DVec3> near_b = place_to_look_from(desc.a, wanted_b, "hook.a", t);
-  if (!near_b) return near_b.error();
-  const Result<FoundEnd> b = find_end(desc.b, near_b.value(), "hook.b", t);
-  if (!b) return b.error();
-  const Result<void> fits = check_ends(desc.kind, a.value().place, b.value().place, t);
-  if (!fits) return fits.error();
-  const Anchors anchors = anchors_of(desc, wanted_b, a.value(), b.value());
+void append_hook(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b, Tables& t) {
+  const Anchors anchors = anchors_of(desc, a, b);
   const DQuat axes = quaternion_of(axes_of(desc));
   Hook hook = {.kind = desc.kind,
                .collide = desc.collide,
-               .a = a.value().place,
-               .b = b.value().place,
+               .a = a.place,
+               .b = b.place,
                .break_force = desc.break_force,
                .break_torque = desc.break_torque,
                .freedom = freedoms_of(desc, length(anchors.b - anchors.a)),
@@ -304,7 +295,22 @@ Result<void> add_hook(const HookDesc& desc, Tables& t) {
   }
   t.hooks.push_back(hook);
   ++t.hook_revision;
-  return {};
+}
+
+Result<void> add_hook(const HookDesc& desc, Tables& t) {
+  const Result<void> good = validate(desc);
+  if (!good) return good.error();
+  const Result<DVec3> near_a = place_to_look_from(desc.b, desc.anchor, "hook.b", t);
+  if (!near_a) return near_a.error();
+  const Result<FoundEnd> a = find_end(desc.a, near_a.value(), "hook.a", t);
+  if (!a) return a.error();
+  const Result<DVec3> near_b = place_to_look_from(desc.a, wanted_anchor_b(desc), "hook.a", t);
+  if (!near_b) return near_b.error();
+  const Result<FoundEnd> b = find_end(desc.b, near_b.value(), "hook.b", t);
+  if (!b) return b.error();
+  Result<void> fits = check_ends(desc.kind, a.value().place, b.value().place, t);
+  if (fits) append_hook(desc, a.value(), b.value(), t);
+  return fits;
 }
 
 }  // namespace hooke::build

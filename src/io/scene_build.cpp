@@ -21,6 +21,7 @@ class Builder {
   void build(const SceneParticles& particles, const std::string& path);
   void build(const SceneField& field, const std::string& path);
   void build(const SceneHook& hook, const std::string& path);
+  void build(const SceneSeam& seam, const std::string& path);
 
  private:
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
@@ -460,6 +461,46 @@ void Builder::build(const SceneHook& hook, const std::string& path) {
   }
 }
 
+SeamEdge edge_at(const World& world, const SceneObject& object, const std::string& edge,
+                 const std::vector<std::uint32_t>& points) {
+  SeamEdge made;
+  made.object = point_of(world, object, ScenePoint{});
+  made.edge = edge;
+  made.points = points;
+  return made;
+}
+
+void Builder::build(const SceneSeam& seam, const std::string& path) {
+  const EndName name_a = split_end(seam.a);
+  const EndName name_b = split_end(seam.b);
+  std::size_t stitch = 0;
+  for (std::size_t i = 0; i < seam.array.count() && !full(); ++i) {
+    const Result<const SceneObject*> a = find_end(name_a.object, seam.array, i);
+    const Result<const SceneObject*> b = find_end(name_b.object, seam.array, i);
+    if (!a || !b) {
+      const Error& error = a ? b.error() : a.error();
+      return fail(path + (a ? ".b" : ".a"), error.code, error.message);
+    }
+    SeamDesc desc;
+    desc.a = edge_at(data_.world, *a.value(), name_a.connection_point, seam.a_points);
+    desc.b = edge_at(data_.world, *b.value(), name_b.connection_point, seam.b_points);
+    desc.strength = seam.strength;
+    const std::array<std::string, 2> held = {a.value()->name, b.value()->name};
+    const Result<std::vector<HookId>> sewn = data_.world.sew(desc);
+    if (!sewn) {
+      errors_.push_back(scene_error(data_.scene, path, sewn.error()));
+      return;
+    }
+    if (!reserve(sewn.value().size(), path)) return;
+    for (const HookId id : sewn.value()) {
+      SceneObject object = make_object({.name = seam.name}, SceneObject::Kind::kHook, path, 0);
+      object.name = indexed(object.name, stitch++);
+      object.hooked = held;
+      if (!keep(object, &SceneObject::hook, Result<HookId>(id))) return;
+    }
+  }
+}
+
 Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
   if (mesh.file.empty()) return model_of(mesh.mesh);
   const Result<std::string> file = locate_file(scene.path, mesh.file);
@@ -543,6 +584,7 @@ void build_objects(const SceneObjects& objects, const std::string& prefix, Simul
   build_list(builder, objects.particles, prefix + "particles");
   build_list(builder, objects.fields, prefix + "fields");
   build_list(builder, objects.hooks, prefix + "hooks");
+  build_list(builder, objects.seams, prefix + "seams");
 }
 
 void index_objects(SimulationData& data) {

@@ -56,6 +56,12 @@ class Checker {
   void check_hook(const SceneHook& hook, const std::string& path);
   void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
+  void check_seam(const SceneSeam& seam, const std::string& path);
+  void check_seam_edge(const SceneSeam& seam, const std::string& edge,
+                       const std::vector<std::uint32_t>& points, const std::string& path);
+  /// Whether there are as many copies of an end as an array counts through.
+  void check_copies(const SceneArray& array, const std::string& name, const NamedObject& object,
+                    const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
   void check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
@@ -147,6 +153,11 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
     add_name(hook.name, {indexed(prefix + "hooks", i), SceneObject::Kind::kHook,
                          hook.array.kind != SceneArray::Kind::kSingle, hook.array.count()});
   }
+  for (std::size_t i = 0; i < objects.seams.size(); ++i) {
+    // How many stitches there are shows when it is sewn.
+    add_name(objects.seams[i].name,
+             {indexed(prefix + "seams", i), SceneObject::Kind::kHook, true, kMostScenePoints});
+  }
 }
 
 void Checker::collect_names() {
@@ -208,6 +219,9 @@ void Checker::check_references(const SceneObjects& objects, const std::string& p
   }
   for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
     check_hook(objects.hooks[i], indexed(prefix + "hooks", i));
+  }
+  for (std::size_t i = 0; i < objects.seams.size(); ++i) {
+    check_seam(objects.seams[i], indexed(prefix + "seams", i));
   }
 }
 
@@ -274,15 +288,47 @@ void Checker::check_hook_end(const SceneHook& hook, const std::string& end,
     return;
   }
   if (point) check_point(*point, object->points, path + "_point");
-  if (single || !object->is_array) return;
+  check_copies(hook.array, name, *object, path);
+}
+
+void Checker::check_copies(const SceneArray& array, const std::string& name, const NamedObject& object,
+                           const std::string& path) {
+  if (array.kind == SceneArray::Kind::kSingle || !object.is_array) return;
   const std::optional<CopyName> first =
       objects_.contains(name) ? std::optional<CopyName>{} : take_copy_name(name);
-  const std::size_t needed = hook.array.count() + (first ? first->copy : 0);
-  if (needed > object->instances) {
+  const std::size_t needed = array.count() + (first ? first->copy : 0);
+  if (needed <= object.instances) return;
+  fail(path, ErrorCode::kOutOfRange,
+       in_quotes(name) + " is one of " + std::to_string(object.instances) + " objects, the hooks need " +
+           std::to_string(needed));
+}
+
+void Checker::check_seam_edge(const SceneSeam& seam, const std::string& edge,
+                              const std::vector<std::uint32_t>& points, const std::string& path) {
+  const EndName split = is_known(edge) ? EndName{edge} : take_end_name(edge);
+  if (split.connection_point.empty() == points.empty()) {
     fail(path, ErrorCode::kOutOfRange,
-         in_quotes(name) + " is one of " + std::to_string(object->instances) + " objects, the hooks need " +
-             std::to_string(needed));
+         points.empty() ? in_quotes(edge) + " names no edge, as " + in_quotes(edge + ".left") +
+                              ", and there are no '" + path.substr(path.rfind('.') + 1) + "_points'"
+                        : in_quotes(edge) + " names an edge already");
+    return;
   }
+  const bool single = seam.array.kind == SceneArray::Kind::kSingle;
+  const NamedObject* object = single ? find_object(split.object, path) : find_named(split.object, path);
+  if (object == nullptr) return;
+  if (object->kind != SceneObject::Kind::kCloth && object->kind != SceneObject::Kind::kSolid) {
+    fail(path, ErrorCode::kOutOfRange, in_quotes(split.object) + " is neither a cloth nor a solid");
+    return;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    check_point({.index = points[i]}, object->points, indexed(path + "_points", i));
+  check_copies(seam.array, split.object, *object, path);
+}
+
+void Checker::check_seam(const SceneSeam& seam, const std::string& path) {
+  if (is_damaged(path)) return;
+  check_seam_edge(seam, seam.a, seam.a_points, path + ".a");
+  check_seam_edge(seam, seam.b, seam.b_points, path + ".b");
 }
 
 void Checker::check_hook(const SceneHook& hook, const std::string& path) {

@@ -64,6 +64,7 @@ std::vector<Field> object_rows() {
       field<Prefix..., &SceneObjects::particles>("particles", "", kAny, "Nets of masses and springs."),
       field<Prefix..., &SceneObjects::fields>("fields", "", kAny, "Forces on every particle and body."),
       field<Prefix..., &SceneObjects::hooks>("hooks", "", kAny, "What holds bodies together."),
+      field<Prefix..., &SceneObjects::seams>("seams", "", kAny, "What sews edges of cloths together."),
   };
 }
 

@@ -78,6 +78,8 @@ const Kind& kind_of<ScenePair>();
 template <>
 const Kind& kind_of<SceneHook>();
 template <>
+const Kind& kind_of<SceneSeam>();
+template <>
 const Kind& kind_of<HookLimits>();
 template <>
 const Kind& kind_of<HookSpring>();

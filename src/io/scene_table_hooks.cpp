@@ -17,6 +17,31 @@ bool check_hook(Reader& reader, const JsonNode& node, const void* object) {
   return check_named(reader, node, hook.name);
 }
 
+bool check_seam(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& seam = *static_cast<const SceneSeam*>(object);
+  if (!seam.array.rotations.empty()) {
+    return reader.fail(node, ErrorCode::kOutOfRange, "only an array of bodies has 'rotations'");
+  }
+  return check_named(reader, node, seam.name);
+}
+
+std::vector<Field> seam_rows() {
+  return {
+      field<&SceneSeam::name>("name", "", kNotEmpty, "Unique. Its stitches are the hooks `name[0]`, ..."),
+      required(field<&SceneSeam::a>(
+          "a", "", kNotEmpty,
+          "An edge of a cloth, as `cloth.left`; or the name of a cloth or solid, with `a_points`.")),
+      required(field<&SceneSeam::b>("b", "", kNotEmpty, "The same.")),
+      field<&SceneSeam::a_points>("a_points", "", kAny,
+                                  "Points of `a` one after the other; of a closed line the first once more."),
+      field<&SceneSeam::b_points>("b_points", "", kAny, "The same of `b`."),
+      field<&SceneSeam::strength>("strength", "N/m", kPositiveOrRigid,
+                                  "A stitch lets go above this times its share of the length."),
+      field<&SceneSeam::array>(
+          "array", "", kAny,
+          "Copies. Copy i sews copy i of `a` and `b`, counted from the one that is named.")};
+}
+
 std::vector<Field> hook_rows() {
   constexpr auto desc = &SceneHook::desc;
   return {
@@ -133,9 +158,21 @@ const Kind& kind_of<SceneHook>() {
   return kind;
 }
 
+template <>
+const Kind& kind_of<SceneSeam>() {
+  static const Kind kind = {.name = "seam",
+                            .help =
+                                "Sews two lines of points together from end to end, whatever the number of "
+                                "their points.",
+                            .fields = seam_rows(),
+                            .defaults = defaults_of<SceneSeam>,
+                            .check = check_seam};
+  return kind;
+}
+
 std::span<const Kind* const> hook_kinds() {
-  static const Kind* const kinds[] = {&kind_of<SceneHook>(), &kind_of<HookLimits>(), &kind_of<HookSpring>(),
-                                      &kind_of<HookMotor>(), &kind_of<HookFreedom>()};
+  static const Kind* const kinds[] = {&kind_of<SceneHook>(), &kind_of<HookLimits>(),  &kind_of<HookSpring>(),
+                                      &kind_of<HookMotor>(), &kind_of<HookFreedom>(), &kind_of<SceneSeam>()};
   return kinds;
 }
 

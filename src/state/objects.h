@@ -60,6 +60,7 @@ struct Deformable {
   Rows tetrahedra = {};
   std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
   std::shared_ptr<const NamedPlaces> connection_points = {};
+  std::uint32_t columns = 0;       ///< Of a cloth on a grid; 0 for others.
   double gas = 0;                  ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
   double gas_volume = 0;           ///< V when it was filled [m^3].
   Real bend_stiffness = Real(0);   ///< Of a rope: EI [N m^2].

@@ -66,20 +66,35 @@ Result<void> change_hook(Tables& t, HookId id, Change&& change) {
   return {};
 }
 
-}  // namespace
-
-Result<HookId> World::add_hook(const HookDesc& desc) {
-  Tables& t = data_->tables;
-  const Result<void> added = build::add_hook(desc, t);
-  if (!added) return added.error();
-  Hook& hook = t.hooks.back();
-  const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(t.hooks.size()) - 1);
+/// Gives a new hook its id, and wakes what it holds.
+HookId enter_hook(Tables& t, std::size_t row) {
+  Hook& hook = t.hooks[row];
+  const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(row));
   hook.slot = id.slot;
   const std::uint32_t body = hook.other_end().body;
   if (hook.holds_point() && body != state::HookPlace::kWorld && !hook.collide)
     hook.inside = collision::points_inside(t, hook.point_end().object, body);
   world::wake_ends(hook, t.bodies);
   return id;
+}
+
+}  // namespace
+
+Result<HookId> World::add_hook(const HookDesc& desc) {
+  Tables& t = data_->tables;
+  const Result<void> added = build::add_hook(desc, t);
+  if (!added) return added.error();
+  return enter_hook(t, t.hooks.size() - 1);
+}
+
+Result<std::vector<HookId>> World::sew(const SeamDesc& desc) {
+  Tables& t = data_->tables;
+  const Result<std::uint32_t> sewn = build::sew(desc, t);
+  if (!sewn) return sewn.error();
+  std::vector<HookId> stitches;
+  for (std::size_t row = t.hooks.size() - sewn.value(); row < t.hooks.size(); ++row)
+    stitches.push_back(enter_hook(t, row));
+  return stitches;
 }
 
 bool World::remove(HookId id) {

@@ -167,6 +167,8 @@ TEST_SUITE("io/scene_simulation") {
           "demo.json:1:69: ropes[0].connection_points.eye: 3 is out of range, must be 0 to 2");
     CHECK(complaint(R"("bodies": [{"shape": {"box": {}}, "connection_points": {"eye": 3}}])") ==
           "demo.json:1:79: bodies[0].connection_points.eye: must be a place [x, y, z]: a body has no points");
+    CHECK(complaint(R"("cloths": [{"name": "silk"}], "seams": [{"a": "silk.edge", "b": "silk.left"}])") ==
+          "demo.json:1:62: seams[0].a: has no edge 'edge', there are left, right, top, bottom, border");
     CHECK(complaint(R"("meshes": {"leaf": {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
                        "triangles": [[0, 1, 2]], "connection_points": {"eye": 3}}})") ==
           "demo.json:2:79: meshes.leaf.connection_points.eye: 3 is out of range, must be 0 to 2");
@@ -233,6 +235,31 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(later.errors().empty());
     REQUIRE(later.find("late") != nullptr);
     CHECK(later.find("late")->hooked[0] == "timeline[0].add.ropes[0]");
+  }
+
+  TEST_CASE("a seam's stitches are hooks of its name, through arrays, and go with what they hold") {
+    hooke::Simulation simulation = simulate(R"({
+      "version": 1, "seconds": 1,
+      "cloths": [{"name": "left", "columns": 3, "rows": 5, "pins": [{"row": 0}],
+                  "array": {"grid": [1, 1, 3], "spacing": [1, 1, 2]}},
+                 {"name": "right", "columns": 3, "rows": 4, "corner": [1, 0, 2],
+                  "array": {"grid": [1, 1, 2], "spacing": [1, 1, 2]}}],
+      "seams": [{"name": "seam", "a": "left[1].right", "b": "right.left", "array": {"grid": [1, 1, 2]}}],
+      "timeline": [{"at_step": 2, "remove": "right[1]"}, {"at_step": 4, "remove": "seam"}],
+      "expect": [{"quantity": "gap", "of": "seam[9]", "op": "<", "value": 1e-5, "at_step": 1}]
+    })");
+    CHECK(simulation.objects().size() == 3 + 2 + 10);
+    REQUIRE(simulation.find("seam[7]") != nullptr);
+    CHECK(simulation.find("seam[7]")->hooked == std::array<std::string, 2>{"left[2]", "right[1]"});
+    const auto anchors = simulation.world().hook_anchors(simulation.find("seam[7]")->hook);
+    CHECK(length(anchors[0] - hooke::DVec3{1, -0.5, 4}) < 1e-6);
+    CHECK(length(anchors[1] - hooke::DVec3{1, -0.5, 4}) < 1e-6);
+    step(simulation, 3);
+    CHECK(simulation.verdicts().front().passed);
+    CHECK(simulation.objects().size() == 3 + 1 + 5);
+    step(simulation, 2);
+    CHECK(simulation.errors().empty());
+    CHECK(simulation.objects().size() == 3 + 1);
   }
 
   TEST_CASE("an array of hooks counts through arrays of bodies, from the copy that is named") {

@@ -132,6 +132,10 @@ constexpr const char* kEverything = R"({
      {"locked": false, "limits": {"upper": 1}}, {"locked": true, "spring": {"target": 0.25}}, {"locked": false},
      {"locked": false, "spring": {"stiffness": 2}}]},
     {"kind": "rope_slide", "a": "rope", "a_point": 1, "b": "jelly", "b_point": "last"}],
+  "seams": [
+    {"name": "seam", "a": "cloth.left", "b": "jelly", "b_points": [0, 1, 2], "strength": 400},
+    {"a": "cloth", "a_points": [0, 1], "b": "cloth.right",
+     "array": {"grid": [2, 1, 1], "spacing": [1, 2, 1]}}],
   "solids": [
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
      "damping": 0.0625, "yield_stress": 500, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
