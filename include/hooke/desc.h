@@ -393,7 +393,7 @@ struct ClothDesc {
   ContactDesc contact = {};
 };
 
-/// A soft solid of tetrahedra: a box of cells, the inside of a closed mesh, or tetrahedra as given. Its
+/// A soft solid: a box of cells, the inside of a closed mesh, or tetrahedra as given. Of tetrahedra, its
 /// material keeps its law at any deformation: psi = mu / 2 tr(F^T F) + lambda / 2 (det F - 1 - mu / lambda)^2
 /// (stable neo-Hookean, Smith, de Goes and Kim 2018), and comes back from being turned inside out; not from a
 /// point: below (1 - 2 nu) / (2 - 2 nu) of its size it shrinks.
@@ -401,6 +401,20 @@ struct ClothDesc {
 /// A substep of h seconds carries a wave through a cell, not farther: where mu is above about
 /// density (edge / 4 h)^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.
 struct SolidDesc {
+  enum class Elasticity : std::uint8_t {
+    kTetrahedra,
+    /// The cheap one: every point is drawn to its place in the form at rest, which lies where it fits all
+    /// points best (Mueller, Heidelberger, Teschner and Gross 2005). Keeps momentum and spin, comes back from
+    /// any deformation, and is as stiff whatever the substeps and the cells. Not a material: a point feels
+    /// the whole but not its neighbors, and stiffness is by mass, so that few points yield more than many.
+    /// Of a mesh its vertices are the points, and nothing is filled; `points` need no tetrahedra.
+    kShapeMatching,
+  };
+
+  Elasticity elasticity = Elasticity::kTetrahedra;
+  Real match_hz = Real(10);  ///< kShapeMatching: at which any deformation swings [Hz], positive; or
+                             ///< kRigid: a body as rigid as one substep makes it.
+  Real match_damping_ratio = Real(0.1);           ///< The same: 1 is critical. [0, 100]
   std::array<std::int32_t, 3> cells = {4, 4, 4};  ///< Of the box along x, y, z. Each [1, 256], 2^20 in all.
   Vec3 size = {Real(1), Real(1), Real(1)};        ///< Of the box about `position` [m], each positive.
   MeshId mesh = {};       ///< Replaces the box: the inside of a closed surface, as a lattice of cells whose

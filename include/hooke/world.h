@@ -272,7 +272,8 @@ class World {
   [[nodiscard]] std::vector<DVec3> surface(SolidId id) const;
   /// The triangles of that surface, as indices into it, counter-clockwise seen from outside.
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles(SolidId id) const;
-  /// The volume of a solid's tetrahedra [m^3]; those inside out count negative.
+  /// The volume of a solid's tetrahedra, or inside its surface where it has none [m^3]; what is inside out
+  /// counts negative.
   [[nodiscard]] double volume(SolidId id) const;
 
   // Asking where bodies are now; not points of ropes, cloths and particles. Any number of threads may ask at

@@ -74,6 +74,12 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
     const state::Triangles::Corners& c = t.triangles.corners[object.triangles.first + i];
     nearest.try_triangle(c.a, c.b, c.c);
   }
+  if (object.rest_shape && object.skin) {  // vertices of the skin are points
+    const auto row = [&](std::uint32_t vertex) {
+      return row_of(t, object, object.skin->vertices[vertex].points[0]);
+    };
+    for (const auto& [a, b, c] : object.skin->triangles) nearest.try_triangle(row(a), row(b), row(c));
+  }
   for (std::uint32_t i = 0; i < object.segments.count; ++i)
     nearest.try_segment(object.particles.first + i, object.particles.first + i + 1);
   if (nearest.place.particle_count > 0) return;

@@ -5,12 +5,14 @@
 #include "build/connection_points.h"
 #include "elements/tetrahedron.h"
 #include "geometry/tetrahedral_mesh.h"
+#include "geometry/triangle_mesh.h"
 #include "geometry/vertex_order.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 namespace hooke::build {
@@ -27,10 +29,15 @@ constexpr double kFlattest = 1e-5;
 constexpr double kSmallest = 1e-15;  ///< Volume of a tetrahedron: less is lost in float [m^3].
 
 struct SolidBody {
-  TetrahedralMesh mesh;  ///< In the world.
-  double volume = 0;     ///< That the density is of [m^3].
+  TetrahedralMesh mesh;       ///< In the world. Without tetrahedra where only its points count.
+  double volume = 0;          ///< That the density is of [m^3].
+  std::vector<double> share;  ///< Of the mass, at each point.
   std::shared_ptr<const state::Skin> skin;
 };
+
+bool is_matched(const SolidDesc& desc) {
+  return desc.elasticity == SolidDesc::Elasticity::kShapeMatching;
+}
 
 bool is_turn(Quat q) {
   const Real size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
@@ -58,7 +65,10 @@ Checks check(const SolidDesc& desc) {
       .finite("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
-  return checks;
+  if (!is_matched(desc)) return checks;
+  return checks.stiffness("match_hz", static_cast<double>(desc.match_hz))
+      .in_range("match_damping_ratio", static_cast<double>(desc.match_damping_ratio), 0, 100)
+      .require(desc.yield_stress == kRigid, "yield_stress", "needs tetrahedra");
 }
 
 Checks check_box(const SolidDesc& desc) {
@@ -160,34 +170,6 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const Me
   return skin;
 }
 
-Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) {
-  SolidBody body;
-  const Checks checks = is_box(desc) ? check_box(desc) : check(desc);
-  if (!checks.good()) return checks.result().error();
-  if (desc.mesh) {
-    const std::uint32_t row = tables.mesh_slots.find(desc.mesh);
-    if (row == tables.mesh_slots.kNone || !tables.meshes[row]) {
-      return Error{ErrorCode::kStaleId, "solid.mesh", "refers to no mesh that is in the world"};
-    }
-    const MeshDesc& surface = tables.meshes[row]->desc;
-    Result<TetrahedralMesh> filled = geometry::fill_solid(surface, static_cast<double>(desc.cell));
-    if (!filled) return Error{filled.error().code, "solid." + filled.error().where, filled.error().message};
-    body.mesh = std::move(filled).value();
-    body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
-    body.skin = skin_of(body.mesh, surface);
-  } else {
-    Result<TetrahedralMesh> mesh = is_box(desc) ? Result<TetrahedralMesh>(fill_box(desc)) : take_given(desc);
-    if (!mesh) return mesh.error();
-    body.mesh = std::move(mesh).value();
-    body.volume = volume_of(body.mesh);
-    body.skin = skin_of(body.mesh);
-  }
-  const Quaternion<double> turn =
-      normalize(Quaternion<double>{desc.rotation.x, desc.rotation.y, desc.rotation.z, desc.rotation.w});
-  for (DVec3& p : body.mesh.points) p = desc.position + rotate(turn, p);
-  return body;
-}
-
 /// A quarter of each tetrahedron to each of its corners.
 std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0.0);
@@ -198,12 +180,105 @@ std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   return share;
 }
 
+/// The vertices of a closed surface, by their shares of its area.
+Result<SolidBody> take_vertices(const MeshDesc& surface) {
+  SolidBody body;
+  body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
+  const geometry::MeshTopology topology =
+      geometry::compute_topology(surface.positions.size(), surface.triangles);
+  if (!topology.is_closed() || !(body.volume > 0))
+    return Error{ErrorCode::kOutOfRange, "solid.mesh", "must be closed and face outward"};
+  auto skin = std::make_shared<state::Skin>();
+  skin->triangles = surface.triangles;
+  for (const Vec3& p : surface.positions) {
+    const auto number = static_cast<std::uint32_t>(body.mesh.points.size());
+    skin->vertices.push_back({.points = {number, number, number, number}, .weights = {Real(1)}});
+    body.mesh.points.push_back(vector_cast<double>(p));
+  }
+  body.share.assign(body.mesh.points.size(), 0.0);
+  double area = 0;
+  const auto& x = body.mesh.points;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const double third = length(cross(x[b] - x[a], x[c] - x[a])) / 6;
+    for (const std::uint32_t p : {a, b, c}) body.share[p] += third;
+    area += 3 * third;
+  }
+  for (double& share : body.share) share /= area;
+  body.skin = std::move(skin);
+  return body;
+}
+
+/// Points alone, of equal masses.
+Result<SolidBody> take_points(const SolidDesc& desc) {
+  Checks checks("solid");
+  checks.require(desc.total_mass.has_value(), "total_mass", "is needed for points without tetrahedra");
+  SolidBody body;
+  for (std::size_t i = 0; i < desc.points.size(); ++i) {
+    body.mesh.points.push_back(vector_cast<double>(desc.points[i]));
+    checks.place(indexed("points", i), body.mesh.points.back());
+  }
+  if (!checks.good()) return checks.result().error();
+  body.share.assign(desc.points.size(), 1.0 / static_cast<double>(desc.points.size()));
+  body.skin = std::make_shared<state::Skin>();
+  return body;
+}
+
+/// The inside of a mesh as a lattice of tetrahedra.
+Result<SolidBody> fill_mesh(const SolidDesc& desc, const MeshDesc& surface) {
+  Result<TetrahedralMesh> filled = geometry::fill_solid(surface, static_cast<double>(desc.cell));
+  if (!filled) return Error{filled.error().code, "solid." + filled.error().where, filled.error().message};
+  SolidBody body;
+  body.mesh = std::move(filled).value();
+  body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
+  body.share = volume_shares(body.mesh);
+  body.skin = skin_of(body.mesh, surface);
+  return body;
+}
+
+/// A box of cells, or tetrahedra as given.
+Result<SolidBody> take_tetrahedra(const SolidDesc& desc) {
+  Result<TetrahedralMesh> mesh = is_box(desc) ? Result<TetrahedralMesh>(fill_box(desc)) : take_given(desc);
+  if (!mesh) return mesh.error();
+  SolidBody body;
+  body.mesh = std::move(mesh).value();
+  body.volume = volume_of(body.mesh);
+  body.share = volume_shares(body.mesh);
+  body.skin = skin_of(body.mesh);
+  if (is_matched(desc)) body.mesh.tetrahedra.clear();
+  return body;
+}
+
+Result<SolidBody> find_body(const SolidDesc& desc, const state::Tables& tables) {
+  if (!desc.mesh) {
+    const bool points_alone = is_matched(desc) && desc.tetrahedra.empty() && !desc.points.empty();
+    return points_alone ? take_points(desc) : take_tetrahedra(desc);
+  }
+  const std::uint32_t row = tables.mesh_slots.find(desc.mesh);
+  if (row == tables.mesh_slots.kNone || !tables.meshes[row]) {
+    return Error{ErrorCode::kStaleId, "solid.mesh", "refers to no mesh that is in the world"};
+  }
+  const MeshDesc& surface = tables.meshes[row]->desc;
+  return is_matched(desc) ? take_vertices(surface) : fill_mesh(desc, surface);
+}
+
+Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) {
+  const Checks checks = is_box(desc) ? check_box(desc) : check(desc);
+  if (!checks.good()) return checks.result().error();
+  Result<SolidBody> found = find_body(desc, tables);
+  if (!found) return found;
+  SolidBody body = std::move(found).value();
+  const Quaternion<double> turn =
+      normalize(Quaternion<double>{desc.rotation.x, desc.rotation.y, desc.rotation.z, desc.rotation.w});
+  for (DVec3& p : body.mesh.points) p = desc.position + rotate(turn, p);
+  return body;
+}
+
 Points make_points(const SolidBody& body, const SolidDesc& desc) {
   Points points(body.mesh.points.size());
   points.position = body.mesh.points;
   const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
                                       : body.volume * static_cast<double>(desc.density);
-  const std::vector<double> share = volume_shares(body.mesh);
+  const std::vector<double>& share = body.share;
   for (std::size_t i = 0; i < share.size(); ++i) {
     points.velocity[i] = desc.velocity;
     points.mass[i] = static_cast<Real>(share[i] * mass);
@@ -212,6 +287,7 @@ Points make_points(const SolidBody& body, const SolidDesc& desc) {
     points.radius[i] = Real(0.5) * desc.thickness;
   }
   add_loads(desc.loads, points.mass);
+  if (is_matched(desc)) return points;
   std::vector<geometry::Edge> edges;
   for (const Tetrahedron& t : body.mesh.tetrahedra) {
     for (int k = 0; k < 4; ++k) edges.push_back({t[k], t[(k + 1) % 4]});
@@ -249,6 +325,33 @@ std::shared_ptr<const state::RestEdges> rest_edges_of(const TetrahedralMesh& mes
   return edges;
 }
 
+/// The form that points are drawn to; an error where it could not tell how it is turned.
+Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& points, const SolidDesc& desc) {
+  auto rest = std::make_shared<state::RestShape>();
+  DVec3 center;
+  for (std::size_t i = 0; i < points.mass.size(); ++i) {
+    const auto mass = static_cast<double>(points.mass[i]);
+    rest->mass += mass;
+    center += mass * points.position[i];
+  }
+  center = (1 / rest->mass) * center;
+  Matrix3<double> second = {{}, {}, {}};
+  for (std::size_t i = 0; i < points.mass.size(); ++i) {
+    const DVec3 q = points.position[i] - center;
+    const DVec3 weighed = static_cast<double>(points.mass[i]) * q;
+    second = second + Matrix3<double>{q.x * weighed, q.y * weighed, q.z * weighed};
+    rest->inertia += dot(q, weighed);
+    rest->place.push_back(q);
+  }
+  constexpr double kFlat = 1e-9;  // a thickness of about 1e-4 of the size
+  if (!(determinant(second) > kFlat * rest->inertia * rest->inertia * rest->inertia))
+    return Error{ErrorCode::kOutOfRange, "solid.points", "must not lie in one plane"};
+  const double w = 2 * std::numbers::pi * static_cast<double>(desc.match_hz);
+  rest->stiffness = w * w;
+  if (std::isfinite(w)) rest->damping = 2 * static_cast<double>(desc.match_damping_ratio) * w;
+  return std::shared_ptr<const state::RestShape>(std::move(rest));
+}
+
 }  // namespace
 
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
@@ -266,7 +369,14 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   for (std::size_t i = 0; i < points.mass.size(); ++i)
     checks.require(points.mass[i] > Real(0), "density", "is too small: point masses would be zero");
   if (!checks.good()) return checks.result();
+  std::shared_ptr<const state::RestShape> rest_shape;
+  if (is_matched(desc)) {
+    const auto made = rest_shape_of(points, desc);
+    if (!made) return made.error();
+    rest_shape = made.value();
+  }
   state::Deformable& object = append_object(PointRef::Kind::kSolid, points, desc.pins, tables);
+  object.rest_shape = std::move(rest_shape);
   object.friction = desc.contact.friction;
   object.yield_stress = desc.yield_stress;
   if (desc.yield_stress < kRigid) object.rest_edges = rest_edges_of(mesh);

@@ -139,6 +139,8 @@ std::span<const EnumName> names_of<RopeDesc::StiffnessOf>();
 template <>
 std::span<const EnumName> names_of<ClothDesc::Bend>();
 template <>
+std::span<const EnumName> names_of<SolidDesc::Elasticity>();
+template <>
 std::span<const EnumName> names_of<ParticlesDesc::Direction>();
 template <>
 std::span<const EnumName> names_of<ParticlesDesc::Damping>();

@@ -265,6 +265,14 @@ std::vector<Field> solid_rows() {
       field<desc, &SolidDesc::rotation>("rotation", "", kAny, "Of the same."),
       field<desc, &SolidDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
       field<desc, &SolidDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `density`."),
+      field<desc, &SolidDesc::elasticity>("elasticity", "", kAny,
+                                          "A material of tetrahedra; or cheaper, every point drawn to its "
+                                          "place in the form at rest, of a mesh "
+                                          "its vertices."),
+      field<desc, &SolidDesc::match_hz>("match_hz", "Hz", kPositiveOrRigid,
+                                        "Of shape_matching: at which any deformation swings."),
+      field<desc, &SolidDesc::match_damping_ratio>("match_damping_ratio", "", between(0, 100),
+                                                   "The same: 1 is critical."),
       field<desc, &SolidDesc::young_modulus>("young_modulus", "Pa", kPositive,
                                              "Stiffness; more than a substep carries acts as what it does."),
       field<desc, &SolidDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
@@ -328,8 +336,8 @@ const Kind& kind_of<SceneCloth>() {
 
 template <>
 const Kind& kind_of<SceneSolid>() {
-  static const Kind kind = make_object_kind<SceneSolid>(
-      "solid", "A soft solid of tetrahedra: a box of cells, or the inside of a closed mesh.", solid_rows());
+  static const Kind kind =
+      make_object_kind<SceneSolid>("solid", "A soft solid: a box of cells, or a closed mesh.", solid_rows());
   return kind;
 }
 
@@ -640,6 +648,14 @@ std::span<const EnumName> names_of<ClothDesc::Bend>() {
                                        {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
                                        {"none", static_cast<int>(ClothDesc::Bend::kNone)},
                                        {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)}};
+  return names;
+}
+
+template <>
+std::span<const EnumName> names_of<SolidDesc::Elasticity>() {
+  static constexpr EnumName names[] = {
+      {"tetrahedra", static_cast<int>(SolidDesc::Elasticity::kTetrahedra)},
+      {"shape_matching", static_cast<int>(SolidDesc::Elasticity::kShapeMatching)}};
   return names;
 }
 

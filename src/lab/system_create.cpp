@@ -34,9 +34,9 @@ std::string System::name() const {
 
 Result<System> System::create(const state::Tables& tables, std::uint32_t object_row) {
   const state::Deformable& object = tables.objects[object_row];
-  if (object.tetrahedra.count > 0) {
+  if (object.kind == PointRef::Kind::kSolid) {
     return Error{ErrorCode::kUnsupported, std::string(noun(object.kind)) + " " + std::to_string(object.slot),
-                 "is a solid; the laboratory has no tetrahedra"};
+                 "is a solid; the laboratory has none"};
   }
   System system;
   system.kind_ = object.kind;

@@ -47,6 +47,16 @@ using NamedPlaces = std::vector<NamedPlace>;
 /// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
 using RestEdges = std::vector<std::array<Vec3, 3>>;
 
+/// The form at rest of a solid that is matched to it (solver/shape_matching.h). Never changes after it was
+/// made.
+struct RestShape {
+  std::vector<DVec3> place;  ///< Of each row, from the center of mass [m].
+  double mass = 0;           ///< Of all points, pinned ones too [kg].
+  double inertia = 0;        ///< sum m q^2 [kg m^2].
+  double stiffness = 0;      ///< k over mass, w^2 [1/s^2]; kRigid for a rigid body.
+  double damping = 0;        ///< c over mass [1/s].
+};
+
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
@@ -60,7 +70,8 @@ struct Deformable {
   Rows tetrahedra = {};
   std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
   std::shared_ptr<const NamedPlaces> connection_points = {};
-  std::uint32_t columns = 0;       ///< Of a cloth on a grid; 0 for others.
+  std::shared_ptr<const RestShape> rest_shape = {};  ///< Of a solid without tetrahedra.
+  std::uint32_t columns = 0;                         ///< Of a cloth on a grid; 0 for others.
   double gas = 0;                  ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
   double gas_volume = 0;           ///< V when it was filled [m^3].
   Real bend_stiffness = Real(0);   ///< Of a rope: EI [N m^2].

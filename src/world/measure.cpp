@@ -4,6 +4,7 @@
 #include "elements/tetrahedron.h"
 #include "solver/rope_rows.h"
 #include "solver/rope_twist.h"
+#include "solver/shape_matching.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -218,6 +219,14 @@ double measure_gas(const Tables& t) {
   return energy;
 }
 
+double measure_matches(const Tables& t) {
+  double energy = 0;
+  for (const state::Deformable& object : t.objects) {
+    if (object.rest_shape) energy += solver::match_energy(object, t.particles, -0.5 * t.substep);
+  }
+  return energy;
+}
+
 }  // namespace
 
 Measurement World::measure() const {
@@ -228,7 +237,8 @@ Measurement World::measure() const {
   measure_bodies(t, m);
   m.energy.potential += potential_of_dipoles(t);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
-                     measure_rope_bends(t) + measure_twists(t) + measure_tetrahedra(t) + measure_gas(t);
+                     measure_rope_bends(t) + measure_twists(t) + measure_tetrahedra(t) + measure_gas(t) +
+                     measure_matches(t);
   m.largest_stretch = stretch.largest;
   m.mean_stretch = stretch.count > 0 ? stretch.sum / static_cast<double>(stretch.count) : 0.0;
   for (const state::Hook& hook : t.hooks) m.largest_gap = std::max(m.largest_gap, world::gap_of(hook, t));

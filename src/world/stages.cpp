@@ -1,6 +1,7 @@
 #include "world/stages.h"
 
 #include "solver/forces.h"
+#include "solver/shape_matching.h"
 #include "solver/springs.h"
 #include "solver/wind.h"
 #include "world/access.h"
@@ -66,6 +67,16 @@ void for_tetrahedra(WorldData& world, Kernel kernel) {
   }
 }
 
+/// Solids that are matched to their forms at rest, one after the other in each part of the range.
+template <class Kernel>
+void for_matched(WorldData& world, Real h, Kernel kernel) {
+  state::Tables& tables = world.tables;
+  for_ranges(*world.pool, static_cast<int>(world.matched_objects.size()), 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i)
+      kernel(tables.objects[world.matched_objects[i]], static_cast<double>(h), tables.particles);
+  });
+}
+
 /// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
 /// more slowly than stretched cloth swings, which is what these are for.
 void weigh_triangles(WorldData& world, const state::Deformable& object, Real h) {
@@ -121,8 +132,10 @@ void refresh_derived(WorldData& world) {
   solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
   solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
   world.gas_objects.clear();
+  world.matched_objects.clear();
   for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
     if (tables.objects[i].gas > 0) world.gas_objects.push_back(i);
+    if (tables.objects[i].rest_shape) world.matched_objects.push_back(i);
   }
   world.gas_volumes.resize(world.gas_objects.size());
   world.chains.clear();
@@ -172,8 +185,9 @@ void begin_step(WorldData& world, double dt) {
   }
 }
 
-void begin_particle_substep(WorldData& world) {
+void begin_particle_substep(WorldData& world, Real h) {
   if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
+  for_matched(world, h, solver::damp_shape);
   for (const solver::Chain& chain : world.chains) {
     for (std::uint32_t i = 0; i < chain.node_count; ++i) {
       const std::size_t p = chain.first_particle + i;
@@ -274,6 +288,7 @@ void rebase_origins(WorldData& world) {
 void solve_solids(WorldData& world, Real h) {
   for_tetrahedra(world, solver::solve_tetrahedra);
   state::Tables& tables = world.tables;
+  for_matched(world, h, solver::match_shape);
   for_ranges(*world.pool, static_cast<int>(world.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, static_cast<double>(h),

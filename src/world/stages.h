@@ -19,7 +19,7 @@ void begin_step(WorldData& world, double dt);
 
 /// What looks at velocities before the substep's forces change them: ropes remember theirs, solids are
 /// damped.
-void begin_particle_substep(WorldData& world);
+void begin_particle_substep(WorldData& world, Real h);
 
 /// The wind on triangles and segments; drag, forces, fields on particles; the user's force laws. Triangles
 /// are weighed by the wind in the `first` particle substep of a substep and pushed by the same force in all

@@ -69,7 +69,7 @@ void prepare(WorldData& w, double dt, Real h) {
 
 void apply_forces(WorldData& w, double time, Real h, bool first) {
   state::Particles& particles = w.tables.particles;
-  world::begin_particle_substep(w);
+  world::begin_particle_substep(w, h);
   world::apply_wind(w, h, first);
   world::apply_forces(w, h);
   for_ranges(*w.pool, particles.count(), kParticleGrain,

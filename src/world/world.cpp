@@ -311,6 +311,11 @@ double World::volume(SolidId id) const {
   const std::uint32_t row = t.solid_slots.find(id);
   if (row == t.solid_slots.kNone) return 0;
   double sum = 0;
+  if (t.objects[row].rest_shape) {
+    const std::vector<DVec3> x = surface(id);
+    for (const auto& [a, b, c] : t.objects[row].skin->triangles)
+      sum += dot(x[a] - x[0], cross(x[b] - x[0], x[c] - x[0])) / 6;
+  }
   for (std::uint32_t i = t.objects[row].tetrahedra.first; i < t.objects[row].tetrahedra.end(); ++i) {
     const auto [a, b, c, d] = t.tetrahedra.corners[i];
     const auto x = [&](std::uint32_t p) { return vector_cast<double>(t.particles.position[p].x); };

@@ -52,6 +52,7 @@ struct WorldData {
   solver::HingeBlocks hinge_blocks;
   solver::TetrahedronRows tetrahedra;
   solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
+  std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are matched to their forms at rest.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;

@@ -138,7 +138,7 @@ constexpr const char* kEverything = R"({
      "array": {"grid": [2, 1, 1], "spacing": [1, 2, 1]}}],
   "solids": [
     {"name": "jelly", "cells": [2, 3, 4], "size": [0.5, 1, 2], "young_modulus": 20000, "poisson_ratio": 0.25,
-     "damping": 0.0625, "yield_stress": 500, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
+     "damping": 0.0625, "elasticity": "shape_matching", "match_hz": 5, "match_damping_ratio": 0.5, "yield_stress": 500, "thickness": 0.25, "pins": [{"topmost": 0.5}]},
     {"mesh": "inline", "cell": 0.25, "position": [0, 4, 0], "total_mass": 2}],
   "timeline": [
     {"at_step": 1, "add": {"ropes": [{"name": "late"}], "bodies": [{"shape": {"sphere": {}}}]}},

@@ -162,6 +162,7 @@ TEST_SUITE("world/allocation") {
   TEST_CASE("solids, plasticity and fields allocate nothing") {
     check_scene("jelly_cube", 0.3);
     check_scene("dents", 0.3);
+    check_scene("matched_shapes", 0.3);
     check_scene("magnet");
     check_scene("buoyancy");
     check_scene("suction");
