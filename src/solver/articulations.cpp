@@ -1,38 +1,19 @@
 #include "solver/articulations.h"
 
-#include "base/assert.h"
-#include "math/rotation.h"
-#include "solver/geometric_stiffness.h"
-
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
+#include <utility>
 
 namespace hooke::solver {
 
 namespace {
 
-using math::Symmetric3;
 using state::Hook;
-using state::HookPlace;
 
-constexpr int kMaxSolves = 4;
-constexpr double kFastTurn = 0.03;           ///< In a substep, from which on rows are not straight [rad].
-constexpr double kLargeError = 2e-4;         ///< Gap of a joint over its levers, or its angle [rad].
-constexpr double kComplianceOfTrees = 1e-9;  ///< Share of each diagonal.
-constexpr double kComplianceOfLoops = 1e-5;
 constexpr int kMostHooks = 8;  ///< Of a body that is not divided.
 constexpr int kHooksOfPart = 4;
 constexpr int kWeldRows = 6;
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-double sign_at(const Articulation::Joint& joint, std::uint32_t link) {
-  return link == joint.a ? -1 : 1;
-}
-
-const DVec3& lever_at(const Articulation::Joint& joint, std::uint32_t link, const JointRow& row) {
-  return link == joint.a ? row.j_a : row.j_b;
-}
 
 std::uint32_t link_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body) {
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
@@ -45,9 +26,9 @@ struct Frame {
   std::vector<Articulation::Joint> joints;  ///< Hooks as they come, then welds.
 };
 
-/// Links of all bodies of the hooks; divides those of many hooks.
+/// Links of all bodies of the hooks, of which those of more than `most_hooks` are divided.
 Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-                 const state::Bodies& bodies) {
+                 const state::Bodies& bodies, int most_hooks) {
   std::vector<std::uint32_t> body_of;
   for (const std::uint32_t i : hook_rows) body_of.insert(body_of.end(), {hooks[i].a.body, hooks[i].b.body});
   std::sort(body_of.begin(), body_of.end());
@@ -55,7 +36,7 @@ Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<
   for (auto at = body_of.begin(); at != body_of.end();) {
     const auto next = std::upper_bound(at, body_of.end(), *at);
     const auto count = static_cast<int>(next - at);
-    const bool divided = is_dynamic(bodies, *at) && count > kMostHooks;
+    const bool divided = is_dynamic(bodies, *at) && count > most_hooks;
     const int parts = divided ? (count + kHooksOfPart - 1) / kHooksOfPart : 1;
     frame.bodies.insert(frame.bodies.end(), static_cast<std::size_t>(parts), *at);
     frame.parts.insert(frame.parts.end(), static_cast<std::size_t>(parts), parts);
@@ -100,363 +81,22 @@ bool has_loops(const Frame& frame, const state::Bodies& bodies) {
 }
 
 void list_couplings(const state::Bodies& bodies, Articulation& art) {
-  for (std::uint32_t k = 0; k < art.pattern.block.size(); ++k) {
-    const Articulation::Joint& left = art.joints[art.pattern.block[k].row];
-    const Articulation::Joint& right = art.joints[art.pattern.block[k].column];
+  for (std::uint32_t k = 0; k < art.blocks.pattern.block.size(); ++k) {
+    const Articulation::Joint& left = art.joints[art.blocks.pattern.block[k].row];
+    const Articulation::Joint& right = art.joints[art.blocks.pattern.block[k].column];
     for (const std::uint32_t link : {left.a, left.b}) {
       if (link != right.a && link != right.b) continue;
-      if (is_dynamic(bodies, art.bodies[link])) art.couplings.push_back({k, link});
+      if (is_dynamic(bodies, art.bodies[link])) art.blocks.couplings.push_back({k, link});
     }
   }
 }
 
-/// An equal part of a body moves as the body does.
-void divide(double parts, JointBody& body) {
-  if (parts == 1) return;
-  const double root = std::sqrt(parts);
-  body.inverse_mass *= parts;
-  body.scale = scaled(root, body.scale);
-  body.omega_scaled = (1 / root) * body.omega_scaled;
-}
-
-/// Both links have one velocity.
-void make_weld(const Articulation::Joint& joint, Articulation& art) {
-  const std::array<DVec3, 3> axes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
-  for (int k = 0; k < kWeldRows; ++k) {
-    JointRow row = {.low = -kUnbounded, .high = kUnbounded};
-    const DVec3& axis = axes[k % 3];
-    (k < 3 ? row.n : row.axis) = axis;
-    if (k >= 3) {
-      row.j_a = art.links[joint.a].body.scale * axis;
-      row.j_b = art.links[joint.b].body.scale * axis;
-    }
-    art.rows[joint.first + k] = row;
-    art.bound[joint.first + k] = 0;
-  }
-}
-
-void load_links(const state::Bodies& bodies, Articulation& art) {
-  for (std::size_t i = 0; i < art.bodies.size(); ++i) {
-    Link& link = art.links[i];
-    link.body = joint_body_now(bodies, art.bodies[i]);
-    divide(art.parts[i], link.body);
-    link.stiffness = {};
-    link.excess = {};
-    link.response = link.body.inverse_mass > 0 ? Symmetric3<double>::diagonal(1) : Symmetric3<double>{};
-  }
-}
-
-void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
-  std::array<JointRow, Hook::kMaxRows> rows;
-  for (const Articulation::Joint& joint : art.joints) {
-    if (joint.is_weld()) {
-      make_weld(joint, art);
-      continue;
-    }
-    Hook& hook = hooks[joint.hook];
-    const int count = make_joint_rows(hook, art.links[joint.a].body, art.links[joint.b].body, h, rows);
-    HOOKE_ASSERT(count == joint.count);
-    for (int k = 0; k < count; ++k) {
-      const JointRow& row = rows[k];
-      art.rows[joint.first + k] = row;
-      art.bound[joint.first + k] = first_bound(row, static_cast<double>(hook.row_impulse[k]));
-    }
-  }
-}
-
-/// The body as it will be at the end of the substep with the velocity that was found.
-JointBody moved(const Link& link, double h) {
-  JointBody body = link.body;
-  body.ahead = h * link.v;
-  body.center += body.ahead;
-  body.rotation = math::quaternion_of(body.scale * (h * link.omega_scaled)) * body.rotation;
-  return body;
-}
-
-/// What the gap of a joint is small against: its levers on bodies that move [m].
-double size_of(const Hook& hook, const Link& a, const Link& b) {
-  constexpr double kLeast = 0.01;
-  const double size_a = a.body.inverse_mass > 0 ? length(hook.a.anchor) : 0;
-  const double size_b = b.body.inverse_mass > 0 ? length(hook.b.anchor) : 0;
-  return std::max(kLeast, size_a + size_b);
-}
-
-/// Newton: the rows about the end of the substep as it was found, where C = c + h J (v' - v) for another
-/// velocity v'. Returns the largest error of a lock.
-double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
-  std::array<JointRow, Hook::kMaxRows> rows;
-  double worst = 0;
-  for (const Articulation::Joint& joint : art.joints) {
-    if (joint.is_weld()) continue;
-    const Link& a = art.links[joint.a];
-    const Link& b = art.links[joint.b];
-    const double size = size_of(hooks[joint.hook], a, b);
-    make_joint_rows(hooks[joint.hook], moved(a, h), moved(b, h), h, rows);
-    for (int k = 0; k < joint.count; ++k) {
-      JointRow row = rows[k];
-      // An error beyond the speed limit comes back along the row it has.
-      const bool limited =
-          row.role == RowRole::kLock && std::abs(row.target) < 0.999 * row.rate * std::abs(row.c);
-      if (limited) continue;
-      const double v = dot(row.n, b.v - a.v) + dot(row.j_b, b.omega_scaled) - dot(row.j_a, a.omega_scaled);
-      row.target += row.rate * h * v;
-      art.rows[joint.first + k] = row;
-      if (row.role == RowRole::kLock)
-        worst = std::max(worst, std::abs(row.c) / (row.axis == DVec3{} ? size : 1));
-    }
-  }
-  return worst;
-}
-
-bool turns_fast(const Articulation& art, double h) {
-  return std::any_of(art.links.begin(), art.links.end(), [&](const Link& link) {
-    return link.body.inverse_mass > 0 && h * length(link.body.scale * link.omega_scaled) > kFastTurn;
-  });
-}
-
-/// Writes the stiffness of all links under the impulses of their hooks, where it grows; true if it grew so
-/// much that a solution found without it is not to be trusted.
-bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
-  std::vector<Symmetric3<double>>& found = art.stiffness_found;
-  found.assign(art.links.size(), {});
-  for (const Articulation::Joint& joint : art.joints) {
-    if (joint.is_weld()) continue;
-    const Hook& hook = hooks[joint.hook];
-    const DVec3 force = (1 / h) * vector_cast<double>(hook.impulse);
-    if (force == DVec3{}) continue;
-    Link& a = art.links[joint.a];
-    Link& b = art.links[joint.b];
-    const DVec3 r_a = rotate(a.body.rotation, hook.a.anchor);
-    const DVec3 r_b = rotate(b.body.rotation, hook.b.anchor);
-    if (a.body.inverse_mass > 0) found[joint.a] = found[joint.a] + stiffness_of(r_a, -force, a.body, h);
-    if (b.body.inverse_mass > 0) found[joint.b] = found[joint.b] + stiffness_of(r_b, force, b.body, h);
-  }
-  bool grew = false;
-  for (std::size_t i = 0; i < art.links.size(); ++i) {
-    Link& link = art.links[i];
-    if (!(link.body.inverse_mass > 0) || !(trace(found[i]) > trace(link.stiffness))) continue;
-    grew = grew || trace(found[i]) > std::max(kStiffnessGrowth * trace(link.stiffness), kStiffnessLeft);
-    link.stiffness = found[i];
-    link.excess = excess_of(found[i]);
-    link.response =
-        math::inverse(Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, link.excess));
-  }
-  return grew;
-}
-
-/// A motor that is at no bound holds the velocity along its axis, which gives the impulse of the spring
-/// there.
-void give_springs(Articulation& art) {
-  for (const Articulation::Joint& joint : art.joints) {
-    for (int i = joint.first; i + 1 < joint.first + joint.count; ++i) {
-      const JointRow& spring = art.rows[i];
-      const JointRow& motor = art.rows[i + 1];
-      if (spring.role != RowRole::kSpring || motor.role != RowRole::kMotor) continue;
-      if (!(spring.n == motor.n) || !(spring.axis == motor.axis)) continue;
-      art.bound[i] = art.bound[i + 1] == 0 ? Articulation::kGiven : std::int8_t{0};
-      if (art.bound[i] != 0) art.lambda[i] = (spring.target - motor.target) / spring.gamma;
-    }
-  }
-}
-
-/// Lists the rows that are at no bound, those of a joint column by column.
-void list_free_rows(Articulation& art) {
-  art.free.clear();
-  art.free_sizes.clear();
-  art.columns.clear();
-  for (const Articulation::Joint& joint : art.joints) {
-    const std::size_t begin = art.free.size();
-    for (int i = joint.first; i < joint.first + joint.count; ++i) {
-      if (art.bound[i] == 0) art.free.push_back(i);
-    }
-    const auto rows = std::span(art.free).subspan(begin);
-    art.free_sizes.push_back(static_cast<int>(rows.size()));
-    for (const auto member : {&JointRow::n, &JointRow::j_a, &JointRow::j_b}) {
-      for (const auto axis : {&DVec3::x, &DVec3::y, &DVec3::z}) {
-        for (const int i : rows) art.columns.push_back(art.rows[i].*member.*axis);
-      }
-    }
-  }
-  resize_blocks(art.free_sizes, art.pattern);
-}
-
-/// The part of a link in the block of two joints' rows.
-void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
-  const BlockPattern::Block& block = art.pattern.block[coupling.block];
-  const Articulation::Joint& left = art.joints[block.row];
-  const Articulation::Joint& right = art.joints[block.column];
-  const Link& link = art.links[coupling.link];
-  const double sign = sign_at(left, coupling.link) * sign_at(right, coupling.link);
-  const int* rows = art.free.data() + art.pattern.first[block.row];
-  const auto count = static_cast<std::size_t>(art.free_sizes[block.column]);
-  const double* n = art.columns.data() + 9 * static_cast<std::size_t>(art.pattern.first[block.column]);
-  const double* j = n + (coupling.link == right.a ? 3 : 6) * count;
-  double* to = art.factors.data() + block.offset;
-  for (int r = 0; r < art.free_sizes[block.row]; ++r) {
-    const JointRow& row = art.rows[rows[r]];
-    const DVec3 v = sign * link.body.inverse_mass * row.n;
-    const DVec3 w = sign * (link.response * lever_at(left, coupling.link, row));
-    for (std::size_t c = 0; c < count; ++c) {
-      to[c] += (v.x * n[c] + v.y * n[count + c] + v.z * n[2 * count + c]) +
-               (w.x * j[c] + w.y * j[count + c] + w.z * j[2 * count + c]);
-    }
-    to += count;
-  }
-}
-
-/// J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
-void assemble(Articulation& art) {
-  art.factors.assign(art.pattern.number_count, 0.0);
-  for (const Articulation::Coupling& coupling : art.couplings) add_coupling(coupling, art);
-  const double compliance = art.has_loops ? kComplianceOfLoops : kComplianceOfTrees;
-  for (int i = 0; i < art.pattern.node_count(); ++i) {
-    const BlockPattern::Block& block = art.pattern.block[art.pattern.column_begin[i]];
-    const int n = art.free_sizes[i];
-    for (int r = 0; r < n; ++r) {
-      double& number = art.factors[block.offset + static_cast<std::size_t>(r * (n + 1))];
-      number += art.rows[art.free[art.pattern.first[i] + r]].gamma + compliance * number;
-    }
-  }
-}
-
-/// Velocities of all links under the impulses of the rows that `which` picks.
-template <class Which>
-void apply_rows(Which&& which, Articulation& art) {
-  for (const Articulation::Joint& joint : art.joints) {
-    Link& a = art.links[joint.a];
-    Link& b = art.links[joint.b];
-    DVec3 linear;
-    DVec3 angular_a;
-    DVec3 angular_b;
-    for (int i = joint.first; i < joint.first + joint.count; ++i) {
-      if (!which(i)) continue;
-      const double lambda = art.lambda[i];
-      linear += lambda * art.rows[i].n;
-      angular_a += lambda * art.rows[i].j_a;
-      angular_b += lambda * art.rows[i].j_b;
-    }
-    a.v -= a.body.inverse_mass * linear;
-    a.omega_scaled -= a.response * angular_a;
-    b.v += b.body.inverse_mass * linear;
-    b.omega_scaled += b.response * angular_b;
-  }
-}
-
-void reset_velocities(Articulation& art) {
-  for (Link& link : art.links) {
-    link.v = link.body.v;
-    link.omega_scaled = link.body.omega_scaled;
-    if (trace(link.excess) > 0)
-      link.omega_scaled -= kStiffnessDamping * (link.response * (link.excess * link.body.omega_scaled));
-  }
-}
-
-/// What a row lacks of its target at the present velocities, without gamma lambda.
-double shortfall(const Articulation& art, const Articulation::Joint& joint, const JointRow& row) {
-  const Link& a = art.links[joint.a];
-  const Link& b = art.links[joint.b];
-  return row.target - dot(row.n, b.v - a.v) - dot(row.j_b, b.omega_scaled) + dot(row.j_a, a.omega_scaled);
-}
-
-void solve_free_rows(Articulation& art) {
-  for (std::size_t i = 0; i < art.rows.size(); ++i) {
-    art.lambda[i] = art.bound[i] < 0 ? art.rows[i].low : art.bound[i] > 0 ? art.rows[i].high : 0;
-  }
-  give_springs(art);
-  reset_velocities(art);
-  apply_rows([&](int i) { return art.bound[i] != 0; }, art);
-  list_free_rows(art);
-  assemble(art);
-  art.right_side.clear();
-  for (const Articulation::Joint& joint : art.joints) {
-    for (int i = joint.first; i < joint.first + joint.count; ++i) {
-      if (art.bound[i] == 0) art.right_side.push_back(shortfall(art, joint, art.rows[i]));
-    }
-  }
-  factor(art.pattern, art.factors, art.factor_scratch);
-  solve(art.pattern, art.factors, art.right_side);
-  for (std::size_t k = 0; k < art.free.size(); ++k) art.lambda[art.free[k]] = art.right_side[k];
-  apply_rows([&](int i) { return art.bound[i] == 0; }, art);
-}
-
-/// Rows beyond a bound go to it; rows that the bound holds back are let go if `release`. True if any changed.
-bool revise_bounds(bool release, Articulation& art) {
-  bool changed = false;
-  for (const Articulation::Joint& joint : art.joints) {
-    for (int i = joint.first; i < joint.first + joint.count; ++i) {
-      const JointRow& row = art.rows[i];
-      std::int8_t bound = 0;
-      if (art.bound[i] == Articulation::kGiven) continue;
-      if (art.bound[i] == 0) {
-        bound = side_of(art.lambda[i], row.low, row.high);
-      } else if (!release) {
-        continue;
-      } else {
-        const double lacks = shortfall(art, joint, row) - row.gamma * art.lambda[i];
-        bound = stays_at(art.bound[i], lacks) ? art.bound[i] : std::int8_t{0};
-      }
-      changed = changed || bound != art.bound[i];
-      art.bound[i] = bound;
-    }
-  }
-  return changed;
-}
-
-void solve_with_bounds(Articulation& art) {
-  bool changed = true;
-  for (int pass = 0; changed && pass < kMostBoundPasses; ++pass) {
-    solve_free_rows(art);
-    changed = revise_bounds(pass < kFreeBoundPasses, art);
-  }
-  if (!changed) return;
-  for (std::size_t i = 0; i < art.rows.size(); ++i)
-    art.lambda[i] = std::clamp(art.lambda[i], art.rows[i].low, art.rows[i].high);
-  reset_velocities(art);
-  apply_rows([](int) { return true; }, art);
-}
-
-void store_impulses(const Articulation& art, std::vector<Hook>& hooks) {
-  for (const Articulation::Joint& joint : art.joints) {
-    if (joint.is_weld()) continue;
-    const auto first = static_cast<std::size_t>(joint.first);
-    const auto count = static_cast<std::size_t>(joint.count);
-    store_joint_impulses(std::span(art.rows).subspan(first, count),
-                         std::span(art.lambda).subspan(first, count), hooks[joint.hook]);
-  }
-}
-
-/// The parts of a body differ by rounding: their mean has all of its momentum.
-void store_velocities(const Articulation& art, state::Bodies& bodies) {
-  for (std::size_t i = 0; i < art.links.size();) {
-    const auto parts = static_cast<std::size_t>(art.parts[i]);
-    JointBody before = art.links[i].body;
-    if (before.inverse_mass > 0) {
-      DVec3 v;
-      DVec3 omega_scaled;
-      for (std::size_t k = 0; k < parts; ++k) {
-        v += art.links[i + k].v;
-        omega_scaled += art.links[i + k].omega_scaled;
-      }
-      // omega~ of the whole body is sqrt(parts) times that of each.
-      const double root = std::sqrt(art.parts[i]);
-      before.scale = scaled(1 / root, before.scale);
-      before.omega_scaled = root * before.omega_scaled;
-      set_joint_velocity(before, (1 / art.parts[i]) * v, (1 / root) * omega_scaled, art.bodies[i], bodies);
-    }
-    i += parts;
-  }
-}
-
-}  // namespace
-
-std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
-                                              const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                                              double budget) {
-  Frame frame = make_frame(hook_rows, hooks, bodies);
+/// Blocks of the joints' rows; false if they take more than the budget.
+bool make_blocks(Frame frame, const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+                 Articulation& art) {
   std::vector<int> sizes;
   for (const Articulation::Joint& joint : frame.joints)
     sizes.push_back(joint.is_weld() ? kWeldRows : count_joint_rows(hooks[joint.hook]));
-
   BlockGraph graph;
   graph.reset(frame.joints.size());
   for (const std::vector<std::uint32_t>& group : joints_of_links(frame, bodies)) {
@@ -466,44 +106,136 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
       }
     }
   }
-  Articulation art;
-  art.has_loops = has_loops(frame, bodies);
-  if (!make_block_pattern(graph, sizes, art.has_loops ? budget : kTreesMayTake * budget, art.pattern))
-    return std::nullopt;
-  for (int i = 0; i < art.pattern.node_count(); ++i) {
-    Articulation::Joint joint = frame.joints[art.pattern.order[i]];
-    joint.first = art.pattern.first[i];
-    joint.count = art.pattern.size[i];
+  Articulation::Blocks& blocks = art.blocks;
+  if (!make_block_pattern(graph, sizes, budget, blocks.pattern)) return false;
+  for (int i = 0; i < blocks.pattern.node_count(); ++i) {
+    Articulation::Joint joint = frame.joints[blocks.pattern.order[i]];
+    joint.first = blocks.pattern.first[i];
+    joint.count = blocks.pattern.size[i];
     art.joints.push_back(joint);
   }
   art.bodies = std::move(frame.bodies);
   art.parts = std::move(frame.parts);
   list_couplings(bodies, art);
+  const auto row_count = static_cast<std::size_t>(blocks.pattern.first.back());
+  blocks.free.reserve(row_count);
+  blocks.columns.reserve(9 * row_count);
+  blocks.right_side.reserve(row_count);
+  blocks.factors.reserve(blocks.pattern.number_count);
+  blocks.factor_scratch.reserve(blocks.pattern.number_count);
+  return true;
+}
+
+/// What nothing moves, or else the heaviest link.
+std::uint32_t find_root(const Frame& frame, const state::Bodies& bodies) {
+  const auto inverse_mass = [&](std::uint32_t link) {
+    const std::uint32_t body = frame.bodies[link];
+    return is_dynamic(bodies, body) ? bodies.motion[body].inverse_mass : Real(0);
+  };
+  std::uint32_t root = 0;
+  for (std::uint32_t link = 1; link < frame.bodies.size(); ++link) {
+    if (inverse_mass(link) < inverse_mass(root)) root = link;
+  }
+  return root;
+}
+
+/// The joint to the next link towards the root, and that link's neighbor there.
+struct Branch {
+  std::uint32_t joint = 0;
+  std::uint32_t child = 0;
+};
+
+/// From the root on: a joint comes after the one that its parent hangs on.
+std::vector<Branch> list_branches(const Frame& frame, std::uint32_t root) {
+  std::vector<std::vector<std::uint32_t>> of(frame.bodies.size());
+  for (std::uint32_t i = 0; i < frame.joints.size(); ++i) {
+    of[frame.joints[i].a].push_back(i);
+    of[frame.joints[i].b].push_back(i);
+  }
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<Branch> branches = {{kNone, root}};
+  for (std::size_t at = 0; at < branches.size(); ++at) {
+    const Branch branch = branches[at];
+    for (const std::uint32_t i : of[branch.child]) {
+      const Articulation::Joint& joint = frame.joints[i];
+      if (i != branch.joint) branches.push_back({i, joint.a == branch.child ? joint.b : joint.a});
+    }
+  }
+  branches.erase(branches.begin());
+  return branches;
+}
+
+/// Rows of a joint, for the lanes: a spring and the motor beside it are one.
+void list_tree_rows(const Articulation::Joint& joint, const Hook& hook, Articulation::Tree& tree) {
+  std::array<RowKind, Hook::kMaxRows> kinds;
+  const int count = list_joint_rows(hook, kinds);
+  for (int i = 0; i < count; ++i) {
+    const bool bounded = kinds[i].role == RowRole::kMotor || kinds[i].role == RowRole::kLimit;
+    const auto has_motor = [&](int k) {
+      return k < count && kinds[k].role == RowRole::kMotor && kinds[k].freedom == kinds[i].freedom;
+    };
+    const bool sprung = kinds[i].role == RowRole::kSpring && has_motor(i + 1);
+    if (sprung) ++i;
+    tree.form.rows.push_back({kinds[i].turns(), bounded || sprung, sprung});
+    tree.rows.push_back(joint.first + i);
+  }
+}
+
+/// Multiplications that eliminate a joint of n rows.
+double cost_of(double n) {
+  return 91 + n * (60 + n * (6 + n / 6));
+}
+
+/// Links and joints in order of elimination; false if that takes more than the budget.
+bool make_tree(const Frame& frame, const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+               Articulation& art) {
+  const std::uint32_t root = find_root(frame, bodies);
+  std::vector<Branch> branches = list_branches(frame, root);
+  std::reverse(branches.begin(), branches.end());
+  std::vector<std::uint32_t> place(frame.bodies.size(), static_cast<std::uint32_t>(branches.size()));
+  for (std::uint32_t i = 0; i < branches.size(); ++i) place[branches[i].child] = i;
+
+  wide::TreeForm& form = art.tree.form;
+  int first = 0;
+  for (const Branch& branch : branches) {
+    Articulation::Joint joint = frame.joints[branch.joint];
+    const std::uint32_t parent = joint.a == branch.child ? joint.b : joint.a;
+    joint.a = place[joint.a];
+    joint.b = place[joint.b];
+    joint.first = first;
+    joint.count = count_joint_rows(hooks[joint.hook]);
+    first += joint.count;
+    const auto first_of_form = static_cast<int>(form.rows.size());
+    list_tree_rows(joint, hooks[joint.hook], art.tree);
+    const int count = static_cast<int>(form.rows.size()) - first_of_form;
+    form.joints.push_back(
+        {static_cast<int>(place[parent]), is_dynamic(bodies, frame.bodies[parent]), first_of_form, count});
+    budget -= cost_of(count);
+    art.joints.push_back(joint);
+    art.bodies.push_back(frame.bodies[branch.child]);
+  }
+  art.bodies.push_back(frame.bodies[root]);
+  art.parts.assign(art.bodies.size(), 1);
+  return budget >= 0;
+}
+
+}  // namespace
+
+std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
+                                              const std::vector<Hook>& hooks, const state::Bodies& bodies,
+                                              double budget) {
+  Articulation art;
+  const Frame whole = make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max());
+  const bool made = has_loops(whole, bodies) ? make_blocks(make_frame(hook_rows, hooks, bodies, kMostHooks),
+                                                           hooks, bodies, budget, art)
+                                             : make_tree(whole, hooks, bodies, kTreesMayTake * budget, art);
+  if (!made) return std::nullopt;
   art.links.resize(art.bodies.size());
-  const auto row_count = static_cast<std::size_t>(art.pattern.first.back());
+  const auto row_count = static_cast<std::size_t>(art.joints.back().first + art.joints.back().count);
   art.rows.resize(row_count);
   art.lambda.resize(row_count);
   art.bound.resize(row_count);
-  art.free.reserve(row_count);
-  art.columns.reserve(9 * row_count);
-  art.right_side.reserve(row_count);
-  art.factors.reserve(art.pattern.number_count);
-  art.factor_scratch.reserve(art.pattern.number_count);
   return art;
-}
-
-void solve_articulation(double h, Articulation& art, std::vector<Hook>& hooks, state::Bodies& bodies) {
-  load_links(bodies, art);
-  make_rows(h, hooks, art);
-  stiffen(h, hooks, art);
-  for (int i = 0; i < kMaxSolves; ++i) {
-    solve_with_bounds(art);
-    store_impulses(art, hooks);
-    const bool grew = stiffen(h, hooks, art);
-    const bool bent = turns_fast(art, h) && make_rows_ahead(h, hooks, art) > kLargeError;
-    if (!grew && !bent) break;
-  }
-  store_velocities(art, bodies);
 }
 
 }  // namespace hooke::solver

@@ -21,7 +21,6 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
 constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
 constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
 constexpr double kLimitSpeed = 2;      ///< [m/s] or [rad/s]
@@ -242,6 +241,12 @@ void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, st
 int count_joint_rows(const Hook& hook) {
   int count = 0;
   for_each_row(hook, [&](int, RowRole) { ++count; });
+  return count;
+}
+
+int list_joint_rows(const Hook& hook, std::span<RowKind, Hook::kMaxRows> kinds) {
+  int count = 0;
+  for_each_row(hook, [&](int freedom, RowRole role) { kinds[count++] = {freedom, role}; });
   return count;
 }
 

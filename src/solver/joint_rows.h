@@ -64,8 +64,18 @@ struct JointRow {
   RowRole role = RowRole::kLock;
 };
 
+/// What a row is for.
+struct RowKind {
+  int freedom = 0;  ///< 0 to 5 as in state::Hook; 6 is the cone of a ball.
+  RowRole role = RowRole::kLock;
+  [[nodiscard]] bool turns() const { return freedom >= 3; }
+};
+
 /// How many rows a hook has. It depends on its settings only, not on how its ends stand.
 [[nodiscard]] int count_joint_rows(const state::Hook& hook);
+
+/// The kinds of these rows, ways before angles; returns how many they are.
+int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMaxRows> kinds);
 
 /// The rows of a hook for a substep of length h [s], as many as count_joint_rows says; notes the values of
 /// its freedoms in the hook.
@@ -80,6 +90,8 @@ struct JointRow {
 /// axes, its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b).
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
+
+inline constexpr double kNoSpeed = 1e-9;  ///< [m/s] or [rad/s], as rounding leaves it.
 
 /// -1 below the bounds, 1 above them.
 [[nodiscard]] std::int8_t side_of(double value, double low, double high);

@@ -3,6 +3,8 @@
 #include "base/disjoint_sets.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 namespace hooke::solver {
 
@@ -51,6 +53,37 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
                      [&](std::uint32_t body) { return gives_way(bodies, body); });
 }
 
+/// Those awake; trees of a kind together.
+void solve_articulations(double h, std::span<Articulation> articulations, ArticulationScratch& scratch,
+                         JointTables tables) {
+  scratch.trees.clear();
+  const auto solve = [&] {
+    solve_trees(h, scratch.trees, scratch.side_by_side, tables);
+    scratch.trees.clear();
+  };
+  for (Articulation& art : articulations) {
+    if (!any_awake(art, tables.bodies)) continue;
+    if (art.has_loops()) {
+      solve_loops(h, art, tables);
+      continue;
+    }
+    if (!scratch.trees.empty() && scratch.trees.front()->tree.kind != art.tree.kind) solve();
+    scratch.trees.push_back(&art);
+  }
+  solve();
+}
+
+/// Brings trees of one form together.
+void sort_articulations(std::vector<Articulation>& articulations) {
+  std::map<wide::TreeForm, int> kinds;
+  for (Articulation& art : articulations)
+    art.tree.kind = kinds.emplace(art.tree.form, static_cast<int>(kinds.size())).first->second;
+  std::stable_sort(articulations.begin(), articulations.end(),
+                   [](const Articulation& a, const Articulation& b) {
+                     return a.has_loops() != b.has_loops() ? a.has_loops() : a.tree.kind < b.tree.kind;
+                   });
+}
+
 }  // namespace
 
 void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
@@ -65,6 +98,7 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
       rest.insert(rest.end(), group.begin(), group.end());
     }
   }
+  sort_articulations(joints.articulations);
   const std::vector<int> degree = count_hooks(rest, hooks, bodies);
   // Blocks know no crowds.
   const auto is_crowded = [&](std::uint32_t body) {
@@ -90,11 +124,13 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
 
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
+  joints.scratch.resize(static_cast<std::size_t>(pool.workers()));
   const auto count = static_cast<int>(joints.articulations.size());
-  parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i) {
-      Articulation& art = joints.articulations[i];
-      if (any_awake(art, bodies)) solve_articulation(static_cast<double>(h), art, hooks, bodies);
+  parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range, int part) {
+    const auto first = static_cast<std::size_t>(range.begin);
+    const auto some = std::span(joints.articulations).subspan(first, static_cast<std::size_t>(range.count()));
+    solve_articulations(static_cast<double>(h), some, joints.scratch[part], {hooks, bodies});
+    for (const Articulation& art : some) {
       for (const Articulation::Joint& joint : art.joints) {
         if (!joint.is_weld()) add_up_impulses(h, hooks[joint.hook]);
       }

@@ -24,8 +24,15 @@
 
 namespace hooke::solver {
 
+/// What one part of a parallel loop over articulations needs.
+struct ArticulationScratch {
+  std::vector<Articulation*> trees;
+  TreeScratch side_by_side;
+};
+
 struct Joints {
-  std::vector<Articulation> articulations;
+  std::vector<Articulation> articulations;  ///< Those with loops first, then trees by kind.
+  std::vector<ArticulationScratch> scratch;
   BallJoints balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint_nets.h).
   JointNet net;      ///< All others that are in none of them.
 };

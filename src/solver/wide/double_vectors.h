@@ -51,6 +51,9 @@ HWY_INLINE void write(const WideDouble& value, double* to) {
 HWY_INLINE DoubleMask above(const WideDouble& a, const WideDouble& b) {
   return hn::Gt(a.raw, b.raw);
 }
+HWY_INLINE bool any(DoubleMask condition) {
+  return !hn::AllFalse(kDoubleTag, condition);
+}
 HWY_INLINE WideDouble choose(DoubleMask condition, const WideDouble& yes, const WideDouble& no) {
   return WideDouble(hn::IfThenElse(condition, yes.raw, no.raw));
 }

@@ -6,6 +6,7 @@
 /// double_vectors.h for vectors:
 ///   read, write      from and to consecutive lanes
 ///   above, choose    a comparison and a choice by it
+///   any              whether a comparison holds in any lane
 ///   quotient, root   exact division and square root
 ///   read_quad, write_quad   four numbers of each lane from and to different places
 ///   read_offset      the difference of two such places
@@ -63,6 +64,9 @@ HWY_INLINE void write(Lane value, Lane* to) {
 template <std::floating_point Lane>
 HWY_INLINE bool above(Lane a, Lane b) {
   return a > b;
+}
+HWY_INLINE bool any(bool condition) {
+  return condition;
 }
 template <std::floating_point Lane>
 HWY_INLINE Lane choose(bool condition, Lane yes, Lane no) {

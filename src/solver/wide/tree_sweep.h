@@ -1,0 +1,408 @@
+/// Trees of joints in numbers.h's Numbers. Included anew for each instruction set.
+///
+/// Unknown are what the joints change of each link's velocity, u, and the impulses lambda of their rows. A
+/// link that is eliminated has A u = g + C^T lambda + what its own children do, with A = diag(m, 1 + 1.2 G)
+/// and C its side of the joint to its parent, of which P is the other side:
+///
+///   C u + P u_parent + gamma lambda = b,   b = target - C v - P v_parent
+///
+/// With A = L E L^T, W = L^-1 C^T, y = L^-1 g and the rows' S = W^T E^-1 W + gamma = K D K^T, V = K^-1 P and
+/// z = K^-1 (b - W^T E^-1 y),
+///
+///   the parent gets     A: V^T D^-1 V     g: V^T D^-1 z
+///   on the way back     lambda = K^-T D^-1 (z - V u_parent),   u = L^-T E^-1 (y + W lambda)
+///
+/// Everything that is added is positive: nothing cancels. A row at a bound has C = P = 0, gamma = 1 and b =
+/// 0, and its impulse is in g of both links; where that is so in all lanes it is left out, which changes
+/// nothing but signs of zeros, and those end in sums with +0. A pivot that is not positive counts as
+/// infinite.
+
+#if defined(HOOKE_SOLVER_WIDE_TREE_SWEEP_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HOOKE_SOLVER_WIDE_TREE_SWEEP_H
+#undef HOOKE_SOLVER_WIDE_TREE_SWEEP_H
+#else
+#define HOOKE_SOLVER_WIDE_TREE_SWEEP_H
+#endif
+
+#include "solver/joint_rows.h"
+#include "solver/wide/numbers.h"
+#include "solver/wide/trees.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hooke::solver::wide::HWY_NAMESPACE {
+
+constexpr double kTreeCompliance = 1e-9;  ///< Share of each diagonal.
+
+/// Where (row, column) of a lower triangle stands.
+constexpr int triangle_at(int row, int column) {
+  return row * (row + 1) / 2 + column;
+}
+
+/// Where it stands among the six numbers of a Scale.
+constexpr int kSymmetricAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+
+template <class Number>
+HWY_INLINE Number inverse_of_pivot(Number d) {
+  const Number zero(0.0);
+  return choose(above(d, zero), quotient(Number(1.0), d), zero);
+}
+
+/// A 6 x 6 matrix A = L E L^T: L below the diagonal, 1 / E on it.
+template <class Number>
+struct LinkFactor {
+  Number a[21];
+
+  HWY_INLINE void factor() {
+    for (int j = 0; j < 6; ++j) {
+      const Number inverse = inverse_of_pivot(a[triangle_at(j, j)]);
+      Number scaled_column[6];
+      for (int i = j + 1; i < 6; ++i) scaled_column[i] = inverse * a[triangle_at(i, j)];
+      for (int i = j + 1; i < 6; ++i) {
+        for (int k = j + 1; k <= i; ++k)
+          a[triangle_at(i, k)] = a[triangle_at(i, k)] - scaled_column[i] * a[triangle_at(k, j)];
+      }
+      for (int i = j + 1; i < 6; ++i) a[triangle_at(i, j)] = scaled_column[i];
+      a[triangle_at(j, j)] = inverse;
+    }
+  }
+  [[nodiscard]] HWY_INLINE const Number& inverse(int i) const { return a[triangle_at(i, i)]; }
+
+  /// x := L^-1 x, of which the first kFrom are zero.
+  template <int kFrom>
+  HWY_INLINE void substitute(Number (&x)[6]) const {
+    for (int i = kFrom + 1; i < 6; ++i) {
+      for (int k = kFrom; k < i; ++k) x[i] = x[i] - a[triangle_at(i, k)] * x[k];
+    }
+  }
+  /// x := L^-T x
+  HWY_INLINE void substitute_back(Number (&x)[6]) const {
+    for (int i = 4; i >= 0; --i) {
+      for (int k = i + 1; k < 6; ++k) x[i] = x[i] - a[triangle_at(k, i)] * x[k];
+    }
+  }
+};
+
+/// One lane, or vector of lanes, of the trees.
+template <class Number, int kCount>
+class TreeSweep {
+ public:
+  HWY_INLINE TreeSweep(const TreeForm& form, TreeLanes<kCount>& trees, int lane)
+      : joints_(form.joints.data()),
+        forms_(form.rows.data()),
+        links_(trees.links.data()),
+        rows_(trees.rows.data()),
+        joint_count_(static_cast<int>(form.joints.size())),
+        lane_(lane) {}
+
+  HWY_INLINE void run(TreeLanes<kCount>& trees) {
+    for (int i = 0; i <= joint_count_; ++i) begin(links_[i]);
+    for (int i = 0; i < joint_count_; ++i) eliminate(joints_[i], links_[i], links_[joints_[i].parent]);
+    solve_root(links_[joint_count_]);
+    for (int i = joint_count_ - 1; i >= 0; --i) go_back(joints_[i], links_[i], links_[joints_[i].parent]);
+    const Number release = get<Number>(trees.release + lane_);
+    Number changed(0.0);
+    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, changed);
+    write(changed, trees.changed + lane_);
+  }
+
+ private:
+  using Link = TreeLinkLanes<kCount>;
+  using Row = TreeRowLanes<kCount>;
+
+  /// A row's side of one link.
+  struct Side {
+    Number x[6];
+  };
+
+  HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
+  HWY_INLINE void put(const Number& value, double (&lanes)[kCount]) const { write(value, lanes + lane_); }
+
+  template <int kSize>
+  HWY_INLINE void load(const double (&from)[kSize][kCount], Number (&to)[kSize]) const {
+    for (int i = 0; i < kSize; ++i) read(from[i] + lane_, to[i]);
+  }
+  template <int kSize>
+  HWY_INLINE void store(const Number (&from)[kSize], double (&to)[kSize][kCount]) const {
+    for (int i = 0; i < kSize; ++i) write(from[i], to[i] + lane_);
+  }
+
+  HWY_INLINE void begin(Link& link) const {
+    const Number zero(0.0);
+    const Number mass = at(link.mass);
+    for (int i = 0; i < 6; ++i) {
+      for (int k = 0; k <= i; ++k) {
+        const Number linear = i == k ? mass : zero;
+        put(k < 3 ? linear : at(link.turning[kSymmetricAt[i - 3][k - 3]]), link.a[triangle_at(i, k)]);
+      }
+      put(zero, link.g[i]);
+    }
+  }
+
+  HWY_INLINE Side child_side(const Row& row, bool turns) const {
+    const Number zero(0.0);
+    Side side = {{zero, zero, zero, at(row.child[0]), at(row.child[1]), at(row.child[2])}};
+    if (!turns) {
+      for (int i = 0; i < 3; ++i) side.x[i] = at(row.n[i]);
+    }
+    return side;
+  }
+  HWY_INLINE Side parent_side(const Row& row, bool turns) const {
+    const Number zero(0.0);
+    Side side = {{zero, zero, zero, at(row.parent[0]), at(row.parent[1]), at(row.parent[2])}};
+    if (!turns) {
+      for (int i = 0; i < 3; ++i) side.x[i] = zero - at(row.n[i]);
+    }
+    return side;
+  }
+
+  static HWY_INLINE Number product(const Number (&a)[6], const Number (&b)[6], bool turns) {
+    const Number angular = a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+    return turns ? angular : a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + angular;
+  }
+
+  /// What a row's two sides move by, with velocities of the links.
+  HWY_INLINE Number rate(const Row& row, bool turns, const double (&v)[3][kCount],
+                         const double (&omega)[3][kCount], const double (&v_parent)[3][kCount],
+                         const double (&omega_parent)[3][kCount]) const {
+    const Triple<Number> child = get3<Number>(row.child, lane_);
+    const Triple<Number> parent = get3<Number>(row.parent, lane_);
+    const Number angular =
+        dot(child, get3<Number>(omega, lane_)) + dot(parent, get3<Number>(omega_parent, lane_));
+    if (turns) return angular;
+    return angular +
+           dot(get3<Number>(row.n, lane_), difference(get3<Number>(v, lane_), get3<Number>(v_parent, lane_)));
+  }
+
+  /// Whether a row is at a bound: above(result, 0.5).
+  HWY_INLINE Number is_bound(const Row& row) const {
+    const Number bound = at(row.bound);
+    return bound * bound;
+  }
+  /// The impulse that a row has whatever the velocities are.
+  HWY_INLINE Number fixed_impulse(const Row& row, const TreeRowForm& form) const {
+    const Number zero(0.0);
+    const Number bound = at(row.bound);
+    const Number between = form.sprung ? at(row.held_spring) : zero;
+    return choose(above(bound, zero), at(row.high), choose(above(zero, bound), at(row.low), between));
+  }
+
+  /// The factors of one row of S, from `w` = L^-1 C^T and its own b, above those that `list` has already.
+  HWY_INLINE void add_row(const Row* const* list, int count, const Side& w, const Side& parent, bool turns,
+                          Number diagonal, Number b, Row& row) const {
+    Number t[kMostTreeRows];
+    Number z = b;
+    Side v = parent;
+    for (int q = 0; q < count; ++q) {
+      const Row& other = *list[q];
+      Number other_w[6];
+      load(other.w, other_w);
+      Number s = product(w.x, other_w, turns);
+      for (int p = 0; p < q; ++p) s = s - t[p] * at(other.l[p]);
+      t[q] = s;
+      const Number l = s * at(other.inverse);
+      diagonal = diagonal - s * l;
+      put(l, row.l[q]);
+      z = z - l * at(other.z);
+      for (int i = 0; i < 6; ++i) v.x[i] = v.x[i] - l * at(other.v[i]);
+    }
+    put(inverse_of_pivot(diagonal), row.inverse);
+    put(z, row.z);
+    store(v.x, row.v);
+  }
+
+  HWY_INLINE void eliminate(const TreeJoint& joint, Link& link, Link& parent) const {
+    const Number zero(0.0);
+    const Number one(1.0);
+    LinkFactor<Number> factor;
+    load(link.a, factor.a);
+    factor.factor();
+    store(factor.a, link.a);
+    Number y[6];
+    load(link.g, y);
+    Number g_parent[6];
+    load(parent.g, g_parent);
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const TreeRowForm& form = forms_[r];
+      if (!form.bounded) continue;
+      const Row& row = rows_[r];
+      const Number impulse = fixed_impulse(row, form);
+      for (int i = form.turns ? 3 : 0; i < 6; ++i) {
+        const Number child = i < 3 ? at(row.n[i % 3]) : at(row.child[i % 3]);
+        const Number other = i < 3 ? zero - at(row.n[i % 3]) : at(row.parent[i % 3]);
+        y[i] = y[i] + impulse * child;
+        g_parent[i] = g_parent[i] + impulse * other;
+      }
+    }
+    factor.template substitute<0>(y);
+    for (int i = 0; i < 6; ++i) y[i] = factor.inverse(i) * y[i];
+    store(y, link.g);
+
+    const Row* list[kMostTreeRows];
+    int count = 0;
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const TreeRowForm form = forms_[r];
+      Row& row = rows_[r];
+      const bool drops = form.bounded && !form.sprung;
+      if (drops && !any(above(Number(0.5), is_bound(row)))) continue;
+      Side w = child_side(row, form.turns);
+      Side p = parent_side(row, form.turns);
+      Number gamma = at(row.gamma);
+      Number target = at(row.target);
+      if (form.sprung) {
+        const auto slides = above(is_bound(row), Number(0.5));
+        gamma = choose(slides, at(row.spring_gamma), gamma);
+        target = choose(slides, at(row.spring_target), target);
+      }
+      Number b = target - rate(row, form.turns, link.v, link.omega, parent.v, parent.omega);
+      if (drops) {
+        const auto held = above(is_bound(row), Number(0.5));
+        for (int i = form.turns ? 3 : 0; i < 6; ++i) {
+          w.x[i] = choose(held, zero, w.x[i]);
+          p.x[i] = choose(held, zero, p.x[i]);
+        }
+        gamma = choose(held, one, gamma);
+        b = choose(held, zero, b);
+      }
+      if (form.turns) {
+        factor.template substitute<3>(w.x);
+      } else {
+        factor.template substitute<0>(w.x);
+      }
+      Side scaled = w;
+      for (int i = 0; i < 6; ++i) scaled.x[i] = factor.inverse(i) * w.x[i];
+      store(scaled.x, row.w);
+      const Number diagonal = product(w.x, scaled.x, form.turns);
+      b = b - product_of_y(w, y, form.turns);
+      add_row(list, count, w, p, form.turns, (diagonal + Number(kTreeCompliance) * diagonal) + gamma, b, row);
+      list[count++] = &row;
+    }
+    if (joint.parent_moves) add_to_parent(list, count, g_parent, parent);
+  }
+
+  static HWY_INLINE Number product_of_y(const Side& w, const Number (&y)[6], bool turns) {
+    return product(w.x, y, turns);
+  }
+
+  HWY_INLINE void add_to_parent(const Row* const* list, int count, Number (&g)[6], Link& parent) const {
+    Number a[21];
+    load(parent.a, a);
+    for (int k = 0; k < count; ++k) {
+      const Row& row = *list[k];
+      Number v[6];
+      load(row.v, v);
+      const Number inverse = at(row.inverse);
+      const Number z = at(row.z);
+      for (int i = 0; i < 6; ++i) {
+        const Number scaled = inverse * v[i];
+        g[i] = g[i] + scaled * z;
+        for (int j = 0; j <= i; ++j) a[triangle_at(i, j)] = a[triangle_at(i, j)] + scaled * v[j];
+      }
+    }
+    store(a, parent.a);
+    store(g, parent.g);
+  }
+
+  HWY_INLINE void solve_root(Link& root) const {
+    const Number zero(0.0);
+    Number x[6];
+    if (joint_count_ > 0 && joints_[joint_count_ - 1].parent_moves) {
+      LinkFactor<Number> factor;
+      load(root.a, factor.a);
+      factor.factor();
+      load(root.g, x);
+      factor.template substitute<0>(x);
+      for (int i = 0; i < 6; ++i) x[i] = factor.inverse(i) * x[i];
+      factor.substitute_back(x);
+    } else {
+      for (int i = 0; i < 6; ++i) x[i] = zero;
+    }
+    finish(x, root);
+  }
+
+  HWY_INLINE void finish(const Number (&x)[6], Link& link) const {
+    store(x, link.u);
+    const Number zero(0.0);
+    for (int i = 0; i < 3; ++i) {
+      put(at(link.v[i]) + x[i] + zero, link.v_now[i]);
+      put(at(link.omega[i]) + x[i + 3] + zero, link.omega_now[i]);
+    }
+  }
+
+  HWY_INLINE void go_back(const TreeJoint& joint, Link& link, const Link& parent) const {
+    Number u[6];
+    load(parent.u, u);
+    Number x[6];
+    load(link.g, x);
+    Row* list[kMostTreeRows];
+    int count = 0;
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const bool drops = forms_[r].bounded && !forms_[r].sprung;
+      if (drops && !any(above(Number(0.5), is_bound(rows_[r])))) continue;
+      list[count++] = &rows_[r];
+    }
+    for (int k = count - 1; k >= 0; --k) {
+      Row& row = *list[k];
+      Number v[6];
+      load(row.v, v);
+      Number lambda = at(row.inverse) * (at(row.z) - product(v, u, false));
+      for (int q = k + 1; q < count; ++q) lambda = lambda - at(list[q]->l[k]) * at(list[q]->change);
+      put(lambda, row.change);
+      for (int i = 0; i < 6; ++i) x[i] = x[i] + at(row.w[i]) * lambda;
+    }
+    LinkFactor<Number> factor;
+    load(link.a, factor.a);
+    factor.substitute_back(x);
+    finish(x, link);
+  }
+
+  /// Impulses, and bounds for the next solution.
+  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, Number release, Number& changed) const {
+    const Number zero(0.0);
+    const Number one(1.0);
+    const Link& parent = links_[joint.parent];
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const TreeRowForm& form = forms_[r];
+      Row& row = rows_[r];
+      const Number lambda = at(row.change) + zero;
+      if (!form.bounded) {
+        put(lambda, row.lambda);
+        continue;
+      }
+      const Number bound = at(row.bound);
+      const Number fixed = fixed_impulse(row, form);
+      const auto is_free = above(Number(0.5), bound * bound);
+      put(choose(is_free, lambda, fixed), row.lambda);
+      if (form.sprung) put(choose(is_free, fixed, lambda), row.spring_lambda);
+      const Number to =
+          choose(above(at(row.low), lambda), zero - one, choose(above(lambda, at(row.high)), one, zero));
+      const Number lacks =
+          at(row.target) - rate(row, form.turns, link.v_now, link.omega_now, parent.v_now, parent.omega_now);
+      const Number let_go = choose(above(Number(-kNoSpeed), bound * lacks), zero, bound);
+      const Number held = choose(above(release, zero), let_go, bound);
+      const Number next = choose(is_free, to, held);
+      put(next, row.bound);
+      const Number step = next - bound;
+      changed = choose(above(step * step, zero), one, changed);
+    }
+  }
+
+  const TreeJoint* joints_;
+  const TreeRowForm* forms_;
+  Link* links_;
+  Row* rows_;
+  int joint_count_;
+  int lane_;
+};
+
+template <class Number, int kCount>
+HWY_INLINE void solve_tree_lanes(const TreeForm& form, TreeLanes<kCount>& trees) {
+  for (int lane = 0; lane < kCount; lane += kLanesOf<Number>)
+    TreeSweep<Number, kCount>(form, trees, lane).run(trees);
+}
+
+}  // namespace hooke::solver::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
