@@ -17,8 +17,6 @@ namespace {
 using math::Symmetric3;
 using state::Hook;
 
-constexpr double kFastTurn = 0.03;    ///< In a substep, from which on rows are not straight [rad].
-constexpr double kLargeError = 2e-4;  ///< Gap of a joint over its levers, or its angle [rad].
 constexpr int kWeldRows = 6;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
@@ -87,10 +85,9 @@ JointBody moved(const Link& link, double h) {
 
 /// What the gap of a joint is small against: its levers on bodies that move [m].
 double size_of(const Hook& hook, const Link& a, const Link& b) {
-  constexpr double kLeast = 0.01;
   const double size_a = a.body.inverse_mass > 0 ? length(hook.a.anchor) : 0;
   const double size_b = b.body.inverse_mass > 0 ? length(hook.b.anchor) : 0;
-  return std::max(kLeast, size_a + size_b);
+  return std::max(kLeastLever, size_a + size_b);
 }
 
 /// Newton: the rows about the end of the substep as it was found, where C = c + h J (v' - v) for another

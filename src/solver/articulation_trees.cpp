@@ -1,154 +1,225 @@
-/// Trees side by side, as many as a vector has lanes: a lane takes the next tree as soon as its own is done,
-/// so that one which needs many solutions keeps nobody waiting. Read Group::solve first.
+/// Trees side by side, as many as a vector has lanes. Two thirds of them need one solution, some need ten:
+/// those that need another move to lanes of their own, so that they keep nobody waiting. Read Group::solve
+/// first.
 
+#include "math/rotation.h"
 #include "solver/articulation_links.h"
-#include "solver/geometric_stiffness.h"
+#include "solver/lanes.h"
 #include "solver/wide/trees.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace hooke::solver {
 
 namespace {
 
+using state::Hook;
+
 constexpr std::size_t kFewestForLanes = 2;  ///< Below that one after another is faster.
 
-template <int kCount>
-void put(DVec3 v, double (&to)[3][kCount], int lane) {
-  to[0][lane] = v.x;
-  to[1][lane] = v.y;
-  to[2][lane] = v.z;
+/// The first `count` numbers of a struct of lanes.
+template <class Lanes>
+void copy_lane(const Lanes& from, int lane, std::size_t count, std::size_t stride, int to_lane, Lanes& to) {
+  const auto* source = reinterpret_cast<const double*>(&from) + lane;
+  auto* target = reinterpret_cast<double*>(&to) + to_lane;
+  for (std::size_t i = 0; i < count * stride; i += stride) target[i] = source[i];
 }
+
+/// Trees in lanes.
 template <int kCount>
-DVec3 get(const double (&from)[3][kCount], int lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
+struct Block {
+  struct Slot {
+    const Articulation* tree = nullptr;
+    int pass = 0;
+    int solution = 0;
+  };
+  wide::TreeLanes<kCount> lanes;
+  std::array<Slot, kCount> slots;
+
+  void resize(const wide::TreeForm& form) {
+    lanes.links.resize(form.joints.size() + 1);
+    lanes.joints.resize(form.joints.size());
+    lanes.rows.resize(form.rows.size());
+  }
+};
 
 template <int kCount>
 class Group {
  public:
   void solve(double h, std::span<Articulation* const> trees, JointTables tables) {
+    h_ = h;
     form_ = &trees.front()->tree.form;
-    lanes_.links.resize(form_->joints.size() + 1);
-    lanes_.rows.resize(form_->rows.size());
-    trees_ = trees;
-    running_ = 0;
-    // Lanes without a tree repeat the first.
-    for (int lane = kCount - 1; lane > 0; --lane) {
-      if (static_cast<std::size_t>(lane) >= trees.size()) begin(h, lane, *trees.front(), tables);
-    }
-    slots_.fill({});
-    for (int lane = 0; lane < kCount; ++lane) take_next(h, lane, tables);
-    while (running_ > 0) {
-      for (int lane = 0; lane < kCount; ++lane)
-        lanes_.release[lane] = slots_[lane].pass < kFreeBoundPasses ? 1 : 0;
-      wide::solve_trees(*form_, lanes_);
+    fresh_.resize(*form_);
+    late_.resize(*form_);
+    late_.slots.fill({});
+    for (; !trees.empty(); trees = trees.subspan(std::min<std::size_t>(kCount, trees.size()))) {
+      // Lanes without a tree repeat the first.
+      const int count = static_cast<int>(std::min<std::size_t>(kCount, trees.size()));
       for (int lane = 0; lane < kCount; ++lane) {
-        if (slots_[lane].tree != nullptr) settle(h, lane, tables);
+        fresh_.slots[lane] = {};
+        if (lane < count) fresh_.slots[lane].tree = trees[lane];
+        load(*trees[lane < count ? lane : 0], tables, lane);
+      }
+      wide::make_tree_rows(h, *form_, fresh_.lanes);
+      solve_block(tables, fresh_);
+      for (int lane = 0; lane < count; ++lane) {
+        if (fresh_.slots[lane].tree != nullptr) move_on(tables, lane);
       }
     }
+    while (is_busy(late_)) solve_block(tables, late_);
   }
 
  private:
-  struct Slot {
-    Articulation* tree = nullptr;
-    int pass = 0;
-    int solution = 0;
-  };
+  using Slot = typename Block<kCount>::Slot;
+  using LinkLanes = wide::TreeLinkLanes<kCount>;
+  using JointLanes = wide::TreeJointLanes<kCount>;
+  using RowLanes = wide::TreeRowLanes<kCount>;
 
-  void take_next(double h, int lane, JointTables tables) {
-    slots_[lane] = {};
-    if (trees_.empty()) return;
-    slots_[lane].tree = trees_.front();
-    trees_ = trees_.subspan(1);
-    ++running_;
-    begin(h, lane, *slots_[lane].tree, tables);
+  static bool is_free(const Slot& slot) { return slot.tree == nullptr; }
+  static bool is_busy(const Block<kCount>& block) {
+    return !std::all_of(block.slots.begin(), block.slots.end(), is_free);
   }
 
-  void begin(double h, int lane, Articulation& art, JointTables tables) {
-    begin_articulation(h, tables, art);
-    load(art, lane);
+  /// One solution of all lanes; those that need no other are stored and free.
+  void solve_block(JointTables tables, Block<kCount>& block) {
+    for (int lane = 0; lane < kCount; ++lane)
+      block.lanes.release[lane] = block.slots[lane].pass < kFreeBoundPasses ? 1 : 0;
+    wide::solve_trees(h_, *form_, block.lanes);
+    for (int lane = 0; lane < kCount; ++lane) {
+      Slot& slot = block.slots[lane];
+      if (is_free(slot) || needs_another(lane, block)) continue;
+      store(*slot.tree, block.lanes, lane, tables);
+      slot = {};
+    }
   }
 
-  /// After a solution of all lanes.
-  void settle(double h, int lane, JointTables tables) {
-    Slot& slot = slots_[lane];
-    const bool changed = lanes_.changed[lane] > 0;
-    if (changed && ++slot.pass < kMostBoundPasses) return;
-    Articulation& art = *slot.tree;
-    fetch(lane, art);
-    if (changed) clamp_impulses(art);
+  bool needs_another(int lane, Block<kCount>& block) {
+    Slot& slot = block.slots[lane];
+    if (block.lanes.changed[lane] > 0) {
+      if (++slot.pass < kMostBoundPasses) return true;
+      wide::clamp_tree_impulses(h_, *form_, lane, block.lanes);
+    }
     slot.pass = 0;
-    if (begin_next_solution(h, tables, art) && ++slot.solution < kMaxSolves) return load(art, lane);
-    store_velocities(art, tables.bodies);
-    --running_;
-    take_next(h, lane, tables);
+    const bool grew = block.lanes.grew[lane] > 0;
+    const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
+    const bool bent = turns_fast && wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes) > kLargeError;
+    return (grew || bent) && ++slot.solution < kMaxSolves;
   }
 
-  void load(Articulation& art, int lane) {
-    reset_velocities(art);
-    for (std::size_t i = 0; i < art.links.size(); ++i) load_link(art.links[i], lanes_.links[i], lane);
+  /// To a lane of those that take longer.
+  void move_on(JointTables tables, int lane) {
+    auto slot = std::find_if(late_.slots.begin(), late_.slots.end(), is_free);
+    while (slot == late_.slots.end()) {
+      solve_block(tables, late_);
+      slot = std::find_if(late_.slots.begin(), late_.slots.end(), is_free);
+    }
+    *slot = fresh_.slots[lane];
+    const int to = static_cast<int>(slot - late_.slots.begin());
+    constexpr std::size_t kLinkNumbers = offsetof(LinkLanes, v_now) / sizeof(double) / kCount + 6;
+    constexpr std::size_t kJointNumbers = sizeof(JointLanes) / sizeof(double) / kCount;
+    constexpr std::size_t kRowNumbers = offsetof(RowLanes, lambda) / sizeof(double) / kCount;
+    for (std::size_t i = 0; i < late_.lanes.links.size(); ++i)
+      copy_lane(fresh_.lanes.links[i], lane, kLinkNumbers, kCount, to, late_.lanes.links[i]);
+    for (std::size_t i = 0; i < late_.lanes.joints.size(); ++i)
+      copy_lane(fresh_.lanes.joints[i], lane, kJointNumbers, kCount, to, late_.lanes.joints[i]);
+    for (std::size_t i = 0; i < late_.lanes.rows.size(); ++i)
+      copy_lane(fresh_.lanes.rows[i], lane, kRowNumbers, kCount, to, late_.lanes.rows[i]);
+  }
+
+  void load(const Articulation& art, JointTables tables, int lane) {
+    for (std::size_t i = 0; i < art.bodies.size(); ++i)
+      load_link(joint_body_now(tables.bodies, art.bodies[i]), fresh_.lanes.links[i], lane);
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
+      const Hook& hook = tables.hooks[art.joints[i].hook];
       const wide::TreeJoint& joint = form_->joints[i];
-      const bool child_is_b = art.joints[i].b == i;
-      for (int r = joint.first; r < joint.first + joint.count; ++r) load_row(art, r, child_is_b, lane);
+      load_hook(hook, joint.turns, fresh_.lanes.joints[i], lane);
+      for (int r = joint.first; r < joint.first + joint.count; ++r)
+        load_row(hook, form_->rows[r], art.tree.rows[r], fresh_.lanes.rows[r], lane);
     }
   }
 
-  static void load_link(const Link& link, wide::TreeLinkLanes<kCount>& to, int lane) {
-    const bool moves = link.body.inverse_mass > 0;
-    to.mass[lane] = moves ? 1 / link.body.inverse_mass : 0;
-    const math::Symmetric3<double> m =
-        math::Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, link.excess);
-    const std::array<double, 6> turning = {m.xx, m.xy, m.xz, m.yy, m.yz, m.zz};
-    for (int k = 0; k < 6; ++k) to.turning[k][lane] = turning[k];
-    put(link.v, to.v, lane);
-    put(link.omega_scaled, to.omega, lane);
+  static void load_link(const JointBody& body, LinkLanes& to, int lane) {
+    put(body.center, to.center, lane);
+    put(body.rotation, to.rotation, lane);
+    put(body.scale, to.scale, lane);
+    to.inverse_mass[lane] = body.inverse_mass;
+    to.mass[lane] = body.inverse_mass > 0 ? 1 / body.inverse_mass : 0;
+    put(body.v, to.v, lane);
+    put(body.omega_scaled, to.omega_before, lane);
+    put(body.omega_scaled, to.omega, lane);
+    put(math::Symmetric3<double>{}, to.stiffness, lane);
+    put(math::Symmetric3<double>::diagonal(1), to.turning, lane);
   }
 
-  void load_row(const Articulation& art, int r, bool child_is_b, int lane) {
-    const wide::TreeRowForm& form = form_->rows[r];
-    const int i = art.tree.rows[r];
-    const JointRow& row = art.rows[i];
-    wide::TreeRowLanes<kCount>& to = lanes_.rows[r];
-    if (!form.turns) put(child_is_b ? row.n : -row.n, to.n, lane);
-    put(child_is_b ? row.j_b : -row.j_a, to.child, lane);
-    put(child_is_b ? -row.j_a : row.j_b, to.parent, lane);
-    to.gamma[lane] = row.gamma;
-    to.target[lane] = row.target;
-    if (!form.bounded) return;
-    to.low[lane] = row.low;
-    to.high[lane] = row.high;
-    to.bound[lane] = art.bound[i];
-    if (!form.sprung) return;
-    const JointRow& spring = art.rows[i - 1];
-    to.spring_gamma[lane] = spring.gamma;
-    to.spring_target[lane] = spring.target;
-    to.held_spring[lane] = (spring.target - row.target) / spring.gamma;
+  static void load_hook(const Hook& hook, bool turns, JointLanes& to, int lane) {
+    put(hook.a.anchor, to.anchor_a, lane);
+    put(hook.b.anchor, to.anchor_b, lane);
+    put(hook.a.axes, to.axes_a, lane);
+    put(hook.b.axes, to.axes_b, lane);
+    put(vector_cast<double>(hook.impulse), to.impulse, lane);
+    if (!turns) return;
+    for (int k = 3; k < 6; ++k) to.value[k][lane] = hook.value[k];
   }
 
-  void fetch(int lane, Articulation& art) const {
-    for (std::size_t r = 0; r < form_->rows.size(); ++r) {
-      const wide::TreeRowForm& form = form_->rows[r];
-      const wide::TreeRowLanes<kCount>& from = lanes_.rows[r];
-      const int i = art.tree.rows[r];
-      art.lambda[i] = from.lambda[lane];
-      if (form.bounded) art.bound[i] = static_cast<std::int8_t>(from.bound[lane]);
-      if (form.sprung) art.lambda[i - 1] = from.spring_lambda[lane];
+  /// Settings of a row, and its impulse in the last substep.
+  void load_row(const Hook& hook, const wide::TreeRowForm& form, int row, RowLanes& to, int lane) const {
+    const bool is_cone = form.freedom == 6;
+    const HookFreedom& freedom = hook.freedom[is_cone ? 0 : form.freedom];
+    to.goal[lane] = static_cast<double>(freedom.spring.target);
+    if (form.role == RowRole::kSpring || form.sprung) {
+      to.stiffness[lane] = static_cast<double>(freedom.spring.stiffness);
+      to.damping[lane] = static_cast<double>(freedom.spring.damping);
     }
-    for (std::size_t i = 0; i < art.links.size(); ++i) {
-      art.links[i].v = get(lanes_.links[i].v_now, lane);
-      art.links[i].omega_scaled = get(lanes_.links[i].omega_now, lane);
+    if (!form.bounded()) return;
+    to.lambda[lane] = static_cast<double>(hook.row_impulse[row]);
+    if (form.role == RowRole::kMotor) {
+      to.speed[lane] = static_cast<double>(freedom.motor.speed);
+      to.high[lane] = h_ * static_cast<double>(freedom.motor.max_force);
+      to.low[lane] = -to.high[lane];
+      return;
+    }
+    const HookLimits limits = is_cone ? HookLimits{.upper = hook.cone} : freedom.limits;
+    to.lower[lane] = static_cast<double>(limits.lower);
+    to.upper[lane] = static_cast<double>(limits.upper);
+    to.low[lane] = 0;
+    to.high[lane] = std::numeric_limits<double>::infinity();
+  }
+
+  void store(const Articulation& art, const wide::TreeLanes<kCount>& from, int lane,
+             JointTables tables) const {
+    for (std::size_t i = 0; i < art.joints.size(); ++i) {
+      Hook& hook = tables.hooks[art.joints[i].hook];
+      const wide::TreeJoint& joint = form_->joints[i];
+      for (int r = joint.first; r < joint.first + joint.count; ++r) {
+        const int row = art.tree.rows[r];
+        hook.row_impulse[row] = static_cast<Real>(from.rows[r].lambda[lane]);
+        if (form_->rows[r].sprung)
+          hook.row_impulse[row - 1] = static_cast<Real>(from.rows[r].spring_lambda[lane]);
+      }
+      hook.impulse = vector_cast<Real>(get(from.joints[i].impulse, lane));
+      hook.angular_impulse = vector_cast<Real>(get(from.joints[i].angular, lane));
+      for (int k = 0; k < 6; ++k) hook.value[k] = k < 3 || joint.turns ? from.joints[i].value[k][lane] : 0.0;
+    }
+    for (std::size_t i = 0; i < art.bodies.size(); ++i) {
+      const LinkLanes& link = from.links[i];
+      if (!(link.inverse_mass[lane] > 0)) continue;
+      JointBody before;
+      before.omega_scaled = get(link.omega_before, lane);
+      const auto& s = link.scale;
+      before.scale = {s[0][lane], s[1][lane], s[2][lane], s[3][lane], s[4][lane], s[5][lane]};
+      set_joint_velocity(before, get(link.v_now, lane), get(link.omega_now, lane), art.bodies[i],
+                         tables.bodies);
     }
   }
 
+  double h_ = 0;
   const wide::TreeForm* form_ = nullptr;
-  std::span<Articulation* const> trees_;  ///< That no lane has taken yet.
-  int running_ = 0;
-  std::array<Slot, kCount> slots_;
-  wide::TreeLanes<kCount> lanes_;
+  Block<kCount> fresh_;  ///< Trees at their first solution.
+  Block<kCount> late_;   ///< Those that need more.
 };
 
 }  // namespace

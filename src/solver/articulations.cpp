@@ -117,7 +117,11 @@ bool make_blocks(Frame frame, const std::vector<Hook>& hooks, const state::Bodie
   art.bodies = std::move(frame.bodies);
   art.parts = std::move(frame.parts);
   list_couplings(bodies, art);
+  art.links.resize(art.bodies.size());
   const auto row_count = static_cast<std::size_t>(blocks.pattern.first.back());
+  art.rows.resize(row_count);
+  art.lambda.resize(row_count);
+  art.bound.resize(row_count);
   blocks.free.reserve(row_count);
   blocks.columns.reserve(9 * row_count);
   blocks.right_side.reserve(row_count);
@@ -166,18 +170,17 @@ std::vector<Branch> list_branches(const Frame& frame, std::uint32_t root) {
 }
 
 /// Rows of a joint, for the lanes: a spring and the motor beside it are one.
-void list_tree_rows(const Articulation::Joint& joint, const Hook& hook, Articulation::Tree& tree) {
+void list_tree_rows(const Hook& hook, Articulation::Tree& tree) {
   std::array<RowKind, Hook::kMaxRows> kinds;
   const int count = list_joint_rows(hook, kinds);
+  const auto is_motor_of = [&](int k, int freedom) {
+    return k < count && kinds[k].role == RowRole::kMotor && kinds[k].freedom == freedom;
+  };
   for (int i = 0; i < count; ++i) {
-    const bool bounded = kinds[i].role == RowRole::kMotor || kinds[i].role == RowRole::kLimit;
-    const auto has_motor = [&](int k) {
-      return k < count && kinds[k].role == RowRole::kMotor && kinds[k].freedom == kinds[i].freedom;
-    };
-    const bool sprung = kinds[i].role == RowRole::kSpring && has_motor(i + 1);
+    const bool sprung = kinds[i].role == RowRole::kSpring && is_motor_of(i + 1, kinds[i].freedom);
     if (sprung) ++i;
-    tree.form.rows.push_back({kinds[i].turns(), bounded || sprung, sprung});
-    tree.rows.push_back(joint.first + i);
+    tree.form.rows.push_back({kinds[i].freedom, kinds[i].role, sprung});
+    tree.rows.push_back(i);
   }
 }
 
@@ -203,13 +206,19 @@ bool make_tree(const Frame& frame, const std::vector<Hook>& hooks, const state::
     joint.a = place[joint.a];
     joint.b = place[joint.b];
     joint.first = first;
-    joint.count = count_joint_rows(hooks[joint.hook]);
+    const Hook& hook = hooks[joint.hook];
+    joint.count = count_joint_rows(hook);
     first += joint.count;
     const auto first_of_form = static_cast<int>(form.rows.size());
-    list_tree_rows(joint, hooks[joint.hook], art.tree);
+    list_tree_rows(hook, art.tree);
     const int count = static_cast<int>(form.rows.size()) - first_of_form;
-    form.joints.push_back(
-        {static_cast<int>(place[parent]), is_dynamic(bodies, frame.bodies[parent]), first_of_form, count});
+    form.joints.push_back({.parent = static_cast<int>(place[parent]),
+                           .parent_moves = is_dynamic(bodies, frame.bodies[parent]),
+                           .child_is_b = joint.b == place[branch.child],
+                           .kind = hook.kind,
+                           .turns = rows_turn(hook),
+                           .first = first_of_form,
+                           .count = count});
     budget -= cost_of(count);
     art.joints.push_back(joint);
     art.bodies.push_back(frame.bodies[branch.child]);
@@ -230,11 +239,6 @@ std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& 
                                                            hooks, bodies, budget, art)
                                              : make_tree(whole, hooks, bodies, kTreesMayTake * budget, art);
   if (!made) return std::nullopt;
-  art.links.resize(art.bodies.size());
-  const auto row_count = static_cast<std::size_t>(art.joints.back().first + art.joints.back().count);
-  art.rows.resize(row_count);
-  art.lambda.resize(row_count);
-  art.bound.resize(row_count);
   return art;
 }
 

@@ -4,6 +4,7 @@
 #include "solver/chains.h"
 
 #include "solver/bundles.h"
+#include "solver/lanes.h"
 #include "solver/rope_rows.h"
 #include "solver/wide/ropes.h"
 
@@ -33,17 +34,6 @@ struct AnchorRows {
   std::array<JointRow, 3> rows = {};
   std::array<double, 3> gamma = {};  ///< Compliance of each.
 };
-
-template <int kCount>
-void put(DVec3 v, double (&to)[3][kCount], int lane) {
-  to[0][lane] = v.x;
-  to[1][lane] = v.y;
-  to[2][lane] = v.z;
-}
-template <int kCount>
-DVec3 get(const double (&from)[3][kCount], int lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
 
 /// Up to kCount ropes of equally many nodes. Lanes without one repeat the first.
 template <int kCount>

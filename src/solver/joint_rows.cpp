@@ -21,10 +21,6 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
-constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
-constexpr double kLimitSpeed = 2;      ///< [m/s] or [rad/s]
-constexpr double kLeastCosine = 0.05;  ///< Of the second angle, below which rates stay as they are there.
 
 // The freedoms of a hook, and two more of balls.
 constexpr int kTwist = 3;
@@ -65,15 +61,6 @@ void for_each_row(const Hook& hook, Visit&& visit) {
     if (limited(f.limits)) visit(i, RowRole::kLimit);
   }
   if (std::isfinite(hook.cone)) visit(kCone, RowRole::kLimit);
-}
-
-bool turns(const Hook& hook) {
-  if (std::isfinite(hook.cone)) return true;
-  for (int i = 3; i < 6; ++i) {
-    const HookFreedom& f = hook.freedom[i];
-    if (f.locked || sprung(f.spring) || f.motor.max_force > Real(0) || limited(f.limits)) return true;
-  }
-  return false;
 }
 
 /// The rotation from a's axes to b's as angles about a's x, then y, then b's z.
@@ -153,7 +140,7 @@ Freedoms find_freedoms(const Hook& hook, const JointBody& a, const JointBody& b)
     f.value[0] = length(d);
     if (f.value[0] > 1e-9) f.axis[0] = normalize(d);
   }
-  if (!turns(hook)) return f;
+  if (!rows_turn(hook)) return f;
   if (hook.kind == HookKind::kBall) {
     take_apart_ball(axes_a, q_a, q_b, f);
     take_cone(q_a, q_b, f);
@@ -242,6 +229,15 @@ int count_joint_rows(const Hook& hook) {
   int count = 0;
   for_each_row(hook, [&](int, RowRole) { ++count; });
   return count;
+}
+
+bool rows_turn(const Hook& hook) {
+  if (std::isfinite(hook.cone)) return true;
+  for (int i = 3; i < 6; ++i) {
+    const HookFreedom& f = hook.freedom[i];
+    if (f.locked || sprung(f.spring) || f.motor.max_force > Real(0) || limited(f.limits)) return true;
+  }
+  return false;
 }
 
 int list_joint_rows(const Hook& hook, std::span<RowKind, Hook::kMaxRows> kinds) {

@@ -74,6 +74,9 @@ struct RowKind {
 /// How many rows a hook has. It depends on its settings only, not on how its ends stand.
 [[nodiscard]] int count_joint_rows(const state::Hook& hook);
 
+/// Whether its rows need the angles of its freedoms.
+[[nodiscard]] bool rows_turn(const state::Hook& hook);
+
 /// The kinds of these rows, ways before angles; returns how many they are.
 int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMaxRows> kinds);
 
@@ -91,7 +94,14 @@ int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMa
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
-inline constexpr double kNoSpeed = 1e-9;  ///< [m/s] or [rad/s], as rounding leaves it.
+inline constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
+inline constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
+inline constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
+inline constexpr double kLimitSpeed = 2;      ///< [m/s] or [rad/s]
+inline constexpr double kLeastCosine = 0.05;  ///< Of the second angle, below which rates stay as they are.
+inline constexpr double kLeastLever = 0.01;   ///< That a gap is small against [m].
+inline constexpr double kFastTurn = 0.03;     ///< In a substep, from which on rows are not straight [rad].
+inline constexpr double kLargeError = 2e-4;   ///< Gap of a joint over its levers, or its angle [rad].
 
 /// -1 below the bounds, 1 above them.
 [[nodiscard]] std::int8_t side_of(double value, double low, double high);

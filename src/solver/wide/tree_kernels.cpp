@@ -12,17 +12,24 @@
 
 // After Highway, which includes this file anew for each instruction set.
 #include "solver/wide/double_vectors.h"
+#include "solver/wide/tree_rows.h"
 #include "solver/wide/tree_sweep.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-void solve_trees_here(const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
 #if HWY_TARGET == HWY_SCALAR
-  solve_tree_lanes<double>(form, trees);
+using TreeNumber = double;
 #else
-  solve_tree_lanes<WideDouble>(form, trees);
+using TreeNumber = WideDouble;
 #endif
+
+void make_tree_rows_here(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  make_tree_row_lanes<TreeNumber>(h, form, trees);
+}
+
+void solve_trees_here(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  solve_tree_lanes<TreeNumber>(h, form, trees);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
@@ -31,11 +38,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hooke::solver::wide {
 
+HWY_EXPORT(make_tree_rows_here);
 HWY_EXPORT(solve_trees_here);
 
-void solve_trees(const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
-  if (is_scalar()) return solve_trees_scalar(form, trees);
-  HWY_DYNAMIC_DISPATCH(solve_trees_here)(form, trees);
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  if (is_scalar()) return make_tree_rows_scalar(h, form, trees);
+  HWY_DYNAMIC_DISPATCH(make_tree_rows_here)(h, form, trees);
+}
+
+void solve_trees(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  if (is_scalar()) return solve_trees_scalar(h, form, trees);
+  HWY_DYNAMIC_DISPATCH(solve_trees_here)(h, form, trees);
 }
 
 }  // namespace hooke::solver::wide
@@ -45,8 +58,12 @@ void solve_trees(const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
 
 namespace hooke::solver::wide {
 
-void solve_trees(const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
-  solve_trees_scalar(form, trees);
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  make_tree_rows_scalar(h, form, trees);
+}
+
+void solve_trees(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees) {
+  solve_trees_scalar(h, form, trees);
 }
 
 }  // namespace hooke::solver::wide

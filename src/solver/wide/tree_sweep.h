@@ -26,6 +26,7 @@
 
 #include "solver/joint_rows.h"
 #include "solver/wide/numbers.h"
+#include "solver/wide/tree_stiffness.h"
 #include "solver/wide/trees.h"
 
 #include <hwy/highway.h>
@@ -92,6 +93,7 @@ class TreeSweep {
       : joints_(form.joints.data()),
         forms_(form.rows.data()),
         links_(trees.links.data()),
+        hooks_(trees.joints.data()),
         rows_(trees.rows.data()),
         joint_count_(static_cast<int>(form.joints.size())),
         lane_(lane) {}
@@ -103,8 +105,11 @@ class TreeSweep {
     for (int i = joint_count_ - 1; i >= 0; --i) go_back(joints_[i], links_[i], links_[joints_[i].parent]);
     const Number release = get<Number>(trees.release + lane_);
     Number changed(0.0);
-    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, changed);
+    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, hooks_[i], changed);
     write(changed, trees.changed + lane_);
+    Number fastest(0.0);
+    for (int i = 0; i < joint_count_ + 1; ++i) fastest = larger(fastest, turn_squared(links_[i]));
+    write(fastest, trees.fast + lane_);
   }
 
  private:
@@ -225,10 +230,10 @@ class TreeSweep {
     load(parent.g, g_parent);
     for (int r = joint.first; r < joint.first + joint.count; ++r) {
       const TreeRowForm& form = forms_[r];
-      if (!form.bounded) continue;
+      if (!form.bounded()) continue;
       const Row& row = rows_[r];
       const Number impulse = fixed_impulse(row, form);
-      for (int i = form.turns ? 3 : 0; i < 6; ++i) {
+      for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
         const Number child = i < 3 ? at(row.n[i % 3]) : at(row.child[i % 3]);
         const Number other = i < 3 ? zero - at(row.n[i % 3]) : at(row.parent[i % 3]);
         y[i] = y[i] + impulse * child;
@@ -244,10 +249,10 @@ class TreeSweep {
     for (int r = joint.first; r < joint.first + joint.count; ++r) {
       const TreeRowForm form = forms_[r];
       Row& row = rows_[r];
-      const bool drops = form.bounded && !form.sprung;
+      const bool drops = form.drops();
       if (drops && !any(above(Number(0.5), is_bound(row)))) continue;
-      Side w = child_side(row, form.turns);
-      Side p = parent_side(row, form.turns);
+      Side w = child_side(row, form.turns());
+      Side p = parent_side(row, form.turns());
       Number gamma = at(row.gamma);
       Number target = at(row.target);
       if (form.sprung) {
@@ -255,17 +260,17 @@ class TreeSweep {
         gamma = choose(slides, at(row.spring_gamma), gamma);
         target = choose(slides, at(row.spring_target), target);
       }
-      Number b = target - rate(row, form.turns, link.v, link.omega, parent.v, parent.omega);
+      Number b = target - rate(row, form.turns(), link.v, link.omega, parent.v, parent.omega);
       if (drops) {
         const auto held = above(is_bound(row), Number(0.5));
-        for (int i = form.turns ? 3 : 0; i < 6; ++i) {
+        for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
           w.x[i] = choose(held, zero, w.x[i]);
           p.x[i] = choose(held, zero, p.x[i]);
         }
         gamma = choose(held, one, gamma);
         b = choose(held, zero, b);
       }
-      if (form.turns) {
+      if (form.turns()) {
         factor.template substitute<3>(w.x);
       } else {
         factor.template substitute<0>(w.x);
@@ -273,9 +278,10 @@ class TreeSweep {
       Side scaled = w;
       for (int i = 0; i < 6; ++i) scaled.x[i] = factor.inverse(i) * w.x[i];
       store(scaled.x, row.w);
-      const Number diagonal = product(w.x, scaled.x, form.turns);
-      b = b - product_of_y(w, y, form.turns);
-      add_row(list, count, w, p, form.turns, (diagonal + Number(kTreeCompliance) * diagonal) + gamma, b, row);
+      const Number diagonal = product(w.x, scaled.x, form.turns());
+      b = b - product_of_y(w, y, form.turns());
+      add_row(list, count, w, p, form.turns(), (diagonal + Number(kTreeCompliance) * diagonal) + gamma, b,
+              row);
       list[count++] = &row;
     }
     if (joint.parent_moves) add_to_parent(list, count, g_parent, parent);
@@ -330,6 +336,15 @@ class TreeSweep {
     }
   }
 
+  /// (rad/s)^2
+  HWY_INLINE Number turn_squared(const Link& link) const {
+    const Number zero(0.0);
+    const Scale<Number> scale = {at(link.scale[0]), at(link.scale[1]), at(link.scale[2]),
+                                 at(link.scale[3]), at(link.scale[4]), at(link.scale[5])};
+    const Triple<Number> omega = scale.times(get3<Number>(link.omega_now, lane_));
+    return choose(above(at(link.mass), zero), dot(omega, omega), zero);
+  }
+
   HWY_INLINE void go_back(const TreeJoint& joint, Link& link, const Link& parent) const {
     Number u[6];
     load(parent.u, u);
@@ -338,8 +353,7 @@ class TreeSweep {
     Row* list[kMostTreeRows];
     int count = 0;
     for (int r = joint.first; r < joint.first + joint.count; ++r) {
-      const bool drops = forms_[r].bounded && !forms_[r].sprung;
-      if (drops && !any(above(Number(0.5), is_bound(rows_[r])))) continue;
+      if (forms_[r].drops() && !any(above(Number(0.5), is_bound(rows_[r])))) continue;
       list[count++] = &rows_[r];
     }
     for (int k = count - 1; k >= 0; --k) {
@@ -358,48 +372,73 @@ class TreeSweep {
   }
 
   /// Impulses, and bounds for the next solution.
-  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, Number release, Number& changed) const {
+  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, Number release,
+                         TreeJointLanes<kCount>& hook, Number& changed) const {
     const Number zero(0.0);
-    const Number one(1.0);
     const Link& parent = links_[joint.parent];
+    Triple<Number> linear = {zero, zero, zero};
+    Triple<Number> angular = linear;
     for (int r = joint.first; r < joint.first + joint.count; ++r) {
       const TreeRowForm& form = forms_[r];
       Row& row = rows_[r];
-      const Number lambda = at(row.change) + zero;
-      if (!form.bounded) {
+      Number lambda = at(row.change) + zero;
+      if (form.bounded()) {
+        lambda =
+            revise_bound(form, row, lambda, release, changed,
+                         rate(row, form.turns(), link.v_now, link.omega_now, parent.v_now, parent.omega_now));
+      } else {
         put(lambda, row.lambda);
-        continue;
       }
-      const Number bound = at(row.bound);
-      const Number fixed = fixed_impulse(row, form);
-      const auto is_free = above(Number(0.5), bound * bound);
-      put(choose(is_free, lambda, fixed), row.lambda);
-      if (form.sprung) put(choose(is_free, fixed, lambda), row.spring_lambda);
-      const Number to =
-          choose(above(at(row.low), lambda), zero - one, choose(above(lambda, at(row.high)), one, zero));
-      const Number lacks =
-          at(row.target) - rate(row, form.turns, link.v_now, link.omega_now, parent.v_now, parent.omega_now);
-      const Number let_go = choose(above(Number(-kNoSpeed), bound * lacks), zero, bound);
-      const Number held = choose(above(release, zero), let_go, bound);
-      const Number next = choose(is_free, to, held);
-      put(next, row.bound);
-      const Number step = next - bound;
-      changed = choose(above(step * step, zero), one, changed);
+      add(lambda, get3<Number>(row.n, lane_), form.turns() ? angular : linear);
     }
+    const Number sign(joint.child_is_b ? 1.0 : -1.0);
+    put3(scaled(sign, linear), hook.impulse, lane_);
+    put3(scaled(sign, angular), hook.angular, lane_);
+  }
+
+  /// Impulses of a row, with its spring's, that has bounds; `lambda` is what was found for it.
+  HWY_INLINE Number revise_bound(const TreeRowForm& form, Row& row, const Number& lambda,
+                                 const Number& release, Number& changed, const Number& rate_now) const {
+    const Number zero(0.0);
+    const Number one(1.0);
+    const Number bound = at(row.bound);
+    const Number fixed = fixed_impulse(row, form);
+    const auto is_free = above(Number(0.5), bound * bound);
+    Number all = choose(is_free, lambda, fixed);
+    put(all, row.lambda);
+    if (form.sprung) {
+      const Number spring = choose(is_free, fixed, lambda);
+      put(spring, row.spring_lambda);
+      all = all + spring;
+    }
+    const Number to =
+        choose(above(at(row.low), lambda), zero - one, choose(above(lambda, at(row.high)), one, zero));
+    const Number lacks = at(row.target) - rate_now;
+    const Number let_go = choose(above(Number(-kNoSpeed), bound * lacks), zero, bound);
+    const Number held = choose(above(release, zero), let_go, bound);
+    const Number next = choose(is_free, to, held);
+    put(next, row.bound);
+    const Number step = next - bound;
+    changed = choose(above(step * step, zero), one, changed);
+    return all;
   }
 
   const TreeJoint* joints_;
   const TreeRowForm* forms_;
   Link* links_;
+  TreeJointLanes<kCount>* hooks_;
   Row* rows_;
   int joint_count_;
   int lane_;
 };
 
 template <class Number, int kCount>
-HWY_INLINE void solve_tree_lanes(const TreeForm& form, TreeLanes<kCount>& trees) {
-  for (int lane = 0; lane < kCount; lane += kLanesOf<Number>)
+HWY_INLINE void solve_tree_lanes(double h, const TreeForm& form, TreeLanes<kCount>& trees) {
+  for (int lane = 0; lane < kCount; lane += kLanesOf<Number>) {
     TreeSweep<Number, kCount>(form, trees, lane).run(trees);
+    const Number settled = Number(1.0) - get<Number>(trees.changed + lane);
+    write(TreeStiffness<Number, kCount>(h, form, trees, lane).stiffen(settled), trees.grew + lane);
+  }
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE

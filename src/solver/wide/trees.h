@@ -1,12 +1,14 @@
 #pragma once
 
+#include "solver/joint_rows.h"
+
 #include <compare>
 #include <vector>
 
 /// \file
-/// Trees of bodies and joints, of one form, side by side: one in each lane, and one solution of all of them
-/// for given bounds. The numbers are double in both precisions of the engine. Equations:
-/// solver/articulations.h.
+/// Trees of bodies and joints, of one form, side by side: one in each lane. Their rows, and one solution of
+/// all of them for given bounds. The numbers are double in both precisions of the engine. Equations:
+/// solver/articulations.h and solver/joint_rows.h.
 
 namespace hooke::solver::wide {
 
@@ -16,18 +18,25 @@ inline constexpr int kMostTreeRows =
 
 /// What is the same for a row in all lanes.
 struct TreeRowForm {
-  bool turns = false;    ///< An angle: n = 0. Those of a joint come after its ways.
-  bool bounded = false;  ///< A motor or limit.
-  bool sprung = false;   ///< A motor with a spring beside it, which acts while the motor is at a bound.
+  int freedom = 0;
+  RowRole role = RowRole::kLock;
+  bool sprung = false;  ///< A motor with a spring beside it, which acts while the motor is at a bound.
 
+  [[nodiscard]] bool turns() const { return freedom >= 3; }
+  [[nodiscard]] bool bounded() const { return role == RowRole::kMotor || role == RowRole::kLimit; }
+  /// It is not there while it is at a bound.
+  [[nodiscard]] bool drops() const { return bounded() && !sprung; }
   auto operator<=>(const TreeRowForm&) const = default;
 };
 
-/// Joint i joins link i to a link that is eliminated later.
+/// Joint i joins link i, its child, to a link that is eliminated later.
 struct TreeJoint {
   int parent = 0;
   bool parent_moves = true;
-  int first = 0;  ///< Of its rows.
+  bool child_is_b = false;
+  HookKind kind = HookKind::kBall;
+  bool turns = false;  ///< Rows need its angles.
+  int first = 0;       ///< Of its rows, those of ways first.
   int count = 0;
 
   auto operator<=>(const TreeJoint&) const = default;
@@ -44,28 +53,48 @@ struct TreeForm {
 /// A body. Lower triangles of 6 x 6 matrices stand row by row.
 template <int kCount>
 struct alignas(8 * kCount) TreeLinkLanes {
-  double mass[kCount];
-  double turning[6][kCount];              ///< 1 + 1.2 G: inertia in scaled coordinates.
-  double v[3][kCount], omega[3][kCount];  ///< Without the joints.
+  // As JointBody.
+  double center[3][kCount], rotation[4][kCount], scale[6][kCount];
+  double inverse_mass[kCount], mass[kCount];  ///< Both 0 where nothing moves it.
+  double v[3][kCount], omega_before[3][kCount];
 
-  double v_now[3][kCount], omega_now[3][kCount];  ///< The result.
-  double a[21][kCount], g[6][kCount];             ///< Of the elimination, as tree_sweep.h has it.
-  double u[6][kCount];                            ///< What the joints change.
+  double stiffness[6][kCount];  ///< h^2 S K S
+  double turning[6][kCount];    ///< 1 + 1.2 G: inertia in scaled coordinates.
+  double omega[3][kCount];      ///< Scaled, without the joints.
+
+  double v_now[3][kCount], omega_now[3][kCount];     ///< The result.
+  double a[21][kCount], g[6][kCount], u[6][kCount];  ///< Of the elimination, as tree_sweep.h has it.
+};
+
+/// A hook.
+template <int kCount>
+struct alignas(8 * kCount) TreeJointLanes {
+  double anchor_a[3][kCount], anchor_b[3][kCount];  ///< As HookPlace.
+  double axes_a[4][kCount], axes_b[4][kCount];
+  double value[6][kCount];    ///< Of the freedoms: before, then now.
+  double impulse[3][kCount];  ///< On b, of the substep before, then of this one [N s].
+  double angular[3][kCount];
 };
 
 /// A row. Its direction is that of the child's motion: `child` and `parent` have opposite signs.
 template <int kCount>
 struct alignas(8 * kCount) TreeRowLanes {
-  double n[3][kCount];  ///< On the child; minus that on the parent.
+  // Settings, those that its role asks for.
+  double goal[kCount];                              ///< Of locks and springs.
+  double stiffness[kCount], damping[kCount];        ///< Of springs.
+  double speed[kCount];                             ///< Of motors.
+  double lower[kCount], upper[kCount];              ///< Of limits.
+  double low[kCount], high[kCount], bound[kCount];  ///< Of impulses; -1, 0 or 1. If it is bounded.
+
+  double n[3][kCount];  ///< On the child, minus that on the parent; of an angle its axis, which acts so.
   double child[3][kCount], parent[3][kCount];
   double gamma[kCount], target[kCount];                ///< Where it is at no bound.
-  double low[kCount], high[kCount], bound[kCount];     ///< -1, 0 or 1; read if it is bounded.
   double spring_gamma[kCount], spring_target[kCount];  ///< Of the spring beside it.
   double held_spring[kCount];                          ///< The spring's impulse while the motor holds.
 
-  double lambda[kCount], spring_lambda[kCount];  ///< The result: impulses with the bounds of before.
+  double lambda[kCount], spring_lambda[kCount];  ///< Impulses; before: of the last substep.
 
-  // Of the elimination: D^-1 W, V, z, 1 / d, L.
+  // Of the elimination: D^-1 W, V, z, 1 / d, K.
   double w[6][kCount], v[6][kCount], z[kCount], inverse[kCount], l[kMostTreeRows][kCount];
   double change[kCount];
 };
@@ -73,17 +102,36 @@ struct alignas(8 * kCount) TreeRowLanes {
 template <int kCount>
 struct TreeLanes {
   std::vector<TreeLinkLanes<kCount>> links;
+  std::vector<TreeJointLanes<kCount>> joints;
   std::vector<TreeRowLanes<kCount>> rows;
   double release[kCount];  ///< 1 where rows may leave their bounds, otherwise 0.
-  double changed[kCount];  ///< Result: 1 where a row came to a bound or left it.
+  // Results.
+  double changed[kCount];  ///< 1 where a row came to a bound or left it.
+  double grew[kCount];     ///< 1 where a stiffness grew, so that the solution is not to be trusted.
+  double fast[kCount];     ///< Square of how fast the fastest body turns [(rad/s)^2].
 };
 
-/// Impulses and velocities with the rows' bounds, then the bounds that they ask for.
-void solve_trees(const TreeForm& form, TreeLanes<kTreeLanes>& trees);
-/// The same for a single tree.
-void solve_trees(const TreeForm& form, TreeLanes<1>& tree);
+/// The rows of a substep of length h [s], with the bounds they begin with, and the stiffness by the last
+/// forces.
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees);
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<1>& tree);
 
-/// The scalar twin, lane after lane.
-void solve_trees_scalar(const TreeForm& form, TreeLanes<kTreeLanes>& trees);
+/// Impulses and velocities with the rows' bounds, then the bounds that they ask for; where none changes, the
+/// stiffness by the forces found.
+void solve_trees(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees);
+void solve_trees(double h, const TreeForm& form, TreeLanes<1>& tree);
+
+/// One lane's rows anew about the end of the substep, as the velocities found say. Returns the largest error
+/// of a lock, over the levers or in rad.
+double make_tree_rows_ahead(double h, const TreeForm& form, int lane, TreeLanes<kTreeLanes>& trees);
+double make_tree_rows_ahead(double h, const TreeForm& form, int lane, TreeLanes<1>& tree);
+
+/// One lane's impulses within their bounds, and the velocities that they give.
+void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<kTreeLanes>& trees);
+void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<1>& tree);
+
+// The scalar twins, lane after lane.
+void make_tree_rows_scalar(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees);
+void solve_trees_scalar(double h, const TreeForm& form, TreeLanes<kTreeLanes>& trees);
 
 }  // namespace hooke::solver::wide
