@@ -20,13 +20,14 @@ namespace {
 using state::Hook;
 
 constexpr std::size_t kFewestForLanes = 2;  ///< Below that one after another is faster.
+constexpr int kFewestThatStay = 3;  ///< So many solve on in their block: to move costs half a solution.
 
-/// The first `count` numbers of a struct of lanes.
-template <class Lanes>
-void copy_lane(const Lanes& from, int lane, std::size_t count, std::size_t stride, int to_lane, Lanes& to) {
+/// The first `kNumbers` numbers of a struct of lanes, from one lane to another.
+template <std::size_t kNumbers, int kCount, class Lanes>
+void copy_lane(const Lanes& from, int lane, int to_lane, Lanes& to) {
   const auto* source = reinterpret_cast<const double*>(&from) + lane;
   auto* target = reinterpret_cast<double*>(&to) + to_lane;
-  for (std::size_t i = 0; i < count * stride; i += stride) target[i] = source[i];
+  for (std::size_t i = 0; i < kNumbers * kCount; i += kCount) target[i] = source[i];
 }
 
 /// Trees in lanes.
@@ -65,12 +66,14 @@ class Group {
         load(*trees[lane < count ? lane : 0], tables, lane);
       }
       wide::make_tree_rows(h, *form_, fresh_.lanes);
-      solve_block(tables, fresh_);
+      do {
+        solve_block(tables, fresh_);
+      } while (count_busy(fresh_) >= kFewestThatStay);
       for (int lane = 0; lane < count; ++lane) {
-        if (fresh_.slots[lane].tree != nullptr) move_on(tables, lane);
+        if (!is_free(fresh_.slots[lane])) move_on(tables, lane);
       }
     }
-    while (is_busy(late_)) solve_block(tables, late_);
+    while (count_busy(late_) > 0) solve_block(tables, late_);
   }
 
  private:
@@ -80,8 +83,8 @@ class Group {
   using RowLanes = wide::TreeRowLanes<kCount>;
 
   static bool is_free(const Slot& slot) { return slot.tree == nullptr; }
-  static bool is_busy(const Block<kCount>& block) {
-    return !std::all_of(block.slots.begin(), block.slots.end(), is_free);
+  static int count_busy(const Block<kCount>& block) {
+    return kCount - static_cast<int>(std::count_if(block.slots.begin(), block.slots.end(), is_free));
   }
 
   /// One solution of all lanes; those that need no other are stored and free.
@@ -119,15 +122,31 @@ class Group {
     }
     *slot = fresh_.slots[lane];
     const int to = static_cast<int>(slot - late_.slots.begin());
-    constexpr std::size_t kLinkNumbers = offsetof(LinkLanes, v_now) / sizeof(double) / kCount + 6;
-    constexpr std::size_t kJointNumbers = sizeof(JointLanes) / sizeof(double) / kCount;
-    constexpr std::size_t kRowNumbers = offsetof(RowLanes, lambda) / sizeof(double) / kCount;
-    for (std::size_t i = 0; i < late_.lanes.links.size(); ++i)
-      copy_lane(fresh_.lanes.links[i], lane, kLinkNumbers, kCount, to, late_.lanes.links[i]);
-    for (std::size_t i = 0; i < late_.lanes.joints.size(); ++i)
-      copy_lane(fresh_.lanes.joints[i], lane, kJointNumbers, kCount, to, late_.lanes.joints[i]);
+    for (std::size_t i = 0; i < late_.lanes.links.size(); ++i) {
+      constexpr std::size_t kNumbers = offsetof(LinkLanes, v_now) / sizeof(double) / kCount;
+      copy_lane<kNumbers, kCount>(fresh_.lanes.links[i], lane, to, late_.lanes.links[i]);
+    }
+    for (std::size_t i = 0; i < late_.lanes.joints.size(); ++i) {
+      constexpr std::size_t kNumbers = sizeof(JointLanes) / sizeof(double) / kCount;
+      copy_lane<kNumbers, kCount>(fresh_.lanes.joints[i], lane, to, late_.lanes.joints[i]);
+    }
     for (std::size_t i = 0; i < late_.lanes.rows.size(); ++i)
-      copy_lane(fresh_.lanes.rows[i], lane, kRowNumbers, kCount, to, late_.lanes.rows[i]);
+      copy_row(form_->rows[i], fresh_.lanes.rows[i], lane, to, late_.lanes.rows[i]);
+  }
+
+  static void copy_row(const wide::TreeRowForm& form, const RowLanes& from, int lane, int to_lane,
+                       RowLanes& to) {
+    constexpr std::size_t kAlways = offsetof(RowLanes, low) / sizeof(double) / kCount;
+    constexpr std::size_t kBounded = offsetof(RowLanes, speed) / sizeof(double) / kCount;
+    constexpr std::size_t kSprung = offsetof(RowLanes, lambda) / sizeof(double) / kCount;
+    const bool is_all = form.role == RowRole::kMotor || form.role == RowRole::kSpring;
+    if (is_all) {
+      copy_lane<kSprung, kCount>(from, lane, to_lane, to);
+    } else if (form.bounded()) {
+      copy_lane<kBounded, kCount>(from, lane, to_lane, to);
+    } else {
+      copy_lane<kAlways, kCount>(from, lane, to_lane, to);
+    }
   }
 
   void load(const Articulation& art, JointTables tables, int lane) {

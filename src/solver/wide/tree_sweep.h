@@ -55,20 +55,28 @@ template <class Number>
 struct LinkFactor {
   Number a[21];
 
+  /// From column kColumn on; a recursion, as compilers do not unroll three loops in each other.
+  template <int kColumn = 0>
   HWY_INLINE void factor() {
-    for (int j = 0; j < 6; ++j) {
-      const Number inverse = inverse_of_pivot(a[triangle_at(j, j)]);
-      Number scaled_column[6];
-      for (int i = j + 1; i < 6; ++i) scaled_column[i] = inverse * a[triangle_at(i, j)];
-      for (int i = j + 1; i < 6; ++i) {
-        for (int k = j + 1; k <= i; ++k)
-          a[triangle_at(i, k)] = a[triangle_at(i, k)] - scaled_column[i] * a[triangle_at(k, j)];
-      }
-      for (int i = j + 1; i < 6; ++i) a[triangle_at(i, j)] = scaled_column[i];
-      a[triangle_at(j, j)] = inverse;
+    if constexpr (kColumn < 6) {
+      const Number inverse = inverse_of_pivot(a[triangle_at(kColumn, kColumn)]);
+      a[triangle_at(kColumn, kColumn)] = inverse;
+      eliminate_row<kColumn, kColumn + 1>(inverse);
+      factor<kColumn + 1>();
     }
   }
   [[nodiscard]] HWY_INLINE const Number& inverse(int i) const { return a[triangle_at(i, i)]; }
+
+  template <int kColumn, int kRow>
+  HWY_INLINE void eliminate_row(const Number& inverse) {
+    if constexpr (kRow < 6) {
+      eliminate_row<kColumn, kRow + 1>(inverse);
+      const Number l = inverse * a[triangle_at(kRow, kColumn)];
+      for (int k = kColumn + 1; k <= kRow; ++k)
+        a[triangle_at(kRow, k)] = a[triangle_at(kRow, k)] - l * a[triangle_at(k, kColumn)];
+      a[triangle_at(kRow, kColumn)] = l;
+    }
+  }
 
   /// x := L^-1 x, of which the first kFrom are zero.
   template <int kFrom>
@@ -116,11 +124,6 @@ class TreeSweep {
   using Link = TreeLinkLanes<kCount>;
   using Row = TreeRowLanes<kCount>;
 
-  /// A row's side of one link.
-  struct Side {
-    Number x[6];
-  };
-
   HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
   HWY_INLINE void put(const Number& value, double (&lanes)[kCount]) const { write(value, lanes + lane_); }
 
@@ -145,23 +148,25 @@ class TreeSweep {
     }
   }
 
-  HWY_INLINE Side child_side(const Row& row, bool turns) const {
+  HWY_INLINE void load_sides(const Row& row, bool turns, Number (&child)[6], Number (&parent)[6]) const {
     const Number zero(0.0);
-    Side side = {{zero, zero, zero, at(row.child[0]), at(row.child[1]), at(row.child[2])}};
-    if (!turns) {
-      for (int i = 0; i < 3; ++i) side.x[i] = at(row.n[i]);
+    for (int i = 0; i < 3; ++i) {
+      child[i] = zero;
+      parent[i] = zero;
+      child[i + 3] = at(row.child[i]);
+      parent[i + 3] = at(row.parent[i]);
     }
-    return side;
-  }
-  HWY_INLINE Side parent_side(const Row& row, bool turns) const {
-    const Number zero(0.0);
-    Side side = {{zero, zero, zero, at(row.parent[0]), at(row.parent[1]), at(row.parent[2])}};
-    if (!turns) {
-      for (int i = 0; i < 3; ++i) side.x[i] = zero - at(row.n[i]);
+    if (turns) return;
+    for (int i = 0; i < 3; ++i) {
+      child[i] = at(row.n[i]);
+      parent[i] = zero - child[i];
     }
-    return side;
   }
 
+  HWY_INLINE Number product(const Number (&a)[6], const double (&b)[6][kCount], bool turns) const {
+    const Number angular = a[3] * at(b[3]) + a[4] * at(b[4]) + a[5] * at(b[5]);
+    return turns ? angular : a[0] * at(b[0]) + a[1] * at(b[1]) + a[2] * at(b[2]) + angular;
+  }
   static HWY_INLINE Number product(const Number (&a)[6], const Number (&b)[6], bool turns) {
     const Number angular = a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
     return turns ? angular : a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + angular;
@@ -193,28 +198,25 @@ class TreeSweep {
     return choose(above(bound, zero), at(row.high), choose(above(zero, bound), at(row.low), between));
   }
 
-  /// The factors of one row of S, from `w` = L^-1 C^T and its own b, above those that `list` has already.
-  HWY_INLINE void add_row(const Row* const* list, int count, const Side& w, const Side& parent, bool turns,
-                          Number diagonal, Number b, Row& row) const {
+  /// The factors of one row of S, from `w` = L^-1 C^T and its own b and V, above those that `list` has
+  /// already.
+  HWY_INLINE void add_row(const Row* const* list, int count, const Number (&w)[6], bool turns,
+                          Number diagonal, Number z, Number (&v)[6], Row& row) const {
     Number t[kMostTreeRows];
-    Number z = b;
-    Side v = parent;
     for (int q = 0; q < count; ++q) {
       const Row& other = *list[q];
-      Number other_w[6];
-      load(other.w, other_w);
-      Number s = product(w.x, other_w, turns);
+      Number s = product(w, other.w, turns);
       for (int p = 0; p < q; ++p) s = s - t[p] * at(other.l[p]);
       t[q] = s;
       const Number l = s * at(other.inverse);
       diagonal = diagonal - s * l;
       put(l, row.l[q]);
       z = z - l * at(other.z);
-      for (int i = 0; i < 6; ++i) v.x[i] = v.x[i] - l * at(other.v[i]);
+      for (int i = 0; i < 6; ++i) v[i] = v[i] - l * at(other.v[i]);
     }
     put(inverse_of_pivot(diagonal), row.inverse);
     put(z, row.z);
-    store(v.x, row.v);
+    store(v, row.v);
   }
 
   HWY_INLINE void eliminate(const TreeJoint& joint, Link& link, Link& parent) const {
@@ -251,8 +253,9 @@ class TreeSweep {
       Row& row = rows_[r];
       const bool drops = form.drops();
       if (drops && !any(above(Number(0.5), is_bound(row)))) continue;
-      Side w = child_side(row, form.turns());
-      Side p = parent_side(row, form.turns());
+      Number w[6];
+      Number v[6];
+      load_sides(row, form.turns(), w, v);
       Number gamma = at(row.gamma);
       Number target = at(row.target);
       if (form.sprung) {
@@ -264,31 +267,27 @@ class TreeSweep {
       if (drops) {
         const auto held = above(is_bound(row), Number(0.5));
         for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
-          w.x[i] = choose(held, zero, w.x[i]);
-          p.x[i] = choose(held, zero, p.x[i]);
+          w[i] = choose(held, zero, w[i]);
+          v[i] = choose(held, zero, v[i]);
         }
         gamma = choose(held, one, gamma);
         b = choose(held, zero, b);
       }
       if (form.turns()) {
-        factor.template substitute<3>(w.x);
+        factor.template substitute<3>(w);
       } else {
-        factor.template substitute<0>(w.x);
+        factor.template substitute<0>(w);
       }
-      Side scaled = w;
-      for (int i = 0; i < 6; ++i) scaled.x[i] = factor.inverse(i) * w.x[i];
-      store(scaled.x, row.w);
-      const Number diagonal = product(w.x, scaled.x, form.turns());
-      b = b - product_of_y(w, y, form.turns());
-      add_row(list, count, w, p, form.turns(), (diagonal + Number(kTreeCompliance) * diagonal) + gamma, b,
-              row);
+      Number scaled[6];
+      for (int i = 0; i < 6; ++i) scaled[i] = factor.inverse(i) * w[i];
+      store(scaled, row.w);
+      const Number diagonal = product(w, scaled, form.turns());
+      b = b - product(w, y, form.turns());
+      const Number firm = diagonal + Number(kTreeCompliance) * diagonal;
+      add_row(list, count, w, form.turns(), firm + gamma, b, v, row);
       list[count++] = &row;
     }
     if (joint.parent_moves) add_to_parent(list, count, g_parent, parent);
-  }
-
-  static HWY_INLINE Number product_of_y(const Side& w, const Number (&y)[6], bool turns) {
-    return product(w.x, y, turns);
   }
 
   HWY_INLINE void add_to_parent(const Row* const* list, int count, Number (&g)[6], Link& parent) const {

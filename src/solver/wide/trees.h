@@ -79,17 +79,17 @@ struct alignas(8 * kCount) TreeJointLanes {
 /// A row. Its direction is that of the child's motion: `child` and `parent` have opposite signs.
 template <int kCount>
 struct alignas(8 * kCount) TreeRowLanes {
-  // Settings, those that its role asks for.
-  double goal[kCount];                              ///< Of locks and springs.
-  double stiffness[kCount], damping[kCount];        ///< Of springs.
-  double speed[kCount];                             ///< Of motors.
-  double lower[kCount], upper[kCount];              ///< Of limits.
-  double low[kCount], high[kCount], bound[kCount];  ///< Of impulses; -1, 0 or 1. If it is bounded.
-
   double n[3][kCount];  ///< On the child, minus that on the parent; of an angle its axis, which acts so.
   double child[3][kCount], parent[3][kCount];
-  double gamma[kCount], target[kCount];                ///< Where it is at no bound.
-  double spring_gamma[kCount], spring_target[kCount];  ///< Of the spring beside it.
+  double gamma[kCount], target[kCount];  ///< Where it is at no bound.
+  double goal[kCount];                   ///< Setting of locks and springs.
+  // If it is bounded.
+  double low[kCount], high[kCount], bound[kCount];  ///< Of impulses; -1, 0 or 1.
+  double lower[kCount], upper[kCount];              ///< Settings of limits.
+  // If it is a motor or a spring.
+  double speed[kCount];                                ///< Setting of motors.
+  double stiffness[kCount], damping[kCount];           ///< Settings of springs.
+  double spring_gamma[kCount], spring_target[kCount];  ///< Of the spring beside a motor.
   double held_spring[kCount];                          ///< The spring's impulse while the motor holds.
 
   double lambda[kCount], spring_lambda[kCount];  ///< Impulses; before: of the last substep.
