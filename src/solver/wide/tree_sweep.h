@@ -29,7 +29,9 @@
 #include "solver/wide/tree_stiffness.h"
 #include "solver/wide/trees.h"
 
+#include <cstddef>
 #include <hwy/highway.h>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
@@ -127,13 +129,24 @@ class TreeSweep {
   HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
   HWY_INLINE void put(const Number& value, double (&lanes)[kCount]) const { write(value, lanes + lane_); }
 
+  // Number after number: GCC makes a slow memcpy of a loop.
   template <int kSize>
   HWY_INLINE void load(const double (&from)[kSize][kCount], Number (&to)[kSize]) const {
-    for (int i = 0; i < kSize; ++i) read(from[i] + lane_, to[i]);
+    load(from, to, std::make_index_sequence<kSize>());
+  }
+  template <int kSize, std::size_t... kAt>
+  HWY_INLINE void load(const double (&from)[kSize][kCount], Number (&to)[kSize],
+                       std::index_sequence<kAt...>) const {
+    (read(from[kAt] + lane_, to[kAt]), ...);
   }
   template <int kSize>
   HWY_INLINE void store(const Number (&from)[kSize], double (&to)[kSize][kCount]) const {
-    for (int i = 0; i < kSize; ++i) write(from[i], to[i] + lane_);
+    store(from, to, std::make_index_sequence<kSize>());
+  }
+  template <int kSize, std::size_t... kAt>
+  HWY_INLINE void store(const Number (&from)[kSize], double (&to)[kSize][kCount],
+                        std::index_sequence<kAt...>) const {
+    (write(from[kAt], to[kAt] + lane_), ...);
   }
 
   HWY_INLINE void begin(Link& link) const {
