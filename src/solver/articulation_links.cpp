@@ -17,7 +17,6 @@ namespace {
 using math::Symmetric3;
 using state::Hook;
 
-constexpr int kWeldRows = 6;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// An equal part of a body moves as the body does.

@@ -10,6 +10,9 @@ namespace hooke::solver {
 
 inline constexpr int kMaxSolves = 4;
 
+/// A weld holds both links' velocities together.
+inline constexpr int kWeldRows = 6;
+
 /// Links, rows with the bounds they begin with, and the stiffness that the last forces gave.
 void begin_articulation(double h, JointTables tables, Articulation& art);
 

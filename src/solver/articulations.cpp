@@ -1,5 +1,7 @@
 #include "solver/articulations.h"
 
+#include "solver/articulation_links.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -13,7 +15,6 @@ using state::Hook;
 
 constexpr int kMostHooks = 8;  ///< Of a body that is not divided.
 constexpr int kHooksOfPart = 4;
-constexpr int kWeldRows = 6;
 
 std::uint32_t link_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body) {
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
