@@ -237,11 +237,15 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
   return way + turning_reach(a) + turning_reach(b) > kMargin + thick;
 }
 
-/// Whether a body turns so far in the step that the levers of its start are not those of the whole.
-bool spins(const Path& path) {
-  constexpr Real kFar = Real(0.2);  // [rad]
-  return length_squared(path.turn) > kFar * kFar;
+/// Whether a body turns farther than `angle` [rad] in the step.
+bool turns(const Path& path, Real angle) {
+  return length_squared(path.turn) > angle * angle;
 }
+
+/// From here on the levers of the step's start are not those of the whole.
+constexpr Real kSpinning = Real(0.2);  // [rad]
+/// From here on it is looked for again what something round rolls on.
+constexpr Real kRolling = Real(0.02);  // [rad]
 
 /// Whether the pair had contacts whose places hardly come nearer or part: a tip that spins, a wheel that
 /// rolls.
@@ -296,6 +300,12 @@ bool is_alone(const Scene& scene, const Pair& pair) {
          scene.company[scene.colliders.body[pair.collider_b]] != kSeveral;
 }
 
+/// Whether the place where it touches something wanders as it turns.
+bool is_round(ShapeKind kind) {
+  return kind == ShapeKind::kSphere || kind == ShapeKind::kCapsule || kind == ShapeKind::kCylinder ||
+         kind == ShapeKind::kCone;
+}
+
 /// Whether rows of the step's start would be wrong before its end; see update_manifolds. Not if a substep is
 /// too long for them as well: then the pair is held where it is now, or where it will be hit. Not in a crowd
 /// either, where it would cost most and help least; and where several colliders hold one, nobody looks in the
@@ -313,12 +323,13 @@ bool is_lively(const Scene& scene, const SweptCollider& a, const SweptCollider& 
   const Real way = length(b.path.way - a.path.way);
   if (way + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
     return false;
-  const bool turns = (spins(a.path) && turn_a > kStill) || (spins(b.path) && turn_b > kStill);
+  const Real far = is_round(shape_a.shape.kind) || is_round(shape_b.shape.kind) ? kRolling : kSpinning;
+  const bool rolls = (turns(a.path, far) && turn_a > kStill) || (turns(b.path, far) && turn_b > kStill);
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
-  if (!turns && (flat || way < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
+  if (!rolls && (flat || way < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
   if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know the step's start only
-  if (turns) return true;
+  if (rolls) return true;
   const std::size_t before = chunk.manifolds.size();
   test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
   const bool touches =
@@ -350,7 +361,7 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (!pair.lively && chunk.time < kMiddle && (spins(path_a) || spins(path_b)) &&
+  if (!pair.lively && chunk.time < kMiddle && (turns(path_a, kSpinning) || turns(path_b, kSpinning)) &&
       goes_on_touching(scene, pair)) {
     chunk.time = kMiddle;
     pair.time = Real(0);

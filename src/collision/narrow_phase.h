@@ -47,9 +47,9 @@ class NarrowPhase {
   /// that hardly moved against each other are carried along.
   ///
   /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
-  /// body turns by more than 0.2 rad, or the pair touches and one goes over the other by more than it is
-  /// thick; and which `substeps` looks are enough for. It has at least one manifold, a mesh some more, which
-  /// may be without points until update_lively_manifolds finds some.
+  /// body turns by more than 0.2 rad (0.02 where one of them is round), or the pair touches and one goes over
+  /// the other by more than it is thick; and which `substeps` looks are enough for. It has at least one
+  /// manifold, a mesh some more, which may be without points until update_lively_manifolds finds some.
   NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                      const state::Colliders& colliders,
                                      std::span<const MaterialPairDesc> materials, Real dt, int substeps,

@@ -10,6 +10,8 @@ namespace hooke::check {
 
 namespace {
 
+constexpr double kTime = 24;  // [s]; it turns back after 17
+
 /// The round side of a lying cylinder of 0.5 m, on top of a fixed ball of 1 m: relative curvatures 1 / m
 /// along it and 3 / m across, in one contact. Four balls 0.15 m above it carry the mass, with the principal
 /// axes turned by `skew` [rad] from those of the curvature.
@@ -46,7 +48,7 @@ struct Stone {
 
 CheckRow sign_row(const CheckSetting& setting, const char* title, double skew, double spin, double expected) {
   Stone stone(setting, skew, spin);
-  stone.rig.run(12);
+  stone.rig.run(kTime);
   const double found = stone.rig.spin(stone.body).y;
   return absolute_row(title, "", expected, std::abs(found) < 0.5 ? 0 : std::copysign(1, found), 0);
 }
@@ -59,17 +61,15 @@ CheckRow sign_row(const CheckSetting& setting, const char* title, double skew, d
 /// curvature that is missing along a cylinder is in the ground: only the relative one counts for rocking.
 Rows rattleback(const CheckSetting& setting) {
   const double skew = 0.3;
-  Rows rows = {sign_row(setting, "sign of the spin after 12 s, 2 rad/s: against its sense", skew, 2, -1),
+  Rows rows = {sign_row(setting, "sign of the spin after 24 s, 2 rad/s: against its sense", skew, 2, -1),
                sign_row(setting, "the same: in its sense", skew, -2, -1),
                sign_row(setting, "the same of the mirrored stone: against its sense", -skew, -2, 1),
                sign_row(setting, "the same of the mirrored stone: in its sense", -skew, 2, 1),
                sign_row(setting, "the same of a stone without skew", 0, 2, 1)};
   double gain = 0;
   Stone stone(setting, skew, 2);
-  stone.rig.run(12, [&] { gain = std::max(gain, stone.rig.energy().total() / stone.start - 1); });
-  rows.push_back(
-      known_miss(absolute_row("largest gain of energy in those 12 s, share", "", 0, gain, 0.005),
-                 "a contact keeps the place it had at the start of the step while the stone rolls on"));
+  stone.rig.run(kTime, [&] { gain = std::max(gain, stone.rig.energy().total() / stone.start - 1); });
+  rows.push_back(absolute_row("largest gain of energy in those 24 s, share", "", 0, gain, 0.01));
   return rows;
 }
 
