@@ -346,4 +346,41 @@ def tablecloth():
         }])
 
 
-CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt, hammock, tablecloth]
+def seams():
+    """Banners sewn of two pieces, with weights at the foot: one seam holds, one is too weak."""
+    columns, rows, wide, tall, density, top, foot, finer = 17, 9, 0.8, 0.5, 2.0, 2.4, 4.0, 25
+    cloths, sewn = [], []
+    weight = (foot + density * wide * tall) * G
+    for name, x, strength in (("banner", -0.9, None), ("torn", 0.1, 0.5 * weight / wide)):
+        cloth = {
+            "width": wide, "height": tall, "areal_density": density, "stretch_stiffness": 1e5, "shear_stiffness": 0,
+            "bend": "none", "damping": 2, "air_friction": 3
+        }
+        cloths.append({"name": name, "material": "rose"} | cloth |
+                      {"columns": columns, "rows": rows, "corner": [x, top, 0], "pins": [{"row": 0}]})
+        loads = [{"point": (rows - 1) * finer + k, "mass": foot / (finer - 1) * (1 if 0 < k < finer - 1 else 0.5)}
+                 for k in range(finer)]
+        cloths.append({"name": name + "_foot", "material": "moss"} | cloth |
+                      {"columns": finer, "rows": rows, "corner": [x, top - tall, 0], "loads": loads})
+        sewn.append({"name": "seam_" + name, "a": name + ".bottom", "b": name + "_foot.top"} |
+                    ({"strength": strength} if strength else {}))
+    return scene(
+        "Seams",
+        "Banners sewn of two pieces, the lower one finer, with weights at the foot. Each stitch carries its share of "
+        "what hangs on the seam; the other seam, half as strong as the load, parts.", 5, [0, 1.9, 4.2], [0, 1.5, 0], {
+            "ground": {},
+            "rose": {},
+            "moss": {}
+        }, [ground()], [
+            promise("force", "within", weight / (finer - 1), f"seam_banner[{finer // 2}]", 0.02),
+            promise("force", "within", weight / (finer - 1) / 2, "seam_banner[0]", 0.05),
+            promise("broken", "==", 0, "seam_banner[0]", 0.1),
+            promise("broken", "==", 1, "seam_torn[0]", 0.1),
+            promise("broken", "==", finer, None, 0.1),
+            promise("gap", "<", 0.0005),
+            at_point("height", "==", top - 2 * tall, "banner_foot", "last", 0.01),
+            promise("highest", "<", 0.7, "torn_foot"),
+        ], world={"particle_substeps": 4}, cloths=cloths, seams=sewn)
+
+
+CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt, seams, hammock, tablecloth]

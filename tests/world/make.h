@@ -2,6 +2,7 @@
 
 #include "hooke/hooke.h"
 
+#include <cstdint>
 #include <doctest/doctest.h>
 #include <utility>
 
@@ -39,6 +40,26 @@ inline WorldDesc empty_space() {
   WorldDesc desc = without_air();
   desc.gravity = {};
   return desc;
+}
+
+/// Worlds that `fill` fills have the same bits with one worker and with three, and after a restore.
+template <class Fill>
+void check_same_bits(const WorldDesc& desc, Fill&& fill) {
+  std::uint64_t with_one = 0;
+  for (const int workers : {1, 3}) {
+    World world = make_world(desc);
+    REQUIRE(world.set_workers(workers).has_value());
+    fill(world);
+    run(world, 20);
+    const Snapshot snapshot = world.snapshot();
+    run(world, 40);
+    const std::uint64_t hash = world.state_hash();
+    REQUIRE(world.restore(snapshot).has_value());
+    run(world, 40);
+    CHECK(world.state_hash() == hash);
+    if (workers == 1) with_one = hash;
+    CHECK(hash == with_one);
+  }
 }
 
 }  // namespace hooke::test
