@@ -2,10 +2,10 @@
 /// those that need another move to lanes of their own, so that they keep nobody waiting. Read Group::solve
 /// first.
 
-#include "math/rotation.h"
 #include "solver/articulation_links.h"
 #include "solver/lanes.h"
 #include "solver/wide/trees.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <array>
@@ -151,7 +151,7 @@ class Group {
 
   void load(const Articulation& art, JointTables tables, int lane) {
     for (std::size_t i = 0; i < art.bodies.size(); ++i)
-      load_link(joint_body_now(tables.bodies, art.bodies[i]), fresh_.lanes.links[i], lane);
+      load_link(tables.bodies, art.bodies[i], fresh_.lanes.links[i], lane);
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
       const Hook& hook = tables.hooks[art.joints[i].hook];
       const wide::TreeJoint& joint = form_->joints[i];
@@ -161,17 +161,42 @@ class Group {
     }
   }
 
-  static void load_link(const JointBody& body, LinkLanes& to, int lane) {
-    put(body.center, to.center, lane);
-    put(body.rotation, to.rotation, lane);
-    put(body.scale, to.scale, lane);
-    to.inverse_mass[lane] = body.inverse_mass;
-    to.mass[lane] = body.inverse_mass > 0 ? 1 / body.inverse_mass : 0;
-    put(body.v, to.v, lane);
-    put(body.omega_scaled, to.omega_before, lane);
-    put(body.omega_scaled, to.omega, lane);
+  /// Of a body that tumbles, what inertia of now is found from.
+  static void load_link(const state::Bodies& bodies, std::uint32_t row, LinkLanes& to, int lane) {
+    const bool tumbles = is_dynamic(bodies, row) && tumbles_now(bodies, row);
+    to.tumbles[lane] = tumbles ? 1 : 0;
     put(math::Symmetric3<double>{}, to.stiffness, lane);
     put(math::Symmetric3<double>::diagonal(1), to.turning, lane);
+    if (!tumbles) {
+      const JointBody body = joint_body(bodies, row);
+      load_motion(body.inverse_mass, body.center, body.v, body.omega_scaled, to, lane);
+      put(body.rotation, to.rotation, lane);
+      put(Quat{}, to.principal, lane);
+      put(body.scale, to.step_scale, lane);
+      put(DVec3{1, 1, 1}, to.inertia, lane);
+      return;
+    }
+    const state::MotionLine& m = bodies.motion[row];
+    const state::BodyMass& mass = bodies.mass[row];
+    const math::Symmetric3<Real>& scale = bodies.scale[row];
+    load_motion(static_cast<double>(m.inverse_mass), bodies.center[row] + vector_cast<double>(m.dx),
+                vector_cast<double>(m.v), vector_cast<double>(m.omega_scaled), to, lane);
+    put(bodies.rotation[row], to.rotation, lane);
+    put(mass.principal, to.principal, lane);
+    put(math::Symmetric3<double>{static_cast<double>(scale.xx), static_cast<double>(scale.xy),
+                                 static_cast<double>(scale.xz), static_cast<double>(scale.yy),
+                                 static_cast<double>(scale.yz), static_cast<double>(scale.zz)},
+        to.step_scale, lane);
+    put(vector_cast<double>(mass.inertia), to.inertia, lane);
+  }
+
+  static void load_motion(double inverse_mass, DVec3 center, DVec3 v, DVec3 omega_scaled, LinkLanes& to,
+                          int lane) {
+    to.inverse_mass[lane] = inverse_mass;
+    to.mass[lane] = inverse_mass > 0 ? 1 / inverse_mass : 0;
+    put(center, to.center, lane);
+    put(v, to.v, lane);
+    put(omega_scaled, to.omega_before, lane);
   }
 
   static void load_hook(const Hook& hook, bool turns, JointLanes& to, int lane) {
@@ -226,12 +251,12 @@ class Group {
     for (std::size_t i = 0; i < art.bodies.size(); ++i) {
       const LinkLanes& link = from.links[i];
       if (!(link.inverse_mass[lane] > 0)) continue;
-      JointBody before;
-      before.omega_scaled = get(link.omega_before, lane);
-      const auto& s = link.scale;
-      before.scale = {s[0][lane], s[1][lane], s[2][lane], s[3][lane], s[4][lane], s[5][lane]};
-      set_joint_velocity(before, get(link.v_now, lane), get(link.omega_now, lane), art.bodies[i],
-                         tables.bodies);
+      const DVec3 omega = get(link.omega_now, lane);
+      const DVec3 change = get6(link.scale_inverse, lane) * (omega - get(link.omega_before, lane));
+      const DVec3 of_step = link.tumbles[lane] > 0
+                                ? get6(link.step_scale_inverse, lane) * (get6(link.scale, lane) * omega)
+                                : omega;
+      set_joint_velocity(get(link.v_now, lane), of_step, change, art.bodies[i], tables.bodies);
     }
   }
 

@@ -207,7 +207,7 @@ JointBody joint_body_now(const state::Bodies& bodies, std::uint32_t row) {
   return body;
 }
 
-void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
+void set_joint_velocity(DVec3 v, DVec3 omega_scaled, DVec3 angular_momentum, std::uint32_t row,
                         state::Bodies& bodies) {
   state::MotionLine& m = bodies.motion[row];
   state::FreeLine& free = bodies.free_motion[row];
@@ -215,14 +215,17 @@ void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, st
   const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
   m.v = vector_cast<Real>(v);
   m.omega_scaled = vector_cast<Real>(omega_scaled);
-  if (tumbles_now(bodies, row)) {
-    const DVec3 omega = before.scale * omega_scaled;
-    m.omega_scaled = vector_cast<Real>(math::inverse(to_double(bodies.scale[row])) * omega);
-  }
   free.v = m.v - by_contacts;
   free.omega_scaled = m.omega_scaled - turn_by_contacts;
+  bodies.angular_momentum[row] += vector_cast<Real>(angular_momentum);
+}
+
+void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
+                        state::Bodies& bodies) {
   const DVec3 change = math::inverse(before.scale) * (omega_scaled - before.omega_scaled);
-  bodies.angular_momentum[row] += vector_cast<Real>(change);
+  if (tumbles_now(bodies, row))
+    omega_scaled = math::inverse(to_double(bodies.scale[row])) * (before.scale * omega_scaled);
+  set_joint_velocity(v, omega_scaled, change, row, bodies);
 }
 
 int count_joint_rows(const Hook& hook) {

@@ -38,6 +38,10 @@ struct JointBody {
 void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, std::uint32_t row,
                         state::Bodies& bodies);
 
+/// The same from velocities in the scale of the step's start, and the change of angular momentum.
+void set_joint_velocity(DVec3 v, DVec3 omega_scaled, DVec3 angular_momentum, std::uint32_t row,
+                        state::Bodies& bodies);
+
 enum class RowRole : std::uint8_t {
   kLock,
   kSpring,

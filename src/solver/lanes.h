@@ -33,5 +33,9 @@ template <int kCount>
 DVec3 get(const double (&from)[3][kCount], int lane) {
   return {from[0][lane], from[1][lane], from[2][lane]};
 }
+template <int kCount>
+math::Symmetric3<double> get6(const double (&from)[6][kCount], int lane) {
+  return {from[0][lane], from[1][lane], from[2][lane], from[3][lane], from[4][lane], from[5][lane]};
+}
 
 }  // namespace hooke::solver

@@ -29,6 +29,7 @@ class TreeRows {
       : form_(form), trees_(trees), lane_(lane), h_(h), per_h_(quotient(Number(1.0), Number(h))) {}
 
   HWY_INLINE void make() {
+    for (Link& link : trees_.links) find_inertia(link);
     for (std::size_t i = 0; i < form_.joints.size(); ++i) {
       const TreeJoint& shape = form_.joints[i];
       const JointEnd<Number> a = end_now(link_a(i));
@@ -136,6 +137,59 @@ class TreeRows {
   }
   HWY_INLINE Scale<Number> get6(const double (&from)[6][kCount]) const {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3]), at(from[4]), at(from[5])};
+  }
+
+  /// S = I^(-1/2) in world axes; of a body that tumbles of now, as state::Bodies have it of the step's start.
+  HWY_INLINE void find_inertia(Link& link) const {
+    const Number zero(0.0);
+    const Quad<Number> rotation = normalized(get4(link.rotation));
+    const Axes<Number> r = axes_of(product(rotation, normalized(get4(link.principal))));
+    const Triple<Number> inertia = get3<Number>(link.inertia, lane_);
+    const Triple<Number> roots = {root(inertia.x), root(inertia.y), root(inertia.z)};
+    const Number one(1.0);
+    const Scale<Number> now =
+        in_axes(r, {quotient(one, roots.x), quotient(one, roots.y), quotient(one, roots.z)});
+    const Scale<Number> now_inverse = in_axes(r, roots);
+    const Scale<Number> step = get6(link.step_scale);
+    const Scale<Number> step_inverse = inverse(step);
+    const auto tumbles = above(at(link.tumbles), zero);
+    const Triple<Number> given = get3<Number>(link.omega_before, lane_);
+    const Triple<Number> turned = now_inverse.times(step.times(given));
+    put(rotation.x, link.rotation[0]);
+    put(rotation.y, link.rotation[1]);
+    put(rotation.z, link.rotation[2]);
+    put(rotation.w, link.rotation[3]);
+    put6(chosen(tumbles, now, step), link.scale);
+    put6(chosen(tumbles, now_inverse, step_inverse), link.scale_inverse);
+    put6(step_inverse, link.step_scale_inverse);
+    const Triple<Number> omega = {choose(tumbles, turned.x, given.x), choose(tumbles, turned.y, given.y),
+                                  choose(tumbles, turned.z, given.z)};
+    put3(omega, link.omega_before, lane_);
+    put3(omega, link.omega, lane_);
+  }
+  /// A matrix with these eigenvalues along the axes.
+  static HWY_INLINE Scale<Number> in_axes(const Axes<Number>& r, const Triple<Number>& d) {
+    const auto entry = [&](Number Triple<Number>::*i, Number Triple<Number>::*k) HWY_ATTR {
+      return d.x * (r.x.*i * r.x.*k) + d.y * (r.y.*i * r.y.*k) + d.z * (r.z.*i * r.z.*k);
+    };
+    using T = Triple<Number>;
+    return {entry(&T::x, &T::x), entry(&T::x, &T::y), entry(&T::x, &T::z),
+            entry(&T::y, &T::y), entry(&T::y, &T::z), entry(&T::z, &T::z)};
+  }
+  template <class Condition>
+  static HWY_INLINE Scale<Number> chosen(const Condition& condition, const Scale<Number>& yes,
+                                         const Scale<Number>& no) {
+    return {choose(condition, yes.xx, no.xx), choose(condition, yes.xy, no.xy),
+            choose(condition, yes.xz, no.xz), choose(condition, yes.yy, no.yy),
+            choose(condition, yes.yz, no.yz), choose(condition, yes.zz, no.zz)};
+  }
+  HWY_INLINE void put6(const Scale<Number>& m, double (&to)[6][kCount]) const {
+    put(m.xx, to[0]);
+    put(m.xy, to[1]);
+    put(m.xz, to[2]);
+    put(m.yy, to[3]);
+    put(m.yz, to[4]);
+    put(m.zz, to[5]);
   }
 
   HWY_INLINE const Link& link_a(std::size_t i) const {

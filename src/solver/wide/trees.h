@@ -53,16 +53,19 @@ struct TreeForm {
 /// A body. Lower triangles of 6 x 6 matrices stand row by row.
 template <int kCount>
 struct alignas(8 * kCount) TreeLinkLanes {
-  // As JointBody.
-  double center[3][kCount], rotation[4][kCount], scale[6][kCount];
+  // As JointBody. Of bodies that tumble (`tumbles` is 1) the last three are found from what stands below.
+  double center[3][kCount], v[3][kCount];
   double inverse_mass[kCount], mass[kCount];  ///< Both 0 where nothing moves it.
-  double v[3][kCount], omega_before[3][kCount];
+  double rotation[4][kCount], scale[6][kCount], omega_before[3][kCount];
+  double scale_inverse[6][kCount], step_scale_inverse[6][kCount], tumbles[kCount];
 
   double stiffness[6][kCount];  ///< h^2 S K S
   double turning[6][kCount];    ///< 1 + 1.2 G: inertia in scaled coordinates.
   double omega[3][kCount];      ///< Scaled, without the joints.
 
   double v_now[3][kCount], omega_now[3][kCount];     ///< The result.
+  double principal[4][kCount], inertia[3][kCount];   ///< As BodyMass.
+  double step_scale[6][kCount];                      ///< S of the start of the step.
   double a[21][kCount], g[6][kCount], u[6][kCount];  ///< Of the elimination, as tree_sweep.h has it.
 };
 
