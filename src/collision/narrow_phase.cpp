@@ -22,6 +22,7 @@ namespace hooke::collision {
 
 namespace {
 
+using parallel::for_items;
 using parallel::for_ranges;
 using parallel::Range;
 using state::Manifold;
@@ -670,14 +671,13 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
   const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
   if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);
   const std::span<Chunk> chunks = std::span(all_chunks).first(chunk_count);
-  for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
-    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
-      const Range of = pairs_of(c, pairs.pair.size());
-      chunks[c].clear();
-      for (int i = of.begin; i < of.end; ++i) {
-        update_pair(scene, pairs.pair[static_cast<std::size_t>(i)], chunks[c]);
-      }
-    }
+  // Pairs of a mesh stand next to each other, and cost more than others.
+  for_items(pool, static_cast<int>(chunks.size()), [&](int item) {
+    Chunk& chunk = chunks[static_cast<std::size_t>(item)];
+    const Range of = pairs_of(static_cast<std::size_t>(item), pairs.pair.size());
+    chunk.clear();
+    for (int i = of.begin; i < of.end; ++i)
+      update_pair(scene, pairs.pair[static_cast<std::size_t>(i)], chunk);
   });
   NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
   counts.ghosts = empty_ghosts(scene, ghosts, pairs);
@@ -698,15 +698,13 @@ void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const stat
       .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
   const std::size_t count = (rows.size() + kLivelyChunk - 1) / kLivelyChunk;
   if (chunks.size() < count) chunks.resize(count);
-  for_ranges(pool, static_cast<int>(count), kChunkGrain, [&](Range range) {
-    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
-      const std::size_t end = std::min((c + 1) * kLivelyChunk, rows.size());
-      for (std::size_t i = c * kLivelyChunk; i < end; ++i) {
-        Pair& pair = pairs.pair[rows[i]];
-        const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
-        const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
-        look_again(scene, a, b, pair, chunks[c], pairs.manifold);
-      }
+  for_items(pool, static_cast<int>(count), [&](int item) {
+    const std::size_t begin = static_cast<std::size_t>(item) * kLivelyChunk;
+    for (std::size_t i = begin; i < std::min(begin + kLivelyChunk, rows.size()); ++i) {
+      Pair& pair = pairs.pair[rows[i]];
+      const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
+      const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
+      look_again(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);
     }
   });
 }

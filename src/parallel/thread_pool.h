@@ -2,6 +2,7 @@
 
 #include "parallel/range.h"
 
+#include <atomic>
 #include <memory>
 #include <type_traits>
 
@@ -63,6 +64,28 @@ void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
         };
         const Range range{edge(part), edge(part + 1)};
         if (range.begin < range.end) call_kernel(*c.kernel, range, part);
+      },
+      &context);
+}
+
+/// Calls `kernel(item)` for each item in [0, count): each thread takes the next one that is left. For items
+/// whose costs differ much. Kernels of one call must not write what another item reads, and memory that is
+/// kept from one call to the next belongs to items, not to threads.
+template <class Kernel>
+void for_items(ThreadPool& pool, int count, Kernel&& kernel) {
+  if (pool.workers() == 1 || count <= 1) {
+    for (int item = 0; item < count; ++item) kernel(item);
+    return;
+  }
+  struct Context {
+    std::remove_reference_t<Kernel>* kernel;
+    int count;
+    std::atomic<int> next{0};
+  } context{&kernel, count};
+  pool.run(
+      [](void* data, int) {
+        auto& c = *static_cast<Context*>(data);
+        for (int item = c.next.fetch_add(1); item < c.count; item = c.next.fetch_add(1)) (*c.kernel)(item);
       },
       &context);
 }

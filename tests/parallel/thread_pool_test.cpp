@@ -20,6 +20,17 @@ TEST_SUITE("parallel/thread_pool") {
     }
   }
 
+  TEST_CASE("every item is done once, whoever does it") {
+    for (const int workers : {1, 2, 3, 8}) {
+      ThreadPool pool(workers);
+      for (const int count : {0, 1, 2, 1000}) {
+        std::vector<int> visits(static_cast<std::size_t>(count), 0);
+        for_items(pool, count, [&](int i) { ++visits[static_cast<std::size_t>(i)]; });
+        for (const int v : visits) CHECK(v == 1);
+      }
+    }
+  }
+
   TEST_CASE("many short jobs one after another see each other's results") {
     ThreadPool pool(3);
     std::vector<int> value(64, 0);
