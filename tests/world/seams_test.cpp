@@ -171,8 +171,8 @@ TEST_SUITE("world/seams") {
     const double expected = kPressure * radius(last[kAlong / 2]) * std::cos(std::numbers::pi / kAround);
     double sum = 0;
     for (const HookId stitch : stitches) sum += force_of(world, stitch);
-    MESSAGE("p R = " << expected << " N/m, seam " << sum / length << " N/m, gap "
-                     << largest_gap(world, stitches) << " m");
+    INFO("p R = " << expected << " N/m, seam " << sum / length << " N/m, gap " << largest_gap(world, stitches)
+                  << " m");
     CHECK(std::abs(sum / length - expected) < 0.01 * expected);
     CHECK(largest_gap(world, stitches) < 1e-5);
   }
@@ -216,7 +216,7 @@ TEST_SUITE("world/seams") {
     const double whole = depth(0, 0);
     const double same = depth(11, 21);
     const double finer = depth(16, 31);
-    MESSAGE("depth of the whole " << whole << " m, of halves " << same << ", with a finer half " << finer);
+    INFO("depth of the whole " << whole << " m, of halves " << same << ", with a finer half " << finer);
     CHECK(whole > 0.2);
     CHECK(std::abs(same - whole) < 0.005 * whole);
     CHECK(std::abs(finer - whole) < 0.02 * whole);
@@ -255,7 +255,7 @@ TEST_SUITE("world/seams") {
       CHECK(std::abs(force_of(world, stitches[i]) - weight / 20) < 0.05 * weight / 20);
     CHECK(std::abs(force_of(world, stitches[0]) - weight / 40) < 0.1 * weight / 40);
     grow_to(3 * kGravity, 0.01);
-    MESSAGE("75 N/m parts at " << mass * gravity / kWidth << " N/m");
+    INFO("75 N/m parts at " << mass * gravity / kWidth << " N/m");
     CHECK(std::abs(mass * gravity / kWidth - 75) < 0.02 * 75);
     run(world, 60);
     for (const HookId stitch : stitches) CHECK(d(world.hook_gap(stitch)) == 0);  // all have gone

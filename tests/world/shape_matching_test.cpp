@@ -81,9 +81,9 @@ TEST_SUITE("world/shape_matching") {
         worst_momentum = std::max(worst_momentum, length(now.momentum - start.momentum));
         worst_angular = std::max(worst_angular, length(now.angular_momentum - start.angular_momentum));
       }
-      MESSAGE(d(hz) << " Hz: momentum off by " << worst_momentum / length(start.momentum)
-                    << ", angular momentum by " << worst_angular / length(start.angular_momentum)
-                    << ", form by " << deformation(places(world, solid), before) << " m");
+      INFO(d(hz) << " Hz: momentum off by " << worst_momentum / length(start.momentum)
+                 << ", angular momentum by " << worst_angular / length(start.angular_momentum) << ", form by "
+                 << deformation(places(world, solid), before) << " m");
       CHECK(worst_momentum < 1e-5 * length(start.momentum));
       CHECK(worst_angular < 1e-5 * length(start.angular_momentum));
       CHECK(deformation(places(world, solid), before) < (hz > Real(4) ? 1e-3 : 0.02));  // it spins
@@ -105,8 +105,8 @@ TEST_SUITE("world/shape_matching") {
     run(world, 600);
     const DVec3 now = world.positions(solid)[0];
     const double turned = std::atan2(first.z * now.x - first.x * now.z, first.x * now.x + first.z * now.z);
-    MESSAGE("after 10 turns off by " << turned << " rad, energy by "
-                                     << world.measure().energy.kinetic / energy - 1);
+    INFO("after 10 turns off by " << turned << " rad, energy by "
+                                  << world.measure().energy.kinetic / energy - 1);
     // w^2 / k = 1/400 farther out: the inertia is larger by 1/200, the turns are fewer by as much.
     CHECK(std::abs(turned) < 0.4);
     CHECK(std::abs(world.measure().energy.kinetic / energy - 1) < 0.01);
@@ -139,7 +139,7 @@ TEST_SUITE("world/shape_matching") {
           before = now;
         }
         const double measured = 0.5 * crossings / last;
-        MESSAGE(substeps << " substeps, " << cells << " cells: " << measured << " Hz");
+        INFO(substeps << " substeps, " << cells << " cells: " << measured << " Hz");
         CHECK(std::abs(measured - d(hz)) < 0.005 * d(hz));
       }
     }
@@ -170,7 +170,7 @@ TEST_SUITE("world/shape_matching") {
     center = (1 / mass) * center;
     const double k = std::pow(2 * std::numbers::pi * 16, 2);
     const double expected = 0.2 + 0.002 - kGravity / k * (mass - carried) / carried;
-    MESSAGE("center at " << center.y << " m, by statics " << expected << " m, of 0.202 m");
+    INFO("center at " << center.y << " m, by statics " << expected << " m, of 0.202 m");
     CHECK(std::abs(center.y - expected) < 0.01 * (0.202 - expected));
     CHECK(d(world.velocities(solid).offset(3).y) == doctest::Approx(0).epsilon(1e-4));
   }
