@@ -21,7 +21,7 @@ constexpr int kMostHitsInCrowd = 1;      // in a step
 constexpr std::uint32_t kCrowd = 3;      // pairs of a body
 constexpr Real kTouching = Real(1e-3);   // what rests is nearer to its support [m]
 constexpr Real kAgainst = Real(0.2);     // cosine between impulse and support
-constexpr Real kTimeShare = Real(1e-3);  // how well a time has to be known, of h
+constexpr Real kTimeShare = Real(2e-3);  // how well a time has to be known, of h
 
 bool is_later(const Hit& a, const Hit& b) {
   return a.time != b.time ? a.time > b.time : a.index > b.index;
@@ -143,7 +143,8 @@ Real meeting_time(Real gap, Real v, Real a, Real since, Real h, Real least) {
   const Real root = std::sqrt(square);
   if (root <= u) return Hits::kNever;
   const Real time = since + Real(2) * gap_since / (root - u);
-  return time <= h ? time : Hits::kNever;
+  // What rounding puts off until just after the end would be stopped by the relaxation of this substep.
+  return time <= (Real(1) + kTimeShare) * h ? time : Hits::kNever;
 }
 
 Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep& step,
