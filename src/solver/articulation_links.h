@@ -3,12 +3,10 @@
 #include "solver/articulations.h"
 
 /// \file
-/// What articulations with and without loops share: links and rows at the start of a substep, and what a
-/// solution says about the next. Equations: solver/articulations.h.
+/// Articulations with loops: links and rows at the start of a substep, and what a solution says about the
+/// next. Trees have their own, side by side (wide/tree_rows.h). Equations: solver/articulations.h.
 
 namespace hooke::solver {
-
-inline constexpr int kMaxSolves = 4;
 
 /// A weld holds both links' velocities together.
 inline constexpr int kWeldRows = 6;

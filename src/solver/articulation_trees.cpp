@@ -2,7 +2,8 @@
 /// those that need another move to lanes of their own, so that they keep nobody waiting. Read Group::solve
 /// first.
 
-#include "solver/articulation_links.h"
+#include "solver/articulations.h"
+#include "solver/joint_rows.h"
 #include "solver/lanes.h"
 #include "solver/wide/trees.h"
 #include "state/body_frames.h"

@@ -225,7 +225,6 @@ bool make_tree(const Frame& frame, const std::vector<Hook>& hooks, const state::
     art.bodies.push_back(frame.bodies[branch.child]);
   }
   art.bodies.push_back(frame.bodies[root]);
-  art.parts.assign(art.bodies.size(), 1);
   return budget >= 0;
 }
 

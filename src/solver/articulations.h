@@ -73,20 +73,20 @@ struct Articulation {
   };
 
   std::vector<std::uint32_t> bodies;  ///< Rows; HookPlace::kWorld for the world. One for each link.
-  std::vector<double> parts;          ///< Into how many links the body of each link is divided.
   std::vector<Joint> joints;          ///< In order of elimination.
 
-  // Lives for one substep.
+  // Of what has loops, for one substep.
   std::vector<Link> links;  ///< As bodies.
   std::vector<JointRow> rows;
   std::vector<double> lambda;
   std::vector<std::int8_t> bound;  ///< Of each row: -1 at low, 1 at high, 0 between, or kGiven.
   std::vector<math::Symmetric3<double>> stiffness_found;  ///< Of each link.
+  std::vector<double> parts;  ///< Into how many links the body of each link is divided.
 
   /// A tree: joint i joins link i, its child, to a link behind it; the root is the last.
   struct Tree {
     wide::TreeForm form;
-    std::vector<int> rows;  ///< Row i of the form; the spring beside a motor is the one before it.
+    std::vector<int> rows;  ///< Of the hook, for each of the form; a motor's spring is the one before it.
     int kind = 0;           ///< Equal where forms are.
   } tree;
   [[nodiscard]] bool has_loops() const { return tree.form.joints.empty(); }

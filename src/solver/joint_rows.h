@@ -115,6 +115,9 @@ inline constexpr double kLargeError = 2e-4;   ///< Gap of a joint over its lever
 inline constexpr int kFreeBoundPasses = 8;
 inline constexpr int kMostBoundPasses = 16;
 
+/// How often an articulation is solved with bounds in a substep, with rows or a stiffness made anew.
+inline constexpr int kMaxSolves = 4;
+
 /// Whether a row stays at its bound (-1 or 1) that `lacks` so much speed there [m/s].
 [[nodiscard]] bool stays_at(std::int8_t bound, double lacks);
 
