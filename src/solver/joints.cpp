@@ -73,11 +73,23 @@ void solve_articulations(double h, std::span<Articulation> articulations, Articu
   solve();
 }
 
+/// A form as numbers: equal where forms are.
+std::vector<int> numbers_of(const wide::TreeForm& form) {
+  std::vector<int> numbers;
+  for (const wide::TreeJoint& joint : form.joints) {
+    numbers.insert(numbers.end(), {joint.parent, joint.parent_moves, joint.child_is_b,
+                                   static_cast<int>(joint.kind), joint.turns, joint.count});
+  }
+  for (const wide::TreeRowForm& row : form.rows)
+    numbers.insert(numbers.end(), {row.freedom, static_cast<int>(row.role), row.sprung});
+  return numbers;
+}
+
 /// Brings trees of one form together.
 void sort_articulations(std::vector<Articulation>& articulations) {
-  std::map<wide::TreeForm, int> kinds;
+  std::map<std::vector<int>, int> kinds;
   for (Articulation& art : articulations)
-    art.tree.kind = kinds.emplace(art.tree.form, static_cast<int>(kinds.size())).first->second;
+    art.tree.kind = kinds.emplace(numbers_of(art.tree.form), static_cast<int>(kinds.size())).first->second;
   std::stable_sort(articulations.begin(), articulations.end(),
                    [](const Articulation& a, const Articulation& b) {
                      return a.has_loops() != b.has_loops() ? a.has_loops() : a.tree.kind < b.tree.kind;

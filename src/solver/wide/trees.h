@@ -2,7 +2,6 @@
 
 #include "solver/joint_rows.h"
 
-#include <compare>
 #include <vector>
 
 /// \file
@@ -26,7 +25,6 @@ struct TreeRowForm {
   [[nodiscard]] bool bounded() const { return role == RowRole::kMotor || role == RowRole::kLimit; }
   /// It is not there while it is at a bound.
   [[nodiscard]] bool drops() const { return bounded() && !sprung; }
-  auto operator<=>(const TreeRowForm&) const = default;
 };
 
 /// Joint i joins link i, its child, to a link that is eliminated later.
@@ -38,16 +36,12 @@ struct TreeJoint {
   bool turns = false;  ///< Rows need its angles.
   int first = 0;       ///< Of its rows, those of ways first.
   int count = 0;
-
-  auto operator<=>(const TreeJoint&) const = default;
 };
 
 /// In order of elimination; the root is one link more than there are joints.
 struct TreeForm {
   std::vector<TreeJoint> joints;
   std::vector<TreeRowForm> rows;
-
-  auto operator<=>(const TreeForm&) const = default;
 };
 
 /// A body. Lower triangles of 6 x 6 matrices stand row by row.
