@@ -16,8 +16,10 @@ using state::Bodies;
 using state::Manifold;
 using state::MotionLine;
 
-constexpr std::size_t kMostPoints = 32;  // of an impact
-constexpr double kTogether = 1e-4;       // points that are nearer meet at once [m]
+constexpr std::size_t kMostPoints = 32;   // of an impact
+constexpr double kTogether = 1e-4;        // points that are nearer meet at once [m]
+constexpr double kLeastResponse = 1e-12;  // 1/kg; what both together give way is no less
+
 /// How long an impact is iterated, and to what share of its fastest speed.
 struct Effort {
   int sweeps = 60;
@@ -26,8 +28,6 @@ struct Effort {
 };
 constexpr Effort kFull = {};
 constexpr Effort kInCrowd = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
-
-constexpr double kLeastResponse = 1e-12;  // 1/kg; one has to give way
 
 /// A body in an impact.
 struct Struck {
@@ -256,9 +256,12 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
   Impact impact = {.a = struck(bodies, first.body_a),
                    .b = struck(bodies, first.body_b),
                    .effort = pair.in_crowd ? kInCrowd : kFull};
-  // Two that are both backed are struck as if neither were: one of them has to give way.
-  if (pair.a_is_backed != pair.b_is_backed)
-    (pair.a_is_backed ? impact.a : impact.b).backed = vector_cast<double>(first.normal);
+  // One of them has to give way: what is backed does not only where the other does.
+  const DVec3 n = vector_cast<double>(first.normal);
+  const bool a_gives_way = impact.a.body.inverse_mass > 0 && !pair.a_is_backed;
+  const bool b_gives_way = impact.b.body.inverse_mass > 0 && !pair.b_is_backed;
+  if (pair.a_is_backed && b_gives_way) impact.a.backed = n;
+  if (pair.b_is_backed && a_gives_way) impact.b.backed = n;
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     const Manifold& m = manifolds[lanes[i].manifold];
     const Vec3 pull =

@@ -226,6 +226,21 @@ TEST_SUITE("world/hits") {
     CHECK(top == doctest::Approx(0.64 * 0.5).epsilon(0.03));
   }
 
+  TEST_CASE("a body between a floor that does not bounce and a ceiling that does is not torn apart") {
+    World world = make_world();
+    add_floor(world);
+    BodyDesc ceiling = bouncing(Shape::half_space(), {0, 0.2, 0}, 1);
+    ceiling.kind = BodyKind::kStatic;
+    ceiling.rotation = quaternion_about(Vec3{Real(1), Real(0), Real(0)}, static_cast<Real>(M_PI));
+    take(world.add_body(ceiling));
+    BodyDesc cube = bouncing(Shape::box({Real(0.1), Real(0.1), Real(0.1)}), {0, 0.1, 0}, 0, 0.5);
+    cube.velocity = {Real(0.2), Real(3), Real(0)};
+    const BodyId id = take(world.add_body(cube));
+    run(world, 120);
+    CHECK(length(velocity(world, id)) < 0.3);
+    CHECK(world.pose(id).position.y == doctest::Approx(0.1).epsilon(0.02));
+  }
+
   TEST_CASE("in a room full of rough balls and boxes energy is kept, or lost") {
     World lossless = make_room(1, 1);
     const double before = energy_of(lossless);
