@@ -161,8 +161,9 @@ std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   return all.first(static_cast<std::size_t>(hard - all.begin()));
 }
 
-/// What a lane's impulses have done to the bodies is to be of free motion (`sign` 1), or no longer (-1).
-void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodies) {
+/// Calls `change(body, v, omega_scaled)` with what a lane's impulses do to each body that they move.
+template <class Change>
+void for_impulses(const ContactBlock& block, int lane, Change&& change) {
   const Vec3 n = vector_of(block.normal, lane);
   const Vec3 t_1 = vector_of(block.tangent, lane);
   const Real twist = block.twist_impulse[lane];
@@ -179,14 +180,18 @@ void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodie
     turn_a += impulse * vector_of(block.point[k].j_a, lane);
     turn_b += impulse * vector_of(block.point[k].j_b, lane);
   }
-  const auto change = [&](std::uint32_t body, Vec3 v, Vec3 turn) {
-    bodies.free_motion[body].v += v;
-    bodies.free_motion[body].omega_scaled += turn;
+  change(block.line_a[lane] / 16, (-block.w_a[lane]) * push, -turn_a);
+  if (!block.anchored) change(block.line_b[lane] / 16, block.w_b[lane] * push, turn_b);
+}
+
+/// What a lane's impulses have done to the bodies is to be of free motion (`sign` 1), or no longer (-1).
+void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodies) {
+  for_impulses(block, lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
+    bodies.free_motion[body].v += sign * v;
+    bodies.free_motion[body].omega_scaled += sign * turn;
     if (state::tumbles_now(bodies, body))
-      bodies.angular_momentum[body] += math::inverse(bodies.scale[body]) * turn;
-  };
-  change(block.line_a[lane] / 16, (-sign * block.w_a[lane]) * push, -sign * turn_a);
-  if (!block.anchored) change(block.line_b[lane] / 16, (sign * block.w_b[lane]) * push, sign * turn_b);
+      bodies.angular_momentum[body] += math::inverse(bodies.scale[body]) * (sign * turn);
+  });
 }
 
 /// From separations of `time` from now to those of the start of the step, along the rows' straight lines.
@@ -303,6 +308,21 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
     const int count = std::min(m.point_count, block.point_count);
     for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
     store_friction(block, lane, m);
+  }
+}
+
+void drop_warm_start(const ContactLane& at, BodyContacts& contacts, Bodies& bodies) {
+  ContactBlock& block = contacts.blocks[at.block];
+  if (block.hard) return;
+  for_impulses(block, at.lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
+    bodies.motion[body].v -= v;
+    bodies.motion[body].omega_scaled -= turn;
+  });
+  for (int lane = at.lane; lane < end_of(block, at.lane); ++lane) {
+    for (int k = 0; k < block.point_count; ++k) block.point[k].impulse[lane] = Real(0);
+    block.friction_impulse[0][lane] = Real(0);
+    block.friction_impulse[1][lane] = Real(0);
+    block.twist_impulse[lane] = Real(0);
   }
 }
 

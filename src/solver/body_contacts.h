@@ -162,6 +162,9 @@ void solve_body_contacts(parallel::Range blocks, const ContactStep& step, BodyCo
 void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
 
+/// After accelerate_bodies, which repeats what contacts did in the substep before: takes that of a lane back.
+void drop_warm_start(const ContactLane& lane, BodyContacts& contacts, state::Bodies& bodies);
+
 /// In the middle of a step, the impulses of some lanes, but hard ones, to their manifolds.
 void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,
                  std::vector<state::Manifold>& manifolds);

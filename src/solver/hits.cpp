@@ -227,10 +227,15 @@ void list_hits(const state::Pairs& pairs, const Bodies& bodies, const BodyContac
   hits.since.assign(bodies.motion.size(), Real(0));
 }
 
-bool foresee_hits(const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies, Hits& hits) {
+bool foresee_hits(const ContactStep& step, BodyContacts& contacts, Bodies& bodies, Hits& hits) {
   hits.queue.clear();
   for (const std::uint32_t body : hits.struck) hits.since[body] = Real(0);
   hits.struck.clear();
+  // An impulse that is repeated and then loses its row in a hit would be one too many.
+  for (const HitPair& pair : hits.pairs) {
+    if (is_slow(bodies, pair.a) && is_slow(bodies, pair.b)) continue;
+    for (const ContactLane& lane : lanes_of(pair, hits)) drop_warm_start(lane, contacts, bodies);
+  }
   for (std::uint32_t i = 0; i < hits.pairs.size(); ++i) {
     HitPair& pair = hits.pairs[i];
     pair.looks = 0;

@@ -86,9 +86,10 @@ struct Hits {
 void list_hits(const state::Pairs& pairs, const state::Bodies& bodies, const BodyContacts& contacts,
                Hits& hits);
 
-/// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do.
-[[nodiscard]] bool foresee_hits(const ContactStep& step, const BodyContacts& contacts,
-                                const state::Bodies& bodies, Hits& hits);
+/// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do. Contacts of
+/// pairs that are not at rest begin the substep without the impulses of the last one.
+[[nodiscard]] bool foresee_hits(const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies,
+                                Hits& hits);
 
 /// The earliest; of two at one time the one of the lower row.
 [[nodiscard]] std::optional<Hit> next_hit(Hits& hits);
