@@ -196,11 +196,15 @@ void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodie
 
 /// From separations of `time` from now to those of the start of the step, along the rows' straight lines.
 void bring_to_start(const Bodies& bodies, Real time, int lane, ContactBlock& block) {
-  const state::MotionLine& a = bodies.motion[block.line_a[lane] / 16];
-  const state::MotionLine& b = bodies.motion[block.line_b[lane] / 16];
-  const Real way = dot(vector_of(block.normal, lane), (b.dx + time * b.v) - (a.dx + time * a.v));
-  const Vec3 turn_a = a.theta_scaled + time * a.omega_scaled;
-  const Vec3 turn_b = b.theta_scaled + time * b.omega_scaled;
+  const std::uint32_t row_a = block.line_a[lane] / 16;
+  const std::uint32_t row_b = block.line_b[lane] / 16;
+  const state::MotionLine& a = bodies.motion[row_a];
+  const state::MotionLine& b = bodies.motion[row_b];
+  const state::FreeLine from_a = state::motion_before_contacts(bodies, row_a);
+  const state::FreeLine from_b = state::motion_before_contacts(bodies, row_b);
+  const Real way = dot(vector_of(block.normal, lane), (b.dx + time * from_b.v) - (a.dx + time * from_a.v));
+  const Vec3 turn_a = a.theta_scaled + time * from_a.omega_scaled;
+  const Vec3 turn_b = b.theta_scaled + time * from_b.omega_scaled;
   for (int k = 0; k < block.point_count; ++k) {
     ContactBlock::Point& p = block.point[k];
     p.separation[lane] -= way + (dot(vector_of(p.j_b, lane), turn_b) - dot(vector_of(p.j_a, lane), turn_a));

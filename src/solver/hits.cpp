@@ -151,12 +151,16 @@ Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep&
                const BodyContacts& contacts, const Bodies& bodies) {
   const ContactBlock& block = contacts.blocks[static_cast<std::size_t>(at.block)];
   const int lane = at.lane;
-  const MotionLine& a = bodies.motion[block.line_a[lane] / 16];
-  const MotionLine& b = bodies.motion[block.line_b[lane] / 16];
+  const std::uint32_t row_a = block.line_a[lane] / 16;
+  const std::uint32_t row_b = block.line_b[lane] / 16;
+  const MotionLine& a = bodies.motion[row_a];
+  const MotionLine& b = bodies.motion[row_b];
+  const state::FreeLine from_a = state::motion_before_contacts(bodies, row_a);
+  const state::FreeLine from_b = state::motion_before_contacts(bodies, row_b);
   const Vec3 n = vector_of(block.normal, lane);
-  const Real pull = dot(n, free_acceleration(bodies, block.line_b[lane] / 16, step.gravity) -
-                               free_acceleration(bodies, block.line_a[lane] / 16, step.gravity));
-  const Real approach = dot(n, b.v - a.v);
+  const Real pull =
+      dot(n, free_acceleration(bodies, row_b, step.gravity) - free_acceleration(bodies, row_a, step.gravity));
+  const Real approach = dot(n, from_b.v - from_a.v);
   const Real way = dot(n, b.dx - a.dx);
   Real earliest = Hits::kNever;
   for (int k = 0; k < block.point_count; ++k) {
@@ -165,7 +169,7 @@ Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep&
     const Vec3 j_a = vector_of(p.j_a, lane);
     const Vec3 j_b = vector_of(p.j_b, lane);
     const Real gap = p.separation[lane] + way + (dot(j_b, b.theta_scaled) - dot(j_a, a.theta_scaled));
-    const Real v = approach + (dot(j_b, b.omega_scaled) - dot(j_a, a.omega_scaled));
+    const Real v = approach + (dot(j_b, from_b.omega_scaled) - dot(j_a, from_a.omega_scaled));
     earliest = std::min(earliest, meeting_time(gap, v, pull, since, step.h, least));
   }
   return earliest;
@@ -174,9 +178,9 @@ Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep&
 /// Whether no point of the body is as fast as half of what bounces: what rests is not looked at.
 bool is_slow(const Bodies& bodies, std::uint32_t body) {
   constexpr Real kSlow = Real(0.5) * kLeastHit;
-  const MotionLine& m = bodies.motion[body];
-  const Real turning = bodies.traits[body].radius * length(bodies.scale[body] * m.omega_scaled);
-  return length(m.v) + turning < kSlow;
+  const state::FreeLine motion = state::motion_before_contacts(bodies, body);
+  const Real turning = bodies.traits[body].radius * length(bodies.scale[body] * motion.omega_scaled);
+  return length(motion.v) + turning < kSlow;
 }
 
 /// The pair's next time.

@@ -86,8 +86,9 @@ struct Hits {
 void list_hits(const state::Pairs& pairs, const state::Bodies& bodies, const BodyContacts& contacts,
                Hits& hits);
 
-/// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do. Contacts of
-/// pairs that are not at rest begin the substep without the impulses of the last one.
+/// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do. Velocities
+/// are those before contacts: what is repeated of their impulses would be taken for motion. The rows of pairs
+/// that are not at rest begin the substep without them.
 [[nodiscard]] bool foresee_hits(const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies,
                                 Hits& hits);
 

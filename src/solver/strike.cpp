@@ -31,9 +31,11 @@ constexpr Effort kInCrowd = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-
 
 /// A body in an impact.
 struct Struck {
-  JointBody body;
+  JointBody body;  ///< Its mass and inertia.
   DVec3 v = {};
   DVec3 omega = {};
+  DVec3 v_before = {};
+  DVec3 omega_before = {};
   DVec3 backed = {};  ///< Direction along which it does not give way; zero: it gives way in all, and turns.
 
   [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(omega, lever); }
@@ -59,7 +61,10 @@ struct Struck {
 Struck struck(const Bodies& bodies, std::uint32_t row) {
   JointBody now = joint_body_now(bodies, row);
   if (!is_moved(bodies, row)) now.inverse_mass = 0;
-  return {.body = now, .v = now.v, .omega = now.scale * now.omega_scaled};
+  const state::FreeLine motion = state::motion_before_contacts(bodies, row);
+  const DVec3 v = vector_cast<double>(motion.v);
+  const DVec3 omega = vector_cast<double>(bodies.scale[row] * motion.omega_scaled);
+  return {.body = now, .v = v, .omega = omega, .v_before = v, .omega_before = omega};
 }
 
 /// From the centers of mass to a place [m].
@@ -233,18 +238,25 @@ bool rub(double share, Impact& impact) {
   return gains_energy(impact);
 }
 
-/// The body's velocities of now, and its line as if it had had them after `time` only.
+/// Changes the body's velocities, and its line as if it had changed them after `time` only.
 void set_struck(const Struck& after, std::uint32_t row, Real time, Bodies& bodies) {
   if (!(after.body.inverse_mass > 0)) return;
   MotionLine& m = bodies.motion[row];
-  const Vec3 v = m.v;
-  const Vec3 omega_scaled = m.omega_scaled;
-  set_joint_velocity(after.body, after.v, math::inverse(after.body.scale) * after.omega, row, bodies);
-  m.dx += time * (v - m.v);
-  const Vec3 turn = time * (omega_scaled - m.omega_scaled);
-  m.theta_scaled += turn;
+  state::FreeLine& free = bodies.free_motion[row];
+  const math::Symmetric3<double> root = math::inverse(after.body.scale);  // of the inertia
+  const DVec3 turned = after.omega - after.omega_before;
+  const Vec3 v = vector_cast<Real>(after.v - after.v_before);
+  const Vec3 omega_scaled = math::inverse(bodies.scale[row]) * vector_cast<Real>(turned);
+  bodies.angular_momentum[row] += vector_cast<Real>(root * (root * turned));
+  m.v += v;
+  free.v += v;
+  m.omega_scaled += omega_scaled;
+  free.omega_scaled += omega_scaled;
+  m.dx -= time * v;
+  m.theta_scaled -= time * omega_scaled;
   if (state::tumbles_now(bodies, row))
-    bodies.rotation[row] = normalize(math::quaternion_of(bodies.scale[row] * turn) * bodies.rotation[row]);
+    bodies.rotation[row] =
+        normalize(math::quaternion_of(bodies.scale[row] * (-time * omega_scaled)) * bodies.rotation[row]);
 }
 
 }  // namespace

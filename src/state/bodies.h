@@ -148,6 +148,14 @@ inline bool gives_way(const Bodies& bodies, std::uint32_t body) {
   return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
 }
 
+/// How a body moves after accelerate_bodies but for what that repeats of the contacts of the last substep,
+/// which the solver may yet take back.
+inline FreeLine motion_before_contacts(const Bodies& bodies, std::uint32_t body) {
+  const MotionLine& m = bodies.motion[body];
+  if (gives_way(bodies, body)) return bodies.free_motion[body];
+  return {.v = m.v, .omega_scaled = m.omega_scaled};
+}
+
 /// Consecutive rows, for range-based loops (clang 14 does not know std::views::iota of libstdc++ 12).
 struct RowRange {
   struct Iterator {

@@ -50,12 +50,12 @@ inline Pose pose_now(const Bodies& bodies, std::uint32_t row) {
   return {center, math::quaternion_of(bodies.scale[row] * m.theta_scaled) * bodies.rotation[row]};
 }
 
-/// The same after `time` [s] more at its present velocity.
+/// The same after `time` [s] more of motion_before_contacts.
 inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
-  const MotionLine& m = bodies.motion[row];
+  const FreeLine motion = motion_before_contacts(bodies, row);
   const Pose now = pose_now(bodies, row);
-  return {now.position + vector_cast<double>(time * m.v),
-          math::quaternion_of(bodies.scale[row] * (time * m.omega_scaled)) * now.rotation};
+  return {now.position + vector_cast<double>(time * motion.v),
+          math::quaternion_of(bodies.scale[row] * (time * motion.omega_scaled)) * now.rotation};
 }
 
 /// L = R I R^T omega, of a body whose frame is turned by `rotation`.
