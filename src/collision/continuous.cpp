@@ -10,7 +10,7 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 
-constexpr int kSweepGrain = 16;
+constexpr int kSweepGrain = 64;
 constexpr int kMostBends = 4;  // of a body in a step; then it stands
 
 /// An impact that was found when the bodies of its pair had given way `bends` times.
@@ -56,8 +56,8 @@ class ImpactQueue {
         queue_(buffers.queue),
         bodies_(bodies) {}
 
-  std::uint32_t run(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
-    find_first(pool, fast);
+  std::uint32_t run(parallel::ThreadPool& pool, std::span<const Encounter> encounters) {
+    find_first(pool, encounters);
     std::uint32_t count = 0;
     while (!queue_.empty()) {
       const Event event = queue_.front();
@@ -75,11 +75,19 @@ class ImpactQueue {
     return bodies_.bends[body_of(pair.first)].count + bodies_.bends[body_of(pair.second)].count;
   }
 
-  void sweep(ColliderPair pair, Real begin, SweepScratch& scratch, std::vector<Event>& events) const {
-    const SweptCollider a = {colliders_, pair.first, bodies_.path[body_of(pair.first)]};
-    const SweptCollider b = {colliders_, pair.second, bodies_.path[body_of(pair.second)]};
+  void sweep(const Encounter& encounter, Real begin, SweepScratch& scratch,
+             std::vector<Event>& events) const {
+    const ColliderPair pair = encounter.pair;
+    const std::uint32_t body_a = body_of(pair.first);
+    const std::uint32_t body_b = body_of(pair.second);
+    if (bodies_.stoppable[body_a] == Stoppable::kNever && bodies_.stoppable[body_b] == Stoppable::kNever)
+      return;
+    const SweptCollider a = {colliders_, pair.first, bodies_.path[body_a]};
+    const SweptCollider b = {colliders_, pair.second, bodies_.path[body_b]};
     if (go_together(a.path, b.path, begin)) return;
-    if (const auto impact = find_impact(a, b, overlap_allowance(a, b), begin, scratch))
+    const Real allowance = overlap_allowance(a, b);
+    if (are_held_apart(a, b, encounter.apart, allowance, begin)) return;
+    if (const auto impact = find_impact(a, b, allowance, begin, scratch))
       events.push_back({*impact, pair, bends_of(pair)});
   }
 
@@ -90,23 +98,14 @@ class ImpactQueue {
     }
   }
 
-  /// Each pair once: from its first fast body.
-  void find_first(parallel::ThreadPool& pool, std::span<const std::uint32_t> fast) {
+  void find_first(parallel::ThreadPool& pool, std::span<const Encounter> encounters) {
     queue_.clear();
     searches_.resize(static_cast<std::size_t>(pool.workers()));
     for (WaySearch& search : searches_) search.found.clear();
-    for_ranges(pool, static_cast<int>(fast.size()), kSweepGrain, [&](Range range, int part) {
+    for_ranges(pool, static_cast<int>(encounters.size()), kSweepGrain, [&](Range range, int part) {
       WaySearch& search = searches_[static_cast<std::size_t>(part)];
-      for (int i = range.begin; i < range.end; ++i) {
-        const std::uint32_t body = fast[static_cast<std::size_t>(i)];
-        find_pairs_(body, search.way);
-        for (const ColliderPair pair : search.way.pairs) {
-          const std::uint32_t first = body_of(pair.first);
-          const std::uint32_t other = first == body ? body_of(pair.second) : first;
-          if (other < body && std::binary_search(fast.begin(), fast.end(), other)) continue;
-          sweep(pair, Real(0), search.sweep, search.found);
-        }
-      }
+      for (int i = range.begin; i < range.end; ++i)
+        sweep(encounters[static_cast<std::size_t>(i)], Real(0), search.sweep, search.found);
     });
     for (const WaySearch& search : searches_) take_up(search.found);
   }
@@ -168,7 +167,7 @@ class ImpactQueue {
     WaySearch& search = searches_.front();
     search.found.clear();
     find_pairs_(body, search.way);
-    for (const ColliderPair pair : search.way.pairs) sweep(pair, time, search.sweep, search.found);
+    for (const ColliderPair pair : search.way.pairs) sweep({.pair = pair}, time, search.sweep, search.found);
     take_up(search.found);
   }
 
@@ -187,9 +186,9 @@ ContinuousScratch::ContinuousScratch(ContinuousScratch&&) noexcept = default;
 ContinuousScratch& ContinuousScratch::operator=(ContinuousScratch&&) noexcept = default;
 
 std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
-                                  std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
+                                  std::span<const Encounter> encounters, const FindPairs& find_pairs,
                                   ContinuousScratch& scratch, SweptBodies& bodies) {
-  return ImpactQueue(colliders, find_pairs, scratch.buffers(), bodies).run(pool, fast);
+  return ImpactQueue(colliders, find_pairs, scratch.buffers(), bodies).run(pool, encounters);
 }
 
 }  // namespace hooke::collision

@@ -40,13 +40,20 @@ struct SweptBodies {
   std::vector<Bends> bends = {};
 };
 
+/// Two colliders that may run into each other.
+struct Encounter {
+  ColliderPair pair = {};
+  Vec3 apart = {};  ///< From the first to the second: may hold them apart; zero if none is known.
+};
+
 /// What is in the way of a body.
 struct WayScratch {
   std::vector<ColliderPair> pairs = {};
   std::vector<std::uint32_t> near = {};  ///< Colliders; for FindPairs to use.
 };
 
-/// Replaces `scratch.pairs` by the pairs of a body's colliders with all that may be in their way.
+/// Replaces `scratch.pairs` by the pairs of a body's colliders with all that may be in their way, now that
+/// the body has given way; those that gave way before are in each other's way where they go now.
 using FindPairs = std::function<void(std::uint32_t body, WayScratch& scratch)>;
 
 /// Memory of give_way_at_impacts.
@@ -65,16 +72,16 @@ class ContinuousScratch {
   std::unique_ptr<Buffers> buffers_;
 };
 
-/// Sweeps the `fast` bodies (rows, ascending) along their paths against what `find_pairs` finds, and lets
-/// bodies give way where they would go through each other: impacts in order of time, then of pair; whoever
-/// gives way is swept again from there.
+/// Sweeps `encounters`, each pair once, along the paths of their bodies, and lets bodies give way where they
+/// would go through each other: impacts in order of time, then of pair; whoever gives way is swept again from
+/// there against what `find_pairs` finds.
 ///
 /// A body that gives way ceases to turn, and loses that part of its own speed which takes it towards the
 /// other (so that it never leaves the ball of half its way around it); before one that moves as told it goes
 /// as that one does. What comes together slowly for its thickness is left to contacts. Returns how often
 /// bodies gave way. The result does not depend on the pool's number of threads.
 std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
-                                  std::span<const std::uint32_t> fast, const FindPairs& find_pairs,
+                                  std::span<const Encounter> encounters, const FindPairs& find_pairs,
                                   ContinuousScratch& scratch, SweptBodies& bodies);
 
 }  // namespace hooke::collision

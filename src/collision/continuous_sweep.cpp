@@ -115,6 +115,20 @@ std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin
   return Impact{time, hold.n};
 }
 
+ShapeKind kind_of(const SweptCollider& c) {
+  return c.colliders.shape[c.row].shape.kind;
+}
+
+/// Two convex shapes at a time, seen from A's center of mass.
+std::pair<Convex, Convex> convex_pair_at(const SweptCollider& a, const SweptCollider& b, Real time) {
+  const Pose pose_a = pose_at(a.path, time);
+  const Pose pose_b = pose_at(b.path, time);
+  std::pair<Convex, Convex> pair = {place(a.colliders, a.row, pose_a.rotation),
+                                    place(b.colliders, b.row, pose_b.rotation)};
+  pair.second.center += vector_cast<Real>(pose_b.position - pose_a.position);
+  return pair;
+}
+
 /// A pair of which A is the half-space or the mesh, if there is one.
 class PairSweep {
  public:
@@ -124,16 +138,14 @@ class PairSweep {
   std::optional<Impact> run(Real begin) {
     constexpr Real end = Real(1);
     const Closing closing = {b_.path.way - a_.path.way, spin_of(a_), spin_of(b_)};
-    const ShapeKind kind = a_.colliders.shape[a_.row].shape.kind;
+    const ShapeKind kind = kind_of(a_);
     if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, end);
     if (kind == ShapeKind::kHalfSpace) {
       return advance(closing, allowance_, begin, end, [this](Real time) { return hold_half_space(time); });
     }
     return advance(closing, allowance_, begin, end, [this](Real time) {
-      const auto [pose_a, pose_b] = poses(time);
-      Convex b = place(b_.colliders, b_.row, pose_b.rotation);
-      b.center += vector_cast<Real>(pose_b.position - pose_a.position);
-      return hold_convex(place(a_.colliders, a_.row, pose_a.rotation), b, scratch_.meeting);
+      const auto [a, b] = convex_pair_at(a_, b_, time);
+      return hold_convex(a, b, scratch_.meeting);
     });
   }
 
@@ -250,12 +262,20 @@ Real overlap_allowance(const SweptCollider& a, const SweptCollider& b) {
   return std::min(Real(0.25) * (of_a + of_b), std::max(kAllowance, Real(0.1) * std::min(of_a, of_b)));
 }
 
+bool are_held_apart(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance, Real begin) {
+  if (is_wide(kind_of(a)) || is_wide(kind_of(b))) return false;
+  const Closing closing = {b.path.way - a.path.way, spin_of(a), spin_of(b)};
+  const auto [shape_a, shape_b] = convex_pair_at(a, b, begin);
+  if (n == Vec3{}) n = normalize(middle_of(shape_b) - middle_of(shape_a));
+  if (n == Vec3{}) return false;
+  const Real approach = std::max(Real(0), closing.along(n) * (Real(1) - begin));
+  return approach <= separation_along(shape_a, shape_b, n) + allowance;
+}
+
 std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b, Real allowance, Real begin,
                                   SweepScratch& scratch) {
-  const ShapeKind kind_a = a.colliders.shape[a.row].shape.kind;
-  const ShapeKind kind_b = b.colliders.shape[b.row].shape.kind;
-  if (is_wide(kind_a) && is_wide(kind_b)) return std::nullopt;
-  const bool swapped = is_wide(kind_b);
+  if (is_wide(kind_of(a)) && is_wide(kind_of(b))) return std::nullopt;
+  const bool swapped = is_wide(kind_of(b));
   PairSweep sweep = swapped ? PairSweep(b, a, allowance, scratch) : PairSweep(a, b, allowance, scratch);
   auto impact = sweep.run(begin);
   if (impact && swapped) impact->normal = -impact->normal;

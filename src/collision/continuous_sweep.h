@@ -64,6 +64,12 @@ struct SweepScratch {
 /// other do not meet.
 [[nodiscard]] Real overlap_allowance(const SweptCollider& a, const SweptCollider& b);
 
+/// Whether one look shows that convex shapes cannot overlap by more than `allowance` [m] until the step's
+/// end: along n, a unit vector from A to B, they are too far apart for how fast they come together. If n is
+/// zero, along the line of their middles. False for other shapes.
+[[nodiscard]] bool are_held_apart(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance,
+                                  Real begin);
+
 /// When the shapes first overlap by more than `allowance` [m], positive, or by more than they do at `begin`,
 /// which is not before their paths'.
 /// A mesh is met from the front only. Nothing for pairs that have no manifolds either (two meshes).

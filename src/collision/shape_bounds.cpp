@@ -10,8 +10,6 @@ namespace {
 
 using geometry::Box;
 
-constexpr Real kHalfMargin = Real(0.01);  ///< Half of the distance from which contacts are kept [m].
-
 Vec3 absolute(Vec3 v) {
   return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
 }
@@ -102,7 +100,7 @@ Box reach_of(const state::Colliders& colliders, std::uint32_t collider, const Pa
   const Box now = bounds_of(colliders.shape[collider], pose);
   // No point of the body turns farther than its diameter.
   const Real turn = std::min(length(path.turn), Real(2)) * path.radius;
-  const Vec3 pad = {kHalfMargin + turn, kHalfMargin + turn, kHalfMargin + turn};
+  const Vec3 pad = {kReachMargin + turn, kReachMargin + turn, kReachMargin + turn};
   return {geometry::min_of(now.lower, now.lower + path.way) - pad,
           geometry::max_of(now.upper, now.upper + path.way) + pad};
 }

@@ -15,12 +15,15 @@ namespace hooke::collision {
 /// a mesh, around the box of its frame. A half-space fills the world.
 [[nodiscard]] geometry::Box bounds_of(const state::ColliderShape& shape, const Pose& pose);
 
-/// What a collider's shape can reach within `dt` [s] at its body's speed, and 1 cm around it. Two shapes
-/// whose reaches do not overlap are more than 2 cm apart at the end of the step.
+/// Around what a shape reaches: half of the distance from which contacts are kept [m].
+inline constexpr Real kReachMargin = Real(0.01);
+
+/// What a collider's shape can reach within `dt` [s] at its body's speed, and kReachMargin around it. Two
+/// shapes whose reaches do not overlap are more than twice that apart at the end of the step.
 [[nodiscard]] geometry::Box reach_of(const state::Bodies& bodies, const state::Colliders& colliders,
                                      std::uint32_t collider, Real dt);
 
-/// What it does reach on a path, and 1 cm around it.
+/// What it does reach on a path, and kReachMargin around it.
 [[nodiscard]] geometry::Box reach_of(const state::Colliders& colliders, std::uint32_t collider,
                                      const Path& path);
 

@@ -39,6 +39,7 @@ struct Struck {
   DVec3 backed = {};  ///< Direction along which it does not give way; zero: it gives way in all, and turns.
 
   [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(omega, lever); }
+  [[nodiscard]] DVec3 velocity_before_at(DVec3 lever) const { return v_before + cross(omega_before, lever); }
 
   /// Change of the velocity at `lever` by an impulse there.
   [[nodiscard]] DVec3 response(DVec3 lever, DVec3 impulse) const {
@@ -97,6 +98,10 @@ struct Grip {
   double static_friction = 0;
 };
 
+DVec3 across(DVec3 n, DVec3 v) {
+  return v - dot(n, v) * n;
+}
+
 /// Two bodies while they hit each other.
 struct Impact {
   Struck a;
@@ -124,8 +129,10 @@ struct Impact {
   }
 
   [[nodiscard]] DVec3 sliding(const Grip& grip) const {
-    const DVec3 v = velocity(grip.at) + grip.surface;
-    return v - dot(grip.n, v) * grip.n;
+    return across(grip.n, velocity(grip.at) + grip.surface);
+  }
+  [[nodiscard]] DVec3 sliding_before(const Grip& grip) const {
+    return across(grip.n, b.velocity_before_at(grip.at.b) - a.velocity_before_at(grip.at.a) + grip.surface);
   }
 };
 
@@ -174,9 +181,7 @@ double load_of(std::size_t lane, Impact& impact) {
 /// The matrix of response(), and 1 along the normal, inverted.
 math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& impact) {
   const auto column = [&](DVec3 axis) {
-    const DVec3 across = axis - dot(n, axis) * n;
-    const DVec3 v = impact.response(at, across);
-    return v - dot(n, v) * n + dot(n, axis) * n;
+    return across(n, impact.response(at, across(n, axis))) + dot(n, axis) * n;
   };
   const DVec3 x = column({1, 0, 0});
   const DVec3 y = column({0, 1, 0});
@@ -184,8 +189,7 @@ math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& im
   return math::inverse(math::Symmetric3<double>{x.x, x.y, x.z, y.y, y.z, z.z});
 }
 
-/// `before` is the impact without impulses.
-void add_grip(const Manifold& m, std::size_t lane, const Impact& before, Impact& impact) {
+void add_grip(const Manifold& m, std::size_t lane, Impact& impact) {
   const double load = load_of(lane, impact);
   if (!(load > 0) || !(std::max(m.static_friction, m.friction) > Real(0))) return;
   Grip grip = {.lane = lane,
@@ -199,14 +203,14 @@ void add_grip(const Manifold& m, std::size_t lane, const Impact& before, Impact&
     grip.at.b += (p.impulse / load) * p.at.b;
   }
   grip.mass = mass_across(grip.at, grip.n, impact);
-  grip.before = before.sliding(grip);
+  grip.before = impact.sliding_before(grip);
   impact.grip_memory[impact.grip_count++] = grip;
 }
 
 void hold(Grip& grip, Impact& impact) {
   const double load = load_of(grip.lane, impact);
   DVec3 after = grip.impulse - grip.mass * impact.sliding(grip);
-  after = after - dot(grip.n, after) * grip.n;
+  after = across(grip.n, after);
   const double size = length(after);
   if (size > grip.static_friction * load) after = (grip.friction * load / size) * after;
   impact.push(after - grip.impulse, grip.at);
@@ -282,10 +286,9 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
     add_points(m, i, static_cast<double>(lag), impact);
   }
   if (!(impact.fastest < -static_cast<double>(pair.in_crowd ? kLeastHitInCrowd : kLeastHit))) return false;
-  const Impact before = impact;
   push_points(impact);
   for (std::size_t i = 0; i < lanes.size() && impact.grip_count < kMostPoints; ++i)
-    add_grip(manifolds[lanes[i].manifold], i, before, impact);
+    add_grip(manifolds[lanes[i].manifold], i, impact);
   const Impact smooth = impact;
   bool gains = rub(1, impact);
   for (const double share : {0.5, 0.25, 0.0}) {

@@ -80,36 +80,69 @@ bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt
   return false;
 }
 
-/// How bodies go, and boxes around that, which may be more than detect thought they could, and around where
-/// fast ones may be driven.
-void enter_ways(WorldData& world, const std::vector<std::uint32_t>& fast, collision::SweptBodies& swept) {
-  state::Tables& t = world.tables;
-  const std::size_t count = t.bodies.motion.size();
+/// Marks the bodies that go or turn far for their thickness; false if none do.
+bool find_fast_bodies(WorldData& world) {
+  const Bodies& bodies = world.tables.bodies;
+  world.fast.assign(bodies.motion.size(), 0);
+  bool any = false;
+  for (const std::uint32_t body : world.awake) {
+    world.fast[body] = is_fast(bodies, body) ? 1 : 0;
+    any |= world.fast[body] != 0;
+  }
+  return any;
+}
+
+bool is_one_fast(const WorldData& world, ColliderPair pair) {
+  const std::vector<std::uint32_t>& body = world.tables.colliders.body;
+  return world.fast[body[pair.first]] != 0 || world.fast[body[pair.second]] != 0;
+}
+
+bool is_solid(const WorldData& world, std::uint32_t collider) {
+  return !world.tables.bodies.traits[world.tables.colliders.body[collider]].sensor;
+}
+
+/// Whether the body goes where detect did not think it could: then what is in its way is not among the pairs
+/// of the step.
+bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
+  const state::Colliders& colliders = world.tables.colliders;
+  constexpr Vec3 kMargin = {collision::kReachMargin, collision::kReachMargin, collision::kReachMargin};
+  for (const std::uint32_t c : colliders_of(world.tables.bodies, body)) {
+    const geometry::Box foreseen = {colliders.bounds[c].lower - kMargin, colliders.bounds[c].upper + kMargin};
+    if (!contains(foreseen, collision::reach_of(colliders, c, path))) return true;
+  }
+  return false;
+}
+
+/// How bodies go, and which of them go astray.
+void find_ways(WorldData& world) {
+  const Bodies& bodies = world.tables.bodies;
+  collision::SweptBodies& swept = world.swept;
+  const std::size_t count = bodies.motion.size();
   swept.path.resize(count);
   swept.stoppable.assign(count, Stoppable::kNever);
   swept.bends.assign(count, {});
+  world.astray.assign(count, 0);
   parallel::for_ranges(*world.pool, static_cast<int>(count), kBodyGrain, [&](parallel::Range rows) {
     for (int row = rows.begin; row < rows.end; ++row) {
       const auto body = static_cast<std::uint32_t>(row);
-      swept.path[body] = collision::path_ahead(t.bodies, body, Real(0));
+      swept.path[body] = collision::path_ahead(bodies, body, Real(0));
     }
   });
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
-      const bool goes_far = std::binary_search(fast.begin(), fast.end(), body);
-      const Path path = path_of(world, body);
-      swept.path[body] = path;
-      swept.stoppable[body] = stoppable(world, body, goes_far);
-      const Real aside = goes_far ? Real(0.5) * length(path.way) : Real(0);
-      const Vec3 pad = {aside, aside, aside};
-      for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-        const geometry::Box reach = collision::reach_of(t.colliders, c, path);
-        t.colliders.bounds[c] = {reach.lower - pad, reach.upper + pad};
-      }
+      swept.path[body] = path_of(world, body);
+      swept.stoppable[body] = stoppable(world, body, world.fast[body] != 0);
+      world.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
     }
   });
-  for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
-  world.broad_phase.update();
+}
+
+/// Puts boxes around where the body goes.
+void enter_way(WorldData& world, std::uint32_t body) {
+  state::Tables& t = world.tables;
+  for (const std::uint32_t c : colliders_of(t.bodies, body))
+    t.colliders.bounds[c] = collision::reach_of(t.colliders, c, world.swept.path[body]);
+  enter_broad_phase(world, body);
 }
 
 /// What a body's colliders may run into.
@@ -120,10 +153,40 @@ void find_in_the_way(const WorldData& world, std::uint32_t body, collision::WayS
     world.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
     for (const std::uint32_t other : scratch.near) {
       const ColliderPair pair = {std::min(c, other), std::max(c, other)};
-      const bool solid = !t.bodies.traits[t.colliders.body[other]].sensor;
-      if (solid && may_collide(world, pair)) scratch.pairs.push_back(pair);
+      if (is_solid(world, other) && may_collide(world, pair)) scratch.pairs.push_back(pair);
     }
   }
+}
+
+/// The pairs of solid colliders that may run into each other, one of them fast.
+void list_encounters(WorldData& world, std::vector<collision::Encounter>& encounters) {
+  const state::Pairs& pairs = world.tables.pairs;
+  encounters.clear();
+  for (const state::Pair& p : pairs.pair) {
+    const ColliderPair pair = {p.collider_a, p.collider_b};
+    if (!is_one_fast(world, pair) || !is_solid(world, pair.first) || !is_solid(world, pair.second)) continue;
+    encounters.push_back({pair, p.manifold_count > 0 ? pairs.manifold[p.first_manifold].normal : Vec3{}});
+  }
+  const std::size_t foreseen = encounters.size();
+  const auto for_each_astray = [&](auto&& visit) {
+    for (const std::uint32_t body : world.awake) {
+      if (world.astray[body] != 0 && !world.tables.bodies.traits[body].sensor) visit(body);
+    }
+  };
+  for_each_astray([&](std::uint32_t body) { enter_way(world, body); });
+  world.broad_phase.update();
+  for_each_astray([&](std::uint32_t body) {
+    find_in_the_way(world, body, world.way);
+    for (const ColliderPair pair : world.way.pairs) {
+      if (is_one_fast(world, pair)) encounters.push_back({.pair = pair});
+    }
+  });
+  if (encounters.size() == foreseen) return;
+  std::sort(encounters.begin(), encounters.end(), [](const auto& p, const auto& q) {
+    return p.pair != q.pair ? p.pair < q.pair : p.apart != Vec3{} && q.apart == Vec3{};
+  });
+  const auto same = [](const auto& p, const auto& q) { return p.pair == q.pair; };
+  encounters.erase(std::unique(encounters.begin(), encounters.end(), same), encounters.end());
 }
 
 /// Lets the body be where its path ends.
@@ -161,19 +224,16 @@ void begin_motion(WorldData& world, Real dt) {
 
 void give_way_at_impacts(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
-  std::vector<std::uint32_t>& fast = world.fast_bodies;
-  fast.clear();
-  for (const std::uint32_t body : world.awake) {
-    if (is_fast(bodies, body)) fast.push_back(body);
-  }
-  if (fast.empty()) return;
-  collision::SweptBodies& swept = world.swept;
-  enter_ways(world, fast, swept);
+  if (!find_fast_bodies(world)) return;
+  find_ways(world);
+  list_encounters(world, world.encounters);
   const auto find_pairs = [&world](std::uint32_t body, collision::WayScratch& scratch) {
+    enter_way(world, body);
     find_in_the_way(world, body, scratch);
   };
-  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, fast, find_pairs, world.continuous,
-                                     swept) == 0)
+  collision::SweptBodies& swept = world.swept;
+  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, world.encounters, find_pairs,
+                                     world.continuous, swept) == 0)
     return;
   for (const std::uint32_t body : world.awake) {
     if (swept.bends[body].count > 0) follow(swept.path[body], swept.bends[body].first, body, bodies);

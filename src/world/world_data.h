@@ -87,9 +87,12 @@ struct WorldData {
   std::vector<Approach> approaches;       ///< In order of manifolds.
   std::vector<ContactEvent> touches_now;  ///< Of those that ask.
   std::vector<SensorEvent> visits_now;
-  base::DisjointSets islands;              ///< Of bodies that may fall asleep together.
-  std::vector<Real> island_rest;           ///< For how long each has been at rest, at its root [s].
-  std::vector<std::uint32_t> fast_bodies;  ///< That may pass through others: rows in ascending order.
+  base::DisjointSets islands;        ///< Of bodies that may fall asleep together.
+  std::vector<Real> island_rest;     ///< For how long each has been at rest, at its root [s].
+  std::vector<std::uint8_t> fast;    ///< Of bodies: may pass through others.
+  std::vector<std::uint8_t> astray;  ///< Of bodies: goes where detect did not think it could.
+  std::vector<collision::Encounter> encounters;
+  collision::WayScratch way;
   collision::SweptBodies swept;
   collision::ContinuousScratch continuous;
   std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.

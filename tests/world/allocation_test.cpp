@@ -16,7 +16,7 @@
 namespace {
 
 using namespace hooke;
-using test::AllocationCounter;
+using namespace test;
 
 constexpr int kSteps = 60;
 /// Steps of the second run that make anew what a restored world has not: trees of boxes, tables of rows.

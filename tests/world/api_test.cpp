@@ -8,8 +8,7 @@
 
 namespace hooke {
 
-using test::make_world;
-using test::take;
+using namespace test;
 
 namespace {
 

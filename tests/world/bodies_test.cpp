@@ -10,10 +10,7 @@
 
 namespace hooke {
 
-using test::kGravity;
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 

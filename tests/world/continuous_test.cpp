@@ -9,10 +9,7 @@
 
 namespace hooke {
 
-using test::empty_space;
-using test::make_world;
-using test::signed_unit;
-using test::take;
+using namespace test;
 
 namespace {
 

@@ -8,11 +8,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::kGravity;
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace hooke {
-using test::kGravity;
+using namespace test;
 
 namespace {
 

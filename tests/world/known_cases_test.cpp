@@ -14,10 +14,7 @@
 namespace hooke {
 
 using collision::Distance;
-using test::make_world;
-using test::meeting_of;
-using test::placed;
-using test::take;
+using namespace test;
 
 namespace {
 

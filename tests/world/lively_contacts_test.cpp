@@ -5,9 +5,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::make_world;
-using test::take;
+using namespace test;
 
 namespace {
 

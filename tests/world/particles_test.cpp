@@ -5,10 +5,7 @@
 
 namespace hooke {
 
-using test::empty_space;
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 TEST_SUITE("world/particles") {
   TEST_CASE("a stone falls by g t^2 / 2 and the half substep of a semi-implicit step") {

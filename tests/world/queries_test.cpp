@@ -12,10 +12,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 

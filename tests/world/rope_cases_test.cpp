@@ -11,13 +11,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::kGravity;
-using test::kPi;
-using test::make_world;
-using test::run;
-using test::take;
-using test::without_air;
+using namespace test;
 
 namespace {
 

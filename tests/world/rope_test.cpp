@@ -9,10 +9,7 @@
 
 namespace hooke {
 
-using test::make_world;
-using test::run;
-using test::take;
-using test::without_air;
+using namespace test;
 
 namespace {
 

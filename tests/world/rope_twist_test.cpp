@@ -10,10 +10,7 @@
 
 namespace hooke {
 
-using test::empty_space;
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 

@@ -10,13 +10,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::empty_space;
-using test::kGravity;
-using test::make_world;
-using test::run;
-using test::take;
-using test::without_air;
+using namespace test;
 
 namespace {
 

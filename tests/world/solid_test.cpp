@@ -6,9 +6,7 @@
 
 namespace hooke {
 
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 

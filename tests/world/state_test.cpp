@@ -8,9 +8,7 @@
 
 namespace hooke {
 
-using test::make_world;
-using test::run;
-using test::take;
+using namespace test;
 
 namespace {
 
