@@ -372,20 +372,22 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   return row;
 }
 
-void remove_body(std::uint32_t row, Tables& t) {
-  const state::Rows rows = {t.bodies.first_collider[row], t.bodies.collider_count[row]};
-  for (std::uint32_t i = rows.first; i < rows.end(); ++i) {
-    t.colliders.body[i] = state::Colliders::kNoBody;
-    t.colliders.shape[i] = {};
-  }
-  std::erase(t.moving_bodies, row);
-  t.free_colliders.push_back(rows);
-  t.free_bodies.push_back(row);
-  state::Bodies::for_each_column(t.bodies, [&](auto& column) { column[row] = {}; });
+void remove_bodies(const std::vector<std::uint8_t>& goes, Tables& t) {
   std::erase_if(t.pairs.pair, [&](const state::Pair& pair) {
-    const auto gone = [&](std::uint32_t c) { return c >= rows.first && c < rows.end(); };
-    return gone(pair.collider_a) || gone(pair.collider_b);
+    return goes[t.colliders.body[pair.collider_a]] != 0 || goes[t.colliders.body[pair.collider_b]] != 0;
   });
+  std::erase_if(t.moving_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
+  for (std::uint32_t row = 0; row < goes.size(); ++row) {
+    if (goes[row] == 0) continue;
+    const state::Rows rows = {t.bodies.first_collider[row], t.bodies.collider_count[row]};
+    for (std::uint32_t i = rows.first; i < rows.end(); ++i) {
+      t.colliders.body[i] = state::Colliders::kNoBody;
+      t.colliders.shape[i] = {};
+    }
+    t.free_colliders.push_back(rows);
+    t.free_bodies.push_back(row);
+    state::Bodies::for_each_column(t.bodies, [&](auto& column) { column[row] = {}; });
+  }
 }
 
 }  // namespace hooke::build

@@ -26,8 +26,9 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
 /// place of an Error, like "body.".
 [[nodiscard]] Result<state::ColliderShape> make_shape(const Shape& shape, const std::string& where,
                                                       const state::Tables& tables);
-/// Leaves holes in the tables of bodies and colliders, and forgets the pairs of its colliders.
-void remove_body(std::uint32_t row, state::Tables& tables);
+/// Leaves holes in the tables of bodies and colliders, and forgets the pairs of their colliders. `goes` says
+/// which bodies go, by row.
+void remove_bodies(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 
 /// The new hook is the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);

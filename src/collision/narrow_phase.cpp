@@ -387,7 +387,6 @@ bool is_mesh(const Scene& scene, std::uint32_t collider) {
 bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
   if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.lively) return false;
   if (margin > Real(1.5) * kMargin) return false;
-  if (is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b)) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
     return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
   };

@@ -138,6 +138,7 @@ using Hooked = std::pair<std::uint32_t, std::uint32_t>;
 /// Sorted.
 void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
   hooked.clear();
+  if (t.objects.empty()) return;
   const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
     if (!point.is_point() || body == state::HookPlace::kWorld) return;
     for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);

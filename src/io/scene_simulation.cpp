@@ -26,15 +26,17 @@ void record(SimulationData& data, std::size_t event, const Result<void>& done) {
 /// The object of this name, or all copies of an array.
 Result<void> remove_objects(SimulationData& data, const std::string& name) {
   const auto named = [&](const SceneObject& object) {
+    if (!object.name.starts_with(name)) return false;
     const std::optional<io::CopyName> copy = io::take_copy_name(object.name);
     return object.name == name || (copy && copy->array == name);
   };
   std::vector<std::string> names = {};
+  std::vector<BodyId> bodies = {};
   for (const SceneObject& object : data.objects) {
     if (!named(object)) continue;
     names.push_back(object.name);
     // Ids of other kinds are null, and removing nothing does nothing.
-    data.world.remove(object.body);
+    bodies.push_back(object.body);
     data.world.remove(object.rope);
     data.world.remove(object.cloth);
     data.world.remove(object.solid);
@@ -42,8 +44,10 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
     data.world.remove(object.field);
     data.world.remove(object.hook);
   }
+  data.world.remove(bodies);
+  std::sort(names.begin(), names.end());
   const auto gone = [&](const std::string& held) {
-    return std::find(names.begin(), names.end(), held) != names.end();
+    return std::binary_search(names.begin(), names.end(), held);
   };
   const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
     // The hooks of an object go with it.

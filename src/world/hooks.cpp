@@ -50,22 +50,32 @@ void drop_broken_hooks(WorldData& world) {
 
 namespace {
 
-/// Those with an end for which `holds` is true.
+/// Those with an end for which `holds` is true; the others close up, in their order.
 template <class Holds>
 void remove_hooks(state::Tables& t, Holds&& holds) {
-  for (std::size_t i = t.hooks.size(); i-- > 0;) {
-    const Hook& hook = t.hooks[i];
-    if (!holds(hook.a) && !holds(hook.b)) continue;
-    wake_ends(hook, t.bodies);
-    remove_row(t.hook_slots, t.hook_slots.id_of(hook.slot), t.hooks);
-    ++t.hook_revision;
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
+    Hook& hook = t.hooks[i];
+    if (holds(hook.a) || holds(hook.b)) {
+      wake_ends(hook, t.bodies);
+      t.hook_slots.move(hook.slot, t.hook_slots.kNone);
+      continue;
+    }
+    if (kept != i) {
+      t.hook_slots.move(hook.slot, kept);
+      t.hooks[kept] = std::move(hook);
+    }
+    ++kept;
   }
+  if (kept == t.hooks.size()) return;
+  t.hooks.resize(kept);
+  ++t.hook_revision;
 }
 
 }  // namespace
 
-void remove_hooks_of(std::uint32_t body, state::Tables& t) {
-  remove_hooks(t, [&](const HookPlace& end) { return end.body == body; });
+void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& t) {
+  remove_hooks(t, [&](const HookPlace& end) { return end.body != HookPlace::kWorld && goes[end.body] != 0; });
 }
 
 void remove_hooks_of_object(std::uint32_t object, state::Tables& t) {

@@ -5,6 +5,7 @@
 #include "world/world_data.h"
 
 #include <cstdint>
+#include <vector>
 
 /// \file
 /// The stages of the step that concern hooks as a whole, and what happens to hooks when bodies go.
@@ -20,8 +21,8 @@ void refresh_hooks(WorldData& world);
 /// Takes the hooks that broke in this step out of the world and lists them.
 void drop_broken_hooks(WorldData& world);
 
-/// Takes the hooks of a body out of the world, before the body goes.
-void remove_hooks_of(std::uint32_t body, state::Tables& tables);
+/// Takes the hooks of bodies out of the world, before the bodies go. `goes` says which bodies do, by row.
+void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 
 /// The same of a rope, cloth, solid or group of particles, by its row.
 void remove_hooks_of_object(std::uint32_t object, state::Tables& tables);

@@ -49,10 +49,12 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
 }
 
 /// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
+bool may_be_stopped(const WorldData& world, std::uint32_t body) {
+  return world.hooked[body] == 0 && state::gives_way(world.tables.bodies, body);
+}
+
 Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
-  const Bodies& bodies = world.tables.bodies;
-  if (world.hooked[body] != 0) return Stoppable::kNever;
-  if (!state::gives_way(bodies, body)) return Stoppable::kNever;
+  if (!may_be_stopped(world, body)) return Stoppable::kNever;
   return fast ? Stoppable::kAlways : Stoppable::kSlow;
 }
 
@@ -80,16 +82,18 @@ bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt
   return false;
 }
 
-/// Marks the bodies that go or turn far for their thickness; false if none do.
+/// Marks the bodies that go or turn far for their thickness; false if none do, or none may be stopped.
 bool find_fast_bodies(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   world.fast.assign(bodies.motion.size(), 0);
-  bool any = false;
+  bool any_is_fast = false;
+  bool any_gives_way = false;
   for (const std::uint32_t body : world.awake) {
     world.fast[body] = is_fast(bodies, body) ? 1 : 0;
-    any |= world.fast[body] != 0;
+    any_is_fast |= world.fast[body] != 0;
+    any_gives_way |= may_be_stopped(world, body);
   }
-  return any;
+  return any_is_fast && any_gives_way;
 }
 
 bool is_one_fast(const WorldData& world, ColliderPair pair) {

@@ -150,15 +150,6 @@ void wake_all(Tables& t) {
   for (const std::uint32_t body : t.moving_bodies) state::wake(t.bodies, body);
 }
 
-void wake_neighbors(Tables& t, std::uint32_t body) {
-  for (const state::Pair& pair : t.pairs.pair) {
-    const std::uint32_t a = t.colliders.body[pair.collider_a];
-    const std::uint32_t b = t.colliders.body[pair.collider_b];
-    if (a != body && b != body) continue;
-    for (const std::uint32_t near : {a, b}) state::wake(t.bodies, near);
-  }
-}
-
 void hash_bodies(const Tables& t, base::StateHash& hash) {
   for (const std::uint32_t body : t.moving_bodies) {
     hash.add(t.bodies.center[body]);

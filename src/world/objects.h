@@ -42,8 +42,16 @@ void restore_tables(const state::Tables& from, state::Tables& to);
 /// Whether b's body was created before a's.
 [[nodiscard]] bool is_swapped(const state::Tables& tables, const state::Manifold& manifold);
 
-/// Wakes every body that is near `body`, before it goes or is moved by hand.
-void wake_neighbors(state::Tables& tables, std::uint32_t body);
+/// Wakes every body that is near one for which `is(row)`, before that goes or is moved by hand.
+template <class Is>
+void wake_neighbors(state::Tables& t, Is&& is) {
+  for (const state::Pair& pair : t.pairs.pair) {
+    const std::uint32_t a = t.colliders.body[pair.collider_a];
+    const std::uint32_t b = t.colliders.body[pair.collider_b];
+    if (!is(a) && !is(b)) continue;
+    for (const std::uint32_t near : {a, b}) state::wake(t.bodies, near);
+  }
+}
 
 /// Wakes every body: a force on all of them has changed.
 void wake_all(state::Tables& tables);

@@ -125,17 +125,29 @@ Result<BodyId> World::add_body(const BodyDesc& desc) {
 }
 
 bool World::remove(BodyId id) {
+  return remove(std::span(&id, 1)) > 0;
+}
+
+std::size_t World::remove(std::span<const BodyId> ids) {
   Tables& t = data_->tables;
-  const std::uint32_t row = t.body_slots.find(id);
-  if (row == kNone) return false;
-  world::wake_neighbors(t, row);
-  for (const std::uint32_t collider : state::colliders_of(t.bodies, row)) data_->broad_phase.remove(collider);
-  std::erase(data_->bodies_placed, row);
-  world::remove_hooks_of(row, t);
-  build::remove_body(row, t);
-  t.body_slots.move(id.slot, kNone);
+  std::vector<std::uint8_t> goes(t.bodies.traits.size(), 0);
+  std::size_t count = 0;
+  for (const BodyId id : ids) {
+    const std::uint32_t row = t.body_slots.find(id);
+    if (row == kNone) continue;
+    for (const std::uint32_t collider : state::colliders_of(t.bodies, row))
+      data_->broad_phase.remove(collider);
+    t.body_slots.move(id.slot, kNone);
+    goes[row] = 1;
+    ++count;
+  }
+  if (count == 0) return 0;
+  world::wake_neighbors(t, [&](std::uint32_t row) { return goes[row] != 0; });
+  world::remove_hooks_of(goes, t);
+  std::erase_if(data_->bodies_placed, [&](std::uint32_t row) { return goes[row] != 0; });
+  build::remove_bodies(goes, t);
   t.contacts = {};  // detect finds those that remain again
-  return true;
+  return count;
 }
 
 Pose World::pose(BodyId id) const {
@@ -287,7 +299,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.odometer[row] += Real(1e6);  // farther than any gap: every pair is tested anew
   data_->bodies_placed.push_back(row);
   data_->boxes_are_current = false;
-  world::wake_neighbors(data_->tables, row);
+  world::wake_neighbors(data_->tables, [row](std::uint32_t near) { return near == row; });
   state::wake(bodies, row);
   return {};
 }

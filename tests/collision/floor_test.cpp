@@ -18,15 +18,6 @@ using hooke::test::PairScene;
 
 namespace {
 
-std::uint32_t add_mesh(PairScene& scene, const MeshDesc& desc, DVec3 position = {}) {
-  const std::uint32_t row = scene.add_static({.kind = ShapeKind::kMesh}, position);
-  auto mesh = std::make_shared<hooke::state::Mesh>();
-  mesh->desc = desc;
-  mesh->bvh = hooke::geometry::build_bvh(mesh->desc.positions, mesh->desc.triangles);
-  scene.colliders.shape[row].mesh = mesh;
-  return row;
-}
-
 /// A quad facing up, in two triangles with vertices of their own.
 void add_quad(MeshDesc& mesh, double x0, double x1, double z0, double z1) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -101,7 +92,7 @@ TEST_SUITE("collision/floor") {
     for (const Slider& slider : make_sliders()) {
       for (const double depth : {1e-4, -1e-4}) {
         PairScene scene;
-        add_mesh(scene, make_cut_floor());
+        scene.add_mesh(make_cut_floor());
         slide(scene, slider, depth);
       }
     }
@@ -123,8 +114,8 @@ TEST_SUITE("collision/floor") {
   TEST_CASE("what slides from one mesh to another feels nothing") {
     for (const Slider& slider : make_sliders()) {
       PairScene scene;
-      add_mesh(scene, make_cut_floor(), {-3, 0, 0});
-      add_mesh(scene, make_cut_floor(), {3, 0, 0});
+      scene.add_mesh(make_cut_floor(), {-3, 0, 0});
+      scene.add_mesh(make_cut_floor(), {3, 0, 0});
       slide(scene, slider, 1e-4);
     }
   }
@@ -132,7 +123,7 @@ TEST_SUITE("collision/floor") {
   TEST_CASE("a wall on the floor and a step of a centimeter are felt") {
     for (const double height : {0.01, 1.0}) {
       PairScene scene;
-      add_mesh(scene, make_cut_floor());
+      scene.add_mesh(make_cut_floor());
       const Real half = Real(height / 2);
       scene.add_static(Shape::box({Real(0.1), half, Real(1)}), {1, height / 2, 0});
       const std::uint32_t box =
@@ -151,10 +142,10 @@ TEST_SUITE("collision/floor") {
   TEST_CASE("a box on a mesh of many triangles rests on its own corners, on either side of the pair") {
     for (const bool mesh_first : {true, false}) {
       PairScene scene;
-      if (mesh_first) add_mesh(scene, make_cut_floor());
+      if (mesh_first) scene.add_mesh(make_cut_floor());
       const std::uint32_t box =
           scene.add_dynamic(Shape::box({Real(0.7), Real(0.2), Real(0.9)}), {0.03, 0.1999, 0.05});
-      if (!mesh_first) add_mesh(scene, make_cut_floor());
+      if (!mesh_first) scene.add_mesh(make_cut_floor());
       scene.update();
       REQUIRE(scene.pairs.manifold.size() == 1);
       const Manifold& m = scene.pairs.manifold[0];
@@ -177,7 +168,7 @@ TEST_SUITE("collision/floor") {
       };
       mesh.positions = {place(-2, -2), place(-2, 2), place(0, 2), place(0, -2), place(2, 2), place(2, -2)};
       mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
-      add_mesh(scene, mesh);
+      scene.add_mesh(mesh);
     };
     const Shape ball = Shape::sphere(Real(0.5));
     PairScene groove;

@@ -7,6 +7,7 @@
 #include <vector>
 
 using hooke::DVec3;
+using hooke::MeshDesc;
 using hooke::Quat;
 using hooke::Real;
 using hooke::Shape;
@@ -104,6 +105,52 @@ TEST_SUITE("collision/narrow_phase") {
     kept.update();
     CHECK(kept.counts.tested == 1);
     CHECK(kept.counts.kept == 1);
+  }
+
+  TEST_CASE("manifolds on a mesh are carried along too") {
+    // A valley of two slopes, in which a cube stands on two of its edges.
+    MeshDesc valley;
+    valley.positions = {{-2, 2, -2}, {-2, 2, 2}, {0, 0, 2}, {0, 0, -2}, {2, 2, 2}, {2, 2, -2}};
+    valley.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
+    const DVec3 start = {0, 1 - 5e-4, 0};
+    const auto build = [&](PairScene& scene, DVec3 way, Quat turn) {
+      scene.add_mesh(valley);
+      scene.add_dynamic(kCube, start + way, turn);
+    };
+    PairScene kept;
+    build(kept, {}, {});
+    kept.update();
+    REQUIRE(kept.pairs.manifold.size() == 2);
+    const Vec3 axis = hooke::normalize(Vec3{Real(0.3), Real(0.4), Real(-0.8)});
+    for (int step = 1; step <= 8; ++step) {
+      const DVec3 way = {1e-5 * step, -2e-6 * step, 4e-6 * step};
+      const Quat turn = hooke::quaternion_about(axis, Real(1e-5) * Real(step));
+      kept.bodies.center[1] = start + way;
+      kept.bodies.rotation[1] = turn;
+      kept.update();
+      REQUIRE(kept.counts.kept == 1);
+      PairScene made;
+      build(made, way, turn);
+      made.update();
+      REQUIRE(made.pairs.manifold.size() == 2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Manifold& a = kept.pairs.manifold[i];
+        const Manifold& b = made.pairs.manifold[i];
+        REQUIRE(a.point_count == 2);
+        REQUIRE(b.point_count == 2);
+        for (int k = 0; k < 2; ++k) {
+          const auto& p = a.point[static_cast<std::size_t>(k)];
+          Real error = Real(1);
+          for (const auto& q : b.point) {
+            if (length(q.anchor_b - p.anchor_b) < Real(1e-3)) error = std::fabs(q.separation - p.separation);
+          }
+          CHECK(error < 5e-7);
+        }
+      }
+    }
+    kept.move(1, {1e-2, 0, 0});
+    kept.update();
+    CHECK(kept.counts.tested == 1);
   }
 
   TEST_CASE(

@@ -40,6 +40,14 @@ struct PairScene {
   std::uint32_t add_static(const Shape& shape, DVec3 position, Quat rotation = {}) {
     return add(BodyKind::kStatic, shape, position, rotation);
   }
+  std::uint32_t add_mesh(const MeshDesc& desc, DVec3 position = {}) {
+    const std::uint32_t row = add_static({.kind = ShapeKind::kMesh}, position);
+    auto mesh = std::make_shared<state::Mesh>();
+    mesh->desc = desc;
+    mesh->bvh = geometry::build_bvh(mesh->desc.positions, mesh->desc.triangles);
+    colliders.shape[row].mesh = mesh;
+    return row;
+  }
   /// Moves a body as a step does.
   void move(std::uint32_t body, DVec3 way) {
     bodies.center[body] = bodies.center[body] + way;

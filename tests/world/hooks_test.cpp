@@ -2,6 +2,7 @@
 
 #include "constants.h"
 
+#include <array>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <string>
@@ -181,6 +182,31 @@ TEST_SUITE("world/hooks") {
     CHECK(world.set_steering(second, Real(0.1)).error().code == ErrorCode::kUnsupported);
     run(world, 0.2);
     CHECK(world.remove(second));
+  }
+
+  TEST_CASE("bodies that are removed at once take their hooks along, and leave the others as they are") {
+    World world = World::create().value();
+    std::vector<BodyId> balls;
+    std::vector<HookId> hooks;
+    for (int i = 0; i < 8; ++i) {
+      balls.push_back(add_ball(world, {1.0 * i, 0, 0}));
+      hooks.push_back(
+          world
+              .add_hook({.a = {i == 0 ? BodyId{} : balls[i - 1]}, .b = {balls[i]}, .anchor = {i - 0.5, 0, 0}})
+              .value());
+    }
+    run(world, 0.1);
+    const std::array<BodyId, 5> gone = {balls[2], balls[5], BodyId{}, balls[2], balls[6]};
+    CHECK(world.remove(gone) == 3);
+    CHECK(world.remove(gone) == 0);
+    run(world, 0.5);
+    // What was cut off falls freely; what still hangs on the world does not.
+    CHECK(d(world.velocity(balls[7]).y) == doctest::Approx(-9.81 * 0.6).epsilon(0.02));
+    CHECK(world.pose(balls[7]).position.y < world.pose(balls[0]).position.y - 0.1);
+    CHECK(d(world.hook_gap(hooks[0])) < 1e-3);
+    CHECK(d(world.hook_gap(hooks[1])) < 1e-3);
+    const std::array<bool, 8> stays = {true, true, false, false, true, false, false, false};
+    for (std::size_t i = 0; i < hooks.size(); ++i) CHECK(world.remove(hooks[i]) == stays[i]);
   }
 
   TEST_CASE("a snapshot brings hooks back, and the bits with them") {
