@@ -153,6 +153,40 @@ TEST_SUITE("world/cloth") {
     }
   }
 
+  // Case T-83 and T-85 of the list of portable checks: another engine's hinges and damping pulled at falling
+  // cloth.
+  TEST_CASE("a wavy cloth keeps its form at rest, floating and in free fall, however stiff and damped") {
+    MeshDesc wavy = sheet(8);
+    for (Vec3& p : wavy.positions)
+      p = {Real(0.1) * p.x, Real(0.05) * std::sin(p.x) * std::cos(p.z), Real(0.1) * p.z};
+    for (const bool falls : {false, true}) {
+      for (const Real stiffness : {Real(1e3), kRigid}) {
+        World world = make_world(falls ? without_air() : empty_space());
+        const MeshId mesh = take(world.add_mesh(wavy));
+        const ClothId cloth = take(world.add_cloth({.mesh = mesh,
+                                                    .stretch_stiffness = stiffness,
+                                                    .shear_stiffness = stiffness,
+                                                    .bend_stiffness = Real(0.01),
+                                                    .damping = Real(0.5),
+                                                    .bend_damping = Real(0.02)}));
+        const auto places = [&] {
+          std::vector<DVec3> all;
+          for (std::size_t i = 0; i < wavy.positions.size(); ++i) all.push_back(world.positions(cloth)[i]);
+          return all;
+        };
+        const std::vector<DVec3> start = places();
+        run(world, 60);
+        const std::vector<DVec3> end = places();
+        const DVec3 way = end[0] - start[0];
+        CHECK(way.y == doctest::Approx(falls ? -0.5 * 9.81 : 0.0).epsilon(0.01));
+        double largest = 0;
+        for (std::size_t i = 0; i < start.size(); ++i)
+          largest = std::max(largest, length(end[i] - start[i] - way));
+        CHECK(largest < 1e-5);  // asked: 1e-4 m, and angles of 10 cm cells within 0.01 rad
+      }
+    }
+  }
+
   TEST_CASE("a strip bent to an arc holds B / 2 R^2 of each of its areas between hinges") {
     // 8 cells along an arc have 7 hinges between them.
     constexpr double kRadius = 1, kRigidity = 1e-3, kTurn = 0.1;
