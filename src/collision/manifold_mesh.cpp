@@ -3,6 +3,7 @@
 #include "base/take_turns.h"
 #include "collision/manifold_axes.h"
 #include "collision/manifold_features.h"
+#include "geometry/closest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,8 +47,33 @@ void meet_face(const Convex& triangle, const Convex& b, Meeting& meeting) {
   overlap_features(face, feature_along(b, -meeting.normal, kSteep), Real(0), skin_of(b), meeting);
 }
 
+/// A ball touches a triangle at the place nearest to its center, along the line between the two: along any
+/// other its spin would seem to bring them together.
+bool meet_ball(const Convex& triangle, const Convex& ball, Real margin, Meeting& meeting) {
+  constexpr Real kFlat = Real(1e-4);  // [rad]
+  const auto& [p, q, r] = triangle.corners;
+  const Vec3 front = front_of(triangle);
+  const Real height = dot(front, ball.center - p);
+  if (!(height > Real(0)) || !(height - skin_of(ball) <= margin)) return false;
+  const Vec3 place = geometry::closest_on_triangle(ball.center, p, q, r).point;
+  const Vec3 out = ball.center - place;
+  // Over an edge within a flat floor, too.
+  const bool over_face = length(out - height * front) <= kFlat * height;
+  const Real distance = over_face ? height : length(out);
+  if (!(distance - skin_of(ball) <= margin)) return false;
+  meeting.count = 0;
+  meeting.normal = over_face ? front : normalize(out);
+  meeting.separation = distance - skin_of(ball);
+  meeting.add({.on_a = place,
+               .on_b = ball.center - skin_of(ball) * meeting.normal,
+               .separation = meeting.separation,
+               .key = kVertexOfB});
+  return true;
+}
+
 /// False if they are farther apart than the margin, or the shape is behind the triangle.
 bool meet_triangle(const Convex& triangle, const Convex& b, Real margin, Meeting& meeting) {
+  if (b.shape.kind == ShapeKind::kSphere) return meet_ball(triangle, b, margin, meeting);
   const Vec3 front = front_of(triangle);
   meeting.count = 0;
   meeting.normal = front;

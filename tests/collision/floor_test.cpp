@@ -160,6 +160,35 @@ TEST_SUITE("collision/floor") {
     }
   }
 
+  TEST_CASE("a sphere on a bent mesh is touched along its radius: its spin brings nothing nearer") {
+    // A trough of narrow strips. A tenth of a millimeter beside the radius, a ball that rolls at 6 m/s came
+    // nearer by 10 mm/s, and lost 1.5 % of its energy in a loop.
+    constexpr int kStrips = 400;
+    MeshDesc trough;
+    for (std::uint32_t i = 0; i <= kStrips; ++i) {
+      const double angle = 2.0 * i / kStrips - 1;
+      for (const double z : {-0.3, 0.3})
+        trough.positions.push_back({Real(std::sin(angle)), Real(1 - std::cos(angle)), Real(z)});
+      if (i == kStrips) break;
+      trough.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 2});
+      trough.triangles.push_back({2 * i + 1, 2 * i + 3, 2 * i + 2});
+    }
+    for (int i = 0; i < 40; ++i) {
+      PairScene scene;
+      scene.add_mesh(trough);
+      const double angle = 0.037 * i - 0.7;
+      const double way = 1 - 0.05 + 2e-4;  // of the center about the trough's
+      scene.add_dynamic(Shape::sphere(Real(0.05)),
+                        {way * std::sin(angle), 1 - way * std::cos(angle), 0.011 * i - 0.2});
+      scene.update();
+      REQUIRE_FALSE(scene.pairs.manifold.empty());
+      for (const Manifold& m : scene.pairs.manifold) {
+        for (int k = 0; k < m.point_count; ++k)
+          CHECK(length(cross(m.point[static_cast<std::size_t>(k)].anchor_b, m.normal)) < 1e-6);
+      }
+    }
+  }
+
   TEST_CASE("a sphere in a groove has a contact on both sides, over a ridge one, from below none") {
     const auto add_roof = [](PairScene& scene, double slope) {
       MeshDesc mesh;
