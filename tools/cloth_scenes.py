@@ -157,7 +157,7 @@ def tent():
                                [x, 0.04, side * (peg[0] + 0.02)], "static", collides=False))
     for name, side in (("w", -1), ("e", 1)):
         top, low = [side * length / 2, ridge, 0], [side * (length / 2 + 1.7), 0, 0]
-        half = (ridge - 0.03) / 2
+        half = (ridge - 0.06) / 2  # the end ropes come to the spar beside their rims
         bodies += [
             body(f"upright_{name}", "oak", {"cylinder": {"radius": 0.03, "half_height": half}}, [top[0], half, 0],
                  mass=upright_mass),

@@ -200,7 +200,7 @@ def dents():
         [1.1, 0.95, 1.5], [0, 0.3, 0], {"ground": {"friction": 0.6}, "oak": {}, "steel": {}, "ivory": {}, "clay": {}, "rose": {}}, [
             ground(),
             body("table", "oak", box(0.2, top / 2, 0.4), [edge - 0.2, top / 2, 0], "static"),
-            body("plank", "oak", box(0.05, 0.02, 0.4), [edge + 0.16, top + 0.04, 0], "kinematic", motion={"keyframes": plank}),
+            body("plank", "oak", box(0.05, 0.02, 0.4), [edge + 0.14, top + 0.04, 0], "kinematic", motion={"keyframes": plank}),
         ], [
             *(promise("lowest", "==", start - G * (step * DT)**2 / 2, name, 0.012, step) for name, *_ in balls),
             promise("lowest", ">", 0.3 * start, "rubber_ball", at_step=apex),

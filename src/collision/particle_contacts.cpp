@@ -1,9 +1,11 @@
 #include "collision/particle_contacts.h"
 
 #include "base/sort_unique.h"
+#include "base/take_turns.h"
+#include "collision/contact_frames.h"
+#include "collision/inner_contacts.h"
 #include "collision/shape_gap.h"
 #include "geometry/box.h"
-#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,93 +18,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr Real kParticleMargin = Real(0.02);  ///< [m]
-constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not hold now [m].
-constexpr Real kBoxRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
-
-/// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
-struct Frame {
-  const state::ColliderShape* shape = nullptr;
-  Quat rotation = {};
-  Vec3 offset = {};
-  Vec3 center = {};         ///< Of the body's mass.
-  Vec3 belt_velocity = {};  ///< Of a conveyor's surface against its body [m/s].
-  Real speed = Real(0);     ///< Of the body's fastest point, at most [m/s].
-  geometry::Box box = {};   ///< Holds the shape on its way in this step.
-
-  [[nodiscard]] Vec3 to_shape_direction(Vec3 direction) const {
-    return rotate(conjugate(rotation), direction);
-  }
-  [[nodiscard]] Vec3 to_shape(Vec3 x) const { return to_shape_direction(x - offset); }
-  [[nodiscard]] Vec3 to_world(Vec3 direction) const { return rotate(rotation, direction); }
-};
-
-Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
-  const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);
-  const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
-  const std::uint32_t row = t.colliders.body[collider];
-  const geometry::Box& bounds = t.colliders.bounds[collider];
-  const Vec3 rounding = {kBoxRounding, kBoxRounding, kBoxRounding};
-  return {.shape = &t.colliders.shape[collider],
-          .rotation = body.rotation * t.colliders.rotation[collider],
-          .offset = vector_cast<Real>(body.position + arm - object.origin),
-          .center = vector_cast<Real>(body.position - object.origin),
-          .belt_velocity = rotate(body.rotation, t.colliders.surface[collider].surface_velocity),
-          .speed = length(t.bodies.motion[row].v) +
-                   length(t.bodies.angular_velocity[row]) * t.bodies.traits[row].radius,
-          .box = {vector_cast<Real>(vector_cast<double>(bounds.lower) - object.origin) - rounding,
-                  vector_cast<Real>(vector_cast<double>(bounds.upper) - object.origin) + rounding}};
-}
-
-/// Distance from a shape to a place; looked for up to `reach` from a mesh [m].
-Real distance_to(const Frame& frame, Vec3 place, Real reach) {
-  const Vec3 x = frame.to_shape(place);
-  const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
-  return mesh ? distance_to_mesh(*frame.shape->mesh, x, reach) : gap_to_shape(*frame.shape, x).distance;
-}
-
-/// Whether particles may touch the body.
-bool is_solid(const state::Tables& t, std::uint32_t body) {
-  return t.bodies.traits[body].collides && !t.bodies.traits[body].sensor;
-}
-
-/// Rows of the colliders that particles may touch, in ascending order.
-void list_solid_colliders(const state::Tables& t, std::vector<std::uint32_t>& rows) {
-  rows.clear();
-  for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
-    const std::uint32_t body = t.colliders.body[c];
-    if (body != state::Colliders::kNoBody && is_solid(t, body)) rows.push_back(c);
-  }
-}
-
-/// Those whose boxes, which hold their ways in this step, come within `reach` [m] of the object's points.
-void list_near_colliders(const state::Tables& t, std::span<const std::uint32_t> colliders,
-                         const state::Deformable& object, Real reach, std::vector<std::uint32_t>& near) {
-  DVec3 lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  DVec3 upper = -lower;
-  for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
-    const DVec3 x = vector_cast<double>(t.particles.position[p].x);
-    lower = geometry::min_of(lower, x);
-    upper = geometry::max_of(upper, x);
-  }
-  const auto margin = static_cast<double>(reach);
-  const geometry::Box3<double> box = {object.origin + lower - DVec3{margin, margin, margin},
-                                      object.origin + upper + DVec3{margin, margin, margin}};
-  near.clear();
-  for (const std::uint32_t c : colliders) {
-    const geometry::Box& bounds = t.colliders.bounds[c];
-    if (overlap(box, {vector_cast<double>(bounds.lower), vector_cast<double>(bounds.upper)}))
-      near.push_back(c);
-  }
-}
-
-/// The frames of `colliders` as one object sees them: made once for all of its particles.
-void make_frames(const state::Tables& t, std::span<const std::uint32_t> colliders,
-                 const state::Deformable& object, std::vector<Frame>& frames) {
-  frames.clear();
-  for (const std::uint32_t c : colliders) frames.push_back(frame_of(t, c, object));
-}
 
 struct Key {
   std::uint32_t particle, collider, feature;
@@ -131,34 +46,6 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint3
   contacts.friction_force.push_back({});
 }
 
-/// A particle and a body that a hook keeps from touching.
-using Hooked = std::pair<std::uint32_t, std::uint32_t>;
-
-/// Those held together by hooks, with what was inside the body; all of a rope along which a body slides.
-/// Sorted.
-void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
-  hooked.clear();
-  if (t.objects.empty()) return;
-  const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
-    if (!point.is_point() || body == state::HookPlace::kWorld) return;
-    for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
-    const state::Rows object = t.objects[point.object].particles;
-    for (const std::uint32_t i : hook.inside) hooked.emplace_back(object.first + i, body);
-    if (hook.kind != HookKind::kRopeSlide) return;
-    for (std::uint32_t p = object.first; p < object.end(); ++p) hooked.emplace_back(p, body);
-  };
-  for (const state::Hook& hook : t.hooks) {
-    if (hook.collide) continue;
-    add(hook, hook.a, hook.b.body);
-    add(hook, hook.b, hook.a.body);
-  }
-  std::sort(hooked.begin(), hooked.end());
-}
-
-bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body) {
-  return std::binary_search(hooked.begin(), hooked.end(), Hooked{particle, body});
-}
-
 }  // namespace
 
 struct ParticleContactScratch::Buffers {
@@ -169,6 +56,7 @@ struct ParticleContactScratch::Buffers {
   std::vector<std::uint32_t> triangles;  // of one query
   state::Contacts contacts;              // those found; then those of the step before
   std::vector<TriangleGap> gaps;         // of each contact with a mesh
+  InnerContactFinder inner;
 };
 
 namespace {
@@ -315,10 +203,11 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t)
     return Real(2) * length(t.particles.velocity[p].v) * step + fall;
   };
   Finder& finder = scratch.buffers();
-  auto& [colliders, hooked, near, frames, triangles, contacts, gaps] = finder;
+  auto& [colliders, hooked, near, frames, triangles, contacts, gaps, inner] = finder;
   list_solid_colliders(t, colliders);
   list_hooked(t, hooked);
   state::Contacts::for_each_column(contacts, [](auto& column) { column.clear(); });
+  inner.contacts.clear();
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     const state::Rows particles = t.objects[o].particles;
     Real reach = Real(0);
@@ -331,7 +220,10 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t)
       for (std::size_t i = 0; i < near.size(); ++i)
         find_pair(t, {p, near[i], 0}, o, frames[i], way, step, finder);
     }
+    if (!near.empty()) find_inner_contacts(t, {o, near, frames, hooked, step, reach}, inner);
   }
+  carry_inner_forces(t.inner_contacts, inner.contacts);
+  base::take_turns(t.inner_contacts, inner.contacts);
   carry_forces(t.contacts, contacts);
   take_turns(contacts, t.contacts);
   gaps.resize(t.contacts.particle.size());
@@ -345,11 +237,16 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
   };
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
+  Frame frame;
+  std::size_t made_for = count;  // this row was `frame` made for; most of an object touch one shape
   while (row < static_cast<std::size_t>(range.end)) {
     const std::size_t first = row;
     while (row < count && same_pair(row, first)) ++row;
     const std::uint32_t particle = contacts.particle[first];
-    const Frame frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
+    if (made_for == count || contacts.collider[made_for] != contacts.collider[first] ||
+        contacts.object[made_for] != contacts.object[first])
+      frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
+    made_for = first;
     const state::ColliderShape& shape = *frame.shape;
     const Vec3 place = t.particles.position[particle].x;
     const Vec3 x = frame.to_shape(place);

@@ -35,6 +35,24 @@ class BundleSolution {
   [[nodiscard]] bool is_sound() const;
   void push_out_points();
 
+  // Contacts between points: bundles_inner.cpp.
+  void load_inner();
+  void load_inner_touch(std::size_t index);
+  void note_rope_in_contact(std::uint32_t node);
+  void set_inner_rows(std::size_t index);
+  void revise_inner();
+  [[nodiscard]] bool update_inner_friction(std::size_t index);
+  [[nodiscard]] bool update_inner_touch(std::size_t index, bool let_go);
+  [[nodiscard]] Unsettled update_inner(bool let_go);
+  bool let_inner_slide();
+  void store_inner();
+  [[nodiscard]] bool has_inner(std::size_t node) const;
+  [[nodiscard]] double heaviest_inner(std::size_t node) const;
+  [[nodiscard]] double gap_speed(const InnerTouch& touch) const;
+  [[nodiscard]] DVec3 velocity_at(std::size_t index, bool before) const;
+  [[nodiscard]] DVec3 sliding_of(std::size_t index, bool before) const;
+  [[nodiscard]] int least_solves_of_inner(bool unsettled) const;
+
   // The matrix and its right side.
   void assemble();
   void assemble_pair(const Bundle::Incident& a, const Bundle::Incident& b, std::uint32_t block,
@@ -53,10 +71,10 @@ class BundleSolution {
     const double sign = end == 1 ? 1 : -1;
     return {(sign * std::sqrt(body.inverse_mass)) * row.n, sign * (end == 1 ? row.j_b : row.j_a)};
   }
-  /// Calls visit(hook, row, k) for each row; k counts within the hook.
+  /// Calls visit(hook, row, k) for each row; k counts within the hook. Inner contacts count on after hooks.
   template <class Visit>
   void for_each_row(Visit&& visit) const {
-    for (std::uint32_t i = 0; i < b_.hooks.size(); ++i) {
+    for (std::uint32_t i = 0; i < b_.ends.size(); ++i) {
       for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row)
         visit(i, row, static_cast<int>(row - b_.first_row[i]));
     }
@@ -76,7 +94,7 @@ class BundleSolution {
   }
   [[nodiscard]] std::uint32_t hook_block(std::uint32_t hook) const { return vector_count() + hook; }
   [[nodiscard]] std::uint32_t body_block(int body) const {
-    return hook_block(static_cast<std::uint32_t>(b_.hooks.size())) + static_cast<std::uint32_t>(body);
+    return hook_block(static_cast<std::uint32_t>(b_.ends.size())) + static_cast<std::uint32_t>(body);
   }
   [[nodiscard]] std::span<const Bundle::Incident> incidents_of(std::size_t node) const {
     return std::span(b_.incidents)

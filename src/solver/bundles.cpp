@@ -22,6 +22,7 @@ using state::Hook;
 void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Chain>& chains) {
   b_.ropes.clear();
   b_.settings.clear();
+  b_.chain_nodes.clear();
   for (const std::uint32_t c : b_.chains) {
     const std::size_t first = b_.ropes.nodes.size();
     const std::size_t first_segment = b_.ropes.segments.size();
@@ -29,6 +30,7 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
     load_rope(chains[c], before, h_, t_, b_.ropes);
     load_bends(chains[c], first, h_, t_.segments, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
+    b_.chain_nodes.push_back(chains[c].node_count);
   }
   load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
@@ -43,6 +45,7 @@ void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Cha
   for (RopeTouch& touch : b_.ropes.touches)
     touch.body = touch.row == RopeTouch::kTether ? -1 : b_.body_of(t_.contacts.body[touch.row]);
   load_hooks();
+  load_inner();
   stiffen();
 }
 
@@ -58,11 +61,12 @@ void BundleSolution::load_points() {
     const auto first = static_cast<std::size_t>(row - particle.begin());
     row = std::upper_bound(row, particle.end(), p);
     const auto end = static_cast<std::size_t>(row - particle.begin());
-    if (!(b_.ropes.nodes.back().w > 0) || !touches_what_gives_way(t_.bodies, t_.contacts, first, end))
-      continue;
+    const bool touches = touches_what_gives_way(t_.bodies, t_.contacts, first, end) || has_inner(node);
+    if (!(b_.ropes.nodes.back().w > 0) || !touches) continue;
     const std::span<const std::uint32_t> tethers =
         std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
-    load_point_touches(node, b_.ropes.nodes.back().v_free, first, end, tethers, h_, t_, b_.ropes.touches);
+    load_point_touches(node, b_.ropes.nodes.back(), first, end, tethers, heaviest_inner(node), h_, t_,
+                       b_.ropes.touches);
   }
 }
 
@@ -223,7 +227,9 @@ void BundleSolution::run(std::vector<Chain>& chains) {
   double error = 0;
   Unsettled unsettled;
   const auto again = [&](int solves) {
-    return (unsettled.points && solves < 2 * kMostRopeSolves) || solve_again(solves, error, b_.ropes.touches);
+    if (unsettled.points && solves < 2 * kMostRopeSolves) return true;
+    const bool slides = solves == kMostRopeSolves && error > kReportedError && let_inner_slide();
+    return solve_again(solves, error, b_.ropes.touches) || slides;
   };
   for (int solves = 1; solves == 1 || again(solves - 1); ++solves) {
     std::size_t segment = 0;
@@ -233,15 +239,20 @@ void BundleSolution::run(std::vector<Chain>& chains) {
         linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
       ++chain.solves;
     }
+    if (solves > 1) revise_inner();
     solve_with_bounds();
     if (!is_sound()) break;
 
     unsettled = update_touches(h_, solves >= kMostRopeSolves, b_.ropes);
+    const Unsettled inner = update_inner(solves >= kMostRopeSolves);
+    unsettled = {unsettled.ropes || inner.ropes, unsettled.points || inner.points};
     bool limits_changed = false;
     error = check_segments(h_, b_.ropes, limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
-    const bool settled = !unsettled.points && solves >= least_solves(b_.ropes.touches, unsettled.ropes);
+    const int least =
+        std::max(least_solves(b_.ropes.touches, unsettled.ropes), least_solves_of_inner(unsettled.ropes));
+    const bool settled = !unsettled.points && solves >= least;
     if (long_enough && !grew && settled) break;
     for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;
   }
@@ -263,6 +274,7 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
     ++node;
   }
   store_touches(h_, b_.ropes.touches, t_.contacts);
+  store_inner();
   push_out_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const BundleBody& m = b_.moving[i];

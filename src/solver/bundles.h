@@ -48,6 +48,24 @@ struct BundleBody {
   DVec3 omega_scaled = {};
 };
 
+/// A contact between points of a rope, or with a body that gives way, while it is solved.
+struct InnerTouch {
+  static constexpr int kRows = 3;  ///< Along the normal and two across.
+
+  std::array<std::uint32_t, 3> node = {};  ///< As state::InnerContact::particle.
+  std::array<double, 3> weight = {};
+  std::uint32_t count = 0;
+  double separation = 0, friction = 0;
+  double mobility = 0;  ///< 1 / the mass that resists at the place, roughly [1/kg].
+  DVec3 surface;        ///< Velocity of the surface against its body; the whole if that is given [m/s].
+  DVec3 lever;          ///< From the body's center [m].
+  double normal = 0;    ///< Impulse [N s].
+  DVec3 f;              ///< Of friction [N s].
+  double drag = 0;      ///< Of what slides: mu N over its speed [kg].
+  bool active = false, slides = false;
+  bool of_rope = false;
+};
+
 /// Unknown are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m) v,
 /// omega~) of bodies. With B the Jacobians at particles, C those at bodies, W the particles' inverse masses
 /// with what touches them, P the grip of contacts on bodies and R = P J:
@@ -67,22 +85,29 @@ struct BundleBody {
 /// Particles of cloths, solids and groups that touch a body which gives way are points without rows, held by
 /// their contacts and tethers alone: docs/decisions/0011-ties.md.
 ///
+/// A contact between points (state::InnerContact) has the rows of a hook at its place: along the normal,
+/// which only pushes, and two across for friction. What sticks is held; what slides is dragged with mu N over
+/// its speed, N and the speed of the solution before: however wrong they are, that takes energy. Along the
+/// normal those of ropes are as soft as contacts of nodes are, and carry their force over like these.
+///
 /// A share of 1e-6 of each hook row's diagonal is added as compliance: it decides what loops of rigid ropes
 /// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
 /// direction at b is that of its points blended along the segment.
 struct Bundle {
-  std::vector<std::uint32_t> chains;        ///< In order.
-  std::vector<std::uint32_t> points;        ///< Particles of no rope, in order of rows.
-  std::vector<std::uint32_t> hooks;         ///< Rows, in order.
-  std::vector<std::uint32_t> bodies;        ///< Rows, in order.
-  std::vector<std::array<int, 2>> ends;     ///< Of each hook a and b: index into `bodies`, or -1.
+  std::vector<std::uint32_t> chains;  ///< In order.
+  std::vector<std::uint32_t> points;  ///< Particles of no rope, in order of rows.
+  std::vector<std::uint32_t> hooks;   ///< Rows, in order.
+  std::vector<std::uint32_t> inner;   ///< Contacts between points: rows, in order.
+  std::vector<std::uint32_t> bodies;  ///< Rows, in order.
+  /// Of each hook, then of each inner contact, a and b: index into `bodies`, or -1.
+  std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
   std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
 
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, bends, hooks, bodies.
+  // The matrix. Blocks are segments, bends, hooks, inner contacts, bodies.
   BlockPattern pattern;
   std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
@@ -96,14 +121,16 @@ struct Bundle {
   std::vector<std::uint32_t> first_pair;      ///< Of each node.
 
   // Lives for one substep.
-  RopeScratch ropes;                     ///< Nodes of chains, then points.
-  std::vector<RopeSetting> settings;     ///< Of chains.
-  std::vector<BundleBody> moving;        ///< As `bodies`.
-  std::vector<JointRow> rows;            ///< Of hooks.
-  std::vector<std::uint32_t> first_row;  ///< Of each hook; one more at the end.
-  std::vector<std::int8_t> bound;        ///< Of rows, as Articulation::bound.
-  std::vector<double> lambda;            ///< Of rows.
-  std::vector<double> speed;             ///< Of rows: of opening.
+  RopeScratch ropes;                       ///< Nodes of chains, then points.
+  std::vector<RopeSetting> settings;       ///< Of chains.
+  std::vector<std::uint32_t> chain_nodes;  ///< Of chains: how many.
+  std::vector<BundleBody> moving;          ///< As `bodies`.
+  std::vector<InnerTouch> touches;         ///< As `inner`.
+  std::vector<JointRow> rows;              ///< Of hooks, then of inner contacts.
+  std::vector<std::uint32_t> first_row;    ///< Of each of these; one more at the end.
+  std::vector<std::int8_t> bound;          ///< Of rows, as Articulation::bound.
+  std::vector<double> lambda;              ///< Of rows.
+  std::vector<double> speed;               ///< Of rows: of opening.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
   std::vector<double> right_side;  ///< Then the solution.

@@ -6,6 +6,7 @@
 #include "base/sort_unique.h"
 #include "base/take_turns.h"
 #include "solver/bundles.h"
+#include "solver/inner_contacts.h"
 
 #include <algorithm>
 #include <limits>
@@ -47,6 +48,11 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
   }
+  for (std::uint32_t row = 0; row < t.inner_contacts.size(); ++row) {
+    const state::InnerContact& inner = t.inner_contacts[row];
+    if (is_tied(t, inner))
+      s.insert(s.end(), {row, inner.element, inner.object, inner.body, gives_way(t.bodies, inner.body)});
+  }
 }
 
 /// Bodies, then particles; a rope is its first particle.
@@ -60,11 +66,20 @@ class Groups {
     for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
       if (joins(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
     }
+    for (const state::InnerContact& inner : t.inner_contacts) {
+      if (!is_tied(t, inner)) continue;
+      for (std::uint32_t i = 1; i < inner.count; ++i)
+        sets_.merge(of_inner(inner), of_particle(inner.object, inner.particle[i]));
+      if (gives_way(t.bodies, inner.body)) sets_.merge(of_inner(inner), inner.body);
+    }
   }
 
   std::uint32_t of_hook(const Hook& hook) { return sets_.root(of_end(hook.point_end())); }
   std::uint32_t of_contact(std::size_t row) {
     return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
+  }
+  std::uint32_t of_inner(const state::InnerContact& inner) {
+    return of_particle(inner.object, inner.particle[0]);
   }
   std::uint32_t of_particle(std::uint32_t object, std::uint32_t particle) {
     const state::Deformable& owner = tables_.objects[object];
@@ -143,6 +158,9 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) tied[groups.of_contact(row)] = 1;
   }
+  for (const state::InnerContact& inner : t.inner_contacts) {
+    if (is_tied(t, inner)) tied[groups.of_inner(inner)] = 1;
+  }
   std::vector<std::uint32_t>& bundle_of = bundles.scratch.bundle_of;
   bundle_of.assign(group_count, kNone);
   bundles.count = 0;
@@ -174,6 +192,15 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
     Bundle& bundle = bundle_at(groups.of_contact(row));
     bundle.bodies.push_back(t.contacts.body[row]);
     if (!is_of_rope(t, row)) bundle.points.push_back(t.contacts.particle[row]);
+  }
+  for (std::uint32_t row = 0; row < t.inner_contacts.size(); ++row) {
+    const state::InnerContact& inner = t.inner_contacts[row];
+    if (!is_tied(t, inner)) continue;
+    Bundle& bundle = bundle_at(groups.of_inner(inner));
+    bundle.inner.push_back(row);
+    if (gives_way(t.bodies, inner.body)) bundle.bodies.push_back(inner.body);
+    if (t.objects[inner.object].kind == PointRef::Kind::kRope) continue;
+    bundle.points.insert(bundle.points.end(), inner.particle.begin(), inner.particle.begin() + inner.count);
   }
   std::uint32_t chain = 0;
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
@@ -234,6 +261,11 @@ struct Layout {
       add_end(vector_count + i, -1, tables.hooks[bundle.hooks[i]].a);
       add_end(vector_count + i, 1, tables.hooks[bundle.hooks[i]].b);
     }
+    for (std::uint32_t i = 0; i < bundle.inner.size(); ++i) {
+      const state::InnerContact& inner = tables.inner_contacts[bundle.inner[i]];
+      for (std::uint32_t k = 0; k < inner.count; ++k)  // weights: BundleSolution::load_inner
+        at_node[node_of(inner.particle[k])].push_back({inner_block(i), 0});
+    }
   }
 
   void list_bends(const Chain& chain, std::uint32_t first) {
@@ -254,15 +286,18 @@ struct Layout {
       at_node[node_of(end.particle[i])].push_back({block, sign * static_cast<double>(end.weight[i])});
   }
 
+  [[nodiscard]] std::uint32_t inner_block(std::uint32_t index) const {
+    return vector_count + static_cast<std::uint32_t>(bundle.hooks.size()) + index;
+  }
   [[nodiscard]] std::uint32_t body_block(std::uint32_t body) const {
     const int index = bundle.body_of(body);
     if (index < 0) return kNone;
-    return vector_count + static_cast<std::uint32_t>(bundle.hooks.size()) + static_cast<std::uint32_t>(index);
+    return inner_block(static_cast<std::uint32_t>(bundle.inner.size())) + static_cast<std::uint32_t>(index);
   }
 
   /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
   void join_blocks() {
-    scratch.matrix.reset(vector_count + bundle.hooks.size() + bundle.bodies.size());
+    scratch.matrix.reset(vector_count + bundle.hooks.size() + bundle.inner.size() + bundle.bodies.size());
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
       if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
     };
@@ -286,6 +321,8 @@ struct Layout {
       for (const HookPlace& end : {tables.hooks[bundle.hooks[i]].a, tables.hooks[bundle.hooks[i]].b})
         meet(vector_count + i, body_block(end.body));
     }
+    for (std::uint32_t i = 0; i < bundle.inner.size(); ++i)
+      meet(inner_block(i), body_block(tables.inner_contacts[bundle.inner[i]].body));
   }
 };
 
@@ -316,6 +353,10 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
     sizes.push_back(count_joint_rows(t.hooks[hook]));
     bundle.first_row.push_back(bundle.first_row.back() + static_cast<std::uint32_t>(sizes.back()));
   }
+  for (std::size_t i = 0; i < bundle.inner.size(); ++i) {
+    sizes.push_back(InnerTouch::kRows);
+    bundle.first_row.push_back(bundle.first_row.back() + InnerTouch::kRows);
+  }
   scratch.signs.assign(sizes.size(), 1);
   sizes.resize(sizes.size() + bundle.bodies.size(), 6);
   scratch.signs.resize(sizes.size(), -1);
@@ -331,6 +372,8 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
   bundle.moving.resize(bundle.bodies.size());
   for (const std::uint32_t hook : bundle.hooks)
     bundle.ends.push_back({bundle.body_of(t.hooks[hook].a.body), bundle.body_of(t.hooks[hook].b.body)});
+  for (const std::uint32_t row : bundle.inner)
+    bundle.ends.push_back({bundle.body_of(t.inner_contacts[row].body), -1});
 }
 
 /// Tethers of a bundle's points, of which `by_particle` has all in order of their particles.
@@ -359,7 +402,7 @@ std::vector<std::uint32_t> tethers_by_particle(const Tables& t) {
 /// The two nodes at which a hook slides along its rope follow its weights.
 void set_slide_weights(const Tables& t, std::vector<int>& seen, Bundle& bundle) {
   const auto vectors =
-      static_cast<std::uint32_t>(bundle.place.size() - bundle.hooks.size() - bundle.bodies.size());
+      static_cast<std::uint32_t>(bundle.place.size() - bundle.ends.size() - bundle.bodies.size());
   const auto slides = [&](const Bundle::Incident& at) {
     return at.block >= vectors && at.block < vectors + bundle.hooks.size() && at.weight <= 0 &&
            t.hooks[bundle.hooks[at.block - vectors]].kind == HookKind::kRopeSlide;
@@ -380,7 +423,7 @@ int Bundle::body_of(std::uint32_t row) const {
 }
 
 void Bundle::clear() {
-  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &bodies, &tethers, &first_tether,
+  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &inner, &bodies, &tethers, &first_tether,
                                            &first_incident, &pair_block, &first_pair})
     list->clear();
   ends.clear();

@@ -14,14 +14,10 @@ namespace {
 using V = DVec3;
 using M = math::Symmetric3<double>;
 
-constexpr double kSlidingShare = 0.9999;  ///< Of mu N: a node whose friction was this large was sliding.
-constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
-constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
-constexpr double kTetherRecovery = 10;    ///< Share of what a tether is too long by, per second [1/s].
-constexpr double kTetherSpeed = 0.1;      ///< At most [m/s].
-constexpr double kSettledDrag = 0.1;      ///< Share by which drag may still change.
-constexpr int kLeastContactSolves = 2;
-constexpr int kSlidingSolves = 4;
+constexpr double kStiffnessOnBody = 10;  ///< rho of a point over the heaviest mass that it touches.
+constexpr double kMostStiffness = 1e6;   ///< The same over its own mass: inverting loses the square of it.
+constexpr double kTetherRecovery = 10;   ///< Share of what a tether is too long by, per second [1/s].
+constexpr double kTetherSpeed = 0.1;     ///< At most [m/s].
 
 V across(V n, V v) {
   return v - dot(n, v) * n;
@@ -188,18 +184,18 @@ void load_touches(const Chain& chain, std::uint32_t first_node, double h, const 
   }
 }
 
-void load_point_touches(std::uint32_t node, V u, std::size_t first, std::size_t end,
-                        std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
-                        std::vector<RopeTouch>& touches) {
-  const auto own = static_cast<double>(tables.particles.mass[tables.contacts.particle[first]]);
-  double heaviest = own;
+void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double heaviest, double h,
+                        const state::Tables& tables, std::vector<RopeTouch>& touches) {
+  const double own = node.mass;
+  heaviest = std::max(heaviest, own);
   for (std::size_t row = first; row < end; ++row) {
     const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
     if (w > 0) heaviest = std::max(heaviest, 1 / w);
   }
   const std::size_t first_touch = touches.size();
   for (std::size_t row = first; row < end; ++row) {
-    RopeTouch t = load_touch(row, node, h, tables);
+    RopeTouch t = load_touch(row, index, h, tables);
     t.separation = std::max(t.separation, 0.0);
     t.n0 = 0;
     t.f0 = {};
@@ -209,12 +205,12 @@ void load_point_touches(std::uint32_t node, V u, std::size_t first, std::size_t 
   for (const std::uint32_t row : tethers) {
     const bool still_pinned =
         tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
-    if (still_pinned) touches.push_back(load_tether(row, node, h, tables));
+    if (still_pinned) touches.push_back(load_tether(row, index, h, tables));
   }
   for (RopeTouch& t : std::span(touches).subspan(first_touch)) {
     t.of_point = true;
     t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
-    t.drag = drag_of(t, u);
+    t.drag = drag_of(t, node.v_free);
   }
 }
 

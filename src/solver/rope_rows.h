@@ -94,6 +94,11 @@ inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that it
 inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
 inline constexpr double kReportedError = 0.01;
 inline constexpr int kMostRopeSolves = 8;
+inline constexpr int kLeastContactSolves = 2;
+inline constexpr int kSlidingSolves = 4;
+inline constexpr double kSlidingShare =
+    0.9999;                                  ///< Of mu N: a node whose friction was this large was sliding.
+inline constexpr double kSettledDrag = 0.1;  ///< Share by which drag may still change.
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
 void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
@@ -106,11 +111,12 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, co
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
                   std::vector<RopeTouch>& touches);
 
-/// Appends the contacts of one particle that is no rope's and has the velocity u, rows [first, end), and the
-/// tethers that hold it, rows of springs. Overlap does not become speed (solver/contacts.h).
-void load_point_touches(std::uint32_t node, DVec3 u, std::size_t first, std::size_t end,
-                        std::span<const std::uint32_t> tethers, double h, const state::Tables& tables,
-                        std::vector<RopeTouch>& touches);
+/// Appends the contacts of one particle that is no rope's, `node` of the number `index`: rows [first, end),
+/// and the tethers that hold it, rows of springs. Overlap does not become speed (solver/contacts.h).
+/// `heaviest` is the mass of what else presses on it [kg].
+void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double heaviest, double h,
+                        const state::Tables& tables, std::vector<RopeTouch>& touches);
 
 /// Bending between the segments of `row` and the next. At a clamp (solver/rope_clamps.h) only half a segment
 /// bends.

@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,6 +45,33 @@ struct Contacts {
     visit(self.normal_force);
     visit(self.friction_force);
   }
+};
+
+/// A shape inside a segment of a rope or a triangle of a cloth: between its points, where none of them
+/// touches. The place is sum weight x of the points, and what acts there acts on them in these shares. Rows
+/// stand in order of object, collider and element.
+struct InnerContact {
+  std::uint32_t object = 0;  ///< Row of the deformable.
+  std::uint32_t collider = 0;
+  std::uint32_t element = 0;  ///< Row of the segment or the triangle.
+  std::uint32_t body = 0;
+  std::uint32_t count = 0;                     ///< Of points: 2 or 3.
+  std::array<std::uint32_t, 3> particle = {};  ///< In ascending order.
+  bool few = false;                            ///< The object has few of them with bodies that forces move.
+  Real friction = Real(0);                     ///< Of the pair.
+  /// It has been near enough to act since the step began, or in the last substep of the step before: it
+  /// counts for who is solved with whom, and what only might come near costs nothing.
+  bool joined = false;
+  // Written by update_inner_contacts.
+  std::array<Real, 3> weight = {};  ///< With the sum 1.
+  Vec3 normal = {};                 ///< From the shape to the element; zero before it was first known.
+  Real separation = Real(0);        ///< Gap less the element's thickness between its points [m].
+  Vec3 lever = {};                  ///< From the body's center of mass to the place [m].
+  Vec3 belt_velocity = {};          ///< As of Contacts [m/s].
+  Vec3 surface_velocity = {};       ///< As of Contacts [m/s].
+  Real normal_force = Real(0);      ///< [N], 0 or more; carried from substep to substep.
+  Vec3 friction_force = {};         ///< [N]; carried from substep to substep.
+  Real clearance = Real(0);         ///< By how much the two are apart, at least; 0 where it is not known [m].
 };
 
 }  // namespace hooke::state

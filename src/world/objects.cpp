@@ -92,6 +92,7 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
   renumber_particles(t, gone.particles);
   t.contacts = {};  // detect finds them again
+  t.inner_contacts.clear();
 
   move_slot(t, gone, state::SlotTable<RopeId>::kNone);
   t.objects.erase(t.objects.begin() + row);

@@ -56,13 +56,16 @@ constexpr Real kWakingSpeed = Real(0.2);
 bool wake_struck(WorldData& world) {
   state::Tables& t = world.tables;
   bool any = false;
-  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-    const std::uint32_t body = t.contacts.body[row];
-    if (!is_dynamic(t.bodies, body) || t.bodies.asleep[body] == 0) continue;
-    const Vec3 v = t.particles.velocity[t.contacts.particle[row]].v;
-    if (!(t.contacts.normal_force[row] > Real(0)) || !(length(v) > kWakingSpeed)) continue;
+  const auto strike = [&](std::uint32_t body, Real force, std::uint32_t particle) {
+    if (!is_dynamic(t.bodies, body) || t.bodies.asleep[body] == 0 || !(force > Real(0))) return;
+    if (!(length(t.particles.velocity[particle].v) > kWakingSpeed)) return;
     state::wake(t.bodies, body);
     any = true;
+  };
+  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row)
+    strike(t.contacts.body[row], t.contacts.normal_force[row], t.contacts.particle[row]);
+  for (const state::InnerContact& inner : t.inner_contacts) {
+    for (std::uint32_t i = 0; i < inner.count; ++i) strike(inner.body, inner.normal_force, inner.particle[i]);
   }
   return any;
 }

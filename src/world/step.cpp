@@ -11,6 +11,7 @@
 #include "hooke/world.h"
 
 #include "base/float_environment.h"
+#include "collision/inner_contacts.h"
 #include "collision/particle_contacts.h"
 #include "parallel/thread_pool.h"
 #include "solver/bodies.h"
@@ -18,6 +19,7 @@
 #include "solver/contacts.h"
 #include "solver/forces.h"
 #include "solver/hard_islands.h"
+#include "solver/inner_contacts.h"
 #include "solver/joints.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
@@ -45,6 +47,7 @@ using world::for_contact_colors;
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
 constexpr int kContactGrain = 256;
+constexpr int kInnerContactGrain = 32;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
@@ -85,12 +88,15 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
   apply_forces(w, time, h, first);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { collision::update_contacts(rows, h, w.particle_contacts, t); });
+  for_ranges(*w.pool, static_cast<int>(t.inner_contacts.size()), kInnerContactGrain,
+             [&](Range rows) { collision::update_inner_contacts(rows, h, t); });
   world::begin_ties(w, h, first);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::solve_ropes(w, h);
+  solver::solve_inner_contacts(h, t);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });

@@ -434,6 +434,11 @@ std::uint64_t World::state_hash() const {
   hash.add(t.contacts.particle);
   hash.add(t.contacts.normal_force);
   hash.add(t.contacts.friction_force);
+  for (const state::InnerContact& inner : t.inner_contacts) {
+    hash.add(inner.particle);
+    hash.add(inner.normal_force);
+    hash.add(inner.friction_force);
+  }
   world::hash_bodies(t, hash);
   world::hash_hooks(t, hash);
   return hash.value();

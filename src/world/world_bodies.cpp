@@ -147,6 +147,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   std::erase_if(data_->bodies_placed, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
   t.contacts = {};  // detect finds those that remain again
+  t.inner_contacts.clear();
   return count;
 }
 

@@ -159,6 +159,36 @@ TEST_SUITE("world/allocation") {
     check_scene("squash_ball");  // with gas
   }
 
+  TEST_CASE("contacts between points allocate nothing") {
+    World world = make_world();
+    const Shape ridge = Shape::box({Real(0.05), Real(0.3), Real(3)});
+    REQUIRE(
+        world.add_body({.kind = BodyKind::kStatic, .shape = ridge, .position = {0, -0.3, 0}}).has_value());
+    for (int k = 0; k < 4; ++k) {
+      const double z = 0.2 * k;
+      REQUIRE(world
+                  .add_rope({.points = {{-0.6, 0.03, z}, {-0.2, 0.03, z}, {0.2, 0.03, z}, {0.6, 0.03, z}},
+                             .pins = {}})
+                  .has_value());
+    }
+    ClothDesc cloth = {.columns = 5, .rows = 5, .corner = {-0.5, 0.5, -0.5}, .row_direction = {0, 0, 1}};
+    cloth.pins = {{.point = 0}, {.point = 4}, {.point = 20}, {.point = 24}};
+    REQUIRE(world.add_cloth(cloth).has_value());
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(world
+                  .add_body({.kind = BodyKind::kDynamic,
+                             .shape = Shape::box({Real(0.02), Real(0.02), Real(0.02)}),
+                             .position = {0.15 * k - 0.1, 0.6, 0.13},
+                             .mass = Real(0.01)})
+                  .has_value());
+    }
+    for (int i = 0; i < 60; ++i) world.step(Real(1) / Real(60));
+    for (const int workers : {1, 2}) {
+      REQUIRE(world.set_workers(workers).has_value());
+      CHECK(count_allocations(world, Real(1) / Real(60)) == 0);
+    }
+  }
+
   TEST_CASE("solids, plasticity and fields allocate nothing") {
     check_scene("jelly_cube", 0.3);
     check_scene("dents", 0.3);

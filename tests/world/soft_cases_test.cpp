@@ -275,13 +275,24 @@ TEST_SUITE("world/soft_cases") {
                                            .mass = Real(100)})));
     }
     const double start = volume_of(world, balls[0]);
-    run(world, 60);
+    // They bounce once: no box sinks into a ball between its points, and none comes back higher than it must.
+    double lowest = 3;
+    double highest = 0;
+    for (int i = 0; i < 80; ++i) {
+      run(world, 1);
+      for (const BodyId box : boxes) {
+        const double y = world.center_of_mass(box).y;
+        lowest = std::min(lowest, y);
+        highest = i >= 40 ? std::max(highest, y) : highest;
+      }
+    }
+    CHECK(lowest > 1.4);
+    CHECK(highest < 2.95);  // they fell from 3
     CHECK(world.measure().largest_penetration < 0.01);
     for (std::size_t i = 0; i < balls.size(); ++i) {
       CHECK(volume_of(world, balls[i]) == doctest::Approx(start).epsilon(0.1));
       CHECK(middle_of(world, balls[i]).y > 0.5);
       CHECK(world.center_of_mass(boxes[i]).y > 1);
-      CHECK(world.center_of_mass(boxes[i]).y < 2.6);
     }
   }
 

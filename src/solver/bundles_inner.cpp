@@ -1,0 +1,254 @@
+/// Contacts between points, as rows of a bundle. Which rows there are: bundles_build.cpp.
+
+#include "geometry/closest.h"
+#include "solver/bundle_solution.h"
+#include "solver/contacts.h"
+#include "solver/inner_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::InnerContact;
+
+constexpr double kMostDrag = 1e4;  ///< Over the mass at the place: what is dragged harder sticks.
+/// Overlap of ropes leaves no faster than this [m/s]: where one end of a segment is wedged, the other moves
+/// many times as fast as the place.
+constexpr double kInnerPushOutSpeed = 0.2;
+
+/// The normal and two directions across it.
+std::array<DVec3, InnerTouch::kRows> axes_of(DVec3 n) {
+  const DVec3 far = std::abs(n.x) < 0.6 ? DVec3{1, 0, 0} : DVec3{0, 1, 0};
+  const DVec3 across = normalize(cross(n, far));
+  return {n, across, cross(n, across)};
+}
+
+}  // namespace
+
+bool BundleSolution::has_inner(std::size_t node) const {
+  const auto at = incidents_of(node);
+  return !at.empty() && at.back().block >= hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
+}
+
+/// Mass of the heaviest body that a contact between points may press on a node; 0 without one [kg].
+double BundleSolution::heaviest_inner(std::size_t node) const {
+  double heaviest = 0;
+  for (const Bundle::Incident& at : incidents_of(node)) {
+    if (at.block < hook_block(static_cast<std::uint32_t>(b_.hooks.size()))) continue;
+    const int body = b_.ends[at.block - vector_count()][0];
+    const auto w =
+        body < 0
+            ? 0
+            : static_cast<double>(t_.bodies.motion[b_.bodies[static_cast<std::size_t>(body)]].inverse_mass);
+    if (w > 0) heaviest = std::max(heaviest, 1 / w);
+  }
+  return heaviest;
+}
+
+void BundleSolution::load_inner() {
+  b_.touches.assign(b_.inner.size(), {});
+  if (b_.inner.empty()) return;
+  const std::uint32_t first = hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
+  // Nodes and points of an element stand in the same order.
+  for (std::uint32_t node = 0; node < b_.ropes.nodes.size(); ++node) {
+    for (std::uint32_t i = b_.first_incident[node]; i < b_.first_incident[node + 1]; ++i) {
+      if (b_.incidents[i].block < first) continue;
+      const std::size_t index = b_.incidents[i].block - first;
+      InnerTouch& touch = b_.touches[index];
+      const Real weight = t_.inner_contacts[b_.inner[index]].weight[touch.count];
+      b_.incidents[i].weight = touch.weight[touch.count] = static_cast<double>(weight);
+      touch.node[touch.count++] = node;
+    }
+  }
+  for (std::size_t i = 0; i < b_.inner.size(); ++i) load_inner_touch(i);
+}
+
+void BundleSolution::load_inner_touch(std::size_t index) {
+  const InnerContact& contact = t_.inner_contacts[b_.inner[index]];
+  InnerTouch& touch = b_.touches[index];
+  const int body = b_.ends[b_.hooks.size() + index][0];
+  touch.of_rope = t_.objects[contact.object].kind == PointRef::Kind::kRope;
+  touch.separation = static_cast<double>(contact.separation);
+  touch.friction = static_cast<double>(contact.friction);
+  touch.surface = vector_cast<double>(body < 0 ? contact.surface_velocity : contact.belt_velocity);
+  touch.lever = vector_cast<double>(contact.lever);
+  const auto axes = axes_of(vector_cast<double>(contact.normal));
+  for (std::uint32_t i = 0; i < touch.count; ++i)
+    touch.mobility += touch.weight[i] * touch.weight[i] * b_.ropes.nodes[touch.node[i]].w;
+
+  const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  const double inf = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < InnerTouch::kRows; ++k) {
+    JointRow& row = b_.rows[first + k] = {};
+    row.n = axes[k];
+    row.low = -inf;
+    row.high = inf;
+    row.target = dot(axes[k], touch.surface);
+    if (body < 0) continue;
+    const JointBody& of = b_.moving[static_cast<std::size_t>(body)].body;
+    row.j_a = of.scale * cross(touch.lever, axes[k]);
+    if (k == 0) touch.mobility += of.inverse_mass + length_squared(row.j_a);
+  }
+  b_.rows[first].target -= gap_speed(touch);
+
+  touch.normal = h_ * static_cast<double>(contact.normal_force);
+  if (touch.of_rope) {
+    b_.rows[first].gamma = touch.mobility / kContactStiffness;
+    b_.rows[first].target += std::min(b_.rows[first].gamma * touch.normal, kInnerPushOutSpeed);
+  }
+  const DVec3 force = h_ * vector_cast<double>(contact.friction_force);
+  touch.f = force - dot(axes[0], force) * axes[0];
+  touch.active = is_near(contact) && (touch.normal > 0 || touch.separation <= 0);
+  const double size = length(touch.f);
+  touch.slides = size > 0 && size >= kSlidingShare * touch.friction * touch.normal;
+  if (touch.slides) {
+    const double speed = length(sliding_of(index, true));
+    touch.slides = speed > 0;
+    touch.drag = speed > 0 ? touch.friction * touch.normal / speed : 0;
+  }
+  set_inner_rows(index);
+  if (touch.active && touch.of_rope) note_rope_in_contact(touch.node[0]);
+}
+
+/// Overlap of ropes leaves by speed, that of cloths by place, as with the contacts of points.
+double BundleSolution::gap_speed(const InnerTouch& touch) const {
+  return std::max(touch.separation / h_, touch.of_rope ? -kInnerPushOutSpeed : 0.0);
+}
+
+void BundleSolution::note_rope_in_contact(std::uint32_t node) {
+  std::size_t chain = 0;
+  std::uint32_t end = 0;
+  while ((end += b_.chain_nodes[chain]) <= node) ++chain;
+  b_.settings[chain].compliance = kComplianceInContact;
+  b_.settings[chain].turning = {};
+}
+
+/// Which rows of a contact are solved for; the others do nothing.
+void BundleSolution::set_inner_rows(std::size_t index) {
+  const InnerTouch& touch = b_.touches[index];
+  const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  b_.bound[first] = touch.active ? 0 : 1;
+  b_.lambda[first] = 0;
+  const bool held = touch.active && touch.friction > 0 && (!touch.slides || touch.drag > 0);
+  for (std::size_t row = first + 1; row < first + InnerTouch::kRows; ++row) {
+    b_.rows[row].gamma = held && touch.slides ? 1 / touch.drag : 0;
+    b_.bound[row] = held ? 0 : 1;
+    b_.lambda[row] = 0;
+  }
+}
+
+/// Velocity of the place against the surface: as the forces left it, or as the solution has it.
+DVec3 BundleSolution::velocity_at(std::size_t index, bool before) const {
+  const InnerTouch& touch = b_.touches[index];
+  DVec3 v = -touch.surface;
+  for (std::uint32_t i = 0; i < touch.count; ++i) {
+    const RopeNode& node = b_.ropes.nodes[touch.node[i]];
+    v += touch.weight[i] * (before ? node.v_free : node.u);
+  }
+  const int body = b_.ends[b_.hooks.size() + index][0];
+  if (body < 0) return v;
+  const BundleBody& m = b_.moving[static_cast<std::size_t>(body)];
+  return v - m.v - cross(m.body.scale * m.omega_scaled, touch.lever);
+}
+
+DVec3 BundleSolution::sliding_of(std::size_t index, bool before) const {
+  const DVec3 n = b_.rows[b_.first_row[b_.hooks.size() + index]].n;
+  const DVec3 v = velocity_at(index, before);
+  return v - dot(n, v) * n;
+}
+
+/// Friction of an active contact: whether it sticks, and what drags it if not. True if it is not yet what it
+/// should be.
+bool BundleSolution::update_inner_friction(std::size_t index) {
+  InnerTouch& touch = b_.touches[index];
+  const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  const double most = touch.friction * touch.normal;
+  const DVec3 sliding = sliding_of(index, false);
+  const double speed = length(sliding);
+  if (!touch.slides) {
+    touch.f = {};
+    for (std::size_t k = 1; k < InnerTouch::kRows; ++k)
+      touch.f += b_.lambda[first + k] * b_.rows[first + k].n;
+    const double size = length(touch.f);
+    touch.slides = size > most;
+    if (!touch.slides) return false;
+    touch.drag = most / ((size - most) * touch.mobility);
+    touch.f = (most / size) * touch.f;
+    return true;
+  }
+  const double drag = touch.drag;
+  touch.f = -drag * sliding;
+  touch.slides = speed > 0 && most * touch.mobility < kMostDrag * speed;
+  touch.drag = touch.slides ? most / speed : 0;
+  return !touch.slides || std::abs(touch.drag - drag) > kSettledDrag * drag;
+}
+
+bool BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
+  InnerTouch& touch = b_.touches[index];
+  if (!is_near(t_.inner_contacts[b_.inner[index]])) return false;
+  const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  const bool was_active = touch.active;
+  bool unsettled = false;
+  if (touch.active) {
+    touch.normal = std::max(0.0, b_.lambda[first]);
+    touch.active = touch.normal > 0;
+    unsettled = touch.active && touch.friction > 0 && update_inner_friction(index);
+  } else {
+    touch.normal = 0;
+    const double approach = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(touch);
+    touch.active = approach < 0 && !(let_go && !touch.of_rope);
+    touch.slides = false;
+  }
+  if (!touch.active) touch.f = {};
+  return unsettled || was_active != touch.active;
+}
+
+Unsettled BundleSolution::update_inner(bool let_go) {
+  Unsettled unsettled;
+  for (std::size_t i = 0; i < b_.touches.size(); ++i) {
+    bool& of = b_.touches[i].of_rope ? unsettled.ropes : unsettled.points;
+    const bool changed = update_inner_touch(i, let_go);
+    of = of || (changed && !(let_go && !b_.touches[i].of_rope && b_.touches[i].active));
+  }
+  return unsettled;
+}
+
+/// Before the next solution: what update_inner found comes into effect.
+void BundleSolution::revise_inner() {
+  for (std::size_t i = 0; i < b_.touches.size(); ++i) set_inner_rows(i);
+}
+
+int BundleSolution::least_solves_of_inner(bool unsettled) const {
+  const bool any = std::any_of(b_.touches.begin(), b_.touches.end(),
+                               [](const InnerTouch& t) { return t.of_rope && t.active; });
+  return !any ? 1 : unsettled ? kSlidingSolves : kLeastContactSolves;
+}
+
+/// A rope that is jammed gets no friction for the rest of the substep (solve_again in rope_rows.h).
+bool BundleSolution::let_inner_slide() {
+  bool any = false;
+  for (InnerTouch& touch : b_.touches) {
+    if (!touch.of_rope) continue;
+    any = true;
+    touch.friction = 0;
+    touch.slides = false;
+    touch.f = {};
+  }
+  return any;
+}
+
+void BundleSolution::store_inner() {
+  for (std::size_t i = 0; i < b_.touches.size(); ++i) {
+    const InnerTouch& touch = b_.touches[i];
+    InnerContact& contact = t_.inner_contacts[b_.inner[i]];
+    contact.normal_force = static_cast<Real>(touch.normal / h_);
+    contact.friction_force = vector_cast<Real>((1 / h_) * touch.f);
+    if (!touch.of_rope) push_out(contact, static_cast<Real>(h_), t_.particles);
+  }
+}
+
+}  // namespace hooke::solver
