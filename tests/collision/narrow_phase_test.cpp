@@ -19,6 +19,26 @@ namespace {
 
 const Shape kCube = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
 
+/// Manifolds that were carried along, and those of a new test: each with `count` points.
+void check_same_points(const PairScene& kept, const PairScene& made, int count) {
+  REQUIRE(made.pairs.manifold.size() == kept.pairs.manifold.size());
+  for (std::size_t i = 0; i < made.pairs.manifold.size(); ++i) {
+    const Manifold& a = kept.pairs.manifold[i];
+    const Manifold& b = made.pairs.manifold[i];
+    REQUIRE(a.point_count == count);
+    REQUIRE(b.point_count == count);
+    CHECK(length(a.normal - b.normal) < 2e-6);
+    for (int k = 0; k < count; ++k) {
+      const auto& p = a.point[static_cast<std::size_t>(k)];
+      Real error = Real(1);
+      for (const auto& q : b.point) {
+        if (length(q.anchor_b - p.anchor_b) < Real(1e-3)) error = std::fabs(q.separation - p.separation);
+      }
+      CHECK(error < 5e-7);
+    }
+  }
+}
+
 }  // namespace
 
 TEST_SUITE("collision/narrow_phase") {
@@ -84,22 +104,7 @@ TEST_SUITE("collision/narrow_phase") {
       PairScene made;
       build(made, way, turn);
       made.update();
-      REQUIRE(made.pairs.manifold.size() == kept.pairs.manifold.size());
-      for (std::size_t i = 0; i < made.pairs.manifold.size(); ++i) {
-        const Manifold& a = kept.pairs.manifold[i];
-        const Manifold& b = made.pairs.manifold[i];
-        REQUIRE(a.point_count == 4);
-        REQUIRE(b.point_count == 4);
-        CHECK(length(a.normal - b.normal) < 2e-6);
-        for (int k = 0; k < 4; ++k) {
-          const auto& p = a.point[static_cast<std::size_t>(k)];
-          Real error = Real(1);
-          for (const auto& q : b.point) {
-            if (length(q.anchor_b - p.anchor_b) < Real(1e-3)) error = std::fabs(q.separation - p.separation);
-          }
-          CHECK(error < 5e-7);
-        }
-      }
+      check_same_points(kept, made, 4);
     }
     kept.move(2, {1e-3, 0, 0});
     kept.update();
@@ -132,21 +137,7 @@ TEST_SUITE("collision/narrow_phase") {
       PairScene made;
       build(made, way, turn);
       made.update();
-      REQUIRE(made.pairs.manifold.size() == 2);
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Manifold& a = kept.pairs.manifold[i];
-        const Manifold& b = made.pairs.manifold[i];
-        REQUIRE(a.point_count == 2);
-        REQUIRE(b.point_count == 2);
-        for (int k = 0; k < 2; ++k) {
-          const auto& p = a.point[static_cast<std::size_t>(k)];
-          Real error = Real(1);
-          for (const auto& q : b.point) {
-            if (length(q.anchor_b - p.anchor_b) < Real(1e-3)) error = std::fabs(q.separation - p.separation);
-          }
-          CHECK(error < 5e-7);
-        }
-      }
+      check_same_points(kept, made, 2);
     }
     kept.move(1, {1e-2, 0, 0});
     kept.update();

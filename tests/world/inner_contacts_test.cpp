@@ -13,13 +13,7 @@
 
 namespace hooke {
 
-using test::d;
-using test::empty_space;
-using test::kGravity;
-using test::make_world;
-using test::run;
-using test::take;
-using test::without_air;
+using namespace test;
 
 namespace {
 
@@ -248,11 +242,7 @@ TEST_SUITE("world/inner_contacts") {
   }
 
   TEST_CASE("the same bits for any number of workers, and again after a restoration") {
-    std::vector<std::uint64_t> hashes;
-    for (const int workers : {1, 2, 3, 8}) {
-      WorldDesc desc = without_air();
-      desc.workers = workers;
-      World world = make_world(desc);
+    check_same_bits(without_air(), [](World& world) {
       take(world.add_body({.shape = Shape::box({Real(0.05), Real(0.3), Real(3)}), .position = {0, -0.3, 0}}));
       for (int k = 0; k < 5; ++k) {
         take(world.add_rope({.points = {{-0.5, 0.05, 0.2 * k},
@@ -268,16 +258,7 @@ TEST_SUITE("world/inner_contacts") {
       take(world.add_body({.kind = BodyKind::kDynamic,
                            .shape = Shape::box({Real(0.03), Real(0.03), Real(0.03)}),
                            .position = {0.1, 0.6, 0}}));
-      run(world, 30);
-      const Snapshot snapshot = world.snapshot();
-      run(world, 30);
-      const std::uint64_t end = world.state_hash();
-      hashes.push_back(end);
-      REQUIRE(world.restore(snapshot).has_value());
-      run(world, 30);
-      CHECK(world.state_hash() == end);
-    }
-    for (const std::uint64_t hash : hashes) CHECK(hash == hashes.front());
+    });
   }
 }
 
