@@ -39,6 +39,24 @@ void check_same_points(const PairScene& kept, const PairScene& made, int count) 
   }
 }
 
+/// Moves what `build` built by little, eight times: all of so many pairs are carried along, to the points of
+/// a new test.
+template <class Build>
+void check_carried(const Build& build, std::uint32_t pairs, int points, PairScene& kept) {
+  const Vec3 axis = hooke::normalize(Vec3{Real(0.3), Real(0.4), Real(-0.8)});
+  for (int step = 1; step <= 8; ++step) {
+    PairScene made;
+    build(made, DVec3{1e-5 * step, -2e-6 * step, 4e-6 * step},
+          hooke::quaternion_about(axis, Real(1e-5) * Real(step)));
+    made.update();
+    kept.bodies.center = made.bodies.center;
+    kept.bodies.rotation = made.bodies.rotation;
+    kept.update();
+    REQUIRE(kept.counts.kept == pairs);
+    check_same_points(kept, made, points);
+  }
+}
+
 }  // namespace
 
 TEST_SUITE("collision/narrow_phase") {
@@ -91,21 +109,7 @@ TEST_SUITE("collision/narrow_phase") {
     build(kept, {}, {});
     kept.update();
     REQUIRE(kept.counts.tested == 3);
-    const Vec3 axis = hooke::normalize(Vec3{Real(0.3), Real(0.4), Real(-0.8)});
-    for (int step = 1; step <= 8; ++step) {
-      const DVec3 way = {1e-5 * step, -2e-6 * step, 4e-6 * step};
-      const Quat turn = hooke::quaternion_about(axis, Real(1e-5) * Real(step));
-      for (const std::uint32_t body : {1U, 2U}) {
-        kept.bodies.center[body] = body == 1 ? 0.5 * way : DVec3{0.2, 0.9995, 0.1} + way;
-        kept.bodies.rotation[body] = turn;
-      }
-      kept.update();
-      REQUIRE(kept.counts.kept == 2);
-      PairScene made;
-      build(made, way, turn);
-      made.update();
-      check_same_points(kept, made, 4);
-    }
+    check_carried(build, 2, 4, kept);
     kept.move(2, {1e-3, 0, 0});
     kept.update();
     CHECK(kept.counts.tested == 1);
@@ -126,19 +130,7 @@ TEST_SUITE("collision/narrow_phase") {
     build(kept, {}, {});
     kept.update();
     REQUIRE(kept.pairs.manifold.size() == 2);
-    const Vec3 axis = hooke::normalize(Vec3{Real(0.3), Real(0.4), Real(-0.8)});
-    for (int step = 1; step <= 8; ++step) {
-      const DVec3 way = {1e-5 * step, -2e-6 * step, 4e-6 * step};
-      const Quat turn = hooke::quaternion_about(axis, Real(1e-5) * Real(step));
-      kept.bodies.center[1] = start + way;
-      kept.bodies.rotation[1] = turn;
-      kept.update();
-      REQUIRE(kept.counts.kept == 1);
-      PairScene made;
-      build(made, way, turn);
-      made.update();
-      check_same_points(kept, made, 2);
-    }
+    check_carried(build, 1, 2, kept);
     kept.move(1, {1e-2, 0, 0});
     kept.update();
     CHECK(kept.counts.tested == 1);
