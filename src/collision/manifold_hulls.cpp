@@ -145,8 +145,10 @@ void offer_edges(HullPair& pair) {
   }
 }
 
-/// Offers what held the hulls apart in the last step.
-void offer_last(HullPair& pair) {
+/// Offers what held the hulls apart in the last step. Edges that span no face of the difference any more
+/// cross nowhere near where the hulls meet: they may only tell that the hulls are farther apart than
+/// `margin`.
+void offer_last(Real margin, HullPair& pair) {
   const std::uint32_t code = pair.last_axis;
   const std::size_t face = code & 0xFFFF;
   if ((code & kAxisOfEdges) != 0) {
@@ -157,9 +159,9 @@ void offer_last(HullPair& pair) {
     const PlacedEdge q = place_edge(pair.b, edge_b);
     const Vec3 unit = normalize(cross(p.along, q.along));
     const Vec3 n = dot(unit, p.start - middle_of(pair.a)) < Real(0) ? -unit : unit;
-    // They may span no face of the difference any more.
     const Real separation = dot(n, farthest_vertex(pair.b, -n) - farthest_vertex(pair.a, n));
-    if (!(unit == Vec3{})) pair.offer({n, separation, code}, pair.prefer_faces);
+    const bool tells = separation > margin || arcs_cross(p, q);
+    if (tells && !(unit == Vec3{})) pair.offer({n, separation, code}, pair.prefer_faces);
   } else if ((code & kAxisOfA) != 0 && face < pair.a.hull->faces.size()) {
     pair.offer(face_axis(pair.a, pair.b, face, kAxisOfA), Real(0));
   } else if ((code & kAxisOfB) != 0 && face < pair.b.hull->faces.size()) {
@@ -178,6 +180,10 @@ Feature edge_feature(const Convex& c, std::size_t index) {
 
 void add_points(const HullPair& pair, Meeting& meeting) {
   const std::uint32_t code = pair.best.code;
+  meeting.normal = pair.best.n;
+  meeting.separation = pair.best.separation;
+  meeting.axis = code;
+  meeting.count = 0;
   if ((code & kAxisOfEdges) != 0) {
     const std::uint32_t mask = (1u << kEdgeBits) - 1;
     overlap_features(edge_feature(pair.a, code >> kEdgeBits & mask), edge_feature(pair.b, code & mask),
@@ -190,18 +196,29 @@ void add_points(const HullPair& pair, Meeting& meeting) {
   const Feature a = of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, meeting.normal, kSteep);
   const Feature b = of_a ? feature_of_hull(pair.b, -meeting.normal, kSteep) : face_of_hull(pair.b, face);
   overlap_features(a, b, Real(0), Real(0), meeting);
-  if (meeting.count > 0 || meeting.separation > Real(0)) return;
-  // Two faces that miss each other although the hulls overlap: a corner is inside.
+}
+
+/// Whether the hulls are apart, or a point is as deep as the axis says, but for `tolerance`.
+bool is_complete(const Meeting& meeting, Real tolerance) {
+  const auto* end = meeting.point.data() + meeting.count;
+  return meeting.separation > Real(0) || std::any_of(meeting.point.data(), end, [&](const MeetingPoint& p) {
+           return p.separation <= meeting.separation + tolerance;
+         });
+}
+
+/// A corner that is inside, where no feature shows it.
+void add_corner(const HullPair& pair, Meeting& meeting) {
+  const bool of_a = (pair.best.code & kAxisOfB) == 0;
   const Vec3 corner =
       of_a ? farthest_vertex(pair.b, -meeting.normal) : farthest_vertex(pair.a, meeting.normal);
-  complete_points({corner, corner, true}, Real(0), meeting);
+  complete_points({corner, corner, true}, pair.prefer_faces, meeting);
 }
 
 }  // namespace
 
 void meet_hulls(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
   HullPair pair = {a, b, query.last_axis, preference(kKeepAxis, a, b), preference(kPreferFaces, a, b)};
-  offer_last(pair);
+  offer_last(query.margin, pair);
   const auto apart = [&] {
     meeting.separation = pair.best.separation;
     meeting.axis = pair.best.code;
@@ -213,8 +230,17 @@ void meet_hulls(const Convex& a, const Convex& b, const MeetingQuery& query, Mee
   if (apart()) return;
   offer_edges(pair);
   if (apart()) return;
-  meeting.normal = pair.best.n;
   add_points(pair, meeting);
+  const Real tolerance = pair.prefer_faces;
+  if (is_complete(meeting, tolerance)) return;
+  // The features of an axis that was kept or preferred need not lie over each other where the hulls are
+  // deepest; those of the best do.
+  HullPair best = {a, b, 0, Real(0), Real(0)};
+  offer_faces(a, b, kAxisOfA, best);
+  offer_faces(b, a, kAxisOfB, best);
+  offer_edges(best);
+  add_points(best, meeting);
+  if (!is_complete(meeting, tolerance)) add_corner(best, meeting);
 }
 
 }  // namespace hooke::collision

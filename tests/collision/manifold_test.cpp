@@ -184,6 +184,31 @@ TEST_SUITE("collision/manifolds") {
     CHECK(overlapping < 80000);
   }
 
+  TEST_CASE("hulls that wander about in each other have a point as deep as their overlap") {
+    std::mt19937 random(11);
+    int deep = 0;
+    for (int walk = 0; walk < 200; ++walk) {
+      // Boxes have edges of one direction: the axis of two is also that of others.
+      const Body a = random_body(walk % 2 == 0 ? ShapeKind::kBox : ShapeKind::kHull, {}, random);
+      const Vec3 direction = random_unit(random);
+      Body b = random_body(walk % 4 < 2 ? ShapeKind::kBox : ShapeKind::kHull, Real(2) * direction, random);
+      bring_to(a.convex, b.convex, direction, Real(-0.1));
+      Meeting m;
+      for (int step = 0; step < 100; ++step) {
+        b.convex.center += Real(0.005) * random_unit(random);
+        b.convex.axes = matrix_of(hooke::quaternion_about(random_unit(random), Real(0.01))) * b.convex.axes;
+        const std::uint32_t last_axis = m.axis;
+        m.count = 0;
+        meet_hulls(a.convex, b.convex, {.margin = Real(0.02), .last_axis = last_axis}, m);
+        if (!(m.separation < Real(-0.01))) continue;
+        ++deep;
+        CHECK(deepest_of(m) < m.separation + Real(0.0025));
+        CHECK(deepest_of(m) > m.separation - Real(1e-3));
+      }
+    }
+    CHECK(deep > 12000);
+  }
+
   TEST_CASE("a box and its hull meet alike") {
     std::mt19937 random(10);
     for (int i = 0; i < 2000; ++i) {
