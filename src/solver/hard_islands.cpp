@@ -25,7 +25,7 @@ constexpr std::int8_t kNotJudged = -60;    ///< Steps after a refusal, or if it 
 /// Hardness of an island after a step in which it asked for `excess` of what soft contacts may do.
 std::int8_t next_hardness(std::int8_t most, Real excess) {
   if (most >= kHard) {
-    if (excess > kReleased) return kHard + kStaysHard;
+    if (excess > (most > kHard ? kReleased : Real(1))) return kHard + kStaysHard;
     return most > kHard ? static_cast<std::int8_t>(most - 1) : std::int8_t{0};
   }
   if (!(excess > Real(1))) return 0;
@@ -127,6 +127,28 @@ std::int8_t judge(const IslandDemand& island) {
   return next_hardness(island.most, excess);
 }
 
+/// New bodies become hard where they stand on each other, or judged like others from now on.
+void judge_new_bodies(std::span<const std::uint32_t> awake, const ContactStep& step,
+                      std::span<const std::uint8_t> hooked, HardIslands& hard, Bodies& bodies) {
+  const auto is_new = [&](std::uint32_t body) { return bodies.hardness[body] == Bodies::kNew; };
+  if (std::none_of(awake.begin(), awake.end(), is_new)) return;
+  hard.demands.assign(bodies.motion.size(), {});
+  for (const std::uint32_t body : awake) {
+    if (!is_moved(bodies, body)) continue;
+    const bool stands = hooked[body] == 0 && length(bodies.motion[body].v) <= kFast;
+    const std::int8_t as = is_new(body) && !stands ? std::int8_t{0} : bodies.hardness[body];
+    IslandDemand& island = hard.demands[hard.sets.root(body)];
+    ++island.count;
+    island.least = std::min(island.least, as);
+  }
+  for (const std::uint32_t body : awake) {
+    if (!is_new(body)) continue;
+    const IslandDemand& island = hard.demands[hard.sets.root(body)];
+    const bool together = island.count > 1 && island.least == Bodies::kNew;
+    bodies.hardness[body] = together && !(step.gravity == Vec3{}) ? kHard : std::int8_t{0};
+  }
+}
+
 /// Numbers the islands with hard bodies by their lowest body, and lists their bodies.
 void number_islands(std::span<const std::uint32_t> awake, const Bodies& bodies, HardIslands& hard) {
   std::vector<std::uint32_t>& island_of = hard.island_of;
@@ -194,7 +216,8 @@ void take_islands(Bodies& bodies, HardIslands& hard) {
                       cost + island.pattern.operations <= kHardBudget;
     for (const std::uint32_t body : graph.bodies) {
       hard.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
-      if (!fits) bodies.hardness[body] = kNotJudged;
+      // What would be hard for this step only, as new bodies are, is judged at its end like others.
+      if (!fits) bodies.hardness[body] = bodies.hardness[body] == kHard ? std::int8_t{0} : kNotJudged;
     }
     if (fits) {
       cost += island.pattern.operations;
@@ -208,7 +231,8 @@ void take_islands(Bodies& bodies, HardIslands& hard) {
 
 }  // namespace
 
-void find_hard_islands(std::span<const std::uint32_t> awake, const std::vector<Manifold>& manifolds,
+void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
+                       const std::vector<Manifold>& manifolds, std::span<const std::uint8_t> hooked,
                        Bodies& bodies, BodyContacts& contacts, HardIslands& hard) {
   contacts.colors.hard.clear();
   hard.count = 0;
@@ -221,6 +245,7 @@ void find_hard_islands(std::span<const std::uint32_t> awake, const std::vector<M
     if (has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b))
       hard.sets.merge(m.body_a, m.body_b);
   }
+  judge_new_bodies(awake, step, hooked, hard, bodies);
   number_islands(awake, bodies, hard);
   list_edges(manifolds, bodies, hard);
   take_islands(bodies, hard);

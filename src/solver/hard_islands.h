@@ -30,8 +30,10 @@
 ///   sag H^2 / a^3    1.9 where a column of cubes buckles (docs/decisions/0004)  at most 0.3
 ///
 /// An island that exceeds one of them in two steps on end, or five times in one, is hard until it has kept
-/// both by 0.6 for 30 steps. The sag follows from the impulse, which the direct solution knows too, so an
-/// island is judged alike in both. It is at least what a body's own weight needs, shared by what it rests on.
+/// both by 0.6 for 30 steps. One whose bodies are all new (state::Bodies::kNew) is hard in its first step:
+/// soft contacts learn in some steps what they carry, and what was placed in balance sinks and sways
+/// meanwhile. The sag follows from the impulse, which the direct solution knows too, so an island is judged
+/// alike in both. It is at least what a body's own weight needs, shared by what it rests on.
 
 namespace hooke::solver {
 
@@ -74,8 +76,10 @@ struct HardIslands {
 };
 
 /// Islands of hard bodies, with all that touches them; `contacts.colors.hard` says so to the soft contacts.
-/// `awake` are rows in ascending order.
-void find_hard_islands(std::span<const std::uint32_t> awake, const std::vector<state::Manifold>& manifolds,
+/// `awake` are rows in ascending order; islands with a body that a hook holds (`hooked`, by body row) stay
+/// soft. No body is new after it.
+void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
+                       const std::vector<state::Manifold>& manifolds, std::span<const std::uint8_t> hooked,
                        state::Bodies& bodies, BodyContacts& contacts, HardIslands& hard);
 
 /// The rows of their contacts.
@@ -86,8 +90,7 @@ void prepare_hard_islands(parallel::ThreadPool& pool, const BodyContacts& contac
 void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIslands& hard,
                         BodyContacts& contacts, state::Bodies& bodies);
 
-/// Updates the hardness of bodies by the impulses of the last substep. Islands with a body that a hook holds
-/// (`hooked`, by body row) stay soft.
+/// Updates the hardness of bodies by the impulses of the last substep. `hooked` as above.
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
                     const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
                     state::Bodies& bodies);

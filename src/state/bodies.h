@@ -80,6 +80,8 @@ struct BodyTraits {
 
 /// Columns of equal length; row i describes body i.
 struct Bodies {
+  static constexpr std::int8_t kNew = 127;  ///< A hardness.
+
   std::vector<MotionLine> motion;
   std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
   std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
@@ -98,7 +100,7 @@ struct Bodies {
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint8_t> slept;    ///< `asleep` at the end of the last step; written by gather_events.
   std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
-                                      ///< (solver/hard_islands.h).
+                                      ///< (solver/hard_islands.h); kNew before its first step.
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.

@@ -138,7 +138,8 @@ void prepare_body_contacts(WorldData& world, Real h) {
                         .sweeps = desc.bias_sweeps,
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
-  solver::find_hard_islands(world.awake, t.pairs.manifold, t.bodies, world.body_contacts, world.hard_islands);
+  solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.hooked, t.bodies,
+                            world.body_contacts, world.hard_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
                                 world.body_contacts);
   solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);

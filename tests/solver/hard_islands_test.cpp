@@ -167,6 +167,21 @@ TEST_SUITE("solver/hard_islands") {
     CHECK(!is_hard(high.world));
   }
 
+  TEST_CASE("what is placed in balance rests from its first step on") {
+    Column column = make_column(12, 0.05);
+    for (int i = 0; i < 10; ++i) {
+      run(column.world, 1);
+      for (const BodyId box : column.boxes) CHECK(length(column.world.velocity(box)) < Real(1e-3));
+    }
+    // A box that is thrown at others is not part of a balance.
+    Column thrown = make_column(2, 0.05);
+    BodyDesc fast = box({0, 0.25, 0}, 0.05);
+    fast.velocity = {Real(0), Real(0), Real(2)};
+    take(thrown.world.add_body(fast));
+    run(thrown.world, 1);
+    CHECK(!is_hard(thrown.world));
+  }
+
   TEST_CASE("hard islands give the same bits with any number of workers, and after a restoration") {
     const auto build = [](int workers) {
       Column column = make_column(14, 0.05, 0.001, restless(workers));
