@@ -23,8 +23,9 @@ Quaternion<T> quaternion_of(Vector3<T> phi) {
   const Vector3<T> half = T(0.5) * phi;
   const T x2 = length_squared(half);
   if (x2 < T(1) / T(64)) {
-    const T sine = T(1) - x2 / T(6) * (T(1) - x2 / T(20) * (T(1) - x2 / T(42) * (T(1) - x2 / T(72))));
-    const T cosine = T(1) - x2 / T(2) * (T(1) - x2 / T(12) * (T(1) - x2 / T(30) * (T(1) - x2 / T(56))));
+    const auto term = [x2](double divisor) { return static_cast<T>(1 / divisor) * x2; };
+    const T sine = T(1) - term(6) * (T(1) - term(20) * (T(1) - term(42) * (T(1) - term(72))));
+    const T cosine = T(1) - term(2) * (T(1) - term(12) * (T(1) - term(30) * (T(1) - term(56))));
     return {sine * half.x, sine * half.y, sine * half.z, cosine};
   }
   const T x = std::sqrt(x2);

@@ -34,10 +34,10 @@ struct Link {
 /// body, from the leaves to the root, which is the body that nothing moves or else the heaviest
 /// (wide/tree_sweep.h); many trees of one form side by side. Loops are solved in blocks of one hook each,
 /// which are joined where hooks share a body that forces move. Motors and limits have bounds: rows that are
-/// at one drop out, those that pull away from it come back, eight times; then rows only drop out, until none
-/// is beyond its bounds. A spring drops out while the motor beside it holds its velocity, and with it the
-/// spring's impulse. A compliance of 1e-9 of each diagonal, 1e-5 in loops, decides what rows along one
-/// another leave undetermined.
+/// at one drop out, those that pull away from it come back, in the first four solutions and in trees each row
+/// once; then rows only drop out, until none is beyond its bounds. A spring drops out while the motor beside
+/// it holds its velocity, and with it the spring's impulse. A compliance of 1e-9 of each diagonal, 1e-5 in
+/// loops, decides what rows along one another leave undetermined.
 ///
 /// A joint's force F on a body at lever r turns the body back by K theta when it has turned by theta, with
 /// the geometric stiffness K = F.r - (r F^T + F r^T) / 2. Where h^2 K exceeds the inertia, that is a spring

@@ -36,10 +36,11 @@ Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
 /// Mean angular velocity of a free body over h, from L; see accelerate_bodies.
 Vec3 midpoint_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
   constexpr int kIterations = 3;
-  Vec3 omega = in_axes(axes, inverse, momentum);
+  const Vec3 local = rotate(conjugate(axes), momentum);
+  Vec3 omega = {inverse.x * local.x, inverse.y * local.y, inverse.z * local.z};
   for (int i = 0; i < kIterations; ++i)
-    omega = in_axes(math::quaternion_of(Real(0.5) * h * omega) * axes, inverse, momentum);
-  return omega;
+    omega = in_axes(math::quaternion_of(Real(0.5) * h * omega), inverse, local);
+  return rotate(axes, omega);
 }
 
 /// The turn about one of the principal axes by `turn_per_momentum` times the part of L along it.

@@ -112,7 +112,7 @@ inline constexpr double kLargeError = 2e-4;   ///< Gap of a joint over its lever
 
 /// How often free rows are solved anew while rows go to their bounds and are let go again, and how often in
 /// all: after that they only go.
-inline constexpr int kFreeBoundPasses = 8;
+inline constexpr int kFreeBoundPasses = 4;
 inline constexpr int kMostBoundPasses = 16;
 
 /// How often an articulation is solved with bounds in a substep, with rows or a stiffness made anew.

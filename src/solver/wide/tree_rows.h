@@ -323,6 +323,7 @@ class TreeRows {
     const Number zero(0.0);
     const Number one(1.0);
     const Number last = at(row.lambda);
+    put(zero, row.freed);
     if (form.role == RowRole::kLimit) {
       put(choose(above(last, zero), zero, choose(above(now.c, zero), zero - one, zero)), row.bound);
       return;

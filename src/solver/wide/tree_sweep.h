@@ -427,7 +427,10 @@ class TreeSweep {
         choose(above(at(row.low), lambda), zero - one, choose(above(lambda, at(row.high)), one, zero));
     const Number lacks = at(row.target) - rate_now;
     const Number let_go = choose(above(Number(-kNoSpeed), bound * lacks), zero, bound);
-    const Number held = choose(above(release, zero), let_go, bound);
+    const Number freed = at(row.freed);
+    const Number held = choose(above(release, freed), let_go, bound);
+    const auto goes = above(bound * bound, held * held);
+    put(choose(goes, one, freed), row.freed);
     const Number next = choose(is_free, to, held);
     put(next, row.bound);
     const Number step = next - bound;

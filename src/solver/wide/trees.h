@@ -83,6 +83,7 @@ struct alignas(8 * kCount) TreeRowLanes {
   // If it is bounded.
   double low[kCount], high[kCount], bound[kCount];  ///< Of impulses; -1, 0 or 1.
   double lower[kCount], upper[kCount];              ///< Settings of limits.
+  double freed[kCount];  ///< 1 once it was let go: when it comes to a bound again it stays.
   // If it is a motor or a spring.
   double speed[kCount];                                ///< Setting of motors.
   double stiffness[kCount], damping[kCount];           ///< Settings of springs.
