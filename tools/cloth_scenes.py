@@ -125,6 +125,38 @@ def large_flag():
         }])
 
 
+def flags():
+    """65 536 points: much alike and nothing in common, as many workers like it."""
+    points, spacing, density, top, apart, rows = 32, 0.04, 0.1, 3.0, [2.5, 1, 2.0], 8
+    size = (points - 1) * spacing
+    count = rows * rows
+    first = [-apart[0] * rows / 2, 0, -apart[2] * (rows - 1) / 2]
+    grid = {"grid": [rows, 1, rows], "spacing": apart}
+    mass = density * size**2 * count
+    return scene(
+        "Flags",
+        "64 flags of 32 x 32 points in a steady wind of 10 m/s. It carries them: their middles stay near the middles "
+        "of their poles' parts, so that the potential energy is m g times that height, and their free edges stream with it.",
+        1.5, [10, 6.5, 17], [-0.5, 1.8, 2], {"ground": {}, "steel": {}, "rose": {}}, [
+            ground(),
+            dict(body("pole", "steel", {"cylinder": {"radius": 0.03, "half_height": top / 2 + 0.05}},
+                      [first[0] - 0.04, top / 2 + 0.05, first[2]], "static", collides=False), array=grid),
+        ], [
+            promise("potential_energy", "within", mass * G * (top - size / 2), None, 0.1),
+            at_point("x", ">", first[0] + 0.6 * size, "flag[0]", points - 1),
+            at_point("x", "<", first[0] + (rows - 1) * apart[0] + 1.02 * size, f"flag[{count - 1}]", points - 1),
+            promise("lowest", ">", top - 1.6 * size, "flag[27]"),
+            promise("highest", "<", top + 0.6 * size, "flag[36]"),
+            promise("mean_stretch", "<", 0.02),
+        ],
+        world={"substeps": 4, "particle_substeps": 5, "wind": {"velocity": [10, 0, 2]}},
+        cloths=[{
+            "name": "flag", "material": "rose", "columns": points, "rows": points, "corner": [first[0], top, first[2]],
+            "width": size, "height": size, "areal_density": density, "bend": "isometric", "tethers": True,
+            "pins": [{"column": 0}], "array": grid
+        }])
+
+
 def tent():
     """Two panels on a ridge pole over two uprights that only stand; guys draw the eaves down."""
     ridge, length, panel, density = 1.9, 3.6, 1.7, 0.35
@@ -383,4 +415,4 @@ def seams():
         ], world={"particle_substeps": 4}, cloths=cloths, seams=sewn)
 
 
-CLOTH_SCENES = [sail, large_flag, tent, silk_and_felt, seams, hammock, tablecloth]
+CLOTH_SCENES = [sail, large_flag, flags, tent, silk_and_felt, seams, hammock, tablecloth]
