@@ -34,17 +34,27 @@ struct Column {
 bool buckles(const CheckSetting& setting, const Column& column, double load) {
   const int segments = 48;
   RopeDesc desc = rod({0, 1, 0}, segments, column.clamped_below, column.clamped_above);
+  // A load of more than a million segments makes the rod bounce on its length.
+  desc.total_mass = real(1e-2);
   const auto last = static_cast<std::uint32_t>(desc.points.size()) - 1;
   const std::uint32_t top = column.clamped_above ? last - 1 : last;
   desc.pins = {{.point = 0}};
   if (column.clamped_below) desc.pins.push_back({.point = 1});
-  desc.loads = {{.point = top, .mass = real(load)}};
+  if (!column.clamped_above) desc.loads = {{.point = top, .mass = real(load)}};
   Rig rig(setting, without_air());
   const RopeId id = rig.add(desc);
-  for (std::uint32_t i = top; !column.free_above && i <= last; ++i) {
-    must(rig.world().add_hook(
-        {.kind = HookKind::kSlider, .b = {.point = point(id, i)}, .axis = {real(0), real(1), real(0)}}));
+  HookDesc guide = {.kind = HookKind::kSlider, .b = {.point = point(id, top)}, .axis = real(DVec3{0, 1, 0})};
+  if (column.clamped_above) {
+    BodyDesc slide = moving(Shape::sphere(real(0.5)), {0, 1, 0});
+    slide.mass = real(load);
+    slide.collides = false;
+    const BodyId body = rig.add(slide);
+    for (std::uint32_t i = top; i <= last; ++i)
+      must(rig.world().add_hook(
+          {.a = {.body = body}, .b = {.point = point(id, i)}, .anchor = desc.points[i]}));
+    guide.b = {.body = body};
   }
+  if (!column.free_above) must(rig.world().add_hook(guide));
   const std::uint32_t seen = column.free_above ? top : last / 2;
   must(rig.world().apply_impulse(point(id, seen),
                                  {real(column.free_above ? 1e-3 * load : 1e-6), real(0), real(0)}));
@@ -151,14 +161,12 @@ Rows euler_columns(const CheckSetting& setting) {
     const double expected = std::pow(kTau / 2 / column.k, 2);
     double low = 0.9 * expected;
     double high = 1.1 * expected;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 8; ++i) {
       const double middle = 0.5 * (low + high);
       (buckles(setting, column, middle) ? high : low) = middle;
     }
     CheckRow row = relative_row("load that buckles a column " + column.name + ", over EI / L^2", "", expected,
                                 0.5 * (low + high), 0.02);
-    if (column.clamped_above)
-      row = known_miss(row, "the upper clamp is two points that slide, at which a whole segment bends");
     row.solver = "rope";
     rows.push_back(row);
   }
