@@ -75,14 +75,11 @@ class Group {
     std::array<const Chain*, kCount> chain;
     for (int lane = 0; lane < kCount; ++lane)
       chain[lane] = chains[static_cast<std::size_t>(lane) < chains.size() ? lane : 0];
-    std::array<RopeNode, kCount> before;
     std::array<double, kCount> rest = {};
     for (std::uint32_t i = 0; i < ropes_.nodes.size(); ++i) {
-      for (int lane = 0; lane < kCount; ++lane) {
-        const RopeNode node = load_node_at(*chain[lane], i, lane, source);
-        if (i > 0) rest[lane] += load_between(*chain[lane], i - 1, before[lane], node, lane, source);
-        before[lane] = node;
-      }
+      for (int lane = 0; lane < kCount; ++lane) load_node_at(*chain[lane], i, lane, source);
+      for (int lane = 0; i > 0 && lane < kCount; ++lane)
+        rest[lane] += load_between(*chain[lane], i - 1, lane, source);
     }
     for (std::uint32_t i = 0; i < ropes_.bends.size(); ++i) {
       for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source);
@@ -95,7 +92,7 @@ class Group {
     }
   }
 
-  RopeNode load_node_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+  void load_node_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
     const std::uint32_t row = chain.first_particle + i;
     const RopeNode node = load_node(row, source.before[row], source.tables.particles);
     wide::RopeNodeLanes<kCount>& to = ropes_.nodes[i];
@@ -104,7 +101,6 @@ class Group {
     put(node.v_before, to.v_before, lane);
     to.mass[lane] = node.mass;
     to.w[lane] = node.w;
-    return node;
   }
 
   void load_ties(const Chain& chain, int lane, const Source& source) {
@@ -125,16 +121,17 @@ class Group {
   }
 
   /// Segment i; its length.
-  double load_between(const Chain& chain, std::uint32_t i, const RopeNode& a, const RopeNode& b, int lane,
-                      const Source& source) {
+  double load_between(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+    const wide::RopeNodeLanes<kCount>& a = ropes_.nodes[i];
+    const wide::RopeNodeLanes<kCount>& b = ropes_.nodes[i + 1];
     const RopeSegment e = load_segment(chain.first_segment + i, source.tables.segments);
     wide::RopeSegmentLanes<kCount>& to = ropes_.segments[i];
     to.rest[lane] = e.rest;
     to.stiffness[lane] = e.stiffness;
     to.damping[lane] = e.damping;
     to.limit[lane] = e.limit;
-    to.lighter[lane] = lighter_end(a, b);
-    to.held[lane] = a.w > 0 || b.w > 0 ? 0 : 1;
+    to.lighter[lane] = lighter_end(a.mass[lane], a.w[lane], b.mass[lane], b.w[lane]);
+    to.held[lane] = a.w[lane] > 0 || b.w[lane] > 0 ? 0 : 1;
     to.tension_bound[lane] = e.tension_bound;
     to.limited[lane] = e.limited ? 1 : 0;
     return e.rest;

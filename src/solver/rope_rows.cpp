@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hooke::solver {
 
@@ -41,7 +40,7 @@ wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const R
           e.stiffness,
           e.damping,
           e.limit,
-          lighter_end(a, b),
+          lighter_end(a.mass, a.w, b.mass, b.w),
           e.limited ? 1.0 : 0.0,
           e.tension_bound};
 }
@@ -133,23 +132,6 @@ RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const sta
 
 }  // namespace
 
-double lighter_end(const RopeNode& a, const RopeNode& b) {
-  const double inf = std::numeric_limits<double>::infinity();
-  const double m = std::min(a.w > 0 ? a.mass : inf, b.w > 0 ? b.mass : inf);
-  return m < inf ? m : 1.0;
-}
-
-RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& particles) {
-  return {.x = vector_cast<double>(particles.position[particle].x),
-          .v_free = vector_cast<double>(particles.velocity[particle].v),
-          .v_before = vector_cast<double>(before),
-          .mass = static_cast<double>(particles.mass[particle]),
-          .w = static_cast<double>(particles.velocity[particle].inverse_mass),
-          .u = {},
-          .target = {},
-          .inverse = {}};
-}
-
 void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
                RopeScratch& s) {
   const auto first = static_cast<std::uint32_t>(s.nodes.size());
@@ -162,17 +144,6 @@ void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, co
     s.segments.back().a = first + i;
   }
   load_touches(chain, first, h, tables, s.touches);
-}
-
-RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
-  RopeSegment e;
-  e.rest = static_cast<double>(segments.rest_length[row]);
-  e.stiffness = static_cast<double>(segments.stiffness[row]);
-  e.damping = static_cast<double>(segments.damping[row]);
-  e.limit = static_cast<double>(segments.length_limit[row]);
-  e.tension_bound = static_cast<double>(segments.tension[row]);
-  e.limited = segments.limited[row] != 0;
-  return e;
 }
 
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,

@@ -3,8 +3,10 @@
 #include "math/symmetric.h"
 #include "solver/chains.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -104,8 +106,18 @@ inline constexpr double kSettledDrag = 0.1;  ///< Share by which drag may still 
 void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
                RopeScratch& s);
 
-/// One segment, as load_rope makes it, but for its node.
-[[nodiscard]] RopeSegment load_segment(std::size_t row, const state::Segments& segments);
+/// One segment, as load_rope makes it, but for its node. Inline, as load_node: chains.cpp takes some of its
+/// numbers, for each segment and substep, and a call would fill all of them.
+[[nodiscard]] inline RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
+  RopeSegment e;
+  e.rest = static_cast<double>(segments.rest_length[row]);
+  e.stiffness = static_cast<double>(segments.stiffness[row]);
+  e.damping = static_cast<double>(segments.damping[row]);
+  e.limit = static_cast<double>(segments.length_limit[row]);
+  e.tension_bound = static_cast<double>(segments.tension[row]);
+  e.limited = segments.limited[row] != 0;
+  return e;
+}
 
 /// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
@@ -122,11 +134,25 @@ void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t f
 /// bends.
 [[nodiscard]] RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments);
 
-/// Mass of the lighter end that moves; 1 if neither does [kg].
-[[nodiscard]] double lighter_end(const RopeNode& a, const RopeNode& b);
+/// Mass of the lighter of two nodes that move; 1 if neither does [kg]. Inverse masses are 0 of what is held.
+[[nodiscard]] inline double lighter_end(double mass_a, double inverse_a, double mass_b, double inverse_b) {
+  constexpr double kHeld = std::numeric_limits<double>::infinity();
+  const double m = std::min(inverse_a > 0 ? mass_a : kHeld, inverse_b > 0 ? mass_b : kHeld);
+  return m < kHeld ? m : 1.0;
+}
 
 /// One node, as load_rope makes it.
-[[nodiscard]] RopeNode load_node(std::uint32_t particle, Vec3 before, const state::Particles& particles);
+[[nodiscard]] inline RopeNode load_node(std::uint32_t particle, Vec3 before,
+                                        const state::Particles& particles) {
+  return {.x = vector_cast<double>(particles.position[particle].x),
+          .v_free = vector_cast<double>(particles.velocity[particle].v),
+          .v_before = vector_cast<double>(before),
+          .mass = static_cast<double>(particles.mass[particle]),
+          .w = static_cast<double>(particles.velocity[particle].inverse_mass),
+          .u = {},
+          .target = {},
+          .inverse = {}};
+}
 
 /// How a rope of length `rest` [m] is linearized at the start of a substep; `line` and `speed` go from its
 /// first node to its last.
