@@ -1,9 +1,12 @@
 #pragma once
 
+#include "state/bodies.h"
+#include "state/contacts.h"
 #include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace hooke::solver {
@@ -13,6 +16,14 @@ namespace hooke::solver {
 struct GasVolume {
   double volume = 0;
   std::vector<DVec3> gradient;
+
+  /// What the gas pushes on a body through the particles that touch it, for each unit of impulse.
+  struct Push {
+    std::uint32_t body = 0;
+    DVec3 force;   ///< [m^2]
+    DVec3 torque;  ///< [m^3]
+  };
+  std::vector<Push> pushes;  ///< Scratch of press_gas.
 };
 
 /// Refills `out`. Sums in the order of the table, in double: differences of volumes are small.
@@ -28,9 +39,15 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
 ///
 ///     L = h (p - h k sum A_i . v_i) / (1 + h^2 k S),   v_i += w_i L A_i
 ///
+/// A particle that is pressed against a shape does not give way along the normal n: there the shape's
+/// velocity and, in S, its inverse mass and inertia count. As if it could, gas under a load is softer than
+/// its law by up to the pressed part of S: the light skin would give way to it first, and then be pushed
+/// back.
+///
 /// The gas law rather than a volume that is kept (V = p V_0, Macklin and Mueller): a ball has a pressure in
 /// pascals, which is what a gauge reads and what decides how far it gives way. `scratch` is refilled.
-void press_gas(const state::Deformable& object, const state::Triangles& triangles, double h,
-               GasVolume& scratch, state::Particles& particles);
+void press_gas(const state::Deformable& object, const state::Triangles& triangles,
+               const state::Contacts& contacts, const state::Bodies& bodies, double h, GasVolume& scratch,
+               state::Particles& particles);
 
 }  // namespace hooke::solver

@@ -291,8 +291,8 @@ void solve_solids(WorldData& world, Real h) {
   for_matched(world, h, solver::match_shape);
   for_ranges(*world.pool, static_cast<int>(world.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
-      solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, static_cast<double>(h),
-                        world.gas_volumes[i], tables.particles);
+      solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, tables.contacts,
+                        tables.bodies, static_cast<double>(h), world.gas_volumes[i], tables.particles);
     }
   });
 }
