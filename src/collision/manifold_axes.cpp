@@ -54,9 +54,7 @@ void complete_points(const Nearest& nearest, Real tolerance, Meeting& meeting) {
     return p.separation < meeting.separation - tolerance;
   });
   meeting.count = static_cast<int>(end - begin);
-  const bool complete = std::any_of(
-      begin, end, [&](const MeetingPoint& p) { return p.separation <= meeting.separation + tolerance; });
-  if (complete || !nearest.known) return;
+  if (deepest_of(meeting) <= meeting.separation + tolerance || !nearest.known) return;
   const Vec3 middle = Real(0.5) * (nearest.on_a + nearest.on_b);
   const Vec3 half = Real(0.5) * meeting.separation * meeting.normal;
   meeting.add({middle - half, middle + half, meeting.separation, kNearest});

@@ -3,7 +3,6 @@
 #include "collision/manifold_features.h"
 #include "collision/manifold_points.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -178,6 +177,7 @@ Feature edge_feature(const Convex& c, std::size_t index) {
   return f;
 }
 
+/// What the best axis says, and the points of its features.
 void add_points(const HullPair& pair, Meeting& meeting) {
   const std::uint32_t code = pair.best.code;
   meeting.normal = pair.best.n;
@@ -200,10 +200,7 @@ void add_points(const HullPair& pair, Meeting& meeting) {
 
 /// Whether the hulls are apart, or a point is as deep as the axis says, but for `tolerance`.
 bool is_complete(const Meeting& meeting, Real tolerance) {
-  const auto* end = meeting.point.data() + meeting.count;
-  return meeting.separation > Real(0) || std::any_of(meeting.point.data(), end, [&](const MeetingPoint& p) {
-           return p.separation <= meeting.separation + tolerance;
-         });
+  return meeting.separation > Real(0) || deepest_of(meeting) <= meeting.separation + tolerance;
 }
 
 /// A corner that is inside, where no feature shows it.

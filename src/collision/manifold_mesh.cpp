@@ -30,14 +30,6 @@ Vec3 front_of(const Convex& triangle) {
   return normalize(cross(q - p, r - p));
 }
 
-Real deepest_of(const Meeting& meeting) {
-  Real deepest = std::numeric_limits<Real>::infinity();
-  for (int i = 0; i < meeting.count; ++i) {
-    deepest = std::min(deepest, meeting.point[static_cast<std::size_t>(i)].separation);
-  }
-  return deepest;
-}
-
 /// Points of the shape over the face.
 void meet_face(const Convex& triangle, const Convex& b, Meeting& meeting) {
   Feature face;

@@ -40,10 +40,9 @@ struct Candidates {
   /// Of the points that are about as deep as the deepest the one farthest from the middle: a point in the
   /// middle of a side would leave a corner out.
   [[nodiscard]] int outermost_of_deepest() const {
-    Real deepest = std::numeric_limits<Real>::infinity();
+    const Real deepest = deepest_of(meeting);
     Vec3 middle = {};
     for (int i = 0; i < meeting.count; ++i) {
-      deepest = std::min(deepest, at(i).separation);
       middle += Real(1) / static_cast<Real>(meeting.count) * at(i).on_a;
     }
     return best([&](int i) {
@@ -82,6 +81,14 @@ void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t>
     if (i != last) meeting.point[static_cast<std::size_t>(meeting.count++)] = c.at(i);
     last = i;
   }
+}
+
+Real deepest_of(const Meeting& meeting) {
+  Real deepest = std::numeric_limits<Real>::infinity();
+  for (int i = 0; i < meeting.count; ++i) {
+    deepest = std::min(deepest, meeting.point[static_cast<std::size_t>(i)].separation);
+  }
+  return deepest;
 }
 
 void swap_sides(Meeting& meeting) {

@@ -55,6 +55,9 @@ inline constexpr std::uint32_t kNearest = 3u << 30;
 /// apart than `margin` go.
 void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t> old_keys);
 
+/// The least separation of the meeting's points [m]; infinite without points.
+[[nodiscard]] Real deepest_of(const Meeting& meeting);
+
 /// Swaps the roles of A and B.
 void swap_sides(Meeting& meeting);
 

@@ -40,9 +40,9 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
 ///     L = h (p - h k sum A_i . v_i) / (1 + h^2 k S),   v_i += w_i L A_i
 ///
 /// A particle that is pressed against a shape does not give way along the normal n: there the shape's
-/// velocity and, in S, its inverse mass and inertia count. As if it could, gas under a load is softer than
-/// its law by up to the pressed part of S: the light skin would give way to it first, and then be pushed
-/// back.
+/// velocity and, in S, its inverse mass and inertia count (of a particle's first contact). As if it could,
+/// gas under a load is softer than its law by up to the pressed part of S: the light skin would give way to
+/// it first, and then be pushed back.
 ///
 /// The gas law rather than a volume that is kept (V = p V_0, Macklin and Mueller): a ball has a pressure in
 /// pascals, which is what a gauge reads and what decides how far it gives way. `scratch` is refilled.

@@ -22,7 +22,6 @@ using hooke::collision::Meeting;
 using hooke::collision::MeetingPoint;
 using hooke::collision::separation_along;
 using hooke::geometry::ConvexHull;
-using hooke::test::deepest_of;
 using hooke::test::meeting_of;
 using hooke::test::placed;
 using hooke::test::random_shape;

@@ -72,12 +72,4 @@ inline collision::Meeting meeting_of(const collision::Convex& a, const collision
   return meeting;
 }
 
-inline Real deepest_of(const collision::Meeting& meeting) {
-  Real deepest = std::numeric_limits<Real>::infinity();
-  for (int i = 0; i < meeting.count; ++i) {
-    deepest = std::min(deepest, meeting.point[static_cast<std::size_t>(i)].separation);
-  }
-  return deepest;
-}
-
 }  // namespace hooke::test
