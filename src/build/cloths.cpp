@@ -274,9 +274,16 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
 
 void append_triangles(const Surface& s, double areal_density, state::Tables& tables) {
   state::Deformable& object = tables.objects.back();
-  for (const Triangle& t : s.triangles) {
+  for (std::uint32_t i = 0; i < s.triangles.size(); ++i) {
+    const Triangle& t = s.triangles[i];
+    std::uint8_t own_edges = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const geometry::EdgeSides& sides = s.topology.edge_sides[s.topology.triangle_edges[i][k]];
+      if (sides.triangles[0] == i) own_edges |= static_cast<std::uint8_t>(1U << k);
+    }
     tables.triangles.corners.push_back(
         {row_of(tables, object, t[0]), row_of(tables, object, t[1]), row_of(tables, object, t[2])});
+    tables.triangles.own_edges.push_back(own_edges);
     tables.triangles.mass.push_back(static_cast<Real>(areal_density * area_of(s, t)));
     ++object.triangles.count;
   }

@@ -1,6 +1,7 @@
 #include "collision/inner_contacts.h"
 
 #include "collision/distance.h"
+#include "collision/protrusion_gap.h"
 #include "collision/shape_gap.h"
 #include "geometry/closest.h"
 #include "state/body_frames.h"
@@ -32,12 +33,19 @@ constexpr Real kSameSide =
 constexpr Real kNearShare = Real(0.01);  ///< Of the thickness: so near is met.
 constexpr Real kPushedApart = Real(1);   ///< Speed at which overlaps are undone in place, at most [m/s].
 
-/// A segment of a rope or a triangle of a cloth.
+/// A segment of a rope, or a triangle of a cloth or one of its edges.
 struct Element {
   std::uint32_t row = 0;
   std::uint32_t count = 0;
   std::array<std::uint32_t, 3> particle = {};
+  std::uint32_t edge = 0;  ///< As of InnerContact.
 };
+
+Element triangle_at(const state::Tables& t, std::uint32_t row) {
+  const auto [a, b, c] = t.triangles.corners[row];
+  const auto [least, most] = std::minmax({a, b, c});
+  return {row, 3, {least, a ^ b ^ c ^ least ^ most, most}};
+}
 
 template <class Visit>
 void for_each_element(const state::Tables& t, const state::Deformable& object, Visit&& visit) {
@@ -45,15 +53,32 @@ void for_each_element(const state::Tables& t, const state::Deformable& object, V
     const std::uint32_t p = object.particles.first + i;
     visit(Element{object.segments.first + i, 2, {p, p + 1, p + 1}});
   }
-  for (std::uint32_t row = object.triangles.first; row < object.triangles.end(); ++row) {
-    const auto [a, b, c] = t.triangles.corners[row];
-    const auto [least, most] = std::minmax({a, b, c});
-    visit(Element{row, 3, {least, a ^ b ^ c ^ least ^ most, most}});
+  for (std::uint32_t row = object.triangles.first; row < object.triangles.end(); ++row)
+    visit(triangle_at(t, row));
+}
+
+/// A triangle's edges that count as its own; of a segment itself.
+template <class Visit>
+void for_each_edge(const state::Tables& t, const Element& e, Visit&& visit) {
+  if (e.count == 2) return visit(e);
+  const auto [a, b, c] = t.triangles.corners[e.row];
+  const std::array<std::uint32_t, 4> around = {a, b, c, a};
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if ((t.triangles.own_edges[e.row] >> k & 1U) == 0) continue;
+    const auto [low, high] = std::minmax(around[k], around[k + 1]);
+    visit(Element{e.row, 2, {low, high, high}, k + 1});
   }
 }
 
-Real thinning_of(std::uint32_t count) {
-  return count == 2 ? kRopeThinning : kClothThinning;
+Real thinning_of(const state::Deformable& object) {
+  return object.kind == PointRef::Kind::kRope ? kRopeThinning : kClothThinning;
+}
+
+/// By how much an element is thinner at a place than at its points, over their radius.
+Real thinning_at(const state::Deformable& object, const std::array<Real, 3>& weight) {
+  Real between = Real(1);
+  for (const Real w : weight) between -= w * w;
+  return Real(2) * thinning_of(object) * between;
 }
 
 Vec3 place_of(const state::Tables& t, std::uint32_t particle) {
@@ -72,9 +97,10 @@ Real longest_edge_squared(const state::Tables& t, const state::Deformable& objec
   return longest;
 }
 
-bool is_convex(const Shape& shape) {
-  return shape.kind != ShapeKind::kHalfSpace && shape.kind != ShapeKind::kMesh &&
-         shape.kind != ShapeKind::kCompound;
+/// A half-space has nothing that could pass between points; compounds stand as their parts.
+bool can_protrude(const state::ColliderShape& shape) {
+  if (shape.shape.kind == ShapeKind::kMesh) return !shape.mesh->protrusions.ends.empty();
+  return shape.shape.kind != ShapeKind::kHalfSpace && shape.shape.kind != ShapeKind::kCompound;
 }
 
 /// Radius of curvature of the shape where it is most bent; 0 of an edge.
@@ -156,20 +182,86 @@ class PairSearch {
     const Real reach = radius + way + frame_.speed * query_.step + kParticleMargin;
     const Vec3 all = {reach, reach, reach};
     if (!overlap(frame_.box, geometry::Box{box.lower - all, box.upper + all}) || !any_free) return;
+    if (frame_.shape->shape.kind == ShapeKind::kMesh) {
+      look_at_mesh(e, radius, reach);
+    } else {
+      look_at_shape(e, radius, reach);
+    }
+  }
+
+  void look_at_shape(const Element& e, Real radius, Real reach) {
     Gaps gaps = {};
     for (std::uint32_t i = 0; i < e.count; ++i) gaps[i] = &gap_of(e.particle[i]);
     const Real distance = least_distance(gaps, e.count, 0);
     if (distance > reach) return;
-    const Real most = kSearchShare * thinning_of(e.count) * radius;
+    const Real most = kSearchShare * thinning_of(object_) * radius;
     if (!protrudes(gaps, e.count, 0, most) && !protrudes(gaps, e.count, 1, most)) return;
-    for (std::uint32_t i = 0; i < e.count; ++i) {
-      if (is_hooked(query_.hooked, e.particle[i], body_)) return;
-    }
+    if (is_hooked_to(e)) return;
     near_elements_ += distance < radius + kParticleMargin ? 1 : 0;
+    add_row(e, 0);
+  }
+
+  /// A mesh knows no bounds from gradients: what its ridges and peaks protrude is seen where they are.
+  void look_at_mesh(const Element& e, Real radius, Real reach) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    const auto corner = [&](std::uint32_t i) { return frame_.to_shape(place_of(t_, e.particle[i])); };
+    const geometry::Box box = geometry::box_of(corner(0), corner(1), corner(2));
+    const Vec3 all = {reach, reach, reach};
+    geometry::find_triangles(mesh.bvh, {box.lower - all, box.upper + all}, finder_.triangles);
+    if (e.count == 3) look_at_protrusions(e, radius, reach);
+    for_each_edge(t_, e, [&](const Element& edge) { look_at_protrusions(edge, radius, reach); });
+  }
+
+  void look_at_protrusions(const Element& e, Real radius, Real reach) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    std::array<Vec3, 3> corner = {};
+    Real way = Real(0);
+    for (std::uint32_t i = 0; i < e.count; ++i) {
+      const Vec3 x = place_of(t_, e.particle[i]);
+      const Vec3 surface = state::velocity_at(t_.bodies, body_, x - frame_.center);
+      corner[i] = frame_.to_shape(x);
+      way = std::max(way, query_.step * length(t_.particles.velocity[e.particle[i]].v - surface));
+    }
+    const bool is_fast = way > kSearchShare * thinning_of(object_) * radius;
+    Real nearest = Real(-1);
+    for (const std::uint32_t triangle : finder_.triangles) {
+      const std::uint32_t end = mesh.protrusions.triangle_begin[triangle + 1];
+      for (std::uint32_t i = mesh.protrusions.triangle_begin[triangle]; i < end; ++i) {
+        if (e.count == 3 && !mesh.protrusions.is_peak(i)) continue;
+        const ProtrusionSearch found = find_protrusion_gap(mesh, i, std::span(corner).first(e.count));
+        if (found.clearance > reach) continue;
+        if (!is_fast) {
+          if (!found.gap) continue;
+          if (nearest < Real(0)) nearest = nearest_point(e, corner, reach);
+          const Real most = kSearchShare * thinning_at(object_, found.gap->weight) * radius - way;
+          if (!(nearest - found.gap->distance > most)) continue;
+        }
+        if (is_hooked_to(e)) return;
+        add_row(e, i);
+      }
+    }
+  }
+
+  /// How far the nearest of an element's points is from the mesh, or `reach`.
+  [[nodiscard]] Real nearest_point(const Element& e, const std::array<Vec3, 3>& corner, Real reach) const {
+    Real least = reach;
+    for (std::uint32_t i = 0; i < e.count; ++i)
+      least = std::min(least, distance_to_mesh(*frame_.shape->mesh, corner[i], reach));
+    return least;
+  }
+
+  [[nodiscard]] bool is_hooked_to(const Element& e) const {
+    return std::any_of(e.particle.begin(), e.particle.begin() + e.count,
+                       [&](std::uint32_t p) { return is_hooked(query_.hooked, p, body_); });
+  }
+
+  void add_row(const Element& e, std::uint32_t feature) {
     finder_.contacts.push_back(
         {.object = query_.object,
          .collider = collider_,
          .element = e.row,
+         .edge = e.edge,
+         .feature = feature,
          .body = body_,
          .count = e.count,
          .particle = e.particle,
@@ -237,7 +329,7 @@ void mark_few(const state::Tables& t, std::size_t first, std::vector<InnerContac
 }
 
 auto key_of(const InnerContact& row) {
-  return std::tie(row.object, row.collider, row.element);
+  return std::tie(row.object, row.collider, row.element, row.edge, row.feature);
 }
 
 void leave(InnerContact& row) {
@@ -317,9 +409,7 @@ class RowUpdate {
  private:
   /// Of the element at the row's place.
   [[nodiscard]] Real thickness() const {
-    Real between = Real(1);
-    for (const Real w : row_.weight) between -= w * w;
-    return (Real(1) - Real(2) * thinning_of(row_.count) * between) * radius_;
+    return (Real(1) - thinning_at(t_.objects[row_.object], row_.weight)) * radius_;
   }
 
   /// A body that overlaps from the start has no side yet on which it belongs.
@@ -337,6 +427,7 @@ class RowUpdate {
   /// Place, normal and separation after a share of the way. False if the two are too far apart to meet, or
   /// overlap.
   bool find(Real share) {
+    if (frame_.shape->shape.kind == ShapeKind::kMesh) return find_at_protrusion(share);
     const Convex element = element_at(share);
     const Real enough = radius_ + Real(2) * longest_way_;
     const Distance found = distance_between(element, shape_, enough + kParticleMargin);
@@ -353,6 +444,32 @@ class RowUpdate {
       row_.weight = {w.x, w.y, w.z};
     }
     row_.separation = found.distance - thickness();
+    return true;
+  }
+
+  /// The same at a ridge or a peak of a mesh. Behind it lies what has just come there, or is about as deep as
+  /// the skin: farther in the other sides of the mesh are nearer.
+  bool find_at_protrusion(Real share) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    std::array<Vec3, 3> corner = {};
+    for (std::size_t i = 0; i < row_.count; ++i)
+      corner[i] = frame_.to_shape(origin_ + corner_[i] + share * way_[i]);
+    auto [gap, clearance] =
+        find_protrusion_gap(mesh, row_.feature, std::span<const Vec3>(corner).first(row_.count));
+    row_.clearance = clearance - radius_;
+    if (!gap || gap->distance > radius_ + Real(2) * longest_way_) return false;
+    Vec3 normal = frame_.to_world(gap->normal);
+    const bool acts = row_.separation < kNoContact && row_.normal != Vec3{};
+    const bool flips = acts && dot(normal, row_.normal) < -kSameSide;  // around the end of a surface
+    if (flips) normal = -normal;
+    if (flips) gap->distance = -gap->distance;
+    const bool is_deep = gap->distance < -kLeastApart * radius_;
+    if (is_deep && !(acts && dot(normal, row_.normal) > kSameSide)) return false;
+    if (gap->distance < Real(0) && !flips && !(distance_to_mesh(mesh, gap->place, radius_) < Real(0)))
+      return false;
+    row_.normal = normal;
+    row_.weight = gap->weight;
+    row_.separation = gap->distance - thickness();
     return true;
   }
 
@@ -461,7 +578,7 @@ void find_inner_contacts(const state::Tables& t, const InnerContactQuery& query,
   Real longest = Real(-1);
   for (std::size_t i = 0; i < query.colliders.size(); ++i) {
     const Shape& shape = query.frames[i].shape->shape;
-    if (!is_convex(shape)) continue;
+    if (!can_protrude(*query.frames[i].shape)) continue;
     if (longest < Real(0)) {
       longest = longest_edge_squared(t, object);
       // Pass 0 is none; when the count comes round to it, gaps of long ago must not count as new.
@@ -486,6 +603,7 @@ void carry_inner_forces(std::span<const InnerContact> from, std::span<InnerConta
     if (key_of(*old) != key_of(row)) continue;
     row.weight = old->weight;
     row.normal = old->normal;
+    row.separation = old->separation;
     row.normal_force = old->normal_force;
     row.friction_force = old->friction_force;
     row.joined = row.joined || old->separation < kNoContact;

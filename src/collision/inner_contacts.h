@@ -15,7 +15,8 @@
 /// thinner than the points are (kRopeThinning, kClothThinning), so that where points describe a contact, on a
 /// face or a gentle curve, nothing is found and nothing is paid for.
 ///
-/// Of convex shapes; a half-space has nothing that could pass between points. docs/decisions/0021.
+/// Of convex shapes, and of the ridges and peaks of meshes; a half-space has nothing that could pass between
+/// points. docs/decisions/0021.
 
 namespace hooke::collision {
 
@@ -35,6 +36,7 @@ struct InnerContactFinder {
   };
   std::vector<state::InnerContact> contacts;  ///< Those found; then those of the step before.
   std::vector<PointGap> gaps;                 ///< Of the object's particles.
+  std::vector<std::uint32_t> triangles;       ///< Of a mesh, near one element.
   std::uint32_t pass = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "base/take_turns.h"
 #include "collision/contact_frames.h"
 #include "collision/inner_contacts.h"
+#include "collision/protrusion_gap.h"
 #include "collision/shape_gap.h"
 #include "geometry/box.h"
 
@@ -81,8 +82,17 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const
     return;
   }
   find_triangles_near(*shape.mesh, x, reach, finder.triangles);
+  const auto append_feature = [&](std::uint32_t feature) {
+    append(finder.contacts, {pair.particle, pair.collider, feature}, object_row, body, friction);
+  };
+  for (const std::uint32_t triangle : finder.triangles) append_feature(triangle);
+  const geometry::Protrusions& protrusions = shape.mesh->protrusions;
+  const auto faces = static_cast<std::uint32_t>(shape.mesh->desc.triangles.size());
   for (const std::uint32_t triangle : finder.triangles) {
-    append(finder.contacts, {pair.particle, pair.collider, triangle}, object_row, body, friction);
+    const std::uint32_t end = protrusions.triangle_begin[triangle + 1];
+    for (std::uint32_t i = protrusions.triangle_begin[triangle]; i < end; ++i) {
+      if (find_protrusion_gap(*shape.mesh, i, std::span(&x, 1)).clearance <= reach) append_feature(faces + i);
+    }
   }
 }
 
@@ -144,19 +154,48 @@ void set_surface(state::Contacts& contacts, std::size_t row, Vec3 arm, Vec3 velo
   contacts.surface_velocity[row] = velocity + contacts.belt_velocity[row];
 }
 
-/// Rows from `first` on are triangles of one mesh near one particle, `gaps` away from it. The nearest
-/// triangle tells whether the particle is inside: then it alone pushes out. Outside, faces below the particle
-/// hold it; a rim does only where no face is, so that sliding over the edges between triangles of a flat mesh
-/// is not felt. A mesh that knows whether it holds the particle says so in `known`.
+/// The face of a triangle, or what comes behind the triangles: a ridge or a peak. That holds a point that is
+/// in front, and to which no place of the mesh around is nearer.
+TriangleGap gap_to_feature(const state::Mesh& mesh, std::uint32_t feature, Vec3 x) {
+  const auto faces = static_cast<std::uint32_t>(mesh.desc.triangles.size());
+  if (feature < faces) return gap_to_triangle(mesh, feature, x);
+  constexpr Real kNotNearest = std::numeric_limits<Real>::infinity();  // a triangle beside it is as near
+  const auto found = find_protrusion_gap(mesh, feature - faces, std::span(&x, 1)).gap;
+  if (!found || !(found->distance > Real(0))) return {{}, false, kNotNearest};
+  return {{found->distance, found->normal}, true, kNotNearest};
+}
+
+/// Forces of the rows from `first` to `end` that do not hold any more go over to the nearest that does: the
+/// particle has moved on from triangle to triangle.
+void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) {
+  std::size_t heir = first;
+  for (std::size_t i = first; i < end; ++i) {
+    if (contacts.separation[i] < contacts.separation[heir]) heir = i;
+  }
+  for (std::size_t i = first; i < end; ++i) {
+    if (contacts.separation[i] < kNoContact) continue;
+    const Real normal_force = std::exchange(contacts.normal_force[i], Real(0));
+    const Vec3 friction_force = std::exchange(contacts.friction_force[i], {});
+    if (!(contacts.separation[heir] < kNoContact)) continue;
+    contacts.normal_force[heir] += normal_force;
+    contacts.friction_force[heir] += friction_force;
+  }
+}
+
+/// Rows from `first` on are features of one mesh near one particle, `gaps` away from it. The nearest triangle
+/// tells whether the particle is inside: then it alone pushes out. Outside, every place holds that is nearer
+/// than those around it: then nothing of the mesh is ever met too late, and sliding over the edges between
+/// triangles of a flat mesh is not felt. Right above such an edge the nearest triangle holds. A mesh that
+/// knows whether it holds the particle says so in `known`.
 void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
                       std::optional<bool> known, const Frame& frame, Real radius) {
   std::size_t nearest = 0;
   Real least = std::numeric_limits<Real>::infinity();
-  bool any_face = false;
+  bool any_holds = false;
   bool inside = false;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const TriangleGap& g = gaps[i];
-    any_face = any_face || (g.over_face && g.gap.distance >= Real(0));
+    any_holds = any_holds || (g.over_face && g.gap.distance >= Real(0));
     // Of equally near triangles one that is below the particle counts, not one beside it.
     const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
     nearest = better ? i : nearest;
@@ -166,11 +205,12 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
   inside = known.value_or(inside);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const TriangleGap& g = gaps[i];
-    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_face && i == nearest;
+    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_holds && i == nearest;
     const bool active = inside ? i == nearest : holds;
-    const Gap gap = gap_on_side(g, known);
-    set_row(contacts, first + i, frame, active ? gap : Gap{kNoContact, gap.normal}, radius);
+    set_row(contacts, first + i, frame, gap_on_side(g, known), radius);
+    if (!active) contacts.separation[first + i] = kNoContact;
   }
+  move_forces(contacts, first, first + gaps.size());
 }
 
 }  // namespace
@@ -259,7 +299,7 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
     } else {
       const std::span<TriangleGap> gaps = std::span(scratch.buffers().gaps).subspan(first, row - first);
       for (std::size_t i = first; i < row; ++i)
-        gaps[i - first] = gap_to_triangle(*shape.mesh, contacts.feature[i], x);
+        gaps[i - first] = gap_to_feature(*shape.mesh, contacts.feature[i], x);
       update_mesh_rows(contacts, first, gaps, is_inside(*shape.mesh, x), frame, radius);
     }
     for (std::size_t i = first; i < row; ++i) set_surface(contacts, i, arm, velocity, frame.belt_velocity);

@@ -80,6 +80,11 @@ std::optional<bool> is_inside(const state::Mesh& mesh, Vec3 x) {
 void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found) {
   const Vec3 r = {reach, reach, reach};
   geometry::find_triangles(mesh.bvh, {.lower = x - r, .upper = x + r}, found);
+  std::erase_if(found, [&](std::uint32_t triangle) {
+    const auto [a, b, c] = mesh.desc.triangles[triangle];
+    const auto& p = mesh.desc.positions;
+    return geometry::closest_on_triangle(x, p[a], p[b], p[c]).distance_squared > reach * reach;
+  });
   if (!is_inside(mesh, x).value_or(false)) return;
   const std::uint32_t nearest = geometry::find_closest(mesh.bvh, x).value().triangle;
   const auto place = std::lower_bound(found.begin(), found.end(), nearest);

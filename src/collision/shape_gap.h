@@ -43,7 +43,7 @@ struct TriangleGap {
 /// plane's.
 [[nodiscard]] Gap gap_on_side(const TriangleGap& gap, std::optional<bool> is_inside);
 
-/// Triangles whose boxes come within `reach` of a point, in ascending order; and the nearest for a point
+/// Triangles within `reach` of a point, in ascending order; and the nearest for a point
 /// inside a mesh with MeshTree::kPlanes.
 void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vector<std::uint32_t>& found);
 

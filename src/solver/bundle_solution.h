@@ -42,7 +42,7 @@ class BundleSolution {
   void set_inner_rows(std::size_t index);
   void revise_inner();
   [[nodiscard]] bool update_inner_friction(std::size_t index);
-  [[nodiscard]] bool update_inner_touch(std::size_t index, bool let_go);
+  [[nodiscard]] Unsettled update_inner_touch(std::size_t index, bool let_go);
   [[nodiscard]] Unsettled update_inner(bool let_go);
   bool let_inner_slide();
   void store_inner();
@@ -51,7 +51,7 @@ class BundleSolution {
   [[nodiscard]] double gap_speed(const InnerTouch& touch) const;
   [[nodiscard]] DVec3 velocity_at(std::size_t index, bool before) const;
   [[nodiscard]] DVec3 sliding_of(std::size_t index, bool before) const;
-  [[nodiscard]] int least_solves_of_inner(bool unsettled) const;
+  [[nodiscard]] int least_solves_of_inner() const;
 
   // The matrix and its right side.
   void assemble();

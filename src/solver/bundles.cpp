@@ -229,7 +229,7 @@ void BundleSolution::run(std::vector<Chain>& chains) {
   const auto again = [&](int solves) {
     if (unsettled.points && solves < 2 * kMostRopeSolves) return true;
     const bool slides = solves == kMostRopeSolves && error > kReportedError && let_inner_slide();
-    return solve_again(solves, error, b_.ropes.touches) || slides;
+    return solve_again(solves, error, unsettled.pulls, b_.ropes.touches) || slides;
   };
   for (int solves = 1; solves == 1 || again(solves - 1); ++solves) {
     std::size_t segment = 0;
@@ -243,15 +243,13 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     solve_with_bounds();
     if (!is_sound()) break;
 
-    unsettled = update_touches(h_, solves >= kMostRopeSolves, b_.ropes);
-    const Unsettled inner = update_inner(solves >= kMostRopeSolves);
-    unsettled = {unsettled.ropes || inner.ropes, unsettled.points || inner.points};
+    unsettled = update_touches(h_, lets_go(solves), b_.ropes);
+    unsettled.add(update_inner(lets_go(solves)));
     bool limits_changed = false;
     error = check_segments(h_, b_.ropes, limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
-    const int least =
-        std::max(least_solves(b_.ropes.touches, unsettled.ropes), least_solves_of_inner(unsettled.ropes));
+    const int least = std::max(least_solves(b_.ropes.touches, unsettled), least_solves_of_inner());
     const bool settled = !unsettled.points && solves >= least;
     if (long_enough && !grew && settled) break;
     for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;

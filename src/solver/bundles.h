@@ -63,6 +63,7 @@ struct InnerTouch {
   DVec3 f;              ///< Of friction [N s].
   double drag = 0;      ///< Of what slides: mu N over its speed [kg].
   bool active = false, slides = false;
+  bool let_go = false;  ///< For the rest of the substep: it pulled too often.
   bool of_rope = false;
 };
 

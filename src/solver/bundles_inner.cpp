@@ -18,7 +18,7 @@ using state::InnerContact;
 constexpr double kMostDrag = 1e4;  ///< Over the mass at the place: what is dragged harder sticks.
 /// Overlap of ropes leaves no faster than this [m/s]: where one end of a segment is wedged, the other moves
 /// many times as fast as the place.
-constexpr double kInnerPushOutSpeed = 0.2;
+constexpr double kInnerPushOutSpeed = 0.05;
 
 /// The normal and two directions across it.
 std::array<DVec3, InnerTouch::kRows> axes_of(DVec3 n) {
@@ -187,33 +187,35 @@ bool BundleSolution::update_inner_friction(std::size_t index) {
   return !touch.slides || std::abs(touch.drag - drag) > kSettledDrag * drag;
 }
 
-bool BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
+Unsettled BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
   InnerTouch& touch = b_.touches[index];
-  if (!is_near(t_.inner_contacts[b_.inner[index]])) return false;
+  Unsettled unsettled;
+  if (!is_near(t_.inner_contacts[b_.inner[index]])) return unsettled;
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
-  const bool was_active = touch.active;
-  bool unsettled = false;
+  bool& of = touch.of_rope ? unsettled.ropes : unsettled.points;
   if (touch.active) {
     touch.normal = std::max(0.0, b_.lambda[first]);
     touch.active = touch.normal > 0;
-    unsettled = touch.active && touch.friction > 0 && update_inner_friction(index);
+    const bool slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index);
+    const double pull = -b_.lambda[first];
+    unsettled.pulls = touch.of_rope && pull > 0 && is_work(pull * touch.separation / h_, 1 / touch.mobility);
+    touch.let_go = let_go && unsettled.pulls;
+    of = !touch.active || (slides_otherwise && (touch.of_rope || !let_go));
   } else {
     touch.normal = 0;
     const double approach = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(touch);
-    touch.active = approach < 0 && !(let_go && !touch.of_rope);
+    touch.active = approach < 0 && !(touch.of_rope ? touch.let_go : let_go);
     touch.slides = false;
+    of = touch.active;
+    unsettled.meets = of && touch.of_rope && approach < -kMeetingSpeed;
   }
   if (!touch.active) touch.f = {};
-  return unsettled || was_active != touch.active;
+  return unsettled;
 }
 
 Unsettled BundleSolution::update_inner(bool let_go) {
   Unsettled unsettled;
-  for (std::size_t i = 0; i < b_.touches.size(); ++i) {
-    bool& of = b_.touches[i].of_rope ? unsettled.ropes : unsettled.points;
-    const bool changed = update_inner_touch(i, let_go);
-    of = of || (changed && !(let_go && !b_.touches[i].of_rope && b_.touches[i].active));
-  }
+  for (std::size_t i = 0; i < b_.touches.size(); ++i) unsettled.add(update_inner_touch(i, let_go));
   return unsettled;
 }
 
@@ -222,10 +224,10 @@ void BundleSolution::revise_inner() {
   for (std::size_t i = 0; i < b_.touches.size(); ++i) set_inner_rows(i);
 }
 
-int BundleSolution::least_solves_of_inner(bool unsettled) const {
+int BundleSolution::least_solves_of_inner() const {
   const bool any = std::any_of(b_.touches.begin(), b_.touches.end(),
                                [](const InnerTouch& t) { return t.of_rope && t.active; });
-  return !any ? 1 : unsettled ? kSlidingSolves : kLeastContactSolves;
+  return any ? kLeastContactSolves : 1;
 }
 
 /// A rope that is jammed gets no friction for the rest of the substep (solve_again in rope_rows.h).

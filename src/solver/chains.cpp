@@ -51,8 +51,7 @@ class Group {
       for (int lane = 0; lane < count; ++lane) {
         if (done[lane]) continue;
         ++chains[lane]->solves;
-        done[lane] =
-            settle(lane, solves, source.h) || !solve_again(solves, ropes_.error[lane], touches_[lane]);
+        done[lane] = settle(lane, solves, source.h);
         if (done[lane]) store(*chains[lane], lane, source);
         all_done = all_done && done[lane];
       }
@@ -222,12 +221,13 @@ class Group {
   /// Whether a lane needs no further step.
   bool settle(int lane, int solves, double h) {
     if (ropes_.finite[lane] != 0) return true;
-    bool unsettled = false;
-    for (RopeTouch& t : touches_[lane]) unsettled = update_touch(h, node_at(t.node, lane), t) || unsettled;
+    Unsettled unsettled;
+    for (RopeTouch& t : touches_[lane])
+      unsettled.add(update_touch(h, lets_go(solves), node_at(t.node, lane), t));
     const bool long_enough = ropes_.error[lane] <= kLengthTolerance && !(ropes_.limits_changed[lane] > 0);
     if (long_enough && solves >= least_solves(touches_[lane], unsettled)) return true;
     if (!long_enough) ropes_.first[lane] = 0;
-    return false;
+    return !solve_again(solves, ropes_.error[lane], unsettled.pulls, touches_[lane]);
   }
 
   void store(Chain& chain, int lane, const Source& source) {

@@ -50,20 +50,31 @@ double approach_of(const RopeTouch& t, V u, double h) {
   return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
 }
 
-/// Friction of an active contact: holds with f0 - rho u_t up to mu N, slides against u_t beyond.
-void update_friction(RopeTouch& t, V u) {
-  const V sliding = across(t.n, u - t.surface);
+/// What friction did while it slid: it drives where N was not right yet, or the way has turned.
+bool drives_by_friction(const RopeTouch& t, V sliding) {
+  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
+}
+
+/// Friction of an active contact: holds with f0 - rho u_t up to mu N, slides against u_t beyond. What is
+/// `dragged` is so by mu N over its speed, which never drives, but takes many solutions to come to the force.
+void update_friction(RopeTouch& t, V sliding) {
+  const double most = t.friction * t.normal;
   const double speed = length(sliding);
+  if (t.dragged) {
+    t.f = -t.drag * sliding;
+    t.drag = most < t.rho * speed ? most / speed : t.rho;
+    return;
+  }
   if (t.slides) {
     t.slides = dot(sliding, t.against) <= 0;
     if (t.slides && speed > 0) t.against = (-1.0 / speed) * sliding;
   } else {
     t.f = t.f0 - t.rho * sliding;
     const double size = length(t.f);
-    t.slides = size > t.friction * t.normal;
+    t.slides = size > most;
     if (t.slides) t.against = (1.0 / size) * t.f;
   }
-  if (t.slides) t.f = (t.friction * t.normal) * t.against;
+  if (t.slides) t.f = most * t.against;
 }
 
 /// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
@@ -243,12 +254,13 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
 }
 
 M grip_of(const RopeTouch& t) {
-  if (t.of_point) return math::axial(t.n, t.rho, t.drag);
-  return math::axial(t.n, t.rho, t.slides ? 0.0 : t.rho);
+  const double beside = t.of_point || t.dragged ? t.drag : t.slides ? 0.0 : t.rho;
+  return math::axial(t.n, t.rho, beside);
 }
 
 V push_of(const RopeTouch& t, double h) {
   const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
+  if (t.dragged) return normal;
   return normal + (t.slides ? (t.friction * t.normal) * t.against : t.f0);
 }
 
@@ -276,28 +288,41 @@ void hold_nodes(double h, RopeScratch& s) {
   });
 }
 
-bool update_touch(double h, const RopeNode& node, RopeTouch& t) {
+Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& t) {
   const double approach = approach_of(t, node.u, h);
   const bool was_active = t.active;
   const bool slid = t.slides;
+  Unsettled unsettled;
   if (t.active) {
-    t.normal = std::max(0.0, t.n0 - t.rho * approach);
+    const double push = t.n0 - t.rho * approach;
+    const V sliding = across(t.n, node.u - t.surface);
+    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kContactStiffness);
+    const bool drags_on = drives_by_friction(t, sliding);
+    t.normal = std::max(0.0, push);
     t.active = t.normal > 0;
-    update_friction(t, node.u);
+    t.let_go = let_go && pulls;
+    t.dragged = t.dragged || drags_on;
+    if (t.active) update_friction(t, sliding);
+    unsettled.pulls = pulls || drags_on;
   } else {
     t.normal = 0;
-    t.f = {};
-    t.active = approach < 0;
+    t.active = approach < 0 && !t.let_go;
+    unsettled.meets = t.active && approach < -kMeetingSpeed;
   }
-  return was_active != t.active || slid != t.slides || t.slides;
+  if (!t.active) t.f = {};
+  unsettled.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;
+  return unsettled;
 }
 
 Unsettled update_touches(double h, bool let_go, RopeScratch& s) {
   Unsettled unsettled;
   for (RopeTouch& t : s.touches) {
     const RopeNode& node = s.nodes[t.node];
-    bool& of = t.of_point ? unsettled.points : unsettled.ropes;
-    of = (t.of_point ? update_point_touch(h, let_go, node.u, t) : update_touch(h, node, t)) || of;
+    if (t.of_point) {
+      unsettled.points = update_point_touch(h, let_go, node.u, t) || unsettled.points;
+    } else {
+      unsettled.add(update_touch(h, let_go, node, t));
+    }
   }
   return unsettled;
 }
@@ -319,18 +344,20 @@ double check_segments(double h, RopeScratch& s, bool& limits_changed) {
   return worst;
 }
 
-int least_solves(std::span<const RopeTouch> touches, bool unsettled) {
+int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled) {
+  if (unsettled.pulls) return 2 * kMostRopeSolves;
+  if (unsettled.meets) return kMostRopeSolves;
+  if (unsettled.ropes) return kSlidingSolves;
   const bool active =
       std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; });
-  if (!active && !unsettled) return 1;
-  return unsettled ? kSlidingSolves : kLeastContactSolves;
+  return active ? kLeastContactSolves : 1;
 }
 
-bool solve_again(int solves, double error, std::span<RopeTouch> touches) {
+bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches) {
   if (solves != kMostRopeSolves) return solves < 2 * kMostRopeSolves;
-  if (error <= kReportedError || touches.empty()) return false;
+  if (error <= kReportedError || touches.empty()) return pulls;
   for (RopeTouch& t : touches) {
-    t.friction = 0;
+    t.friction = t.drag = 0;
     t.f0 = t.f = {};
     t.slides = true;
   }

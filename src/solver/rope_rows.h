@@ -66,8 +66,10 @@ struct RopeTouch {
   DVec3 belt;     ///< Velocity of the surface against that body [m/s].
   double separation = 0, friction = 0, n0 = 0, normal = 0;
   bool active = false, slides = false;
+  bool let_go = false;    ///< For the rest of the substep: it pulled too often.
+  bool dragged = false;   ///< The same of friction that drove.
   bool of_point = false;  ///< Of a particle that is no rope's.
-  double drag = 0;        ///< Of such a one, rho across the normal: at most mu N over its speed [kg].
+  double drag = 0;  ///< Of such a one, or one that slides: rho across the normal, mu N over its speed [kg].
 };
 
 /// How a rope's segments are linearized.
@@ -198,27 +200,52 @@ struct NodeHold {
 /// The impulse of a contact on its node, less what `grip_of` says of velocities.
 [[nodiscard]] DVec3 push_of(const RopeTouch& touch, double h);
 
-/// The contact's force that follows from u, of a rope. True if it came into effect or out of it, or slides.
-bool update_touch(double h, const RopeNode& node, RopeTouch& touch);
-
-/// Whose contacts have changed.
+/// What a solution has left to do with contacts. A rope's that came into effect or out of it, or slides
+/// otherwise, is mended in the next substep if it must be; but not what is met fast, or what drives it.
 struct Unsettled {
   bool ropes = false, points = false;
+  bool meets = false;  ///< One of a rope, faster than kMeetingSpeed.
+  bool pulls = false;  ///< One of a rope, across a gap, or its friction drives: it makes energy.
+
+  void add(const Unsettled& other) {
+    ropes = ropes || other.ropes;
+    points = points || other.points;
+    meets = meets || other.meets;
+    pulls = pulls || other.pulls;
+  }
 };
-/// The same for all. Where points may only `let_go`, no contact of theirs comes into effect any more: the
-/// last solution must have none that pulls.
+
+inline constexpr double kMeetingSpeed = 0.1;  ///< [m/s]
+
+/// Whether what a contact does to a mass counts: more than 1 cm/s of it. Where there is no gap a pull does
+/// none.
+[[nodiscard]] inline bool is_work(double energy, double mass) {
+  constexpr double kLeastEnergy = 0.5e-4;
+  return energy > kLeastEnergy * mass;
+}
+
+/// The contact's force that follows from u, of a rope. Where contacts may only `let_go`, none comes into
+/// effect any more, so that the last solution has none that pulls.
+Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& touch);
+
+/// The same for all, of points too.
 [[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
 
 /// Largest relative length error left; raises T+ and moves segments onto or off their limits.
 double check_segments(double h, RopeScratch& s, bool& limits_changed);
 
 /// How many solutions a substep takes at least, by what update_touches said.
-[[nodiscard]] int least_solves(std::span<const RopeTouch> touches, bool unsettled);
+[[nodiscard]] int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled);
+
+/// Whether contacts that pull are let go for good.
+[[nodiscard]] inline bool lets_go(int solves) {
+  return solves >= kMostRopeSolves;
+}
 
 /// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its length
 /// because friction pushes nodes that no longer move against it, which makes energy: after kMostRopeSolves it
 /// is let go for this substep, and the rope gets as many solutions without.
-[[nodiscard]] bool solve_again(int solves, double error, std::span<RopeTouch> touches);
+[[nodiscard]] bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches);
 
 [[nodiscard]] bool is_finite(const RopeScratch& s);
 

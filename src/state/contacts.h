@@ -12,20 +12,21 @@ namespace hooke::state {
 struct Contacts {
   std::vector<std::uint32_t> particle;
   std::vector<std::uint32_t> collider;  ///< Row of the collider table.
-  std::vector<std::uint32_t> feature;   ///< Triangle of a mesh; 0 otherwise.
-  std::vector<std::uint32_t> object;    ///< Row of the deformable.
-  std::vector<std::uint32_t> body;      ///< Row of the body touched.
-  std::vector<Real> friction;           ///< Of the pair.
-  std::vector<Vec3> normal;             ///< From the shape to the particle; written by update_contacts.
-  std::vector<Real> separation;         ///< Gap less the particle's radius [m]; written by update_contacts.
-  std::vector<Vec3> lever;              ///< From the body's center of mass to the particle [m]; written by
-                                        ///< update_contacts.
-  std::vector<Vec3> belt_velocity;      ///< Of a conveyor's surface against its body [m/s]; written by
-                                        ///< update_contacts.
-  std::vector<Vec3> surface_velocity;   ///< Of the body there, with that of conveyors [m/s]; written by
-                                        ///< update_contacts.
-  std::vector<Real> normal_force;       ///< [N], 0 or more; carried from substep to substep.
-  std::vector<Vec3> friction_force;     ///< [N]; carried for ropes.
+  std::vector<std::uint32_t>
+      feature;  ///< Of a mesh: the triangle, or behind all of those the ridge or peak; 0 otherwise.
+  std::vector<std::uint32_t> object;   ///< Row of the deformable.
+  std::vector<std::uint32_t> body;     ///< Row of the body touched.
+  std::vector<Real> friction;          ///< Of the pair.
+  std::vector<Vec3> normal;            ///< From the shape to the particle; written by update_contacts.
+  std::vector<Real> separation;        ///< Gap less the particle's radius [m]; written by update_contacts.
+  std::vector<Vec3> lever;             ///< From the body's center of mass to the particle [m]; written by
+                                       ///< update_contacts.
+  std::vector<Vec3> belt_velocity;     ///< Of a conveyor's surface against its body [m/s]; written by
+                                       ///< update_contacts.
+  std::vector<Vec3> surface_velocity;  ///< Of the body there, with that of conveyors [m/s]; written by
+                                       ///< update_contacts.
+  std::vector<Real> normal_force;      ///< [N], 0 or more; carried from substep to substep.
+  std::vector<Vec3> friction_force;    ///< [N]; carried for ropes.
 
   [[nodiscard]] int count() const { return static_cast<int>(particle.size()); }
 
@@ -54,6 +55,8 @@ struct InnerContact {
   std::uint32_t object = 0;  ///< Row of the deformable.
   std::uint32_t collider = 0;
   std::uint32_t element = 0;  ///< Row of the segment or the triangle.
+  std::uint32_t edge = 0;     ///< 1 + k: only the triangle's edge from corner k; 0: all of it.
+  std::uint32_t feature = 0;  ///< Of a mesh: the ridge or the peak (geometry/protrusions.h).
   std::uint32_t body = 0;
   std::uint32_t count = 0;                     ///< Of points: 2 or 3.
   std::array<std::uint32_t, 3> particle = {};  ///< In ascending order.

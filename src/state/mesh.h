@@ -4,6 +4,7 @@
 #include "hooke/shape.h"
 
 #include "geometry/bvh.h"
+#include "geometry/protrusions.h"
 
 namespace hooke::state {
 
@@ -12,6 +13,7 @@ struct Mesh {
   MeshDesc desc;
   geometry::Bvh bvh;  ///< Over `desc.triangles`.
   BspTree planes;     ///< With MeshTree::kPlanes; else without nodes.
+  geometry::Protrusions protrusions;
 
   [[nodiscard]] bool is_solid() const { return !planes.nodes.empty(); }
 };

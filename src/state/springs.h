@@ -91,6 +91,8 @@ struct Triangles {
     std::uint32_t a, b, c;
   };
   std::vector<Corners> corners;
+  /// Bit k: the edge from corner k to the next is counted as this triangle's, of all that share it.
+  std::vector<std::uint8_t> own_edges;
   std::vector<Real> mass;  ///< [kg]
 
   [[nodiscard]] int count() const { return static_cast<int>(corners.size()); }
@@ -98,6 +100,7 @@ struct Triangles {
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit&& visit) {
     visit(self.corners);
+    visit(self.own_edges);
     visit(self.mass);
   }
 };

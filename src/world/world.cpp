@@ -127,6 +127,7 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
   auto mesh = std::make_shared<state::Mesh>();
   mesh->desc = desc;
   mesh->bvh = geometry::build_bvh(desc.positions, desc.triangles);
+  mesh->protrusions = geometry::find_protrusions(desc);
   if (tree == MeshTree::kPlanes) {
     Result<BspTree> planes = build_bsp(desc);
     if (!planes) return planes.error();

@@ -43,6 +43,34 @@ std::vector<PinDesc> corners(int n) {
   return {{.point = 0}, {.point = last}, {.point = row * last}, {.point = row * last + last}};
 }
 
+/// A box of triangles, as a body that does not move.
+BodyId add_mesh_box(World& world, Vec3 half_extents, DVec3 position) {
+  const auto [x, y, z] = std::array{half_extents.x, half_extents.y, half_extents.z};
+  const MeshDesc box = {.positions = {{-x, -y, -z},
+                                      {x, -y, -z},
+                                      {x, y, -z},
+                                      {-x, y, -z},
+                                      {-x, -y, z},
+                                      {x, -y, z},
+                                      {x, y, z},
+                                      {-x, y, z}},
+                        .triangles = {{0, 2, 1},
+                                      {0, 3, 2},
+                                      {4, 5, 6},
+                                      {4, 6, 7},
+                                      {0, 1, 5},
+                                      {0, 5, 4},
+                                      {3, 6, 2},
+                                      {3, 7, 6},
+                                      {0, 4, 7},
+                                      {0, 7, 3},
+                                      {1, 2, 6},
+                                      {1, 6, 5}}};
+  return take(world.add_body({.shape = Shape::of_mesh(take(world.add_mesh(box))),
+                              .position = position,
+                              .contact = {.friction = 1}}));
+}
+
 struct Under {
   double height = std::numeric_limits<double>::quiet_NaN();
   std::array<std::uint32_t, 3> corner = {};
@@ -169,6 +197,56 @@ TEST_SUITE("world/inner_contacts") {
         lowest = std::min(lowest, triangle_at(world.positions(falls), n, 0.06, 0.03).height);
       }
       CHECK(lowest > top);
+    }
+  }
+
+  TEST_CASE("a rope of three segments over ridges of a mesh rests on them") {
+    World world = make_world(without_air());
+    SUBCASE("of a block") {
+      add_mesh_box(world, {Real(0.05), Real(0.3), Real(0.3)}, {0, -0.3, 0});
+    }
+    SUBCASE("of a sheet that ends there") {
+      const MeshDesc sheet = {.positions = {{Real(-0.05), 0, -1}, {Real(0.05), 0, -1}, {0, 0, 1}},
+                              .triangles = {{0, 2, 1}}};
+      take(
+          world.add_body({.shape = Shape::of_mesh(take(world.add_mesh(sheet))), .contact = {.friction = 1}}));
+    }
+    const double radius = 0.01;
+    const RopeId rope =
+        take(world.add_rope({.total_mass = Real(0.3),
+                             .points = {{-0.6, 0.05, 0}, {-0.2, 0.05, 0}, {0.2, 0.05, 0}, {0.6, 0.05, 0}},
+                             .pins = {},
+                             .radius = static_cast<Real>(radius),
+                             .contact = {.friction = 1}}));
+    double lowest = 1;
+    for (int i = 0; i < 90; ++i) {
+      run(world, 1);
+      lowest = std::min(lowest, height_of_line(world.positions(rope), 0));
+    }
+    CHECK(lowest > 0.95 * kThickness * radius);
+  }
+
+  TEST_CASE("a spike of a mesh does not poke through a coarse cloth that falls on it") {
+    for (const double speed : {0.0, 10.0}) {
+      World world = make_world(without_air());
+      const Real foot = Real(0.05);
+      const MeshDesc spike = {
+          .positions = {{-foot, 0, -foot}, {foot, 0, -foot}, {foot, 0, foot}, {-foot, 0, foot}, {0, 1, 0}},
+          .triangles = {{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}, {0, 1, 2}, {0, 2, 3}}};
+      take(world.add_body({.shape = Shape::of_mesh(take(world.add_mesh(spike))),
+                           .position = {0.06, 0, 0.03},
+                           .contact = {.friction = 1}}));
+      const int n = 7;
+      ClothDesc cloth = sheet(n, 1.2, 1.1);
+      cloth.velocity = {0, static_cast<Real>(-speed), 0};
+      cloth.contact.friction = 1;
+      const ClothId falls = take(world.add_cloth(cloth));
+      double lowest = 10;
+      for (int i = 0; i < 30; ++i) {
+        run(world, 1);
+        lowest = std::min(lowest, triangle_at(world.positions(falls), n, 0.06, 0.03).height);
+      }
+      CHECK(lowest > 1);
     }
   }
 

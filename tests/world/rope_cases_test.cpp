@@ -1,6 +1,8 @@
 /// Ropes where they have gone wrong in other engines: over edges, on what sleeps or goes away, in bridges
 /// that break, and ten thousand segments long.
 
+#include "hooke/geometry.h"
+
 #include "constants.h"
 #include "world/make.h"
 
@@ -27,6 +29,22 @@ std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   for (int i = 0; i <= segments; ++i)
     points.push_back(from + (i / static_cast<double>(segments)) * (to - from));
   return points;
+}
+
+/// Squares of 10 cm over 3 m, whose corners lie up to 2.5 cm over or under y = 0.
+void add_rough_ground(World& world, std::uint32_t seed, double friction) {
+  constexpr int kPerSide = 31;
+  std::vector<Real> heights;
+  std::uint32_t state = 77 * seed + 1;
+  for (int i = 0; i < kPerSide * kPerSide; ++i) {
+    state = state * 1664525U + 1013904223U;
+    heights.push_back(Real(0.05) *
+                      (static_cast<Real>(state >> 8U) / static_cast<Real>(1U << 24U) - Real(0.5)));
+  }
+  const MeshDesc ground = take(make_height_field(kPerSide, kPerSide, Real(0.1), heights));
+  take(world.add_body({.shape = Shape::of_mesh(take(world.add_mesh(ground))),
+                       .position = {-1.5, 0, -1.5},
+                       .contact = {.friction = static_cast<Real>(friction)}}));
 }
 
 /// D-19: a rope of 40 segments of 2 cm and 2 cm thick over a beam with sharp edges, 10 kg at one end.
@@ -239,6 +257,36 @@ TEST_SUITE("world/rope_cases") {
         }
         INFO("rope ", shape);
         CHECK(most - start < 0.01);
+      }
+    }
+  }
+
+  TEST_CASE("ropes that fall on rough ground and slide over its ridges make no energy") {
+    for (const double friction : {0.0, 0.3, 1.0}) {
+      for (const int segments : {1, 4, 20}) {
+        for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+          World world = make_world();
+          add_rough_ground(world, seed, friction);
+          const RopeId rope =
+              take(world.add_rope({.total_mass = 1,
+                                   .points = line({-1, 0.1, -0.03}, {1, 0.1, -0.03}, segments),
+                                   .pins = {},
+                                   .radius = Real(0.01),
+                                   .contact = {.friction = static_cast<Real>(friction)}}));
+          double least = world.measure().energy.total();
+          const double first = least;
+          double gained = 0;
+          for (int i = 0; i < 150; ++i) {
+            run(world, 1);
+            const double energy = world.measure().energy.total();
+            gained = std::max(gained, energy - least);
+            least = std::min(least, energy);
+          }
+          INFO("friction ", friction, ", segments ", segments, ", seed ", seed);
+          CHECK(gained < 0.01 * first);
+          const PointView points = world.positions(rope);
+          for (std::size_t i = 0; i < points.size(); ++i) CHECK(points[i].y > -0.05);
+        }
       }
     }
   }
