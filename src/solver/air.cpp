@@ -2,8 +2,6 @@
 
 #include "solver/wide/air.h"
 
-#include <algorithm>
-
 namespace hooke::solver {
 
 void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads) {
@@ -61,31 +59,13 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
 
 void push_segments(const state::Deformable& object, const state::Segments& segments, const Air& air,
                    state::Particles& particles) {
-  const Real h = air.h;
-  // Every segment sees the velocities from before, so that none waits for the one before it.
-  const auto first = particles.velocity.begin() + object.particles.first;
-  Vec3 v_a = first->v;
-  Vec3 on_a = {};  // the change by the segment before
-  for (std::uint32_t i = 0; i < object.segments.count; ++i) {
-    const std::size_t a = object.particles.first + i;
-    const std::size_t b = a + 1;
-    const Vec3 v_b = particles.velocity[b].v;
-    const Vec3 line = particles.position[b].x - particles.position[a].x;
-    const Real square = length_squared(line);
-    const Vec3 flow = Real(0.5) * ((air.wind[a].v - v_a) + (air.wind[b].v - v_b));
-    const Vec3 across = square > Real(0) ? flow - (dot(flow, line) / square) * line : flow;
-    const Real diameter = Real(2) * particles.position[a].radius;
-    const Real drag = Real(0.5) * air.density * object.drag_coefficient * diameter *
-                      segments.rest_length[object.segments.first + i] * length(across);  // [kg/s]
-    const auto change_of = [&](std::size_t p) {
-      const Real w = particles.velocity[p].inverse_mass;
-      return (Real(0.5) * std::min(w * h * drag, Real(1))) * across;
-    };
-    particles.velocity[a].v = v_a + (on_a + change_of(a));
-    on_a = change_of(b);
-    v_a = v_b;
-  }
-  first[object.segments.count].v += on_a;
+  wide::push_segments({.first_particle = object.particles.first,
+                       .count = object.segments.count,
+                       .rest_length = segments.rest_length.data() + object.segments.first,
+                       .position = reinterpret_cast<const Real*>(particles.position.data()),
+                       .wind = reinterpret_cast<const Real*>(air.wind.data()),
+                       .velocity = reinterpret_cast<Real*>(particles.velocity.data()),
+                       .strength = air.h * air.density * object.drag_coefficient});
 }
 
 }  // namespace hooke::solver

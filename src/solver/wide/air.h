@@ -24,4 +24,18 @@ struct TriangleAir {
 void load_triangles(const TriangleAir& air, parallel::Range rows);
 void load_triangles_scalar(const TriangleAir& air, parallel::Range rows);
 
+/// The air on the segments of one rope; columns as above.
+struct SegmentAir {
+  std::uint32_t first_particle, count;  ///< Of segments.
+  const Real* rest_length;              ///< Of the first of them [m].
+  const Real* position;                 ///< The fourth number is the radius [m].
+  const Real* wind;
+  Real* velocity;  ///< The fourth number is the inverse mass [1/kg].
+  Real strength;   ///< h rho C_d [kg s/m^3]
+};
+
+/// Adds what the air does to the velocities of the rope's nodes. Formula: solver/air.h.
+void push_segments(const SegmentAir& air);
+void push_segments_scalar(const SegmentAir& air);
+
 }  // namespace hooke::solver::wide

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 // After Highway, which includes this file anew for each instruction set.
+#include "solver/wide/air_segments.h"
 #include "solver/wide/air_triangles.h"
 #include "solver/wide/vectors.h"
 
@@ -28,6 +29,14 @@ void load_triangles_here(const TriangleAir& air, parallel::Range rows) {
 #endif
 }
 
+void push_segments_here(const SegmentAir& air) {
+#if HWY_TARGET == HWY_SCALAR
+  push_segments_scalar(air);
+#else
+  push_segments_with<Wide>(air);
+#endif
+}
+
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -35,10 +44,16 @@ HWY_AFTER_NAMESPACE();
 namespace hooke::solver::wide {
 
 HWY_EXPORT(load_triangles_here);
+HWY_EXPORT(push_segments_here);
 
 void load_triangles(const TriangleAir& air, parallel::Range rows) {
   if (is_scalar()) return load_triangles_scalar(air, rows);
   HWY_DYNAMIC_DISPATCH(load_triangles_here)(air, rows);
+}
+
+void push_segments(const SegmentAir& air) {
+  if (is_scalar()) return push_segments_scalar(air);
+  HWY_DYNAMIC_DISPATCH(push_segments_here)(air);
 }
 
 }  // namespace hooke::solver::wide
@@ -50,6 +65,10 @@ namespace hooke::solver::wide {
 
 void load_triangles(const TriangleAir& air, parallel::Range rows) {
   load_triangles_scalar(air, rows);
+}
+
+void push_segments(const SegmentAir& air) {
+  push_segments_scalar(air);
 }
 
 }  // namespace hooke::solver::wide

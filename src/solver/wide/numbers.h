@@ -4,7 +4,9 @@
 ///
 /// A Number has + - *, Number(Real), and these functions, given below for one lane, in vectors.h and
 /// double_vectors.h for vectors:
-///   read, write      from and to consecutive lanes
+///   read, write      from and to consecutive lanes; read_anywhere from unaligned ones
+///   moved_on         lanes one further, the first from the first of `carried`, which gets the last
+///   first_lane       the first of them
 ///   above, choose    a comparison and a choice by it
 ///   any              whether a comparison holds in any lane
 ///   quotient, root   exact division and square root
@@ -60,6 +62,18 @@ HWY_INLINE void read(const Lane* from, Lane& to) {
 template <std::floating_point Lane>
 HWY_INLINE void write(Lane value, Lane* to) {
   *to = value;
+}
+/// The same where lanes are not aligned.
+HWY_INLINE void read_anywhere(const Real* from, Real& to) {
+  to = *from;
+}
+HWY_INLINE Real moved_on(Real value, Real& carried) {
+  const Real before = carried;
+  carried = value;
+  return before;
+}
+HWY_INLINE Real first_lane(Real value) {
+  return value;
 }
 template <std::floating_point Lane>
 HWY_INLINE bool above(Lane a, Lane b) {

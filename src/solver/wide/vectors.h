@@ -23,6 +23,16 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 constexpr int kVectors = kWidth < kLanes ? 2 : 1;
 constexpr int kStride = kVectors * kWidth;
 
+/// Of a vector turned by one lane: 15 0 1 2 for 16.
+struct LaneBefore {
+  std::int32_t of[kWidth];
+
+  constexpr LaneBefore() : of{} {
+    for (int i = 0; i < kWidth; ++i) of[i] = (i + kWidth - 1) % kWidth;
+  }
+};
+constexpr LaneBefore kLaneBefore;
+
 struct Wide {
   Vector raw[kVectors];
 
@@ -57,6 +67,23 @@ HWY_INLINE void read(const float* from, Wide& to) {
 }
 HWY_INLINE void write(const Wide& value, float* to) {
   for (int i = 0; i < kVectors; ++i) hn::Store(value.raw[i], kTag, to + i * kWidth);
+}
+HWY_INLINE void read_anywhere(const float* from, Wide& to) {
+  for (int i = 0; i < kVectors; ++i) to.raw[i] = hn::LoadU(kTag, from + i * kWidth);
+}
+HWY_INLINE Wide moved_on(const Wide& value, Wide& carried) {
+  const auto to_next = hn::SetTableIndices(kTag, kLaneBefore.of);
+  const auto first = hn::FirstN(kTag, 1);
+  Wide r;
+  for (int i = 0; i < kVectors; ++i) {
+    const Vector turned = hn::TableLookupLanes(value.raw[i], to_next);
+    r.raw[i] = hn::IfThenElse(first, carried.raw[0], turned);
+    carried.raw[0] = turned;
+  }
+  return r;
+}
+HWY_INLINE float first_lane(const Wide& value) {
+  return hn::GetLane(value.raw[0]);
 }
 HWY_INLINE Mask above(const Wide& a, const Wide& b) {
   Mask r;
