@@ -19,11 +19,13 @@ class BundleSolution {
  public:
   BundleSolution(double h, Bundle& bundle, state::Tables& tables) : h_(h), b_(bundle), t_(tables) {}
 
-  void load(const std::vector<Vec3>& before, const std::vector<Chain>& chains);
+  void load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains);
   void run(std::vector<Chain>& chains);
   void store(const std::vector<Chain>& chains);
 
  private:
+  /// Largest relative length error left in any rope.
+  double check_ropes(bool& limits_changed);
   // Loading and checking.
   void load_points();
   void load_hooks();

@@ -19,7 +19,7 @@ using state::Hook;
 
 }  // namespace
 
-void BundleSolution::load(const std::vector<Vec3>& before, const std::vector<Chain>& chains) {
+void BundleSolution::load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains) {
   b_.ropes.clear();
   b_.settings.clear();
   b_.chain_nodes.clear();
@@ -223,6 +223,19 @@ bool BundleSolution::is_sound() const {
          });
 }
 
+double BundleSolution::check_ropes(bool& limits_changed) {
+  double worst = 0;
+  std::span<RopeSegment> rest = b_.ropes.segments;
+  for (std::size_t k = 0; k < b_.chains.size(); ++k) {
+    const std::size_t count = b_.chain_nodes[k] - 1;
+    const double error =
+        check_segments(b_.settings[k], h_, b_.ropes.nodes, rest.first(count), limits_changed);
+    worst = std::max(worst, error);
+    rest = rest.subspan(count);
+  }
+  return worst;
+}
+
 void BundleSolution::run(std::vector<Chain>& chains) {
   double error = 0;
   Unsettled unsettled;
@@ -246,7 +259,7 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     unsettled = update_touches(h_, lets_go(solves), b_.ropes);
     unsettled.add(update_inner(lets_go(solves)));
     bool limits_changed = false;
-    error = check_segments(h_, b_.ropes, limits_changed);
+    error = check_ropes(limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
     const int least = std::max(least_solves(b_.ropes.touches, unsettled), least_solves_of_inner());
@@ -296,8 +309,8 @@ void BundleSolution::push_out_points() {
   }
 }
 
-void solve_bundle(const std::vector<Vec3>& before, Real h, Bundle& bundle, std::vector<Chain>& chains,
-                  state::Tables& tables) {
+void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle& bundle,
+                  std::vector<Chain>& chains, state::Tables& tables) {
   BundleSolution solution(static_cast<double>(h), bundle, tables);
   solution.load(before, chains);
   solution.run(chains);

@@ -205,7 +205,7 @@ void release_points(const std::vector<HookedPoint>& points, state::Particles& pa
 
 /// Velocities of everything in a bundle for a substep of length h [s]. `before` holds velocities of particles
 /// from before the forces.
-void solve_bundle(const std::vector<Vec3>& before, Real h, Bundle& bundle, std::vector<Chain>& chains,
-                  state::Tables& tables);
+void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle& bundle,
+                  std::vector<Chain>& chains, state::Tables& tables);
 
 }  // namespace hooke::solver

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace hooke::solver {
 
@@ -22,7 +23,7 @@ constexpr int kFewestForLanes = 2;  ///< Below that one after another is faster.
 
 struct Source {
   std::span<const RopeAnchor> anchors;
-  const std::vector<Vec3>& before;
+  const std::vector<state::VelocityLine>& before;
   double h;
   state::Tables& tables;
 };
@@ -35,109 +36,174 @@ struct AnchorRows {
   std::array<double, 3> gamma = {};  ///< Compliance of each.
 };
 
-/// Up to kCount ropes of equally many nodes. Lanes without one repeat the first.
+/// Up to kCount ropes of equally many nodes, and what stays of them until a table's rows change. Lanes
+/// without a rope repeat the first.
+template <int kCount>
+class Members {
+ public:
+  void load(const std::vector<Chain*>& chains, const Source& source) {
+    const std::uint64_t revision = source.tables.revision + source.tables.hook_revision;
+    if (chains_ == chains && revision_ == revision && h_ == source.h) return;
+    chains_ = chains;
+    revision_ = revision;
+    h_ = source.h;
+    const Chain& first = *chains.front();
+    const std::size_t nodes = first.node_count;
+    traits_.rows.resize(nodes);
+    traits_.bends.resize(first.bend_stiffness > 0 && nodes > 2 ? nodes - 2 : 0);
+    traits_.pinned.assign(nodes, 0);
+    traits_.limits = false;
+    for (int lane = 0; lane < kCount; ++lane) load_lane(chain(lane), lane, source);
+  }
+
+  [[nodiscard]] int count() const { return static_cast<int>(chains_.size()); }
+  [[nodiscard]] Chain& chain(int lane) const { return *chains_[lane < count() ? lane : 0]; }
+  [[nodiscard]] const wide::RopeTraits<kCount>& traits() const { return traits_; }
+
+ private:
+  void load_lane(const Chain& chain, int lane, const Source& source) {
+    for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+      const std::uint32_t row = chain.first_particle + i;
+      const auto w = static_cast<double>(source.tables.particles.velocity[row].inverse_mass);
+      traits_.rows[i].mass[lane] = static_cast<double>(source.tables.particles.mass[row]);
+      traits_.rows[i].w[lane] = w;
+      if (!(w > 0)) traits_.pinned[i] = 1;
+    }
+    traits_.length[lane] = 0;
+    for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) load_segment(chain, i, lane, source);
+    for (std::uint32_t i = 0; i < traits_.bends.size(); ++i) load_bend_at(chain, i, lane, source);
+  }
+
+  void load_segment(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+    wide::RopeTraitLanes<kCount>& to = traits_.rows[i];
+    const wide::RopeTraitLanes<kCount>& next = traits_.rows[i + 1];
+    const double lighter = lighter_end(to.mass[lane], to.w[lane], next.mass[lane], next.w[lane]);
+    const wide::SegmentTraits<double> traits =
+        segment_traits(chain.first_segment + i, lighter, source.h, source.tables.segments);
+    to.rest[lane] = traits.rest;
+    to.per_rest[lane] = traits.per_rest;
+    to.limit[lane] = traits.limit;
+    to.damping[lane] = traits.damping;
+    to.per_stiffness[lane] = traits.per_stiffness;
+    to.bias[lane] = traits.bias;
+    to.grip[lane] = traits.grip;
+    to.lighter[lane] = traits.lighter;
+    to.per_lighter[lane] = traits.per_lighter;
+    traits_.length[lane] += traits.rest;
+    traits_.limits = traits_.limits || traits.limit < std::numeric_limits<double>::infinity();
+  }
+
+  void load_bend_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
+    const double h = source.h;
+    const RopeBend bend = load_bend(chain, chain.first_segment + i, source.tables.segments);
+    wide::RopeBendLanes<kCount>& to = traits_.bends[i];
+    to.before[lane] = bend.before;
+    to.behind[lane] = bend.behind;
+    to.pull[lane] = -h * bend.stiffness;
+    to.grip[lane] = h * (bend.damping + h * bend.stiffness);
+  }
+
+  std::vector<Chain*> chains_;
+  std::uint64_t revision_ = 0;  ///< Sum of both, which only grow; clamps are of hooks too.
+  double h_ = 0;
+  wide::RopeTraits<kCount> traits_;
+};
+
+/// The solution of members.
 template <int kCount>
 class Group {
  public:
-  void solve(const std::vector<Chain*>& chains, const Source& source) {
-    const int count = static_cast<int>(chains.size());
-    resize(*chains.front());
-    load(chains, source);
-    std::array<bool, kCount> done = {};
+  void solve(const Members<kCount>& members, const Source& source) {
+    resize(members.traits());
+    load(members, source);
+    bool done[kCount] = {};
     for (int solves = 1;; ++solves) {
-      hold(source.h);
-      wide::solve_ropes(source.h, ropes_);
+      hold(members.traits(), source.h);
+      wide::solve_ropes(source.h, members.traits(), ropes_);
+      bool chosen[kCount] = {};
       bool all_done = true;
-      for (int lane = 0; lane < count; ++lane) {
+      for (int lane = 0; lane < members.count(); ++lane) {
         if (done[lane]) continue;
-        ++chains[lane]->solves;
-        done[lane] = settle(lane, solves, source.h);
-        if (done[lane]) store(*chains[lane], lane, source);
+        ++members.chain(lane).solves;
+        done[lane] = settle(members.traits(), lane, solves, source.h);
+        chosen[lane] = done[lane] && is_finite(lane);
+        if (done[lane]) note_error(lane, members.chain(lane));
         all_done = all_done && done[lane];
       }
+      store(members, chosen, source);
       if (all_done) return;
     }
   }
 
  private:
-  void resize(const Chain& chain) {
-    const std::size_t nodes = chain.node_count;
+  void resize(const wide::RopeTraits<kCount>& traits) {
+    const std::size_t nodes = traits.rows.size();
     ropes_.nodes.resize(nodes);
     ropes_.segments.resize(nodes - 1);
-    ropes_.bends.resize(chain.bend_stiffness > 0 && nodes > 2 ? nodes - 2 : 0);
+    ropes_.fills.resize(traits.bends.empty() ? 0 : nodes - 1);
     ropes_.holds.resize(nodes);
     ropes_.held.assign(nodes, 0);
   }
 
-  /// Node after node, so that a line of lanes is written while it is in the cache.
-  void load(const std::vector<Chain*>& chains, const Source& source) {
-    std::array<const Chain*, kCount> chain;
-    for (int lane = 0; lane < kCount; ++lane)
-      chain[lane] = chains[static_cast<std::size_t>(lane) < chains.size() ? lane : 0];
-    std::array<double, kCount> rest = {};
-    for (std::uint32_t i = 0; i < ropes_.nodes.size(); ++i) {
-      for (int lane = 0; lane < kCount; ++lane) load_node_at(*chain[lane], i, lane, source);
-      for (int lane = 0; i > 0 && lane < kCount; ++lane)
-        rest[lane] += load_between(*chain[lane], i - 1, lane, source);
-    }
-    for (std::uint32_t i = 0; i < ropes_.bends.size(); ++i) {
-      for (int lane = 0; lane < kCount; ++lane) load_bend_at(*chain[lane], i, lane, source);
-    }
+  void load(const Members<kCount>& members, const Source& source) {
+    wide::load_ropes(places_of(members, source), ropes_);
+    if (members.traits().limits) load_limited(members, source.tables.segments);
     for (int lane = 0; lane < kCount; ++lane) {
       touches_[lane].clear();
       anchors_[lane].clear();
-      if (static_cast<std::size_t>(lane) < chains.size()) load_ties(*chain[lane], lane, source);
-      begin(rest[lane], lane);
+      if (lane < members.count()) load_ties(members, lane, source);
+      begin(members.chain(lane), members.traits().length[lane], lane, source);
     }
   }
 
-  void load_node_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
-    const std::uint32_t row = chain.first_particle + i;
-    const RopeNode node = load_node(row, source.before[row], source.tables.particles);
-    wide::RopeNodeLanes<kCount>& to = ropes_.nodes[i];
-    put(node.x, to.x, lane);
-    put(node.v_free, to.v_free, lane);
-    put(node.v_before, to.v_before, lane);
-    to.mass[lane] = node.mass;
-    to.w[lane] = node.w;
+  void load_limited(const Members<kCount>& members, const state::Segments& segments) {
+    for (int lane = 0; lane < kCount; ++lane) {
+      const std::uint8_t* limited = &segments.limited[members.chain(lane).first_segment];
+      for (std::size_t i = 0; i < ropes_.segments.size(); ++i) ropes_.segments[i].limited[lane] = limited[i];
+    }
   }
 
-  void load_ties(const Chain& chain, int lane, const Source& source) {
+  static wide::RopePlaces<kCount> places_of(const Members<kCount>& members, const Source& source) {
+    static_assert(sizeof(state::PositionLine) == 4 * sizeof(Real));
+    static_assert(sizeof(state::VelocityLine) == 4 * sizeof(Real));
+    wide::RopePlaces<kCount> places = {
+        .first_particle = {},
+        .first_segment = {},
+        .position = reinterpret_cast<const Real*>(source.tables.particles.position.data()),
+        .before = reinterpret_cast<const Real*>(source.before.data()),
+        .velocity = reinterpret_cast<Real*>(source.tables.particles.velocity.data()),
+        .tension = source.tables.segments.tension.data(),
+        .mean_tension = source.tables.segments.mean_tension.data()};
+    for (int lane = 0; lane < kCount; ++lane) {
+      places.first_particle[lane] = members.chain(lane).first_particle;
+      places.first_segment[lane] = members.chain(lane).first_segment;
+    }
+    return places;
+  }
+
+  void load_ties(const Members<kCount>& members, int lane, const Source& source) {
+    const Chain& chain = members.chain(lane);
     load_touches(chain, 0, source.h, source.tables, touches_[lane]);
     for (std::uint32_t i = chain.first_anchor; i < chain.end_anchor; ++i)
-      load_anchor(source.anchors[i], lane, source);
+      load_anchor(source.anchors[i], members.traits().rows[source.anchors[i].node].w[lane], lane, source);
   }
 
   /// How the first step is linearized.
-  void begin(double rest, int lane) {
-    const auto& first = ropes_.nodes.front();
-    const auto& last = ropes_.nodes.back();
-    const RopeSetting setting = first_setting(touches_[lane], rest, get(last.x, lane) - get(first.x, lane),
-                                              get(last.v_before, lane) - get(first.v_before, lane));
+  void begin(const Chain& chain, double rest, int lane, const Source& source) {
+    const std::size_t first = chain.first_particle;
+    const std::size_t last = first + chain.node_count - 1;
+    const std::vector<state::PositionLine>& position = source.tables.particles.position;
+    const DVec3 line = vector_cast<double>(position[last].x) - vector_cast<double>(position[first].x);
+    const DVec3 speed =
+        vector_cast<double>(source.before[last].v) - vector_cast<double>(source.before[first].v);
+    const RopeSetting setting = first_setting(touches_[lane], rest, line, speed);
     ropes_.compliance[lane] = setting.compliance;
     ropes_.first[lane] = 1;
     put(setting.turning, ropes_.turning, lane);
   }
 
-  /// Segment i; its length.
-  double load_between(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
-    const wide::RopeNodeLanes<kCount>& a = ropes_.nodes[i];
-    const wide::RopeNodeLanes<kCount>& b = ropes_.nodes[i + 1];
-    const RopeSegment e = load_segment(chain.first_segment + i, source.tables.segments);
-    wide::RopeSegmentLanes<kCount>& to = ropes_.segments[i];
-    to.rest[lane] = e.rest;
-    to.stiffness[lane] = e.stiffness;
-    to.damping[lane] = e.damping;
-    to.limit[lane] = e.limit;
-    to.lighter[lane] = lighter_end(a.mass[lane], a.w[lane], b.mass[lane], b.w[lane]);
-    to.held[lane] = a.w[lane] > 0 || b.w[lane] > 0 ? 0 : 1;
-    to.tension_bound[lane] = e.tension_bound;
-    to.limited[lane] = e.limited ? 1 : 0;
-    return e.rest;
-  }
-
-  void load_anchor(const RopeAnchor& anchor, int lane, const Source& source) {
-    const double w = ropes_.nodes[anchor.node].w[lane];
+  /// `w` is the inverse mass of its node.
+  void load_anchor(const RopeAnchor& anchor, double w, int lane, const Source& source) {
     if (!(w > 0)) return;
     state::Hook& hook = source.tables.hooks[anchor.hook];
     std::array<JointRow, state::Hook::kMaxRows> rows;
@@ -154,38 +220,27 @@ class Group {
     anchors_[lane].push_back(made);
   }
 
-  void load_bend_at(const Chain& chain, std::uint32_t i, int lane, const Source& source) {
-    const double h = source.h;
-    const RopeBend bend = load_bend(chain, chain.first_segment + i, source.tables.segments);
-    wide::RopeBendLanes<kCount>& to = ropes_.bends[i];
-    to.before[lane] = bend.before;
-    to.behind[lane] = bend.behind;
-    to.pull[lane] = -h * bend.stiffness;
-    to.grip[lane] = h * (bend.damping + h * bend.stiffness);
-  }
-
   /// Node i of a lane as the functions of contacts take it.
-  [[nodiscard]] RopeNode node_at(std::uint32_t i, int lane) const {
-    const wide::RopeNodeLanes<kCount>& node = ropes_.nodes[i];
+  [[nodiscard]] RopeNode node_at(const wide::RopeTraits<kCount>& traits, std::uint32_t i, int lane) const {
     RopeNode one;
-    one.v_free = get(node.v_free, lane);
-    one.mass = node.mass[lane];
-    one.u = get(node.u, lane);
+    one.v_free = get(ropes_.nodes[i].v_free, lane);
+    one.mass = traits.rows[i].mass[lane];
+    one.u = get(ropes_.nodes[i].u, lane);
     return one;
   }
 
-  void hold(double h) {
+  void hold(const wide::RopeTraits<kCount>& traits, double h) {
     std::fill(ropes_.held.begin(), ropes_.held.end(), 0);
     for (int lane = 0; lane < kCount; ++lane) {
       for_each_touched(touches_[lane], [&](std::span<const RopeTouch> at_node) {
         const std::uint32_t i = at_node.front().node;
-        note_held(i, h);
-        put_hold(hold_of(at_node, node_at(i, lane), h), i, lane);
+        note_held(traits, i, h);
+        put_hold(hold_of(at_node, node_at(traits, i, lane), h), i, lane);
       });
     }
     for (int lane = 0; lane < kCount; ++lane) {
       for (const AnchorRows& anchor : anchors_[lane]) {
-        note_held(anchor.node, h);
+        note_held(traits, anchor.node, h);
         NodeHold hold = hold_at(anchor.node, lane);
         for (int k = 0; k < 3; ++k) {
           const double grip = 1 / anchor.gamma[k];
@@ -198,10 +253,10 @@ class Group {
   }
 
   /// From now on `holds` counts for a node; nothing touches it yet.
-  void note_held(std::uint32_t i, double h) {
+  void note_held(const wide::RopeTraits<kCount>& traits, std::uint32_t i, double h) {
     if (ropes_.held[i] != 0) return;
     ropes_.held[i] = 1;
-    for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(i, k), h), i, k);
+    for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(traits, i, k), h), i, k);
   }
 
   [[nodiscard]] NodeHold hold_at(std::uint32_t i, int lane) const {
@@ -219,43 +274,49 @@ class Group {
   }
 
   /// Whether a lane needs no further step.
-  bool settle(int lane, int solves, double h) {
-    if (ropes_.finite[lane] != 0) return true;
+  bool settle(const wide::RopeTraits<kCount>& traits, int lane, int solves, double h) {
+    if (!is_finite(lane)) return true;
     Unsettled unsettled;
     for (RopeTouch& t : touches_[lane])
-      unsettled.add(update_touch(h, lets_go(solves), node_at(t.node, lane), t));
+      unsettled.add(update_touch(h, lets_go(solves), node_at(traits, t.node, lane), t));
     const bool long_enough = ropes_.error[lane] <= kLengthTolerance && !(ropes_.limits_changed[lane] > 0);
     if (long_enough && solves >= least_solves(touches_[lane], unsettled)) return true;
     if (!long_enough) ropes_.first[lane] = 0;
     return !solve_again(solves, ropes_.error[lane], unsettled.pulls, touches_[lane]);
   }
 
-  void store(Chain& chain, int lane, const Source& source) {
-    const bool finite = ropes_.finite[lane] == 0;
-    chain.unconverged = chain.unconverged || !(ropes_.error[lane] <= kReportedError) || !finite;
-    if (!finite) return;
-    for (std::uint32_t i = 0; i < chain.node_count; ++i) {
-      const wide::RopeNodeLanes<kCount>& node = ropes_.nodes[i];
-      if (node.w[lane] > 0)
-        source.tables.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(get(node.u, lane));
+  [[nodiscard]] bool is_finite(int lane) const { return ropes_.finite[lane] == 0; }
+
+  void note_error(int lane, Chain& chain) const {
+    chain.unconverged = chain.unconverged || !(ropes_.error[lane] <= kReportedError) || !is_finite(lane);
+  }
+
+  void store(const Members<kCount>& members, const bool (&chosen)[kCount], const Source& source) {
+    wide::store_ropes(source.h, places_of(members, source), members.traits(), chosen, ropes_);
+    for (int lane = 0; lane < members.count(); ++lane) {
+      if (!chosen[lane]) continue;
+      if (members.traits().limits) store_limited(members.chain(lane), lane, source.tables.segments);
+      store_touches(source.h, touches_[lane], source.tables.contacts);
+      for (const AnchorRows& anchor : anchors_[lane]) store_anchor(anchor, lane, source);
     }
-    for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-      const wide::RopeSegmentLanes<kCount>& e = ropes_.segments[i];
-      store_tension(chain.first_segment + i, dot(get(e.n, lane), get(e.q, lane)) / source.h,
-                    e.limited[lane] > 0, source.tables.segments);
+  }
+
+  void store_limited(const Chain& chain, int lane, state::Segments& segments) const {
+    std::uint8_t* limited = &segments.limited[chain.first_segment];
+    for (std::size_t i = 0; i < ropes_.segments.size(); ++i)
+      limited[i] = ropes_.segments[i].limited[lane] > 0 ? 1 : 0;
+  }
+
+  void store_anchor(const AnchorRows& anchor, int lane, const Source& source) const {
+    const DVec3 u = get(ropes_.nodes[anchor.node].u, lane);
+    std::array<double, 3> lambda;
+    for (int k = 0; k < 3; ++k) {
+      const JointRow& row = anchor.rows[k];
+      lambda[k] = (row.target - anchor.sign * dot(row.n, u)) / anchor.gamma[k];
     }
-    store_touches(source.h, touches_[lane], source.tables.contacts);
-    for (const AnchorRows& anchor : anchors_[lane]) {
-      const DVec3 u = get(ropes_.nodes[anchor.node].u, lane);
-      std::array<double, 3> lambda;
-      for (int k = 0; k < 3; ++k) {
-        const JointRow& row = anchor.rows[k];
-        lambda[k] = (row.target - anchor.sign * dot(row.n, u)) / anchor.gamma[k];
-      }
-      state::Hook& hook = source.tables.hooks[anchor.hook];
-      store_joint_impulses(anchor.rows, lambda, hook);
-      add_up_impulses(static_cast<Real>(source.h), hook);
-    }
+    state::Hook& hook = source.tables.hooks[anchor.hook];
+    store_joint_impulses(anchor.rows, lambda, hook);
+    add_up_impulses(static_cast<Real>(source.h), hook);
   }
 
   RopeLanes<kCount> ropes_;
@@ -267,12 +328,26 @@ bool fits(const Chain& a, const Chain& b) {
   return a.node_count == b.node_count && (a.bend_stiffness > 0) == (b.bend_stiffness > 0);
 }
 
+/// Ropes solved in one way, group after group.
+template <int kCount>
+struct GroupList {
+  Group<kCount> group;  ///< Memory of the one that is being solved.
+  std::vector<Members<kCount>> members;
+  std::size_t used = 0;  ///< In this substep.
+
+  void solve(const std::vector<Chain*>& chains, const Source& source) {
+    if (used == members.size()) members.emplace_back();
+    members[used].load(chains, source);
+    group.solve(members[used++], source);
+  }
+};
+
 }  // namespace
 
 struct ChainScratch::Groups {
-  Group<wide::kRopeLanes> together;
-  Group<1> alone;
-  std::vector<Chain*> members;
+  GroupList<wide::kRopeLanes> together;
+  GroupList<1> alone;
+  std::vector<Chain*> next;
 };
 
 ChainScratch::ChainScratch() : groups_(std::make_unique<Groups>()) {}
@@ -281,21 +356,24 @@ ChainScratch::ChainScratch(ChainScratch&&) noexcept = default;
 ChainScratch& ChainScratch::operator=(ChainScratch&&) noexcept = default;
 
 void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
-                  const std::vector<Vec3>& before, Real h, ChainScratch& scratch, state::Tables& tables) {
-  auto& [together, alone, members] = scratch.groups();
+                  const std::vector<state::VelocityLine>& before, Real h, ChainScratch& scratch,
+                  state::Tables& tables) {
+  ChainScratch::Groups& groups = scratch.groups();
+  std::vector<Chain*>& next = groups.next;
   const Source source = {anchors, before, static_cast<double>(h), tables};
-  const auto finish = [&, &together = together, &alone = alone, &members = members] {
-    if (members.size() >= kFewestForLanes) {
-      together.solve(members, source);
-    } else if (!members.empty()) {
-      alone.solve(members, source);
+  groups.together.used = groups.alone.used = 0;
+  const auto finish = [&] {
+    if (next.size() >= kFewestForLanes) {
+      groups.together.solve(next, source);
+    } else if (!next.empty()) {
+      groups.alone.solve(next, source);
     }
-    members.clear();
+    next.clear();
   };
   for (Chain& chain : chains) {
     if (chain.in_bundle) continue;
-    if (members.size() == wide::kRopeLanes || (!members.empty() && !fits(*members.front(), chain))) finish();
-    members.push_back(&chain);
+    if (next.size() == wide::kRopeLanes || (!next.empty() && !fits(*next.front(), chain))) finish();
+    next.push_back(&chain);
   }
   finish();
 }

@@ -34,7 +34,7 @@ struct Chain {
   bool unconverged = false;  ///< A length error above 1 % was left in this frame; written by solve_chains.
 };
 
-/// Memory of solve_chains.
+/// Memory of solve_chains: it keeps what stays of ropes, until the revision of the tables changes.
 class ChainScratch {
  public:
   struct Groups;  // chains.cpp
@@ -83,6 +83,7 @@ class ChainScratch {
 /// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's
 /// segments differ in compliance by a factor of 1e10. `before` holds velocities from before the forces.
 void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
-                  const std::vector<Vec3>& before, Real h, ChainScratch& scratch, state::Tables& tables);
+                  const std::vector<state::VelocityLine>& before, Real h, ChainScratch& scratch,
+                  state::Tables& tables);
 
 }  // namespace hooke::solver

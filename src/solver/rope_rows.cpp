@@ -13,10 +13,11 @@ namespace {
 using V = DVec3;
 using M = math::Symmetric3<double>;
 
-constexpr double kStiffnessOnBody = 10;  ///< rho of a point over the heaviest mass that it touches.
-constexpr double kMostStiffness = 1e6;   ///< The same over its own mass: inverting loses the square of it.
-constexpr double kTetherRecovery = 10;   ///< Share of what a tether is too long by, per second [1/s].
-constexpr double kTetherSpeed = 0.1;     ///< At most [m/s].
+constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
+constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
+constexpr double kTetherRecovery = 10;    ///< Share of what a tether is too long by, per second [1/s].
+constexpr double kTetherSpeed = 0.1;      ///< At most [m/s].
+constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
 
 V across(V n, V v) {
   return v - dot(n, v) * n;
@@ -33,15 +34,7 @@ V vector_of(const Lane& lane) {
 
 wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const RopeNode& a,
                                                    const RopeNode& b) {
-  return {lane_of(b.x - a.x),
-          lane_of(b.u - a.u),
-          lane_of(b.v_before - a.v_before),
-          e.rest,
-          e.stiffness,
-          e.damping,
-          e.limit,
-          lighter_end(a.mass, a.w, b.mass, b.w),
-          e.limited ? 1.0 : 0.0,
+  return {lane_of(b.x - a.x), lane_of(b.u - a.u), lane_of(b.v_before - a.v_before), e.limited ? 1.0 : 0.0,
           e.tension_bound};
 }
 
@@ -97,7 +90,12 @@ bool update_point_touch(double h, bool let_go, V u, RopeTouch& t) {
 }
 
 wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
-  return {h, 1 / h, 1 / setting.compliance, setting.first ? 1.0 : 0.0, lane_of(setting.turning)};
+  return {h,
+          1 / h,
+          setting.compliance,
+          1 / setting.compliance,
+          setting.first ? 1.0 : 0.0,
+          lane_of(setting.turning)};
 }
 
 RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
@@ -143,18 +141,44 @@ RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const sta
 
 }  // namespace
 
-void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
-               RopeScratch& s) {
+void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+               const state::Tables& tables, RopeScratch& s) {
   const auto first = static_cast<std::uint32_t>(s.nodes.size());
   for (std::uint32_t i = 0; i < chain.node_count; ++i) {
     const std::uint32_t row = chain.first_particle + i;
-    s.nodes.push_back(load_node(row, before[row], tables.particles));
+    s.nodes.push_back(load_node(row, before[row].v, tables.particles));
   }
   for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-    s.segments.push_back(load_segment(chain.first_segment + i, tables.segments));
-    s.segments.back().a = first + i;
+    const std::size_t row = chain.first_segment + i;
+    const RopeNode& a = s.nodes[first + i];
+    const RopeNode& b = s.nodes[first + i + 1];
+    RopeSegment e;
+    e.a = first + i;
+    e.traits = segment_traits(row, lighter_end(a.mass, a.w, b.mass, b.w), h, tables.segments);
+    e.tension_bound = first_tension_bound(row, tables.segments);
+    e.limited = tables.segments.limited[row] != 0;
+    s.segments.push_back(e);
   }
   load_touches(chain, first, h, tables, s.touches);
+}
+
+wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
+                                           const state::Segments& segments) {
+  const auto rest = static_cast<double>(segments.rest_length[row]);
+  const auto limit = static_cast<double>(segments.length_limit[row]);
+  const auto k = static_cast<double>(segments.stiffness[row]);
+  const auto c = static_cast<double>(segments.damping[row]);
+  const double s = c + h * k;
+  const bool rigid = k > kLargestFinite;
+  return {.rest = rest,
+          .per_rest = 1 / rest,
+          .limit = limit,
+          .damping = c,
+          .per_stiffness = 1 / k,
+          .bias = rigid ? 1 / h : k / s,
+          .grip = h * s,
+          .lighter = lighter,
+          .per_lighter = 1 / lighter};
 }
 
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
@@ -236,7 +260,7 @@ RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V lin
 RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std::size_t first_touch,
                           const RopeScratch& s) {
   double rest = 0;
-  for (std::size_t i = first_segment; i < s.segments.size(); ++i) rest += s.segments[i].rest;
+  for (std::size_t i = first_segment; i < s.segments.size(); ++i) rest += s.segments[i].traits.rest;
   const RopeNode& first = s.nodes[first_node];
   const RopeNode& last = s.nodes.back();
   return first_setting(std::span(s.touches).subspan(first_touch), rest, last.x - first.x,
@@ -244,8 +268,8 @@ RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std
 }
 
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeSegment& e) {
-  const auto row =
-      wide::HWY_NAMESPACE::linearized<double>(state_of(e, nodes[e.a], nodes[e.a + 1]), terms_of(setting, h));
+  const auto row = wide::HWY_NAMESPACE::linearized<double>(state_of(e, nodes[e.a], nodes[e.a + 1]), e.traits,
+                                                           terms_of(setting, h), setting.first);
   e.n = vector_of(row.n);
   e.offset = vector_of(row.offset);
   e.along = row.along;
@@ -327,16 +351,17 @@ Unsettled update_touches(double h, bool let_go, RopeScratch& s) {
   return unsettled;
 }
 
-double check_segments(double h, RopeScratch& s, bool& limits_changed) {
+double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+                      std::span<RopeSegment> segments, bool& limits_changed) {
+  const auto terms = terms_of(setting, h);
   double worst = 0;
-  for (RopeSegment& e : s.segments) {
-    const RopeNode& a = s.nodes[e.a];
-    const RopeNode& b = s.nodes[e.a + 1];
-    const bool held = !(a.w > 0) && !(b.w > 0);
-    const auto check = wide::HWY_NAMESPACE::checked<double>(
-        state_of(e, a, b), {lane_of(e.n), lane_of(e.offset), e.along, e.across}, dot(e.n, e.q),
-        held ? 1.0 : 0.0, terms_of({}, h));
+  for (RopeSegment& e : segments) {
+    const RopeNode& a = nodes[e.a];
+    const RopeNode& b = nodes[e.a + 1];
+    const auto check =
+        wide::HWY_NAMESPACE::checked<double>(state_of(e, a, b), e.traits, lane_of(e.n), dot(e.n, e.q), terms);
     e.tension_bound = check.tension_bound;
+    if (!(a.w > 0) && !(b.w > 0)) continue;
     e.limited = check.limited > 0;
     limits_changed = limits_changed || check.limit_changed > 0;
     worst = std::max(worst, check.error);

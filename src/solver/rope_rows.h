@@ -2,6 +2,7 @@
 
 #include "math/symmetric.h"
 #include "solver/chains.h"
+#include "solver/wide/ropes.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -33,7 +34,7 @@ struct RopeSegment {
   DVec3 n, offset;
   math::Symmetric3<double> compliance;  ///< E
   DVec3 q;                              ///< Impulse.
-  double rest = 0, stiffness = 0, damping = 0, limit = 0;
+  wide::SegmentTraits<double> traits = {};
   double tension_bound = 0;      ///< T+
   double along = 0, across = 0;  ///< Of E^-1.
   bool limited = false;
@@ -105,21 +106,12 @@ inline constexpr double kSlidingShare =
 inline constexpr double kSettledDrag = 0.1;  ///< Share by which drag may still change.
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
-void load_rope(const Chain& chain, const std::vector<Vec3>& before, double h, const state::Tables& tables,
-               RopeScratch& s);
+void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+               const state::Tables& tables, RopeScratch& s);
 
-/// One segment, as load_rope makes it, but for its node. Inline, as load_node: chains.cpp takes some of its
-/// numbers, for each segment and substep, and a call would fill all of them.
-[[nodiscard]] inline RopeSegment load_segment(std::size_t row, const state::Segments& segments) {
-  RopeSegment e;
-  e.rest = static_cast<double>(segments.rest_length[row]);
-  e.stiffness = static_cast<double>(segments.stiffness[row]);
-  e.damping = static_cast<double>(segments.damping[row]);
-  e.limit = static_cast<double>(segments.length_limit[row]);
-  e.tension_bound = static_cast<double>(segments.tension[row]);
-  e.limited = segments.limited[row] != 0;
-  return e;
-}
+/// What stays of a segment; `lighter` is the mass of its lighter end [kg].
+[[nodiscard]] wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
+                                                         const state::Segments& segments);
 
 /// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
 void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
@@ -141,6 +133,11 @@ void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t f
   constexpr double kHeld = std::numeric_limits<double>::infinity();
   const double m = std::min(inverse_a > 0 ? mass_a : kHeld, inverse_b > 0 ? mass_b : kHeld);
   return m < kHeld ? m : 1.0;
+}
+
+/// T+ at the start of a substep [N].
+[[nodiscard]] inline double first_tension_bound(std::size_t row, const state::Segments& segments) {
+  return std::max(0.0, static_cast<double>(segments.tension[row]));
 }
 
 /// One node, as load_rope makes it.
@@ -231,8 +228,9 @@ Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& t
 /// The same for all, of points too.
 [[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
 
-/// Largest relative length error left; raises T+ and moves segments onto or off their limits.
-double check_segments(double h, RopeScratch& s, bool& limits_changed);
+/// Largest relative length error left in a rope; raises T+ and moves segments onto or off their limits.
+double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+                      std::span<RopeSegment> segments, bool& limits_changed);
 
 /// How many solutions a substep takes at least, by what update_touches said.
 [[nodiscard]] int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled);

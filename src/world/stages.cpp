@@ -148,7 +148,7 @@ void refresh_derived(WorldData& world) {
                             .bend_damping = static_cast<double>(object.bend_damping)});
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
-  world.velocity_before.assign(count, Vec3{});
+  world.velocity_before.assign(count, state::VelocityLine{});
   world.wind.assign(count, solver::AirLine{});
   world.law_force.assign(count, Vec3{});
 }
@@ -189,10 +189,8 @@ void begin_particle_substep(WorldData& world, Real h) {
   if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
   for_matched(world, h, solver::damp_shape);
   for (const solver::Chain& chain : world.chains) {
-    for (std::uint32_t i = 0; i < chain.node_count; ++i) {
-      const std::size_t p = chain.first_particle + i;
-      world.velocity_before[p] = world.tables.particles.velocity[p].v;
-    }
+    const auto first = world.tables.particles.velocity.begin() + chain.first_particle;
+    std::copy(first, first + chain.node_count, world.velocity_before.begin() + chain.first_particle);
   }
 }
 

@@ -103,15 +103,15 @@ struct WorldData {
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
-  std::vector<Vec3> velocity_before;         ///< Of rope nodes, before the substep's forces.
-  std::vector<solver::AirLine> wind;         ///< At each particle [m/s].
-  std::vector<Vec3> law_force;               ///< What force laws ask for [N].
-  std::vector<std::uint32_t> law_bodies;     ///< What force laws see: rows in ascending order.
-  std::vector<std::uint32_t> dipole_bodies;  ///< Those with a dipole moment: rows in ascending order.
-  std::vector<solver::Dipole> dipoles;       ///< Where they are in this substep, and those of fields.
-  bool bodies_surrounded = false;            ///< Something besides laws pushes them in each substep.
-  std::vector<Vec3> given_force;             ///< On bodies, without fields and force laws [N].
-  std::vector<Vec3> given_torque;            ///< [N m]
+  std::vector<state::VelocityLine> velocity_before;  ///< Of rope nodes, before the substep's forces.
+  std::vector<solver::AirLine> wind;                 ///< At each particle [m/s].
+  std::vector<Vec3> law_force;                       ///< What force laws ask for [N].
+  std::vector<std::uint32_t> law_bodies;             ///< What force laws see: rows in ascending order.
+  std::vector<std::uint32_t> dipole_bodies;          ///< Those with a dipole moment: rows in ascending order.
+  std::vector<solver::Dipole> dipoles;               ///< Where they are in this substep, and those of fields.
+  bool bodies_surrounded = false;                    ///< Something besides laws pushes them in each substep.
+  std::vector<Vec3> given_force;                     ///< On bodies, without fields and force laws [N].
+  std::vector<Vec3> given_torque;                    ///< [N m]
 
   std::unique_ptr<parallel::ThreadPool> pool;
   bool stepping = false;

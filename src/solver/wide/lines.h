@@ -41,16 +41,17 @@ HWY_INLINE hn::Vec<D> load_lines(D tag, const float* base, const std::uint32_t* 
 }
 
 /// Four vectors of lines to four of components, and back: the transposition is its own inverse.
-HWY_INLINE void transpose(Vector& r0, Vector& r1, Vector& r2, Vector& r3) {
-  const hn::Repartition<double, Lanes> pairs;
-  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r0, r1));
-  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(kTag, r2, r3));
-  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r0, r1));
-  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(kTag, r2, r3));
-  r0 = hn::BitCast(kTag, hn::InterleaveLower(pairs, low01, low23));
-  r1 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, low01, low23));
-  r2 = hn::BitCast(kTag, hn::InterleaveLower(pairs, high01, high23));
-  r3 = hn::BitCast(kTag, hn::InterleaveUpper(pairs, high01, high23));
+template <class D>
+HWY_INLINE void transpose(D tag, hn::Vec<D>& r0, hn::Vec<D>& r1, hn::Vec<D>& r2, hn::Vec<D>& r3) {
+  const hn::Repartition<double, D> pairs;
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(tag, r0, r1));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(tag, r2, r3));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(tag, r0, r1));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(tag, r2, r3));
+  r0 = hn::BitCast(tag, hn::InterleaveLower(pairs, low01, low23));
+  r1 = hn::BitCast(tag, hn::InterleaveUpper(pairs, low01, low23));
+  r2 = hn::BitCast(tag, hn::InterleaveLower(pairs, high01, high23));
+  r3 = hn::BitCast(tag, hn::InterleaveUpper(pairs, high01, high23));
 }
 
 template <class D>
@@ -73,7 +74,7 @@ struct Columns {
 HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
   Columns c = {load_lines(kTag, base, index), load_lines(kTag, base, index + 1),
                load_lines(kTag, base, index + 2), load_lines(kTag, base, index + 3)};
-  transpose(c.x, c.y, c.z, c.w);
+  transpose(kTag, c.x, c.y, c.z, c.w);
   return c;
 }
 
@@ -83,12 +84,12 @@ HWY_INLINE Columns load_offsets(const float* base, const std::uint32_t* to, cons
     return hn::Sub(load_lines(kTag, base, to + j), load_lines(kTag, base, from + j));
   };
   Columns c = {offset(0), offset(1), offset(2), offset(3)};
-  transpose(c.x, c.y, c.z, c.w);
+  transpose(kTag, c.x, c.y, c.z, c.w);
   return c;
 }
 
 HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index) {
-  transpose(c.x, c.y, c.z, c.w);
+  transpose(kTag, c.x, c.y, c.z, c.w);
   store_lines(kTag, c.x, base, index);
   store_lines(kTag, c.y, base, index + 1);
   store_lines(kTag, c.z, base, index + 2);

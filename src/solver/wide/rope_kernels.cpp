@@ -1,4 +1,4 @@
-/// Ropes over lanes, then the dispatch. The arithmetic stands in rope_sweep.h.
+/// Ropes over lanes, then the dispatch. The arithmetic stands in rope_sweep.h and rope_lines.h.
 
 #include "solver/wide/ropes.h"
 #include "solver/wide/wide.h"
@@ -13,16 +13,28 @@
 // After Highway, which includes this file anew for each instruction set.
 #include "solver/wide/double_vectors.h"
 #include "solver/wide/rope_sweep.h"
+#include "solver/wide/rope_vectors.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-void solve_ropes_here(double h, RopeLanes<kRopeLanes>& ropes) {
 #if HWY_TARGET == HWY_SCALAR
-  solve_rope_lanes<double>(h, ropes);
+using Number = double;
 #else
-  solve_rope_lanes<WideDouble>(h, ropes);
+using Number = WideDouble;
 #endif
+
+void load_ropes_here(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
+  load_rope_lanes<Number>(places, ropes);
+}
+
+void solve_ropes_here(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
+  solve_rope_lanes<Number>(h, traits, ropes);
+}
+
+void store_ropes_here(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+                      const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
+  store_rope_lanes<Number>(h, places, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
@@ -31,11 +43,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hooke::solver::wide {
 
+HWY_EXPORT(load_ropes_here);
 HWY_EXPORT(solve_ropes_here);
+HWY_EXPORT(store_ropes_here);
 
-void solve_ropes(double h, RopeLanes<kRopeLanes>& ropes) {
-  if (is_scalar()) return solve_ropes_scalar(h, ropes);
-  HWY_DYNAMIC_DISPATCH(solve_ropes_here)(h, ropes);
+void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
+  if (is_scalar()) return load_ropes_scalar(places, ropes);
+  HWY_DYNAMIC_DISPATCH(load_ropes_here)(places, ropes);
+}
+
+void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
+  if (is_scalar()) return solve_ropes_scalar(h, traits, ropes);
+  HWY_DYNAMIC_DISPATCH(solve_ropes_here)(h, traits, ropes);
+}
+
+void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+                 const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
+  if (is_scalar()) return store_ropes_scalar(h, places, traits, chosen, ropes);
+  HWY_DYNAMIC_DISPATCH(store_ropes_here)(h, places, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide
@@ -45,8 +70,17 @@ void solve_ropes(double h, RopeLanes<kRopeLanes>& ropes) {
 
 namespace hooke::solver::wide {
 
-void solve_ropes(double h, RopeLanes<kRopeLanes>& ropes) {
-  solve_ropes_scalar(h, ropes);
+void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
+  load_ropes_scalar(places, ropes);
+}
+
+void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
+  solve_ropes_scalar(h, traits, ropes);
+}
+
+void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+                 const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
+  store_ropes_scalar(h, places, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide

@@ -9,6 +9,7 @@
 #endif
 
 #include "solver/wide/numbers.h"
+#include "solver/wide/ropes.h"
 
 #include <hwy/highway.h>
 
@@ -18,14 +19,13 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 constexpr double kWaveDamping = 0.2;       ///< Share of the geometric stiffness that damps waves.
 constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
 constexpr double kLimitTolerance = 1e-4;
-constexpr double kFirmer = 1.0001;        ///< Than its stiffness says, by the most that `along` may be.
-constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
+constexpr double kFirmer = 1.0001;    ///< Than its stiffness says, by the most that `along` may be.
+constexpr double kNoLength = 1e-100;  ///< Shorter has no direction [m].
 
 template <class Number>
 struct SegmentState {
   Triple<Number> line, relative, before;  ///< x_b - x_a, u_b - u_a, and that before this substep's forces.
-  Number rest, stiffness, damping, limit, lighter;
-  Number limited, tension_bound;
+  Number limited, tension_bound;          ///< 1 or 0; T+, not negative.
 };
 
 /// q = K (u_b - u_a - offset), K = `along` n, `across` beside it: 1 / gamma and beta.
@@ -39,7 +39,8 @@ struct SegmentRow {
 template <class Number>
 struct RopeTerms {
   Number h, per_h;
-  Number most_along, first;  ///< `along` over the lighter mass, at most; 1 or 0.
+  Number compliance, most_along;  ///< chi; `along` over the lighter mass, at most, 1 / chi.
+  Number first;                   ///< 1 or 0.
   Triple<Number> turning;
 };
 
@@ -60,47 +61,100 @@ HWY_INLINE Triple<Number> across(const Triple<Number>& n, const Triple<Number>& 
   return difference(v, scaled(dot(n, v), n));
 }
 
-/// Along d; down for none.
+/// A vector's length and direction, and a quotient that shares the division for it.
 template <class Number>
-HWY_INLINE Triple<Number> direction_of(const Triple<Number>& d, Number length) {
-  const Number zero(0.0);
-  return choose3(length, scaled(quotient(Number(1.0), length), d), Triple<Number>{zero, Number(-1.0), zero});
-}
+struct Direction {
+  Triple<Number> n;
+  Number length, quotient;  ///< The latter is 1 / divisor.
+};
 
+/// Down if there is none.
 template <class Number>
-HWY_INLINE Number is_rigid(const SegmentState<Number>& at) {
-  return larger(at.limited, one_if_above(at.stiffness, Number(kLargestFinite)));
-}
-
-template <class Number>
-HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const RopeTerms<Number>& terms) {
-  const Number zero(0.0);
-  const Number h = terms.h;
-  const auto first = above(terms.first, zero);
-  const Triple<Number> relative = choose3(terms.first, Triple<Number>{zero, zero, zero}, at.relative);
-  const Triple<Number> d = sum(at.line, scaled(h, relative));
+HWY_INLINE Direction<Number> direction_of(const Triple<Number>& d, Number divisor) {
+  const Number none(kNoLength);
   const Number length = root(dot(d, d));
+  const Number size = larger(length, none);
+  const Number per_both = quotient(Number(1.0), size * divisor);
+  Direction<Number> result = {scaled(per_both * divisor, d), length, per_both * size};
+  if (any(above(none, length))) {
+    const Number zero(0.0);
+    const Number is_none = one_if_above(none, length);
+    result.n = choose3(is_none, Triple<Number>{zero, Number(-1.0), zero}, result.n);
+  }
+  return result;
+}
+
+/// What a segment may not be firmer than: chi as a stiffness.
+template <class Number>
+HWY_INLINE Number most_along(const SegmentTraits<Number>& traits, const RopeTerms<Number>& terms) {
+  return terms.most_along * traits.lighter;
+}
+
+/// How much longer than it should be.
+template <class Number>
+HWY_INLINE Number excess(Number length, const SegmentTraits<Number>& traits, Number limited) {
+  return length - choose(above(limited, Number(0.0)), traits.limit, traits.rest);
+}
+
+/// The stiffness along, and b, of one that may be at its limit.
+template <class Number>
+HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                          const RopeTerms<Number>& terms, SegmentRow<Number>& row) {
+  const auto limited = above(at.limited, Number(0.0));
+  const Number most = most_along(traits, terms);
+  row.along = choose(limited, most, smaller(traits.grip, most));
+  return choose(limited, terms.per_h, traits.bias);
+}
+
+/// At the start of the substep.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
+                                               const SegmentTraits<Number>& traits,
+                                               const RopeTerms<Number>& terms) {
+  const Number pulled = terms.h * terms.h * at.tension_bound;
+  const Number g = pulled * traits.per_rest;
+  const Number held = g + Number(kTransverseFloor) * traits.lighter;
   SegmentRow<Number> row;
-  row.n = direction_of(d, length);
-
-  const auto rigid = above(is_rigid(at), zero);
-  const Number s = at.damping + h * at.stiffness;
-  const Number bias = choose(rigid, terms.per_h, choose(above(s, zero), quotient(at.stiffness, s), zero));
-  const Number most = terms.most_along * at.lighter;
-  row.along = choose(rigid, most, smaller(h * s, most));
-  const Number c = length - choose(above(at.limited, zero), at.limit, at.rest);
-
-  const Number g = quotient(h * h * larger(zero, at.tension_bound), at.rest);
-  const Number floor = Number(kTransverseFloor) * at.lighter;
-  row.across = choose(first, Number(1 + kWaveDamping) * g + floor, g + floor);
-  const Number yields = quotient(Number(1.0), row.across);
-  const Triple<Number> turned =
-      scaled(Number(kWaveDamping) * g * yields, cross(terms.turning, scaled(at.rest, row.n)));
-  const Triple<Number> kept = scaled((g + floor) * yields, across(row.n, at.before));
-  const Triple<Number> transverse =
-      choose3(terms.first, sum(kept, across(row.n, turned)), across(row.n, relative));
-  row.offset = sum(scaled(bias * (h * dot(row.n, relative) - c), row.n), transverse);
+  row.across = held + Number(kWaveDamping) * g;
+  const Direction<Number> way = direction_of(at.line, row.across);
+  row.n = way.n;
+  const Number bias = stiffen(at, traits, terms, row);
+  const Number c = excess(way.length, traits, at.limited);
+  const Number kept = held * way.quotient;
+  const Number turned = Number(kWaveDamping) * pulled * way.quotient;  // d g L / across
+  const Number along = bias * c + kept * dot(row.n, at.before);
+  row.offset = difference(sum(scaled(kept, at.before), scaled(turned, cross(terms.turning, row.n))),
+                          scaled(along, row.n));
   return row;
+}
+
+/// About the last result.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
+                                               const SegmentTraits<Number>& traits,
+                                               const RopeTerms<Number>& terms) {
+  const Number g = terms.h * terms.h * at.tension_bound * traits.per_rest;
+  SegmentRow<Number> row;
+  row.across = g + Number(kTransverseFloor) * traits.lighter;
+  const Direction<Number> way = direction_of(sum(at.line, scaled(terms.h, at.relative)), Number(1.0));
+  row.n = way.n;
+  const Number bias = stiffen(at, traits, terms, row);
+  const Number c = excess(way.length, traits, at.limited);
+  const Number speed = dot(row.n, at.relative);
+  row.offset = sum(at.relative, scaled(bias * (terms.h * speed - c) - speed, row.n));
+  return row;
+}
+
+/// Lanes that are at the start of the substep may stand beside others.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                         const RopeTerms<Number>& terms, bool all_first) {
+  const SegmentRow<Number> row = linearized_first(at, traits, terms);
+  if (all_first) return row;
+  const SegmentRow<Number> again = linearized_again(at, traits, terms);
+  const auto first = above(terms.first, Number(0.0));
+  return {choose3(terms.first, row.n, again.n), choose3(terms.first, row.offset, again.offset),
+          choose(first, row.along, again.along), choose(first, row.across, again.across)};
 }
 
 template <class Number>
@@ -109,29 +163,30 @@ struct SegmentCheck {
   Number error, limit_changed;  ///< Of the length, relative; 1 or 0.
 };
 
-/// After a solution, `at` with its velocities. `pull` is n.q; `held` is 1 if neither end moves.
+/// After a solution, `at` with its velocities, n as it was linearized; `pull` is n.q.
 template <class Number>
-HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentRow<Number>& row,
-                                        Number pull, Number held, const RopeTerms<Number>& terms) {
+HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                        const Triple<Number>& n, Number pull,
+                                        const RopeTerms<Number>& terms) {
   const Number zero(0.0);
   const Number h = terms.h;
   const Triple<Number> d = sum(at.line, scaled(h, at.relative));
   const Number length = root(dot(d, d));
   const Number tension = terms.per_h * pull;
-  const Number s = at.damping + h * at.stiffness;
-  const Number firm = larger(is_rigid(at), one_if_above(h * s, Number(kFirmer) * row.along));
-  const Number expected = choose(above(firm, zero), quotient(h * pull, row.along),
-                                 quotient(tension - at.damping * dot(row.n, at.relative), at.stiffness));
-  const auto limited = above(at.limited, zero);
-  const Number error = length - choose(limited, at.limit, at.rest) - expected;
+  const Number firm =
+      larger(at.limited, one_if_above(traits.grip, Number(kFirmer) * most_along(traits, terms)));
+  const Number expected = choose(above(firm, zero), h * terms.compliance * traits.per_lighter * pull,
+                                 (tension - traits.damping * dot(n, at.relative)) * traits.per_stiffness);
+  const Number error = excess(length, traits, at.limited) - expected;
 
-  const Number over = choose(limited, zero, one_if_above(length, at.limit * Number(1 + kLimitTolerance)));
-  const Number released = choose(limited, one_if_above(h * at.stiffness * (at.limit - at.rest), pull), zero);
-  const auto fixed = above(held, zero);
+  const auto limited = above(at.limited, zero);
+  const Number over = choose(limited, zero, one_if_above(length, traits.limit * Number(1 + kLimitTolerance)));
+  const Number released =
+      choose(limited, one_if_above(h * (traits.limit - traits.rest), pull * traits.per_stiffness), zero);
   SegmentCheck<Number> result;
   result.tension_bound = larger(at.tension_bound, tension);
-  result.error = choose(fixed, zero, quotient(larger(error, zero - error), at.rest));
-  result.limit_changed = choose(fixed, zero, larger(over, released));
+  result.error = larger(error, zero - error) * traits.per_rest;
+  result.limit_changed = larger(over, released);
   result.limited = choose(above(result.limit_changed, zero), over, at.limited);
   return result;
 }

@@ -10,14 +10,14 @@
 /// large as S: differences of both would lose that many digits. So its rank of one is kept apart, and only
 /// multiplies what is small. With B = F - b 1 and
 ///
-///   P = (S + b 1)^-1,  r = P n,  t = n - b r,  t' = n + B^T r,  tau = k / (1 + k n.r),
-///   eta = r.f + t.o,   z = P (f - b o) - tau eta r                        (u, if the next two nodes stood)
+///   P = (S + b 1)^-1,  r = P n,  t' = n + B^T r,  tau = k / (1 + k n.r),
+///   eta = r.(f - b o) + n.o,   z = P (f - b o) - tau eta r                (u, if the next two nodes stood)
 ///
 ///   the next node gets      S: b 1 - B^T P B + tau t' t'^T       f: b o + tau eta n - B^T z
 ///   the one behind that     S: -c^2 (P - tau r r^T)              f: -c z
 ///   between the two         F: -c (P B - tau r t'^T)^T
-///   on the way back         w = u_next - o,  x = F u_next + c u_second,  delta = r.f - t.w - r.x,
-///                           u = P (f + b w - x) - tau delta r,  q = -tau delta n - b (u - w)
+///   on the way back         w = u_next - o,  g = f + b w - F u_next - c u_second,  delta = r.g - n.w,
+///                           u = P g - tau delta r,  n.q = -tau delta - b n.(u - w)
 ///
 /// A node that is held has P = 0 and its velocity: then tau = k, eta = n.(u + o), delta = n.(u - w).
 
@@ -104,12 +104,17 @@ HWY_INLINE void put9(const Columns3<Number>& m, double (&to)[3][3][kCount], int 
 template <class Number, int kCount, bool kBends>
 class RopeSweep {
  public:
-  HWY_INLINE RopeSweep(double h, RopeLanes<kCount>& ropes, int lane)
-      : ropes_(ropes),
+  HWY_INLINE RopeSweep(double h, const RopeTraits<kCount>& traits, RopeLanes<kCount>& ropes, int lane)
+      : traits_(traits),
+        ropes_(ropes),
         lane_(lane),
-        terms_{Number(h), quotient(Number(1.0), Number(h)),
-               quotient(Number(1.0), get<Number>(ropes.compliance + lane)), get<Number>(ropes.first + lane),
-               get3<Number>(ropes.turning, lane)} {}
+        terms_{Number(h),
+               quotient(Number(1.0), Number(h)),
+               get<Number>(ropes.compliance + lane),
+               quotient(Number(1.0), get<Number>(ropes.compliance + lane)),
+               get<Number>(ropes.first + lane),
+               get3<Number>(ropes.turning, lane)},
+        all_first_(!any(above(Number(1.0), terms_.first))) {}
 
   HWY_INLINE void run() {
     forward();
@@ -121,37 +126,39 @@ class RopeSweep {
   struct Pivot {
     Scale<Number> mass;
     Triple<Number> impulse;
-
-    HWY_INLINE void add(const Pivot& other) {
-      mass = sum(mass, other.mass);
-      impulse = sum(impulse, other.impulse);
-    }
   };
 
-  HWY_INLINE SegmentState<Number> state_of(std::size_t i, const Triple<Number>& relative) const {
-    const RopeNodeLanes<kCount>& a = ropes_.nodes[i];
-    const RopeNodeLanes<kCount>& b = ropes_.nodes[i + 1];
-    const RopeSegmentLanes<kCount>& s = ropes_.segments[i];
-    return {difference(get3<Number>(b.x, lane_), get3<Number>(a.x, lane_)),
-            relative,
-            difference(get3<Number>(b.v_before, lane_), get3<Number>(a.v_before, lane_)),
-            get<Number>(s.rest + lane_),
-            get<Number>(s.stiffness + lane_),
-            get<Number>(s.damping + lane_),
-            get<Number>(s.limit + lane_),
-            get<Number>(s.lighter + lane_),
-            get<Number>(s.limited + lane_),
-            get<Number>(s.tension_bound + lane_)};
+  HWY_INLINE SegmentTraits<Number> traits_of(std::size_t i) const {
+    const RopeTraitLanes<kCount>& row = traits_.rows[i];
+    return {get<Number>(row.rest + lane_),          get<Number>(row.per_rest + lane_),
+            get<Number>(row.limit + lane_),         get<Number>(row.damping + lane_),
+            get<Number>(row.per_stiffness + lane_), get<Number>(row.bias + lane_),
+            get<Number>(row.grip + lane_),          get<Number>(row.lighter + lane_),
+            get<Number>(row.per_lighter + lane_)};
   }
 
-  HWY_INLINE Pivot load_pivot(std::size_t i) const {
+  HWY_INLINE SegmentState<Number> state_of(std::size_t i, const Triple<Number>& relative) const {
+    const RopeSegmentLanes<kCount>& s = ropes_.segments[i];
+    return {get3<Number>(s.line, lane_), relative, get3<Number>(s.before, lane_),
+            get<Number>(s.limited + lane_), get<Number>(s.tension_bound + lane_)};
+  }
+
+  /// 1 where a node moves, else 0.
+  HWY_INLINE Number moves(std::size_t i) const {
+    return one_if_above(get<Number>(traits_.rows[i].w + lane_), Number(0.0));
+  }
+
+  /// Adds a node's own mass and impulse, with what touches it.
+  HWY_INLINE void add_own(std::size_t i, Pivot& pivot) const {
     if (ropes_.held[i] != 0) {
       const RopeHoldLanes<kCount>& hold = ropes_.holds[i];
-      return {get6<Number>(hold.mass, lane_), get3<Number>(hold.impulse, lane_)};
+      pivot.mass = sum(pivot.mass, get6<Number>(hold.mass, lane_));
+      pivot.impulse = sum(pivot.impulse, get3<Number>(hold.impulse, lane_));
+    } else {
+      const Number mass = get<Number>(traits_.rows[i].mass + lane_);
+      add_diagonal(mass, pivot.mass);
+      add(mass, get3<Number>(ropes_.nodes[i].v_free, lane_), pivot.impulse);
     }
-    const RopeNodeLanes<kCount>& node = ropes_.nodes[i];
-    const Number mass = get<Number>(node.mass + lane_);
-    return {diagonal(mass), scaled(mass, get3<Number>(node.v_free, lane_))};
   }
 
   /// K = k n n^T + b 1 and o of a segment.
@@ -160,13 +167,14 @@ class RopeSweep {
     Number k, b;
   };
   HWY_INLINE Segment linearize(std::size_t i) {
-    const Triple<Number> relative =
-        difference(get3<Number>(ropes_.nodes[i + 1].u, lane_), get3<Number>(ropes_.nodes[i].u, lane_));
-    const SegmentRow<Number> row = linearized(state_of(i, relative), terms_);
+    Triple<Number> relative = {Number(0.0), Number(0.0), Number(0.0)};
+    if (!all_first_)
+      relative =
+          difference(get3<Number>(ropes_.nodes[i + 1].u, lane_), get3<Number>(ropes_.nodes[i].u, lane_));
+    const SegmentRow<Number> row = linearized(state_of(i, relative), traits_of(i), terms_, all_first_);
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     put3(row.n, segment.n, lane_);
     put3(row.offset, segment.offset, lane_);
-    write(row.along, segment.along + lane_);
     write(row.across, segment.across + lane_);
     return {row.n, row.offset, row.along - row.across, row.across};
   }
@@ -178,24 +186,25 @@ class RopeSweep {
   };
 
   /// The bend of the three nodes from i on.
-  HWY_INLINE void add_bend(std::size_t i, Pivot (&pivots)[3], Meeting& meeting) const {
-    const RopeBendLanes<kCount>& bend = ropes_.bends[i];
-    const Number weights[3] = {
-        get<Number>(bend.before + lane_),
-        Number(0.0) - (get<Number>(bend.before + lane_) + get<Number>(bend.behind + lane_)),
-        get<Number>(bend.behind + lane_)};
+  HWY_INLINE void add_bend(std::size_t i, Pivot& here, Pivot& next, Pivot& second, Meeting& meeting) const {
+    const RopeBendLanes<kCount>& bend = traits_.bends[i];
+    const Number before = get<Number>(bend.before + lane_);
+    const Number behind = get<Number>(bend.behind + lane_);
+    const Number middle = Number(0.0) - (before + behind);
     const Number grip = get<Number>(bend.grip + lane_);
-    const Triple<Number> x[3] = {get3<Number>(ropes_.nodes[i].x, lane_),
-                                 get3<Number>(ropes_.nodes[i + 1].x, lane_),
-                                 get3<Number>(ropes_.nodes[i + 2].x, lane_)};
-    const Triple<Number> change =
-        difference(scaled(weights[2], difference(x[2], x[1])), scaled(weights[0], difference(x[1], x[0])));
+    const Triple<Number> change = difference(scaled(behind, get3<Number>(ropes_.segments[i + 1].line, lane_)),
+                                             scaled(before, get3<Number>(ropes_.segments[i].line, lane_)));
     const Triple<Number> pull = scaled(get<Number>(bend.pull + lane_), change);
-    for (int k = 0; k < 3; ++k)
-      pivots[k].add({diagonal(grip * weights[k] * weights[k]), scaled(weights[k], pull)});
-    add_diagonal(grip * weights[0] * weights[1], meeting.next);
-    add_diagonal(grip * weights[1] * weights[2], meeting.following);
-    meeting.outer = grip * weights[0] * weights[2];
+    const auto add_to = [&](Number weight, Pivot& pivot) HWY_ATTR {
+      add_diagonal(grip * weight * weight, pivot.mass);
+      add(weight, pull, pivot.impulse);
+    };
+    add_to(before, here);
+    add_to(middle, next);
+    add_to(behind, second);
+    add_diagonal(grip * before * middle, meeting.next);
+    add_diagonal(grip * middle * behind, meeting.following);
+    meeting.outer = grip * before * behind;
   }
 
   static HWY_INLINE void add_diagonal(Number s, Columns3<Number>& to) {
@@ -203,68 +212,119 @@ class RopeSweep {
     to.y.y = to.y.y + s;
     to.z.z = to.z.z + s;
   }
+  static HWY_INLINE void add_diagonal(Number s, Scale<Number>& to) {
+    to.xx = to.xx + s;
+    to.yy = to.yy + s;
+    to.zz = to.zz + s;
+  }
 
   HWY_INLINE void forward() {
     const Number zero(0.0);
-    const Columns3<Number> none = full(diagonal(zero));
+    const Columns3<Number> no_meeting = full(diagonal(zero));
+    const Pivot none = {diagonal(zero), {zero, zero, zero}};
     const std::size_t last = ropes_.nodes.size() - 1;
-    Pivot pivots[3] = {load_pivot(0), load_pivot(1), {}};
-    Meeting meeting = {none, none, zero};
+    Pivot here = none;
+    Pivot next = none;
+    Pivot second = none;
+    Meeting meeting = {no_meeting, no_meeting, zero};
     for (std::size_t i = 0; i < last; ++i) {
-      pivots[2] = i + 1 < last ? load_pivot(i + 2) : Pivot{diagonal(zero), {zero, zero, zero}};
       if constexpr (kBends) {
-        if (i + 1 < last) add_bend(i, pivots, meeting);
+        if (i + 1 < last) add_bend(i, here, next, second, meeting);
       }
-      const Segment segment = linearize(i);
-      eliminate(ropes_.nodes[i], segment, pivots, meeting);
-      pivots[0] = pivots[1];
-      pivots[1] = pivots[2];
+      add_own(i, here);
+      eliminate(i, linearize(i), here, next, second, meeting);
+      here = next;
+      if constexpr (kBends) {
+        next = second;
+        second = none;
+      }
     }
+    add_own(last, here);
     RopeNodeLanes<kCount>& node = ropes_.nodes[last];
-    const Number moves = one_if_above(get<Number>(node.w + lane_), zero);
-    put3(choose3(moves, inverse(pivots[0].mass).times(pivots[0].impulse), get3<Number>(node.v_free, lane_)),
+    put3(choose3(moves(last), inverse(here.mass).times(here.impulse), get3<Number>(node.v_free, lane_)),
          node.u, lane_);
   }
 
-  /// Notes what the way back needs; adds what is left to the next two nodes.
-  HWY_INLINE void eliminate(RopeNodeLanes<kCount>& node, const Segment& segment, Pivot (&pivots)[3],
-                            Meeting& meeting) {
+  /// P, r and tau of a node, by one division: with A the cofactors of S + b 1 and D its determinant,
+  /// P = A / D, r = A n / D, tau = k D / (D + k n.A n).
+  struct Inverse {
+    Scale<Number> p;
+    Triple<Number> r;
+    Number tau;
+  };
+  static HWY_INLINE Inverse invert(const Scale<Number>& s, const Segment& segment) {
     const auto& [n, o, k, b] = segment;
-    const Triple<Number>& f = pivots[0].impulse;
-    const Triple<Number> v = get3<Number>(node.v_free, lane_);
-    const Number moves = one_if_above(get<Number>(node.w + lane_), Number(0.0));
-    const Scale<Number> p = scaled(moves, inverse(sum(pivots[0].mass, diagonal(b))));
-    const Triple<Number> r = p.times(n);
-    const Number tau = quotient(k, Number(1.0) + k * dot(n, r));
+    Scale<Number> m = s;
+    add_diagonal(b, m);
+    const Scale<Number> a = cofactors(m);
+    const Number d = determinant(m, a);
+    const Triple<Number> an = a.times(n);
+    const Number whole = d + k * dot(n, an);
+    const Number per_both = quotient(Number(1.0), d * whole);
+    const Number per_d = per_both * whole;
+    return {scaled(per_d, a), scaled(per_d, an), k * d * (per_both * d)};
+  }
+
+  /// Notes what the way back needs; adds what is left to the next two nodes.
+  HWY_INLINE void eliminate(std::size_t i, const Segment& segment, const Pivot& here, Pivot& next,
+                            Pivot& second, Meeting& meeting) {
+    const auto& [n, o, k, b] = segment;
+    RopeNodeLanes<kCount>& node = ropes_.nodes[i];
+    const bool pinned = traits_.pinned[i] != 0;
+    const Triple<Number>& f = here.impulse;
+    auto [p, r, tau] = invert(here.mass, segment);
+    if (pinned) {
+      p = scaled(moves(i), p);
+      r = scaled(moves(i), r);
+      tau = choose(above(moves(i), Number(0.0)), tau, k);
+    }
     put6(p, node.inverse, lane_);
     put3(f, node.impulse, lane_);
     put3(r, node.along, lane_);
     write(tau, node.tau + lane_);
 
-    const auto is_free = above(moves, Number(0.0));
-    const Triple<Number> t = difference(n, scaled(b, r));
-    const Number eta = choose(is_free, dot(r, f) + dot(t, o), dot(n, sum(v, o)));
-    const Triple<Number> z =
-        choose3(moves, difference(p.times(difference(f, scaled(b, o))), scaled(tau * eta, r)), v);
-    const Triple<Number> given = sum(scaled(b, o), scaled(tau * eta, n));
-    if constexpr (kBends) {
-      put9(meeting.next, node.meets, lane_);
-      write(meeting.outer, node.outer + lane_);
-      Columns3<Number> meets = meeting.next;
-      add_diagonal(Number(0.0) - b, meets);
-      const Columns3<Number> pb = product(p, meets);
-      const Triple<Number> t_bent = sum(n, meets.transposed_times(r));
-      pivots[1].add({sum(difference(diagonal(b), symmetric_product(meets, pb)), square(tau, t_bent)),
-                     difference(given, meets.transposed_times(z))});
-      const Number c = meeting.outer;
-      const Scale<Number> far = difference(p, square(moves * tau, r));
-      pivots[2].add({scaled(Number(0.0) - c * c, far), scaled(Number(0.0) - c, z)});
-      add_fill(c, pb, scaled(tau, r), t_bent, meeting.following);
-      meeting = {meeting.following, full(diagonal(Number(0.0))), Number(0.0)};
-    } else {
-      pivots[1].add(
-          {sum(difference(diagonal(b), scaled(b * b, p)), square(tau, t)), sum(given, scaled(b, z))});
+    const Triple<Number> free = difference(f, scaled(b, o));
+    Number given = tau * (dot(r, free) + dot(n, o));
+    Triple<Number> z = difference(p.times(free), scaled(given, r));
+    if (pinned) {
+      const Triple<Number> v = get3<Number>(node.v_free, lane_);
+      z = choose3(moves(i), z, v);
+      given = choose(above(moves(i), Number(0.0)), given, tau * dot(n, sum(v, o)));
     }
+    if constexpr (kBends) {
+      pass_on_bent(i, segment, {p, r, tau}, given, z, next, second, meeting);
+    } else {
+      const Triple<Number> t = difference(n, scaled(b, r));
+      const Scale<Number> kept = scaled(b * b, p);
+      next.mass = difference(square(tau, t), kept);
+      add_diagonal(b, next.mass);
+      next.impulse = sum(scaled(b, sum(o, z)), scaled(given, n));
+    }
+  }
+
+  HWY_INLINE void pass_on_bent(std::size_t i, const Segment& segment, const Inverse& inverse, Number given,
+                               const Triple<Number>& z, Pivot& next, Pivot& second, Meeting& meeting) {
+    const auto& [n, o, k, b] = segment;
+    const auto& [p, r, tau] = inverse;
+    RopeFillLanes<kCount>& fill = ropes_.fills[i];
+    put9(meeting.next, fill.meets, lane_);
+    write(meeting.outer, fill.outer + lane_);
+    Columns3<Number> meets = meeting.next;
+    add_diagonal(Number(0.0) - b, meets);
+    const Columns3<Number> pb = product(p, meets);
+    const Triple<Number> t = sum(n, meets.transposed_times(r));
+    next.mass = sum(next.mass, difference(square(tau, t), symmetric_product(meets, pb)));
+    add_diagonal(b, next.mass);
+    add(b, o, next.impulse);
+    add(given, n, next.impulse);
+    next.impulse = difference(next.impulse, meets.transposed_times(z));
+    const Number c = meeting.outer;
+    Number moving = tau;
+    if (traits_.pinned[i] != 0) moving = moves(i) * tau;
+    second.mass = sum(second.mass, scaled(c * c, difference(square(moving, r), p)));
+    take(c, z, second.impulse);
+    add_fill(c, pb, scaled(tau, r), t, meeting.following);
+    meeting = {meeting.following, full(diagonal(Number(0.0))), Number(0.0)};
   }
 
   /// f -= c (P B - tau r t'^T)^T
@@ -280,67 +340,79 @@ class RopeSweep {
     const std::size_t last = ropes_.nodes.size() - 1;
     Triple<Number> next = get3<Number>(ropes_.nodes[last].u, lane_);
     Triple<Number> second = {zero, zero, zero};
-    Number error = zero;
-    Number changed = zero;
-    Number finite = zero * (next.x + next.y + next.z);
+    Results results = {zero, zero, next.x + next.y + next.z};
     for (std::size_t i = last; i-- > 0;) {
       RopeNodeLanes<kCount>& node = ropes_.nodes[i];
       const RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
-      const Number moves = one_if_above(get<Number>(node.w + lane_), zero);
-      const Triple<Number> v = get3<Number>(node.v_free, lane_);
       const Triple<Number> n = get3<Number>(segment.n, lane_);
       const Number b = get<Number>(segment.across + lane_);
       const Triple<Number> r = get3<Number>(node.along, lane_);
       const Triple<Number> w = difference(next, get3<Number>(segment.offset, lane_));
       Triple<Number> f = get3<Number>(node.impulse, lane_);
       if constexpr (kBends) {
-        f = difference(f, get9<Number>(node.meets, lane_).times(next));
-        take(get<Number>(node.outer + lane_), second, f);
+        f = difference(f, get9<Number>(ropes_.fills[i].meets, lane_).times(next));
+        take(get<Number>(ropes_.fills[i].outer + lane_), second, f);
       }
-      const Number delta = choose(above(moves, zero), dot(r, f) - dot(difference(n, scaled(b, r)), w),
-                                  dot(n, difference(v, w)));
-      const Number pull = get<Number>(node.tau + lane_) * delta;
       const Triple<Number> pushed = sum(f, scaled(b, w));
-      const Triple<Number> u =
-          choose3(moves, difference(get6<Number>(node.inverse, lane_).times(pushed), scaled(pull, r)), v);
+      Number drawn = get<Number>(node.tau + lane_) * (dot(r, pushed) - dot(n, w));
+      Triple<Number> u = difference(get6<Number>(node.inverse, lane_).times(pushed), scaled(drawn, r));
+      if (traits_.pinned[i] != 0) {
+        const Triple<Number> v = get3<Number>(node.v_free, lane_);
+        u = choose3(moves(i), u, v);
+        drawn =
+            choose(above(moves(i), zero), drawn, get<Number>(node.tau + lane_) * dot(n, difference(v, w)));
+      }
       put3(u, node.u, lane_);
-      finite = finite + zero * (u.x + u.y + u.z);
-      const Triple<Number> q = difference(scaled(zero - pull, n), scaled(b, difference(u, w)));
-      check_segment(i, q, difference(next, u), error, changed);
+      results.sum = results.sum + (u.x + u.y + u.z);
+      const Number pull = zero - (drawn + b * dot(n, difference(u, w)));
+      check_segment(i, n, pull, difference(next, u), results);
       second = next;
       next = u;
     }
-    write(error, ropes_.error + lane_);
-    write(changed, ropes_.limits_changed + lane_);
-    write(finite, ropes_.finite + lane_);
+    write(results.error, ropes_.error + lane_);
+    write(results.changed, ropes_.limits_changed + lane_);
+    write(zero * results.sum, ropes_.finite + lane_);
   }
 
-  HWY_INLINE void check_segment(std::size_t i, const Triple<Number>& q, const Triple<Number>& relative,
-                                Number& error, Number& changed) {
+  struct Results {
+    Number error, changed;
+    Number sum;  ///< Of all velocities' components: finite if they are.
+  };
+
+  HWY_INLINE void check_segment(std::size_t i, const Triple<Number>& n, Number pull,
+                                const Triple<Number>& relative, Results& results) {
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
-    const SegmentRow<Number> row = {get3<Number>(segment.n, lane_), get3<Number>(segment.offset, lane_),
-                                    get<Number>(segment.along + lane_), get<Number>(segment.across + lane_)};
-    put3(q, segment.q, lane_);
-    const SegmentCheck<Number> check =
-        checked(state_of(i, relative), row, dot(row.n, q), get<Number>(segment.held + lane_), terms_);
+    write(pull, segment.pull + lane_);
+    const SegmentState<Number> at = state_of(i, relative);
+    SegmentCheck<Number> check = checked(at, traits_of(i), n, pull, terms_);
+    if (traits_.pinned[i] != 0 && traits_.pinned[i + 1] != 0) {
+      // Between two nodes that do not move no length is wrong.
+      const Number zero(0.0);
+      const auto either_moves = above(moves(i) + moves(i + 1), zero);
+      check.error = choose(either_moves, check.error, zero);
+      check.limit_changed = choose(either_moves, check.limit_changed, zero);
+      check.limited = choose(either_moves, check.limited, at.limited);
+    }
     write(check.tension_bound, segment.tension_bound + lane_);
     write(check.limited, segment.limited + lane_);
-    error = larger(check.error, error);
-    changed = larger(check.limit_changed, changed);
+    results.error = larger(check.error, results.error);
+    results.changed = larger(check.limit_changed, results.changed);
   }
 
+  const RopeTraits<kCount>& traits_;
   RopeLanes<kCount>& ropes_;
   int lane_;
   RopeTerms<Number> terms_;
+  bool all_first_;
 };
 
 template <class Number, int kCount>
-HWY_INLINE void solve_rope_lanes(double h, RopeLanes<kCount>& ropes) {
+HWY_INLINE void solve_rope_lanes(double h, const RopeTraits<kCount>& traits, RopeLanes<kCount>& ropes) {
   for (int lane = 0; lane < kCount; lane += kLanesOf<Number>) {
-    if (ropes.bends.empty()) {
-      RopeSweep<Number, kCount, false>(h, ropes, lane).run();
+    if (traits.bends.empty()) {
+      RopeSweep<Number, kCount, false>(h, traits, ropes, lane).run();
     } else {
-      RopeSweep<Number, kCount, true>(h, ropes, lane).run();
+      RopeSweep<Number, kCount, true>(h, traits, ropes, lane).run();
     }
   }
 }

@@ -27,19 +27,20 @@ template <class Number>
 HWY_INLINE Scale<Number> scaled(Number s, const Scale<Number>& a) {
   return {s * a.xx, s * a.xy, s * a.xz, s * a.yy, s * a.yz, s * a.zz};
 }
+template <class Number>
+HWY_INLINE Scale<Number> cofactors(const Scale<Number>& m) {
+  return {m.yy * m.zz - m.yz * m.yz, m.xz * m.yz - m.xy * m.zz, m.xy * m.yz - m.xz * m.yy,
+          m.xx * m.zz - m.xz * m.xz, m.xy * m.xz - m.xx * m.yz, m.xx * m.yy - m.xy * m.xy};
+}
+template <class Number>
+HWY_INLINE Number determinant(const Scale<Number>& m, const Scale<Number>& cofactors) {
+  return m.xx * cofactors.xx + m.xy * cofactors.xy + m.xz * cofactors.xz;
+}
 /// By cofactors, as math::inverse; what stands there is not compiled for the instruction set.
 template <class Number>
 HWY_INLINE Scale<Number> inverse(const Scale<Number>& m) {
-  const Number xx = m.yy * m.zz - m.yz * m.yz;
-  const Number xy = m.xz * m.yz - m.xy * m.zz;
-  const Number xz = m.xy * m.yz - m.xz * m.yy;
-  const Number s = quotient(Number(1.0), m.xx * xx + m.xy * xy + m.xz * xz);
-  return {s * xx,
-          s * xy,
-          s * xz,
-          s * (m.xx * m.zz - m.xz * m.xz),
-          s * (m.xy * m.xz - m.xx * m.yz),
-          s * (m.xx * m.yy - m.xy * m.xy)};
+  const Scale<Number> a = cofactors(m);
+  return scaled(quotient(Number(1.0), determinant(m, a)), a);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
