@@ -73,8 +73,12 @@ DVec3 side_of(Vec3 velocity) {
   return side == DVec3{} ? DVec3{1, 0, 0} : side;
 }
 
+bool has_gusts(const WindDesc& wind) {
+  return wind.gust != Real(0) || wind.side_gust != Real(0);
+}
+
 Vec3 wind_at(const WindDesc& wind, DVec3 place, double time, std::uint64_t step) {
-  if (wind.gust == Real(0) && wind.side_gust == Real(0)) return wind.velocity;
+  if (!has_gusts(wind)) return wind.velocity;
   const Gust gust =
       wind.gusts == WindDesc::Gusts::kPaper ? paper_gust(wind, step) : smooth_gust(wind, place, time);
   const DVec3 main = vector_cast<double>(wind.velocity);

@@ -11,6 +11,9 @@ namespace hooke::solver {
 /// `step` matters to WindDesc::Gusts::kPaper only.
 [[nodiscard]] Vec3 wind_at(const WindDesc& wind, DVec3 place, double time, std::uint64_t step);
 
+/// Whether it is not the same everywhere and always.
+[[nodiscard]] bool has_gusts(const WindDesc& wind);
+
 /// Horizontal unit vector across the mean wind; x for a vertical or missing wind.
 [[nodiscard]] DVec3 side_of(Vec3 velocity);
 

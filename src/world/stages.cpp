@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace hooke::world {
 
@@ -30,6 +31,28 @@ bool air_moves(const state::Tables& tables, const state::Deformable& object) {
          (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
 }
 
+/// Of consecutive numbers. Their products with zero are zero or not a number; eight sums, for vectors.
+bool all_finite(const Real* numbers, std::size_t count) {
+  constexpr std::size_t kSums = 8;
+  Real sums[kSums] = {};
+  std::size_t i = 0;
+  for (; i + kSums <= count; i += kSums) {
+    for (std::size_t k = 0; k < kSums; ++k) sums[k] += Real(0) * numbers[i + k];
+  }
+  for (; i < count; ++i) sums[0] += Real(0) * numbers[i];
+  return std::all_of(std::begin(sums), std::end(sums), [](Real sum) { return sum == Real(0); });
+}
+
+bool all_finite(const state::Particles& particles) {
+  const std::size_t count = 4 * particles.position.size();
+  return all_finite(reinterpret_cast<const Real*>(particles.position.data()), count) &&
+         all_finite(reinterpret_cast<const Real*>(particles.velocity.data()), count);
+}
+
+bool all_finite(const std::vector<Real>& numbers) {
+  return all_finite(numbers.data(), numbers.size());
+}
+
 /// Calls `work` with ranges that cover the rows [first, end) of a table.
 template <class Work>
 void for_rows(const WorldData& world, int first, int end, int grain, Work work) {
@@ -47,8 +70,14 @@ void for_particles(const WorldData& world, const state::Deformable& object, Work
 
 void read_wind(WorldData& world, double time) {
   const state::Tables& tables = world.tables;
+  const bool even = !solver::has_gusts(tables.desc.wind);
   for (const state::Deformable& object : tables.objects) {
     if (!object.feels_air()) continue;
+    if (even) {
+      const auto first = world.wind.begin() + object.particles.first;
+      std::fill(first, first + object.particles.count, solver::AirLine{tables.desc.wind.velocity, Real(0)});
+      continue;
+    }
     for_particles(world, object, [&](Range rows) {
       for (int p = rows.begin; p < rows.end; ++p) {
         const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
@@ -258,6 +287,7 @@ void call_force_laws(WorldData& world, double time, Real h) {
 
 std::uint32_t quarantine_non_finite(WorldData& world) {
   state::Particles& particles = world.tables.particles;
+  if (all_finite(particles) && all_finite(world.tables.segments.tension)) return 0;
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     if (is_finite(particles.position[i].x) && is_finite(particles.velocity[i].v)) continue;
