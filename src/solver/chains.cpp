@@ -118,7 +118,7 @@ class Group {
     load(members, source);
     bool done[kCount] = {};
     for (int solves = 1;; ++solves) {
-      hold(members.traits(), source.h);
+      hold(source.h);
       wide::solve_ropes(source.h, members.traits(), ropes_);
       bool chosen[kCount] = {};
       bool all_done = true;
@@ -229,18 +229,18 @@ class Group {
     return one;
   }
 
-  void hold(const wide::RopeTraits<kCount>& traits, double h) {
+  void hold(double h) {
     std::fill(ropes_.held.begin(), ropes_.held.end(), 0);
     for (int lane = 0; lane < kCount; ++lane) {
       for_each_touched(touches_[lane], [&](std::span<const RopeTouch> at_node) {
         const std::uint32_t i = at_node.front().node;
-        note_held(traits, i, h);
-        put_hold(hold_of(at_node, node_at(traits, i, lane), h), i, lane);
+        note_held(i);
+        put_hold(hold_of(at_node, {}, h), i, lane);
       });
     }
     for (int lane = 0; lane < kCount; ++lane) {
       for (const AnchorRows& anchor : anchors_[lane]) {
-        note_held(traits, anchor.node, h);
+        note_held(anchor.node);
         NodeHold hold = hold_at(anchor.node, lane);
         for (int k = 0; k < 3; ++k) {
           const double grip = 1 / anchor.gamma[k];
@@ -252,11 +252,13 @@ class Group {
     }
   }
 
-  /// From now on `holds` counts for a node; nothing touches it yet.
-  void note_held(const wide::RopeTraits<kCount>& traits, std::uint32_t i, double h) {
+  /// From now on `holds` counts for a node; nothing touches it yet. A sum with -0 is what it was to the bit,
+  /// so that no lane feels what touches another.
+  void note_held(std::uint32_t i) {
     if (ropes_.held[i] != 0) return;
     ropes_.held[i] = 1;
-    for (int k = 0; k < kCount; ++k) put_hold(hold_of({}, node_at(traits, i, k), h), i, k);
+    constexpr NodeHold kNothing = {{-0.0, -0.0, -0.0, -0.0, -0.0, -0.0}, {-0.0, -0.0, -0.0}};
+    for (int k = 0; k < kCount; ++k) put_hold(kNothing, i, k);
   }
 
   [[nodiscard]] NodeHold hold_at(std::uint32_t i, int lane) const {

@@ -95,7 +95,8 @@ wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, doub
           setting.compliance,
           1 / setting.compliance,
           setting.first ? 1.0 : 0.0,
-          lane_of(setting.turning)};
+          lane_of(setting.turning),
+          true};
 }
 
 RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
@@ -358,8 +359,8 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
   for (RopeSegment& e : segments) {
     const RopeNode& a = nodes[e.a];
     const RopeNode& b = nodes[e.a + 1];
-    const auto check =
-        wide::HWY_NAMESPACE::checked<double>(state_of(e, a, b), e.traits, lane_of(e.n), dot(e.n, e.q), terms);
+    const auto check = wide::HWY_NAMESPACE::checked<double>(state_of(e, a, b), e.traits, dot(e.n, e.q),
+                                                            dot(e.n, b.u - a.u), terms);
     e.tension_bound = check.tension_bound;
     if (!(a.w > 0) && !(b.w > 0)) continue;
     e.limited = check.limited > 0;

@@ -54,15 +54,12 @@ class RopeTransfer {
  private:
   static constexpr int kWide = kLanesOf<Number>;
 
-  /// Where number `i` behind each lane's row is, rows being `stride` long.
+  /// Where each lane's row is in a table of rows of `stride` numbers.
   struct Lines {
     std::uint32_t of[kWide];
 
     HWY_INLINE Lines(const std::uint32_t (&first)[kCount], int lane, std::uint32_t stride) {
       for (int k = 0; k < kWide; ++k) of[k] = stride * first[lane + k];
-    }
-    HWY_INLINE void move_on() {
-      for (std::uint32_t& at : of) at += 4;
     }
   };
 
@@ -73,17 +70,17 @@ class RopeTransfer {
   }
 
   HWY_INLINE void load_nodes(RopeLanes<kCount>& ropes) const {
-    Lines lines(places_.first_particle, lane_, 4);
+    const Lines lines(places_.first_particle, lane_, 4);
     Triple<Number> x = vector_at(places_.position, lines);
     Triple<Number> before = vector_at(places_.before, lines);
     put3(vector_at(places_.velocity, lines), ropes.nodes[0].v_free, lane_);
     for (std::size_t i = 0; i < ropes.segments.size(); ++i) {
-      lines.move_on();
-      const Triple<Number> next_x = vector_at(places_.position, lines);
-      const Triple<Number> next_before = vector_at(places_.before, lines);
+      const std::size_t next = 4 * (i + 1);
+      const Triple<Number> next_x = vector_at(places_.position + next, lines);
+      const Triple<Number> next_before = vector_at(places_.before + next, lines);
       put3(difference(next_x, x), ropes.segments[i].line, lane_);
       put3(difference(next_before, before), ropes.segments[i].before, lane_);
-      put3(vector_at(places_.velocity, lines), ropes.nodes[i + 1].v_free, lane_);
+      put3(vector_at(places_.velocity + next, lines), ropes.nodes[i + 1].v_free, lane_);
       x = next_x;
       before = next_before;
     }
@@ -94,11 +91,10 @@ class RopeTransfer {
     const Number zero(0.0);
     const std::size_t count = ropes.segments.size();
     const std::size_t quads = count / 4 * 4;
-    Lines lines(places_.first_segment, lane_, 1);
+    const Lines lines(places_.first_segment, lane_, 1);
     for (std::size_t i = 0; i < quads; i += 4) {
       Quad<Number> q;
-      read_line(places_.tension, lines.of, q);
-      lines.move_on();
+      read_line(places_.tension + i, lines.of, q);
       const Number tension[4] = {q.x, q.y, q.z, q.w};
       for (std::size_t j = 0; j < 4; ++j)
         write(larger(tension[j], zero), ropes.segments[i + j].tension_bound + lane_);

@@ -32,6 +32,7 @@ struct SegmentState {
 template <class Number>
 struct SegmentRow {
   Triple<Number> n, offset;
+  Number n_offset;  ///< n.offset
   Number along, across;
 };
 
@@ -42,6 +43,7 @@ struct RopeTerms {
   Number compliance, most_along;  ///< chi; `along` over the lighter mass, at most, 1 / chi.
   Number first;                   ///< 1 or 0.
   Triple<Number> turning;
+  bool limits;  ///< Whether any of them has a largest length.
 };
 
 /// 1 for yes, 0 for no.
@@ -54,11 +56,6 @@ template <class Number>
 HWY_INLINE Triple<Number> choose3(Number flag, const Triple<Number>& yes, const Triple<Number>& no) {
   const auto condition = above(flag, Number(0.0));
   return {choose(condition, yes.x, no.x), choose(condition, yes.y, no.y), choose(condition, yes.z, no.z)};
-}
-
-template <class Number>
-HWY_INLINE Triple<Number> across(const Triple<Number>& n, const Triple<Number>& v) {
-  return difference(v, scaled(dot(n, v), n));
 }
 
 /// A vector's length and direction, and a quotient that shares the division for it.
@@ -90,19 +87,23 @@ HWY_INLINE Number most_along(const SegmentTraits<Number>& traits, const RopeTerm
   return terms.most_along * traits.lighter;
 }
 
-/// How much longer than it should be.
+/// How long it should be without a force.
 template <class Number>
-HWY_INLINE Number excess(Number length, const SegmentTraits<Number>& traits, Number limited) {
-  return length - choose(above(limited, Number(0.0)), traits.limit, traits.rest);
+HWY_INLINE Number target_length(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                const RopeTerms<Number>& terms) {
+  if (!terms.limits) return traits.rest;
+  return choose(above(at.limited, Number(0.0)), traits.limit, traits.rest);
 }
 
 /// The stiffness along, and b, of one that may be at its limit.
 template <class Number>
 HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                           const RopeTerms<Number>& terms, SegmentRow<Number>& row) {
-  const auto limited = above(at.limited, Number(0.0));
   const Number most = most_along(traits, terms);
-  row.along = choose(limited, most, smaller(traits.grip, most));
+  row.along = smaller(traits.grip, most);
+  if (!terms.limits) return traits.bias;
+  const auto limited = above(at.limited, Number(0.0));
+  row.along = choose(limited, most, row.along);
   return choose(limited, terms.per_h, traits.bias);
 }
 
@@ -119,12 +120,13 @@ HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
   const Direction<Number> way = direction_of(at.line, row.across);
   row.n = way.n;
   const Number bias = stiffen(at, traits, terms, row);
-  const Number c = excess(way.length, traits, at.limited);
+  const Number c = way.length - target_length(at, traits, terms);
   const Number kept = held * way.quotient;
   const Number turned = Number(kWaveDamping) * pulled * way.quotient;  // d g L / across
-  const Number along = bias * c + kept * dot(row.n, at.before);
-  row.offset = difference(sum(scaled(kept, at.before), scaled(turned, cross(terms.turning, row.n))),
-                          scaled(along, row.n));
+  row.n_offset = Number(0.0) - bias * c;
+  const Number along = row.n_offset - kept * dot(row.n, at.before);
+  row.offset =
+      sum(sum(scaled(kept, at.before), scaled(turned, cross(terms.turning, row.n))), scaled(along, row.n));
   return row;
 }
 
@@ -139,9 +141,10 @@ HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
   const Direction<Number> way = direction_of(sum(at.line, scaled(terms.h, at.relative)), Number(1.0));
   row.n = way.n;
   const Number bias = stiffen(at, traits, terms, row);
-  const Number c = excess(way.length, traits, at.limited);
+  const Number c = way.length - target_length(at, traits, terms);
   const Number speed = dot(row.n, at.relative);
-  row.offset = sum(at.relative, scaled(bias * (terms.h * speed - c) - speed, row.n));
+  row.n_offset = bias * (terms.h * speed - c);
+  row.offset = sum(at.relative, scaled(row.n_offset - speed, row.n));
   return row;
 }
 
@@ -154,7 +157,8 @@ HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const S
   const SegmentRow<Number> again = linearized_again(at, traits, terms);
   const auto first = above(terms.first, Number(0.0));
   return {choose3(terms.first, row.n, again.n), choose3(terms.first, row.offset, again.offset),
-          choose(first, row.along, again.along), choose(first, row.across, again.across)};
+          choose(first, row.n_offset, again.n_offset), choose(first, row.along, again.along),
+          choose(first, row.across, again.across)};
 }
 
 template <class Number>
@@ -163,31 +167,39 @@ struct SegmentCheck {
   Number error, limit_changed;  ///< Of the length, relative; 1 or 0.
 };
 
-/// After a solution, `at` with its velocities, n as it was linearized; `pull` is n.q.
+/// Onto its limit, or off it.
 template <class Number>
-HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
-                                        const Triple<Number>& n, Number pull,
-                                        const RopeTerms<Number>& terms) {
+HWY_INLINE void check_limit(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                            Number length, Number pull, const RopeTerms<Number>& terms,
+                            SegmentCheck<Number>& check) {
   const Number zero(0.0);
-  const Number h = terms.h;
-  const Triple<Number> d = sum(at.line, scaled(h, at.relative));
-  const Number length = root(dot(d, d));
-  const Number tension = terms.per_h * pull;
-  const Number firm =
-      larger(at.limited, one_if_above(traits.grip, Number(kFirmer) * most_along(traits, terms)));
-  const Number expected = choose(above(firm, zero), h * terms.compliance * traits.per_lighter * pull,
-                                 (tension - traits.damping * dot(n, at.relative)) * traits.per_stiffness);
-  const Number error = excess(length, traits, at.limited) - expected;
-
   const auto limited = above(at.limited, zero);
   const Number over = choose(limited, zero, one_if_above(length, traits.limit * Number(1 + kLimitTolerance)));
-  const Number released =
-      choose(limited, one_if_above(h * (traits.limit - traits.rest), pull * traits.per_stiffness), zero);
-  SegmentCheck<Number> result;
-  result.tension_bound = larger(at.tension_bound, tension);
+  const Number released = choose(
+      limited, one_if_above(terms.h * (traits.limit - traits.rest), pull * traits.per_stiffness), zero);
+  check.limit_changed = larger(over, released);
+  check.limited = choose(above(check.limit_changed, zero), over, at.limited);
+}
+
+/// After a solution, `at` with its velocities; `pull` is n.q, `opening` n.(u_b - u_a), with n as it was
+/// linearized.
+template <class Number>
+HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                        Number pull, Number opening, const RopeTerms<Number>& terms) {
+  const Number zero(0.0);
+  const Triple<Number> d = sum(at.line, scaled(terms.h, at.relative));
+  const Number length = root(dot(d, d));
+  const Number tension = terms.per_h * pull;
+  const auto firm = above(traits.grip, Number(kFirmer) * most_along(traits, terms));
+  const Number by_most = terms.h * terms.compliance * traits.per_lighter * pull;
+  Number expected = choose(firm, by_most, (tension - traits.damping * opening) * traits.per_stiffness);
+  SegmentCheck<Number> result = {larger(at.tension_bound, tension), zero, zero, zero};
+  if (terms.limits) {
+    expected = choose(above(at.limited, zero), by_most, expected);
+    check_limit(at, traits, length, pull, terms, result);
+  }
+  const Number error = length - target_length(at, traits, terms) - expected;
   result.error = larger(error, zero - error) * traits.per_rest;
-  result.limit_changed = larger(over, released);
-  result.limited = choose(above(result.limit_changed, zero), over, at.limited);
   return result;
 }
 

@@ -13,6 +13,8 @@
 ///   P = (S + b 1)^-1,  r = P n,  t' = n + B^T r,  tau = k / (1 + k n.r),
 ///   eta = r.(f - b o) + n.o,   z = P (f - b o) - tau eta r                (u, if the next two nodes stood)
 ///
+/// (without bends, where B = -b 1: t' = n - b r, -B^T z = b P (f - b o) - tau eta b r)
+///
 ///   the next node gets      S: b 1 - B^T P B + tau t' t'^T       f: b o + tau eta n - B^T z
 ///   the one behind that     S: -c^2 (P - tau r r^T)              f: -c z
 ///   between the two         F: -c (P B - tau r t'^T)^T
@@ -113,7 +115,8 @@ class RopeSweep {
                get<Number>(ropes.compliance + lane),
                quotient(Number(1.0), get<Number>(ropes.compliance + lane)),
                get<Number>(ropes.first + lane),
-               get3<Number>(ropes.turning, lane)},
+               get3<Number>(ropes.turning, lane),
+               traits.limits},
         all_first_(!any(above(Number(1.0), terms_.first))) {}
 
   HWY_INLINE void run() {
@@ -122,9 +125,10 @@ class RopeSweep {
   }
 
  private:
-  /// A node while it is eliminated: the diagonal and the right side.
+  /// A node while it is eliminated: the diagonal, mass + share 1, and the right side.
   struct Pivot {
     Scale<Number> mass;
+    Number share;
     Triple<Number> impulse;
   };
 
@@ -150,21 +154,19 @@ class RopeSweep {
 
   /// Adds a node's own mass and impulse, with what touches it.
   HWY_INLINE void add_own(std::size_t i, Pivot& pivot) const {
-    if (ropes_.held[i] != 0) {
-      const RopeHoldLanes<kCount>& hold = ropes_.holds[i];
-      pivot.mass = sum(pivot.mass, get6<Number>(hold.mass, lane_));
-      pivot.impulse = sum(pivot.impulse, get3<Number>(hold.impulse, lane_));
-    } else {
-      const Number mass = get<Number>(traits_.rows[i].mass + lane_);
-      add_diagonal(mass, pivot.mass);
-      add(mass, get3<Number>(ropes_.nodes[i].v_free, lane_), pivot.impulse);
-    }
+    const Number mass = get<Number>(traits_.rows[i].mass + lane_);
+    pivot.share = pivot.share + mass;
+    add(mass, get3<Number>(ropes_.nodes[i].v_free, lane_), pivot.impulse);
+    if (ropes_.held[i] == 0) return;
+    const RopeHoldLanes<kCount>& hold = ropes_.holds[i];
+    pivot.mass = sum(pivot.mass, get6<Number>(hold.mass, lane_));
+    pivot.impulse = sum(pivot.impulse, get3<Number>(hold.impulse, lane_));
   }
 
-  /// K = k n n^T + b 1 and o of a segment.
+  /// K = k n n^T + b 1, o and n.o of a segment.
   struct Segment {
     Triple<Number> n, o;
-    Number k, b;
+    Number n_o, k, b;
   };
   HWY_INLINE Segment linearize(std::size_t i) {
     Triple<Number> relative = {Number(0.0), Number(0.0), Number(0.0)};
@@ -175,8 +177,9 @@ class RopeSweep {
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     put3(row.n, segment.n, lane_);
     put3(row.offset, segment.offset, lane_);
+    write(row.n_offset, segment.n_offset + lane_);
     write(row.across, segment.across + lane_);
-    return {row.n, row.offset, row.along - row.across, row.across};
+    return {row.n, row.offset, row.n_offset, row.along - row.across, row.across};
   }
 
   /// How nodes meet but for segments: a node and the next, the next two, and the outer ones.
@@ -196,7 +199,7 @@ class RopeSweep {
                                              scaled(before, get3<Number>(ropes_.segments[i].line, lane_)));
     const Triple<Number> pull = scaled(get<Number>(bend.pull + lane_), change);
     const auto add_to = [&](Number weight, Pivot& pivot) HWY_ATTR {
-      add_diagonal(grip * weight * weight, pivot.mass);
+      pivot.share = pivot.share + grip * weight * weight;
       add(weight, pull, pivot.impulse);
     };
     add_to(before, here);
@@ -221,7 +224,7 @@ class RopeSweep {
   HWY_INLINE void forward() {
     const Number zero(0.0);
     const Columns3<Number> no_meeting = full(diagonal(zero));
-    const Pivot none = {diagonal(zero), {zero, zero, zero}};
+    const Pivot none = {diagonal(zero), zero, {zero, zero, zero}};
     const std::size_t last = ropes_.nodes.size() - 1;
     Pivot here = none;
     Pivot next = none;
@@ -240,6 +243,7 @@ class RopeSweep {
       }
     }
     add_own(last, here);
+    add_diagonal(here.share, here.mass);
     RopeNodeLanes<kCount>& node = ropes_.nodes[last];
     put3(choose3(moves(last), inverse(here.mass).times(here.impulse), get3<Number>(node.v_free, lane_)),
          node.u, lane_);
@@ -252,10 +256,10 @@ class RopeSweep {
     Triple<Number> r;
     Number tau;
   };
-  static HWY_INLINE Inverse invert(const Scale<Number>& s, const Segment& segment) {
-    const auto& [n, o, k, b] = segment;
-    Scale<Number> m = s;
-    add_diagonal(b, m);
+  static HWY_INLINE Inverse invert(const Pivot& pivot, const Segment& segment) {
+    const auto& [n, o, n_o, k, b] = segment;
+    Scale<Number> m = pivot.mass;
+    add_diagonal(pivot.share + b, m);
     const Scale<Number> a = cofactors(m);
     const Number d = determinant(m, a);
     const Triple<Number> an = a.times(n);
@@ -268,11 +272,11 @@ class RopeSweep {
   /// Notes what the way back needs; adds what is left to the next two nodes.
   HWY_INLINE void eliminate(std::size_t i, const Segment& segment, const Pivot& here, Pivot& next,
                             Pivot& second, Meeting& meeting) {
-    const auto& [n, o, k, b] = segment;
+    const auto& [n, o, n_o, k, b] = segment;
     RopeNodeLanes<kCount>& node = ropes_.nodes[i];
     const bool pinned = traits_.pinned[i] != 0;
     const Triple<Number>& f = here.impulse;
-    auto [p, r, tau] = invert(here.mass, segment);
+    auto [p, r, tau] = invert(here, segment);
     if (pinned) {
       p = scaled(moves(i), p);
       r = scaled(moves(i), r);
@@ -284,27 +288,26 @@ class RopeSweep {
     write(tau, node.tau + lane_);
 
     const Triple<Number> free = difference(f, scaled(b, o));
-    Number given = tau * (dot(r, free) + dot(n, o));
-    Triple<Number> z = difference(p.times(free), scaled(given, r));
+    Number given = tau * (dot(r, free) + n_o);
+    Triple<Number> y = p.times(free);
     if (pinned) {
       const Triple<Number> v = get3<Number>(node.v_free, lane_);
-      z = choose3(moves(i), z, v);
-      given = choose(above(moves(i), Number(0.0)), given, tau * dot(n, sum(v, o)));
+      y = choose3(moves(i), y, v);
+      given = choose(above(moves(i), Number(0.0)), given, tau * (dot(n, v) + n_o));
     }
     if constexpr (kBends) {
-      pass_on_bent(i, segment, {p, r, tau}, given, z, next, second, meeting);
+      pass_on_bent(i, segment, {p, r, tau}, given, difference(y, scaled(given, r)), next, second, meeting);
     } else {
       const Triple<Number> t = difference(n, scaled(b, r));
-      const Scale<Number> kept = scaled(b * b, p);
-      next.mass = difference(square(tau, t), kept);
-      add_diagonal(b, next.mass);
-      next.impulse = sum(scaled(b, sum(o, z)), scaled(given, n));
+      next.mass = difference(square(tau, t), scaled(b * b, p));
+      next.share = b;
+      next.impulse = sum(scaled(b, sum(o, y)), scaled(given, t));
     }
   }
 
   HWY_INLINE void pass_on_bent(std::size_t i, const Segment& segment, const Inverse& inverse, Number given,
                                const Triple<Number>& z, Pivot& next, Pivot& second, Meeting& meeting) {
-    const auto& [n, o, k, b] = segment;
+    const auto& [n, o, n_o, k, b] = segment;
     const auto& [p, r, tau] = inverse;
     RopeFillLanes<kCount>& fill = ropes_.fills[i];
     put9(meeting.next, fill.meets, lane_);
@@ -314,7 +317,7 @@ class RopeSweep {
     const Columns3<Number> pb = product(p, meets);
     const Triple<Number> t = sum(n, meets.transposed_times(r));
     next.mass = sum(next.mass, difference(square(tau, t), symmetric_product(meets, pb)));
-    add_diagonal(b, next.mass);
+    next.share = next.share + b;
     add(b, o, next.impulse);
     add(given, n, next.impulse);
     next.impulse = difference(next.impulse, meets.transposed_times(z));
@@ -354,18 +357,20 @@ class RopeSweep {
         take(get<Number>(ropes_.fills[i].outer + lane_), second, f);
       }
       const Triple<Number> pushed = sum(f, scaled(b, w));
-      Number drawn = get<Number>(node.tau + lane_) * (dot(r, pushed) - dot(n, w));
+      const Number n_w = dot(n, w);
+      const Number tau = get<Number>(node.tau + lane_);
+      Number drawn = tau * (dot(r, pushed) - n_w);
       Triple<Number> u = difference(get6<Number>(node.inverse, lane_).times(pushed), scaled(drawn, r));
       if (traits_.pinned[i] != 0) {
         const Triple<Number> v = get3<Number>(node.v_free, lane_);
         u = choose3(moves(i), u, v);
-        drawn =
-            choose(above(moves(i), zero), drawn, get<Number>(node.tau + lane_) * dot(n, difference(v, w)));
+        drawn = choose(above(moves(i), zero), drawn, tau * (dot(n, v) - n_w));
       }
       put3(u, node.u, lane_);
       results.sum = results.sum + (u.x + u.y + u.z);
-      const Number pull = zero - (drawn + b * dot(n, difference(u, w)));
-      check_segment(i, n, pull, difference(next, u), results);
+      const Number n_y = dot(n, u) - n_w;
+      const Number pull = zero - (drawn + b * n_y);
+      check_segment(i, pull, get<Number>(segment.n_offset + lane_) - n_y, difference(next, u), results);
       second = next;
       next = u;
     }
@@ -379,12 +384,12 @@ class RopeSweep {
     Number sum;  ///< Of all velocities' components: finite if they are.
   };
 
-  HWY_INLINE void check_segment(std::size_t i, const Triple<Number>& n, Number pull,
-                                const Triple<Number>& relative, Results& results) {
+  HWY_INLINE void check_segment(std::size_t i, Number pull, Number opening, const Triple<Number>& relative,
+                                Results& results) {
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     write(pull, segment.pull + lane_);
     const SegmentState<Number> at = state_of(i, relative);
-    SegmentCheck<Number> check = checked(at, traits_of(i), n, pull, terms_);
+    SegmentCheck<Number> check = checked(at, traits_of(i), pull, opening, terms_);
     if (traits_.pinned[i] != 0 && traits_.pinned[i + 1] != 0) {
       // Between two nodes that do not move no length is wrong.
       const Number zero(0.0);
@@ -394,8 +399,9 @@ class RopeSweep {
       check.limited = choose(either_moves, check.limited, at.limited);
     }
     write(check.tension_bound, segment.tension_bound + lane_);
-    write(check.limited, segment.limited + lane_);
     results.error = larger(check.error, results.error);
+    if (!traits_.limits) return;
+    write(check.limited, segment.limited + lane_);
     results.changed = larger(check.limit_changed, results.changed);
   }
 

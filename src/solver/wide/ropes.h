@@ -65,7 +65,7 @@ struct alignas(kCount * sizeof(double)) RopeFillLanes {
   double meets[3][3][kCount], outer[kCount];
 };
 
-/// What touches a node: mass with grips, and impulse.
+/// What touches a node: grips, and impulse.
 template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeHoldLanes {
   double mass[6][kCount], impulse[3][kCount];
@@ -75,10 +75,10 @@ struct alignas(kCount * sizeof(double)) RopeHoldLanes {
 template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeSegmentLanes {
   double line[3][kCount], before[3][kCount];
-  double tension_bound[kCount];  ///< T+
-  double limited[kCount];        ///< 1 if it is at its limit.
-  double n[3][kCount], offset[3][kCount], across[kCount];
-  double pull[kCount];  ///< n.q
+  double tension_bound[kCount];                                              ///< T+
+  double limited[kCount];                                                    ///< 1 if it is at its limit.
+  double n[3][kCount], offset[3][kCount], n_offset[kCount], across[kCount];  ///< As SegmentRow.
+  double pull[kCount];                                                       ///< n.q
 };
 
 template <int kCount>
