@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <utility>
+#include <numeric>
+#include <span>
 
 namespace hooke::solver {
 
@@ -25,15 +26,55 @@ struct Frame {
   std::vector<std::uint32_t> bodies;
   std::vector<double> parts;
   std::vector<Articulation::Joint> joints;  ///< Hooks as they come, then welds.
+
+  // Memory of make_frame.
+  std::vector<std::uint32_t> body_of;
+  std::vector<int> taken;
 };
 
+/// Joints of each link, in their order.
+struct JointsOfLinks {
+  std::vector<std::uint32_t> joints;
+  std::vector<std::uint32_t> begin;  ///< One more at the end.
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t link) const {
+    return std::span(joints).subspan(begin[link], begin[link + 1] - begin[link]);
+  }
+};
+
+/// The joint to the next link towards the root, and that link's neighbor there.
+struct Branch {
+  std::uint32_t joint = 0;
+  std::uint32_t child = 0;
+};
+
+}  // namespace
+
+struct ArticulationScratch::Lists {
+  Frame frame;
+  JointsOfLinks joints_of;
+  // Of loops.
+  std::vector<int> sizes;
+  BlockGraph graph;
+  // Of trees.
+  std::vector<Branch> branches;
+  std::vector<std::uint32_t> place;
+};
+
+namespace {
+
+using Lists = ArticulationScratch::Lists;
+
 /// Links of all bodies of the hooks, of which those of more than `most_hooks` are divided.
-Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-                 const state::Bodies& bodies, int most_hooks) {
-  std::vector<std::uint32_t> body_of;
+void make_frame(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+                const state::Bodies& bodies, int most_hooks, Frame& frame) {
+  std::vector<std::uint32_t>& body_of = frame.body_of;
+  body_of.clear();
+  frame.bodies.clear();
+  frame.parts.clear();
+  frame.joints.clear();
   for (const std::uint32_t i : hook_rows) body_of.insert(body_of.end(), {hooks[i].a.body, hooks[i].b.body});
   std::sort(body_of.begin(), body_of.end());
-  Frame frame;
   for (auto at = body_of.begin(); at != body_of.end();) {
     const auto next = std::upper_bound(at, body_of.end(), *at);
     const auto count = static_cast<int>(next - at);
@@ -43,7 +84,8 @@ Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<
     frame.parts.insert(frame.parts.end(), static_cast<std::size_t>(parts), parts);
     at = next;
   }
-  std::vector<int> taken(frame.bodies.size(), 0);
+  std::vector<int>& taken = frame.taken;
+  taken.assign(frame.bodies.size(), 0);
   const auto next_link = [&](std::uint32_t body) {
     const std::uint32_t first = link_of(frame.bodies, body);
     if (frame.parts[first] == 1) return first;
@@ -57,18 +99,20 @@ Frame make_frame(const std::vector<std::uint32_t>& hook_rows, const std::vector<
     if (frame.bodies[link] == frame.bodies[link - 1])
       frame.joints.push_back({.hook = Articulation::kWeld, .a = link - 1, .b = link});
   }
-  return frame;
 }
 
-/// Joints of each link that moves.
-std::vector<std::vector<std::uint32_t>> joints_of_links(const Frame& frame, const state::Bodies& bodies) {
-  std::vector<std::vector<std::uint32_t>> of(frame.bodies.size());
-  for (std::uint32_t i = 0; i < frame.joints.size(); ++i) {
-    for (const std::uint32_t link : {frame.joints[i].a, frame.joints[i].b}) {
-      if (is_dynamic(bodies, frame.bodies[link])) of[link].push_back(i);
-    }
+void list_joints_of_links(const Frame& frame, JointsOfLinks& of) {
+  of.begin.assign(frame.bodies.size() + 1, 0);
+  for (const Articulation::Joint& joint : frame.joints) {
+    ++of.begin[joint.a];
+    ++of.begin[joint.b];
   }
-  return of;
+  std::partial_sum(of.begin.begin(), of.begin.end(), of.begin.begin());
+  of.joints.resize(2 * frame.joints.size());
+  for (auto i = static_cast<std::uint32_t>(frame.joints.size()); i-- > 0;) {
+    of.joints[--of.begin[frame.joints[i].a]] = i;
+    of.joints[--of.begin[frame.joints[i].b]] = i;
+  }
 }
 
 /// More joints than a tree of these links can have.
@@ -92,31 +136,40 @@ void list_couplings(const state::Bodies& bodies, Articulation& art) {
   }
 }
 
-/// Blocks of the joints' rows; false if they take more than the budget.
-bool make_blocks(Frame frame, const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
-                 Articulation& art) {
-  std::vector<int> sizes;
-  for (const Articulation::Joint& joint : frame.joints)
-    sizes.push_back(joint.is_weld() ? kWeldRows : count_joint_rows(hooks[joint.hook]));
-  BlockGraph graph;
+/// Joints meet where they share a link that moves.
+void join_joints(const Frame& frame, const JointsOfLinks& joints_of, const state::Bodies& bodies,
+                 BlockGraph& graph) {
   graph.reset(frame.joints.size());
-  for (const std::vector<std::uint32_t>& group : joints_of_links(frame, bodies)) {
-    for (std::size_t k = 0; k < group.size(); ++k) {
+  for (std::size_t link = 0; link < frame.bodies.size(); ++link) {
+    if (!is_dynamic(bodies, frame.bodies[link])) continue;
+    const std::span<const std::uint32_t> joints = joints_of.of(link);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
       for (std::size_t j = 0; j < k; ++j) {
-        if (group[j] != group[k]) graph.join(group[j], group[k]);
+        if (joints[j] != joints[k]) graph.join(joints[j], joints[k]);
       }
     }
   }
+}
+
+/// Blocks of the joints' rows; false if they take more than the budget.
+bool make_blocks(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget, Lists& lists,
+                 Articulation& art) {
+  const Frame& frame = lists.frame;
+  lists.sizes.clear();
+  for (const Articulation::Joint& joint : frame.joints)
+    lists.sizes.push_back(joint.is_weld() ? kWeldRows : count_joint_rows(hooks[joint.hook]));
+  list_joints_of_links(frame, lists.joints_of);
+  join_joints(frame, lists.joints_of, bodies, lists.graph);
   Articulation::Blocks& blocks = art.blocks;
-  if (!make_block_pattern(graph, sizes, budget, blocks.pattern)) return false;
+  if (!make_block_pattern(lists.graph, lists.sizes, budget, blocks.pattern)) return false;
   for (int i = 0; i < blocks.pattern.node_count(); ++i) {
     Articulation::Joint joint = frame.joints[blocks.pattern.order[i]];
     joint.first = blocks.pattern.first[i];
     joint.count = blocks.pattern.size[i];
     art.joints.push_back(joint);
   }
-  art.bodies = std::move(frame.bodies);
-  art.parts = std::move(frame.parts);
+  art.bodies.assign(frame.bodies.begin(), frame.bodies.end());
+  art.parts.assign(frame.parts.begin(), frame.parts.end());
   list_couplings(bodies, art);
   art.links.resize(art.bodies.size());
   const auto row_count = static_cast<std::size_t>(blocks.pattern.first.back());
@@ -144,30 +197,19 @@ std::uint32_t find_root(const Frame& frame, const state::Bodies& bodies) {
   return root;
 }
 
-/// The joint to the next link towards the root, and that link's neighbor there.
-struct Branch {
-  std::uint32_t joint = 0;
-  std::uint32_t child = 0;
-};
-
 /// From the root on: a joint comes after the one that its parent hangs on.
-std::vector<Branch> list_branches(const Frame& frame, std::uint32_t root) {
-  std::vector<std::vector<std::uint32_t>> of(frame.bodies.size());
-  for (std::uint32_t i = 0; i < frame.joints.size(); ++i) {
-    of[frame.joints[i].a].push_back(i);
-    of[frame.joints[i].b].push_back(i);
-  }
+void list_branches(const Frame& frame, const JointsOfLinks& joints_of, std::uint32_t root,
+                   std::vector<Branch>& branches) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  std::vector<Branch> branches = {{kNone, root}};
+  branches.assign(1, {kNone, root});
   for (std::size_t at = 0; at < branches.size(); ++at) {
     const Branch branch = branches[at];
-    for (const std::uint32_t i : of[branch.child]) {
+    for (const std::uint32_t i : joints_of.of(branch.child)) {
       const Articulation::Joint& joint = frame.joints[i];
       if (i != branch.joint) branches.push_back({i, joint.a == branch.child ? joint.b : joint.a});
     }
   }
   branches.erase(branches.begin());
-  return branches;
 }
 
 /// Rows of a joint, for the lanes: a spring and the motor beside it are one.
@@ -191,12 +233,14 @@ double cost_of(double n) {
 }
 
 /// Links and joints in order of elimination; false if that takes more than the budget.
-bool make_tree(const Frame& frame, const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+bool make_tree(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget, Lists& lists,
                Articulation& art) {
+  auto& [frame, joints_of, sizes, graph, branches, place] = lists;
   const std::uint32_t root = find_root(frame, bodies);
-  std::vector<Branch> branches = list_branches(frame, root);
+  list_joints_of_links(frame, joints_of);
+  list_branches(frame, joints_of, root, branches);
   std::reverse(branches.begin(), branches.end());
-  std::vector<std::uint32_t> place(frame.bodies.size(), static_cast<std::uint32_t>(branches.size()));
+  place.assign(frame.bodies.size(), static_cast<std::uint32_t>(branches.size()));
   for (std::uint32_t i = 0; i < branches.size(); ++i) place[branches[i].child] = i;
 
   wide::TreeForm& form = art.tree.form;
@@ -228,18 +272,32 @@ bool make_tree(const Frame& frame, const std::vector<Hook>& hooks, const state::
   return budget >= 0;
 }
 
+/// Nothing in it; its memory stays.
+void clear(Articulation& art) {
+  art.bodies.clear();
+  art.joints.clear();
+  art.tree.form.joints.clear();
+  art.tree.form.rows.clear();
+  art.tree.rows.clear();
+  art.blocks.couplings.clear();
+}
+
 }  // namespace
 
-std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
-                                              const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                                              double budget) {
-  Articulation art;
-  const Frame whole = make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max());
-  const bool made = has_loops(whole, bodies) ? make_blocks(make_frame(hook_rows, hooks, bodies, kMostHooks),
-                                                           hooks, bodies, budget, art)
-                                             : make_tree(whole, hooks, bodies, kTreesMayTake * budget, art);
-  if (!made) return std::nullopt;
-  return art;
+ArticulationScratch::ArticulationScratch() : lists_(std::make_unique<Lists>()) {}
+ArticulationScratch::~ArticulationScratch() = default;
+ArticulationScratch::ArticulationScratch(ArticulationScratch&&) noexcept = default;
+ArticulationScratch& ArticulationScratch::operator=(ArticulationScratch&&) noexcept = default;
+
+bool make_articulation(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+                       const state::Bodies& bodies, double budget, ArticulationScratch& scratch,
+                       Articulation& art) {
+  Lists& lists = scratch.lists();
+  clear(art);
+  make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max(), lists.frame);
+  if (!has_loops(lists.frame, bodies)) return make_tree(hooks, bodies, kTreesMayTake * budget, lists, art);
+  make_frame(hook_rows, hooks, bodies, kMostHooks, lists.frame);
+  return make_blocks(hooks, bodies, budget, lists, art);
 }
 
 }  // namespace hooke::solver

@@ -11,7 +11,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -112,11 +111,28 @@ struct Articulation {
 /// How much more a tree may take: it costs in proportion to its hooks, and nets do worst on large stars.
 inline constexpr double kTreesMayTake = 10;
 
-/// The articulation of hooks that hang together, in any order. Nothing if one solution takes more than
-/// `budget` multiplications, and a tree kTreesMayTake times as many.
-[[nodiscard]] std::optional<Articulation> make_articulation(const std::vector<std::uint32_t>& hook_rows,
-                                                            const std::vector<state::Hook>& hooks,
-                                                            const state::Bodies& bodies, double budget);
+/// Memory to make articulations with.
+class ArticulationScratch {
+ public:
+  struct Lists;  // articulations.cpp
+
+  ArticulationScratch();
+  ~ArticulationScratch();
+  ArticulationScratch(ArticulationScratch&&) noexcept;
+  ArticulationScratch& operator=(ArticulationScratch&&) noexcept;
+
+  [[nodiscard]] Lists& lists() { return *lists_; }
+
+ private:
+  std::unique_ptr<Lists> lists_;
+};
+
+/// Replaces `articulation` by that of hooks that hang together, in any order; it keeps its memory. False, and
+/// an articulation of no use, if one solution takes more than `budget` multiplications, and a tree
+/// kTreesMayTake times as many.
+[[nodiscard]] bool make_articulation(std::span<const std::uint32_t> hook_rows,
+                                     const std::vector<state::Hook>& hooks, const state::Bodies& bodies,
+                                     double budget, ArticulationScratch& scratch, Articulation& articulation);
 
 /// What articulations are solved in.
 struct JointTables {

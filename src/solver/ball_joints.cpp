@@ -2,7 +2,6 @@
 
 #include "math/rotation.h"
 #include "solver/bodies.h"
-#include "solver/hook_colors.h"
 #include "solver/joint_rows.h"
 #include "solver/soft_locks.h"
 #include "solver/sweep_order.h"
@@ -167,11 +166,9 @@ bool is_plain_ball(const Hook& hook, const Bodies& bodies) {
          (is_dynamic(bodies, hook.a.body) || is_dynamic(bodies, hook.b.body));
 }
 
-void build_ball_joints(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-                       const Bodies& bodies, BallJoints& joints) {
-  HookColors colors = color_hooks(hook_rows, hooks, bodies);
-  joints.hooks = std::move(colors.hooks);
-  joints.color_begin = std::move(colors.begin);
+void build_ball_joints(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+                       const Bodies& bodies, ColorScratch& scratch, BallJoints& joints) {
+  color_hooks(hook_rows, hooks, bodies, scratch, {joints.hooks, joints.color_begin});
 }
 
 void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const Bodies& bodies,

@@ -3,11 +3,13 @@
 #include "hooke/math.h"
 
 #include "parallel/thread_pool.h"
+#include "solver/hook_colors.h"
 #include "solver/spring_blocks.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -70,8 +72,8 @@ struct BallJoints {
 [[nodiscard]] bool is_plain_ball(const state::Hook& hook, const state::Bodies& bodies);
 
 /// Colors plain ball hooks in the order they come.
-void build_ball_joints(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,
-                       const state::Bodies& bodies, BallJoints& joints);
+void build_ball_joints(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
+                       const state::Bodies& bodies, ColorScratch& scratch, BallJoints& joints);
 
 /// Start of a step of substeps of length h [s]: fills the blocks. Notes the gaps in the hooks.
 void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
 
 namespace hooke::solver {
 
@@ -30,23 +29,23 @@ bool is_awake(const state::Hook& hook, const state::Bodies& bodies) {
   return gives_way(bodies, hook.a.body) || gives_way(bodies, hook.b.body);
 }
 
-HookColors color_hooks(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,
-                       const state::Bodies& bodies) {
-  std::vector<std::uint64_t> used(bodies.motion.size());
-  std::vector<std::pair<int, std::uint32_t>> colored;
-  colored.reserve(hook_rows.size());
+void color_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
+                 const state::Bodies& bodies, ColorScratch& scratch, HookColors colors) {
+  auto& [used, colored] = scratch;
+  used.assign(bodies.motion.size(), 0);
+  colored.clear();
   int next_own_color = kMaskColors;
   for (const std::uint32_t row : hook_rows)
     colored.emplace_back(choose_color(hooks[row], bodies, used, next_own_color), row);
   std::sort(colored.begin(), colored.end());
 
-  HookColors colors;
+  colors.hooks.clear();
+  colors.begin.assign(1, 0);
   for (std::size_t i = 0; i < colored.size(); ++i) {
     if (i > 0 && colored[i].first != colored[i - 1].first) colors.begin.push_back(static_cast<int>(i));
     colors.hooks.push_back(colored[i].second);
   }
   if (!colored.empty()) colors.begin.push_back(static_cast<int>(colored.size()));
-  return colors;
 }
 
 }  // namespace hooke::solver

@@ -1,13 +1,11 @@
 #include "solver/joint_nets.h"
 
-#include "solver/hook_colors.h"
 #include "solver/soft_locks.h"
 #include "solver/sweep_order.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace hooke::solver {
 
@@ -135,27 +133,26 @@ void solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Ho
 
 }  // namespace
 
-std::vector<int> count_hooks(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-                             const state::Bodies& bodies) {
-  std::vector<int> degree(bodies.motion.size(), 0);
+void count_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+                 const state::Bodies& bodies, std::vector<int>& degree) {
+  degree.assign(bodies.motion.size(), 0);
   for (const std::uint32_t row : hook_rows) {
     for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
       if (is_dynamic(bodies, body)) ++degree[body];
     }
   }
-  return degree;
 }
 
-void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<Hook>& hooks,
-               const state::Bodies& bodies, const std::vector<int>& degree, JointNet& net) {
-  HookColors colors = color_hooks(hook_rows, hooks, bodies);
-  net = {};
-  net.hooks = std::move(colors.hooks);
-  net.color_begin = std::move(colors.begin);
+void build_net(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+               const state::Bodies& bodies, const std::vector<int>& degree, ColorScratch& scratch,
+               JointNet& net) {
+  color_hooks(hook_rows, hooks, bodies, scratch, {net.hooks, net.color_begin});
+  net.first_row.assign(1, 0);
   for (const std::uint32_t row : net.hooks)
     net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[row]));
   net.rows.resize(static_cast<std::size_t>(net.first_row.back()));
   net.done.resize(net.hooks.size());
+  net.crowd.clear();
   const auto beyond = [&](std::uint32_t body) {
     return is_dynamic(bodies, body) ? static_cast<double>(std::max(0, degree[body] - kMostFreeHooks)) : 0.0;
   };

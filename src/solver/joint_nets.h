@@ -3,11 +3,13 @@
 #include "hooke/math.h"
 
 #include "parallel/thread_pool.h"
+#include "solver/hook_colors.h"
 #include "solver/joint_rows.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -30,10 +32,9 @@ struct Crowd {
   double b = 0;
 };
 
-/// Hooks of each body that a net moves.
-[[nodiscard]] std::vector<int> count_hooks(const std::vector<std::uint32_t>& hook_rows,
-                                           const std::vector<state::Hook>& hooks,
-                                           const state::Bodies& bodies);
+/// Hooks of each body that a net moves: replaces `degree`.
+void count_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
+                 const state::Bodies& bodies, std::vector<int>& degree);
 
 /// Hooks in colors: those of one color share no body that forces move.
 ///
@@ -64,8 +65,9 @@ struct JointNet {
 
 /// Colors hooks in the order they come. `degree` by count_hooks, of these and all others that move the
 /// bodies.
-void build_net(const std::vector<std::uint32_t>& hook_rows, const std::vector<state::Hook>& hooks,
-               const state::Bodies& bodies, const std::vector<int>& degree, JointNet& net);
+void build_net(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
+               const state::Bodies& bodies, const std::vector<int>& degree, ColorScratch& scratch,
+               JointNet& net);
 
 /// Start of a step: bodies carry nothing over.
 void prepare_net(JointNet& net);

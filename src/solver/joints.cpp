@@ -1,9 +1,6 @@
 #include "solver/joints.h"
 
-#include "base/disjoint_sets.h"
-
 #include <algorithm>
-#include <map>
 #include <span>
 
 namespace hooke::solver {
@@ -24,28 +21,33 @@ void for_hooks(parallel::ThreadPool& pool, std::vector<Hook>& hooks, Change&& ch
   });
 }
 
-/// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
-std::vector<std::vector<std::uint32_t>> find_groups(const std::vector<Hook>& hooks,
-                                                    const state::Bodies& bodies) {
-  base::DisjointSets sets(bodies.motion.size());
+/// Fills scratch.groups.
+void find_groups(const std::vector<Hook>& hooks, const state::Bodies& bodies, BuildScratch& scratch) {
+  auto& [hook_rows, begin] = scratch.groups;
+  scratch.sets.reset(bodies.motion.size());
   for (const Hook& hook : hooks) {
     if (is_dynamic(bodies, hook.a.body) && is_dynamic(bodies, hook.b.body))
-      sets.merge(hook.a.body, hook.b.body);
+      scratch.sets.merge(hook.a.body, hook.b.body);
   }
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  std::vector<std::uint32_t> group_of(bodies.motion.size(), kNone);
-  std::vector<std::vector<std::uint32_t>> groups;
+  scratch.group_of.assign(bodies.motion.size(), kNone);
+  scratch.grouped.clear();
+  std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < hooks.size(); ++i) {
     const std::uint32_t body = is_dynamic(bodies, hooks[i].a.body) ? hooks[i].a.body : hooks[i].b.body;
     if (!is_dynamic(bodies, body) || hooks[i].holds_point()) continue;
-    std::uint32_t& group = group_of[sets.root(body)];
-    if (group == kNone) {
-      group = static_cast<std::uint32_t>(groups.size());
-      groups.emplace_back();
-    }
-    groups[group].push_back(i);
+    std::uint32_t& group = scratch.group_of[scratch.sets.root(body)];
+    if (group == kNone) group = count++;
+    scratch.grouped.emplace_back(group, i);
   }
-  return groups;
+  std::sort(scratch.grouped.begin(), scratch.grouped.end());
+  hook_rows.clear();
+  begin.clear();
+  for (const auto& [group, hook] : scratch.grouped) {
+    if (group == begin.size()) begin.push_back(hook_rows.size());
+    hook_rows.push_back(hook);
+  }
+  begin.push_back(hook_rows.size());
 }
 
 bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
@@ -54,14 +56,16 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
 }
 
 /// Those awake; trees of a kind together.
-void solve_articulations(double h, std::span<Articulation> articulations, ArticulationScratch& scratch,
+void solve_articulations(double h, std::span<const std::uint32_t> order,
+                         std::vector<Articulation>& articulations, SolveScratch& scratch,
                          JointTables tables) {
   scratch.trees.clear();
   const auto solve = [&] {
     solve_trees(h, scratch.trees, scratch.side_by_side, tables);
     scratch.trees.clear();
   };
-  for (Articulation& art : articulations) {
+  for (const std::uint32_t i : order) {
+    Articulation& art = articulations[i];
     if (!any_awake(art, tables.bodies)) continue;
     if (art.has_loops()) {
       solve_loops(h, art, tables);
@@ -73,55 +77,62 @@ void solve_articulations(double h, std::span<Articulation> articulations, Articu
   solve();
 }
 
-/// A form as numbers: equal where forms are.
-std::vector<int> numbers_of(const wide::TreeForm& form) {
-  std::vector<int> numbers;
-  for (const wide::TreeJoint& joint : form.joints) {
-    numbers.insert(numbers.end(), {joint.parent, joint.parent_moves, joint.child_is_b,
-                                   static_cast<int>(joint.kind), joint.turns, joint.count});
+/// Brings trees of one form together. What has loops has no form, and comes first.
+void sort_articulations(std::vector<Articulation>& articulations, std::vector<std::uint32_t>& order) {
+  const auto form = [&](std::uint32_t i) -> const wide::TreeForm& { return articulations[i].tree.form; };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t k) {
+    const auto compared = form(i) <=> form(k);
+    return compared != 0 ? compared < 0 : i < k;
+  });
+  int kind = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k > 0 && form(order[k]) != form(order[k - 1])) ++kind;
+    articulations[order[k]].tree.kind = kind;
   }
-  for (const wide::TreeRowForm& row : form.rows)
-    numbers.insert(numbers.end(), {row.freedom, static_cast<int>(row.role), row.sprung});
-  return numbers;
 }
 
-/// Brings trees of one form together.
-void sort_articulations(std::vector<Articulation>& articulations) {
-  std::map<std::vector<int>, int> kinds;
-  for (Articulation& art : articulations)
-    art.tree.kind = kinds.emplace(numbers_of(art.tree.form), static_cast<int>(kinds.size())).first->second;
-  std::stable_sort(articulations.begin(), articulations.end(),
-                   [](const Articulation& a, const Articulation& b) {
-                     return a.has_loops() != b.has_loops() ? a.has_loops() : a.tree.kind < b.tree.kind;
-                   });
+/// Makes an articulation of each group that is cheap enough; the hooks of the others are the rest.
+void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
+                         Joints& joints) {
+  BuildScratch& scratch = joints.build;
+  find_groups(hooks, bodies, scratch);
+  const HookGroups& groups = scratch.groups;
+  scratch.rest.clear();
+  joints.order.clear();
+  for (std::size_t group = 0; group + 1 < groups.begin.size(); ++group) {
+    const auto rows =
+        std::span(groups.hooks).subspan(groups.begin[group], groups.begin[group + 1] - groups.begin[group]);
+    const auto next = static_cast<std::uint32_t>(joints.order.size());
+    if (next == joints.articulations.size()) joints.articulations.emplace_back();
+    if (make_articulation(rows, hooks, bodies, budget, scratch.articulation, joints.articulations[next])) {
+      joints.order.push_back(next);
+    } else {
+      scratch.rest.insert(scratch.rest.end(), rows.begin(), rows.end());
+    }
+  }
+  sort_articulations(joints.articulations, joints.order);
 }
 
 }  // namespace
 
 void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints) {
-  joints.articulations.clear();
-  std::vector<std::uint32_t> rest;
-  for (const std::vector<std::uint32_t>& group : find_groups(hooks, bodies)) {
-    std::optional<Articulation> art = make_articulation(group, hooks, bodies, budget);
-    if (art) {
-      joints.articulations.push_back(std::move(*art));
-    } else {
-      rest.insert(rest.end(), group.begin(), group.end());
-    }
-  }
-  sort_articulations(joints.articulations);
-  const std::vector<int> degree = count_hooks(rest, hooks, bodies);
+  build_articulations(hooks, bodies, budget, joints);
+  auto& [sets, group_of, grouped, groups, articulation, rest, balls, others, degree, colors] = joints.build;
+  count_hooks(rest, hooks, bodies, degree);
+  balls.clear();
+  others.clear();
   // Blocks know no crowds.
   const auto is_crowded = [&](std::uint32_t body) {
-    return is_dynamic(bodies, body) && degree[body] > kMostFreeHooks;
+    return is_dynamic(bodies, body) && joints.build.degree[body] > kMostFreeHooks;
   };
-  const auto others = std::stable_partition(rest.begin(), rest.end(), [&](std::uint32_t row) {
-    return is_plain_ball(hooks[row], bodies) && !is_crowded(hooks[row].a.body) &&
-           !is_crowded(hooks[row].b.body);
-  });
-  build_ball_joints({rest.begin(), others}, hooks, bodies, joints.balls);
-  build_net({others, rest.end()}, hooks, bodies, degree, joints.net);
+  for (const std::uint32_t row : rest) {
+    const Hook& hook = hooks[row];
+    const bool plain = is_plain_ball(hook, bodies) && !is_crowded(hook.a.body) && !is_crowded(hook.b.body);
+    (plain ? balls : others).push_back(row);
+  }
+  build_ball_joints(balls, hooks, bodies, colors, joints.balls);
+  build_net(others, hooks, bodies, degree, colors, joints.net);
 }
 
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
@@ -137,13 +148,14 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
   joints.scratch.resize(static_cast<std::size_t>(pool.workers()));
-  const auto count = static_cast<int>(joints.articulations.size());
+  const auto count = static_cast<int>(joints.order.size());
   parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range, int part) {
     const auto first = static_cast<std::size_t>(range.begin);
-    const auto some = std::span(joints.articulations).subspan(first, static_cast<std::size_t>(range.count()));
-    solve_articulations(static_cast<double>(h), some, joints.scratch[part], {hooks, bodies});
-    for (const Articulation& art : some) {
-      for (const Articulation::Joint& joint : art.joints) {
+    const auto some = std::span(joints.order).subspan(first, static_cast<std::size_t>(range.count()));
+    solve_articulations(static_cast<double>(h), some, joints.articulations, joints.scratch[part],
+                        {hooks, bodies});
+    for (const std::uint32_t i : some) {
+      for (const Articulation::Joint& joint : joints.articulations[i].joints) {
         if (!joint.is_weld()) add_up_impulses(h, hooks[joint.hook]);
       }
     }

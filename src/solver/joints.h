@@ -2,14 +2,18 @@
 
 #include "hooke/math.h"
 
+#include "base/disjoint_sets.h"
 #include "parallel/thread_pool.h"
 #include "solver/articulations.h"
 #include "solver/ball_joints.h"
+#include "solver/hook_colors.h"
 #include "solver/joint_nets.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -25,16 +29,38 @@
 namespace hooke::solver {
 
 /// What one part of a parallel loop over articulations needs.
-struct ArticulationScratch {
+struct SolveScratch {
   std::vector<Articulation*> trees;
   TreeScratch side_by_side;
 };
 
+/// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
+struct HookGroups {
+  std::vector<std::uint32_t> hooks;  ///< Rows, group after group; in each, in their order.
+  std::vector<std::size_t> begin;    ///< Of each group; one more at the end.
+};
+
+/// Memory of build_joints: a hook that breaks allocates nothing.
+struct BuildScratch {
+  base::DisjointSets sets;
+  std::vector<std::uint32_t> group_of;  ///< Of each body that is the root of its set.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> grouped;
+  HookGroups groups;
+  ArticulationScratch articulation;
+  std::vector<std::uint32_t> rest;  ///< Hooks of no articulation.
+  std::vector<std::uint32_t> balls;
+  std::vector<std::uint32_t> others;
+  std::vector<int> degree;
+  ColorScratch colors;
+};
+
 struct Joints {
-  std::vector<Articulation> articulations;  ///< Those with loops first, then trees by kind.
-  std::vector<ArticulationScratch> scratch;
+  std::vector<Articulation> articulations;  ///< Those of `order`, then some that only keep their memory.
+  std::vector<std::uint32_t> order;         ///< Articulations: those with loops first, then trees by kind.
   BallJoints balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint_nets.h).
   JointNet net;      ///< All others that are in none of them.
+  std::vector<SolveScratch> scratch;
+  BuildScratch build;
 };
 
 /// Multiplications for one solution of a group; about a millisecond.

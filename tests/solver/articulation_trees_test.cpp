@@ -91,7 +91,7 @@ bool same(const Figures& a, int i, const Figures& b, int k) {
 TEST_SUITE("solver/articulation_trees") {
   TEST_CASE("a tree has the same bits alone and beside others") {
     const Figures together(all_figures(), 1);
-    REQUIRE(together.rig.joints.articulations.size() == kFigures);
+    REQUIRE(together.rig.joints.order.size() == kFigures);
     for (int i = 0; i < kFigures; ++i) {
       CHECK(is_finite(together.rig.t.bodies.motion[i * kParts].v));
       CHECK_MESSAGE(same(together, i, Figures({i}, 1), 0), i);
@@ -126,7 +126,7 @@ TEST_SUITE("solver/articulation_trees") {
       for (int k = 0; k < 3; ++k) join(outer_first ? 2 - k : k);
     }
     rig.step(Real(0.01), 1);
-    REQUIRE(rig.joints.articulations.size() == 2);
+    REQUIRE(rig.joints.order.size() == 2);
     CHECK_FALSE(rig.joints.articulations[0].has_loops());
     CHECK(rig.joints.articulations[0].tree.kind == rig.joints.articulations[1].tree.kind);
   }

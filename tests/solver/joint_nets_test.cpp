@@ -48,7 +48,7 @@ TEST_SUITE("solver/joint_nets") {
   TEST_CASE("a net hangs still and its upper joints carry its weight") {
     HangingNet net(8, 0);
     net.rig.run(5);
-    REQUIRE(net.rig.joints.articulations.empty());
+    REQUIRE(net.rig.joints.order.empty());
     CHECK(net.worst_gap() < 0.01);
     double sum = 0;
     for (const state::Hook& hook : net.rig.t.hooks) {
@@ -155,7 +155,7 @@ TEST_SUITE("solver/joint_nets") {
           rig.hook({.a = {hub}, .b = {leaves.back()}, .anchor = place});
         }
         rig.run(5);
-        REQUIRE(rig.joints.articulations.size() == (budget > 0 ? 1 : 0));
+        REQUIRE(rig.joints.order.size() == (budget > 0 ? 1 : 0));
         if (budget > 0) {
           CHECK(d(rig.t.hooks[0].force.y) == doctest::Approx((1 + arms) * kGravity).epsilon(1e-4));
           for (const state::Hook& hook : rig.t.hooks)

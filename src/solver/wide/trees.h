@@ -2,6 +2,7 @@
 
 #include "solver/joint_rows.h"
 
+#include <compare>
 #include <vector>
 
 /// \file
@@ -21,6 +22,8 @@ struct TreeRowForm {
   RowRole role = RowRole::kLock;
   bool sprung = false;  ///< A motor with a spring beside it, which acts while the motor is at a bound.
 
+  auto operator<=>(const TreeRowForm&) const = default;
+
   [[nodiscard]] bool turns() const { return freedom >= 3; }
   [[nodiscard]] bool bounded() const { return role == RowRole::kMotor || role == RowRole::kLimit; }
   /// It is not there while it is at a bound.
@@ -36,12 +39,16 @@ struct TreeJoint {
   bool turns = false;  ///< Rows need its angles.
   int first = 0;       ///< Of its rows, those of ways first.
   int count = 0;
+
+  auto operator<=>(const TreeJoint&) const = default;
 };
 
 /// In order of elimination; the root is one link more than there are joints.
 struct TreeForm {
   std::vector<TreeJoint> joints;
   std::vector<TreeRowForm> rows;
+
+  auto operator<=>(const TreeForm&) const = default;
 };
 
 /// A body. Lower triangles of 6 x 6 matrices stand row by row.
