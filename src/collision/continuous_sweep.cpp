@@ -1,6 +1,7 @@
 #include "collision/continuous_sweep.h"
 
 #include "collision/manifold_axes.h"
+#include "collision/manifold_mesh.h"
 #include "collision/placement.h"
 #include "math/rotation.h"
 
@@ -193,11 +194,20 @@ class PairSweep {
     for (const std::uint32_t index : scratch_.triangles) {
       const Real until = first ? first->time : end;
       const auto impact = advance(closing, allowance_, begin, until, [&](Real time) {
-        return hold_triangle(mesh_at(time).triangle(index), shape_at(time));
+        return hold_in_mesh(mesh_at(time), index, shape_at(time));
       });
       if (impact && (!first || impact->time < first->time) && is_from_front(*impact, index)) first = impact;
     }
     return first;
+  }
+
+  /// What overlaps a wall is not held apart from it by going on through the next one.
+  Hold hold_in_mesh(const PlacedMesh& mesh, std::uint32_t index, const Convex& b) {
+    const Convex triangle = mesh.triangle(index);
+    const Hold hold = hold_triangle(triangle, b);
+    if (hold.gap >= Real(0)) return hold;
+    const Vec3 n = way_out_of_surface(mesh, index, b, hold.n, scratch_.near);
+    return n == hold.n ? hold : Hold{separation_along(triangle, b, n), n};
   }
 
   /// What comes to a triangle from behind, or past its plane, goes on.

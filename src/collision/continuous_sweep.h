@@ -56,6 +56,7 @@ struct Impact {
 /// Memory for find_impact.
 struct SweepScratch {
   std::vector<std::uint32_t> triangles = {};
+  std::vector<std::uint32_t> near = {};  ///< Triangles at a place.
   Meeting meeting = {};
 };
 

@@ -180,7 +180,47 @@ void join_patches(Real cosine, MeshScratch& scratch) {
   }
 }
 
+/// Where one comes to the triangle's rim from the place nearest to p, along n as far as the plane goes.
+Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
+  const auto& corners = triangle.corners;
+  const Vec3 front = front_of(triangle);
+  const Vec3 lean = n - dot(n, front) * front;
+  const Vec3 start = geometry::closest_on_triangle(p, corners[0], corners[1], corners[2]).point;
+  Real way = std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 out = cross(corners[(i + 1) % 3] - corners[i], front);
+    const Real rate = dot(out, lean);
+    if (rate > Real(0)) way = std::min(way, std::max(Real(0), dot(out, corners[i] - start)) / rate);
+  }
+  return std::isfinite(way) ? start + way * lean : start;
+}
+
 }  // namespace
+
+Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
+                        std::vector<std::uint32_t>& near) {
+  const Convex own = a.triangle(triangle);
+  const Vec3 front = front_of(own);
+  if (is_same_direction(n, front)) return n;
+  const Vec3 rim = rim_along(own, n, middle_of(b));
+  const Vec3 at = a.origin + transpose(a.axes) * rim;
+  const Vec3 margin = {kFlush, kFlush, kFlush};
+  geometry::find_triangles(a.mesh.bvh, {at - margin, at + margin}, near);
+  const Real height = dot(n, support_of(own, n));
+  bool goes_on = false;
+  Axis best = {front, separation_along(own, b, front)};
+  for (const std::uint32_t index : near) {
+    const Convex other = a.triangle(index);
+    const auto& [p, q, r] = other.corners;
+    if (index == triangle || length(geometry::closest_on_triangle(rim, p, q, r).point - rim) > kFlush)
+      continue;
+    goes_on |= dot(n, support_of(other, n)) > height + kFlush;
+    const Vec3 n_other = front_of(other);
+    const Real separation = separation_along(own, b, n_other);
+    if (dot(n_other, front) > Real(0) && separation > best.separation) best = {n_other, separation};
+  }
+  return goes_on ? best.n : n;
+}
 
 Convex PlacedMesh::triangle(std::uint32_t index) const {
   Convex convex = {.shape = {.kind = ShapeKind::kMesh}};

@@ -25,6 +25,12 @@ struct PlacedMesh {
 /// Replaces `found` by the triangles whose boxes come within `reach` [m] of the shape's, in ascending order.
 void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach, std::vector<std::uint32_t>& found);
 
+/// A direction in which a shape may leave a triangle that it overlaps. `n` is one for the triangle alone; it
+/// may lean over the rim, where the surface goes on: in a hollow it would lead through the next triangle. Then
+/// it is the front of one of those that meet there, along which the two overlap least. Overwrites `near`.
+[[nodiscard]] Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
+                                      std::vector<std::uint32_t>& near);
+
 /// Points of a mesh with one normal, and the lowest of their triangles.
 struct PatchMeeting {
   std::uint32_t patch = 0;

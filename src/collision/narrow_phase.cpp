@@ -445,11 +445,11 @@ constexpr std::size_t kLivelyChunk = 8;    // lively pairs of one buffer
 constexpr std::uint32_t kMostPlaces = 64;  // manifolds of a lively pair: more patches than a mesh makes
 
 /// The manifold that a new one replaces: the one of the same patch, or else of the most similar normal; or
-/// else one that is free. `taken` are those that have been replaced.
+/// else one that is free. `taken` are those that have been replaced, not all.
 std::uint32_t find_place(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
                          std::uint64_t taken) {
   const std::uint32_t count = std::min(pair.manifold_count, kMostPlaces);
-  std::uint32_t best = kMostPlaces;
+  std::uint32_t best = 0;
   Real closest = Real(-2);
   for (std::uint32_t i = 0; i < count; ++i) {
     if ((taken >> i & 1u) != 0) continue;
@@ -473,6 +473,44 @@ void center_anchors(Manifold& m) {
   }
 }
 
+/// When the first of a manifold's points meets at the velocities of now [s], and how far apart it is [m].
+struct Prospect {
+  Real time = std::numeric_limits<Real>::infinity();
+  Real separation = std::numeric_limits<Real>::infinity();
+
+  friend bool operator<(const Prospect& p, const Prospect& q) {
+    return p.time != q.time ? p.time < q.time : p.separation < q.separation;
+  }
+};
+
+Prospect prospect_of(const state::Bodies& bodies, const Manifold& m) {
+  Prospect first;
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    const state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
+    const Real parting = dot(m.normal, state::velocity_now(bodies, m.body_b, p.anchor_b) -
+                                           state::velocity_now(bodies, m.body_a, p.anchor_a));
+    Prospect of_point = {.separation = p.separation};
+    if (!(p.separation > Real(0)))
+      of_point.time = Real(0);
+    else if (parting < Real(0))
+      of_point.time = p.separation / -parting;
+    first = std::min(first, of_point);
+  }
+  return first;
+}
+
+/// Where there are more manifolds than the pair has places, leaves those that meet first: who is fast sees
+/// far, and what is behind it must not take the place of what it hits.
+void keep_first(const state::Bodies& bodies, std::size_t count, std::vector<Manifold>& manifolds) {
+  while (manifolds.size() > count) {
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < manifolds.size(); ++i) {
+      if (!(prospect_of(bodies, manifolds[i]) < prospect_of(bodies, manifolds[last]))) last = i;
+    }
+    manifolds.erase(manifolds.begin() + static_cast<std::ptrdiff_t>(last));
+  }
+}
+
 /// Replaces the manifolds of the pair, in place, by those of other poses.
 void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair& pair, Chunk& chunk,
                 std::vector<Manifold>& manifolds) {
@@ -484,12 +522,13 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
   chunk.margin = margin_of(scene, a, b);
   chunk.time = Real(0);
   test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
+  keep_first(scene.bodies, std::min(pair.manifold_count, kMostPlaces), chunk.manifolds);
   std::uint64_t taken = 0;
   // All are matched with the old ones before those are replaced.
   std::array<std::uint32_t, kMostPlaces> place_of = {};
-  for (std::size_t i = 0; i < chunk.manifolds.size() && i < place_of.size(); ++i) {
+  for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
     place_of[i] = find_place(pair, chunk.manifolds[i], manifolds, taken);
-    if (place_of[i] < kMostPlaces) taken |= std::uint64_t{1} << place_of[i];
+    taken |= std::uint64_t{1} << place_of[i];
   }
   for (std::uint32_t i = 0; i < pair.manifold_count; ++i) {
     Manifold& m = manifolds[pair.first_manifold + i];
@@ -497,8 +536,7 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
     m.friction_impulse = {};
     m.twist_impulse = Real(0);
   }
-  for (std::size_t i = 0; i < chunk.manifolds.size() && i < place_of.size(); ++i) {
-    if (place_of[i] == kMostPlaces) continue;
+  for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
     Manifold& m = manifolds[pair.first_manifold + place_of[i]];
     const Real largest = m.largest_impulse;
     m = chunk.manifolds[i];

@@ -275,7 +275,9 @@ void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs
               contacts, bodies))
     return;
   ++pair.count;
+  // What stands is not struck: others come upon it as before.
   for (const std::uint32_t body : {pair.a, pair.b}) {
+    if (!is_moved(bodies, body)) continue;
     hits.since[body] = hit.time;
     hits.struck.push_back(body);
   }
