@@ -193,10 +193,11 @@ class PairSweep {
     std::optional<Impact> first;
     for (const std::uint32_t index : scratch_.triangles) {
       const Real until = first ? first->time : end;
-      const auto impact = advance(closing, allowance_, begin, until, [&](Real time) {
-        return hold_in_mesh(mesh_at(time), index, shape_at(time));
-      });
-      if (impact && (!first || impact->time < first->time) && is_from_front(*impact, index)) first = impact;
+      const auto met = advance(closing, allowance_, begin, until,
+                               [&](Real time) { return hold_in_mesh(mesh_at(time), index, shape_at(time)); });
+      if (!met) continue;
+      const auto impact = from_front(*met, index, begin);
+      if (impact && (!first || impact->time < first->time)) first = impact;
     }
     return first;
   }
@@ -210,12 +211,30 @@ class PairSweep {
     return n == hold.n ? hold : Hold{separation_along(triangle, b, n), n};
   }
 
-  /// What comes to a triangle from behind, or past its plane, goes on.
-  [[nodiscard]] bool is_from_front(const Impact& impact, std::uint32_t index) const {
-    const Convex triangle = mesh_at(impact.time).triangle(index);
-    const Vec3 front = front_of_triangle(triangle);
-    const Vec3 middle = middle_of(shape_at(impact.time));
-    return dot(front, middle - triangle.corners[0]) > Real(0) && dot(front, impact.normal) > Real(0);
+  /// Of the shape over the triangle's plane [m].
+  [[nodiscard]] Real height_of_middle(std::uint32_t index, Real time) const {
+    const Convex triangle = mesh_at(time).triangle(index);
+    return dot(front_of_triangle(triangle), middle_of(shape_at(time)) - triangle.corners[0]);
+  }
+
+  /// What comes to a triangle from behind, or past its plane, goes on. But what overlapped it at `begin`, and
+  /// turns, may be so thin in between that its middle gets behind the face before the overlap grows: it meets
+  /// the face before.
+  [[nodiscard]] std::optional<Impact> from_front(Impact impact, std::uint32_t index, Real begin) const {
+    constexpr int kHalvings = 20;
+    const Vec3 front = front_of_triangle(mesh_at(impact.time).triangle(index));
+    if (!(dot(front, impact.normal) > Real(0))) return std::nullopt;
+    if (height_of_middle(index, impact.time) > Real(0)) return impact;
+    const Real height = height_of_middle(index, begin);
+    if (!is_same_direction(front, impact.normal) || !(height > Real(0))) return std::nullopt;
+    const Real least = Real(0.5) * std::min(height, b_.path.inner);
+    Real behind = impact.time;
+    impact.time = begin;
+    for (int i = 0; i < kHalvings; ++i) {
+      const Real time = Real(0.5) * (impact.time + behind);
+      (height_of_middle(index, time) > least ? impact.time : behind) = time;
+    }
+    return impact;
   }
 
   const SweptCollider& a_;

@@ -6,6 +6,7 @@
 #include "geometry/closest.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -63,8 +64,19 @@ bool meet_ball(const Convex& triangle, const Convex& ball, Real margin, Meeting&
   return true;
 }
 
+/// What of the triangle's rim is farthest along n: a corner, or of an edge the place nearest to p.
+Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
+  std::array<Vec3, 3> rim = triangle.corners;
+  const auto height = [n](Vec3 corner) { return dot(n, corner); };
+  std::sort(rim.begin(), rim.end(), [&](Vec3 a, Vec3 b) { return height(a) > height(b); });
+  const bool whole_edge = height(rim[1]) >= height(rim[0]) - kFlush;
+  return whole_edge ? geometry::closest_on_segment(p, rim[0], rim[1]).point : rim[0];
+}
+
 /// False if they are farther apart than the margin, or the shape is behind the triangle.
-bool meet_triangle(const Convex& triangle, const Convex& b, Real margin, Meeting& meeting) {
+bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Real margin,
+                   std::vector<std::uint32_t>& near, Meeting& meeting) {
+  const Convex triangle = a.triangle(index);
   if (b.shape.kind == ShapeKind::kSphere) return meet_ball(triangle, b, margin, meeting);
   const Vec3 front = front_of(triangle);
   meeting.count = 0;
@@ -81,6 +93,10 @@ bool meet_triangle(const Convex& triangle, const Convex& b, Real margin, Meeting
   if (apart.distance > margin) return false;
   const Nearest nearest = improve_axis(triangle, b, apart, tolerance, axis);
   if (!(axis.separation <= margin) || !(dot(axis.n, front) > Real(0))) return false;
+  if (axis.separation < Real(0) && !(way_out_of_surface(a, index, b, axis.n, near) == axis.n)) {
+    meeting.separation = deepest_of(meeting);
+    return meeting.count > 0;
+  }
   if (axis.code == kFreeAxis) {
     meeting.count = 0;
     meeting.normal = axis.n;
@@ -180,21 +196,6 @@ void join_patches(Real cosine, MeshScratch& scratch) {
   }
 }
 
-/// Where one comes to the triangle's rim from the place nearest to p, along n as far as the plane goes.
-Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
-  const auto& corners = triangle.corners;
-  const Vec3 front = front_of(triangle);
-  const Vec3 lean = n - dot(n, front) * front;
-  const Vec3 start = geometry::closest_on_triangle(p, corners[0], corners[1], corners[2]).point;
-  Real way = std::numeric_limits<Real>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 out = cross(corners[(i + 1) % 3] - corners[i], front);
-    const Real rate = dot(out, lean);
-    if (rate > Real(0)) way = std::min(way, std::max(Real(0), dot(out, corners[i] - start)) / rate);
-  }
-  return std::isfinite(way) ? start + way * lean : start;
-}
-
 }  // namespace
 
 Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
@@ -243,8 +244,8 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& s
   find_triangles_near(a, b, margin, scratch.triangles);
   Meeting meeting;
   for (const std::uint32_t index : scratch.triangles) {
-    const Convex triangle = a.triangle(index);
-    if (meet_triangle(triangle, b, margin, meeting)) append_contact(triangle, index, meeting, scratch);
+    if (meet_triangle(a, index, b, margin, scratch.near, meeting))
+      append_contact(a.triangle(index), index, meeting, scratch);
   }
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     if (is_ghost(scratch.contacts[i], scratch.contacts, Pieces::kOfOneMesh)) continue;

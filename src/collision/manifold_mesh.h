@@ -26,8 +26,9 @@ struct PlacedMesh {
 void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach, std::vector<std::uint32_t>& found);
 
 /// A direction in which a shape may leave a triangle that it overlaps. `n` is one for the triangle alone; it
-/// may lean over the rim, where the surface goes on: in a hollow it would lead through the next triangle. Then
-/// it is the front of one of those that meet there, along which the two overlap least. Overwrites `near`.
+/// may lean over the rim, where the surface goes on: in a hollow it would lead through the next triangle.
+/// Then it is the front of one of those that meet there, along which the two overlap least. Overwrites
+/// `near`.
 [[nodiscard]] Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
                                       std::vector<std::uint32_t>& near);
 
@@ -40,6 +41,7 @@ struct PatchMeeting {
 /// Memory for meet_mesh.
 struct MeshScratch {
   std::vector<std::uint32_t> triangles = {};
+  std::vector<std::uint32_t> near = {};  // triangles at a place
   std::vector<SurfaceContact> contacts = {};
   std::vector<MeetingPoint> points = {};      // of all contacts, one after the other
   std::vector<std::size_t> first_point = {};  // of each contact, and the number of all

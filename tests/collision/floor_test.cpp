@@ -189,6 +189,36 @@ TEST_SUITE("collision/floor") {
     }
   }
 
+  TEST_CASE("in the edge between two walls that it overlaps, a box is pressed out along their fronts only") {
+    // Over its rim, the way out of one wall is the shorter the nearer the other is.
+    MeshDesc edge;
+    const auto add = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+      const auto first = static_cast<std::uint32_t>(edge.positions.size());
+      edge.positions.insert(edge.positions.end(), {a, b, c, d});
+      edge.triangles.push_back({first, first + 1, first + 2});
+      edge.triangles.push_back({first, first + 2, first + 3});
+    };
+    const Real o = Real(0);
+    const Real l = Real(1);
+    add({o, o, -l}, {o, o, l}, {l, o, l}, {l, o, -l});  // looks up
+    add({o, o, -l}, {o, l, -l}, {o, l, l}, {o, o, l});  // looks along x
+    for (int i = 0; i < 50; ++i) {
+      CAPTURE(i);
+      PairScene scene;
+      scene.add_mesh(edge);
+      const double deep = 1e-3 * (1 + i % 10);
+      scene.add_dynamic(Shape::box({Real(0.02), Real(0.02), Real(0.1)}),
+                        {0.02 - deep, 0.02 - deep, 0.013 * i - 0.3},
+                        hooke::quaternion_about(Vec3{Real(0), Real(0), Real(1)}, Real(0.03 * i)));
+      scene.update();
+      CHECK_FALSE(scene.pairs.manifold.empty());
+      for (const Manifold& m : scene.pairs.manifold) {
+        CHECK(m.normal.x > Real(-1e-3));
+        CHECK(m.normal.y > Real(-1e-3));
+      }
+    }
+  }
+
   TEST_CASE("a sphere in a groove has a contact on both sides, over a ridge one, from below none") {
     const auto add_roof = [](PairScene& scene, double slope) {
       MeshDesc mesh;
