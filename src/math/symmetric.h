@@ -74,4 +74,10 @@ constexpr Symmetric3<T> symmetric_product(const Symmetric3<T>& a, const Symmetri
   return {x.x, T(0.5) * (x.y + y.x), T(0.5) * (x.z + z.x), y.y, T(0.5) * (y.z + z.y), z.z};
 }
 
+template <class T>
+Symmetric3<double> in_double(const Symmetric3<T>& m) {
+  return {static_cast<double>(m.xx), static_cast<double>(m.xy), static_cast<double>(m.xz),
+          static_cast<double>(m.yy), static_cast<double>(m.yz), static_cast<double>(m.zz)};
+}
+
 }  // namespace hooke::math

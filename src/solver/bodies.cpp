@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hooke::solver {
 
@@ -50,6 +51,33 @@ Quaternion<double> turned_about(int axis, Quaternion<double> axes, DVec3 momentu
   return axes * math::quaternion_of(turn_per_momentum * turns[static_cast<std::size_t>(axis)]);
 }
 
+/// Turned on, so that L has the energy it should. In the body's own axes |L|^2 = sum L_i^2 and 2 E = sum c_i
+/// L_i^2 are linear in the squares: the nearest ones that have both, and none of which is negative, are
+/// taken.
+Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 momentum, double twice_energy) {
+  const double size = length(momentum);
+  const DVec3 l = (1 / size) * rotate(conjugate(axes), momentum);
+  const DVec3 square = {l.x * l.x, l.y * l.y, l.z * l.z};
+  const double mean = (c.x + c.y + c.z) / 3;
+  const DVec3 slope = c - DVec3{mean, mean, mean};
+  const DVec3 free = {c.z - c.y, c.x - c.z, c.y - c.x};  // changes neither
+  if (!(length_squared(slope) > 0)) return axes;
+  const double lacks = twice_energy / (size * size) - dot(c, square);
+  const DVec3 nearest = square + (lacks / length_squared(slope)) * slope;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const auto axis : {&DVec3::x, &DVec3::y, &DVec3::z}) {
+    const double zero = -(nearest.*axis) / (free.*axis);
+    if ((free.*axis) > 0) low = std::max(low, zero);
+    if ((free.*axis) < 0) high = std::min(high, zero);
+  }
+  const DVec3 found = nearest + std::clamp(0.0, std::min(low, high), high) * free;
+  const auto root = [](double x, double sign) { return std::copysign(std::sqrt(std::max(0.0, x)), sign); };
+  const DVec3 goal = normalize(DVec3{root(found.x, l.x), root(found.y, l.y), root(found.z, l.z)});
+  const DVec3 across = cross(l, goal);
+  return axes * conjugate(normalize(Quaternion<double>{across.x, across.y, across.z, 1 + dot(l, goal)}));
+}
+
 /// The same for a fast turn, of which the midpoint rule makes energy out of nothing: as a symmetric top about
 /// the axis that is least like the others, exactly, between two halves of what sets those apart.
 Vec3 split_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
@@ -69,16 +97,9 @@ Vec3 split_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
   q = math::quaternion_of(step * of[a] * l) * turned_about(top, q, l, step * (of[top] - of[a]));
   q = turned_about(b, q, l, rest);
   const DVec3 now = vector_cast<double>(in_axes(axes, inverse, momentum));
+  const DVec3 start = rotate(conjugate(before), l);
+  q = turned_to_energy(q, c, l, dot(start, {c.x * start.x, c.y * start.y, c.z * start.z}));
   return vector_cast<Real>((1 / step) * math::turn_between(before, q, step * now));
-}
-
-/// By the midpoint rule where its iteration converges at once.
-Vec3 free_velocity(Quat axes, const BodyMass& mass, Vec3 momentum, Real h) {
-  constexpr Real kSlow = Real(0.1);
-  const Vec3 inverse = inverse_inertia(mass);
-  const auto [least, most] = std::minmax({inverse.x, inverse.y, inverse.z});
-  const bool slow = h * length(momentum) * most * most <= kSlow * least;
-  return slow ? midpoint_velocity(axes, inverse, momentum, h) : split_velocity(axes, inverse, momentum, h);
 }
 
 /// Too small a speed to keep: nothing may decay into denormals.
@@ -98,8 +119,37 @@ Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bod
   Vec3& momentum = bodies.angular_momentum[i];
   if (!step.first) momentum += momentum_of(scale, by_contacts);
   momentum = damping * (momentum + step.h * bodies.torque[i]);
-  const Quat axes = bodies.rotation[i] * bodies.mass[i].principal;
-  return momentum_of(scale, free_velocity(axes, bodies.mass[i], momentum, step.h));
+  return momentum_of(scale, mean_velocity(bodies.mass[i], bodies.rotation[i], momentum, step.h));
+}
+
+/// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
+bool outgrows_rows(const math::Symmetric3<Real>& scale, const math::Symmetric3<Real>& now) {
+  constexpr Real kMost = Real(3.5);  // 1 + r + 1/r for r = 2
+  const math::Symmetric3<Real> inverse = math::inverse(scale);
+  Real trace = Real(0);
+  for (const Vec3 axis :
+       {Vec3{Real(1), Real(0), Real(0)}, Vec3{Real(0), Real(1), Real(0)}, Vec3{Real(0), Real(0), Real(1)}})
+    trace += length_squared(now * (inverse * axis));
+  return !(trace <= kMost);
+}
+
+/// The turn of the step so far becomes one about a single axis from its start. Its energy is that of L, but
+/// no more than rows know: where a hit turned the body over within the substep, L tells of another time.
+void begin_steady_turn(std::uint32_t i, Vec3 momentum, const math::Symmetric3<Real>& now, Quat start,
+                       Bodies& bodies) {
+  const math::Symmetric3<Real>& scale = bodies.scale[i];
+  MotionLine& m = bodies.motion[i];
+  state::FreeLine& free = bodies.free_motion[i];
+  const Vec3 by_contacts = m.omega_scaled - free.omega_scaled;
+  const Vec3 omega_now = now * momentum;
+  const Vec3 omega_scaled = momentum_of(scale, now * omega_now);
+  const Real size = length_squared(omega_scaled);
+  const Real energy = std::min(length_squared(omega_now), length_squared(m.omega_scaled));
+  m.omega_scaled = size > Real(0) ? std::sqrt(energy / size) * omega_scaled : Vec3{};
+  free.omega_scaled = m.omega_scaled - by_contacts;
+  m.theta_scaled = momentum_of(scale, math::turn_between(start, bodies.rotation[i], scale * m.theta_scaled));
+  bodies.rotation[i] = start;
+  bodies.steady_turn[i].on = true;
 }
 
 /// The inertia is not turned exactly as the body is: the rotational energy decides how fast it is.
@@ -149,6 +199,16 @@ math::Symmetric3<Real> inertia_scale(const BodyMass& mass, Quat rotation) {
   };
   return {entry(&Vec3::x, &Vec3::x), entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z),
           entry(&Vec3::y, &Vec3::y), entry(&Vec3::y, &Vec3::z), entry(&Vec3::z, &Vec3::z)};
+}
+
+/// By the midpoint rule where its iteration converges at once.
+Vec3 mean_velocity(const BodyMass& mass, Quat rotation, Vec3 momentum, Real h) {
+  constexpr Real kSlow = Real(0.1);
+  const Quat axes = rotation * mass.principal;
+  const Vec3 inverse = inverse_inertia(mass);
+  const auto [least, most] = std::minmax({inverse.x, inverse.y, inverse.z});
+  const bool slow = h * length(momentum) * most * most <= kSlow * least;
+  return slow ? midpoint_velocity(axes, inverse, momentum, h) : split_velocity(axes, inverse, momentum, h);
 }
 
 void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
@@ -217,6 +277,28 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
     if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * bodies.rotation[i]);
+  }
+}
+
+void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
+                  bool moved, Bodies& bodies) {
+  constexpr Real kLeastTurn = Real(0.02);  // [rad]
+  constexpr Real kMost = Real(2);
+  for (const std::uint32_t i : rows) {
+    const state::SteadyTurn& steady = bodies.steady_turn[i];
+    if (!steady.touches || steady.on) continue;
+    const MotionLine& m = bodies.motion[i];
+    const math::Symmetric3<Real>& scale = bodies.scale[i];
+    const Vec3 turn = moved ? m.theta_scaled : h * m.omega_scaled;
+    if (length_squared(scale * turn) < kLeastTurn * kLeastTurn) continue;
+    const math::Symmetric3<Real> now = inertia_scale(bodies.mass[i], bodies.rotation[i]);
+    const state::FreeLine& free = bodies.free_motion[i];
+    Vec3 momentum = bodies.angular_momentum[i];
+    if (moved) momentum += momentum_of(scale, m.omega_scaled - free.omega_scaled);
+    const bool is_other_motion =
+        !moved && length_squared(free.omega_scaled) > kMost * length_squared(now * momentum);
+    if (is_other_motion || outgrows_rows(scale, now))
+      begin_steady_turn(i, momentum, now, start_rotation[i], bodies);
   }
 }
 

@@ -27,11 +27,6 @@ constexpr int kTwist = 3;
 constexpr int kCone = 6;
 constexpr int kFreedoms = 7;
 
-Symmetric3<double> to_double(const Symmetric3<Real>& m) {
-  return {static_cast<double>(m.xx), static_cast<double>(m.xy), static_cast<double>(m.xz),
-          static_cast<double>(m.yy), static_cast<double>(m.yz), static_cast<double>(m.zz)};
-}
-
 /// Directions and values of a hook's freedoms.
 struct Freedoms {
   DVec3 r_a, r_b;  ///< From the centers of mass to b's anchor.
@@ -186,7 +181,7 @@ JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
   const state::MotionLine& m = bodies.motion[row];
   JointBody body;
   body.inverse_mass = static_cast<double>(m.inverse_mass);
-  if (m.inverse_mass > Real(0)) body.scale = to_double(bodies.scale[row]);
+  if (m.inverse_mass > Real(0)) body.scale = math::in_double(bodies.scale[row]);
   body.center = bodies.center[row] + vector_cast<double>(m.dx);
   body.rotation = math::in_double(bodies.rotation[row]);
   if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, row)) {
@@ -202,7 +197,7 @@ JointBody joint_body_now(const state::Bodies& bodies, std::uint32_t row) {
   JointBody body = joint_body(bodies, row);
   if (!(body.inverse_mass > 0) || !tumbles_now(bodies, row)) return body;
   const DVec3 omega = body.scale * body.omega_scaled;
-  body.scale = to_double(inertia_scale(bodies.mass[row], bodies.rotation[row]));
+  body.scale = math::in_double(inertia_scale(bodies.mass[row], bodies.rotation[row]));
   body.omega_scaled = math::inverse(body.scale) * omega;
   return body;
 }
@@ -224,7 +219,7 @@ void set_joint_velocity(const JointBody& before, DVec3 v, DVec3 omega_scaled, st
                         state::Bodies& bodies) {
   const DVec3 change = math::inverse(before.scale) * (omega_scaled - before.omega_scaled);
   if (tumbles_now(bodies, row))
-    omega_scaled = math::inverse(to_double(bodies.scale[row])) * (before.scale * omega_scaled);
+    omega_scaled = math::inverse(math::in_double(bodies.scale[row])) * (before.scale * omega_scaled);
   set_joint_velocity(v, omega_scaled, change, row, bodies);
 }
 

@@ -1,6 +1,7 @@
 #include "solver/strike.h"
 
 #include "math/rotation.h"
+#include "solver/bodies.h"
 #include "solver/joint_rows.h"
 #include "state/body_frames.h"
 
@@ -59,12 +60,19 @@ struct Struck {
   }
 };
 
-Struck struck(const Bodies& bodies, std::uint32_t row) {
+/// The body `time` from now. One that tumbles has the inertia and the angular velocity of that time, not the
+/// mean of the substep: with those of another the impact would change its energy.
+Struck struck(const Bodies& bodies, std::uint32_t row, Real time) {
   JointBody now = joint_body_now(bodies, row);
   if (!is_moved(bodies, row)) now.inverse_mass = 0;
   const state::FreeLine motion = state::motion_before_contacts(bodies, row);
   const DVec3 v = vector_cast<double>(motion.v);
-  const DVec3 omega = vector_cast<double>(bodies.scale[row] * motion.omega_scaled);
+  DVec3 omega = vector_cast<double>(bodies.scale[row] * motion.omega_scaled);
+  if (now.inverse_mass > 0 && state::tumbles_now(bodies, row)) {
+    const Quat then = state::pose_after(bodies, row, time).rotation;
+    now.scale = math::in_double(inertia_scale(bodies.mass[row], then));
+    omega = now.scale * (now.scale * vector_cast<double>(bodies.angular_momentum[row]));
+  }
   return {.body = now, .v = v, .omega = omega, .v_before = v, .omega_before = omega};
 }
 
@@ -242,25 +250,31 @@ bool rub(double share, Impact& impact) {
   return gains_energy(impact);
 }
 
-/// Changes the body's velocities, and its line as if it had changed them after `time` only.
-void set_struck(const Struck& after, std::uint32_t row, Real time, Bodies& bodies) {
+/// Changes the body's velocities, and its line as if it had changed them after `time` only. What tumbles goes
+/// on from there as a free body does, to the substep's end `rest` later; its rotation becomes the one from
+/// which a steady turn leads to both.
+void set_struck(const Struck& after, std::uint32_t row, Real time, Real rest, Bodies& bodies) {
   if (!(after.body.inverse_mass > 0)) return;
   MotionLine& m = bodies.motion[row];
   state::FreeLine& free = bodies.free_motion[row];
   const math::Symmetric3<double> root = math::inverse(after.body.scale);  // of the inertia
   const DVec3 turned = after.omega - after.omega_before;
   const Vec3 v = vector_cast<Real>(after.v - after.v_before);
-  const Vec3 omega_scaled = math::inverse(bodies.scale[row]) * vector_cast<Real>(turned);
+  Vec3 turn = vector_cast<Real>(turned);
   bodies.angular_momentum[row] += vector_cast<Real>(root * (root * turned));
+  if (state::tumbles_now(bodies, row)) {
+    const Quat then = state::pose_after(bodies, row, time).rotation;
+    const Vec3 omega = mean_velocity(bodies.mass[row], then, bodies.angular_momentum[row], rest);
+    turn = omega - bodies.scale[row] * free.omega_scaled;
+    bodies.rotation[row] = normalize(math::quaternion_of(-time * omega) * then);
+  }
+  const Vec3 omega_scaled = math::inverse(bodies.scale[row]) * turn;
   m.v += v;
   free.v += v;
   m.omega_scaled += omega_scaled;
   free.omega_scaled += omega_scaled;
   m.dx -= time * v;
   m.theta_scaled -= time * omega_scaled;
-  if (state::tumbles_now(bodies, row))
-    bodies.rotation[row] =
-        normalize(math::quaternion_of(bodies.scale[row] * (-time * omega_scaled)) * bodies.rotation[row]);
 }
 
 }  // namespace
@@ -269,8 +283,8 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
             const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<const ContactLane> lanes = pair.lanes;
   const Manifold& first = manifolds[lanes.front().manifold];
-  Impact impact = {.a = struck(bodies, first.body_a),
-                   .b = struck(bodies, first.body_b),
+  Impact impact = {.a = struck(bodies, first.body_a, time),
+                   .b = struck(bodies, first.body_b, time),
                    .effort = pair.in_crowd ? kInCrowd : kFull};
   // One of them has to give way: what is backed does not only where the other does.
   const DVec3 n = vector_cast<double>(first.normal);
@@ -296,8 +310,9 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
     impact = smooth;
     gains = rub(share, impact);
   }
-  set_struck(impact.a, first.body_a, time, bodies);
-  set_struck(impact.b, first.body_b, time, bodies);
+  const Real rest = std::max(Real(0), step.h - time);
+  set_struck(impact.a, first.body_a, time, rest, bodies);
+  set_struck(impact.b, first.body_b, time, rest, bodies);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     Real& pushed = contacts.blocks[static_cast<std::size_t>(lanes[i].block)].pushed[lanes[i].lane];
     pushed = std::max(pushed, static_cast<Real>(load_of(i, impact)));

@@ -51,9 +51,11 @@ struct alignas(8 * sizeof(Real)) FreeLine {
 
 /// A body that turns so far within the step that its inertia in world axes changes, and touches something in
 /// it: its contacts are solved with the inertia at the time of the first of them, and between contacts its
-/// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum.
+/// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum. One that
+/// touches something and was not foreseen to turn so far, does so from the substep on in which it has.
 struct SteadyTurn {
   bool on = false;
+  bool touches = false;    ///< It tumbles, and has contacts in this step.
   Vec3 until_impact = {};  ///< [rad]
 };
 
@@ -89,7 +91,7 @@ struct Bodies {
   std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
   std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
-  std::vector<SteadyTurn> steady_turn;        ///< Written by detect.
+  std::vector<SteadyTurn> steady_turn;        ///< Written by detect, and by keep_inertia.
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
   std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.

@@ -217,13 +217,21 @@ void begin_motion(WorldData& world, Real dt) {
       const std::uint32_t body = world.tables.colliders.body[collider];
       state::SteadyTurn& steady = bodies.steady_turn[body];
       const Vec3 turn = pair.time * dt * bodies.angular_velocity[body];
+      steady.touches = state::gives_way(bodies, body) && state::tumbles(bodies.mass[body]);
       if (steady.on) {
         if (length_squared(turn) < length_squared(steady.until_impact)) steady.until_impact = turn;
       } else if (turns_over(bodies, body, pair.time > Real(0), dt)) {
-        steady = {true, turn};
+        steady.on = true;
+        steady.until_impact = turn;
       }
     }
   }
+}
+
+void keep_inertia(WorldData& world, Real h, bool moved) {
+  for_bodies(world, [&](auto rows) {
+    solver::keep_inertia(rows, world.start_rotation, h, moved, world.tables.bodies);
+  });
 }
 
 void give_way_at_impacts(WorldData& world) {

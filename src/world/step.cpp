@@ -116,6 +116,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   world::force_bodies(w, time, h);
   const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
   for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
+  world::keep_inertia(w, h, false);
   world::resolve_hits(w, h);
   for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {
     for_contact_colors(w, [&](Range blocks) {
@@ -128,6 +129,7 @@ void substep(WorldData& w, int i, double time, Real h) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
     for_bodies(w, [&](auto rows) { solver::move_bodies(rows, particle_h, bodies); });
   }
+  world::keep_inertia(w, h, true);
   world::renew_lively_contacts(w, h);
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(

@@ -128,8 +128,9 @@ MeshDesc octahedron(Random& random) {
   return mesh;
 }
 
-/// One that spins and flies anywhere, from the middle of the room; those of one room do not meet.
-BodyDesc shot(World& world, Random& random) {
+/// One that spins and flies anywhere, at `slowest` [m/s] to 5000, from the middle of the room; those of one
+/// room do not meet.
+BodyDesc shot(World& world, Random& random, double slowest = 1) {
   BodyDesc body;
   body.kind = BodyKind::kDynamic;
   body.shape = any_shape(random, take(world.add_mesh(octahedron(random))));
@@ -138,7 +139,7 @@ BodyDesc shot(World& world, Random& random) {
   body.rotation = any_rotation(random);
   // One after the other: compilers choose the order within an expression.
   const Vec3 way = any_direction(random);
-  body.velocity = static_cast<Real>(over_decades(random, 1, 5000)) * way;
+  body.velocity = static_cast<Real>(over_decades(random, slowest, 5000)) * way;
   const Vec3 axis = any_direction(random);
   body.angular_velocity = static_cast<Real>(over_decades(random, 0.5, 500)) * axis;
   body.contact.restitution = static_cast<Real>(random() % 2 == 0 ? 0 : unit(random));
@@ -175,7 +176,7 @@ bool stays_inside(World& world, const BodyDesc& desc, Real dt) {
 }
 
 /// Shots whose center left a closed room within some steps, of `count`.
-int escapes(Room room, int count, std::uint64_t seed) {
+int escapes(Room room, int count, std::uint64_t seed, double slowest = 1) {
   constexpr int kSteps = 20;
   constexpr std::array<int, 4> kRates = {30, 60, 120, 240};
   Random random(seed);
@@ -184,7 +185,7 @@ int escapes(Room room, int count, std::uint64_t seed) {
   std::vector<BodyId> bodies;
   std::vector<BodyDesc> descs;
   for (int i = 0; i < count; ++i) {
-    descs.push_back(shot(world, random));
+    descs.push_back(shot(world, random, slowest));
     bodies.push_back(take(world.add_body(descs.back())));
   }
   const Real dt = Real(1) / static_cast<Real>(kRates[random() % kRates.size()]);
@@ -283,9 +284,47 @@ TEST_SUITE("world/continuous") {
     CHECK(stays_inside(world, body, Real(1) / Real(120)));
   }
 
+  TEST_CASE("hulls that spin in an edge between two sheets are not pressed out by either") {
+    // Contacts leaned over the rim of one wall, and pushed the shot into the other. These left.
+    for (const std::uint64_t seed : {101365u, 106558u, 109558u}) {
+      CAPTURE(seed);
+      CHECK(escapes(Room::kSheets, 50, seed, 50) == 0);
+    }
+  }
+
+  TEST_CASE("rods that spin about their own axis and are tipped over are not driven by their rows") {
+    // Rows knew the inertia of before: 40 of 400 gained energy, by factors of up to 1e18 in a step. 5 still
+    // do.
+    Random random(5);
+    for (int i = 0; i < 400; ++i) {
+      CAPTURE(i);
+      World world = make_world(empty_space());
+      take(world.add_body({.shape = Shape::half_space()}));
+      BodyDesc rod;
+      rod.kind = BodyKind::kDynamic;
+      rod.shape = Shape::capsule(Real(0.007), static_cast<Real>(between(random, 0.05, 0.2)));
+      const double tilt = between(random, 0.01, 0.2);
+      rod.rotation = quaternion_about(Vec3{Real(0), Real(0), Real(1)}, static_cast<Real>(1.5708 - tilt));
+      const double half_height = static_cast<double>(rod.shape.half_height);
+      rod.position = {0, 0.0071 + half_height * std::sin(tilt), 0};
+      const double slide = between(random, -10, 10);
+      rod.velocity = {static_cast<Real>(slide), static_cast<Real>(between(random, -1, 0)), Real(0)};
+      rod.angular_velocity = static_cast<Real>(over_decades(random, 300, 3000)) *
+                             rotate(rod.rotation, Vec3{Real(0), Real(1), Real(0)});
+      rod.contact.friction = Real(1);
+      rod.contact.restitution = Real(0);
+      take(world.add_body(rod));
+      const double start = world.measure().energy.kinetic;
+      for (int step = 0; step < 20; ++step) {
+        world.step(Real(1) / Real(60));
+        CHECK(world.measure().energy.kinetic < 2 * start);
+      }
+    }
+  }
+
   TEST_CASE("no shot gains energy, however thin it is and however fast it spins") {
     Random random(11);
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 3000; ++i) {
       CAPTURE(i);
       World world = make_world(empty_space());
       if (i % 3 != 0) build_room(world, Room::kPlates);
@@ -297,6 +336,29 @@ TEST_SUITE("world/continuous") {
         CHECK(world.measure().energy.kinetic < 1.03 * start);
       }
     }
+  }
+
+  TEST_CASE("bricks that tumble and bounce without loss keep their energy") {
+    // With the inertia, and the mean velocity, of another time than the hit's: 1.5 % in the mean.
+    constexpr int kBricks = 50;
+    Random random(9);
+    double error = 0;
+    for (int i = 0; i < kBricks; ++i) {
+      World world = make_world(empty_space());
+      build_room(world, Room::kHalfSpaces);
+      BodyDesc brick;
+      brick.kind = BodyKind::kDynamic;
+      brick.shape = Shape::box({Real(0.1), Real(0.03), Real(0.05)});
+      brick.rotation = any_rotation(random);
+      brick.velocity = Real(3) * any_direction(random);
+      brick.angular_velocity = Real(10) * any_direction(random);
+      brick.contact = {.friction = Real(0), .restitution = Real(1)};
+      take(world.add_body(brick));
+      const double start = world.measure().energy.kinetic;
+      for (int step = 0; step < 300; ++step) world.step(Real(1) / Real(60));
+      error += std::abs(world.measure().energy.kinetic / start - 1) / kBricks;
+    }
+    CHECK(error < 0.005);
   }
 
   TEST_CASE("a ball shot at 300 m/s at a wall of 1 mm comes back with 300 m/s") {
