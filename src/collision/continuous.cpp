@@ -127,13 +127,16 @@ class ImpactQueue {
   struct Push {
     Vec3 out = {};         // away from it, unit
     Real speed = Real(0);  // of it, along `out` [m per step]
-    bool firm = false;     // it gives no way itself
+    bool firm = false;     // it gives no way itself, and is no lighter
   };
 
   [[nodiscard]] Push push_of(std::uint32_t pusher, std::uint32_t body, const Impact& impact,
                              Real sign) const {
     const Path& path = bodies_.path[pusher];
-    Push push = {.out = sign * impact.normal, .firm = bodies_.stoppable[pusher] == Stoppable::kNever};
+    // A plank on ropes would throw a ton about, if that had to go as the plank does.
+    const bool firm = bodies_.stoppable[pusher] == Stoppable::kNever &&
+                      bodies_.inverse_mass[pusher] <= bodies_.inverse_mass[body];
+    Push push = {.out = sign * impact.normal, .firm = firm};
     const DVec3 lever =
         pose_at(bodies_.path[body], impact.time).position - pose_at(path, impact.time).position;
     // Of two that give way, neither turns any more.

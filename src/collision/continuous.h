@@ -23,8 +23,9 @@ inline constexpr Real kUnseenWay = Real(0.5);
 
 /// What a sweep may do to a body.
 enum class Stoppable : std::uint8_t {
-  kNever,  ///< It stands, or moves as told.
-  kSlow,   ///< Only something that nothing stops makes it give way: its own way is less than its thickness.
+  kNever,  ///< It stands, moves as told, or hangs on others.
+  kSlow,   ///< Only something heavy that nothing stops makes it give way: its own way is less than its
+           ///< thickness.
   kAlways,
 };
 
@@ -37,6 +38,7 @@ struct SweptBodies {
 
   std::vector<Path> path = {};
   std::vector<Stoppable> stoppable = {};
+  std::vector<Real> inverse_mass = {};  ///< [1/kg]; zero of what moves as told.
   std::vector<Bends> bends = {};
 };
 
@@ -77,9 +79,9 @@ class ContinuousScratch {
 /// there against what `find_pairs` finds.
 ///
 /// A body that gives way ceases to turn, and loses that part of its own speed which takes it towards the
-/// other (so that it never leaves the ball of half its way around it); before one that moves as told it goes
-/// as that one does. What comes together slowly for its thickness is left to contacts. Returns how often
-/// bodies gave way. The result does not depend on the pool's number of threads.
+/// other (so that it never leaves the ball of half its way around it); before one that nothing stops, and
+/// that is no lighter, it goes as that one does. What comes together slowly for its thickness is left to
+/// contacts. Returns how often bodies gave way. The result does not depend on the pool's number of threads.
 std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
                                   std::span<const Encounter> encounters, const FindPairs& find_pairs,
                                   ContinuousScratch& scratch, SweptBodies& bodies);

@@ -539,9 +539,11 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
   for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
     Manifold& m = manifolds[pair.first_manifold + place_of[i]];
     const Real largest = m.largest_impulse;
+    const bool borne = m.borne;
     m = chunk.manifolds[i];
     m.largest_impulse = largest;
     m.lively = pair.lively;
+    m.borne = borne;
     center_anchors(m);
   }
 }
@@ -739,6 +741,7 @@ void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const stat
     const std::size_t begin = static_cast<std::size_t>(item) * kLivelyChunk;
     for (std::size_t i = begin; i < std::min(begin + kLivelyChunk, rows.size()); ++i) {
       Pair& pair = pairs.pair[rows[i]];
+      if (pairs.manifold[pair.first_manifold].borne) continue;  // rows of the step's start
       const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
       const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
       look_again(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);

@@ -53,8 +53,10 @@ Quaternion<double> turned_about(int axis, Quaternion<double> axes, DVec3 momentu
 
 /// Turned on, so that L has the energy it should. In the body's own axes |L|^2 = sum L_i^2 and 2 E = sum c_i
 /// L_i^2 are linear in the squares: the nearest ones that have both, and none of which is negative, are
-/// taken.
+/// taken. What is nearly right stays: the root of what rounding leaves of a square spun a ladder that leaned,
+/// at rest, about its own axis.
 Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 momentum, double twice_energy) {
+  constexpr double kLeast = 1e-4;
   const double size = length(momentum);
   const DVec3 l = (1 / size) * rotate(conjugate(axes), momentum);
   const DVec3 square = {l.x * l.x, l.y * l.y, l.z * l.z};
@@ -63,6 +65,7 @@ Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 mome
   const DVec3 free = {c.z - c.y, c.x - c.z, c.y - c.x};  // changes neither
   if (!(length_squared(slope) > 0)) return axes;
   const double lacks = twice_energy / (size * size) - dot(c, square);
+  if (std::abs(lacks) <= kLeast * dot(c, square)) return axes;
   const DVec3 nearest = square + (lacks / length_squared(slope)) * slope;
   double low = -std::numeric_limits<double>::infinity();
   double high = -low;

@@ -15,6 +15,14 @@ namespace hooke::solver {
 
 inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
 
+/// What a contact did in the last substep [N].
+struct TouchForce {
+  DVec3 n;  ///< Along which `normal` pushes.
+  double normal = 0;
+  DVec3 friction;
+  bool slides = false;
+};
+
 class BundleSolution {
  public:
   BundleSolution(double h, Bundle& bundle, state::Tables& tables) : h_(h), b_(bundle), t_(tables) {}
@@ -40,10 +48,13 @@ class BundleSolution {
   // Contacts between points: bundles_inner.cpp.
   void load_inner();
   void load_inner_touch(std::size_t index);
+  void load_borne_touch(std::size_t index);
+  void make_touch_rows(std::size_t index, const TouchForce& last);
   void note_rope_in_contact(std::uint32_t node);
   void set_inner_rows(std::size_t index);
   void revise_inner();
-  [[nodiscard]] bool update_inner_friction(std::size_t index);
+  bool update_inner_friction(std::size_t index);
+  [[nodiscard]] Unsettled update_borne_touch(std::size_t index, bool only_join);
   [[nodiscard]] Unsettled update_inner_touch(std::size_t index, bool let_go);
   [[nodiscard]] Unsettled update_inner(bool let_go);
   bool let_inner_slide();

@@ -48,23 +48,28 @@ struct BundleBody {
   DVec3 omega_scaled = {};
 };
 
-/// A contact between points of a rope, or with a body that gives way, while it is solved.
+/// A contact between points of a rope, or with a body that gives way, or of a body that is borne, while it is
+/// solved.
 struct InnerTouch {
   static constexpr int kRows = 3;  ///< Along the normal and two across.
 
-  std::array<std::uint32_t, 3> node = {};  ///< As state::InnerContact::particle.
+  std::array<std::uint32_t, 3> node = {};  ///< As state::InnerContact::particle; none of what is borne.
   std::array<double, 3> weight = {};
   std::uint32_t count = 0;
   double separation = 0, friction = 0;
-  double mobility = 0;  ///< 1 / the mass that resists at the place, roughly [1/kg].
-  DVec3 surface;        ///< Velocity of the surface against its body; the whole if that is given [m/s].
-  DVec3 lever;          ///< From the body's center [m].
-  double normal = 0;    ///< Impulse [N s].
-  DVec3 f;              ///< Of friction [N s].
-  double drag = 0;      ///< Of what slides: mu N over its speed [kg].
+  double mobility = 0;    ///< 1 / the mass that resists at the place, roughly [1/kg].
+  double resistance = 0;  ///< The same for what slides; a first guess [1/kg].
+  DVec3 surface;          ///< Velocity of the surface against its body; the whole if that is given [m/s].
+  DVec3 lever;            ///< From the body's center [m].
+  DVec3 lever_b;          ///< Of what is borne, from the center of that body [m].
+  double normal = 0;      ///< Impulse [N s].
+  DVec3 f;                ///< Of friction [N s].
+  double drag = 0;        ///< Of what slides: mu N over its speed [kg].
+  bool near = false;      ///< It may act within this substep.
   bool active = false, slides = false;
   bool let_go = false;  ///< For the rest of the substep: it pulled too often.
-  bool of_rope = false;
+  bool firm =
+      false;  ///< Of ropes and of bodies that are borne: pushes apart by speed, and is solved to the end.
 };
 
 /// Unknown are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m) v,
@@ -99,8 +104,9 @@ struct Bundle {
   std::vector<std::uint32_t> points;  ///< Particles of no rope, in order of rows.
   std::vector<std::uint32_t> hooks;   ///< Rows, in order.
   std::vector<std::uint32_t> inner;   ///< Contacts between points: rows, in order.
+  std::vector<std::uint32_t> borne;   ///< Contacts between bodies: of state::Pairs::borne, in order.
   std::vector<std::uint32_t> bodies;  ///< Rows, in order.
-  /// Of each hook, then of each inner contact, a and b: index into `bodies`, or -1.
+  /// Of each hook, then of each inner contact, then of each borne one, a and b: index into `bodies`, or -1.
   std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
   std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
@@ -108,7 +114,7 @@ struct Bundle {
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, bends, hooks, inner contacts, bodies.
+  // The matrix. Blocks are segments, bends, hooks, inner contacts, borne contacts, bodies.
   BlockPattern pattern;
   std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
@@ -126,8 +132,8 @@ struct Bundle {
   std::vector<RopeSetting> settings;       ///< Of chains.
   std::vector<std::uint32_t> chain_nodes;  ///< Of chains: how many.
   std::vector<BundleBody> moving;          ///< As `bodies`.
-  std::vector<InnerTouch> touches;         ///< As `inner`.
-  std::vector<JointRow> rows;              ///< Of hooks, then of inner contacts.
+  std::vector<InnerTouch> touches;         ///< As `inner`, then as `borne`.
+  std::vector<JointRow> rows;              ///< Of hooks, then of touches.
   std::vector<std::uint32_t> first_row;    ///< Of each of these; one more at the end.
   std::vector<std::int8_t> bound;          ///< Of rows, as Articulation::bound.
   std::vector<double> lambda;              ///< Of rows.

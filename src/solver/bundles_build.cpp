@@ -39,9 +39,10 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
     s.push_back(static_cast<std::uint32_t>(revision));
     s.push_back(static_cast<std::uint32_t>(revision >> 32U));
   }
-  for (const Hook& hook : t.hooks) {
-    if (!hook.holds_point()) continue;
-    s.push_back(hook.a.particle[0]);  // changes where it slides
+  for (std::uint32_t row = 0; row < t.hooks.size(); ++row) {
+    const Hook& hook = t.hooks[row];
+    if (!hook.is_bundled()) continue;
+    s.insert(s.end(), {row, hook.a.particle[0]});  // the point changes where it slides
     for (const std::uint32_t body : {hook.a.body, hook.b.body})
       s.push_back(gives_way(t.bodies, body) ? 1 : 0);
   }
@@ -53,6 +54,7 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
     if (is_tied(t, inner))
       s.insert(s.end(), {row, inner.element, inner.object, inner.body, gives_way(t.bodies, inner.body)});
   }
+  for (const state::BorneContact& borne : t.pairs.borne) s.insert(s.end(), {borne.body_a, borne.body_b});
 }
 
 /// Bodies, then particles; a rope is its first particle.
@@ -61,8 +63,9 @@ class Groups {
   Groups(const Tables& t, base::DisjointSets& sets) : tables_(t), sets_(sets) {
     sets_.reset(t.bodies.motion.size() + static_cast<std::size_t>(t.particles.count()));
     for (const Hook& hook : t.hooks) {
-      if (hook.holds_point()) join(hook);
+      if (hook.is_bundled()) join(hook);
     }
+    for (const state::BorneContact& borne : t.pairs.borne) sets_.merge(borne.body_a, borne.body_b);
     for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
       if (joins(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
     }
@@ -74,7 +77,11 @@ class Groups {
     }
   }
 
-  std::uint32_t of_hook(const Hook& hook) { return sets_.root(of_end(hook.point_end())); }
+  std::uint32_t of_hook(const Hook& hook) {
+    const std::uint32_t end = of_end(hook.point_end());
+    return sets_.root(end != kNone ? end : of_end(hook.other_end()));
+  }
+  std::uint32_t of_borne(const state::BorneContact& borne) { return sets_.root(borne.body_a); }
   std::uint32_t of_contact(std::size_t row) {
     return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
   }
@@ -145,7 +152,8 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std:
   }
 }
 
-/// Members of all bundles, in order of the first hook, then of the first contact that makes one. Hooks that
+/// Members of all bundles, in order of the first hook, then of the first contact that makes one; of contacts,
+/// those of points come before those between bodies. Hooks that
 /// are anchors go to `scratch.anchors`.
 void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles) {
   Groups groups(t, bundles.scratch.sets);
@@ -161,6 +169,7 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
   for (const state::InnerContact& inner : t.inner_contacts) {
     if (is_tied(t, inner)) tied[groups.of_inner(inner)] = 1;
   }
+  for (const state::BorneContact& borne : t.pairs.borne) tied[groups.of_borne(borne)] = 1;
   std::vector<std::uint32_t>& bundle_of = bundles.scratch.bundle_of;
   bundle_of.assign(group_count, kNone);
   bundles.count = 0;
@@ -175,7 +184,7 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
   };
   for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
     const Hook& hook = t.hooks[i];
-    if (!hook.holds_point()) continue;
+    if (!hook.is_bundled()) continue;
     if (tied[groups.of_hook(hook)] == 0) {
       bundles.scratch.anchors.push_back(i);
       continue;
@@ -201,6 +210,12 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
     if (gives_way(t.bodies, inner.body)) bundle.bodies.push_back(inner.body);
     if (t.objects[inner.object].kind == PointRef::Kind::kRope) continue;
     bundle.points.insert(bundle.points.end(), inner.particle.begin(), inner.particle.begin() + inner.count);
+  }
+  for (std::uint32_t row = 0; row < t.pairs.borne.size(); ++row) {
+    const state::BorneContact& borne = t.pairs.borne[row];
+    Bundle& bundle = bundle_at(groups.of_borne(borne));
+    bundle.borne.push_back(row);
+    bundle.bodies.insert(bundle.bodies.end(), {borne.body_a, borne.body_b});
   }
   std::uint32_t chain = 0;
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
@@ -289,15 +304,18 @@ struct Layout {
   [[nodiscard]] std::uint32_t inner_block(std::uint32_t index) const {
     return vector_count + static_cast<std::uint32_t>(bundle.hooks.size()) + index;
   }
+  [[nodiscard]] std::uint32_t borne_block(std::uint32_t index) const {
+    return inner_block(static_cast<std::uint32_t>(bundle.inner.size())) + index;
+  }
   [[nodiscard]] std::uint32_t body_block(std::uint32_t body) const {
     const int index = bundle.body_of(body);
     if (index < 0) return kNone;
-    return inner_block(static_cast<std::uint32_t>(bundle.inner.size())) + static_cast<std::uint32_t>(index);
+    return borne_block(static_cast<std::uint32_t>(bundle.borne.size())) + static_cast<std::uint32_t>(index);
   }
 
   /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
   void join_blocks() {
-    scratch.matrix.reset(vector_count + bundle.hooks.size() + bundle.inner.size() + bundle.bodies.size());
+    scratch.matrix.reset(borne_block(static_cast<std::uint32_t>(bundle.borne.size())) + bundle.bodies.size());
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
       if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
     };
@@ -323,6 +341,11 @@ struct Layout {
     }
     for (std::uint32_t i = 0; i < bundle.inner.size(); ++i)
       meet(inner_block(i), body_block(tables.inner_contacts[bundle.inner[i]].body));
+    for (std::uint32_t i = 0; i < bundle.borne.size(); ++i) {
+      const state::BorneContact& borne = tables.pairs.borne[bundle.borne[i]];
+      meet(borne_block(i), body_block(borne.body_a));
+      meet(borne_block(i), body_block(borne.body_b));
+    }
   }
 };
 
@@ -353,7 +376,7 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
     sizes.push_back(count_joint_rows(t.hooks[hook]));
     bundle.first_row.push_back(bundle.first_row.back() + static_cast<std::uint32_t>(sizes.back()));
   }
-  for (std::size_t i = 0; i < bundle.inner.size(); ++i) {
+  for (std::size_t i = 0; i < bundle.inner.size() + bundle.borne.size(); ++i) {
     sizes.push_back(InnerTouch::kRows);
     bundle.first_row.push_back(bundle.first_row.back() + InnerTouch::kRows);
   }
@@ -374,6 +397,10 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
     bundle.ends.push_back({bundle.body_of(t.hooks[hook].a.body), bundle.body_of(t.hooks[hook].b.body)});
   for (const std::uint32_t row : bundle.inner)
     bundle.ends.push_back({bundle.body_of(t.inner_contacts[row].body), -1});
+  for (const std::uint32_t row : bundle.borne) {
+    const state::BorneContact& borne = t.pairs.borne[row];
+    bundle.ends.push_back({bundle.body_of(borne.body_a), bundle.body_of(borne.body_b)});
+  }
 }
 
 /// Tethers of a bundle's points, of which `by_particle` has all in order of their particles.
@@ -423,8 +450,8 @@ int Bundle::body_of(std::uint32_t row) const {
 }
 
 void Bundle::clear() {
-  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &inner, &bodies, &tethers, &first_tether,
-                                           &first_incident, &pair_block, &first_pair})
+  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &inner, &borne, &bodies, &tethers,
+                                           &first_tether, &first_incident, &pair_block, &first_pair})
     list->clear();
   ends.clear();
   incidents.clear();

@@ -50,8 +50,8 @@ double BundleSolution::heaviest_inner(std::size_t node) const {
 }
 
 void BundleSolution::load_inner() {
-  b_.touches.assign(b_.inner.size(), {});
-  if (b_.inner.empty()) return;
+  b_.touches.assign(b_.inner.size() + b_.borne.size(), {});
+  if (b_.touches.empty()) return;
   const std::uint32_t first = hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
   // Nodes and points of an element stand in the same order.
   for (std::uint32_t node = 0; node < b_.ropes.nodes.size(); ++node) {
@@ -65,21 +65,61 @@ void BundleSolution::load_inner() {
     }
   }
   for (std::size_t i = 0; i < b_.inner.size(); ++i) load_inner_touch(i);
+  for (std::size_t i = b_.inner.size(); i < b_.touches.size(); ++i) load_borne_touch(i);
 }
 
 void BundleSolution::load_inner_touch(std::size_t index) {
   const InnerContact& contact = t_.inner_contacts[b_.inner[index]];
   InnerTouch& touch = b_.touches[index];
-  const int body = b_.ends[b_.hooks.size() + index][0];
-  touch.of_rope = t_.objects[contact.object].kind == PointRef::Kind::kRope;
+  const bool given = b_.ends[b_.hooks.size() + index][0] < 0;
+  touch.firm = t_.objects[contact.object].kind == PointRef::Kind::kRope;
+  touch.near = is_near(contact);
   touch.separation = static_cast<double>(contact.separation);
   touch.friction = static_cast<double>(contact.friction);
-  touch.surface = vector_cast<double>(body < 0 ? contact.surface_velocity : contact.belt_velocity);
+  touch.surface = vector_cast<double>(given ? contact.surface_velocity : contact.belt_velocity);
   touch.lever = vector_cast<double>(contact.lever);
-  const auto axes = axes_of(vector_cast<double>(contact.normal));
   for (std::uint32_t i = 0; i < touch.count; ++i)
     touch.mobility += touch.weight[i] * touch.weight[i] * b_.ropes.nodes[touch.node[i]].w;
+  make_touch_rows(index, {.n = vector_cast<double>(contact.normal),
+                          .normal = static_cast<double>(contact.normal_force),
+                          .friction = vector_cast<double>(contact.friction_force)});
+  touch.resistance = touch.mobility;
+  if (touch.active && touch.firm) note_rope_in_contact(touch.node[0]);
+}
 
+/// Its separation goes along with the bodies from the start of the step, as that of other rows of bodies
+/// does.
+void BundleSolution::load_borne_touch(std::size_t index) {
+  const state::BorneContact& contact = t_.pairs.borne[b_.borne[index - b_.inner.size()]];
+  const state::Manifold& m = t_.pairs.manifold[contact.manifold];
+  const state::ContactPoint& point = m.point[static_cast<std::size_t>(contact.point)];
+  InnerTouch& touch = b_.touches[index];
+  touch.firm = true;
+  touch.near = contact.point < m.point_count;
+  touch.friction = static_cast<double>(m.friction);
+  touch.surface = vector_cast<double>(m.surface_velocity);
+  touch.lever = vector_cast<double>(point.anchor_a);
+  touch.lever_b = vector_cast<double>(point.anchor_b);
+  const auto moved = [&](std::uint32_t body, Vec3 lever) {
+    const state::MotionLine& line = t_.bodies.motion[body];
+    return line.dx + cross(t_.bodies.scale[body] * line.theta_scaled, lever);
+  };
+  const Vec3 way = moved(m.body_b, point.anchor_b) - moved(m.body_a, point.anchor_a);
+  touch.separation = touch.near ? static_cast<double>(contact.separation + dot(m.normal, way)) : 0;
+  make_touch_rows(index, {.n = vector_cast<double>(m.normal),
+                          .normal = static_cast<double>(contact.normal_force),
+                          .friction = vector_cast<double>(contact.friction_force),
+                          .slides = contact.slides});
+  // What hangs is held: it is the heavier body that slides.
+  const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  touch.resistance = std::min(b_.moving[static_cast<std::size_t>(a)].body.inverse_mass,
+                              b_.moving[static_cast<std::size_t>(b)].body.inverse_mass);
+}
+
+void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) {
+  InnerTouch& touch = b_.touches[index];
+  const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  const auto axes = axes_of(last.n);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   const double inf = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < InnerTouch::kRows; ++k) {
@@ -88,35 +128,38 @@ void BundleSolution::load_inner_touch(std::size_t index) {
     row.low = -inf;
     row.high = inf;
     row.target = dot(axes[k], touch.surface);
-    if (body < 0) continue;
-    const JointBody& of = b_.moving[static_cast<std::size_t>(body)].body;
-    row.j_a = of.scale * cross(touch.lever, axes[k]);
-    if (k == 0) touch.mobility += of.inverse_mass + length_squared(row.j_a);
+    const auto turns = [&](int body, DVec3 lever, DVec3& j) {
+      if (body < 0) return;
+      const JointBody& of = b_.moving[static_cast<std::size_t>(body)].body;
+      j = of.scale * cross(lever, axes[k]);
+      if (k == 0) touch.mobility += of.inverse_mass + length_squared(j);
+    };
+    turns(a, touch.lever, row.j_a);
+    turns(b, touch.lever_b, row.j_b);
   }
   b_.rows[first].target -= gap_speed(touch);
 
-  touch.normal = h_ * static_cast<double>(contact.normal_force);
-  if (touch.of_rope) {
+  touch.normal = h_ * last.normal;
+  if (touch.firm) {
     b_.rows[first].gamma = touch.mobility / kContactStiffness;
     b_.rows[first].target += std::min(b_.rows[first].gamma * touch.normal, kInnerPushOutSpeed);
   }
-  const DVec3 force = h_ * vector_cast<double>(contact.friction_force);
-  touch.f = force - dot(axes[0], force) * axes[0];
-  touch.active = is_near(contact) && (touch.normal > 0 || touch.separation <= 0);
+  const DVec3 friction = h_ * last.friction;
+  touch.f = friction - dot(axes[0], friction) * axes[0];
+  touch.active = touch.near && (touch.normal > 0 || touch.separation <= 0);
   const double size = length(touch.f);
-  touch.slides = size > 0 && size >= kSlidingShare * touch.friction * touch.normal;
+  touch.slides = last.slides || (size > 0 && size >= kSlidingShare * touch.friction * touch.normal);
   if (touch.slides) {
     const double speed = length(sliding_of(index, true));
     touch.slides = speed > 0;
     touch.drag = speed > 0 ? touch.friction * touch.normal / speed : 0;
   }
   set_inner_rows(index);
-  if (touch.active && touch.of_rope) note_rope_in_contact(touch.node[0]);
 }
 
 /// Overlap of ropes leaves by speed, that of cloths by place, as with the contacts of points.
 double BundleSolution::gap_speed(const InnerTouch& touch) const {
-  return std::max(touch.separation / h_, touch.of_rope ? -kInnerPushOutSpeed : 0.0);
+  return std::max(touch.separation / h_, touch.firm ? -kInnerPushOutSpeed : 0.0);
 }
 
 void BundleSolution::note_rope_in_contact(std::uint32_t node) {
@@ -141,7 +184,8 @@ void BundleSolution::set_inner_rows(std::size_t index) {
   }
 }
 
-/// Velocity of the place against the surface: as the forces left it, or as the solution has it.
+/// Velocity of the place against the surface: as the forces left it, or as the solution has it. Of bodies it
+/// is the solution's, or before that what they had.
 DVec3 BundleSolution::velocity_at(std::size_t index, bool before) const {
   const InnerTouch& touch = b_.touches[index];
   DVec3 v = -touch.surface;
@@ -149,10 +193,13 @@ DVec3 BundleSolution::velocity_at(std::size_t index, bool before) const {
     const RopeNode& node = b_.ropes.nodes[touch.node[i]];
     v += touch.weight[i] * (before ? node.v_free : node.u);
   }
-  const int body = b_.ends[b_.hooks.size() + index][0];
-  if (body < 0) return v;
-  const BundleBody& m = b_.moving[static_cast<std::size_t>(body)];
-  return v - m.v - cross(m.body.scale * m.omega_scaled, touch.lever);
+  const auto velocity = [&](int body, DVec3 lever) {
+    if (body < 0) return DVec3{};
+    const BundleBody& m = b_.moving[static_cast<std::size_t>(body)];
+    return m.v + cross(m.body.scale * m.omega_scaled, lever);
+  };
+  const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  return v + velocity(b, touch.lever_b) - velocity(a, touch.lever);
 }
 
 DVec3 BundleSolution::sliding_of(std::size_t index, bool before) const {
@@ -176,7 +223,7 @@ bool BundleSolution::update_inner_friction(std::size_t index) {
     const double size = length(touch.f);
     touch.slides = size > most;
     if (!touch.slides) return false;
-    touch.drag = most / ((size - most) * touch.mobility);
+    touch.drag = most / ((size - most) * touch.resistance);
     touch.f = (most / size) * touch.f;
     return true;
   }
@@ -187,27 +234,50 @@ bool BundleSolution::update_inner_friction(std::size_t index) {
   return !touch.slides || std::abs(touch.drag - drag) > kSettledDrag * drag;
 }
 
+/// Of what is borne, rows join and leave until they are right. From some number of solutions on they only
+/// join: what is left out is gone through, what holds too long sticks for a substep, which makes no energy.
+Unsettled BundleSolution::update_borne_touch(std::size_t index, bool only_join) {
+  InnerTouch& touch = b_.touches[index];
+  const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  const bool was_active = touch.active;
+  bool slides_otherwise = false;
+  if (touch.active) {
+    touch.normal = std::max(0.0, b_.lambda[first]);
+    touch.active = touch.normal > 0 || only_join;
+    slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index);
+  } else {
+    touch.normal = 0;
+    touch.active = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(touch) < 0;
+    touch.slides = false;
+  }
+  if (!touch.active) touch.f = {};
+  Unsettled unsettled;
+  unsettled.points = touch.active != was_active || (slides_otherwise && !only_join);
+  return unsettled;
+}
+
 Unsettled BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
   InnerTouch& touch = b_.touches[index];
   Unsettled unsettled;
-  if (!is_near(t_.inner_contacts[b_.inner[index]])) return unsettled;
+  if (!touch.near) return unsettled;
+  if (index >= b_.inner.size()) return update_borne_touch(index, let_go);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
-  bool& of = touch.of_rope ? unsettled.ropes : unsettled.points;
+  bool& of = touch.firm ? unsettled.ropes : unsettled.points;
   if (touch.active) {
     touch.normal = std::max(0.0, b_.lambda[first]);
     touch.active = touch.normal > 0;
     const bool slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index);
     const double pull = -b_.lambda[first];
-    unsettled.pulls = touch.of_rope && pull > 0 && is_work(pull * touch.separation / h_, 1 / touch.mobility);
+    unsettled.pulls = touch.firm && pull > 0 && is_work(pull * touch.separation / h_, 1 / touch.mobility);
     touch.let_go = let_go && unsettled.pulls;
-    of = !touch.active || (slides_otherwise && (touch.of_rope || !let_go));
+    of = !touch.active || (slides_otherwise && (touch.firm || !let_go));
   } else {
     touch.normal = 0;
     const double approach = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(touch);
-    touch.active = approach < 0 && !(touch.of_rope ? touch.let_go : let_go);
+    touch.active = approach < 0 && !(touch.firm ? touch.let_go : let_go);
     touch.slides = false;
     of = touch.active;
-    unsettled.meets = of && touch.of_rope && approach < -kMeetingSpeed;
+    unsettled.meets = of && touch.firm && approach < -kMeetingSpeed;
   }
   if (!touch.active) touch.f = {};
   return unsettled;
@@ -226,7 +296,7 @@ void BundleSolution::revise_inner() {
 
 int BundleSolution::least_solves_of_inner() const {
   const bool any = std::any_of(b_.touches.begin(), b_.touches.end(),
-                               [](const InnerTouch& t) { return t.of_rope && t.active; });
+                               [](const InnerTouch& t) { return t.firm && t.active; });
   return any ? kLeastContactSolves : 1;
 }
 
@@ -234,7 +304,7 @@ int BundleSolution::least_solves_of_inner() const {
 bool BundleSolution::let_inner_slide() {
   bool any = false;
   for (InnerTouch& touch : b_.touches) {
-    if (!touch.of_rope) continue;
+    if (!touch.firm) continue;
     any = true;
     touch.friction = 0;
     touch.slides = false;
@@ -244,12 +314,20 @@ bool BundleSolution::let_inner_slide() {
 }
 
 void BundleSolution::store_inner() {
-  for (std::size_t i = 0; i < b_.touches.size(); ++i) {
+  for (std::size_t i = 0; i < b_.inner.size(); ++i) {
     const InnerTouch& touch = b_.touches[i];
     InnerContact& contact = t_.inner_contacts[b_.inner[i]];
     contact.normal_force = static_cast<Real>(touch.normal / h_);
     contact.friction_force = vector_cast<Real>((1 / h_) * touch.f);
-    if (!touch.of_rope) push_out(contact, static_cast<Real>(h_), t_.particles);
+    if (!touch.firm) push_out(contact, static_cast<Real>(h_), t_.particles);
+  }
+  for (std::size_t i = 0; i < b_.borne.size(); ++i) {
+    const InnerTouch& touch = b_.touches[b_.inner.size() + i];
+    state::BorneContact& contact = t_.pairs.borne[b_.borne[i]];
+    contact.normal_force = static_cast<Real>(touch.normal / h_);
+    contact.friction_force = vector_cast<Real>((1 / h_) * touch.f);
+    contact.slides = touch.active && touch.slides;
+    contact.largest_force = std::max(contact.largest_force, contact.normal_force);
   }
 }
 

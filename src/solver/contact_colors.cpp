@@ -46,6 +46,7 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 }
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
+  if (m.borne) return false;
   if ((m.point_count == 0 && !m.lively) || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor)
     return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);

@@ -55,6 +55,13 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
                      [&](std::uint32_t body) { return gives_way(bodies, body); });
 }
 
+/// Whether it bears something, and is solved with that.
+bool is_bundled(const Articulation& articulation, const std::vector<Hook>& hooks) {
+  const auto joint = std::find_if(articulation.joints.begin(), articulation.joints.end(),
+                                  [](const Articulation::Joint& j) { return !j.is_weld(); });
+  return joint != articulation.joints.end() && hooks[joint->hook].bears;
+}
+
 /// Those awake; trees of a kind together.
 void solve_articulations(double h, std::span<const std::uint32_t> order,
                          std::vector<Articulation>& articulations, SolveScratch& scratch,
@@ -66,7 +73,7 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
   };
   for (const std::uint32_t i : order) {
     Articulation& art = articulations[i];
-    if (!any_awake(art, tables.bodies)) continue;
+    if (!any_awake(art, tables.bodies) || is_bundled(art, tables.hooks)) continue;
     if (art.has_loops()) {
       solve_loops(h, art, tables);
       continue;
@@ -156,7 +163,7 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
                         {hooks, bodies});
     for (const std::uint32_t i : some) {
       for (const Articulation::Joint& joint : joints.articulations[i].joints) {
-        if (!joint.is_weld()) add_up_impulses(h, hooks[joint.hook]);
+        if (!joint.is_weld() && !hooks[joint.hook].bears) add_up_impulses(h, hooks[joint.hook]);
       }
     }
   });

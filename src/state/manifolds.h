@@ -47,6 +47,22 @@ struct Manifold {
   Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
   bool lively = false;               ///< Looked at anew in each substep: may have no points now.
+  bool borne = false;                ///< Its points have places in Pairs::borne in this step.
+};
+
+/// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
+/// rows that others have (solver/borne_contacts.h).
+struct BorneContact {
+  std::uint32_t pair = 0;      ///< Row.
+  std::uint32_t manifold = 0;  ///< Row: the only one of the pair.
+  std::int32_t point = 0;      ///< Of Manifold::kMaxPoints; the manifold may have fewer now.
+  std::uint32_t body_a = 0;
+  std::uint32_t body_b = 0;
+  Real separation = Real(0);    ///< Where the bodies were at the start of the step, along their lines [m].
+  Real normal_force = Real(0);  ///< In the last particle substep [N].
+  Vec3 friction_force = {};     ///< On B [N].
+  bool slides = false;
+  Real largest_force = Real(0);  ///< Along the normal, in this step [N].
 };
 
 /// How two bodies moved since something was looked at.
@@ -81,8 +97,9 @@ struct SeenPose {
 
 struct Pairs {
   std::vector<Pair> pair;
-  std::vector<Manifold> manifold;  ///< In order of pair, then patch.
-  std::vector<SeenPose> seen;      ///< Of each body.
+  std::vector<Manifold> manifold;   ///< In order of pair, then patch.
+  std::vector<BorneContact> borne;  ///< In order of manifold and point; of this step only.
+  std::vector<SeenPose> seen;       ///< Of each body.
 };
 
 }  // namespace hooke::state

@@ -138,6 +138,8 @@ void prepare_body_contacts(WorldData& world, Real h) {
                         .sweeps = desc.bias_sweeps,
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
+  solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
+                              world.hooked, t.bodies, t.hooks, t.pairs, world.borne);
   solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.hooked, t.bodies,
                             world.body_contacts, world.hard_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
@@ -161,8 +163,25 @@ void resolve_hits(WorldData& world, Real h) {
   }
 }
 
+namespace {
+
+void renew_borne_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  solver::store_borne_contacts(h, t.pairs);
+  for (const state::BorneContact& contact : t.pairs.borne) {
+    if (contact.point > 0) continue;
+    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
+                               state::pose_now(t.bodies, contact.body_a),
+                               state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
+  }
+  solver::place_borne_contacts(Real(1) / h, t.bodies, t.pairs);
+}
+
+}  // namespace
+
 void renew_lively_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
+  if (!t.pairs.borne.empty()) renew_borne_contacts(world, h);
   if (world.body_contacts.lively.empty()) return;
   solver::BodyContacts& contacts = world.body_contacts;
   solver::store_lanes(contacts.lively, contacts, t.pairs.manifold);
@@ -177,6 +196,7 @@ void finish_body_contacts(WorldData& world) {
                        [&](parallel::Range blocks) {
                          solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
                        });
+  solver::store_borne_contacts(world.contact_step.h, t.pairs);
   solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.hooked,
                          world.hard_islands, t.bodies);
 }

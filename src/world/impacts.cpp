@@ -124,12 +124,14 @@ void find_ways(WorldData& world) {
   const std::size_t count = bodies.motion.size();
   swept.path.resize(count);
   swept.stoppable.assign(count, Stoppable::kNever);
+  swept.inverse_mass.resize(count);
   swept.bends.assign(count, {});
   world.astray.assign(count, 0);
   parallel::for_ranges(*world.pool, static_cast<int>(count), kBodyGrain, [&](parallel::Range rows) {
     for (int row = rows.begin; row < rows.end; ++row) {
       const auto body = static_cast<std::uint32_t>(row);
       swept.path[body] = collision::path_ahead(bodies, body, Real(0));
+      swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
     }
   });
   for_bodies(world, [&](auto rows) {

@@ -337,7 +337,7 @@ void flow_cloths(WorldData& world) {
 }
 
 void begin_ties(WorldData& world, Real h, bool first) {
-  if (world.tables.objects.empty() && world.bundles.count == 0) return;
+  if (world.tables.objects.empty() && world.tables.pairs.borne.empty() && world.bundles.count == 0) return;
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_bundles(world.tables, world.chains, world.bundles);

@@ -11,6 +11,7 @@
 #include "solver/air.h"
 #include "solver/bends.h"
 #include "solver/body_contacts.h"
+#include "solver/borne_contacts.h"
 #include "solver/bundles.h"
 #include "solver/chains.h"
 #include "solver/dipoles.h"
@@ -100,6 +101,7 @@ struct WorldData {
   solver::ContactStep contact_step;
   solver::Hits hits;
   solver::HardIslands hard_islands;
+  solver::BorneScratch borne;
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;

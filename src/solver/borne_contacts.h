@@ -1,0 +1,56 @@
+#pragma once
+
+#include "solver/body_contacts.h"
+#include "solver/joints.h"
+#include "state/tables.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// \file
+/// Contacts of heavy bodies with light ones that hang on hooks: a ton on the planks of a rope bridge.
+///
+/// Rows of contacts know only the mass of a plank, and pass on at most what stops it: m v in a substep,
+/// however firmly its ropes hold it. So they are rows of the bundle (solver/bundles.h) of the ropes and hooks
+/// that the plank hangs on, and solved with them. What the heavy body lies on through others, a board on the
+/// planks, is borne too.
+///
+/// Light bodies turn far within a step, and are thin: such pairs are looked at anew in each substep.
+///
+/// The order of calls:
+///   find_borne_contacts                                once a step, before rows of contacts are made
+///   store_borne_contacts, then place_borne_contacts    each substep, before and after that look
+///   store_borne_contacts                               once a step
+
+namespace hooke::solver {
+
+/// From this ratio of masses on contacts are borne; and from this ratio of the load to the weight of the
+/// lighter body.
+inline constexpr Real kBorneMass = Real(2);
+inline constexpr Real kBorneLoad = Real(4);
+
+/// How many may be borne in a step: some milliseconds.
+inline constexpr std::size_t kMostBorneManifolds = 64;
+
+/// Memory of find_borne_contacts.
+struct BorneScratch {
+  std::vector<std::uint8_t> holds;  ///< By body: whether it hangs, or lies on what hangs.
+  std::vector<std::uint8_t> bears;  ///< By body: whether it is in a borne contact.
+};
+
+/// Fills `pairs.borne`, and says which hooks between bodies bear. A body hangs if it is hooked to a point or
+/// is part of an articulation; what may be borne by it is a body without hooks (`hooked`, by body row) that
+/// is heavier, or presses harder than that. Contacts that bounce, or are looked at anew in each substep, are
+/// not borne. `impulse_to_force` is that of the impulses that manifolds have from the last step [1/s].
+void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
+                         std::span<const std::uint8_t> hooked, const state::Bodies& bodies,
+                         std::vector<state::Hook>& hooks, state::Pairs& pairs, BorneScratch& scratch);
+
+/// Forces and separations by what the manifolds say now.
+void place_borne_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
+
+/// Gives the manifolds the impulses of their last substep, of length h [s].
+void store_borne_contacts(Real h, state::Pairs& pairs);
+
+}  // namespace hooke::solver
