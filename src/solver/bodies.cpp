@@ -1,6 +1,7 @@
 #include "solver/bodies.h"
 
 #include "math/rotation.h"
+#include "solver/wide/free_turns.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -34,14 +35,37 @@ Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
   return math::inverse(scale) * x;
 }
 
-/// Mean angular velocity of a free body over h, from L; see accelerate_bodies.
-Vec3 midpoint_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
-  constexpr int kIterations = 3;
-  const Vec3 local = rotate(conjugate(axes), momentum);
-  Vec3 omega = {inverse.x * local.x, inverse.y * local.y, inverse.z * local.z};
-  for (int i = 0; i < kIterations; ++i)
-    omega = in_axes(math::quaternion_of(Real(0.5) * h * omega), inverse, local);
-  return rotate(axes, omega);
+/// A free body about its center.
+struct FreeTurn {
+  Quat axes = {};
+  Vec3 inverse = {};  ///< Of the inertia.
+  Vec3 momentum = {};
+};
+
+FreeTurn free_turn(const BodyMass& mass, Quat rotation, Vec3 momentum) {
+  return {rotation * mass.principal, inverse_inertia(mass), momentum};
+}
+
+/// Whether the iteration of the midpoint rule converges at once.
+bool is_slow(const FreeTurn& turn, Real h) {
+  constexpr Real kSlow = Real(0.1);
+  const auto [least, most] = std::minmax({turn.inverse.x, turn.inverse.y, turn.inverse.z});
+  return h * length(turn.momentum) * most * most <= kSlow * least;
+}
+
+void put_turn(const FreeTurn& turn, int lane, wide::TurnLanes& turns) {
+  const std::array<Real, 4> axes = {turn.axes.x, turn.axes.y, turn.axes.z, turn.axes.w};
+  for (int k = 0; k < 4; ++k) turns.axes[k][lane] = axes[k];
+  const std::array<Real, 3> inverse = {turn.inverse.x, turn.inverse.y, turn.inverse.z};
+  const std::array<Real, 3> momentum = {turn.momentum.x, turn.momentum.y, turn.momentum.z};
+  for (int k = 0; k < 3; ++k) {
+    turns.inverse[k][lane] = inverse[k];
+    turns.momentum[k][lane] = momentum[k];
+  }
+}
+
+Vec3 omega_of(const wide::TurnLanes& turns, int lane) {
+  return {turns.omega[0][lane], turns.omega[1][lane], turns.omega[2][lane]};
 }
 
 /// The turn about one of the principal axes by `turn_per_momentum` times the part of L along it.
@@ -83,7 +107,8 @@ Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 mome
 
 /// The same for a fast turn, of which the midpoint rule makes energy out of nothing: as a symmetric top about
 /// the axis that is least like the others, exactly, between two halves of what sets those apart.
-Vec3 split_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
+Vec3 split_velocity(const FreeTurn& turn, Real h) {
+  const auto& [axes, inverse, momentum] = turn;
   const DVec3 c = vector_cast<double>(inverse);
   const DVec3 l = vector_cast<double>(momentum);
   const std::array<double, 3> of = {c.x, c.y, c.z};
@@ -96,9 +121,10 @@ Vec3 split_velocity(Quat axes, Vec3 inverse, Vec3 momentum, Real h) {
   const double step = static_cast<double>(h);
   const double rest = 0.5 * step * (of[b] - of[a]);
   const Quaternion<double> before = math::in_double(axes);
-  Quaternion<double> q = turned_about(b, before, l, rest);
+  const bool is_symmetric = rest == 0;
+  Quaternion<double> q = is_symmetric ? before : turned_about(b, before, l, rest);
   q = math::quaternion_of(step * of[a] * l) * turned_about(top, q, l, step * (of[top] - of[a]));
-  q = turned_about(b, q, l, rest);
+  if (!is_symmetric) q = turned_about(b, q, l, rest);
   const DVec3 now = vector_cast<double>(in_axes(axes, inverse, momentum));
   const DVec3 start = rotate(conjugate(before), l);
   q = turned_to_energy(q, c, l, dot(start, {c.x * start.x, c.y * start.y, c.z * start.z}));
@@ -111,18 +137,69 @@ Vec3 settled(Vec3 v) {
   return {settle(v.x), settle(v.y), settle(v.z)};
 }
 
-/// omega_scaled after external torque, damping and the free motion of the substep.
-Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 by_contacts, Bodies& bodies) {
-  const math::Symmetric3<Real>& scale = bodies.scale[i];
-  const Real damping = Real(1) / (Real(1) + step.h * bodies.traits[i].angular_damping);
-  if (!tumbles_now(bodies, i)) {
-    const Vec3 omega_scaled = bodies.motion[i].omega_scaled;
-    return damping * (omega_scaled + scale * (step.h * bodies.torque[i]));
+/// Mean velocities of up to kLanes bodies, the slow ones side by side.
+class MeanVelocities {
+ public:
+  explicit MeanVelocities(Real h) : h_(h) {}
+
+  /// Of the body that is `place` of them.
+  void add(std::size_t place, const FreeTurn& turn) {
+    if (is_slow(turn, h_)) {
+      place_[static_cast<std::size_t>(count_)] = place;
+      put_turn(turn, count_++, turns_);
+    } else {
+      omega[place] = split_velocity(turn, h_);
+    }
   }
+  void find() {
+    if (count_ > 0) wide::turn_freely(h_, count_, turns_);
+    for (int lane = 0; lane < count_; ++lane)
+      omega[place_[static_cast<std::size_t>(lane)]] = omega_of(turns_, lane);
+  }
+
+  std::array<Vec3, kLanes> omega = {};
+
+ private:
+  Real h_;
+  int count_ = 0;
+  std::array<std::size_t, kLanes> place_ = {};
+  wide::TurnLanes turns_ = {};
+};
+
+Real angular_damping(std::uint32_t i, Real h, const Bodies& bodies) {
+  return Real(1) / (Real(1) + h * bodies.traits[i].angular_damping);
+}
+
+/// External torque, damping, and what contacts did in the substep before, of a body that tumbles.
+void turn_momentum(std::uint32_t i, const BodyStep& step, Bodies& bodies) {
   Vec3& momentum = bodies.angular_momentum[i];
-  if (!step.first) momentum += momentum_of(scale, by_contacts);
-  momentum = damping * (momentum + step.h * bodies.torque[i]);
-  return momentum_of(scale, mean_velocity(bodies.mass[i], bodies.rotation[i], momentum, step.h));
+  const Vec3 by_contacts = bodies.motion[i].omega_scaled - bodies.free_motion[i].omega_scaled;
+  if (!step.first) momentum += momentum_of(bodies.scale[i], by_contacts);
+  momentum = angular_damping(i, step.h, bodies) * (momentum + step.h * bodies.torque[i]);
+}
+
+/// omega_scaled after external torque, damping and the free motion of the substep, with mean velocity `omega`
+/// if the body tumbles.
+Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 omega, const Bodies& bodies) {
+  const math::Symmetric3<Real>& scale = bodies.scale[i];
+  if (tumbles_now(bodies, i)) return momentum_of(scale, omega);
+  return angular_damping(i, step.h, bodies) *
+         (bodies.motion[i].omega_scaled + scale * (step.h * bodies.torque[i]));
+}
+
+/// `omega` as turned has it.
+void accelerate_body(std::uint32_t i, const BodyStep& step, Vec3 omega, Bodies& bodies) {
+  MotionLine& m = bodies.motion[i];
+  state::FreeLine& free = bodies.free_motion[i];
+  const Vec3 by_contacts = m.v - free.v;
+  const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
+
+  const state::BodyTraits& traits = bodies.traits[i];
+  const Vec3 a = traits.gravity_scale * step.gravity + m.inverse_mass * bodies.force[i];
+  free.v = settled((Real(1) / (Real(1) + step.h * traits.linear_damping)) * (m.v + step.h * a));
+  free.omega_scaled = settled(turned(i, step, omega, bodies));
+  m.v = free.v + by_contacts;
+  m.omega_scaled = free.omega_scaled + turn_by_contacts;
 }
 
 /// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
@@ -204,14 +281,11 @@ math::Symmetric3<Real> inertia_scale(const BodyMass& mass, Quat rotation) {
           entry(&Vec3::y, &Vec3::y), entry(&Vec3::y, &Vec3::z), entry(&Vec3::z, &Vec3::z)};
 }
 
-/// By the midpoint rule where its iteration converges at once.
 Vec3 mean_velocity(const BodyMass& mass, Quat rotation, Vec3 momentum, Real h) {
-  constexpr Real kSlow = Real(0.1);
-  const Quat axes = rotation * mass.principal;
-  const Vec3 inverse = inverse_inertia(mass);
-  const auto [least, most] = std::minmax({inverse.x, inverse.y, inverse.z});
-  const bool slow = h * length(momentum) * most * most <= kSlow * least;
-  return slow ? midpoint_velocity(axes, inverse, momentum, h) : split_velocity(axes, inverse, momentum, h);
+  MeanVelocities velocities(h);
+  velocities.add(0, free_turn(mass, rotation, momentum));
+  velocities.find();
+  return velocities.omega[0];
 }
 
 void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
@@ -235,19 +309,20 @@ void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
 }
 
 void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step, Bodies& bodies) {
-  for (const std::uint32_t i : rows) {
-    MotionLine& m = bodies.motion[i];
-    if (!(m.inverse_mass > Real(0))) continue;
-    state::FreeLine& free = bodies.free_motion[i];
-    const Vec3 by_contacts = m.v - free.v;
-    const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
-
-    const state::BodyTraits& traits = bodies.traits[i];
-    const Vec3 a = traits.gravity_scale * step.gravity + m.inverse_mass * bodies.force[i];
-    free.v = settled((Real(1) / (Real(1) + step.h * traits.linear_damping)) * (m.v + step.h * a));
-    free.omega_scaled = settled(turned(i, step, turn_by_contacts, bodies));
-    m.v = free.v + by_contacts;
-    m.omega_scaled = free.omega_scaled + turn_by_contacts;
+  for (; !rows.empty(); rows = rows.subspan(std::min<std::size_t>(kLanes, rows.size()))) {
+    const auto some = rows.first(std::min<std::size_t>(kLanes, rows.size()));
+    MeanVelocities velocities(step.h);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const std::uint32_t i = some[k];
+      if (!(bodies.motion[i].inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
+      turn_momentum(i, step, bodies);
+      velocities.add(k, free_turn(bodies.mass[i], bodies.rotation[i], bodies.angular_momentum[i]));
+    }
+    velocities.find();
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      if (bodies.motion[some[k]].inverse_mass > Real(0))
+        accelerate_body(some[k], step, velocities.omega[k], bodies);
+    }
   }
 }
 
