@@ -5,6 +5,7 @@
 #include "solver/articulations.h"
 #include "solver/joint_rows.h"
 #include "solver/lanes.h"
+#include "solver/loose_trees.h"
 #include "solver/wide/trees.h"
 #include "state/body_frames.h"
 
@@ -109,7 +110,8 @@ class Group {
     }
     slot.pass = 0;
     const bool grew = block.lanes.grew[lane] > 0;
-    const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
+    const bool is_exact = !(block.lanes.loose[lane] > 0);
+    const bool turns_fast = is_exact && h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
     const bool bent = turns_fast && wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes) > kLargeError;
     return (grew || bent) && ++slot.solution < kMaxSolves;
   }
@@ -123,6 +125,7 @@ class Group {
     }
     *slot = fresh_.slots[lane];
     const int to = static_cast<int>(slot - late_.slots.begin());
+    late_.lanes.loose[to] = fresh_.lanes.loose[lane];
     for (std::size_t i = 0; i < late_.lanes.links.size(); ++i) {
       constexpr std::size_t kNumbers = offsetof(LinkLanes, v_now) / sizeof(double) / kCount;
       copy_lane<kNumbers, kCount>(fresh_.lanes.links[i], lane, to, late_.lanes.links[i]);
@@ -151,6 +154,7 @@ class Group {
   }
 
   void load(const Articulation& art, JointTables tables, int lane) {
+    fresh_.lanes.loose[lane] = is_loose(art, tables.hooks, tables.bodies) ? 1 : 0;
     for (std::size_t i = 0; i < art.bodies.size(); ++i)
       load_link(tables.bodies, art.bodies[i], fresh_.lanes.links[i], lane);
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
@@ -206,8 +210,7 @@ class Group {
     put(hook.a.axes, to.axes_a, lane);
     put(hook.b.axes, to.axes_b, lane);
     put(vector_cast<double>(hook.impulse), to.impulse, lane);
-    if (!turns) return;
-    for (int k = 3; k < 6; ++k) to.value[k][lane] = hook.value[k];
+    for (int k = 0; k < (turns ? 6 : 3); ++k) to.value[k][lane] = hook.value[k];
   }
 
   /// Settings of a row, and its impulse in the last substep.

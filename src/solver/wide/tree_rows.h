@@ -34,13 +34,17 @@ class TreeRows {
       const TreeJoint& shape = form_.joints[i];
       const JointEnd<Number> a = end_now(link_a(i));
       const JointEnd<Number> b = end_now(link_b(i));
+      const Before before = values_of(trees_.joints[i]);
       const Freedoms<Number> f = find(shape, trees_.joints[i], a, b);
       const Speeds fastest = fastest_of(link_a(i), link_b(i));
       for (int r = shape.first; r < shape.first + shape.count; ++r) {
+        const TreeRowForm& form = form_.rows[r];
         Row& row = trees_.rows[r];
-        const RowNow now = make_row(form_.rows[r], f, a, b, fastest, row);
-        write_row(form_.rows[r], shape.child_is_b, now, row);
-        first_bound(form_.rows[r], now, row);
+        const RowNow now = make_row(form, f, a, b, fastest, row);
+        write_row(form, shape.child_is_b, now, row);
+        first_bound(form, now, row);
+        if (form.role == RowRole::kMotor)
+          loosen(form, f.value[form.freedom] - before.value[form.freedom], row);
       }
     }
   }
@@ -128,6 +132,9 @@ class TreeRows {
   };
   struct Speeds {
     Number way, turn;
+  };
+  struct Before {
+    Number value[6];
   };
 
   HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
@@ -224,6 +231,12 @@ class TreeRows {
     Freedoms<Number> f = find_freedoms(shape.kind, shape.turns, frame, a, b, before);
     for (int i = 0; i < (shape.turns ? 6 : 3); ++i) put(f.value[i], joint.value[i]);
     return f;
+  }
+
+  HWY_INLINE Before values_of(const Joint& joint) const {
+    Before before;
+    for (int i = 0; i < 6; ++i) before.value[i] = at(joint.value[i]);
+    return before;
   }
 
   HWY_INLINE Speeds fastest_of(const Link& a, const Link& b) const {
@@ -330,6 +343,26 @@ class TreeRows {
     }
     const Number nearly = Number(0.999) * at(row.high);
     put(choose(above(last, nearly), one, choose(above(zero - nearly, last), zero - one, zero)), row.bound);
+  }
+
+  /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. `moved` is how
+  /// far it slid in the last substep.
+  HWY_INLINE void loosen(const TreeRowForm& form, const Number& moved, Row& row) const {
+    const auto is_loose = above(get<Number>(trees_.loose + lane_), Number(0.0));
+    if (!any(is_loose)) return;
+    const Number zero(0.0);
+    const Number speed = larger(per_h_ * size_of_number(moved), Number(kLooseSlide));
+    Number gamma = quotient(speed, at(row.high));
+    Number target = zero;
+    if (form.sprung) {
+      const Number share = quotient(gamma, gamma + at(row.spring_gamma));
+      target = share * at(row.spring_target);
+      gamma = share * at(row.spring_gamma);
+      put(choose(is_loose, zero, at(row.held_spring)), row.held_spring);
+    }
+    put(choose(is_loose, gamma, at(row.gamma)), row.gamma);
+    put(choose(is_loose, target, at(row.target)), row.target);
+    put(choose(is_loose, zero, at(row.bound)), row.bound);
   }
 
   HWY_INLINE void push(const Triple<Number>& p, const Triple<Number>& turn, Link& link) const {

@@ -113,9 +113,9 @@ class TreeSweep {
     for (int i = 0; i < joint_count_; ++i) eliminate(joints_[i], links_[i], links_[joints_[i].parent]);
     solve_root(links_[joint_count_]);
     for (int i = joint_count_ - 1; i >= 0; --i) go_back(joints_[i], links_[i], links_[joints_[i].parent]);
-    const Number release = get<Number>(trees.release + lane_);
+    const Revision revision = {get<Number>(trees.release + lane_), get<Number>(trees.loose + lane_)};
     Number changed(0.0);
-    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, hooks_[i], changed);
+    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], revision, hooks_[i], changed);
     write(changed, trees.changed + lane_);
     Number fastest(0.0);
     for (int i = 0; i < joint_count_ + 1; ++i) fastest = larger(fastest, turn_squared(links_[i]));
@@ -123,6 +123,11 @@ class TreeSweep {
   }
 
  private:
+  /// How bounds are revised: 1 where rows may leave theirs, and where a tree is loose.
+  struct Revision {
+    Number release, loose;
+  };
+
   using Link = TreeLinkLanes<kCount>;
   using Row = TreeRowLanes<kCount>;
 
@@ -384,7 +389,7 @@ class TreeSweep {
   }
 
   /// Impulses, and bounds for the next solution.
-  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, Number release,
+  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, const Revision& revision,
                          TreeJointLanes<kCount>& hook, Number& changed) const {
     const Number zero(0.0);
     const Link& parent = links_[joint.parent];
@@ -396,7 +401,7 @@ class TreeSweep {
       Number lambda = at(row.change) + zero;
       if (form.bounded()) {
         lambda =
-            revise_bound(form, row, lambda, release, changed,
+            revise_bound(form, row, lambda, revision, changed,
                          rate(row, form.turns(), link.v_now, link.omega_now, parent.v_now, parent.omega_now));
       } else {
         put(lambda, row.lambda);
@@ -410,32 +415,49 @@ class TreeSweep {
 
   /// Impulses of a row, with its spring's, that has bounds; `lambda` is what was found for it.
   HWY_INLINE Number revise_bound(const TreeRowForm& form, Row& row, const Number& lambda,
-                                 const Number& release, Number& changed, const Number& rate_now) const {
+                                 const Revision& revision, Number& changed, const Number& rate_now) const {
+    const Number zero(0.0);
+    const Number fixed = fixed_impulse(row, form);
+    const auto is_free = above(Number(0.5), is_bound(row));
+    const auto is_loose = above(revision.loose, zero);
+    Number own = lambda;
+    Number spring = zero;
+    if (form.sprung) {
+      // The friction of a loose tree is one row with the spring.
+      const Number beside = quotient(at(row.spring_target) - rate_now, at(row.spring_gamma));
+      own = choose(is_loose, lambda - beside, lambda);
+      spring = choose(is_free, choose(is_loose, beside, fixed), lambda);
+      put(spring, row.spring_lambda);
+    }
+    const Number given = choose(is_free, own, fixed);
+    put(given, row.lambda);
+    const Number next = next_bound(form, row, own, revision, at(row.target) - rate_now);
+    const Number step = next - at(row.bound);
+    put(next, row.bound);
+    changed = choose(above(step * step, zero), Number(1.0), changed);
+    return form.sprung ? given + spring : given;
+  }
+
+  /// -1, 0 or 1 for a row that has found `own`, and `lacks` so much speed.
+  HWY_INLINE Number next_bound(const TreeRowForm& form, Row& row, const Number& own, const Revision& revision,
+                               const Number& lacks) const {
     const Number zero(0.0);
     const Number one(1.0);
     const Number bound = at(row.bound);
-    const Number fixed = fixed_impulse(row, form);
-    const auto is_free = above(Number(0.5), bound * bound);
-    Number all = choose(is_free, lambda, fixed);
-    put(all, row.lambda);
-    if (form.sprung) {
-      const Number spring = choose(is_free, fixed, lambda);
-      put(spring, row.spring_lambda);
-      all = all + spring;
-    }
-    const Number to =
-        choose(above(at(row.low), lambda), zero - one, choose(above(lambda, at(row.high)), one, zero));
-    const Number lacks = at(row.target) - rate_now;
-    const Number let_go = choose(above(Number(-kNoSpeed), bound * lacks), zero, bound);
+    const bool is_motor = form.role == RowRole::kMotor;
+    const auto is_loose = above(revision.loose, zero);
+    const Number slack =
+        is_motor ? Number(kLooseFriction - 1) * at(row.high) : Number(kLooseSpeed) * at(row.inverse);
+    const Number beyond = choose(is_loose, slack, zero);
+    const Number to = choose(above(at(row.low) - beyond, own), zero - one,
+                             choose(above(own, at(row.high) + beyond), one, zero));
+    const Number least = choose(is_loose, Number(kLooseSpeed), Number(kNoSpeed));
+    const Number let_go = choose(above(zero - least, bound * lacks), zero, bound);
     const Number freed = at(row.freed);
-    const Number held = choose(above(release, freed), let_go, bound);
-    const auto goes = above(bound * bound, held * held);
-    put(choose(goes, one, freed), row.freed);
-    const Number next = choose(is_free, to, held);
-    put(next, row.bound);
-    const Number step = next - bound;
-    changed = choose(above(step * step, zero), one, changed);
-    return all;
+    Number held = choose(above(revision.release, freed), let_go, bound);
+    if (is_motor) held = choose(is_loose, bound, held);
+    put(choose(above(bound * bound, held * held), one, freed), row.freed);
+    return choose(above(Number(0.5), bound * bound), to, held);
   }
 
   const TreeJoint* joints_;

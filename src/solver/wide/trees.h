@@ -16,6 +16,17 @@ inline constexpr int kTreeLanes = 8;  ///< One vector of the widest set, several
 inline constexpr int kMostTreeRows =
     13;  ///< Of a joint: each freedom a limit and something else, and a cone.
 
+/// A loose tree is solved once where others go on until every row is within its bounds. Friction that slides
+/// is viscous: with the speed |v| of the last substep, at least kLooseSlide,
+///
+///   gamma = |v| / high,   so that lambda = -v / gamma is `high` where the speed stays,
+///
+/// and it is at its bound only if that asks for more than kLooseFriction times as much, as where a jolt sets
+/// it sliding. Limits are met, and let go, in the next substep where that makes kLooseSpeed or less.
+inline constexpr double kLooseSlide = 0.05;  ///< [m/s] or [rad/s]
+inline constexpr double kLooseFriction = 3;
+inline constexpr double kLooseSpeed = 0.2;  ///< [m/s] or [rad/s]
+
 /// What is the same for a row in all lanes.
 struct TreeRowForm {
   int freedom = 0;
@@ -110,6 +121,7 @@ struct TreeLanes {
   std::vector<TreeJointLanes<kCount>> joints;
   std::vector<TreeRowLanes<kCount>> rows;
   double release[kCount];  ///< 1 where rows may leave their bounds, otherwise 0.
+  double loose[kCount];    ///< 1 where the tree is loose, otherwise 0.
   // Results.
   double changed[kCount];  ///< 1 where a row came to a bound or left it.
   double grew[kCount];     ///< 1 where a stiffness grew, so that the solution is not to be trusted.

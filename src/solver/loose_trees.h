@@ -1,0 +1,21 @@
+#pragma once
+
+#include "solver/articulations.h"
+
+/// \file
+/// Trees of which friction need not be exact: ragdolls.
+
+namespace hooke::solver {
+
+inline constexpr double kLooseError = 1e-3;  ///< Of a lock, from which on a tree is not loose [m or rad].
+inline constexpr double kLooseMasses = 30;   ///< Ratio of the heaviest to the lightest, up to which it is.
+
+/// Whether a tree may be solved as a loose one in this substep: with viscous friction, limits that are met a
+/// little late, and rows about the start of the substep only (wide/trees.h). Nothing hangs on it and it hangs
+/// on nothing: its root moves; its masses differ by kLooseMasses at most; every joint rubs, and nothing
+/// drives one; and in the last substep no lock was off by kLooseError. It depends on the state alone, which a
+/// snapshot has: a tree is exact for as long as its error asks for it.
+[[nodiscard]] bool is_loose(const Articulation& tree, const std::vector<state::Hook>& hooks,
+                            const state::Bodies& bodies);
+
+}  // namespace hooke::solver
