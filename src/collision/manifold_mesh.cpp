@@ -73,6 +73,19 @@ Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
   return whole_edge ? geometry::closest_on_segment(p, rim[0], rim[1]).point : rim[0];
 }
 
+/// Whether a plane through an edge of the triangle, upright on it, holds the shape apart by more than the
+/// margin: so most of the triangles are out that come into the shape's box.
+bool is_beside(const Convex& triangle, Vec3 front, const Convex& b, Real margin) {
+  const Real least = margin + skin_of(b);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 p = triangle.corners[i];
+    const Vec3 out = cross(triangle.corners[(i + 1) % 3] - p, front);
+    const Real along = dot(out, support_of(b, -out) - p);
+    if (along > Real(0) && along * along > least * least * length_squared(out)) return true;
+  }
+  return false;
+}
+
 /// False if they are farther apart than the margin, or the shape is behind the triangle.
 bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Real margin,
                    std::vector<std::uint32_t>& near, Meeting& meeting) {
@@ -83,7 +96,7 @@ bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Re
   meeting.normal = front;
   meeting.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
   const bool in_front = dot(front, middle_of(b) - triangle.corners[0]) > Real(0);
-  if (!in_front || !(meeting.separation <= margin)) return false;
+  if (!in_front || !(meeting.separation <= margin) || is_beside(triangle, front, b, margin)) return false;
   const Real tolerance = axis_tolerance(triangle, b);
   meet_face(triangle, b, meeting);
   if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;

@@ -3,6 +3,7 @@
 #include "world/objects.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hooke::world {
 
@@ -32,10 +33,19 @@ void refresh_hooks(WorldData& world) {
     if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
   }
   std::sort(world.hooked_pairs.begin(), world.hooked_pairs.end());
+  world.hooked_begin.assign(t.bodies.motion.size() + 1, 0);
+  for (const auto& [body, other] : world.hooked_pairs) {
+    if (body != HookPlace::kWorld) ++world.hooked_begin[body + 1];
+  }
+  std::partial_sum(world.hooked_begin.begin(), world.hooked_begin.end(), world.hooked_begin.begin());
 }
 
 bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b) {
-  return std::binary_search(world.hooked_pairs.begin(), world.hooked_pairs.end(), pair_of(body_a, body_b));
+  const auto pair = pair_of(body_a, body_b);
+  if (pair.first + 1 >= world.hooked_begin.size()) return false;
+  const auto begin = world.hooked_pairs.begin();
+  return std::binary_search(begin + world.hooked_begin[pair.first],
+                            begin + world.hooked_begin[pair.first + 1], pair);
 }
 
 void drop_broken_hooks(WorldData& world) {

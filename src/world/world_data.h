@@ -69,7 +69,9 @@ struct WorldData {
   solver::Joints joints;
   std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
-  std::vector<HookId> broken_hooks;                                   ///< In the last step.
+  std::vector<std::uint32_t>
+      hooked_begin;                  ///< Of the pairs of each body that is the first; one more at the end.
+  std::vector<HookId> broken_hooks;  ///< In the last step.
 
   // Bodies. Derived from the tables; what it holds does not change what a step does.
   collision::BroadPhase broad_phase;
