@@ -62,11 +62,13 @@ class Group {
     for (; !trees.empty(); trees = trees.subspan(std::min<std::size_t>(kCount, trees.size()))) {
       // Lanes without a tree repeat the first.
       const int count = static_cast<int>(std::min<std::size_t>(kCount, trees.size()));
+      std::array<const Articulation*, kCount> of_lane = {};
       for (int lane = 0; lane < kCount; ++lane) {
         fresh_.slots[lane] = {};
         if (lane < count) fresh_.slots[lane].tree = trees[lane];
-        load(*trees[lane < count ? lane : 0], tables, lane);
+        of_lane[lane] = trees[lane < count ? lane : 0];
       }
+      load(of_lane, tables);
       wide::make_tree_rows(h, *form_, fresh_.lanes);
       do {
         solve_block(tables, fresh_);
@@ -153,17 +155,25 @@ class Group {
     }
   }
 
-  void load(const Articulation& art, JointTables tables, int lane) {
-    fresh_.lanes.loose[lane] = is_loose(art, tables.hooks, tables.bodies) ? 1 : 0;
-    for (std::size_t i = 0; i < art.bodies.size(); ++i)
-      load_link(tables.bodies, art.bodies[i], fresh_.lanes.links[i], lane);
-    for (std::size_t i = 0; i < art.joints.size(); ++i) {
-      const Hook& hook = tables.hooks[art.joints[i].hook];
-      const wide::TreeJoint& joint = form_->joints[i];
-      load_hook(hook, joint.turns, fresh_.lanes.joints[i], lane);
-      for (int r = joint.first; r < joint.first + joint.count; ++r)
-        load_row(hook, form_->rows[r], art.tree.rows[r], fresh_.lanes.rows[r], lane);
+  /// Lane after lane of each part: a line of memory is written eight times while it is at hand.
+  void load(const std::array<const Articulation*, kCount>& trees, JointTables tables) {
+    for (int lane = 0; lane < kCount; ++lane)
+      fresh_.lanes.loose[lane] = is_loose(*trees[lane], tables.hooks, tables.bodies) ? 1 : 0;
+    for (std::size_t i = 0; i <= form_->joints.size(); ++i) {
+      for (int lane = 0; lane < kCount; ++lane)
+        load_link(tables.bodies, trees[lane]->bodies[i], fresh_.lanes.links[i], lane);
     }
+    for (std::size_t i = 0; i < form_->joints.size(); ++i) {
+      for (int lane = 0; lane < kCount; ++lane) load_joint(i, *trees[lane], tables.hooks, lane);
+    }
+  }
+
+  void load_joint(std::size_t i, const Articulation& art, const std::vector<Hook>& hooks, int lane) {
+    const Hook& hook = hooks[art.joints[i].hook];
+    const wide::TreeJoint& joint = form_->joints[i];
+    load_hook(hook, joint.turns, fresh_.lanes.joints[i], lane);
+    for (int r = joint.first; r < joint.first + joint.count; ++r)
+      load_row(hook, form_->rows[r], art.tree.rows[r], fresh_.lanes.rows[r], lane);
   }
 
   /// Of a body that tumbles, what inertia of now is found from.

@@ -44,7 +44,10 @@ class TreeRows {
         write_row(form, shape.child_is_b, now, row);
         first_bound(form, now, row);
         if (form.role == RowRole::kMotor)
-          loosen(form, f.value[form.freedom] - before.value[form.freedom], row);
+          loosen(form,
+                 slide_of(form, per_h_ * (f.value[form.freedom] - before.value[form.freedom]), now, link_a(i),
+                          link_b(i)),
+                 row);
       }
     }
   }
@@ -345,13 +348,23 @@ class TreeRows {
     put(choose(above(last, nearly), one, choose(above(zero - nearly, last), zero - one, zero)), row.bound);
   }
 
-  /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. `moved` is how
-  /// far it slid in the last substep.
-  HWY_INLINE void loosen(const TreeRowForm& form, const Number& moved, Row& row) const {
+  /// How fast friction may slide in this substep: as in the last one, or what a jolt asks for.
+  HWY_INLINE Number slide_of(const TreeRowForm& form, const Number& last, const RowNow& now, const Link& a,
+                             const Link& b) const {
+    Number rate =
+        dot(now.j_b, get3<Number>(b.omega_before, lane_)) - dot(now.j_a, get3<Number>(a.omega_before, lane_));
+    if (!form.turns())
+      rate = rate + dot(now.n, difference(get3<Number>(b.v, lane_), get3<Number>(a.v, lane_)));
+    const Number jolt = Number(kLooseJolt) * size_of_number(rate);
+    return larger(larger(size_of_number(last), jolt), Number(kLooseSlide));
+  }
+
+  /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. It slides at
+  /// `speed`.
+  HWY_INLINE void loosen(const TreeRowForm& form, const Number& speed, Row& row) const {
     const auto is_loose = above(get<Number>(trees_.loose + lane_), Number(0.0));
     if (!any(is_loose)) return;
     const Number zero(0.0);
-    const Number speed = larger(per_h_ * size_of_number(moved), Number(kLooseSlide));
     Number gamma = quotient(speed, at(row.high));
     Number target = zero;
     if (form.sprung) {

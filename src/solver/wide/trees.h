@@ -17,13 +17,15 @@ inline constexpr int kMostTreeRows =
     13;  ///< Of a joint: each freedom a limit and something else, and a cone.
 
 /// A loose tree is solved once where others go on until every row is within its bounds. Friction that slides
-/// is viscous: with the speed |v| of the last substep, at least kLooseSlide,
+/// is viscous: with the speed |v| of the last substep, at least kLooseSlide and kLooseJolt times that before
+/// the joints are solved,
 ///
 ///   gamma = |v| / high,   so that lambda = -v / gamma is `high` where the speed stays,
 ///
 /// and it is at its bound only if that asks for more than kLooseFriction times as much, as where a jolt sets
 /// it sliding. Limits are met, and let go, in the next substep where that makes kLooseSpeed or less.
 inline constexpr double kLooseSlide = 0.05;  ///< [m/s] or [rad/s]
+inline constexpr double kLooseJolt = 0.25;
 inline constexpr double kLooseFriction = 3;
 inline constexpr double kLooseSpeed = 0.2;  ///< [m/s] or [rad/s]
 
