@@ -73,17 +73,14 @@ Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
   return whole_edge ? geometry::closest_on_segment(p, rim[0], rim[1]).point : rim[0];
 }
 
-/// Whether a plane through an edge of the triangle, upright on it, holds the shape apart by more than the
-/// margin: so most of the triangles are out that come into the shape's box.
-bool is_beside(const Convex& triangle, Vec3 front, const Convex& b, Real margin) {
-  const Real least = margin + skin_of(b);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 p = triangle.corners[i];
-    const Vec3 out = cross(triangle.corners[(i + 1) % 3] - p, front);
-    const Real along = dot(out, support_of(b, -out) - p);
-    if (along > Real(0) && along * along > least * least * length_squared(out)) return true;
-  }
-  return false;
+/// Whether the way from the triangle to the middle of the shape holds them farther apart than the margin: so
+/// most of the triangles are out that come into the shape's box.
+bool is_apart(const Convex& triangle, const Convex& b, Real margin) {
+  const auto& [p, q, r] = triangle.corners;
+  const Vec3 middle = middle_of(b);
+  const Vec3 away = middle - geometry::closest_on_triangle(middle, p, q, r).point;
+  const Real size = length(away);
+  return size > Real(0) && separation_along(triangle, b, (Real(1) / size) * away) > margin;
 }
 
 /// False if they are farther apart than the margin, or the shape is behind the triangle.
@@ -96,7 +93,7 @@ bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Re
   meeting.normal = front;
   meeting.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
   const bool in_front = dot(front, middle_of(b) - triangle.corners[0]) > Real(0);
-  if (!in_front || !(meeting.separation <= margin) || is_beside(triangle, front, b, margin)) return false;
+  if (!in_front || !(meeting.separation <= margin) || is_apart(triangle, b, margin)) return false;
   const Real tolerance = axis_tolerance(triangle, b);
   meet_face(triangle, b, meeting);
   if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;
