@@ -1,5 +1,6 @@
 #include "solver/borne_contacts.h"
 
+#include "base/sort_unique.h"
 #include "solver/contact_colors.h"
 
 #include <algorithm>
@@ -14,23 +15,30 @@ using state::BorneContact;
 using state::Hook;
 using state::Manifold;
 
-/// Bodies that hang: on points, or by an articulation. Those of nets do not count.
-void find_hanging(const Joints& joints, const Bodies& bodies, const std::vector<Hook>& hooks,
-                  std::vector<std::uint8_t>& holds) {
-  holds.assign(bodies.motion.size(), 0);
-  const auto hang = [&](std::uint32_t body) {
-    if (state::gives_way(bodies, body)) holds[body] = 1;
+/// Bodies of nets count as free of hooks, but are not borne either: nets are relaxed.
+void find_holding(const Joints& joints, const Bodies& bodies, const std::vector<Hook>& hooks,
+                  std::vector<Holding>& holding) {
+  holding.assign(bodies.motion.size(), Holding::kNone);
+  const auto raise = [&](std::uint32_t body, Holding to) {
+    if (state::gives_way(bodies, body)) holding[body] = std::max(holding[body], to);
   };
   for (const Hook& hook : hooks) {
     if (!hook.holds_point()) continue;
-    hang(hook.a.body);
-    hang(hook.b.body);
+    raise(hook.a.body, Holding::kHangs);
+    raise(hook.b.body, Holding::kHangs);
   }
-  for (const std::uint32_t i : joints.order)
-    std::for_each(joints.articulations[i].bodies.begin(), joints.articulations[i].bodies.end(), hang);
-  for (const std::uint32_t row : joints.net.hooks) {
-    for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
-      if (is_dynamic(bodies, body)) holds[body] = 0;
+  for (const std::uint32_t i : joints.order) {
+    const std::vector<std::uint32_t>& members = joints.articulations[i].bodies;
+    const bool hangs = std::any_of(members.begin(), members.end(), [&](std::uint32_t body) {
+      return !is_dynamic(bodies, body) || holding[body] == Holding::kHangs;
+    });
+    for (const std::uint32_t body : members) raise(body, hangs ? Holding::kHangs : Holding::kHooked);
+  }
+  for (const std::vector<std::uint32_t>* rows : {&joints.net.hooks, &joints.balls.hooks}) {
+    for (const std::uint32_t row : *rows) {
+      for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
+        if (is_dynamic(bodies, body)) holding[body] = Holding::kNone;
+      }
     }
   }
 }
@@ -41,7 +49,8 @@ struct Candidates {
   Real impulse_to_force;  ///< [1/s]
   const Bodies& bodies;
   std::span<const std::uint8_t> hooked;
-  const std::vector<std::uint8_t>& holds;
+  const std::vector<Holding>& holding;
+  std::span<const std::pair<std::uint32_t, std::uint32_t>> borne_before;  ///< Bodies, ascending.
 
   [[nodiscard]] bool may_be_borne(const Manifold& m) const {
     return !m.borne && m.point_count > 0 && !(m.restitution > Real(0)) && has_contact_rows(m, bodies) &&
@@ -49,19 +58,24 @@ struct Candidates {
   }
 
   [[nodiscard]] bool bears_on(std::uint32_t upper, std::uint32_t lower, const Manifold& m) const {
-    if (holds[lower] == 0 || hooked[upper] != 0) return false;
+    const bool of_net = hooked[upper] != 0 && holding[upper] == Holding::kNone;
+    if (of_net || holding[lower] == Holding::kNone || holding[upper] == Holding::kHangs) return false;
+    // Of two that are hooked and hang on nothing, ragdolls in a heap, neither holds the other.
+    if (hooked[upper] != 0 && holding[lower] == Holding::kHooked) return false;
     const Real w_upper = bodies.motion[upper].inverse_mass;
     const Real w_lower = bodies.motion[lower].inverse_mass;
     // Rows of one body that are exact leave nothing to the others.
-    if (holds[upper] != 0 || w_lower >= kBorneMass * w_upper) return true;
+    if (holding[upper] == Holding::kBorne || w_lower >= kBorneMass * w_upper) return true;
     Real load = Real(0);
     for (int k = 0; k < m.point_count; ++k) load += impulse_to_force * m.point[k].normal_impulse;
-    return std::max(w_lower, w_upper) * load > kBorneLoad * gravity;
+    const bool was_borne =
+        std::binary_search(borne_before.begin(), borne_before.end(), std::pair(m.body_a, m.body_b));
+    return std::max(w_lower, w_upper) * load > (was_borne ? Real(0) : kBorneLoad * gravity);
   }
 };
 
 /// Marks manifolds, from what hangs upwards: what lies on it holds others.
-void choose(const Candidates& candidates, state::Pairs& pairs, std::vector<std::uint8_t>& holds) {
+void choose(const Candidates& candidates, state::Pairs& pairs, std::vector<Holding>& holding) {
   constexpr int kMostLayers = 4;
   std::size_t chosen = 0;
   bool more = true;
@@ -70,12 +84,13 @@ void choose(const Candidates& candidates, state::Pairs& pairs, std::vector<std::
     for (const state::Pair& pair : pairs.pair) {
       if (pair.manifold_count != 1) continue;
       Manifold& m = pairs.manifold[pair.first_manifold];
-      if ((holds[m.body_a] == 0 && holds[m.body_b] == 0) || !candidates.may_be_borne(m)) continue;
-      if (!candidates.bears_on(m.body_a, m.body_b, m) && !candidates.bears_on(m.body_b, m.body_a, m))
-        continue;
+      if (holding[m.body_a] == Holding::kNone && holding[m.body_b] == Holding::kNone) continue;
+      if (!candidates.may_be_borne(m)) continue;
+      const bool a_is_upper = candidates.bears_on(m.body_a, m.body_b, m);
+      if (!a_is_upper && !candidates.bears_on(m.body_b, m.body_a, m)) continue;
       if (++chosen > kMostBorneManifolds) return;
       m.borne = more = true;
-      holds[m.body_a] = holds[m.body_b] = 1;
+      holding[a_is_upper ? m.body_a : m.body_b] = Holding::kBorne;
     }
   }
 }
@@ -99,11 +114,16 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
                          std::span<const std::uint8_t> hooked, const Bodies& bodies, std::vector<Hook>& hooks,
                          state::Pairs& pairs, BorneScratch& scratch) {
   if (hooks.empty() && pairs.borne.empty()) return;
+  scratch.borne_before.clear();
+  for (const BorneContact& contact : pairs.borne)
+    scratch.borne_before.emplace_back(contact.body_a, contact.body_b);
+  base::sort_unique(scratch.borne_before);
   pairs.borne.clear();
   for (Manifold& m : pairs.manifold) m.borne = false;
   for (Hook& hook : hooks) hook.bears = false;
-  find_hanging(joints, bodies, hooks, scratch.holds);
-  choose({length(step.gravity), impulse_to_force, bodies, hooked, scratch.holds}, pairs, scratch.holds);
+  find_holding(joints, bodies, hooks, scratch.holding);
+  choose({length(step.gravity), impulse_to_force, bodies, hooked, scratch.holding, scratch.borne_before},
+         pairs, scratch.holding);
   scratch.bears.assign(bodies.motion.size(), 0);
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const std::uint32_t manifold = pairs.pair[row].first_manifold;

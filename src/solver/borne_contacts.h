@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -28,21 +29,30 @@ namespace hooke::solver {
 /// From this ratio of masses on contacts are borne; and from this ratio of the load to the weight of the
 /// lighter body.
 inline constexpr Real kBorneMass = Real(2);
-inline constexpr Real kBorneLoad = Real(4);
+inline constexpr Real kBorneLoad = Real(1);
 
 /// How many may be borne in a step: some milliseconds.
 inline constexpr std::size_t kMostBorneManifolds = 64;
 
+/// How a body can hold another that lies on it.
+enum class Holding : std::uint8_t {
+  kNone,
+  kHooked,  ///< Part of an articulation that hangs on nothing.
+  kHangs,   ///< On a point, or part of an articulation that something holds.
+  kBorne,   ///< Lies on such.
+};
+
 /// Memory of find_borne_contacts.
 struct BorneScratch {
-  std::vector<std::uint8_t> holds;  ///< By body: whether it hangs, or lies on what hangs.
+  std::vector<Holding> holding;  ///< By body.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> borne_before;
   std::vector<std::uint8_t> bears;  ///< By body: whether it is in a borne contact.
 };
 
-/// Fills `pairs.borne`, and says which hooks between bodies bear. A body hangs if it is hooked to a point or
-/// is part of an articulation; what may be borne by it is a body without hooks (`hooked`, by body row) that
-/// is heavier, or presses harder than that. Contacts that bounce, or are looked at anew in each substep, are
-/// not borne. `impulse_to_force` is that of the impulses that manifolds have from the last step [1/s].
+/// Fills `pairs.borne`, and says which hooks between bodies bear. What is borne by a body that hangs is
+/// heavier than it, or presses harder than that; it may be hooked itself (`hooked`, by body row), as the
+/// wheel of a cart is, but does not hang. Contacts that bounce are not borne. `impulse_to_force` is that of
+/// the impulses that manifolds have from the last step [1/s].
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
                          std::span<const std::uint8_t> hooked, const state::Bodies& bodies,
                          std::vector<state::Hook>& hooks, state::Pairs& pairs, BorneScratch& scratch);

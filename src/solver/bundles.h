@@ -58,6 +58,7 @@ struct InnerTouch {
   std::uint32_t count = 0;
   double separation = 0, friction = 0;
   double mobility = 0;    ///< 1 / the mass that resists at the place, roughly [1/kg].
+  double push_out = 0;    ///< Largest speed at which an overlap leaves [m/s].
   double resistance = 0;  ///< The same for what slides; a first guess [1/kg].
   DVec3 surface;          ///< Velocity of the surface against its body; the whole if that is given [m/s].
   DVec3 lever;            ///< From the body's center [m].

@@ -73,6 +73,7 @@ void BundleSolution::load_inner_touch(std::size_t index) {
   InnerTouch& touch = b_.touches[index];
   const bool given = b_.ends[b_.hooks.size() + index][0] < 0;
   touch.firm = t_.objects[contact.object].kind == PointRef::Kind::kRope;
+  touch.push_out = touch.firm ? kInnerPushOutSpeed : 0;
   touch.near = is_near(contact);
   touch.separation = static_cast<double>(contact.separation);
   touch.friction = static_cast<double>(contact.friction);
@@ -106,14 +107,18 @@ void BundleSolution::load_borne_touch(std::size_t index) {
   };
   const Vec3 way = moved(m.body_b, point.anchor_b) - moved(m.body_a, point.anchor_a);
   touch.separation = touch.near ? static_cast<double>(contact.separation + dot(m.normal, way)) : 0;
-  make_touch_rows(index, {.n = vector_cast<double>(m.normal),
-                          .normal = static_cast<double>(contact.normal_force),
-                          .friction = vector_cast<double>(contact.friction_force),
-                          .slides = contact.slides});
-  // What hangs is held: it is the heavier body that slides.
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  // What hangs is held: it is the heavier body that slides.
   touch.resistance = std::min(b_.moving[static_cast<std::size_t>(a)].body.inverse_mass,
                               b_.moving[static_cast<std::size_t>(b)].body.inverse_mass);
+  // Where it is wedged in, leaving at the full speed would be work: no more than to lift it.
+  const double weight = static_cast<double>(length(t_.desc.gravity)) / touch.resistance;
+  const double force = static_cast<double>(contact.normal_force);
+  touch.push_out = kInnerPushOutSpeed * (force > weight ? weight / force : 1);
+  make_touch_rows(index, {.n = vector_cast<double>(m.normal),
+                          .normal = force,
+                          .friction = vector_cast<double>(contact.friction_force),
+                          .slides = contact.slides});
 }
 
 void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) {
@@ -159,7 +164,7 @@ void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) 
 
 /// Overlap of ropes leaves by speed, that of cloths by place, as with the contacts of points.
 double BundleSolution::gap_speed(const InnerTouch& touch) const {
-  return std::max(touch.separation / h_, touch.firm ? -kInnerPushOutSpeed : 0.0);
+  return std::max(touch.separation / h_, -touch.push_out);
 }
 
 void BundleSolution::note_rope_in_contact(std::uint32_t node) {

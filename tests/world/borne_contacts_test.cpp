@@ -163,6 +163,37 @@ TEST_SUITE("world/borne_contacts") {
     CHECK(bearing.force == doctest::Approx(kTon * kGravity).epsilon(0.02));  // it swings
   }
 
+  TEST_CASE("a cart with hinged wheels is borne, though it is hooked itself, and gains no energy") {
+    World world = make_world(awake());
+    Bridge bridge(world);
+    bridge.join(world);
+    const BodyId chassis = add_box(world, {0.1, 0.3, 0}, 400, {Real(0.6), Real(0.1), Real(0.25)});
+    for (const double x : {-0.35, 0.55}) {
+      for (const double z : {-0.2, 0.2}) {
+        const DVec3 place = {x, 0.12, z};
+        const BodyId wheel = take(world.add_body({.kind = BodyKind::kDynamic,
+                                                  .shape = Shape::sphere(Real(0.15)),
+                                                  .position = place,
+                                                  .mass = Real(20)}));
+        take(world.add_hook({.kind = HookKind::kHinge,
+                             .a = {.body = chassis},
+                             .b = {.body = wheel},
+                             .anchor = place,
+                             .axis = {0, 0, 1}}));
+      }
+    }
+    const double start = world.measure().energy.total();
+    double deepest = 0;
+    for (int i = 0; i < 180; ++i) {
+      run(world, 1);
+      const Measurement m = world.measure();
+      deepest = std::max(deepest, m.largest_penetration);
+      CHECK(m.energy.total() < start + 0.1);
+    }
+    CHECK(deepest < 5e-4);
+    CHECK(world.center_of_mass(chassis).y > 0.27);
+  }
+
   TEST_CASE("a ton that falls 2.5 m onto a rope bridge is caught, and gains no energy") {
     World world = make_world(awake());
     Bridge bridge(world);
