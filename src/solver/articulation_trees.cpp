@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace hooke::solver {
 
@@ -25,22 +26,25 @@ constexpr std::size_t kFewestForLanes = 2;  ///< Below that one after another is
 constexpr int kFewestThatStay = 3;  ///< So many solve on in their block: to move costs half a solution.
 
 /// The first `kNumbers` numbers of a struct of lanes, from one lane to another.
-template <std::size_t kNumbers, int kCount, class Lanes>
+template <std::size_t kNumbers, class Lanes>
 void copy_lane(const Lanes& from, int lane, int to_lane, Lanes& to) {
-  const auto* source = reinterpret_cast<const double*>(&from) + lane;
-  auto* target = reinterpret_cast<double*>(&to) + to_lane;
-  for (std::size_t i = 0; i < kNumbers * kCount; i += kCount) target[i] = source[i];
+  using Lane = typename Lanes::Lane;
+  const auto* source = reinterpret_cast<const Lane*>(&from) + lane;
+  auto* target = reinterpret_cast<Lane*>(&to) + to_lane;
+  for (std::size_t i = 0; i < kNumbers * Lanes::kCount; i += Lanes::kCount) target[i] = source[i];
 }
 
 /// Trees in lanes.
-template <int kCount>
+template <class Kind>
 struct Block {
+  static constexpr int kCount = Kind::kCount;
+
   struct Slot {
     const Articulation* tree = nullptr;
     int pass = 0;
     int solution = 0;
   };
-  wide::TreeLanes<kCount> lanes;
+  wide::TreeLanes<Kind> lanes;
   std::array<Slot, kCount> slots;
 
   void resize(const wide::TreeForm& form) {
@@ -50,9 +54,12 @@ struct Block {
   }
 };
 
-template <int kCount>
+template <class Kind>
 class Group {
  public:
+  using Lane = typename Kind::Lane;
+  static constexpr int kCount = Kind::kCount;
+
   void solve(double h, std::span<Articulation* const> trees, JointTables tables) {
     h_ = h;
     form_ = &trees.front()->tree.form;
@@ -81,18 +88,18 @@ class Group {
   }
 
  private:
-  using Slot = typename Block<kCount>::Slot;
-  using LinkLanes = wide::TreeLinkLanes<kCount>;
-  using JointLanes = wide::TreeJointLanes<kCount>;
-  using RowLanes = wide::TreeRowLanes<kCount>;
+  using Slot = typename Block<Kind>::Slot;
+  using LinkLanes = wide::TreeLinkLanes<Kind>;
+  using JointLanes = wide::TreeJointLanes<Kind>;
+  using RowLanes = wide::TreeRowLanes<Kind>;
 
   static bool is_free(const Slot& slot) { return slot.tree == nullptr; }
-  static int count_busy(const Block<kCount>& block) {
+  static int count_busy(const Block<Kind>& block) {
     return kCount - static_cast<int>(std::count_if(block.slots.begin(), block.slots.end(), is_free));
   }
 
   /// One solution of all lanes; those that need no other are stored and free.
-  void solve_block(JointTables tables, Block<kCount>& block) {
+  void solve_block(JointTables tables, Block<Kind>& block) {
     for (int lane = 0; lane < kCount; ++lane)
       block.lanes.release[lane] = block.slots[lane].pass < kFreeBoundPasses ? 1 : 0;
     wide::solve_trees(h_, *form_, block.lanes);
@@ -104,7 +111,7 @@ class Group {
     }
   }
 
-  bool needs_another(int lane, Block<kCount>& block) {
+  bool needs_another(int lane, Block<Kind>& block) {
     Slot& slot = block.slots[lane];
     if (block.lanes.changed[lane] > 0) {
       if (++slot.pass < kMostBoundPasses) return true;
@@ -112,10 +119,18 @@ class Group {
     }
     slot.pass = 0;
     const bool grew = block.lanes.grew[lane] > 0;
-    const bool is_exact = !(block.lanes.loose[lane] > 0);
-    const bool turns_fast = is_exact && h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
-    const bool bent = turns_fast && wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes) > kLargeError;
+    const bool bent = is_bent(lane, block);
     return (grew || bent) && ++slot.solution < kMaxSolves;
+  }
+
+  /// Makes its rows anew if it turns fast; whether a lock is off by too much then.
+  bool is_bent(int lane, Block<Kind>& block) const {
+    if constexpr (Kind::kLoose)
+      return false;
+    else {
+      const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
+      return turns_fast && wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes) > kLargeError;
+    }
   }
 
   /// To a lane of those that take longer.
@@ -127,14 +142,13 @@ class Group {
     }
     *slot = fresh_.slots[lane];
     const int to = static_cast<int>(slot - late_.slots.begin());
-    late_.lanes.loose[to] = fresh_.lanes.loose[lane];
     for (std::size_t i = 0; i < late_.lanes.links.size(); ++i) {
-      constexpr std::size_t kNumbers = offsetof(LinkLanes, v_now) / sizeof(double) / kCount;
-      copy_lane<kNumbers, kCount>(fresh_.lanes.links[i], lane, to, late_.lanes.links[i]);
+      constexpr std::size_t kNumbers = offsetof(LinkLanes, v_now) / sizeof(Lane) / kCount;
+      copy_lane<kNumbers>(fresh_.lanes.links[i], lane, to, late_.lanes.links[i]);
     }
     for (std::size_t i = 0; i < late_.lanes.joints.size(); ++i) {
-      constexpr std::size_t kNumbers = sizeof(JointLanes) / sizeof(double) / kCount;
-      copy_lane<kNumbers, kCount>(fresh_.lanes.joints[i], lane, to, late_.lanes.joints[i]);
+      constexpr std::size_t kNumbers = sizeof(JointLanes) / sizeof(Lane) / kCount;
+      copy_lane<kNumbers>(fresh_.lanes.joints[i], lane, to, late_.lanes.joints[i]);
     }
     for (std::size_t i = 0; i < late_.lanes.rows.size(); ++i)
       copy_row(form_->rows[i], fresh_.lanes.rows[i], lane, to, late_.lanes.rows[i]);
@@ -142,26 +156,27 @@ class Group {
 
   static void copy_row(const wide::TreeRowForm& form, const RowLanes& from, int lane, int to_lane,
                        RowLanes& to) {
-    constexpr std::size_t kAlways = offsetof(RowLanes, low) / sizeof(double) / kCount;
-    constexpr std::size_t kBounded = offsetof(RowLanes, speed) / sizeof(double) / kCount;
-    constexpr std::size_t kSprung = offsetof(RowLanes, lambda) / sizeof(double) / kCount;
+    constexpr std::size_t kAlways = offsetof(RowLanes, low) / sizeof(Lane) / kCount;
+    constexpr std::size_t kBounded = offsetof(RowLanes, speed) / sizeof(Lane) / kCount;
+    constexpr std::size_t kSprung = offsetof(RowLanes, lambda) / sizeof(Lane) / kCount;
     const bool is_all = form.role == RowRole::kMotor || form.role == RowRole::kSpring;
     if (is_all) {
-      copy_lane<kSprung, kCount>(from, lane, to_lane, to);
+      copy_lane<kSprung>(from, lane, to_lane, to);
     } else if (form.bounded()) {
-      copy_lane<kBounded, kCount>(from, lane, to_lane, to);
+      copy_lane<kBounded>(from, lane, to_lane, to);
     } else {
-      copy_lane<kAlways, kCount>(from, lane, to_lane, to);
+      copy_lane<kAlways>(from, lane, to_lane, to);
     }
   }
 
   /// Lane after lane of each part: a line of memory is written eight times while it is at hand.
   void load(const std::array<const Articulation*, kCount>& trees, JointTables tables) {
-    for (int lane = 0; lane < kCount; ++lane)
-      fresh_.lanes.loose[lane] = is_loose(*trees[lane], tables.hooks, tables.bodies) ? 1 : 0;
+    std::array<DVec3, kCount> origin = {};
+    for (int lane = 0; Kind::kLoose && lane < kCount; ++lane)
+      origin[lane] = tables.bodies.center[trees[lane]->bodies.back()];
     for (std::size_t i = 0; i <= form_->joints.size(); ++i) {
       for (int lane = 0; lane < kCount; ++lane)
-        load_link(tables.bodies, trees[lane]->bodies[i], fresh_.lanes.links[i], lane);
+        load_link(tables.bodies, trees[lane]->bodies[i], origin[lane], fresh_.lanes.links[i], lane);
     }
     for (std::size_t i = 0; i < form_->joints.size(); ++i) {
       for (int lane = 0; lane < kCount; ++lane) load_joint(i, *trees[lane], tables.hooks, lane);
@@ -176,15 +191,16 @@ class Group {
       load_row(hook, form_->rows[r], art.tree.rows[r], fresh_.lanes.rows[r], lane);
   }
 
-  /// Of a body that tumbles, what inertia of now is found from.
-  static void load_link(const state::Bodies& bodies, std::uint32_t row, LinkLanes& to, int lane) {
+  /// Of a body that tumbles, what inertia of now is found from. Places are those from `origin`.
+  static void load_link(const state::Bodies& bodies, std::uint32_t row, DVec3 origin, LinkLanes& to,
+                        int lane) {
     const bool tumbles = is_dynamic(bodies, row) && tumbles_now(bodies, row);
     to.tumbles[lane] = tumbles ? 1 : 0;
     put(math::Symmetric3<double>{}, to.stiffness, lane);
     put(math::Symmetric3<double>::diagonal(1), to.turning, lane);
     if (!tumbles) {
       const JointBody body = joint_body(bodies, row);
-      load_motion(body.inverse_mass, body.center, body.v, body.omega_scaled, to, lane);
+      load_motion(body.inverse_mass, body.center - origin, body.v, body.omega_scaled, to, lane);
       put(body.rotation, to.rotation, lane);
       put(Quat{}, to.principal, lane);
       put(body.scale, to.step_scale, lane);
@@ -193,22 +209,19 @@ class Group {
     }
     const state::MotionLine& m = bodies.motion[row];
     const state::BodyMass& mass = bodies.mass[row];
-    const math::Symmetric3<Real>& scale = bodies.scale[row];
-    load_motion(static_cast<double>(m.inverse_mass), bodies.center[row] + vector_cast<double>(m.dx),
-                vector_cast<double>(m.v), vector_cast<double>(m.omega_scaled), to, lane);
+    load_motion(static_cast<double>(m.inverse_mass), bodies.center[row] + vector_cast<double>(m.dx) - origin,
+                m.v, m.omega_scaled, to, lane);
     put(bodies.rotation[row], to.rotation, lane);
     put(mass.principal, to.principal, lane);
-    put(math::Symmetric3<double>{static_cast<double>(scale.xx), static_cast<double>(scale.xy),
-                                 static_cast<double>(scale.xz), static_cast<double>(scale.yy),
-                                 static_cast<double>(scale.yz), static_cast<double>(scale.zz)},
-        to.step_scale, lane);
-    put(vector_cast<double>(mass.inertia), to.inertia, lane);
+    put(bodies.scale[row], to.step_scale, lane);
+    put(mass.inertia, to.inertia, lane);
   }
 
-  static void load_motion(double inverse_mass, DVec3 center, DVec3 v, DVec3 omega_scaled, LinkLanes& to,
-                          int lane) {
-    to.inverse_mass[lane] = inverse_mass;
-    to.mass[lane] = inverse_mass > 0 ? 1 / inverse_mass : 0;
+  template <class T>
+  static void load_motion(double inverse_mass, DVec3 center, Vector3<T> v, Vector3<T> omega_scaled,
+                          LinkLanes& to, int lane) {
+    to.inverse_mass[lane] = static_cast<Lane>(inverse_mass);
+    to.mass[lane] = static_cast<Lane>(inverse_mass > 0 ? 1 / inverse_mass : 0);
     put(center, to.center, lane);
     put(v, to.v, lane);
     put(omega_scaled, to.omega_before, lane);
@@ -219,36 +232,35 @@ class Group {
     put(hook.b.anchor, to.anchor_b, lane);
     put(hook.a.axes, to.axes_a, lane);
     put(hook.b.axes, to.axes_b, lane);
-    put(vector_cast<double>(hook.impulse), to.impulse, lane);
-    for (int k = 0; k < (turns ? 6 : 3); ++k) to.value[k][lane] = hook.value[k];
+    put(hook.impulse, to.impulse, lane);
+    for (int k = 0; k < (turns ? 6 : 3); ++k) to.value[k][lane] = static_cast<Lane>(hook.value[k]);
   }
 
   /// Settings of a row, and its impulse in the last substep.
   void load_row(const Hook& hook, const wide::TreeRowForm& form, int row, RowLanes& to, int lane) const {
     const bool is_cone = form.freedom == 6;
     const HookFreedom& freedom = hook.freedom[is_cone ? 0 : form.freedom];
-    to.goal[lane] = static_cast<double>(freedom.spring.target);
+    to.goal[lane] = static_cast<Lane>(freedom.spring.target);
     if (form.role == RowRole::kSpring || form.sprung) {
-      to.stiffness[lane] = static_cast<double>(freedom.spring.stiffness);
-      to.damping[lane] = static_cast<double>(freedom.spring.damping);
+      to.stiffness[lane] = static_cast<Lane>(freedom.spring.stiffness);
+      to.damping[lane] = static_cast<Lane>(freedom.spring.damping);
     }
     if (!form.bounded()) return;
-    to.lambda[lane] = static_cast<double>(hook.row_impulse[row]);
+    to.lambda[lane] = static_cast<Lane>(hook.row_impulse[row]);
     if (form.role == RowRole::kMotor) {
-      to.speed[lane] = static_cast<double>(freedom.motor.speed);
-      to.high[lane] = h_ * static_cast<double>(freedom.motor.max_force);
+      to.speed[lane] = static_cast<Lane>(freedom.motor.speed);
+      to.high[lane] = static_cast<Lane>(h_) * static_cast<Lane>(freedom.motor.max_force);
       to.low[lane] = -to.high[lane];
       return;
     }
     const HookLimits limits = is_cone ? HookLimits{.upper = hook.cone} : freedom.limits;
-    to.lower[lane] = static_cast<double>(limits.lower);
-    to.upper[lane] = static_cast<double>(limits.upper);
+    to.lower[lane] = static_cast<Lane>(limits.lower);
+    to.upper[lane] = static_cast<Lane>(limits.upper);
     to.low[lane] = 0;
-    to.high[lane] = std::numeric_limits<double>::infinity();
+    to.high[lane] = std::numeric_limits<Lane>::infinity();
   }
 
-  void store(const Articulation& art, const wide::TreeLanes<kCount>& from, int lane,
-             JointTables tables) const {
+  void store(const Articulation& art, const wide::TreeLanes<Kind>& from, int lane, JointTables tables) const {
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
       Hook& hook = tables.hooks[art.joints[i].hook];
       const wide::TreeJoint& joint = form_->joints[i];
@@ -260,31 +272,50 @@ class Group {
       }
       hook.impulse = vector_cast<Real>(get(from.joints[i].impulse, lane));
       hook.angular_impulse = vector_cast<Real>(get(from.joints[i].angular, lane));
-      for (int k = 0; k < 6; ++k) hook.value[k] = k < 3 || joint.turns ? from.joints[i].value[k][lane] : 0.0;
+      for (int k = 0; k < 6; ++k)
+        hook.value[k] = k < 3 || joint.turns ? static_cast<double>(from.joints[i].value[k][lane]) : 0.0;
     }
     for (std::size_t i = 0; i < art.bodies.size(); ++i) {
       const LinkLanes& link = from.links[i];
       if (!(link.inverse_mass[lane] > 0)) continue;
-      const DVec3 omega = get(link.omega_now, lane);
-      const DVec3 change = get6(link.scale_inverse, lane) * (omega - get(link.omega_before, lane));
-      const DVec3 of_step = link.tumbles[lane] > 0
-                                ? get6(link.step_scale_inverse, lane) * (get6(link.scale, lane) * omega)
-                                : omega;
-      set_joint_velocity(get(link.v_now, lane), of_step, change, art.bodies[i], tables.bodies);
+      const auto omega = get(link.omega_now, lane);
+      const auto change = get6(link.scale_inverse, lane) * (omega - get(link.omega_before, lane));
+      const auto of_step = link.tumbles[lane] > 0
+                               ? get6(link.step_scale_inverse, lane) * (get6(link.scale, lane) * omega)
+                               : omega;
+      set_joint_velocity(vector_cast<double>(get(link.v_now, lane)), vector_cast<double>(of_step),
+                         vector_cast<double>(change), art.bodies[i], tables.bodies);
     }
   }
 
   double h_ = 0;
   const wide::TreeForm* form_ = nullptr;
-  Block<kCount> fresh_;  ///< Trees at their first solution.
-  Block<kCount> late_;   ///< Those that need more.
+  Block<Kind> fresh_;  ///< Trees at their first solution.
+  Block<Kind> late_;   ///< Those that need more.
+};
+
+/// Many side by side, or one.
+template <class Many, class One>
+struct Pool {
+  std::vector<Articulation*> trees;
+  Group<Many> together;
+  Group<One> alone;
+
+  void solve(double h, JointTables tables) {
+    if (trees.size() >= kFewestForLanes) {
+      together.solve(h, trees, tables);
+    } else if (!trees.empty()) {
+      alone.solve(h, trees, tables);
+    }
+    trees.clear();
+  }
 };
 
 }  // namespace
 
 struct TreeScratch::Groups {
-  Group<wide::kTreeLanes> together;
-  Group<1> alone;
+  Pool<wide::ExactTrees, wide::ExactTree> exact;
+  Pool<wide::LooseTrees, wide::LooseTree> loose;
 };
 
 TreeScratch::TreeScratch() : groups_(std::make_unique<Groups>()) {}
@@ -293,11 +324,11 @@ TreeScratch::TreeScratch(TreeScratch&&) noexcept = default;
 TreeScratch& TreeScratch::operator=(TreeScratch&&) noexcept = default;
 
 void solve_trees(double h, std::span<Articulation* const> trees, TreeScratch& scratch, JointTables tables) {
-  if (trees.size() >= kFewestForLanes) {
-    scratch.groups().together.solve(h, trees, tables);
-  } else if (!trees.empty()) {
-    scratch.groups().alone.solve(h, trees, tables);
-  }
+  auto& [exact, loose] = scratch.groups();
+  for (Articulation* tree : trees)
+    (is_loose(*tree, tables.hooks, tables.bodies) ? loose.trees : exact.trees).push_back(tree);
+  exact.solve(h, tables);
+  loose.solve(h, tables);
 }
 
 }  // namespace hooke::solver

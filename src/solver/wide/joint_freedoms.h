@@ -54,11 +54,11 @@ HWY_INLINE Number size_of_number(const Number& x) {
   return larger(x, Number(0.0) - x);
 }
 
-/// Nearest to an angle; adding 1.5 * 2^52 leaves a whole number.
+/// Nearest to an angle; adding 1.5 * 2^52, or 2^23 to a float, leaves a whole number.
 template <class Number>
 HWY_INLINE Number whole_turns_of(const Number& angle) {
   constexpr double kTurn = 0x1.921fb54442d18p+2;
-  const Number magic(0x1.8p+52);
+  const Number magic(kIsSingle<Number> ? 0x1.8p+23 : 0x1.8p+52);
   return Number(kTurn) * ((Number(1 / kTurn) * angle + magic) - magic);
 }
 

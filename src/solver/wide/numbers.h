@@ -13,6 +13,7 @@
 ///   read_quad, write_quad   four numbers of each lane from and to different places
 ///   read_offset      the difference of two such places
 ///   kLanesOf         how many lanes it stands for
+///   kIsSingle        whether they are float
 
 #if defined(HOOKE_SOLVER_WIDE_NUMBERS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_WIDE_NUMBERS_H
@@ -115,6 +116,10 @@ HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t*
 
 template <class Number>
 constexpr int kLanesOf = 1;
+
+/// Whether its lanes are float.
+template <class Number>
+constexpr bool kIsSingle = std::same_as<Number, float>;
 
 template <class Number, class Lane>
 HWY_INLINE Number get(const Lane* from) {

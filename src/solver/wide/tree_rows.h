@@ -18,14 +18,16 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 /// One lane, or vector of lanes, of the trees.
-template <class Number, int kCount>
+template <class Number, class Kind>
 class TreeRows {
  public:
-  using Link = TreeLinkLanes<kCount>;
-  using Joint = TreeJointLanes<kCount>;
-  using Row = TreeRowLanes<kCount>;
+  using Lane = typename Kind::Lane;
+  static constexpr int kCount = Kind::kCount;
+  using Link = TreeLinkLanes<Kind>;
+  using Joint = TreeJointLanes<Kind>;
+  using Row = TreeRowLanes<Kind>;
 
-  HWY_INLINE TreeRows(double h, const TreeForm& form, TreeLanes<kCount>& trees, int lane)
+  HWY_INLINE TreeRows(double h, const TreeForm& form, TreeLanes<Kind>& trees, int lane)
       : form_(form), trees_(trees), lane_(lane), h_(h), per_h_(quotient(Number(1.0), Number(h))) {}
 
   HWY_INLINE void make() {
@@ -43,7 +45,7 @@ class TreeRows {
         const RowNow now = make_row(form, f, a, b, fastest, row);
         write_row(form, shape.child_is_b, now, row);
         first_bound(form, now, row);
-        if (form.role == RowRole::kMotor)
+        if (Kind::kLoose && form.role == RowRole::kMotor)
           loosen(form,
                  slide_of(form, per_h_ * (f.value[form.freedom] - before.value[form.freedom]), now, link_a(i),
                           link_b(i)),
@@ -123,7 +125,7 @@ class TreeRows {
       put3(scaled(sign, p), trees_.joints[i].impulse, lane_);
       put3(scaled(sign, angular), trees_.joints[i].angular, lane_);
     }
-    put(TreeStiffness<Number, kCount>(h_, form_, trees_, lane_).stiffen(Number(1.0)), trees_.grew);
+    put(TreeStiffness<Number, Kind>(h_, form_, trees_, lane_).stiffen(Number(1.0)), trees_.grew);
   }
 
  private:
@@ -140,12 +142,12 @@ class TreeRows {
     Number value[6];
   };
 
-  HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
-  HWY_INLINE void put(const Number& value, double (&lanes)[kCount]) const { write(value, lanes + lane_); }
-  HWY_INLINE Quad<Number> get4(const double (&from)[4][kCount]) const {
+  HWY_INLINE Number at(const Lane (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
+  HWY_INLINE void put(const Number& value, Lane (&lanes)[kCount]) const { write(value, lanes + lane_); }
+  HWY_INLINE Quad<Number> get4(const Lane (&from)[4][kCount]) const {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3])};
   }
-  HWY_INLINE Scale<Number> get6(const double (&from)[6][kCount]) const {
+  HWY_INLINE Scale<Number> get6(const Lane (&from)[6][kCount]) const {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3]), at(from[4]), at(from[5])};
   }
 
@@ -193,7 +195,7 @@ class TreeRows {
             choose(condition, yes.xz, no.xz), choose(condition, yes.yy, no.yy),
             choose(condition, yes.yz, no.yz), choose(condition, yes.zz, no.zz)};
   }
-  HWY_INLINE void put6(const Scale<Number>& m, double (&to)[6][kCount]) const {
+  HWY_INLINE void put6(const Scale<Number>& m, Lane (&to)[6][kCount]) const {
     put(m.xx, to[0]);
     put(m.xy, to[1]);
     put(m.xz, to[2]);
@@ -252,7 +254,7 @@ class TreeRows {
   /// What the gap of a joint is small against: its levers on bodies that move [m].
   HWY_INLINE Number size_of(const Joint& joint, const Link& a, const Link& b) const {
     const Number zero(0.0);
-    const auto lever = [&](const double(&anchor)[3][kCount], const Link& link) HWY_ATTR {
+    const auto lever = [&](const Lane(&anchor)[3][kCount], const Link& link) HWY_ATTR {
       const Triple<Number> r = get3<Number>(anchor, lane_);
       return choose(above(at(link.mass), zero), root(dot(r, r)), zero);
     };
@@ -362,8 +364,6 @@ class TreeRows {
   /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. It slides at
   /// `speed`.
   HWY_INLINE void loosen(const TreeRowForm& form, const Number& speed, Row& row) const {
-    const auto is_loose = above(get<Number>(trees_.loose + lane_), Number(0.0));
-    if (!any(is_loose)) return;
     const Number zero(0.0);
     Number gamma = quotient(speed, at(row.high));
     Number target = zero;
@@ -371,11 +371,11 @@ class TreeRows {
       const Number share = quotient(gamma, gamma + at(row.spring_gamma));
       target = share * at(row.spring_target);
       gamma = share * at(row.spring_gamma);
-      put(choose(is_loose, zero, at(row.held_spring)), row.held_spring);
+      put(zero, row.held_spring);
     }
-    put(choose(is_loose, gamma, at(row.gamma)), row.gamma);
-    put(choose(is_loose, target, at(row.target)), row.target);
-    put(choose(is_loose, zero, at(row.bound)), row.bound);
+    put(gamma, row.gamma);
+    put(target, row.target);
+    put(zero, row.bound);
   }
 
   HWY_INLINE void push(const Triple<Number>& p, const Triple<Number>& turn, Link& link) const {
@@ -387,17 +387,17 @@ class TreeRows {
   }
 
   const TreeForm& form_;
-  TreeLanes<kCount>& trees_;
+  TreeLanes<Kind>& trees_;
   int lane_;
   double h_;
   Number per_h_;
 };
 
-template <class Number, int kCount>
-HWY_INLINE void make_tree_row_lanes(double h, const TreeForm& form, TreeLanes<kCount>& trees) {
-  for (int lane = 0; lane < kCount; lane += kLanesOf<Number>) {
-    TreeRows<Number, kCount>(h, form, trees, lane).make();
-    TreeStiffness<Number, kCount>(h, form, trees, lane).stiffen(Number(1.0));
+template <class Number, class Kind>
+HWY_INLINE void make_tree_row_lanes(double h, const TreeForm& form, TreeLanes<Kind>& trees) {
+  for (int lane = 0; lane < Kind::kCount; lane += kLanesOf<Number>) {
+    TreeRows<Number, Kind>(h, form, trees, lane).make();
+    TreeStiffness<Number, Kind>(h, form, trees, lane).stiffen(Number(1.0));
   }
 }
 

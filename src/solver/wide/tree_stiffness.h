@@ -18,13 +18,15 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 /// One lane, or vector of lanes, of the trees.
-template <class Number, int kCount>
+template <class Number, class Kind>
 class TreeStiffness {
  public:
-  using Link = TreeLinkLanes<kCount>;
-  using Joint = TreeJointLanes<kCount>;
+  using Lane = typename Kind::Lane;
+  static constexpr int kCount = Kind::kCount;
+  using Link = TreeLinkLanes<Kind>;
+  using Joint = TreeJointLanes<Kind>;
 
-  HWY_INLINE TreeStiffness(double h, const TreeForm& form, TreeLanes<kCount>& trees, int lane)
+  HWY_INLINE TreeStiffness(double h, const TreeForm& form, TreeLanes<Kind>& trees, int lane)
       : form_(form), trees_(trees), lane_(lane), h_(h) {}
 
   /// Where `only` is above 0, the stiffness under the impulses of the joints, if it is more than before.
@@ -50,13 +52,13 @@ class TreeStiffness {
   }
 
  private:
-  HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
+  HWY_INLINE Number at(const Lane (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
   template <std::size_t kFields>
-  HWY_INLINE Scale<Number> get6(const double (&from)[kFields][kCount]) const {
+  HWY_INLINE Scale<Number> get6(const Lane (&from)[kFields][kCount]) const {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3]), at(from[4]), at(from[5])};
   }
   template <std::size_t kFields>
-  HWY_INLINE void put6(const Scale<Number>& m, double (&to)[kFields][kCount]) const {
+  HWY_INLINE void put6(const Scale<Number>& m, Lane (&to)[kFields][kCount]) const {
     const Number* entries[6] = {&m.xx, &m.xy, &m.xz, &m.yy, &m.yz, &m.zz};
     for (int i = 0; i < 6; ++i) write(*entries[i], to[i] + lane_);
   }
@@ -97,7 +99,7 @@ class TreeStiffness {
   }
 
   /// The part of one joint, in `g` of the link.
-  HWY_INLINE void add_to(const double (&anchor)[3][kCount], const Triple<Number>& force, Link& link) const {
+  HWY_INLINE void add_to(const Lane (&anchor)[3][kCount], const Triple<Number>& force, Link& link) const {
     const Number zero(0.0);
     const Quad<Number> rotation = {at(link.rotation[0]), at(link.rotation[1]), at(link.rotation[2]),
                                    at(link.rotation[3])};
@@ -150,7 +152,7 @@ class TreeStiffness {
   }
 
   const TreeForm& form_;
-  TreeLanes<kCount>& trees_;
+  TreeLanes<Kind>& trees_;
   int lane_;
   double h_;
 };

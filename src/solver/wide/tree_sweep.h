@@ -36,8 +36,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-constexpr double kTreeCompliance = 1e-9;  ///< Share of each diagonal.
-
 /// Where (row, column) of a lower triangle stands.
 constexpr int triangle_at(int row, int column) {
   return row * (row + 1) / 2 + column;
@@ -96,10 +94,13 @@ struct LinkFactor {
 };
 
 /// One lane, or vector of lanes, of the trees.
-template <class Number, int kCount>
+template <class Number, class Kind>
 class TreeSweep {
  public:
-  HWY_INLINE TreeSweep(const TreeForm& form, TreeLanes<kCount>& trees, int lane)
+  using Lane = typename Kind::Lane;
+  static constexpr int kCount = Kind::kCount;
+
+  HWY_INLINE TreeSweep(const TreeForm& form, TreeLanes<Kind>& trees, int lane)
       : joints_(form.joints.data()),
         forms_(form.rows.data()),
         links_(trees.links.data()),
@@ -108,14 +109,14 @@ class TreeSweep {
         joint_count_(static_cast<int>(form.joints.size())),
         lane_(lane) {}
 
-  HWY_INLINE void run(TreeLanes<kCount>& trees) {
+  HWY_INLINE void run(TreeLanes<Kind>& trees) {
     for (int i = 0; i <= joint_count_; ++i) begin(links_[i]);
     for (int i = 0; i < joint_count_; ++i) eliminate(joints_[i], links_[i], links_[joints_[i].parent]);
     solve_root(links_[joint_count_]);
     for (int i = joint_count_ - 1; i >= 0; --i) go_back(joints_[i], links_[i], links_[joints_[i].parent]);
-    const Revision revision = {get<Number>(trees.release + lane_), get<Number>(trees.loose + lane_)};
+    const Number release = get<Number>(trees.release + lane_);
     Number changed(0.0);
-    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], revision, hooks_[i], changed);
+    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, hooks_[i], changed);
     write(changed, trees.changed + lane_);
     Number fastest(0.0);
     for (int i = 0; i < joint_count_ + 1; ++i) fastest = larger(fastest, turn_squared(links_[i]));
@@ -123,33 +124,28 @@ class TreeSweep {
   }
 
  private:
-  /// How bounds are revised: 1 where rows may leave theirs, and where a tree is loose.
-  struct Revision {
-    Number release, loose;
-  };
+  using Link = TreeLinkLanes<Kind>;
+  using Row = TreeRowLanes<Kind>;
 
-  using Link = TreeLinkLanes<kCount>;
-  using Row = TreeRowLanes<kCount>;
-
-  HWY_INLINE Number at(const double (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
-  HWY_INLINE void put(const Number& value, double (&lanes)[kCount]) const { write(value, lanes + lane_); }
+  HWY_INLINE Number at(const Lane (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
+  HWY_INLINE void put(const Number& value, Lane (&lanes)[kCount]) const { write(value, lanes + lane_); }
 
   // Number after number: GCC makes a slow memcpy of a loop.
   template <int kSize>
-  HWY_INLINE void load(const double (&from)[kSize][kCount], Number (&to)[kSize]) const {
+  HWY_INLINE void load(const Lane (&from)[kSize][kCount], Number (&to)[kSize]) const {
     load(from, to, std::make_index_sequence<kSize>());
   }
   template <int kSize, std::size_t... kAt>
-  HWY_INLINE void load(const double (&from)[kSize][kCount], Number (&to)[kSize],
+  HWY_INLINE void load(const Lane (&from)[kSize][kCount], Number (&to)[kSize],
                        std::index_sequence<kAt...>) const {
     (read(from[kAt] + lane_, to[kAt]), ...);
   }
   template <int kSize>
-  HWY_INLINE void store(const Number (&from)[kSize], double (&to)[kSize][kCount]) const {
+  HWY_INLINE void store(const Number (&from)[kSize], Lane (&to)[kSize][kCount]) const {
     store(from, to, std::make_index_sequence<kSize>());
   }
   template <int kSize, std::size_t... kAt>
-  HWY_INLINE void store(const Number (&from)[kSize], double (&to)[kSize][kCount],
+  HWY_INLINE void store(const Number (&from)[kSize], Lane (&to)[kSize][kCount],
                         std::index_sequence<kAt...>) const {
     (write(from[kAt], to[kAt] + lane_), ...);
   }
@@ -181,7 +177,7 @@ class TreeSweep {
     }
   }
 
-  HWY_INLINE Number product(const Number (&a)[6], const double (&b)[6][kCount], bool turns) const {
+  HWY_INLINE Number product(const Number (&a)[6], const Lane (&b)[6][kCount], bool turns) const {
     const Number angular = a[3] * at(b[3]) + a[4] * at(b[4]) + a[5] * at(b[5]);
     return turns ? angular : a[0] * at(b[0]) + a[1] * at(b[1]) + a[2] * at(b[2]) + angular;
   }
@@ -191,9 +187,9 @@ class TreeSweep {
   }
 
   /// What a row's two sides move by, with velocities of the links.
-  HWY_INLINE Number rate(const Row& row, bool turns, const double (&v)[3][kCount],
-                         const double (&omega)[3][kCount], const double (&v_parent)[3][kCount],
-                         const double (&omega_parent)[3][kCount]) const {
+  HWY_INLINE Number rate(const Row& row, bool turns, const Lane (&v)[3][kCount],
+                         const Lane (&omega)[3][kCount], const Lane (&v_parent)[3][kCount],
+                         const Lane (&omega_parent)[3][kCount]) const {
     const Triple<Number> child = get3<Number>(row.child, lane_);
     const Triple<Number> parent = get3<Number>(row.parent, lane_);
     const Number angular =
@@ -301,7 +297,7 @@ class TreeSweep {
       store(scaled, row.w);
       const Number diagonal = product(w, scaled, form.turns());
       b = b - product(w, y, form.turns());
-      const Number firm = diagonal + Number(kTreeCompliance) * diagonal;
+      const Number firm = diagonal + Number(Kind::kCompliance) * diagonal;
       add_row(list, count, w, form.turns(), firm + gamma, b, v, row);
       list[count++] = &row;
     }
@@ -389,8 +385,8 @@ class TreeSweep {
   }
 
   /// Impulses, and bounds for the next solution.
-  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, const Revision& revision,
-                         TreeJointLanes<kCount>& hook, Number& changed) const {
+  HWY_INLINE void revise(const TreeJoint& joint, const Link& link, const Number& release,
+                         TreeJointLanes<Kind>& hook, Number& changed) const {
     const Number zero(0.0);
     const Link& parent = links_[joint.parent];
     Triple<Number> linear = {zero, zero, zero};
@@ -401,7 +397,7 @@ class TreeSweep {
       Number lambda = at(row.change) + zero;
       if (form.bounded()) {
         lambda =
-            revise_bound(form, row, lambda, revision, changed,
+            revise_bound(form, row, lambda, release, changed,
                          rate(row, form.turns(), link.v_now, link.omega_now, parent.v_now, parent.omega_now));
       } else {
         put(lambda, row.lambda);
@@ -415,23 +411,25 @@ class TreeSweep {
 
   /// Impulses of a row, with its spring's, that has bounds; `lambda` is what was found for it.
   HWY_INLINE Number revise_bound(const TreeRowForm& form, Row& row, const Number& lambda,
-                                 const Revision& revision, Number& changed, const Number& rate_now) const {
+                                 const Number& release, Number& changed, const Number& rate_now) const {
     const Number zero(0.0);
     const Number fixed = fixed_impulse(row, form);
     const auto is_free = above(Number(0.5), is_bound(row));
-    const auto is_loose = above(revision.loose, zero);
     Number own = lambda;
     Number spring = zero;
     if (form.sprung) {
-      // The friction of a loose tree is one row with the spring.
-      const Number beside = quotient(at(row.spring_target) - rate_now, at(row.spring_gamma));
-      own = choose(is_loose, lambda - beside, lambda);
-      spring = choose(is_free, choose(is_loose, beside, fixed), lambda);
+      Number beside = fixed;
+      if constexpr (Kind::kLoose) {
+        // Friction is one row with the spring.
+        beside = quotient(at(row.spring_target) - rate_now, at(row.spring_gamma));
+        own = lambda - beside;
+      }
+      spring = choose(is_free, beside, lambda);
       put(spring, row.spring_lambda);
     }
     const Number given = choose(is_free, own, fixed);
     put(given, row.lambda);
-    const Number next = next_bound(form, row, own, revision, at(row.target) - rate_now);
+    const Number next = next_bound(form, row, own, release, at(row.target) - rate_now);
     const Number step = next - at(row.bound);
     put(next, row.bound);
     changed = choose(above(step * step, zero), Number(1.0), changed);
@@ -439,23 +437,26 @@ class TreeSweep {
   }
 
   /// -1, 0 or 1 for a row that has found `own`, and `lacks` so much speed.
-  HWY_INLINE Number next_bound(const TreeRowForm& form, Row& row, const Number& own, const Revision& revision,
+  HWY_INLINE Number next_bound(const TreeRowForm& form, Row& row, const Number& own, const Number& release,
                                const Number& lacks) const {
     const Number zero(0.0);
     const Number one(1.0);
     const Number bound = at(row.bound);
-    const bool is_motor = form.role == RowRole::kMotor;
-    const auto is_loose = above(revision.loose, zero);
-    const Number slack =
-        is_motor ? Number(kLooseFriction - 1) * at(row.high) : Number(kLooseSpeed) * at(row.inverse);
-    const Number beyond = choose(is_loose, slack, zero);
-    const Number to = choose(above(at(row.low) - beyond, own), zero - one,
-                             choose(above(own, at(row.high) + beyond), one, zero));
-    const Number least = choose(is_loose, Number(kLooseSpeed), Number(kNoSpeed));
+    Number low = at(row.low);
+    Number high = at(row.high);
+    Number least(kNoSpeed);
+    if constexpr (Kind::kLoose) {
+      const Number slack = form.role == RowRole::kMotor ? Number(kLooseFriction - 1) * high
+                                                        : Number(kLooseSpeed) * at(row.inverse);
+      low = low - slack;
+      high = high + slack;
+      least = Number(kLooseSpeed);
+    }
+    const Number to = choose(above(low, own), zero - one, choose(above(own, high), one, zero));
     const Number let_go = choose(above(zero - least, bound * lacks), zero, bound);
     const Number freed = at(row.freed);
-    Number held = choose(above(revision.release, freed), let_go, bound);
-    if (is_motor) held = choose(is_loose, bound, held);
+    const bool stays = Kind::kLoose && form.role == RowRole::kMotor;
+    const Number held = stays ? bound : choose(above(release, freed), let_go, bound);
     put(choose(above(bound * bound, held * held), one, freed), row.freed);
     return choose(above(Number(0.5), bound * bound), to, held);
   }
@@ -463,18 +464,18 @@ class TreeSweep {
   const TreeJoint* joints_;
   const TreeRowForm* forms_;
   Link* links_;
-  TreeJointLanes<kCount>* hooks_;
+  TreeJointLanes<Kind>* hooks_;
   Row* rows_;
   int joint_count_;
   int lane_;
 };
 
-template <class Number, int kCount>
-HWY_INLINE void solve_tree_lanes(double h, const TreeForm& form, TreeLanes<kCount>& trees) {
-  for (int lane = 0; lane < kCount; lane += kLanesOf<Number>) {
-    TreeSweep<Number, kCount>(form, trees, lane).run(trees);
+template <class Number, class Kind>
+HWY_INLINE void solve_tree_lanes(double h, const TreeForm& form, TreeLanes<Kind>& trees) {
+  for (int lane = 0; lane < Kind::kCount; lane += kLanesOf<Number>) {
+    TreeSweep<Number, Kind>(form, trees, lane).run(trees);
     const Number settled = Number(1.0) - get<Number>(trees.changed + lane);
-    write(TreeStiffness<Number, kCount>(h, form, trees, lane).stiffen(settled), trees.grew + lane);
+    write(TreeStiffness<Number, Kind>(h, form, trees, lane).stiffen(settled), trees.grew + lane);
   }
 }
 

@@ -90,6 +90,12 @@ HWY_INLINE Mask above(const Wide& a, const Wide& b) {
   for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::Gt(a.raw[i], b.raw[i]);
   return r;
 }
+HWY_INLINE bool any(const Mask& condition) {
+  for (int i = 0; i < kVectors; ++i) {
+    if (!hn::AllFalse(kTag, condition.raw[i])) return true;
+  }
+  return false;
+}
 HWY_INLINE Wide choose(const Mask& condition, const Wide& yes, const Wide& no) {
   Wide r;
   for (int i = 0; i < kVectors; ++i) r.raw[i] = hn::IfThenElse(condition.raw[i], yes.raw[i], no.raw[i]);
@@ -108,6 +114,8 @@ HWY_INLINE Wide root(const Wide& a) {
 
 template <>
 inline constexpr int kLanesOf<Wide> = kStride;
+template <>
+inline constexpr bool kIsSingle<Wide> = true;
 
 HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
   for (int i = 0; i < kVectors; ++i) {
