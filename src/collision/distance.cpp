@@ -12,6 +12,11 @@ namespace {
 
 constexpr int kMaxIterations = 64;
 
+Vec3 support_of_capsule(const Convex& c, Vec3 d) {
+  const Real h = c.shape.half_height;
+  return c.center + (dot(c.axes.y, d) < Real(0) ? -h : h) * c.axes.y;
+}
+
 Vec3 support_of_box(const Convex& c, Vec3 d) {
   const auto along = [d](Vec3 axis, Real half) { return (dot(axis, d) < Real(0) ? -half : half) * axis; };
   const Vec3 h = c.shape.half_extents;
@@ -127,12 +132,25 @@ bool reduce(Simplex& s, bool is_outside) {
   return true;
 }
 
+/// The places of two shapes that lie farthest along a direction.
+struct AnySupports {
+  static Vec3 of_a(const Convex& a, Vec3 d) { return support_of(a, d); }
+  static Vec3 of_b(const Convex& b, Vec3 d) { return support_of(b, d); }
+};
+
+/// The same for what people on terrain ask most.
+struct TriangleAndCapsule {
+  static Vec3 of_a(const Convex& a, Vec3 d) { return support_of_triangle(a, d); }
+  static Vec3 of_b(const Convex& b, Vec3 d) { return support_of_capsule(b, d); }
+};
+
+template <class Supports>
 Corner corner_along(const Convex& a, const Convex& b, DVec3 direction) {
   // The direction shrinks with the distance: its length must not underflow in Real.
   const Vec3 d = vector_cast<Real>(geometry::direction_or(direction, DVec3{0, 1, 0}));
   Corner corner;
-  corner.on_a = vector_cast<double>(support_of(a, d));
-  corner.on_b = vector_cast<double>(support_of(b, -d));
+  corner.on_a = vector_cast<double>(Supports::of_a(a, d));
+  corner.on_b = vector_cast<double>(Supports::of_b(b, -d));
   corner.w = corner.on_a - corner.on_b;
   return corner;
 }
@@ -140,6 +158,42 @@ Corner corner_along(const Convex& a, const Convex& b, DVec3 direction) {
 bool holds(const Simplex& s, DVec3 w) {
   return std::any_of(s.corner.begin(), s.corner.begin() + s.count,
                      [w](const Corner& corner) { return corner.w == w; });
+}
+
+/// By the supports of the two; see distance_between.
+template <class Supports>
+Distance distance_by(const Convex& a, const Convex& b, Real enough) {
+  const Real skins = skin_of(a) + skin_of(b);
+  const auto far = static_cast<double>(enough + skins);
+  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
+  Simplex s;
+  s.corner[0] = corner_along<Supports>(a, b, vector_cast<double>(middle_of(b) - middle_of(a)));
+  s.weight[0] = 1;
+  s.count = 1;
+  Corner nearest = s.corner[0];
+  double scale = 0;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const DVec3 v = nearest.w;
+    const Corner next = corner_along<Supports>(a, b, -v);
+    scale = std::max({scale, length(next.on_a), length(next.on_b)});
+    const double size = length(v);
+    if (!(size > rounding * scale)) return {.distance = -skins, .cores_overlap = true};
+    // The distance is at least v.w / |v| and at most |v|: stop when these have met.
+    const double along = dot(v, next.w);
+    if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
+    if (size * size - along <= size * rounding * scale || holds(s, next.w)) break;
+    s.corner[s.count++] = next;
+    if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
+    const Corner nearer = s.nearest();
+    if (length_squared(nearer.w) >= size * size) break;
+    nearest = nearer;
+  }
+  Distance result;
+  result.normal = vector_cast<Real>(geometry::direction_or(-nearest.w, DVec3{}));
+  result.distance = static_cast<Real>(length(nearest.w)) - skins;
+  result.point_a = vector_cast<Real>(nearest.on_a) + skin_of(a) * result.normal;
+  result.point_b = vector_cast<Real>(nearest.on_b) - skin_of(b) * result.normal;
+  return result;
 }
 
 }  // namespace
@@ -186,10 +240,8 @@ Real thinness_of(const Convex& c) {
 
 Vec3 support_of(const Convex& convex, Vec3 direction) {
   switch (convex.shape.kind) {
-    case ShapeKind::kCapsule: {
-      const Real h = convex.shape.half_height;
-      return convex.center + (dot(convex.axes.y, direction) < Real(0) ? -h : h) * convex.axes.y;
-    }
+    case ShapeKind::kCapsule:
+      return support_of_capsule(convex, direction);
     case ShapeKind::kBox:
       return support_of_box(convex, direction);
     case ShapeKind::kCylinder:
@@ -213,37 +265,9 @@ Real separation_along(const Convex& a, const Convex& b, Vec3 n) {
 }
 
 Distance distance_between(const Convex& a, const Convex& b, Real enough) {
-  const Real skins = skin_of(a) + skin_of(b);
-  const auto far = static_cast<double>(enough + skins);
-  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
-  Simplex s;
-  s.corner[0] = corner_along(a, b, vector_cast<double>(middle_of(b) - middle_of(a)));
-  s.weight[0] = 1;
-  s.count = 1;
-  Corner nearest = s.corner[0];
-  double scale = 0;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const DVec3 v = nearest.w;
-    const Corner next = corner_along(a, b, -v);
-    scale = std::max({scale, length(next.on_a), length(next.on_b)});
-    const double size = length(v);
-    if (!(size > rounding * scale)) return {.distance = -skins, .cores_overlap = true};
-    // The distance is at least v.w / |v| and at most |v|: stop when these have met.
-    const double along = dot(v, next.w);
-    if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
-    if (size * size - along <= size * rounding * scale || holds(s, next.w)) break;
-    s.corner[s.count++] = next;
-    if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
-    const Corner nearer = s.nearest();
-    if (length_squared(nearer.w) >= size * size) break;
-    nearest = nearer;
-  }
-  Distance result;
-  result.normal = vector_cast<Real>(geometry::direction_or(-nearest.w, DVec3{}));
-  result.distance = static_cast<Real>(length(nearest.w)) - skins;
-  result.point_a = vector_cast<Real>(nearest.on_a) + skin_of(a) * result.normal;
-  result.point_b = vector_cast<Real>(nearest.on_b) - skin_of(b) * result.normal;
-  return result;
+  if (a.shape.kind == ShapeKind::kMesh && b.shape.kind == ShapeKind::kCapsule)
+    return distance_by<TriangleAndCapsule>(a, b, enough);
+  return distance_by<AnySupports>(a, b, enough);
 }
 
 }  // namespace hooke::collision

@@ -142,4 +142,19 @@ TEST_SUITE("collision/distance") {
     CHECK(distance_to(0.5, 0.3, -0.4) == doctest::Approx(0.25));
     CHECK(distance_to(-1, 1, -1) == doctest::Approx(std::sqrt(3.0) - 0.25));
   }
+
+  TEST_CASE("a capsule and a triangle are as far apart from either side") {
+    std::mt19937 random(7);
+    for (int i = 0; i < 2000; ++i) {
+      Convex triangle = {.shape = {.kind = ShapeKind::kMesh}};
+      for (Vec3& corner : triangle.corners) corner = uniform(random, 0, 2) * random_unit(random);
+      const Convex capsule = placed(random_shape(ShapeKind::kCapsule, random),
+                                    uniform(random, 0, 3) * random_unit(random), random_turn(random));
+      const Distance d = distance_between(triangle, capsule);
+      const Distance back = distance_between(capsule, triangle);
+      REQUIRE(d.cores_overlap == back.cores_overlap);
+      CHECK(std::fabs(d.distance - back.distance) < Real(1e-5));
+      if (!d.cores_overlap && d.distance > Real(1e-2)) CHECK(length(d.normal + back.normal) < Real(1e-3));
+    }
+  }
 }
