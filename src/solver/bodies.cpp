@@ -124,10 +124,12 @@ Vec3 split_velocity(const FreeTurn& turn, Real h) {
   const bool is_symmetric = rest == 0;
   Quaternion<double> q = is_symmetric ? before : turned_about(b, before, l, rest);
   q = math::quaternion_of(step * of[a] * l) * turned_about(top, q, l, step * (of[top] - of[a]));
-  if (!is_symmetric) q = turned_about(b, q, l, rest);
   const DVec3 now = vector_cast<double>(in_axes(axes, inverse, momentum));
-  const DVec3 start = rotate(conjugate(before), l);
-  q = turned_to_energy(q, c, l, dot(start, {c.x * start.x, c.y * start.y, c.z * start.z}));
+  if (!is_symmetric) {
+    q = turned_about(b, q, l, rest);
+    const DVec3 start = rotate(conjugate(before), l);
+    q = turned_to_energy(q, c, l, dot(start, {c.x * start.x, c.y * start.y, c.z * start.z}));
+  }
   return vector_cast<Real>((1 / step) * math::turn_between(before, q, step * now));
 }
 
