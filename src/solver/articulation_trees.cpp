@@ -5,7 +5,6 @@
 #include "solver/articulations.h"
 #include "solver/joint_rows.h"
 #include "solver/lanes.h"
-#include "solver/loose_trees.h"
 #include "solver/wide/trees.h"
 #include "state/body_frames.h"
 
@@ -325,8 +324,7 @@ TreeScratch& TreeScratch::operator=(TreeScratch&&) noexcept = default;
 
 void solve_trees(double h, std::span<Articulation* const> trees, TreeScratch& scratch, JointTables tables) {
   auto& [exact, loose] = scratch.groups();
-  for (Articulation* tree : trees)
-    (is_loose(*tree, tables.hooks, tables.bodies) ? loose.trees : exact.trees).push_back(tree);
+  for (Articulation* tree : trees) (tree->tree.loose ? loose.trees : exact.trees).push_back(tree);
   exact.solve(h, tables);
   loose.solve(h, tables);
 }

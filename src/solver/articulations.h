@@ -87,6 +87,7 @@ struct Articulation {
     wide::TreeForm form;
     std::vector<int> rows;  ///< Of the hook, for each of the form; a motor's spring is the one before it.
     int kind = 0;           ///< Equal where forms are.
+    bool loose = false;     ///< In this step; see solver/loose_trees.h.
   } tree;
   [[nodiscard]] bool has_loops() const { return tree.form.joints.empty(); }
 

@@ -1,5 +1,7 @@
 #include "solver/joints.h"
 
+#include "solver/loose_trees.h"
+
 #include <algorithm>
 #include <span>
 
@@ -12,6 +14,7 @@ using state::Hook;
 using state::HookPlace;
 
 constexpr int kArticulationGrain = 1;
+constexpr int kTreeGrain = 16;
 constexpr int kHookGrain = 256;
 
 template <class Change>
@@ -144,6 +147,12 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
 
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
                     Joints& joints) {
+  parallel::for_ranges(pool, static_cast<int>(joints.order.size()), kTreeGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      Articulation& art = joints.articulations[joints.order[i]];
+      art.tree.loose = !art.has_loops() && is_loose(art, hooks, bodies);
+    }
+  });
   prepare_net(joints.net);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {
