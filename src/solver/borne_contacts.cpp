@@ -66,11 +66,12 @@ struct Candidates {
     const Real w_lower = bodies.motion[lower].inverse_mass;
     // Rows of one body that are exact leave nothing to the others.
     if (holding[upper] == Holding::kBorne || w_lower >= kBorneMass * w_upper) return true;
+    if (holding[lower] == Holding::kHooked) return false;
     Real load = Real(0);
     for (int k = 0; k < m.point_count; ++k) load += impulse_to_force * m.point[k].normal_impulse;
     const bool was_borne =
         std::binary_search(borne_before.begin(), borne_before.end(), std::pair(m.body_a, m.body_b));
-    return std::max(w_lower, w_upper) * load > (was_borne ? Real(0) : kBorneLoad * gravity);
+    return w_lower * load > (was_borne ? Real(0) : kBorneLoad * gravity);
   }
 };
 

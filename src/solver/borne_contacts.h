@@ -26,8 +26,8 @@
 
 namespace hooke::solver {
 
-/// From this ratio of masses on contacts are borne; and from this ratio of the load to the weight of the
-/// lighter body.
+/// From this ratio of masses on contacts are borne; and from this ratio of the load to the weight of what
+/// hangs.
 inline constexpr Real kBorneMass = Real(2);
 inline constexpr Real kBorneLoad = Real(1);
 
