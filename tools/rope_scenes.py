@@ -583,8 +583,69 @@ def twisted_cable():
         hooks=hooks)
 
 
+def overhand(size, tail, spacing):
+    """Points of a loose overhand knot on a line along x, `spacing` apart: a polynomial trefoil with straight ends."""
+    end, steps = 2.05, 20000
+    place = [[size * (t**3 - 3 * t), size * 0.7 * (t**4 - 4 * t * t), size * 0.55 * (t**5 / 5 - 2 * t)]
+             for t in (-end + 2 * end * i / steps for i in range(steps + 1))]
+    way = [tail / math.hypot(1, 0.3), 0.3 * tail / math.hypot(1, 0.3), 0]
+    fine = line(add(place[0], [-way[0], way[1], 0]), place[0], steps) + place + line(place[-1], add(place[-1], way), steps)
+    points = [fine[0]]
+    for x in fine:
+        step = add(x, scaled(-1, points[-1]))
+        if math.hypot(*step) >= spacing:
+            points.append(add(points[-1], scaled(spacing / math.hypot(*step), step)))
+    return points
+
+
+def knot():
+    """An overhand knot that tightens under a load, and turns about a bar that hold another."""
+    radius, mass, load, held, bar_radius, bar_height = 0.012, 0.15, 5.0, 3.0, 0.04, 1.7
+    points = overhand(0.048, 0.2, 2 * radius)
+    first = points[0]
+    knotted = [[0.3 + p[1] - first[1], 2.0 - (p[0] - first[0]), p[2] - first[2]] for p in points]
+    bend, turns, spread = bar_radius + 1.01 * radius, 2.5, 2.4 * radius
+    wound = [[-0.4 + bend, bar_height - 0.35 * (1 - i / 700), 0] for i in range(700)]
+    for i in range(20001):
+        angle = 2 * math.pi * turns * i / 20000
+        wound.append([-0.4 + bend * math.cos(angle), bar_height + bend * math.sin(angle), spread * turns * i / 20000])
+    wound += [add(wound[-1], [0, -0.15 * i / 700, 0]) for i in range(1, 701)]
+    turned = [wound[0]]
+    for x in wound:
+        step = add(x, scaled(-1, turned[-1]))
+        if math.hypot(*step) >= 2 * radius:
+            turned.append(add(turned[-1], scaled(2 * radius / math.hypot(*step), step)))
+    half = 0.09
+    calm = {"linear_damping": 2, "angular_damping": 4, "can_sleep": False}
+    touching = {"touches_ropes": True, "friction": 0.5, "axial_stiffness": 5e4}
+    return scene(
+        "A knot, and turns about a bar",
+        "Ropes that touch ropes and themselves. Right, a loose overhand knot tightens under 5 kg and stays: the rope "
+        "carries (M + m) g at its top. Left, two turns and a half about a bar, which is a thick rope, hold 3 kg by "
+        "friction alone: the free end weighs 12 g, and e^(5 pi mu) times that could hang on the other. Without friction it runs out.",
+        8, [0.35, 1.55, 2.3], [-0.02, 1.35, 0], {"ground": {}, "slate": {}, "hemp": {}, "oak": {}, "clay": {}, "sand": {}}, [
+            ground(),
+            body("beam", "slate", box(0.75, 0.05, 0.1), [-0.05, 2.05, 0], "static", collides=False),
+            body("load", "clay", box(half, half, half), add(knotted[-1], [0, -half, 0]), mass=load, **calm),
+            body("held", "oak", box(half, half, half), add(turned[0], [0, -half, 0]), mass=held, **calm),
+        ], [
+            tension((load + mass) * G, "knotted", 0, 0.02),
+            promise("height", "==", turned[0][1] - half, "held", 0.06),
+            promise("height", "==", 0.82, "load", 0.04),  # 0.54 without the knot
+            promise("largest_stretch", "<", 0.01),
+            promise("kinetic_energy", "<", 0.01)
+        ],
+        ropes=[
+            rope("knotted", "hemp", knotted, mass, radius, pins=[0], air_friction=0.3, **touching),
+            rope("bar", "sand", [[-0.4, bar_height, -0.15], [-0.4, bar_height, 0.2]], 1.0, bar_radius, pins=[0, 1],
+                 **touching),
+            rope("turned", "oak", turned, 0.1, radius, pins=[], air_friction=0.3, **touching)
+        ],
+        hooks=[tie("hook", "load.top", "knotted.end"), tie("eye", "held.top", "turned.start")])
+
+
 ROPE_SCENES = [
     crane, hanging_table, suspension_bridge, necklace, pulley, tug_of_war, rope_bridge, trampoline, curtain_rings,
     catch_net, washing_line, cable_and_hair, hair_wind,
-    twisted_cable
+    twisted_cable, knot
 ]

@@ -342,6 +342,10 @@ struct RopeDesc {
   Real drag_coefficient = Real(1.1);  ///< Of a cylinder across the flow. Not negative.
   Real charge = Real(0);              ///< [C], shared out by mass.
   Vec3 velocity = {};                 ///< Of all points at the start [m/s].
+  /// Touches other ropes that say so too, and itself, all along, as a tube of `radius`, with the friction of
+  /// `contact`. Segments less than half a turn of the tightest bend, pi x radius, apart along the rope do
+  /// not touch each other. Off, ropes pass through each other at no cost.
+  bool touches_ropes = false;
   ContactDesc contact = {};
 };
 

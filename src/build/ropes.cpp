@@ -138,6 +138,7 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
 
   state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
   object.friction = desc.contact.friction;
+  object.touches_ropes = desc.touches_ropes;
   object.bend_stiffness = desc.bend_stiffness;
   object.bend_damping = desc.bend_damping;
   object.twist_stiffness = desc.twist_stiffness;

@@ -199,6 +199,8 @@ std::vector<Field> rope_rows() {
                                                "Of a cylinder across the flow."),
       field<desc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
       field<desc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<desc, &RopeDesc::touches_ropes>(
+          "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
   };
 }
 

@@ -34,6 +34,7 @@ class BundleSolution {
  private:
   /// Largest relative length error left in any rope.
   double check_ropes(bool& limits_changed);
+  [[nodiscard]] bool gains_energy() const;
   // Loading and checking.
   void load_points();
   void load_hooks();
@@ -48,6 +49,8 @@ class BundleSolution {
   // Contacts between points: bundles_inner.cpp.
   void load_inner();
   void load_inner_touch(std::size_t index);
+  void load_rope_touch(std::size_t index);
+  [[nodiscard]] const state::RopeContact& rope_contact(std::size_t index) const;
   void load_borne_touch(std::size_t index);
   void make_touch_rows(std::size_t index, const TouchForce& last);
   void note_rope_in_contact(std::uint32_t node);
@@ -68,6 +71,7 @@ class BundleSolution {
 
   // The matrix and its right side.
   void assemble();
+  void resize_rope_touches();
   void assemble_pair(const Bundle::Incident& a, const Bundle::Incident& b, std::uint32_t block,
                      const RopeNode& node);
   void assemble_pairs();

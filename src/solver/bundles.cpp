@@ -206,6 +206,7 @@ void BundleSolution::solve_with_bounds() {
   bool changed = true;
   for (int pass = 0; changed && pass < kMostBoundPasses; ++pass) {
     hold_nodes(h_, b_.ropes);
+    resize_rope_touches();
     fill_right_side();
     assemble();
     factor(b_.pattern, b_.numbers, b_.factor_scratch);
@@ -234,6 +235,25 @@ double BundleSolution::check_ropes(bool& limits_changed) {
     rest = rest.subspan(count);
   }
   return worst;
+}
+
+/// Whether everything moves faster than before by more than can come of a stretch that is taken back. Where
+/// ropes touch ropes, a solution in which contacts still pull throws what is folded far from where it is, and
+/// another about that one may settle there.
+bool BundleSolution::gains_energy() const {
+  constexpr double kMostGain = 1.1;
+  double before = 0;
+  double behind = 0;
+  for (const RopeNode& node : b_.ropes.nodes) {
+    if (!(node.w > 0)) continue;
+    before += node.mass * length_squared(node.v_free);
+    behind += node.mass * length_squared(node.u);
+  }
+  for (const BundleBody& m : b_.moving) {
+    before += length_squared(m.body.v) / m.body.inverse_mass;
+    behind += length_squared(m.v) / m.body.inverse_mass;
+  }
+  return behind > kMostGain * before;
 }
 
 void BundleSolution::run(std::vector<Chain>& chains) {
@@ -265,7 +285,8 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     const int least = std::max(least_solves(b_.ropes.touches, unsettled), least_solves_of_inner());
     const bool settled = !unsettled.points && solves >= least;
     if (long_enough && !grew && settled) break;
-    for (RopeSetting& setting : b_.settings) setting.first = setting.first && long_enough;
+    const bool is_wild = !b_.rope_contacts.empty() && gains_energy();
+    for (RopeSetting& setting : b_.settings) setting.first = is_wild || (setting.first && long_enough);
   }
   for (const std::uint32_t c : b_.chains)
     chains[c].unconverged = chains[c].unconverged || !(error <= kReportedError) || !is_sound();

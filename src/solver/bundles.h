@@ -48,13 +48,13 @@ struct BundleBody {
   DVec3 omega_scaled = {};
 };
 
-/// A contact between points of a rope, or with a body that gives way, or of a body that is borne, while it is
-/// solved.
+/// A contact between points of a rope or a cloth, of a rope with a rope, or of a body that is borne, while it
+/// is solved.
 struct InnerTouch {
   static constexpr int kRows = 3;  ///< Along the normal and two across.
 
-  std::array<std::uint32_t, 3> node = {};  ///< As state::InnerContact::particle; none of what is borne.
-  std::array<double, 3> weight = {};
+  std::array<std::uint32_t, 4> node = {};  ///< As `particle` of its row; none of what is borne.
+  std::array<double, 4> weight = {};
   std::uint32_t count = 0;
   double separation = 0, friction = 0;
   double mobility = 0;    ///< 1 / the mass that resists at the place, roughly [1/kg].
@@ -69,8 +69,7 @@ struct InnerTouch {
   bool near = false;      ///< It may act within this substep.
   bool active = false, slides = false;
   bool let_go = false;  ///< For the rest of the substep: it pulled too often.
-  bool firm =
-      false;  ///< Of ropes and of bodies that are borne: pushes apart by speed, and is solved to the end.
+  bool firm = false;    ///< Of ropes and of what is borne: pushes apart by speed, and is solved to the end.
 };
 
 /// Unknown are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m) v,
@@ -101,21 +100,30 @@ struct InnerTouch {
 /// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
 /// direction at b is that of its points blended along the segment.
 struct Bundle {
-  std::vector<std::uint32_t> chains;  ///< In order.
-  std::vector<std::uint32_t> points;  ///< Particles of no rope, in order of rows.
-  std::vector<std::uint32_t> hooks;   ///< Rows, in order.
-  std::vector<std::uint32_t> inner;   ///< Contacts between points: rows, in order.
-  std::vector<std::uint32_t> borne;   ///< Contacts between bodies: of state::Pairs::borne, in order.
-  std::vector<std::uint32_t> bodies;  ///< Rows, in order.
-  /// Of each hook, then of each inner contact, then of each borne one, a and b: index into `bodies`, or -1.
+  std::vector<std::uint32_t> chains;         ///< In order.
+  std::vector<std::uint32_t> points;         ///< Particles of no rope, in order of rows.
+  std::vector<std::uint32_t> hooks;          ///< Rows, in order.
+  std::vector<std::uint32_t> inner;          ///< Contacts between points: rows, in order.
+  std::vector<std::uint32_t> rope_contacts;  ///< Rows, in order.
+  std::vector<std::uint32_t> borne;          ///< Contacts between bodies: of state::Pairs::borne, in order.
+  std::vector<std::uint32_t> bodies;         ///< Rows, in order.
+  /// Of each hook, inner contact, contact of ropes and borne contact, a and b: index into `bodies`, or -1.
   std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
   std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
 
+  [[nodiscard]] std::uint32_t inner_count() const { return static_cast<std::uint32_t>(inner.size()); }
+  /// Of the borne contacts among all touches.
+  [[nodiscard]] std::uint32_t first_borne() const {
+    return inner_count() + static_cast<std::uint32_t>(rope_contacts.size());
+  }
+  [[nodiscard]] std::uint32_t touch_count() const {
+    return first_borne() + static_cast<std::uint32_t>(borne.size());
+  }
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, bends, hooks, inner contacts, borne contacts, bodies.
+  // The matrix. Blocks are segments, bends, hooks, inner contacts, those of ropes, borne ones, bodies.
   BlockPattern pattern;
   std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
@@ -133,12 +141,13 @@ struct Bundle {
   std::vector<RopeSetting> settings;       ///< Of chains.
   std::vector<std::uint32_t> chain_nodes;  ///< Of chains: how many.
   std::vector<BundleBody> moving;          ///< As `bodies`.
-  std::vector<InnerTouch> touches;         ///< As `inner`, then as `borne`.
+  std::vector<InnerTouch> touches;         ///< As `inner`, then as `rope_contacts`, then as `borne`.
   std::vector<JointRow> rows;              ///< Of hooks, then of touches.
   std::vector<std::uint32_t> first_row;    ///< Of each of these; one more at the end.
   std::vector<std::int8_t> bound;          ///< Of rows, as Articulation::bound.
   std::vector<double> lambda;              ///< Of rows.
   std::vector<double> speed;               ///< Of rows: of opening.
+  std::vector<int> sizes;                  ///< Of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
   std::vector<double> right_side;  ///< Then the solution.

@@ -55,6 +55,10 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
       s.insert(s.end(), {row, inner.element, inner.object, inner.body, gives_way(t.bodies, inner.body)});
   }
   for (const state::BorneContact& borne : t.pairs.borne) s.insert(s.end(), {borne.body_a, borne.body_b});
+  for (std::uint32_t row = 0; row < t.rope_contacts.size(); ++row) {
+    const state::RopeContact& contact = t.rope_contacts[row];
+    if (contact.joined) s.insert(s.end(), {row, contact.segment_a, contact.segment_b});
+  }
 }
 
 /// Bodies, then particles; a rope is its first particle.
@@ -75,6 +79,10 @@ class Groups {
         sets_.merge(of_inner(inner), of_particle(inner.object, inner.particle[i]));
       if (gives_way(t.bodies, inner.body)) sets_.merge(of_inner(inner), inner.body);
     }
+    for (const state::RopeContact& contact : t.rope_contacts) {
+      if (contact.joined)
+        sets_.merge(of_rope_contact(contact), of_particle(contact.object_b, contact.particle[2]));
+    }
   }
 
   std::uint32_t of_hook(const Hook& hook) {
@@ -87,6 +95,9 @@ class Groups {
   }
   std::uint32_t of_inner(const state::InnerContact& inner) {
     return of_particle(inner.object, inner.particle[0]);
+  }
+  std::uint32_t of_rope_contact(const state::RopeContact& contact) {
+    return of_particle(contact.object_a, contact.particle[0]);
   }
   std::uint32_t of_particle(std::uint32_t object, std::uint32_t particle) {
     const state::Deformable& owner = tables_.objects[object];
@@ -170,6 +181,9 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
     if (is_tied(t, inner)) tied[groups.of_inner(inner)] = 1;
   }
   for (const state::BorneContact& borne : t.pairs.borne) tied[groups.of_borne(borne)] = 1;
+  for (const state::RopeContact& contact : t.rope_contacts) {
+    if (contact.joined) tied[groups.of_rope_contact(contact)] = 1;
+  }
   std::vector<std::uint32_t>& bundle_of = bundles.scratch.bundle_of;
   bundle_of.assign(group_count, kNone);
   bundles.count = 0;
@@ -210,6 +224,10 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
     if (gives_way(t.bodies, inner.body)) bundle.bodies.push_back(inner.body);
     if (t.objects[inner.object].kind == PointRef::Kind::kRope) continue;
     bundle.points.insert(bundle.points.end(), inner.particle.begin(), inner.particle.begin() + inner.count);
+  }
+  for (std::uint32_t row = 0; row < t.rope_contacts.size(); ++row) {
+    const state::RopeContact& contact = t.rope_contacts[row];
+    if (contact.joined) bundle_at(groups.of_rope_contact(contact)).rope_contacts.push_back(row);
   }
   for (std::uint32_t row = 0; row < t.pairs.borne.size(); ++row) {
     const state::BorneContact& borne = t.pairs.borne[row];
@@ -281,6 +299,10 @@ struct Layout {
       for (std::uint32_t k = 0; k < inner.count; ++k)  // weights: BundleSolution::load_inner
         at_node[node_of(inner.particle[k])].push_back({inner_block(i), 0});
     }
+    for (std::uint32_t i = 0; i < bundle.rope_contacts.size(); ++i) {
+      for (const std::uint32_t particle : tables.rope_contacts[bundle.rope_contacts[i]].particle)
+        at_node[node_of(particle)].push_back({inner_block(bundle.inner_count() + i), 0});
+    }
   }
 
   void list_bends(const Chain& chain, std::uint32_t first) {
@@ -304,18 +326,15 @@ struct Layout {
   [[nodiscard]] std::uint32_t inner_block(std::uint32_t index) const {
     return vector_count + static_cast<std::uint32_t>(bundle.hooks.size()) + index;
   }
-  [[nodiscard]] std::uint32_t borne_block(std::uint32_t index) const {
-    return inner_block(static_cast<std::uint32_t>(bundle.inner.size())) + index;
-  }
   [[nodiscard]] std::uint32_t body_block(std::uint32_t body) const {
     const int index = bundle.body_of(body);
     if (index < 0) return kNone;
-    return borne_block(static_cast<std::uint32_t>(bundle.borne.size())) + static_cast<std::uint32_t>(index);
+    return inner_block(bundle.touch_count()) + static_cast<std::uint32_t>(index);
   }
 
   /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
   void join_blocks() {
-    scratch.matrix.reset(borne_block(static_cast<std::uint32_t>(bundle.borne.size())) + bundle.bodies.size());
+    scratch.matrix.reset(vector_count + bundle.hooks.size() + bundle.touch_count() + bundle.bodies.size());
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
       if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
     };
@@ -343,8 +362,8 @@ struct Layout {
       meet(inner_block(i), body_block(tables.inner_contacts[bundle.inner[i]].body));
     for (std::uint32_t i = 0; i < bundle.borne.size(); ++i) {
       const state::BorneContact& borne = tables.pairs.borne[bundle.borne[i]];
-      meet(borne_block(i), body_block(borne.body_a));
-      meet(borne_block(i), body_block(borne.body_b));
+      meet(inner_block(bundle.first_borne() + i), body_block(borne.body_a));
+      meet(inner_block(bundle.first_borne() + i), body_block(borne.body_b));
     }
   }
 };
@@ -376,7 +395,7 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
     sizes.push_back(count_joint_rows(t.hooks[hook]));
     bundle.first_row.push_back(bundle.first_row.back() + static_cast<std::uint32_t>(sizes.back()));
   }
-  for (std::size_t i = 0; i < bundle.inner.size() + bundle.borne.size(); ++i) {
+  for (std::size_t i = 0; i < bundle.touch_count(); ++i) {
     sizes.push_back(InnerTouch::kRows);
     bundle.first_row.push_back(bundle.first_row.back() + InnerTouch::kRows);
   }
@@ -397,6 +416,7 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
     bundle.ends.push_back({bundle.body_of(t.hooks[hook].a.body), bundle.body_of(t.hooks[hook].b.body)});
   for (const std::uint32_t row : bundle.inner)
     bundle.ends.push_back({bundle.body_of(t.inner_contacts[row].body), -1});
+  bundle.ends.insert(bundle.ends.end(), bundle.rope_contacts.size(), {-1, -1});
   for (const std::uint32_t row : bundle.borne) {
     const state::BorneContact& borne = t.pairs.borne[row];
     bundle.ends.push_back({bundle.body_of(borne.body_a), bundle.body_of(borne.body_b)});
@@ -450,8 +470,9 @@ int Bundle::body_of(std::uint32_t row) const {
 }
 
 void Bundle::clear() {
-  for (std::vector<std::uint32_t>* list : {&chains, &points, &hooks, &inner, &borne, &bodies, &tethers,
-                                           &first_tether, &first_incident, &pair_block, &first_pair})
+  for (std::vector<std::uint32_t>* list :
+       {&chains, &points, &hooks, &inner, &rope_contacts, &borne, &bodies, &tethers, &first_tether,
+        &first_incident, &pair_block, &first_pair})
     list->clear();
   ends.clear();
   incidents.clear();

@@ -16,9 +16,15 @@ namespace {
 using state::InnerContact;
 
 constexpr double kMostDrag = 1e4;  ///< Over the mass at the place: what is dragged harder sticks.
+/// The same of ropes, where a light one carries many times its weight.
+constexpr double kMostRopeDrag = 1e4;
 /// Overlap of ropes leaves no faster than this [m/s]: where one end of a segment is wedged, the other moves
 /// many times as fast as the place.
 constexpr double kInnerPushOutSpeed = 0.05;
+
+constexpr int kRopeSlidingSolves = 7;
+/// By how much a contact of ropes gives way to its force, at most [m/s].
+constexpr double kRopeYieldSpeed = 0.02;
 
 /// The normal and two directions across it.
 std::array<DVec3, InnerTouch::kRows> axes_of(DVec3 n) {
@@ -50,7 +56,7 @@ double BundleSolution::heaviest_inner(std::size_t node) const {
 }
 
 void BundleSolution::load_inner() {
-  b_.touches.assign(b_.inner.size() + b_.borne.size(), {});
+  b_.touches.assign(b_.touch_count(), {});
   if (b_.touches.empty()) return;
   const std::uint32_t first = hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
   // Nodes and points of an element stand in the same order.
@@ -59,13 +65,15 @@ void BundleSolution::load_inner() {
       if (b_.incidents[i].block < first) continue;
       const std::size_t index = b_.incidents[i].block - first;
       InnerTouch& touch = b_.touches[index];
-      const Real weight = t_.inner_contacts[b_.inner[index]].weight[touch.count];
+      const Real weight = index < b_.inner.size() ? t_.inner_contacts[b_.inner[index]].weight[touch.count]
+                                                  : rope_contact(index).weight[touch.count];
       b_.incidents[i].weight = touch.weight[touch.count] = static_cast<double>(weight);
       touch.node[touch.count++] = node;
     }
   }
   for (std::size_t i = 0; i < b_.inner.size(); ++i) load_inner_touch(i);
-  for (std::size_t i = b_.inner.size(); i < b_.touches.size(); ++i) load_borne_touch(i);
+  for (std::size_t i = b_.inner.size(); i < b_.first_borne(); ++i) load_rope_touch(i);
+  for (std::size_t i = b_.first_borne(); i < b_.touches.size(); ++i) load_borne_touch(i);
 }
 
 void BundleSolution::load_inner_touch(std::size_t index) {
@@ -79,19 +87,32 @@ void BundleSolution::load_inner_touch(std::size_t index) {
   touch.friction = static_cast<double>(contact.friction);
   touch.surface = vector_cast<double>(given ? contact.surface_velocity : contact.belt_velocity);
   touch.lever = vector_cast<double>(contact.lever);
-  for (std::uint32_t i = 0; i < touch.count; ++i)
-    touch.mobility += touch.weight[i] * touch.weight[i] * b_.ropes.nodes[touch.node[i]].w;
   make_touch_rows(index, {.n = vector_cast<double>(contact.normal),
                           .normal = static_cast<double>(contact.normal_force),
                           .friction = vector_cast<double>(contact.friction_force)});
-  touch.resistance = touch.mobility;
-  if (touch.active && touch.firm) note_rope_in_contact(touch.node[0]);
+}
+
+const state::RopeContact& BundleSolution::rope_contact(std::size_t index) const {
+  return t_.rope_contacts[b_.rope_contacts[index - b_.inner.size()]];
+}
+
+void BundleSolution::load_rope_touch(std::size_t index) {
+  const state::RopeContact& contact = rope_contact(index);
+  InnerTouch& touch = b_.touches[index];
+  touch.firm = true;
+  touch.push_out = kInnerPushOutSpeed;
+  touch.near = contact.normal != Vec3{};
+  touch.separation = static_cast<double>(contact.separation);
+  touch.friction = static_cast<double>(contact.friction);
+  make_touch_rows(index, {.n = vector_cast<double>(contact.normal),
+                          .normal = static_cast<double>(contact.normal_force),
+                          .friction = vector_cast<double>(contact.friction_force)});
 }
 
 /// Its separation goes along with the bodies from the start of the step, as that of other rows of bodies
 /// does.
 void BundleSolution::load_borne_touch(std::size_t index) {
-  const state::BorneContact& contact = t_.pairs.borne[b_.borne[index - b_.inner.size()]];
+  const state::BorneContact& contact = t_.pairs.borne[b_.borne[index - b_.first_borne()]];
   const state::Manifold& m = t_.pairs.manifold[contact.manifold];
   const state::ContactPoint& point = m.point[static_cast<std::size_t>(contact.point)];
   InnerTouch& touch = b_.touches[index];
@@ -126,6 +147,8 @@ void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) 
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
   const auto axes = axes_of(last.n);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  for (std::uint32_t i = 0; i < touch.count; ++i)
+    touch.mobility += touch.weight[i] * touch.weight[i] * b_.ropes.nodes[touch.node[i]].w;
   const double inf = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < InnerTouch::kRows; ++k) {
     JointRow& row = b_.rows[first + k] = {};
@@ -143,11 +166,16 @@ void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) 
     turns(b, touch.lever_b, row.j_b);
   }
   b_.rows[first].target -= gap_speed(touch);
+  if (touch.count > 0) touch.resistance = touch.mobility;
 
   touch.normal = h_ * last.normal;
   if (touch.firm) {
-    b_.rows[first].gamma = touch.mobility / kContactStiffness;
-    b_.rows[first].target += std::min(b_.rows[first].gamma * touch.normal, kInnerPushOutSpeed);
+    double& gamma = b_.rows[first].gamma;
+    gamma = touch.mobility / kContactStiffness;
+    // What presses a light rope with many times its weight would push on through it.
+    const bool of_ropes = index >= b_.inner.size() && index < b_.first_borne();
+    if (of_ropes && gamma * touch.normal > kRopeYieldSpeed) gamma = kRopeYieldSpeed / touch.normal;
+    b_.rows[first].target += std::min(gamma * touch.normal, kInnerPushOutSpeed);
   }
   const DVec3 friction = h_ * last.friction;
   touch.f = friction - dot(axes[0], friction) * axes[0];
@@ -160,6 +188,9 @@ void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) 
     touch.drag = speed > 0 ? touch.friction * touch.normal / speed : 0;
   }
   set_inner_rows(index);
+  if (!touch.active || !touch.firm || touch.count == 0) return;
+  note_rope_in_contact(touch.node[0]);
+  note_rope_in_contact(touch.node[touch.count - 1]);
 }
 
 /// Overlap of ropes leaves by speed, that of cloths by place, as with the contacts of points.
@@ -234,7 +265,8 @@ bool BundleSolution::update_inner_friction(std::size_t index) {
   }
   const double drag = touch.drag;
   touch.f = -drag * sliding;
-  touch.slides = speed > 0 && most * touch.mobility < kMostDrag * speed;
+  const double most_drag = index < b_.inner.size() ? kMostDrag : kMostRopeDrag;
+  touch.slides = speed > 0 && most * touch.mobility < most_drag * speed;
   touch.drag = touch.slides ? most / speed : 0;
   return !touch.slides || std::abs(touch.drag - drag) > kSettledDrag * drag;
 }
@@ -265,7 +297,7 @@ Unsettled BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
   InnerTouch& touch = b_.touches[index];
   Unsettled unsettled;
   if (!touch.near) return unsettled;
-  if (index >= b_.inner.size()) return update_borne_touch(index, let_go);
+  if (index >= b_.first_borne()) return update_borne_touch(index, let_go);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   bool& of = touch.firm ? unsettled.ropes : unsettled.points;
   if (touch.active) {
@@ -302,6 +334,10 @@ void BundleSolution::revise_inner() {
 int BundleSolution::least_solves_of_inner() const {
   const bool any = std::any_of(b_.touches.begin(), b_.touches.end(),
                                [](const InnerTouch& t) { return t.firm && t.active; });
+  const bool slide = std::any_of(b_.touches.begin() + static_cast<std::ptrdiff_t>(b_.inner.size()),
+                                 b_.touches.begin() + static_cast<std::ptrdiff_t>(b_.first_borne()),
+                                 [](const InnerTouch& t) { return t.active && t.slides; });
+  if (slide) return kRopeSlidingSolves;
   return any ? kLeastContactSolves : 1;
 }
 
@@ -319,6 +355,12 @@ bool BundleSolution::let_inner_slide() {
 }
 
 void BundleSolution::store_inner() {
+  for (std::size_t i = 0; i < b_.rope_contacts.size(); ++i) {
+    const InnerTouch& touch = b_.touches[b_.inner.size() + i];
+    state::RopeContact& contact = t_.rope_contacts[b_.rope_contacts[i]];
+    contact.normal_force = static_cast<Real>(touch.normal / h_);
+    contact.friction_force = vector_cast<Real>((1 / h_) * touch.f);
+  }
   for (std::size_t i = 0; i < b_.inner.size(); ++i) {
     const InnerTouch& touch = b_.touches[i];
     InnerContact& contact = t_.inner_contacts[b_.inner[i]];
@@ -327,7 +369,7 @@ void BundleSolution::store_inner() {
     if (!touch.firm) push_out(contact, static_cast<Real>(h_), t_.particles);
   }
   for (std::size_t i = 0; i < b_.borne.size(); ++i) {
-    const InnerTouch& touch = b_.touches[b_.inner.size() + i];
+    const InnerTouch& touch = b_.touches[b_.first_borne() + i];
     state::BorneContact& contact = t_.pairs.borne[b_.borne[i]];
     contact.normal_force = static_cast<Real>(touch.normal / h_);
     contact.friction_force = vector_cast<Real>((1 / h_) * touch.f);

@@ -78,6 +78,7 @@ void BundleSolution::assemble_pairs() {
 void BundleSolution::assemble_hooks() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     const std::uint32_t block = hook_block(hook);
+    if (k >= size_of(block)) return;
     double& diagonal = numbers(block, block)(k, k);
     if (b_.bound[row] != 0) {
       diagonal = 1;
@@ -167,6 +168,19 @@ void BundleSolution::assemble_touches() {
       if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
     }
   });
+}
+
+/// Contacts of ropes that do not act have no rows in the matrix, and those without friction one: of those
+/// that may act most do not.
+void BundleSolution::resize_rope_touches() {
+  if (b_.rope_contacts.empty()) return;
+  b_.sizes.assign(b_.pattern.size.begin(), b_.pattern.size.end());
+  for (std::size_t i = b_.hooks.size() + b_.inner.size(); i < b_.ends.size(); ++i) {
+    const std::uint32_t first = b_.first_row[i];
+    const int held = b_.bound[first + 1] == 0 ? InnerTouch::kRows : 1;
+    b_.sizes[b_.place[hook_block(static_cast<std::uint32_t>(i))]] = b_.bound[first] == 0 ? held : 0;
+  }
+  resize_blocks(b_.sizes, b_.pattern);
 }
 
 void BundleSolution::assemble() {

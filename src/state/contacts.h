@@ -77,4 +77,31 @@ struct InnerContact {
   Real clearance = Real(0);         ///< By how much the two are apart, at least; 0 where it is not known [m].
 };
 
+/// Two segments of ropes that touch ropes, of one or of two. The places that touch are sum weight x of the
+/// first two particles and minus that of the last two: what acts there acts on the four in these shares. Rows
+/// stand in order of segment_a, then of segment_b.
+struct RopeContact {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  std::uint32_t segment_a = 0, segment_b = 0;  ///< Rows; a < b.
+  std::uint32_t object_a = 0, object_b = 0;    ///< Rows of the ropes.
+  std::array<std::uint32_t, 4> particle = {};  ///< Ends of a, ends of b: in ascending order.
+  Real friction = Real(0);                     ///< Of the pair.
+  Real thickness = Real(0);                    ///< Sum of both radii [m].
+  /// Rows of the segments before and behind a with b, then of a with those before and behind b; or kNone.
+  std::array<std::uint32_t, 4> neighbor = {kNone, kNone, kNone, kNone};
+  Real least = Real(0);  ///< So near the lines in their middles never come [m].
+  bool kin =
+      false;  ///< Neighbors along a rope: they do not touch, but do not pass through each other either.
+  bool joined = false;  ///< As of InnerContact.
+  // Written by update_rope_contacts.
+  std::array<Real, 4> weight = {};  ///< Of a positive with the sum 1, of b negative with the sum -1.
+  Vec3 normal = {};                 ///< From b to a; zero where it does not hold.
+  Real separation = Real(0);        ///< Gap [m].
+  Real normal_force = Real(0);      ///< [N], 0 or more; carried from substep to substep.
+  Vec3 friction_force = {};         ///< On a [N]; carried from substep to substep.
+  Real clearance = Real(0);         ///< By how much the two are apart, at least; 0 where it is not known [m].
+  std::uint32_t heir = kNone;       ///< Row of the neighbor that is nearer, and holds in its place; or kNone.
+};
+
 }  // namespace hooke::state

@@ -81,6 +81,7 @@ struct Deformable {
   Real yield_angle = kRigid;       ///< Of a cloth's bends [rad].
   Real yield_stress = kRigid;      ///< Of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Of a solid that yields; by its tetrahedra.
+  bool touches_ropes = false;  ///< Of a rope: it touches those that do so too, and itself.
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

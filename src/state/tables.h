@@ -44,6 +44,7 @@ struct Tables {
   std::vector<TwistSpan> twists;  ///< In order of ropes, and along each.
   Contacts contacts;
   std::vector<InnerContact> inner_contacts;
+  std::vector<RopeContact> rope_contacts;
   std::vector<Pin> pins;  ///< In order of particle.
   Bodies bodies;
   Colliders colliders;

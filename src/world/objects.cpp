@@ -93,6 +93,7 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
   renumber_particles(t, gone.particles);
   t.contacts = {};  // detect finds them again
   t.inner_contacts.clear();
+  t.rope_contacts.clear();
 
   move_slot(t, gone, state::SlotTable<RopeId>::kNone);
   t.objects.erase(t.objects.begin() + row);

@@ -377,6 +377,8 @@ void end_step(WorldData& world, double dt, StepReport& report) {
                                                              [](Real n) { return n > Real(0); }));
   for (const state::InnerContact& inner : tables.inner_contacts)
     report.contacts += inner.normal_force > Real(0) ? 1 : 0;
+  for (const state::RopeContact& contact : tables.rope_contacts)
+    report.contacts += contact.normal_force > Real(0) ? 1 : 0;
   for (const state::Manifold& manifold : tables.pairs.manifold) {
     for (int i = 0; i < manifold.point_count; ++i)
       report.contacts += manifold.point[i].normal_impulse > Real(0) ? 1 : 0;

@@ -13,6 +13,8 @@
 #include "base/float_environment.h"
 #include "collision/inner_contacts.h"
 #include "collision/particle_contacts.h"
+#include "collision/rope_contacts.h"
+#include "collision/rope_passes.h"
 #include "parallel/thread_pool.h"
 #include "solver/bodies.h"
 #include "solver/body_contacts.h"
@@ -57,6 +59,7 @@ void detect(WorldData& w, double dt) {
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
   collision::find_contacts(dt, w.particle_contacts, w.tables);
+  collision::find_rope_contacts(*w.pool, static_cast<Real>(dt), w.rope_contacts, w.tables);
 }
 
 void prepare(WorldData& w, double dt, Real h) {
@@ -90,12 +93,14 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
              [&](Range rows) { collision::update_contacts(rows, h, w.particle_contacts, t); });
   for_ranges(*w.pool, static_cast<int>(t.inner_contacts.size()), kInnerContactGrain,
              [&](Range rows) { collision::update_inner_contacts(rows, h, t); });
+  collision::update_rope_contacts(*w.pool, h, w.rope_contacts, t);
   world::begin_ties(w, h, first);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::solve_ropes(w, h);
+  collision::stop_rope_passes(*w.pool, h, w.rope_contacts, t);
   solver::solve_inner_contacts(h, t);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);

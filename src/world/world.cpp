@@ -440,6 +440,10 @@ std::uint64_t World::state_hash() const {
     hash.add(inner.normal_force);
     hash.add(inner.friction_force);
   }
+  for (const state::RopeContact& contact : t.rope_contacts) {
+    hash.add(contact.normal_force);
+    hash.add(contact.friction_force);
+  }
   world::hash_bodies(t, hash);
   world::hash_hooks(t, hash);
   return hash.value();

@@ -7,6 +7,7 @@
 #include "collision/continuous.h"
 #include "collision/narrow_phase.h"
 #include "collision/particle_contacts.h"
+#include "collision/rope_contacts.h"
 #include "parallel/thread_pool.h"
 #include "solver/air.h"
 #include "solver/bends.h"
@@ -87,6 +88,7 @@ struct WorldData {
   std::vector<collision::ColliderPair> pairs_found;
   collision::NarrowPhase narrow_phase;
   collision::ParticleContactScratch particle_contacts;
+  collision::RopeContactFinder rope_contacts;
   std::vector<Approach> approaches;       ///< In order of manifolds.
   std::vector<ContactEvent> touches_now;  ///< Of those that ask.
   std::vector<SensorEvent> visits_now;

@@ -209,6 +209,7 @@ TEST_SUITE("world/allocation") {
     check_scene("pulley");  // on bodies that turn
     check_scene("necklace", 1);
     check_scene("twisted_cable");
+    check_scene("knot", 3);  // once it is tight
   }
 
   TEST_CASE("cloth allocates nothing") {
