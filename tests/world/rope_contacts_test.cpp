@@ -237,6 +237,24 @@ TEST_CASE("rope contacts: an overhand knot tightens, holds 10 kg and keeps its c
   }
 }
 
+TEST_CASE("rope contacts: a knot of segments as short as the rope is thin is not pulled through itself") {
+  for (const double friction : {0.0, 0.1}) {
+    CAPTURE(friction);
+    WorldDesc pulled = without_air();
+    pulled.gravity = {Real(9.80665), Real(0), Real(0)};
+    World world = make_world(pulled);
+    RopeDesc desc = overhand(kRadius, friction);
+    desc.pins = {{.point = 0}};
+    desc.loads = {{.point = last_of(desc), .mass = Real(10)}};
+    desc.axial_stiffness = Real(2e4);
+    const RopeId rope = take(world.add_rope(desc));
+    for (int i = 0; i < 120; ++i) {
+      run(world, 1);
+      CHECK(writhe(world.positions(rope)) > 2.95);  // 2.5 and 2.9 where it is
+    }
+  }
+}
+
 TEST_CASE("rope contacts: turns around a rope hold a load by friction alone") {
   const auto end_falls = [](double friction) {
     World world = make_world(without_air());
