@@ -15,34 +15,6 @@ using state::BorneContact;
 using state::Hook;
 using state::Manifold;
 
-/// Bodies of nets count as free of hooks, but are not borne either: nets are relaxed.
-void find_holding(const Joints& joints, const Bodies& bodies, const std::vector<Hook>& hooks,
-                  std::vector<Holding>& holding) {
-  holding.assign(bodies.motion.size(), Holding::kNone);
-  const auto raise = [&](std::uint32_t body, Holding to) {
-    if (state::gives_way(bodies, body)) holding[body] = std::max(holding[body], to);
-  };
-  for (const Hook& hook : hooks) {
-    if (!hook.holds_point()) continue;
-    raise(hook.a.body, Holding::kHangs);
-    raise(hook.b.body, Holding::kHangs);
-  }
-  for (const std::uint32_t i : joints.order) {
-    const std::vector<std::uint32_t>& members = joints.articulations[i].bodies;
-    const bool hangs = std::any_of(members.begin(), members.end(), [&](std::uint32_t body) {
-      return !is_dynamic(bodies, body) || holding[body] == Holding::kHangs;
-    });
-    for (const std::uint32_t body : members) raise(body, hangs ? Holding::kHangs : Holding::kHooked);
-  }
-  for (const std::vector<std::uint32_t>* rows : {&joints.net.hooks, &joints.balls.hooks}) {
-    for (const std::uint32_t row : *rows) {
-      for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
-        if (is_dynamic(bodies, body)) holding[body] = Holding::kNone;
-      }
-    }
-  }
-}
-
 /// What the choice is made from.
 struct Candidates {
   Real gravity;           ///< [m/s^2]
@@ -111,18 +83,49 @@ void mark_hooks(const Joints& joints, const std::vector<std::uint8_t>& bears, st
 
 }  // namespace
 
+void find_holding(const Joints& joints, const Bodies& bodies, const std::vector<Hook>& hooks,
+                  std::vector<Holding>& holding) {
+  holding.assign(bodies.motion.size(), Holding::kNone);
+  const auto raise = [&](std::uint32_t body, Holding to) {
+    if (is_dynamic(bodies, body)) holding[body] = std::max(holding[body], to);
+  };
+  for (const Hook& hook : hooks) {
+    if (!hook.holds_point()) continue;
+    raise(hook.a.body, Holding::kHangs);
+    raise(hook.b.body, Holding::kHangs);
+  }
+  for (const std::uint32_t i : joints.order) {
+    const std::vector<std::uint32_t>& members = joints.articulations[i].bodies;
+    const bool hangs = std::any_of(members.begin(), members.end(), [&](std::uint32_t body) {
+      return !is_dynamic(bodies, body) || holding[body] == Holding::kHangs;
+    });
+    for (const std::uint32_t body : members) raise(body, hangs ? Holding::kHangs : Holding::kHooked);
+  }
+  for (const std::vector<std::uint32_t>* rows : {&joints.net.hooks, &joints.balls.hooks}) {
+    for (const std::uint32_t row : *rows) {
+      for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
+        if (is_dynamic(bodies, body)) holding[body] = Holding::kNone;
+      }
+    }
+  }
+}
+
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                         std::span<const std::uint8_t> hooked, const Bodies& bodies, std::vector<Hook>& hooks,
-                         state::Pairs& pairs, BorneScratch& scratch) {
+                         std::span<const std::uint8_t> hooked, std::span<const Holding> holding,
+                         const Bodies& bodies, std::vector<Hook>& hooks, state::Pairs& pairs,
+                         BorneScratch& scratch) {
   if (hooks.empty() && pairs.borne.empty()) return;
+  // Where none was borne no flag is set.
+  if (!pairs.borne.empty()) {
+    for (Manifold& m : pairs.manifold) m.borne = false;
+    for (Hook& hook : hooks) hook.bears = false;
+  }
   scratch.borne_before.clear();
   for (const BorneContact& contact : pairs.borne)
     scratch.borne_before.emplace_back(contact.body_a, contact.body_b);
   base::sort_unique(scratch.borne_before);
   pairs.borne.clear();
-  for (Manifold& m : pairs.manifold) m.borne = false;
-  for (Hook& hook : hooks) hook.bears = false;
-  find_holding(joints, bodies, hooks, scratch.holding);
+  scratch.holding.assign(holding.begin(), holding.end());
   choose({length(step.gravity), impulse_to_force, bodies, hooked, scratch.holding, scratch.borne_before},
          pairs, scratch.holding);
   scratch.bears.assign(bodies.motion.size(), 0);

@@ -20,6 +20,7 @@
 /// Light bodies turn far within a step, and are thin: such pairs are looked at anew in each substep.
 ///
 /// The order of calls:
+///   find_holding                                       when hooks or bodies came or went
 ///   find_borne_contacts                                once a step, before rows of contacts are made
 ///   store_borne_contacts, then place_borne_contacts    each substep, before and after that look
 ///   store_borne_contacts                               once a step
@@ -42,6 +43,11 @@ enum class Holding : std::uint8_t {
   kBorne,   ///< Lies on such.
 };
 
+/// What each body holds by its hooks; to be found again when hooks or bodies come or go. Bodies of nets hold
+/// nothing: nets are relaxed.
+void find_holding(const Joints& joints, const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
+                  std::vector<Holding>& holding);
+
 /// Memory of find_borne_contacts.
 struct BorneScratch {
   std::vector<Holding> holding;  ///< By body.
@@ -54,8 +60,9 @@ struct BorneScratch {
 /// wheel of a cart is, but does not hang. Contacts that bounce are not borne. `impulse_to_force` is that of
 /// the impulses that manifolds have from the last step [1/s].
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                         std::span<const std::uint8_t> hooked, const state::Bodies& bodies,
-                         std::vector<state::Hook>& hooks, state::Pairs& pairs, BorneScratch& scratch);
+                         std::span<const std::uint8_t> hooked, std::span<const Holding> holding,
+                         const state::Bodies& bodies, std::vector<state::Hook>& hooks, state::Pairs& pairs,
+                         BorneScratch& scratch);
 
 /// Forces and separations by what the manifolds say now.
 void place_borne_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
