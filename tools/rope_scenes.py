@@ -508,12 +508,14 @@ def hair_wind():
         root = add([0, top, 0], scaled(head, n))
         ropes.append(
             rope(f"hair_{k}", "hemp" if k % 3 else "oak", [add(root, scaled((i - 1) * pitch, n)) for i in range(segments + 2)],
-                 0.0004, radius, pins=[], bend_stiffness=2e-6, bend_damping=0.02))
+                 0.0004, radius, pins=[], bend_stiffness=2e-6, bend_damping=0.02, repulsion_strength=1.5e-7,
+                 repulsion_range=0.02))
         hooks += [tie(f"root_{k}{i}", "head", f"hair_{k}", b_point=i) for i in (0, 1)]
     return scene(
         "Hair in the wind",
         "Sixty hairs of 30 cm, rods with EI = 2e-6 N m^2, stand clamped on a head that moves to and fro. They fall, "
-        "swing after it and, after four seconds, blow to one side. A ball falls beside them.",
+        "swing after it and, after four seconds, blow to one side. Nearer than 2 cm they push each other away. A ball "
+        "falls beside them.",
         8, [0.55, 1.35, 1.15], [0, 1.1, 0], {"ground": {}, "sand": {}, "oak": {}, "hemp": {}, "clay": {}, "slate": {}}, [
             ground(),
             body("head", "sand", {"sphere": {"radius": head}}, [0, top, 0], "kinematic",

@@ -35,7 +35,7 @@ def number(value):
     """Rounded to a micrometer or a part in 10^7, without an exponent where it can be."""
     if isinstance(value, int):
         return value
-    short = float(f"{value:.7g}") if abs(value) >= 10 else round(value, 6)
+    short = float(f"{value:.7g}") if abs(value) >= 10 or 1e-9 < abs(value) < 5e-7 else round(value, 6)
     return int(short) if short == int(short) and abs(short) < 1e15 else short
 
 

@@ -346,6 +346,12 @@ struct RopeDesc {
   /// `contact`. Segments less than half a turn of the tightest bend, pi x radius, apart along the rope do
   /// not touch each other. Off, ropes pass through each other at no cost.
   bool touches_ropes = false;
+  /// s [N m^2], not negative: points of ropes with a repulsion that are nearer than r = `repulsion_range`
+  /// push each other away with the force s (1 / d^2 - 1 / r^2): with the geometric mean of s of two ropes and
+  /// the mean of r. Points less than pi / 2 r apart along one rope do not. It gives hair its thickness at
+  /// little cost; strands still slip between points that are farther apart than r. 0: none.
+  Real repulsion_strength = Real(0);
+  Real repulsion_range = Real(0.01);  ///< [m], positive.
   ContactDesc contact = {};
 };
 

@@ -25,6 +25,8 @@ Checks check(const RopeDesc& desc) {
       .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), -0.99, 0.5)
       .positive("radius", static_cast<double>(desc.radius))
       .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
+      .not_negative("repulsion_strength", static_cast<double>(desc.repulsion_strength))
+      .positive("repulsion_range", static_cast<double>(desc.repulsion_range))
       .finite("charge", static_cast<double>(desc.charge))
       .finite("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
@@ -139,6 +141,8 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
   state::Deformable& object = append_object(PointRef::Kind::kRope, points, desc.pins, tables);
   object.friction = desc.contact.friction;
   object.touches_ropes = desc.touches_ropes;
+  object.repulsion_strength = desc.repulsion_strength;
+  object.repulsion_range = desc.repulsion_range;
   object.bend_stiffness = desc.bend_stiffness;
   object.bend_damping = desc.bend_damping;
   object.twist_stiffness = desc.twist_stiffness;

@@ -201,6 +201,12 @@ std::vector<Field> rope_rows() {
       field<desc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
       field<desc, &RopeDesc::touches_ropes>(
           "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
+      field<desc, &RopeDesc::repulsion_strength>("repulsion_strength", "N m^2", kNotNegative,
+                                                 "s: points of ropes with one push each other away with s (1 "
+                                                 "/ d^2 - 1 / r^2): thick hair. 0: none."),
+      field<desc, &RopeDesc::repulsion_range>(
+          "repulsion_range", "m", kPositive,
+          "r, best above the distance of points: none of it farther away."),
   };
 }
 

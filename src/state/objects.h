@@ -81,7 +81,9 @@ struct Deformable {
   Real yield_angle = kRigid;       ///< Of a cloth's bends [rad].
   Real yield_stress = kRigid;      ///< Of a solid [Pa].
   std::shared_ptr<const RestEdges> rest_edges = {};  ///< Of a solid that yields; by its tetrahedra.
-  bool touches_ropes = false;  ///< Of a rope: it touches those that do so too, and itself.
+  bool touches_ropes = false;         ///< Of a rope: it touches those that do so too, and itself.
+  Real repulsion_strength = Real(0);  ///< Of a rope [N m^2]; 0: none.
+  Real repulsion_range = Real(0);     ///< [m]
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);

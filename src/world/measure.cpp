@@ -2,6 +2,7 @@
 #include "elements/dihedral.h"
 #include "elements/isometric_bend.h"
 #include "elements/tetrahedron.h"
+#include "solver/repulsion.h"
 #include "solver/rope_rows.h"
 #include "solver/rope_twist.h"
 #include "solver/shape_matching.h"
@@ -235,7 +236,7 @@ Measurement World::measure() const {
   Stretch stretch;
   measure_particles(t, m);
   measure_bodies(t, m);
-  m.energy.potential += potential_of_dipoles(t);
+  m.energy.potential += potential_of_dipoles(t) + solver::repulsion_energy(t);
   m.energy.elastic = measure_springs(t, stretch) + measure_segments(t, stretch) + measure_bends(t) +
                      measure_rope_bends(t) + measure_twists(t) + measure_tetrahedra(t) + measure_gas(t) +
                      measure_matches(t);

@@ -23,6 +23,7 @@
 #include "solver/hard_islands.h"
 #include "solver/inner_contacts.h"
 #include "solver/joints.h"
+#include "solver/repulsion.h"
 #include "solver/wide/wide.h"
 #include "world/bodies.h"
 #include "world/body_forces.h"
@@ -81,6 +82,7 @@ void apply_forces(WorldData& w, double time, Real h, bool first) {
   for_ranges(*w.pool, particles.count(), kParticleGrain,
              [&](Range rows) { solver::wide::accelerate(w.tables.desc.gravity, h, rows, particles); });
   world::call_force_laws(w, time, h);
+  solver::repel(*w.pool, h, w.repulsion, w.tables);
   solver::drive_pins(w.tables.pins, w.tables.objects, time, h, particles);
 }
 

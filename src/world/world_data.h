@@ -22,6 +22,7 @@
 #include "solver/hits.h"
 #include "solver/joints.h"
 #include "solver/plasticity.h"
+#include "solver/repulsion.h"
 #include "solver/rope_twist.h"
 #include "solver/spring_blocks.h"
 #include "solver/tetrahedra.h"
@@ -90,6 +91,7 @@ struct WorldData {
   collision::NarrowPhase narrow_phase;
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
+  solver::Repulsion repulsion;
   std::vector<Approach> approaches;       ///< In order of manifolds.
   std::vector<ContactEvent> touches_now;  ///< Of those that ask.
   std::vector<SensorEvent> visits_now;
