@@ -160,6 +160,14 @@ bool holds(const Simplex& s, DVec3 w) {
                      [w](const Corner& corner) { return corner.w == w; });
 }
 
+/// From a to the middle of b: of a triangle, which may be large, from the place nearest to that.
+Vec3 first_direction(const Convex& a, const Convex& b) {
+  const Vec3 middle = middle_of(b);
+  if (a.shape.kind != ShapeKind::kMesh) return middle - middle_of(a);
+  const auto& [p, q, r] = a.corners;
+  return middle - geometry::closest_on_triangle(middle, p, q, r).point;
+}
+
 /// By the supports of the two; see distance_between.
 template <class Supports>
 Distance distance_by(const Convex& a, const Convex& b, Real enough) {
@@ -167,7 +175,7 @@ Distance distance_by(const Convex& a, const Convex& b, Real enough) {
   const auto far = static_cast<double>(enough + skins);
   const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
   Simplex s;
-  s.corner[0] = corner_along<Supports>(a, b, vector_cast<double>(middle_of(b) - middle_of(a)));
+  s.corner[0] = corner_along<Supports>(a, b, vector_cast<double>(first_direction(a, b)));
   s.weight[0] = 1;
   s.count = 1;
   Corner nearest = s.corner[0];

@@ -3,6 +3,8 @@
 #include "collision/manifold_features.h"
 #include "collision/manifold_points.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -77,7 +79,8 @@ PlacedEdge place_edge(const Convex& c, std::size_t i) {
           c.axes * c.hull->faces[e.face_b].normal, static_cast<std::uint32_t>(i)};
 }
 
-/// Room for the edges of the largest hull, on the stack and not filled with zeros: most hulls have few.
+/// Edges in place. Room for those of the largest hull, on the stack and not filled with zeros: most hulls
+/// have few.
 class EdgeList {
  public:
   void add(const PlacedEdge& edge) {
@@ -89,9 +92,45 @@ class EdgeList {
   }
 
  private:
-  static constexpr std::size_t kMost = 3 * ConvexHull::kMaxVertices - 6;  // Euler's, of triangles alone
+  static constexpr std::size_t kMost = ConvexHull::kMaxEdges;
   alignas(PlacedEdge) std::byte memory_[kMost * sizeof(PlacedEdge)];
   std::size_t count_ = 0;
+};
+
+/// What of edges decides whether they cross, eight side by side: the compiler makes vectors of it.
+struct EdgeLanes {
+  static constexpr std::size_t kLanes = 8;
+  using Lanes = std::array<Real, kLanes>;
+  using Vectors = std::array<Lanes, 3>;
+  Vectors along, normal_a, normal_b;
+
+  void set(std::size_t lane, const PlacedEdge& edge) {
+    const auto put = [lane](Vec3 v, Vectors& to) {
+      to[0][lane] = v.x;
+      to[1][lane] = v.y;
+      to[2][lane] = v.z;
+    };
+    put(edge.along, along);
+    put(edge.normal_a, normal_a);
+    put(edge.normal_b, normal_b);
+  }
+
+  /// Whether the normals of edge p of A and the opposite ones of edges of B cross on the sphere of
+  /// directions: only then the two edges span a face of the difference of the hulls (Gregorius, 2013, The
+  /// separating axis test between convex polyhedra). Of each lane negative where they do.
+  void cross_arcs(const PlacedEdge& p, Lanes& result) const {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const auto dot_lane = [i](const Vectors& v, Vec3 w) {
+        return v[0][i] * w.x + v[1][i] * w.y + v[2][i] * w.z;
+      };
+      // normal_a x normal_b points along the edge. With the normals of the edges of B turned:
+      const Real cba = dot_lane(normal_a, p.along);
+      const Real dba = dot_lane(normal_b, p.along);
+      const Real adc = -dot_lane(along, p.normal_a);
+      const Real bdc = -dot_lane(along, p.normal_b);
+      result[i] = std::max(std::max(cba * dba, adc * bdc), -(cba * bdc));
+    }
+  }
 };
 
 /// The edges of `own` that may hold `other` off by more than `least`. Normals of an edge lie between those of
@@ -100,46 +139,62 @@ void find_edges_toward(const Convex& own, const Convex& other, Real least, EdgeL
   const ConvexHull& hull = *own.hull;
   const Vec3 middle = transpose(own.axes) * (middle_of(other) - own.center);
   const Real reach = other.hull->inner_radius + least;
+  if (reach < Real(0)) {
+    for (std::size_t i = 0; i < hull.edges.size(); ++i) edges.add(place_edge(own, i));
+    return;
+  }
+  std::array<bool, ConvexHull::kMaxFaces> is_in_front;
+  for (std::size_t i = 0; i < hull.faces.size(); ++i)
+    is_in_front[i] = dot(hull.faces[i].normal, middle) > hull.faces[i].offset;
   for (std::size_t i = 0; i < hull.edges.size(); ++i) {
     const ConvexHull::Edge& e = hull.edges[i];
+    if (!is_in_front[e.face_a] && !is_in_front[e.face_b]) continue;
     const Vec3 d = middle - hull.vertices[e.vertex_a];
     const Real along = dot(d, e.direction);
-    const bool behind =
-        dot(hull.faces[e.face_a].normal, d) <= Real(0) && dot(hull.faces[e.face_b].normal, d) <= Real(0);
-    const Real squared = behind ? Real(0) : length_squared(d) - along * along;
-    if (reach < Real(0) || squared > reach * reach) edges.add(place_edge(own, i));
+    if (length_squared(d) - along * along > reach * reach) edges.add(place_edge(own, i));
   }
 }
 
-/// Whether the normals of edge p of A and the opposite ones of edge q of B cross on the sphere of directions:
-/// only then the two edges span a face of the difference of the hulls (Gregorius, 2013, The separating axis
-/// test between convex polyhedra).
 bool arcs_cross(const PlacedEdge& p, const PlacedEdge& q) {
-  // normal_a x normal_b points along the edge. With the normals of q turned:
-  const Real cba = dot(q.normal_a, p.along);
-  const Real dba = dot(q.normal_b, p.along);
-  const Real adc = -dot(p.normal_a, q.along);
-  const Real bdc = -dot(p.normal_b, q.along);
-  return cba * dba < Real(0) && adc * bdc < Real(0) && cba * bdc > Real(0);
+  EdgeLanes lanes = {};
+  EdgeLanes::Lanes crossed;
+  lanes.set(0, q);
+  lanes.cross_arcs(p, crossed);
+  return crossed[0] < Real(0);
 }
 
+void offer_edge_pair(const PlacedEdge& p, const PlacedEdge& q, Vec3 middle, HullPair& pair) {
+  const Vec3 across = cross(p.along, q.along);
+  const Real squared = length_squared(across);
+  if (squared < kParallelEdges * length_squared(p.along) * length_squared(q.along)) return;
+  const Vec3 unit = Real(1) / std::sqrt(squared) * across;
+  const Vec3 n = dot(unit, p.start - middle) < Real(0) ? -unit : unit;
+  pair.offer({n, dot(n, q.start - p.start), kAxisOfEdges | p.index << kEdgeBits | q.index},
+             pair.prefer_faces);
+}
+
+/// Of axes that are equally good the first is kept: pairs are offered by edge of A, then of B.
 void offer_edges(HullPair& pair) {
+  constexpr std::size_t kLanes = EdgeLanes::kLanes;
   const Real least = pair.score + pair.prefer_faces - pair.keep;
-  EdgeList edges_a;
-  EdgeList edges_b;
-  find_edges_toward(pair.a, pair.b, least, edges_a);
-  find_edges_toward(pair.b, pair.a, least, edges_b);
+  EdgeList list_a;
+  EdgeList list_b;
+  find_edges_toward(pair.a, pair.b, least, list_a);
+  find_edges_toward(pair.b, pair.a, least, list_b);
+  const std::span<const PlacedEdge> edges_b = list_b.edges();
+  std::array<EdgeLanes, (ConvexHull::kMaxEdges + kLanes - 1) / kLanes> lanes;
+  const std::size_t room = (edges_b.size() + kLanes - 1) / kLanes * kLanes;
+  for (std::size_t i = 0; i < room; ++i)
+    lanes[i / kLanes].set(i % kLanes, edges_b[std::min(i, edges_b.size() - 1)]);
   const Vec3 middle = middle_of(pair.a);
-  for (const PlacedEdge& p : edges_a.edges()) {
-    for (const PlacedEdge& q : edges_b.edges()) {
-      if (!arcs_cross(p, q)) continue;
-      const Vec3 across = cross(p.along, q.along);
-      const Real squared = length_squared(across);
-      if (squared < kParallelEdges * length_squared(p.along) * length_squared(q.along)) continue;
-      const Vec3 unit = Real(1) / std::sqrt(squared) * across;
-      const Vec3 n = dot(unit, p.start - middle) < Real(0) ? -unit : unit;
-      pair.offer({n, dot(n, q.start - p.start), kAxisOfEdges | p.index << kEdgeBits | q.index},
-                 pair.prefer_faces);
+  for (const PlacedEdge& p : list_a.edges()) {
+    for (std::size_t first = 0; first < edges_b.size(); first += kLanes) {
+      EdgeLanes::Lanes crossed;
+      lanes[first / kLanes].cross_arcs(p, crossed);
+      const std::size_t count = std::min(kLanes, edges_b.size() - first);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (crossed[i] < Real(0)) offer_edge_pair(p, edges_b[first + i], middle, pair);
+      }
     }
   }
 }

@@ -26,6 +26,8 @@ struct ConvexHull {
   };
 
   static constexpr int kMaxVertices = 256;
+  static constexpr int kMaxEdges = 3 * kMaxVertices - 6;  ///< Euler's, of triangles alone.
+  static constexpr int kMaxFaces = 2 * kMaxVertices - 4;
   static constexpr double kTolerance = 2e-5;     ///< In units of the extent (the longest side of the bounds).
   static constexpr double kThicknessMin = 1e-4;  ///< In units of the extent.
 
