@@ -151,6 +151,7 @@ class PairSearch {
     ++finder_.pass;
     fall_ = length(t_.desc.gravity) * query_.step * query_.step;
     const Real reach = query_.reach + frame_.speed * query_.step;
+    held_ = was_held();
     near_ = {frame_.box.lower - Vec3{reach, reach, reach}, frame_.box.upper + Vec3{reach, reach, reach}};
     const auto first = static_cast<std::ptrdiff_t>(finder_.contacts.size());
     for_each_element(t_, object_, [&](const Element& e) { look_at(e); });
@@ -158,11 +159,24 @@ class PairSearch {
   }
 
  private:
-  /// Whether points alone hold the body, as it is wide against the cloth's meshes, or near to many.
+  /// Whether an element held the shape in the step before.
+  [[nodiscard]] bool was_held() const {
+    const auto pair_of = [](const InnerContact& row) { return std::pair(row.object, row.collider); };
+    const std::pair pair = {query_.object, collider_};
+    const std::vector<InnerContact>& rows = t_.inner_contacts;
+    auto row = std::lower_bound(rows.begin(), rows.end(), pair,
+                                [&](const InnerContact& r, const auto& p) { return pair_of(r) < p; });
+    while (row != rows.end() && pair_of(*row) == pair && !row->joined) ++row;
+    return row != rows.end() && pair_of(*row) == pair;
+  }
+
+  /// Whether points alone hold the body, as it is wide against the cloth's meshes, or near to many. Elements
+  /// that hold a body do not let go because it comes near to more of them: it would be through the cloth when
+  /// they come back.
   [[nodiscard]] bool is_carried() const {
     if (object_.triangles.count == 0 || !is_dynamic(t_.bodies, body_)) return false;
     const bool is_wide = t_.bodies.traits[body_].radius > longest_edge_;
-    return (is_wide && near_points_ >= kCarryingPoints) || near_elements_ > kMostNear;
+    return (is_wide && near_points_ >= kCarryingPoints) || (!held_ && near_elements_ > kMostNear);
   }
 
   void look_at(Element e) {
@@ -316,6 +330,7 @@ class PairSearch {
   InnerContactFinder& finder_;
   Real fall_ = Real(0);
   geometry::Box near_ = {};  ///< Elements outside stay away from the shape.
+  bool held_ = false;        ///< By an element, in the step before.
   int near_elements_ = 0;    ///< Of those that have rows.
   int near_points_ = 0;      ///< That touch now or at the end of the step, or nearly.
 };
@@ -392,8 +407,8 @@ class RowUpdate {
     const bool known = before != Vec3{};
     if (find(Real(0))) {
       advance();
-      if (!known && pushes_body() && row_.separation < -kLeastApart * radius_) forget();
-    } else if (overlap_ && (known || !pushes_body())) {
+      if (!known && body_is_dynamic() && row_.separation < -kLeastApart * radius_) forget();
+    } else if (overlap_ && (known || !body_is_dynamic())) {
       find_deepest(known);
     } else {
       leave(row_);
@@ -537,6 +552,8 @@ class RowUpdate {
     row_.separation = separation_along(element_at(Real(0)), shape_, -row_.normal) - thickness();
   }
 
+  /// Asleep too: as it lies so it stays, and what it overlaps does not throw it.
+  [[nodiscard]] bool body_is_dynamic() const { return is_dynamic(t_.bodies, row_.body); }
   [[nodiscard]] bool pushes_body() const { return state::gives_way(t_.bodies, row_.body); }
 
   [[nodiscard]] bool gives_way() const {

@@ -61,7 +61,7 @@ struct InnerContactQuery {
 ///
 /// A body that forces move, that is wider than a cloth's meshes and that touches three of its points or more,
 /// or will within the step, is carried by these and has no such rows; nor has one that is near to more than
-/// twelve such elements.
+/// twelve such elements, unless one of them held it in the step before.
 void find_inner_contacts(const state::Tables& tables, const InnerContactQuery& query,
                          InnerContactFinder& finder);
 

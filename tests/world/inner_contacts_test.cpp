@@ -289,33 +289,41 @@ TEST_SUITE("world/inner_contacts") {
     }
   }
 
-  TEST_CASE("bodies as narrow as the meshes lie on a cloth, though three of its points touch them") {
-    const int n = 13;
-    World world = make_world();
-    ClothDesc cloth = sheet(n, 1.2, 1);
-    cloth.total_mass = Real(0.4);
-    cloth.stretch_stiffness = 2000;
-    cloth.shear_stiffness = 500;
-    cloth.tethers = true;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      for (const std::uint32_t point : {k, n * k, n * (n - 1) + k, n * k + n - 1})
-        cloth.pins.push_back({.point = point});
-    }
-    take(world.add_cloth(cloth));
-    std::vector<BodyId> bodies;
-    const Real size = Real(0.06);
-    const std::array<Shape, 3> shapes = {Shape::sphere(size), Shape::box({size, size, size}),
-                                         Shape::capsule(Real(0.8) * size, size)};
-    for (int k = 0; k < 9; ++k) {
-      bodies.push_back(take(world.add_body({.kind = BodyKind::kDynamic,
-                                            .shape = shapes[static_cast<std::size_t>(k % 3)],
-                                            .position = {0.19 * (k % 3 - 1), 1.15, 0.21 * (k / 3 - 1)},
-                                            .mass = Real(0.3)})));
-    }
-    run(world, 300);
-    for (const BodyId body : bodies) {
-      CHECK(world.center_of_mass(body).y > 0.7);
-      CHECK(length(world.velocity(body)) < 0.5);
+  TEST_CASE("bodies as narrow as the meshes come to rest on a cloth, asleep or not") {
+    // Of such heaps half threw a body up as it fell asleep, and one in ten let one through.
+    for (const double lift : {0.0, 1e-4, 2e-4, 5e-4}) {
+      CAPTURE(lift);
+      const int n = 13;
+      World world = make_world();
+      ClothDesc cloth = sheet(n, 1.2, 1);
+      cloth.total_mass = Real(0.4);
+      cloth.stretch_stiffness = 2000;
+      cloth.shear_stiffness = 500;
+      cloth.tethers = true;
+      for (std::uint32_t k = 0; k < n; ++k) {
+        for (const std::uint32_t point : {k, n * k, n * (n - 1) + k, n * k + n - 1})
+          cloth.pins.push_back({.point = point});
+      }
+      take(world.add_cloth(cloth));
+      std::vector<BodyId> bodies;
+      const Real size = Real(0.06);
+      const std::array<Shape, 3> shapes = {Shape::sphere(size), Shape::box({size, size, size}),
+                                           Shape::capsule(Real(0.8) * size, size)};
+      for (int k = 0; k < 9; ++k) {
+        bodies.push_back(
+            take(world.add_body({.kind = BodyKind::kDynamic,
+                                 .shape = shapes[static_cast<std::size_t>(k % 3)],
+                                 .position = {0.19 * (k % 3 - 1), 1.15 + lift, 0.21 * (k / 3 - 1)},
+                                 .mass = Real(0.3)})));
+      }
+      run(world, 200);
+      for (int i = 0; i < 250; ++i) {
+        run(world, 1);
+        for (const BodyId body : bodies) {
+          CHECK(world.center_of_mass(body).y > 0.9);
+          CHECK(length(world.velocity(body)) < 0.5);
+        }
+      }
     }
   }
 
