@@ -11,6 +11,7 @@ namespace hooke::collision {
 namespace {
 
 constexpr int kMaxIterations = 64;
+constexpr double kRounding = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 Vec3 support_of_capsule(const Convex& c, Vec3 d) {
   const Real h = c.shape.half_height;
@@ -132,25 +133,13 @@ bool reduce(Simplex& s, bool is_outside) {
   return true;
 }
 
-/// The places of two shapes that lie farthest along a direction.
-struct AnySupports {
-  static Vec3 of_a(const Convex& a, Vec3 d) { return support_of(a, d); }
-  static Vec3 of_b(const Convex& b, Vec3 d) { return support_of(b, d); }
-};
-
-/// The same for what people on terrain ask most.
-struct TriangleAndCapsule {
-  static Vec3 of_a(const Convex& a, Vec3 d) { return support_of_triangle(a, d); }
-  static Vec3 of_b(const Convex& b, Vec3 d) { return support_of_capsule(b, d); }
-};
-
-template <class Supports>
+/// Of places that lie farthest along a direction.
 Corner corner_along(const Convex& a, const Convex& b, DVec3 direction) {
   // The direction shrinks with the distance: its length must not underflow in Real.
   const Vec3 d = vector_cast<Real>(geometry::direction_or(direction, DVec3{0, 1, 0}));
   Corner corner;
-  corner.on_a = vector_cast<double>(Supports::of_a(a, d));
-  corner.on_b = vector_cast<double>(Supports::of_b(b, -d));
+  corner.on_a = vector_cast<double>(support_of(a, d));
+  corner.on_b = vector_cast<double>(support_of(b, -d));
   corner.w = corner.on_a - corner.on_b;
   return corner;
 }
@@ -168,40 +157,105 @@ Vec3 first_direction(const Convex& a, const Convex& b) {
   return middle - geometry::closest_on_triangle(middle, p, q, r).point;
 }
 
+/// Of the nearest places of the cores, which are apart.
+Distance between_places(const Convex& a, const Convex& b, DVec3 on_a, DVec3 on_b) {
+  Distance result;
+  result.normal = vector_cast<Real>(geometry::direction_or(on_b - on_a, DVec3{}));
+  result.distance = static_cast<Real>(length(on_b - on_a)) - skin_of(a) - skin_of(b);
+  result.point_a = vector_cast<Real>(on_a) + skin_of(a) * result.normal;
+  result.point_b = vector_cast<Real>(on_b) - skin_of(b) * result.normal;
+  return result;
+}
+
 /// By the supports of the two; see distance_between.
-template <class Supports>
-Distance distance_by(const Convex& a, const Convex& b, Real enough) {
+Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
   const Real skins = skin_of(a) + skin_of(b);
   const auto far = static_cast<double>(enough + skins);
-  const double rounding = 4 * double(std::numeric_limits<Real>::epsilon());
   Simplex s;
-  s.corner[0] = corner_along<Supports>(a, b, vector_cast<double>(first_direction(a, b)));
+  s.corner[0] = corner_along(a, b, vector_cast<double>(first_direction(a, b)));
   s.weight[0] = 1;
   s.count = 1;
   Corner nearest = s.corner[0];
   double scale = 0;
   for (int i = 0; i < kMaxIterations; ++i) {
     const DVec3 v = nearest.w;
-    const Corner next = corner_along<Supports>(a, b, -v);
+    const Corner next = corner_along(a, b, -v);
     scale = std::max({scale, length(next.on_a), length(next.on_b)});
     const double size = length(v);
-    if (!(size > rounding * scale)) return {.distance = -skins, .cores_overlap = true};
+    if (!(size > kRounding * scale)) return {.distance = -skins, .cores_overlap = true};
     // The distance is at least v.w / |v| and at most |v|: stop when these have met.
     const double along = dot(v, next.w);
     if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
-    if (size * size - along <= size * rounding * scale || holds(s, next.w)) break;
+    if (size * size - along <= size * kRounding * scale || holds(s, next.w)) break;
     s.corner[s.count++] = next;
     if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
     const Corner nearer = s.nearest();
     if (length_squared(nearer.w) >= size * size) break;
     nearest = nearer;
   }
-  Distance result;
-  result.normal = vector_cast<Real>(geometry::direction_or(-nearest.w, DVec3{}));
-  result.distance = static_cast<Real>(length(nearest.w)) - skins;
-  result.point_a = vector_cast<Real>(nearest.on_a) + skin_of(a) * result.normal;
-  result.point_b = vector_cast<Real>(nearest.on_b) - skin_of(b) * result.normal;
-  return result;
+  return between_places(a, b, nearest.on_a, nearest.on_b);
+}
+
+/// The pair of places that are nearest of those offered.
+struct NearestPlaces {
+  DVec3 on_a = {};
+  DVec3 on_b = {};
+  double squared = std::numeric_limits<double>::infinity();
+
+  void offer(DVec3 place_a, DVec3 place_b) {
+    const double size = length_squared(place_b - place_a);
+    if (!(size < squared)) return;
+    on_a = place_a;
+    on_b = place_b;
+    squared = size;
+  }
+};
+
+/// Where the lines of two segments are nearest, if that is inside both.
+void offer_inside(const geometry::Segment<double>& a, const geometry::Segment<double>& b,
+                  NearestPlaces& nearest) {
+  const DVec3 along_a = a.end - a.start;
+  const DVec3 along_b = b.end - b.start;
+  const DVec3 normal = cross(along_a, along_b);
+  const double whole = length_squared(normal);
+  const double part_a = dot(cross(along_b, a.start - b.start), normal);
+  const double part_b = dot(cross(along_a, a.start - b.start), normal);
+  if (!(part_a > 0 && part_a < whole && part_b > 0 && part_b < whole)) return;
+  nearest.offer(a.start + (part_a / whole) * along_a, b.start + (part_b / whole) * along_b);
+}
+
+/// Whether the segment goes through the triangle.
+bool passes_through(const geometry::Segment<double>& s, const std::array<DVec3, 3>& corners) {
+  const auto& [p, q, r] = corners;
+  const DVec3 normal = cross(q - p, r - p);
+  const double start = dot(normal, s.start - p);
+  const double end = dot(normal, s.end - p);
+  if (!(start * end < 0)) return false;
+  const DVec3 at = s.start + (start / (start - end)) * (s.end - s.start);
+  const auto is_inside = [&](DVec3 from, DVec3 to) { return dot(cross(to - from, at - from), normal) >= 0; };
+  return is_inside(p, q) && is_inside(q, r) && is_inside(r, p);
+}
+
+/// What people on terrain ask most, from all places that can be nearest: a third of the time.
+Distance between_triangle_and_capsule(const Convex& a, const Convex& b) {
+  const DVec3 half = vector_cast<double>(b.shape.half_height * b.axes.y);
+  const DVec3 center = vector_cast<double>(b.center);
+  const geometry::Segment<double> axis = {center - half, center + half};
+  std::array<DVec3, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = vector_cast<double>(a.corners[i]);
+  const auto& [p, q, r] = corners;
+  NearestPlaces nearest;
+  for (const DVec3 end : {axis.start, axis.end})
+    nearest.offer(geometry::closest_on_triangle(end, p, q, r).point, end);
+  for (const DVec3 corner : corners)
+    nearest.offer(corner, geometry::closest_on_segment(corner, axis.start, axis.end).point);
+  offer_inside({p, q}, axis, nearest);
+  offer_inside({q, r}, axis, nearest);
+  offer_inside({r, p}, axis, nearest);
+  const double touching = kRounding * std::max(length(nearest.on_a), length(nearest.on_b));
+  if (!(nearest.squared > touching * touching) || passes_through(axis, corners))
+    return {.distance = -skin_of(b), .cores_overlap = true};
+  return between_places(a, b, nearest.on_a, nearest.on_b);
 }
 
 }  // namespace
@@ -274,8 +328,8 @@ Real separation_along(const Convex& a, const Convex& b, Vec3 n) {
 
 Distance distance_between(const Convex& a, const Convex& b, Real enough) {
   if (a.shape.kind == ShapeKind::kMesh && b.shape.kind == ShapeKind::kCapsule)
-    return distance_by<TriangleAndCapsule>(a, b, enough);
-  return distance_by<AnySupports>(a, b, enough);
+    return between_triangle_and_capsule(a, b);
+  return distance_by_supports(a, b, enough);
 }
 
 }  // namespace hooke::collision

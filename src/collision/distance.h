@@ -53,7 +53,8 @@ struct Distance {
 };
 
 /// Distance by the method of Gilbert, Johnson and Keerthi (1988), with supports in Real and the simplex in
-/// double. Bounded number of iterations; good to about 1e-6 of the shapes' size.
+/// double. Bounded number of iterations; good to about 1e-6 of the shapes' size. Of a triangle (a) and a
+/// capsule (b) directly, whatever `enough` is.
 ///
 /// Shapes farther apart than `enough` [m] are not looked at closer: then the distance is a lower bound above
 /// `enough`, without points and normal.
