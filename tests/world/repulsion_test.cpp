@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace hooke {
@@ -161,14 +162,37 @@ TEST_CASE("repulsion: one rope pushes itself where it comes back") {
   CHECK(world.positions(rope)[0].y - world.positions(rope)[41].y > 0.2);
 }
 
-TEST_CASE("repulsion: a tuft is thicker with it") {
-  const auto thickness = [](double strength) {
+TEST_CASE("repulsion: strands that hang together stay apart with it") {
+  const auto least_between_tips = [](double strength) {
+    constexpr int kStrands = 8;
     World world = make_world(without_air());
-    add_tuft(world, strength);
-    run(world, 120);
-    return world.measure();
+    std::vector<DVec3> tips;
+    std::vector<RopeId> strands;
+    for (int i = 0; i < kStrands; ++i) {  // from a ring, all to one place below its middle
+      const double angle = 2 * std::numbers::pi * i / kStrands;
+      std::vector<DVec3> points;
+      for (int k = 0; k < 12; ++k) {
+        const double r = 0.03 - 0.0026 * k;
+        points.push_back({r * std::cos(angle), -0.02 * k, r * std::sin(angle)});
+      }
+      RopeDesc desc = repelling(points, 0.001);
+      desc.repulsion_range = Real(0.025);
+      desc.repulsion_strength = static_cast<Real>(strength);
+      desc.bend_stiffness = Real(1e-4);
+      desc.bend_damping = Real(0.1);
+      desc.pins = {{.point = 0}, {.point = 1}};
+      strands.push_back(take(world.add_rope(desc)));
+    }
+    run(world, 240);
+    for (const RopeId strand : strands) tips.push_back(world.positions(strand)[11]);
+    double least = 1;
+    for (int a = 0; a < kStrands; ++a) {
+      for (int b = 0; b < a; ++b) least = std::min(least, length(tips[a] - tips[b]));
+    }
+    return least;
   };
-  CHECK(thickness(2e-8).energy.potential > thickness(0).energy.potential);
+  CHECK(least_between_tips(0) < 0.008);
+  CHECK(least_between_tips(1e-6) > 0.02);
 }
 
 TEST_CASE("repulsion: the same bits for any number of workers, and after a restore") {
