@@ -39,6 +39,7 @@ void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bod
   block.line_b[lane] = 16 * b;
   block.w_a[lane] = bodies.motion[a].inverse_mass;
   block.w_b[lane] = block.anchored ? Real(0) : bodies.motion[b].inverse_mass;
+  block.restitution[lane] = m.restitution;
 }
 
 /// S^2, the inverse of the inertia.

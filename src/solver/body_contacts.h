@@ -32,7 +32,7 @@
 ///
 ///   separation   s = s_0 + n.(dx_b - dx_a) + j_b.theta_b - j_a.theta_a     linear within a step
 ///   apart        s > 0:   lambda' = max(0, lambda - m (v + s/h))           reach the surface, and no farther
-///                relax:   lambda' = 0 in blocks that bounce: hits.h wants the speed of what comes
+///                relax:   lambda' = 0 of what bounces: hits.h wants the speed of what comes
 ///   overlapping  bias:    lambda' = max(0, lambda - m (mu v + max(mu beta s, -3 m/s)) - gamma lambda)
 ///                relax:   lambda' = max(0, lambda - m v)                   takes out what the bias put in
 ///
@@ -82,6 +82,7 @@ struct alignas(64) ContactBlock {
   Lane twist_j_a[3], twist_j_b[3];
   Lane twist_mass, twist_impulse;
   Lane twist_lever[state::Manifold::kMaxPoints];  ///< Largest twist impulse per impulse of the point [m].
+  Lane restitution;  ///< Read only where the block `bounces`.
   Lane pushed;  ///< Largest sum of the points' impulses after a pass with friction [N s].
 
   int count = 0;          ///< Lanes with a manifold of their own.

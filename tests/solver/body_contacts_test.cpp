@@ -140,6 +140,23 @@ TEST_SUITE("solver/body_contacts") {
     CHECK(scene.velocity(1).x == doctest::Approx(1.0).epsilon(1e-4));
   }
 
+  TEST_CASE("what does not bounce is stopped at the surface beside what bounces, too") {
+    // What reaches the surface is a rounding above or below it: from one of many heights it is above.
+    for (int k = 0; k < 50; ++k) {
+      BodyScene scene;
+      const Real radius = Real(0.1);
+      const std::uint32_t ball = add_sphere(scene, radius, 0.05 + 0.0007 * k, {});
+      add_sphere(scene, radius, 0.015, {.restitution = Real(0.8)});
+      scene.bodies.motion[ball].v = {Real(0), Real(-2), Real(0)};
+      for (int i = 0; i < 30; ++i) {
+        scene.step();
+        const double gap = scene.bodies.center[ball].y - static_cast<double>(radius);
+        const double way = -static_cast<double>(scene.velocity(ball).y * scene.settings.h);
+        CHECK(way <= std::max(gap, 0.0) + 1e-5);
+      }
+    }
+  }
+
   TEST_CASE("two free bodies that touch and push each other keep momentum and angular momentum") {
     BodyScene scene;
     scene.settings.gravity = {};

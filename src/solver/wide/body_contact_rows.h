@@ -26,8 +26,12 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
   const Number w_b = get<Number>(block.w_b + lane);
   const Number w = kAnchored ? w_a : w_a + w_b;
   const Triple<Number> n = get3<Number>(block.normal, lane);
-  constexpr Real kNeverReached = Real(1e12);
-  const Number inverse_h(pass.foresees || !block.bounces ? pass.inverse_h : kNeverReached);
+  Number inverse_h(pass.inverse_h);
+  if (!pass.foresees && block.bounces) {
+    constexpr Real kNeverReached = Real(1e12);
+    const auto bounces = above(get<Number>(block.restitution + lane), zero);
+    inverse_h = choose(bounces, Number(kNeverReached), inverse_h);
+  }
   const Number approach = dot(n, difference(moved_b.dx, moved_a.dx));
   Number rate = dot(n, difference(bodies.b.v, bodies.a.v));
   Number total(Real(0));

@@ -25,11 +25,11 @@ struct alignas(64) ContactSource {
 struct ContactPass {
   ContactSoftness softness;
   Real inverse_h = Real(0);  ///< Points that are apart reach the surface within h, and no farther.
-  bool foresees = true;      ///< False: but in blocks that bounce nothing is done about gaps.
+  bool foresees = true;      ///< False: but where lanes bounce nothing is done about gaps.
   bool friction = false;
 };
 
-/// The rows of a block of which only line numbers, w, number of points and `anchored` stand.
+/// The rows of a block of which only line numbers, w, restitution, number of points and `anchored` stand.
 void compute_contact_rows(const ContactSource& source, ContactBlock& block);
 
 /// One pass over blocks of one color.
