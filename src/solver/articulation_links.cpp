@@ -66,7 +66,8 @@ void make_rows(double h, std::vector<Hook>& hooks, Articulation& art) {
     const int count = make_joint_rows(hook, art.links[joint.a].body, art.links[joint.b].body, h, rows);
     HOOKE_ASSERT(count == joint.count);
     for (int k = 0; k < count; ++k) {
-      const JointRow& row = rows[k];
+      JointRow& row = rows[k];
+      row.start = row.c;
       art.rows[joint.first + k] = row;
       art.bound[joint.first + k] = first_bound(row, static_cast<double>(hook.row_impulse[k]));
     }
@@ -108,18 +109,13 @@ double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
       if (limited) continue;
       const double v = dot(row.n, b.v - a.v) + dot(row.j_b, b.omega_scaled) - dot(row.j_a, a.omega_scaled);
       row.target += row.rate * h * v;
+      row.start = art.rows[joint.first + k].start;
       art.rows[joint.first + k] = row;
       if (row.role == RowRole::kLock)
         worst = std::max(worst, std::abs(row.c) / (row.axis == DVec3{} ? size : 1));
     }
   }
   return worst;
-}
-
-bool turns_fast(const Articulation& art, double h) {
-  return std::any_of(art.links.begin(), art.links.end(), [&](const Link& link) {
-    return link.body.inverse_mass > 0 && h * length(link.body.scale * link.omega_scaled) > kFastTurn;
-  });
 }
 
 /// Writes the stiffness of all links under the impulses of their hooks, where it grows; true if it grew so
@@ -173,8 +169,14 @@ void begin_articulation(double h, JointTables tables, Articulation& art) {
 bool begin_next_solution(double h, JointTables tables, Articulation& art) {
   store_impulses(art, tables.hooks);
   const bool grew = stiffen(h, tables.hooks, art);
-  const bool bent = turns_fast(art, h) && make_rows_ahead(h, tables.hooks, art) > kLargeError;
+  const bool bent = turns_farther(kFastTurn, h, art) && make_rows_ahead(h, tables.hooks, art) > kLargeError;
   return grew || bent;
+}
+
+bool turns_farther(double angle, double h, const Articulation& art) {
+  return std::any_of(art.links.begin(), art.links.end(), [&](const Link& link) {
+    return link.body.inverse_mass > 0 && h * length(link.body.scale * link.omega_scaled) > angle;
+  });
 }
 
 /// The parts of a body differ by rounding: their mean has all of its momentum.

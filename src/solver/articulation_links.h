@@ -17,6 +17,9 @@ void begin_articulation(double h, JointTables tables, Articulation& art);
 /// Notes the impulses of a solution. True, and with new rows or a new stiffness, if the next is needed.
 [[nodiscard]] bool begin_next_solution(double h, JointTables tables, Articulation& art);
 
+/// Whether a body turns by more than `angle` [rad] in the substep.
+[[nodiscard]] bool turns_farther(double angle, double h, const Articulation& art);
+
 void store_velocities(const Articulation& art, state::Bodies& bodies);
 
 /// Velocities without the joints.

@@ -1,4 +1,5 @@
 #include "solver/articulation_links.h"
+#include "solver/joint_energy.h"
 
 #include <span>
 
@@ -154,6 +155,36 @@ void solve_with_bounds(Articulation& art) {
   clamp_impulses(art);
 }
 
+/// How fast the value of a row changes, by what `v` and `omega` say of its links.
+template <class V, class Omega>
+double rate_of(const JointRow& row, const Link& a, const Link& b, V&& v, Omega&& omega) {
+  return dot(row.n, v(b) - v(a)) + dot(row.j_b, omega(b)) - dot(row.j_a, omega(a));
+}
+
+JointWork work_of(double h, const Articulation& art, const Articulation::Joint& joint) {
+  const Link& a = art.links[joint.a];
+  const Link& b = art.links[joint.b];
+  const auto moves = [](const Link& link) { return link.body.inverse_mass > 0; };
+  const auto v = [](const Link& link) { return link.v; };
+  const auto omega = [](const Link& link) { return link.omega_scaled; };
+  const auto mean_v = [&](const Link& link) { return 0.5 * (link.body.v + link.v); };
+  const auto mean_omega = [&](const Link& link) {
+    return 0.5 * (link.body.omega_scaled + link.omega_scaled);
+  };
+  const auto told_v = [&](const Link& link) { return moves(link) ? DVec3{} : link.v; };
+  const auto told_omega = [&](const Link& link) { return moves(link) ? DVec3{} : link.omega_scaled; };
+  JointWork sum;
+  for (int i = joint.first; i < joint.first + joint.count; ++i) {
+    const JointRow& row = art.rows[i];
+    if (row.role == RowRole::kSpring && row.rate > 0)
+      sum.add_spring(row.rate / (h * row.gamma), row.start,
+                     h * rate_of(row, a, b, v, omega) - row.target / row.rate);
+    if (row.role == RowRole::kMotor) sum.work += art.lambda[i] * rate_of(row, a, b, mean_v, mean_omega);
+    sum.work -= art.lambda[i] * rate_of(row, a, b, told_v, told_omega);
+  }
+  return sum;
+}
+
 }  // namespace
 
 void solve_loops(double h, Articulation& art, JointTables tables) {
@@ -162,7 +193,11 @@ void solve_loops(double h, Articulation& art, JointTables tables) {
     solve_with_bounds(art);
     if (!begin_next_solution(h, tables, art)) break;
   }
+  const bool far = turns_farther(kFarTurn, h, art);
+  const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
   store_velocities(art, tables.bodies);
+  if (!far) return forget_energy(art, tables.hooks);
+  settle_energy(before, art, tables, [&](std::size_t i) { return work_of(h, art, art.joints[i]); });
 }
 
 }  // namespace hooke::solver

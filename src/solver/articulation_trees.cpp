@@ -3,6 +3,7 @@
 /// first.
 
 #include "solver/articulations.h"
+#include "solver/joint_energy.h"
 #include "solver/joint_rows.h"
 #include "solver/lanes.h"
 #include "solver/wide/trees.h"
@@ -260,6 +261,8 @@ class Group {
   }
 
   void store(const Articulation& art, const wide::TreeLanes<Kind>& from, int lane, JointTables tables) const {
+    const bool far = !Kind::kLoose && h_ * std::sqrt(from.fast[lane]) > kFarTurn;
+    const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
       Hook& hook = tables.hooks[art.joints[i].hook];
       const wide::TreeJoint& joint = form_->joints[i];
@@ -285,6 +288,56 @@ class Group {
       set_joint_velocity(vector_cast<double>(get(link.v_now, lane)), vector_cast<double>(of_step),
                          vector_cast<double>(change), art.bodies[i], tables.bodies);
     }
+    if (!far) return forget_energy(art, tables.hooks);
+    if constexpr (!Kind::kLoose) {
+      settle_energy(before, art, tables, [&](std::size_t i) { return work_of(from, i, lane); });
+    }
+  }
+
+  JointWork work_of(const wide::TreeLanes<Kind>& from, std::size_t i, int lane) const {
+    const wide::TreeJoint& joint = form_->joints[i];
+    const LinkLanes& child = from.links[i];
+    const LinkLanes& parent = from.links[static_cast<std::size_t>(joint.parent)];
+    const auto is_told = [&](const LinkLanes& link) {
+      return !(link.mass[lane] > 0) &&
+             !(get(link.v, lane) == DVec3{} && get(link.omega_before, lane) == DVec3{});
+    };
+    const bool told = is_told(child) || is_told(parent);
+    JointWork sum;
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const wide::TreeRowForm& form = form_->rows[r];
+      const RowLanes& row = from.rows[r];
+      const auto rate_of = [&](auto&& v, auto&& omega) {
+        const double turning =
+            dot(get(row.child, lane), omega(child)) + dot(get(row.parent, lane), omega(parent));
+        return form.turns() ? turning : turning + dot(get(row.n, lane), v(child) - v(parent));
+      };
+      if (form.role == RowRole::kSpring || form.sprung) {
+        const double k = row.stiffness[lane];
+        const double target = form.sprung ? row.spring_target[lane] : row.target[lane];
+        const double rate = rate_of([&](const LinkLanes& link) { return get(link.v_now, lane); },
+                                    [&](const LinkLanes& link) { return get(link.omega_now, lane); });
+        if (k > 0) sum.add_spring(k, row.start[lane], h_ * rate - target * (row.damping[lane] + h_ * k) / k);
+      }
+      if (form.role == RowRole::kMotor) {
+        const double rate =
+            rate_of([&](const LinkLanes& link) { return 0.5 * (get(link.v, lane) + get(link.v_now, lane)); },
+                    [&](const LinkLanes& link) {
+                      return 0.5 * (get(link.omega_before, lane) + get(link.omega_now, lane));
+                    });
+        sum.work += row.lambda[lane] * rate;
+      }
+      if (told) {
+        const double lambda = row.lambda[lane] + (form.sprung ? row.spring_lambda[lane] : 0);
+        sum.work -=
+            lambda *
+            rate_of([&](const LinkLanes& link) { return link.mass[lane] > 0 ? DVec3{} : get(link.v, lane); },
+                    [&](const LinkLanes& link) {
+                      return link.mass[lane] > 0 ? DVec3{} : get(link.omega_before, lane);
+                    });
+      }
+    }
+    return sum;
   }
 
   double h_ = 0;

@@ -204,6 +204,21 @@ void accelerate_body(std::uint32_t i, const BodyStep& step, Vec3 omega, Bodies& 
   m.omega_scaled = free.omega_scaled + turn_by_contacts;
 }
 
+/// L, with what contacts have yet to add to it, becomes smaller where it has more energy than it had when the
+/// body stood in `before`.
+void keep_turning_energy(std::uint32_t row, Quat before, Bodies& bodies) {
+  const Vec3 pending =
+      momentum_of(bodies.scale[row], bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled);
+  const Vec3 momentum = bodies.angular_momentum[row] + pending;
+  const Vec3 inverse = inverse_inertia(bodies.mass[row]);
+  const auto energy = [&](Quat q) {
+    return dot(momentum, in_axes(q * bodies.mass[row].principal, inverse, momentum));
+  };
+  const Real had = energy(before);
+  const Real has = energy(bodies.rotation[row]);
+  if (has > had) bodies.angular_momentum[row] = std::sqrt(had / has) * momentum - pending;
+}
+
 /// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
 bool outgrows_rows(const math::Symmetric3<Real>& scale, const math::Symmetric3<Real>& now) {
   constexpr Real kMost = Real(3.5);  // 1 + r + 1/r for r = 2
@@ -350,13 +365,17 @@ Real inverse_mass_at(const Bodies& bodies, std::uint32_t row, Vec3 direction, Ve
 }
 
 void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
+  constexpr Real kFarTurn = Real(0.5);  // [rad]
   for (const std::uint32_t i : rows) {
     MotionLine& m = bodies.motion[i];
     m.dx += h * m.v;
     m.theta_scaled += h * m.omega_scaled;
     if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
-    bodies.rotation[i] = normalize(math::quaternion_of(turn) * bodies.rotation[i]);
+    const Quat before = bodies.rotation[i];
+    bodies.rotation[i] = normalize(math::quaternion_of(turn) * before);
+    // Far from where it would have turned freely, L stands for any energy.
+    if (length_squared(turn) > kFarTurn * kFarTurn) keep_turning_energy(i, before, bodies);
   }
 }
 
@@ -383,17 +402,9 @@ void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> sta
 }
 
 void turn_back(std::uint32_t row, Quat rotation, Bodies& bodies) {
-  const Vec3 pending =
-      momentum_of(bodies.scale[row], bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled);
-  const Vec3 momentum = bodies.angular_momentum[row] + pending;
-  const Vec3 inverse = inverse_inertia(bodies.mass[row]);
-  const auto energy = [&](Quat q) {
-    return dot(momentum, in_axes(q * bodies.mass[row].principal, inverse, momentum));
-  };
-  const Real end = energy(bodies.rotation[row]);
-  const Real stopped = energy(rotation);
+  const Quat turned = bodies.rotation[row];
   bodies.rotation[row] = rotation;
-  if (stopped > end) bodies.angular_momentum[row] = std::sqrt(end / stopped) * momentum - pending;
+  keep_turning_energy(row, turned, bodies);
 }
 
 void finish_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {

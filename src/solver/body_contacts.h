@@ -82,7 +82,7 @@ struct alignas(64) ContactBlock {
   Lane twist_j_a[3], twist_j_b[3];
   Lane twist_mass, twist_impulse;
   Lane twist_lever[state::Manifold::kMaxPoints];  ///< Largest twist impulse per impulse of the point [m].
-  Lane restitution;  ///< Read only where the block `bounces`.
+  Lane restitution;                               ///< Read only where the block `bounces`.
   Lane pushed;  ///< Largest sum of the points' impulses after a pass with friction [N s].
 
   int count = 0;          ///< Lanes with a manifold of their own.

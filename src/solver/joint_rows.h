@@ -59,8 +59,9 @@ struct JointRow {
   DVec3 axis = {};  ///< Of an angle; zero for ways.
   DVec3 j_a = {};   ///< S_a (r_a x n), or S_a axis.
   DVec3 j_b = {};
-  double c = 0;     ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
-  double rate = 0;  ///< b: share of c that the target takes back, per time [1/s].
+  double c = 0;      ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
+  double start = 0;  ///< c at the start of the substep.
+  double rate = 0;   ///< b: share of c that the target takes back, per time [1/s].
   double target = 0;
   double gamma = 0;
   double low = 0;

@@ -1,5 +1,6 @@
 #include "solver/joints.h"
 
+#include "solver/joint_energy.h"
 #include "solver/loose_trees.h"
 
 #include <algorithm>
@@ -76,7 +77,11 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
   };
   for (const std::uint32_t i : order) {
     Articulation& art = articulations[i];
-    if (!any_awake(art, tables.bodies) || is_bundled(art, tables.hooks)) continue;
+    if (!any_awake(art, tables.bodies)) continue;
+    if (is_bundled(art, tables.hooks)) {
+      forget_energy(art, tables.hooks);  // others solve it for now
+      continue;
+    }
     if (art.has_loops()) {
       solve_loops(h, art, tables);
       continue;

@@ -52,6 +52,9 @@ struct Hook {
   Vec3 torque = {};  ///< [N m]
   Real last_angular_impulse = Real(0);
   Real break_torque = kRigid;
+  // Of solver/joint_energy.h, while something turns far.
+  double energy_debt = 0;     ///< Its part of what joints have added to the energy of bodies [J].
+  double spring_energy = -1;  ///< What its springs should hold after the last substep [J]; -1: not known.
   /// Ways along a's x, y, z, then angles. kDistance uses the first, along the line between the anchors; kBall
   /// has its twist limits in the fourth and one spring and motor for each axis.
   std::array<HookFreedom, 6> freedom = {};

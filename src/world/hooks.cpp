@@ -112,6 +112,8 @@ void hash_hooks(const state::Tables& t, base::StateHash& hash) {
     hash.add(hook.b.body);
     hash.add(hook.a.particle[0]);  // where it slides
     for (const Real impulse : hook.row_impulse) hash.add(impulse);
+    hash.add(hook.energy_debt);
+    hash.add(hook.spring_energy);
     for (const double value : hook.value) hash.add(value);
   }
 }

@@ -44,6 +44,8 @@ class TreeRows {
         Row& row = trees_.rows[r];
         const RowNow now = make_row(form, f, a, b, fastest, row);
         write_row(form, shape.child_is_b, now, row);
+        if (form.role == RowRole::kSpring || form.sprung)
+          put(f.value[form.freedom] - at(row.goal), row.start);
         first_bound(form, now, row);
         if (Kind::kLoose && form.role == RowRole::kMotor)
           loosen(form,

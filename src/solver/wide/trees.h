@@ -136,6 +136,7 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeRowLanes {
   // If it is a motor or a spring.
   Lane speed[kCount];                                ///< Setting of motors.
   Lane stiffness[kCount], damping[kCount];           ///< Settings of springs.
+  Lane start[kCount];                                ///< Of springs: value minus goal, as it stands.
   Lane spring_gamma[kCount], spring_target[kCount];  ///< Of the spring beside a motor.
   Lane held_spring[kCount];                          ///< The spring's impulse while the motor holds.
 
