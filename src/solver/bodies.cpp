@@ -219,6 +219,9 @@ void keep_turning_energy(std::uint32_t row, Quat before, Bodies& bodies) {
   if (has > had) bodies.angular_momentum[row] = std::sqrt(had / has) * momentum - pending;
 }
 
+/// From which on its inertia may be another [rad].
+constexpr Real kLeastTurn = Real(0.02);
+
 /// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
 bool outgrows_rows(const math::Symmetric3<Real>& scale, const math::Symmetric3<Real>& now) {
   constexpr Real kMost = Real(3.5);  // 1 + r + 1/r for r = 2
@@ -228,6 +231,18 @@ bool outgrows_rows(const math::Symmetric3<Real>& scale, const math::Symmetric3<R
        {Vec3{Real(1), Real(0), Real(0)}, Vec3{Real(0), Real(1), Real(0)}, Vec3{Real(0), Real(0), Real(1)}})
     trace += length_squared(now * (inverse * axis));
   return !(trace <= kMost);
+}
+
+/// S of the mean inertia of a body that spins about its angular velocity.
+math::Symmetric3<Real> spinning_scale(const Bodies& bodies, std::uint32_t i) {
+  const Vec3 axis = normalize(bodies.angular_velocity[i]);
+  const BodyMass& mass = bodies.mass[i];
+  const Real along = dot(axis, state::angular_momentum_of(mass, bodies.rotation[i], axis));
+  const Real across = Real(0.5) * (mass.inertia.x + mass.inertia.y + mass.inertia.z - along);
+  const Real s = Real(1) / std::sqrt(across);
+  const Real more = Real(1) / std::sqrt(along) - s;
+  return {s + more * axis.x * axis.x, more * axis.x * axis.y, more * axis.x * axis.z,
+          s + more * axis.y * axis.y, more * axis.y * axis.z, s + more * axis.z * axis.z};
 }
 
 /// The turn of the step so far becomes one about a single axis from its start. Its energy is that of L, but
@@ -314,7 +329,7 @@ void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
       const state::SteadyTurn& steady = bodies.steady_turn[i];
       const Quat turned =
           steady.on ? math::quaternion_of(steady.until_impact) * bodies.rotation[i] : bodies.rotation[i];
-      bodies.scale[i] = inertia_scale(bodies.mass[i], turned);
+      bodies.scale[i] = steady.hooked ? spinning_scale(bodies, i) : inertia_scale(bodies.mass[i], turned);
       m.omega_scaled = steady.on ? momentum_of(bodies.scale[i], bodies.angular_velocity[i])
                                  : bodies.scale[i] * bodies.angular_momentum[i];
     } else {
@@ -379,9 +394,19 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
   }
 }
 
+bool outgrows_rows(const Bodies& bodies, std::uint32_t row, Real h) {
+  constexpr Real kMostTurn = Real(1.5);  // [rad]; after half a turn all is as it was
+  const Vec3 turn = h * bodies.angular_velocity[row];
+  if (!gives_way(bodies, row) || !tumbles(bodies.mass[row])) return false;
+  const Real angle = length(turn);
+  if (angle < kLeastTurn) return false;
+  const Quat then = math::quaternion_of(std::min(Real(1), kMostTurn / angle) * turn) * bodies.rotation[row];
+  return outgrows_rows(inertia_scale(bodies.mass[row], bodies.rotation[row]),
+                       inertia_scale(bodies.mass[row], then));
+}
+
 void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
                   bool moved, Bodies& bodies) {
-  constexpr Real kLeastTurn = Real(0.02);  // [rad]
   constexpr Real kMost = Real(2);
   for (const std::uint32_t i : rows) {
     const state::SteadyTurn& steady = bodies.steady_turn[i];

@@ -73,6 +73,10 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, state::Bodies& bod
 void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
                   bool moved, state::Bodies& bodies);
 
+/// Whether within h [s] the inertia of a body that forces move comes to be so different that an impulse would
+/// do more than twice what rows know, as with r above.
+[[nodiscard]] bool outgrows_rows(const state::Bodies& bodies, std::uint32_t row, Real h);
+
 /// Gives a body that tumbles, after the last substep, the rotation at which it was stopped on its way. That
 /// lies on the straight way from start to end, not quite on the body's own: with the same L it may have more
 /// rotational energy than at the end of the step, in which case L shrinks.

@@ -52,10 +52,12 @@ struct alignas(8 * sizeof(Real)) FreeLine {
 /// A body that turns so far within the step that its inertia in world axes changes, and touches something in
 /// it: its contacts are solved with the inertia at the time of the first of them, and between contacts its
 /// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum. One that
-/// touches something and was not foreseen to turn so far, does so from the substep on in which it has.
+/// touches something and was not foreseen to turn so far, does so from the substep on in which it has. One
+/// that spins so far on hooks keeps its angular velocity too, but for what rows do.
 struct SteadyTurn {
   bool on = false;
   bool touches = false;    ///< It tumbles, and has contacts in this step.
+  bool hooked = false;     ///< It spins on hooks: with the mean inertia of its turn.
   Vec3 until_impact = {};  ///< [rad]
 };
 

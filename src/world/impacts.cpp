@@ -208,10 +208,13 @@ void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
 
 void begin_motion(WorldData& world, Real dt) {
   Bodies& bodies = world.tables.bodies;
+  const Real h = dt / static_cast<Real>(world.tables.desc.substeps);
   world.start_rotation.resize(bodies.rotation.size());
   for (const std::uint32_t body : world.awake) {
     world.start_rotation[body] = bodies.rotation[body];
     bodies.steady_turn[body] = {};
+    if (world.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
+      bodies.steady_turn[body] = {.on = true, .hooked = true};
   }
   for (const state::Pair& pair : world.tables.pairs.pair) {
     if (pair.manifold_count == 0) continue;
