@@ -110,6 +110,9 @@ Result<PeerBody> make_body(const SceneBody& from, const SceneObject& object, con
 std::string beyond_bodies(const Scene& scene) {
   if (!scene.objects.ropes.empty()) return "ropes";
   if (!scene.objects.cloths.empty()) return "cloths";
+  if (!scene.objects.solids.empty()) return "solids";
+  if (!scene.objects.hooks.empty()) return "hooks";
+  if (!scene.objects.seams.empty()) return "seams";
   if (!scene.objects.particles.empty()) return "particles";
   if (!scene.objects.fields.empty()) return "fields";
   if (!scene.timeline.empty()) return "events";

@@ -103,10 +103,8 @@ bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Re
   if (apart.distance > margin) return false;
   const Nearest nearest = improve_axis(triangle, b, apart, tolerance, axis);
   if (!(axis.separation <= margin) || !(dot(axis.n, front) > Real(0))) return false;
-  if (axis.separation < Real(0) && !(way_out_of_surface(a, index, b, axis.n, near) == axis.n)) {
-    meeting.separation = deepest_of(meeting);
+  if (axis.separation < Real(0) && !(way_out_of_surface(a, index, b, axis.n, near) == axis.n))
     return meeting.count > 0;
-  }
   if (axis.code == kFreeAxis) {
     meeting.count = 0;
     meeting.normal = axis.n;
@@ -176,6 +174,24 @@ void add_to_patches(const SurfaceContact& contact, std::span<const MeetingPoint>
   }
   for (const MeetingPoint& p : points) add_point(p, patch->meeting);
   patch->meeting.separation = std::min(patch->meeting.separation, contact.separation);
+}
+
+/// What of a covered triangle is deeper in the shape than the patch that looks most like it pushes that
+/// patch's way: else the shape would sink in there while it turns about what stays.
+void join_ghost(const SurfaceContact& ghost, std::span<const MeetingPoint> points,
+                std::vector<PatchMeeting>& patches) {
+  constexpr Real kLeastCosine = Real(0.5);
+  const auto likeness = [&](const PatchMeeting& p) { return dot(p.meeting.normal, ghost.normal); };
+  const auto nearest = std::max_element(patches.begin(), patches.end(), [&](const auto& p, const auto& q) {
+    return likeness(p) < likeness(q);
+  });
+  if (nearest == patches.end() || !(likeness(*nearest) > kLeastCosine)) return;
+  Meeting& to = nearest->meeting;
+  const Real deepest = std::min(deepest_of(to), Real(0)) - kFlush;
+  for (MeetingPoint p : points) {
+    p.separation = dot(to.normal, p.on_b - p.on_a);
+    if (p.separation < deepest) add_point(p, to);
+  }
 }
 
 /// Joins patches whose normals are less than the angle with this cosine apart to the deepest of them.
@@ -257,13 +273,16 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& s
     if (meet_triangle(a, index, b, margin, scratch.near, meeting))
       append_contact(a.triangle(index), index, meeting, scratch);
   }
-  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    if (is_ghost(scratch.contacts[i], scratch.contacts, Pieces::kOfOneMesh)) continue;
+  find_ghosts(scratch.contacts, Pieces::kOfOneMesh, scratch.ghosts);
+  const auto points_of = [&scratch](std::size_t i) {
     const std::size_t first = scratch.first_point[i];
-    add_to_patches(scratch.contacts[i],
-                   std::span(scratch.points).subspan(first, scratch.first_point[i + 1] - first),
-                   scratch.patches);
-  }
+    return std::span(scratch.points).subspan(first, scratch.first_point[i + 1] - first);
+  };
+  const std::vector<std::uint8_t>& is_ghost = scratch.ghosts.is_ghost;
+  for (std::size_t i = 0; i < is_ghost.size(); ++i)
+    if (is_ghost[i] == 0) add_to_patches(scratch.contacts[i], points_of(i), scratch.patches);
+  for (std::size_t i = 0; i < is_ghost.size(); ++i)
+    if (is_ghost[i] != 0) join_ghost(scratch.contacts[i], points_of(i), scratch.patches);
   for (const Real cosine : {Real(0.999), Real(0.99), Real(0.9), Real(0.5), Real(-1)}) {
     if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch);
   }

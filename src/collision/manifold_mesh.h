@@ -45,6 +45,7 @@ struct MeshScratch {
   std::vector<SurfaceContact> contacts = {};
   std::vector<MeetingPoint> points = {};      // of all contacts, one after the other
   std::vector<std::size_t> first_point = {};  // of each contact, and the number of all
+  Ghosts ghosts = {};
   std::vector<PatchMeeting> patches = {};
   std::vector<PatchMeeting> unjoined = {};  // patches, before some are joined
   std::vector<std::uint32_t> order = {};    // of those
@@ -52,7 +53,7 @@ struct MeshScratch {
 
 /// A is a mesh, one-sided: only what is in front of a triangle meets it. Replaces scratch.patches, in
 /// ascending order. Coplanar triangles are one patch; of more than a few patches those that look in similar
-/// directions are joined. Triangles that others cover (is_ghost) are left out: a mesh
+/// directions are joined. Triangles that others cover (find_ghosts) are left out: a mesh
 /// feels the same however its faces are cut. Returns a distance that they are at least apart if there are no
 /// patches [m].
 Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch);

@@ -573,7 +573,8 @@ void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Su
 struct GhostScratch {
   std::vector<Support> supports = {};
   std::vector<SurfaceContact> contacts = {};
-  std::vector<std::uint32_t> ghosts = {};
+  Ghosts found = {};
+  std::vector<std::uint32_t> ghosts = {};  // rows of manifolds
 };
 
 /// The manifold as a contact with a piece of surface, in the neighborhood of the held body.
@@ -591,8 +592,9 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   const auto* deepest = std::min_element(
       m.point.data(), m.point.data() + m.point_count,
       [](const state::ContactPoint& p, const state::ContactPoint& q) { return p.separation < q.separation; });
-  contact.separation = deepest->separation;
   contact.place = (a_held ? deepest->anchor_a : deepest->anchor_b) - deepest->separation * contact.normal;
+  const Convex& held = scene.placed[support.held];
+  contact.separation = dot(contact.normal, support_of(held, -contact.normal) - contact.place) - skin_of(held);
   return contact;
 }
 
@@ -614,7 +616,7 @@ void remove_empty(state::Pairs& pairs) {
 
 /// Removes the manifolds that others of the same collider cover. Returns how many.
 std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
-  auto& [supports, contacts, ghosts] = scratch;
+  auto& [supports, contacts, found, ghosts] = scratch;
   find_supports(scene, pairs, supports);
   ghosts.clear();
   for (std::size_t begin = 0, end = 0; begin < supports.size(); begin = end) {
@@ -624,8 +626,9 @@ std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pai
     for (std::size_t i = begin; i < end; ++i) {
       contacts.push_back(contact_of(scene, pairs.manifold[supports[i].manifold], supports[i]));
     }
-    for (const SurfaceContact& contact : contacts) {
-      if (is_ghost(contact, contacts, Pieces::kOfMany)) ghosts.push_back(contact.index);
+    find_ghosts(contacts, Pieces::kOfMany, found);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (found.is_ghost[i] != 0) ghosts.push_back(contacts[i].index);
     }
   }
   for (const std::uint32_t i : ghosts) pairs.manifold[i].point_count = 0;
