@@ -83,8 +83,9 @@ std::string table_line(const PeerRow& row, const PeerRow& reference) {
 
 std::vector<std::string> rigid_scenes() {
   return {"scenes/large_pyramid.json", "scenes/many_pyramids.json", "scenes/pyramid_30.json",
-          "scenes/pile.json",          "scenes/spheres.json",       "scenes/hulls_on_mesh.json",
-          "scenes/convex_pile.json",   "scenes/junkyard.json",      "scenes/washer.json"};
+          "scenes/joint_grid.json",    "scenes/pile.json",          "scenes/spheres.json",
+          "scenes/hulls_on_mesh.json", "scenes/convex_pile.json",   "scenes/junkyard.json",
+          "scenes/washer.json"};
 }
 
 /// The runs of one scene that are to be made: Hooke with each number of workers, its peers with one.

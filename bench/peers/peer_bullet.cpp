@@ -41,8 +41,10 @@ class Bullet final : public PeerEngine {
     world_.getSolverInfo().m_splitImpulse = 1;
     world_.getDispatchInfo().m_useContinuous = false;
     for (const PeerBody& body : scene.bodies) add(body, scene.sleeping);
+    for (const PeerBall& ball : scene.balls) add(ball);
   }
   ~Bullet() override {
+    for (const auto& joint : joints_) world_.removeConstraint(joint.get());
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   }
 
@@ -146,6 +148,16 @@ class Bullet final : public PeerEngine {
     bodies_.push_back(std::move(body));
   }
 
+  void add(const PeerBall& ball) {
+    btRigidBody& a = *bodies_[ball.a];
+    btRigidBody& b = *bodies_[ball.b];
+    const btVector3 anchor = bullet(ball.anchor);
+    joints_.push_back(
+        std::make_unique<btPoint2PointConstraint>(a, b, a.getCenterOfMassTransform().inverse() * anchor,
+                                                  b.getCenterOfMassTransform().inverse() * anchor));
+    world_.addConstraint(joints_.back().get(), true);
+  }
+
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broad_phase_;
@@ -155,6 +167,7 @@ class Bullet final : public PeerEngine {
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btDefaultMotionState>> states_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::unique_ptr<btPoint2PointConstraint>> joints_;
 };
 
 }  // namespace

@@ -40,6 +40,11 @@ class Ode final : public PeerEngine {
     dWorldSetERP(world_, 0.2);
     dWorldSetAutoDisableFlag(world_, scene.sleeping ? 1 : 0);
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) add(i);
+    for (const PeerBall& ball : scene.balls) {
+      const dJointID joint = dJointCreateBall(world_, nullptr);
+      dJointAttach(joint, bodies_[ball.a], bodies_[ball.b]);
+      dJointSetBallAnchor(joint, ball.anchor.x, ball.anchor.y, ball.anchor.z);
+    }
   }
   ~Ode() override {
     dJointGroupDestroy(joints_);
@@ -81,7 +86,7 @@ class Ode final : public PeerEngine {
     const PeerBody& of_a = scene_.bodies[reinterpret_cast<std::size_t>(dGeomGetData(a))];
     const PeerBody& of_b = scene_.bodies[reinterpret_cast<std::size_t>(dGeomGetData(b))];
     if (of_a.kind != BodyKind::kDynamic && of_b.kind != BodyKind::kDynamic) return;
-    if (body_a == body_b) return;
+    if (body_a == body_b || dAreConnectedExcluding(body_a, body_b, dJointTypeContact) != 0) return;
     std::array<dContact, kMaxContacts> found = {};
     const int count = dCollide(a, b, kMaxContacts, &found[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 
 namespace hooke::bench {
 
@@ -106,12 +108,44 @@ Result<PeerBody> make_body(const SceneBody& from, const SceneObject& object, con
   return body;
 }
 
+/// A joint that every engine has.
+bool is_free_ball(const SceneHook& hook) {
+  const HookDesc& desc = hook.desc;
+  return desc.kind == HookKind::kBall && desc.limits == HookLimits{} && desc.spring == HookSpring{} &&
+         desc.motor == HookMotor{} && !desc.cone && !desc.collide && desc.break_force == kRigid &&
+         desc.break_torque == kRigid && hook.anchor;
+}
+
+/// The ball joints of the scene, which has no other hooks.
+Result<std::vector<PeerBall>> make_balls(const Scene& scene, const Simulation& simulation) {
+  std::unordered_map<std::string_view, std::size_t> body_of;
+  std::vector<const SceneObject*> hooks;
+  for (const SceneObject& object : simulation.objects()) {
+    if (object.kind == SceneObject::Kind::kBody) body_of.emplace(object.name, body_of.size());
+    if (object.kind == SceneObject::Kind::kHook) hooks.push_back(&object);
+  }
+  std::vector<PeerBall> balls;
+  for (const SceneHook& hook : scene.objects.hooks) {
+    for (std::size_t i = 0; i < hook.array.count(); ++i) {
+      const auto& held = hooks[balls.size()]->hooked;
+      const auto a = body_of.find(held[0]);
+      const auto b = body_of.find(held[1]);
+      if (a == body_of.end() || b == body_of.end())
+        return Error{ErrorCode::kUnsupported, hook.name,
+                     "is not between two bodies, which peers are not given"};
+      balls.push_back({a->second, b->second, *hook.anchor + hook.array.offset(i)});
+    }
+  }
+  return balls;
+}
+
 /// What no peer is given; empty for a scene that all can have.
 std::string beyond_bodies(const Scene& scene) {
   if (!scene.objects.ropes.empty()) return "ropes";
   if (!scene.objects.cloths.empty()) return "cloths";
   if (!scene.objects.solids.empty()) return "solids";
-  if (!scene.objects.hooks.empty()) return "hooks";
+  if (!std::all_of(scene.objects.hooks.begin(), scene.objects.hooks.end(), is_free_ball))
+    return "other hooks than balls";
   if (!scene.objects.seams.empty()) return "seams";
   if (!scene.objects.particles.empty()) return "particles";
   if (!scene.objects.fields.empty()) return "fields";
@@ -139,6 +173,9 @@ Result<PeerScene> make_peer_scene(const Scene& scene, const Simulation& simulati
       peer.bodies.push_back(std::move(made).value());
     }
   }
+  Result<std::vector<PeerBall>> balls = make_balls(scene, simulation);
+  if (!balls) return balls.error();
+  peer.balls = std::move(balls).value();
   return peer;
 }
 
@@ -146,6 +183,8 @@ Result<double> deepest_overlap(const Scene& scene, const PeerScene& peer,
                                const std::vector<PeerMotion>& now) {
   Scene still = scene;
   still.world.sleeping = false;
+  still.objects.hooks.clear();
+  still.expect.clear();
   Loaded<Simulation> made = Simulation::create(std::move(still));
   if (!made) return made.errors.front();
   Simulation& simulation = *made.value;

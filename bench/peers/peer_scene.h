@@ -44,14 +44,23 @@ struct PeerBody {
   double restitution = 0;
 };
 
+/// A free ball joint of two bodies, which do not touch each other.
+struct PeerBall {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  DVec3 anchor = {};  ///< At the start [m].
+};
+
 struct PeerScene {
   std::vector<PeerBody> bodies = {};
+  std::vector<PeerBall> balls = {};
   DVec3 gravity = {};  ///< [m/s^2]
   bool sleeping = true;
   double dt = 1.0 / 60;  ///< [s]
 };
 
-/// Errors (kUnsupported) name what is not a rigid body alone: ropes, cloths, pairs of materials, events.
+/// Errors (kUnsupported) name what is neither a rigid body nor a free ball joint of two: ropes, cloths, other
+/// hooks, pairs of materials, events.
 [[nodiscard]] Result<PeerScene> make_peer_scene(const Scene& scene, const Simulation& simulation);
 
 /// The deepest overlap of two bodies of the scene, in these poses, by Hooke's own geometry [m].
