@@ -33,7 +33,9 @@ bool covers(const SurfaceContact& other, const SurfaceContact& contact, Pieces p
 
 /// Where contacts cover each other all around, one of them stays.
 void open_rings(std::span<const SurfaceContact> all, Pieces pieces, Ghosts& found) {
-  auto& [is_ghost, coverer, held, loose] = found;
+  const std::vector<std::uint32_t>& coverer = found.coverer;
+  std::vector<std::uint32_t>& held = found.held;
+  std::vector<std::uint32_t>& loose = found.loose;
   const auto count = static_cast<std::uint32_t>(all.size());
   held.clear();
   loose.clear();
@@ -47,7 +49,7 @@ void open_rings(std::span<const SurfaceContact> all, Pieces pieces, Ghosts& foun
       const auto stays = std::max_element(loose.begin(), loose.end(), [&](std::uint32_t i, std::uint32_t j) {
         return all[i].separation < all[j].separation;
       });
-      is_ghost[*stays] = 0;
+      found.is_ghost[*stays] = 0;
       held.push_back(*stays);
       loose.erase(stays);
     }
