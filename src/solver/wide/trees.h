@@ -148,7 +148,7 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeRowLanes {
 };
 
 template <class Kind>
-struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLanes {
+struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) alignas(void*) TreeLanes {
   using Lane = typename Kind::Lane;
   static constexpr int kCount = Kind::kCount;
 
