@@ -148,11 +148,11 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeRowLanes {
 };
 
 template <class Kind>
-struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) alignas(void*) TreeLanes {
+struct TreeLanes {
   using Lane = typename Kind::Lane;
   static constexpr int kCount = Kind::kCount;
 
-  Lane release[kCount];  ///< 1 where rows may leave their bounds, otherwise 0.
+  alignas(sizeof(Lane) * kCount) Lane release[kCount];  ///< 1 where rows may leave their bounds, otherwise 0.
   // Results.
   Lane changed[kCount];  ///< 1 where a row came to a bound or left it.
   Lane grew[kCount];     ///< 1 where a stiffness grew, so that the solution is not to be trusted.
@@ -162,6 +162,10 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) alignas(void*) TreeLa
   std::vector<TreeJointLanes<Kind>> joints;
   std::vector<TreeRowLanes<Kind>> rows;
 };
+
+// Vectors are loaded from these as from aligned memory.
+static_assert(alignof(TreeLanes<ExactTrees>) == sizeof(ExactTrees::Lane) * ExactTrees::kCount);
+static_assert(alignof(TreeLanes<LooseTrees>) == sizeof(LooseTrees::Lane) * LooseTrees::kCount);
 
 /// The rows of a substep of length h [s], with the bounds they begin with, and the stiffness by the last
 /// forces.
