@@ -179,6 +179,14 @@ bool turns_farther(double angle, double h, const Articulation& art) {
   });
 }
 
+bool lines_turn_farther(double angle, double h, const std::vector<Hook>& hooks, const Articulation& art) {
+  return std::any_of(art.joints.begin(), art.joints.end(), [&](const Articulation::Joint& joint) {
+    if (joint.is_weld() || hooks[joint.hook].kind != HookKind::kDistance) return false;
+    return h * length(art.links[joint.b].v - art.links[joint.a].v) >
+           angle * std::abs(hooks[joint.hook].value[0]);
+  });
+}
+
 /// The parts of a body differ by rounding: their mean has all of its momentum.
 void store_velocities(const Articulation& art, state::Bodies& bodies) {
   for (std::size_t i = 0; i < art.links.size();) {

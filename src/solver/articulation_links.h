@@ -20,6 +20,10 @@ void begin_articulation(double h, JointTables tables, Articulation& art);
 /// Whether a body turns by more than `angle` [rad] in the substep.
 [[nodiscard]] bool turns_farther(double angle, double h, const Articulation& art);
 
+/// Whether the line of a hook that keeps a distance does.
+[[nodiscard]] bool lines_turn_farther(double angle, double h, const std::vector<state::Hook>& hooks,
+                                      const Articulation& art);
+
 void store_velocities(const Articulation& art, state::Bodies& bodies);
 
 /// Velocities without the joints.

@@ -193,7 +193,7 @@ void solve_loops(double h, Articulation& art, JointTables tables) {
     solve_with_bounds(art);
     if (!begin_next_solution(h, tables, art)) break;
   }
-  const bool far = turns_farther(kFarTurn, h, art);
+  const bool far = turns_farther(kFarTurn, h, art) || lines_turn_farther(kFarTurn, h, tables.hooks, art);
   const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
   store_velocities(art, tables.bodies);
   if (!far) return forget_energy(art, tables.hooks);

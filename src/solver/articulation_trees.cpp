@@ -261,7 +261,7 @@ class Group {
   }
 
   void store(const Articulation& art, const wide::TreeLanes<Kind>& from, int lane, JointTables tables) const {
-    const bool far = !Kind::kLoose && h_ * std::sqrt(from.fast[lane]) > kFarTurn;
+    const bool far = !Kind::kLoose && turns_far(from, lane);
     const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
       Hook& hook = tables.hooks[art.joints[i].hook];
@@ -292,6 +292,19 @@ class Group {
     if constexpr (!Kind::kLoose) {
       settle_energy(before, art, tables, [&](std::size_t i) { return work_of(from, i, lane); });
     }
+  }
+
+  /// Whether a body does, or the line of a hook that keeps a distance.
+  bool turns_far(const wide::TreeLanes<Kind>& from, int lane) const {
+    if (h_ * std::sqrt(from.fast[lane]) > kFarTurn) return true;
+    for (std::size_t i = 0; i < form_->joints.size(); ++i) {
+      const wide::TreeJoint& joint = form_->joints[i];
+      if (joint.kind != HookKind::kDistance) continue;
+      const auto v = get(from.links[static_cast<std::size_t>(joint.parent)].v_now, lane);
+      const auto speed = length(get(from.links[i].v_now, lane) - v);
+      if (h_ * speed > kFarTurn * std::abs(from.joints[i].value[0][lane])) return true;
+    }
+    return false;
   }
 
   JointWork work_of(const wide::TreeLanes<Kind>& from, std::size_t i, int lane) const {

@@ -7,7 +7,8 @@
 /// springs hold add any. A solution is about straight lines and removes the errors that the last ones left,
 /// which adds some here and takes some there. Where a body turns far in a substep, as one of grams does that
 /// hangs between tons, it would add without end: errors grow with speed, and their removal is speed. So there
-/// is an account of what was added while one of the bodies of an articulation turns far.
+/// is an account of what was added while one of the bodies of an articulation turns far, or the line between
+/// the ends of a hook that keeps a distance: a bead of grams on a rail that a ton on a rod swings past.
 
 namespace hooke::solver {
 
