@@ -1,8 +1,12 @@
 #include "solver/hits.h"
 
+#include "math/rotation.h"
+#include "solver/joint_rows.h"
 #include "solver/strike.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -12,6 +16,7 @@ namespace hooke::solver {
 namespace {
 
 using state::Bodies;
+using state::Hook;
 using state::Manifold;
 using state::MotionLine;
 
@@ -72,7 +77,7 @@ bool find_lanes(const BodyContacts& contacts, const std::vector<Manifold>& manif
   return any;
 }
 
-void list_pairs(const state::Pairs& pairs, Hits& hits) {
+void list_pairs(const state::Pairs& pairs, const std::vector<std::uint8_t>& hooked, Hits& hits) {
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const state::Pair& pair = pairs.pair[row];
     const auto first = static_cast<std::uint32_t>(hits.lanes.size());
@@ -83,8 +88,13 @@ void list_pairs(const state::Pairs& pairs, Hits& hits) {
     const auto count = static_cast<std::uint32_t>(hits.lanes.size()) - first;
     if (count == 0) continue;
     const Manifold& m = pairs.manifold[pair.first_manifold];
-    hits.pairs.push_back(
-        {.pair = row, .a = m.body_a, .b = m.body_b, .first_lane = first, .lane_count = count});
+    hits.pairs.push_back({.pair = row,
+                          .a = m.body_a,
+                          .b = m.body_b,
+                          .first_lane = first,
+                          .lane_count = count,
+                          .a_is_hooked = hooked[m.body_a] != 0,
+                          .b_is_hooked = hooked[m.body_b] != 0});
   }
 }
 
@@ -212,17 +222,67 @@ void look_ahead(std::uint32_t body, const ContactStep& step, const BodyContacts&
   }
 }
 
+/// Null if it was not struck.
+template <class AnyHits>
+auto find_struck(std::uint32_t body, AnyHits& hits) -> decltype(hits.on_hooks.data()) {
+  const auto at = std::find_if(hits.on_hooks.begin(), hits.on_hooks.end(),
+                               [&](const StruckOnHooks& s) { return s.body == body; });
+  return at != hits.on_hooks.end() ? &*at : nullptr;
+}
+
+/// Counts a hit of a body on hooks, that was so before it.
+void note_on_hooks(const StruckOnHooks& before, Real time, Hits& hits) {
+  StruckOnHooks* struck = find_struck(before.body, hits);
+  if (struck == nullptr) struck = &hits.on_hooks.emplace_back(before);
+  ++struck->count;
+  struck->time_sum += time;
+}
+
+/// Whether what the hits changed goes against a lock of the hook, at more than this share of the speeds.
+bool goes_against(const Hook& hook, const Bodies& bodies, double h, const Hits& hits) {
+  constexpr double kShare = 0.1;
+  const auto change_of = [&](std::uint32_t body) {
+    state::FreeLine change;
+    const StruckOnHooks* struck = find_struck(body, hits);
+    if (struck == nullptr) return change;
+    const MotionLine& m = bodies.motion[body];
+    change.v = m.v - struck->before.line.v;
+    change.omega_scaled = m.omega_scaled - struck->before.line.omega_scaled;
+    return change;
+  };
+  const auto size_of = [&](std::uint32_t body) {
+    return body == state::HookPlace::kWorld ? Real(0) : bodies.traits[body].radius;
+  };
+  const state::FreeLine a = change_of(hook.a.body);
+  const state::FreeLine b = change_of(hook.b.body);
+  const auto speed = static_cast<double>(std::max(length(a.v), length(b.v)));
+  const auto size = static_cast<double>(std::max(size_of(hook.a.body), size_of(hook.b.body)));
+  std::array<JointRow, Hook::kMaxRows> rows;
+  Hook copy = hook;  // its values are those of the last substep still
+  const int count =
+      make_joint_rows(copy, joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body), h, rows);
+  return std::any_of(rows.begin(), rows.begin() + count, [&](const JointRow& row) {
+    if (row.role != RowRole::kLock) return false;
+    const double rate = dot(row.n, vector_cast<double>(b.v - a.v)) +
+                        dot(row.j_b, vector_cast<double>(b.omega_scaled)) -
+                        dot(row.j_a, vector_cast<double>(a.omega_scaled));
+    return std::abs(rate) * (row.n == DVec3{} ? size : 1) > kShare * speed;
+  });
+}
+
 }  // namespace
 
 std::span<const ContactLane> lanes_of(const HitPair& pair, const Hits& hits) {
   return std::span(hits.lanes).subspan(pair.first_lane, pair.lane_count);
 }
 
-void list_hits(const state::Pairs& pairs, const Bodies& bodies, const BodyContacts& contacts, Hits& hits) {
+void list_hits(const state::Pairs& pairs, const Bodies& bodies, const std::vector<std::uint8_t>& hooked,
+               const BodyContacts& contacts, Hits& hits) {
   hits.pairs.clear();
   hits.lanes.clear();
+  hits.on_hooks.clear();
   if (!find_lanes(contacts, pairs.manifold, hits.lane_of)) return;
-  list_pairs(pairs, hits);
+  list_pairs(pairs, hooked, hits);
   index_bodies(bodies.motion.size(), hits);
   calm_crowds(pairs.manifold, bodies, hits);
   index_bodies(bodies.motion.size(), hits);
@@ -235,6 +295,7 @@ bool foresee_hits(const ContactStep& step, BodyContacts& contacts, Bodies& bodie
   hits.queue.clear();
   for (const std::uint32_t body : hits.struck) hits.since[body] = Real(0);
   hits.struck.clear();
+  hits.on_hooks.clear();
   // An impulse that is repeated and then loses its row in a hit would be one too many.
   for (const HitPair& pair : hits.pairs) {
     if (is_slow(bodies, pair.a) && is_slow(bodies, pair.b)) continue;
@@ -271,10 +332,17 @@ void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs
     return;
   }
   pair.time = Hits::kNever;
+  const auto as_it_is = [&](std::uint32_t body) {
+    return StruckOnHooks{.body = body, .before = {bodies.motion[body], bodies.rotation[body]}};
+  };
+  const StruckOnHooks a_before = as_it_is(pair.a);
+  const StruckOnHooks b_before = as_it_is(pair.b);
   if (!strike({lanes, pair.in_crowd, pair.a_is_backed, pair.b_is_backed}, pairs.manifold, hit.time, step,
               contacts, bodies))
     return;
   ++pair.count;
+  if (pair.a_is_hooked) note_on_hooks(a_before, hit.time, hits);
+  if (pair.b_is_hooked) note_on_hooks(b_before, hit.time, hits);
   // What stands is not struck: others come upon it as before.
   for (const std::uint32_t body : {pair.a, pair.b}) {
     if (!is_moved(bodies, body)) continue;
@@ -284,6 +352,44 @@ void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs
   for (const std::uint32_t body : {pair.a, pair.b}) {
     if (is_moved(bodies, body)) look_ahead(body, step, contacts, bodies, hits);
   }
+}
+
+void put_back_on_hooks(const std::vector<Hook>& hooks, Real h, Bodies& bodies, Hits& hits) {
+  if (hits.on_hooks.empty()) return;
+  for (const Hook& hook : hooks) {
+    StruckOnHooks* a = find_struck(hook.a.body, hits);
+    StruckOnHooks* b = find_struck(hook.b.body, hits);
+    if (a == nullptr && b == nullptr) continue;
+    if (hook.holds_point() || !goes_against(hook, bodies, static_cast<double>(h), hits)) continue;
+    for (StruckOnHooks* struck : {a, b}) {
+      if (struck != nullptr) struck->is_led = true;
+    }
+  }
+  std::erase_if(hits.on_hooks, [](const StruckOnHooks& struck) { return !struck.is_led; });
+  for (const StruckOnHooks& struck : hits.on_hooks) {
+    MotionLine& m = bodies.motion[struck.body];
+    m.dx = struck.before.line.dx;
+    m.theta_scaled = struck.before.line.theta_scaled;
+    bodies.rotation[struck.body] = struck.before.rotation;
+  }
+}
+
+void lead_from_hits(Bodies& bodies, Hits& hits) {
+  for (const StruckOnHooks& struck : hits.on_hooks) {
+    const MotionLine& before = struck.before.line;
+    MotionLine& m = bodies.motion[struck.body];
+    Quat& rotation = bodies.rotation[struck.body];
+    const Real time = struck.time_sum / static_cast<Real>(struck.count);
+    if (state::tumbles_now(bodies, struck.body)) {
+      const auto turn = [&](Real t, Vec3 omega_scaled) {
+        return math::quaternion_of(t * (bodies.scale[struck.body] * omega_scaled));
+      };
+      rotation = normalize(turn(-time, m.omega_scaled) * turn(time, before.omega_scaled) * rotation);
+    }
+    m.dx += time * (before.v - m.v);
+    m.theta_scaled += time * (before.omega_scaled - m.omega_scaled);
+  }
+  hits.on_hooks.clear();
 }
 
 }  // namespace hooke::solver

@@ -4,6 +4,7 @@
 
 #include "solver/body_contacts.h"
 #include "state/bodies.h"
+#include "state/hooks.h"
 #include "state/manifolds.h"
 
 #include <cstdint>
@@ -33,6 +34,12 @@
 /// A body that rests against something that does not bounce is not struck alone. If what is behind it,
 /// directly or through others, does not give way, it does not either: the ground takes the impulse. Only
 /// across it can such a body be pushed.
+///
+/// A body on hooks is struck as if it were free, and its joints then say with what speed v" it goes on. Where
+/// they go against the hit, as on a rail at an angle to the wall, it is not moved by t (v - v'): they would
+/// find it off the rail, and the speed with which they bring it back would be energy that nobody gave. So its
+/// joints are solved where it was before the hits, and it is moved by t (v - v") after them, t the mean of
+/// its times.
 
 namespace hooke::solver {
 
@@ -45,11 +52,26 @@ struct HitPair {
   std::uint32_t lane_count = 0;
   bool a_is_backed = false;  ///< By what does not give way, against the impulse.
   bool b_is_backed = false;
+  bool a_is_hooked = false;
+  bool b_is_hooked = false;
   bool in_crowd = false;
   // Of the substep.
   Real time = Real(0);  ///< Of its next hit, as its rows have it [s]; kNever.
   int looks = 0;        ///< At its shapes, for that hit.
   int count = 0;        ///< Of its hits; in a crowd, of the step.
+};
+
+/// A body on hooks that is hit in a substep.
+struct StruckOnHooks {
+  struct Motion {
+    state::MotionLine line = {};
+    Quat rotation = {};
+  };
+  std::uint32_t body = 0;
+  int count = 0;            ///< Of its hits.
+  Real time_sum = Real(0);  ///< [s]
+  Motion before = {};       ///< As it was before the first.
+  bool is_led = false;      ///< Its joints go against its hits.
 };
 
 /// What is next.
@@ -69,6 +91,7 @@ struct Hits {
   std::vector<Hit> queue;   ///< A heap; one whose time is no longer that of its pair is void.
   std::vector<Real> since;  ///< Of each body: when it was hit last [s].
   std::vector<std::uint32_t> struck;
+  std::vector<StruckOnHooks> on_hooks;
   // Memory of list_hits.
   struct Support {
     std::uint32_t body = 0;
@@ -82,9 +105,9 @@ struct Hits {
 /// Lanes of the pair's manifolds.
 [[nodiscard]] std::span<const ContactLane> lanes_of(const HitPair& pair, const Hits& hits);
 
-/// Once a step, after prepare_body_contacts: the pairs that may bounce.
-void list_hits(const state::Pairs& pairs, const state::Bodies& bodies, const BodyContacts& contacts,
-               Hits& hits);
+/// Once a step, after prepare_body_contacts: the pairs that may bounce. `hooked`: 1 for each body on hooks.
+void list_hits(const state::Pairs& pairs, const state::Bodies& bodies,
+               const std::vector<std::uint8_t>& hooked, const BodyContacts& contacts, Hits& hits);
 
 /// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do. Velocities
 /// are those before contacts: what is repeated of their impulses would be taken for motion. The rows of pairs
@@ -99,5 +122,12 @@ void list_hits(const state::Pairs& pairs, const state::Bodies& bodies, const Bod
 /// for that one. Brings the rows of the pair up to date.
 void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs, BodyContacts& contacts,
               state::Bodies& bodies, Hits& hits);
+
+/// After the last hit: bodies whose hooks go against their hits are where they were, with the velocities that
+/// hits gave them. The others are forgotten.
+void put_back_on_hooks(const std::vector<state::Hook>& hooks, Real h, state::Bodies& bodies, Hits& hits);
+
+/// After solve_joints: the lines of these bodies lead from their hits on.
+void lead_from_hits(state::Bodies& bodies, Hits& hits);
 
 }  // namespace hooke::solver

@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
+#include "state/manifolds.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -56,6 +57,18 @@ inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
   const Pose now = pose_now(bodies, row);
   return {now.position + vector_cast<double>(time * motion.v),
           math::quaternion_of(bodies.scale[row] * (time * motion.omega_scaled)) * now.rotation};
+}
+
+/// How far a place on a body has gone since the start of the step, along the body's line.
+inline Vec3 way_of(const Bodies& bodies, std::uint32_t row, Vec3 lever) {
+  const MotionLine& m = bodies.motion[row];
+  const Vec3 turn = m.inverse_mass > Real(0) ? bodies.scale[row] * m.theta_scaled : m.theta_scaled;
+  return m.dx + cross(turn, lever);
+}
+
+/// Of B's place against A's, at a point of a manifold.
+inline Vec3 way_between(const Bodies& bodies, const Manifold& m, const ContactPoint& point) {
+  return way_of(bodies, m.body_b, point.anchor_b) - way_of(bodies, m.body_a, point.anchor_a);
 }
 
 /// L = R I R^T omega, of a body whose frame is turned by `rotation`.

@@ -145,7 +145,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
                                 world.body_contacts);
   solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);
-  solver::list_hits(t.pairs, t.bodies, world.body_contacts, world.hits);
+  solver::list_hits(t.pairs, t.bodies, world.hooked, world.body_contacts, world.hits);
   note_approaches(world, h * static_cast<Real>(desc.substeps));
 }
 
@@ -161,6 +161,7 @@ void resolve_hits(WorldData& world, Real h) {
                                state::pose_after(t.bodies, pair.b, hit->time), pair.pair, t.pairs);
     solver::take_hit(*hit, world.contact_step, t.pairs, contacts, t.bodies, world.hits);
   }
+  solver::put_back_on_hooks(t.hooks, h, t.bodies, world.hits);
 }
 
 namespace {

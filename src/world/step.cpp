@@ -21,6 +21,7 @@
 #include "solver/contacts.h"
 #include "solver/forces.h"
 #include "solver/hard_islands.h"
+#include "solver/hits.h"
 #include "solver/inner_contacts.h"
 #include "solver/joints.h"
 #include "solver/repulsion.h"
@@ -132,6 +133,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   }
   solver::solve_hard_islands(*w.pool, step, w.hard_islands, w.body_contacts, bodies);
   solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
+  solver::lead_from_hits(bodies, w.hits);
   for (int k = 1; k <= particle_substeps; ++k) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
     for_bodies(w, [&](auto rows) { solver::move_bodies(rows, particle_h, bodies); });

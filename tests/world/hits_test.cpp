@@ -236,6 +236,58 @@ TEST_SUITE("world/hits") {
     CHECK(world.pose(id).position.y == doctest::Approx(0.1).epsilon(0.02));
   }
 
+  TEST_CASE("what bounces on a rail at an angle to the wall gains no energy, and does not pass") {
+    for (const int substeps : {4, 8, 16}) {
+      CAPTURE(substeps);
+      for (const double tilt : {0.0, 0.3, 1.0}) {
+        CAPTURE(tilt);
+        for (const Shape& shape : {Shape::sphere(Real(0.04)), Shape::cone(Real(0.03), Real(0.02))}) {
+          WorldDesc desc = empty_space();
+          desc.substeps = substeps;
+          World world = make_world(desc);
+          add_floor(world, 0.9, 0.25);
+          const Vec3 along = {static_cast<Real>(std::sin(tilt)), static_cast<Real>(-std::cos(tilt)), 0};
+          BodyDesc bead = bouncing(shape, {0, 1, 0}, 0.9, 0.25);
+          bead.velocity = Real(10) * along;
+          const BodyId id = take(world.add_body(bead));
+          take(world.add_hook({.kind = HookKind::kSlider, .a = {.body = id}, .axis = along}));
+          const double start = energy_of(world);
+          double most = 0;
+          double lowest = 1;
+          for (int i = 0; i < 120; ++i) {
+            run(world, 1);
+            most = std::max(most, energy_of(world));
+            lowest = std::min(lowest, world.center_of_mass(id).y);
+          }
+          CHECK(most < 1.001 * start);
+          CHECK(lowest > 0);
+        }
+      }
+    }
+  }
+
+  TEST_CASE("a ball on a thread that bounces fully off a wall keeps its energy") {
+    World world = make_world(without_air());
+    BodyDesc wall = bouncing(Shape::half_space(), {}, 1);
+    wall.kind = BodyKind::kStatic;
+    const Real half = std::sqrt(Real(0.5));
+    wall.rotation = {0, 0, -half, half};  // its normal along x
+    take(world.add_body(wall));
+    const BodyId bob = take(world.add_body(ball({kRadius + 0.5, 0.5, 0}, 1)));
+    take(world.add_hook({.kind = HookKind::kDistance,
+                         .a = {.body = bob},
+                         .anchor = {kRadius + 0.5, 0.5, 0},
+                         .anchor_b = DVec3{kRadius, 0.5, 0}}));
+    const double start = world.measure().energy.total();
+    double off = 0;
+    for (int i = 0; i < 1800; ++i) {
+      run(world, 1);
+      off = std::max(off, std::abs(world.measure().energy.total() - start));
+    }
+    const double swing = world.mass(bob) * kGravity * 0.5;
+    CHECK(off < 0.005 * swing);
+  }
+
   TEST_CASE("in a room full of rough balls and boxes energy is kept, or lost") {
     World lossless = make_room(1, 1);
     const double before = energy_of(lossless);
