@@ -124,16 +124,17 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
 }
 
 /// From separations at `time` to those at the start of the step, from which rows go on evenly: they are what
-/// they should be at `time`. Points that part have no such past.
+/// they should be at `time`. Points that part have no such past; what rolls only seems to, by rounding.
 void bring_to_start(const Scene& scene, Real time, Manifold& m) {
   const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
   const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
+  constexpr Real kParting = Real(1e-4);  // [m]
   std::int32_t kept = 0;
   for (std::int32_t i = 0; i < m.point_count; ++i) {
     state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
     const Vec3 way = b.way + cross(b.turn, p.anchor_b) - a.way - cross(a.turn, p.anchor_a);
     const Real before = p.separation - time * dot(m.normal, way);
-    if (before < Real(0) && p.separation > Real(0)) continue;
+    if (before < -kParting && p.separation > Real(0)) continue;
     p.separation = before < Real(0) ? std::max(before, p.separation) : before;
     m.point[static_cast<std::size_t>(kept++)] = p;
   }

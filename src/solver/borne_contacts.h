@@ -17,6 +17,9 @@
 /// that the plank hangs on, and solved with them. What the heavy body lies on through others, a board on the
 /// planks, is borne too.
 ///
+/// The same goes for a light body between the ground and what it is hooked to, as the leg of a heavy table
+/// is: the joint brings all the weight, and its contact with the ground takes m v of the leg.
+///
 /// Light bodies turn far within a step, and are thin: such pairs are looked at anew in each substep.
 ///
 /// The order of calls:
@@ -32,6 +35,13 @@ namespace hooke::solver {
 inline constexpr Real kBorneMass = Real(2);
 inline constexpr Real kBorneLoad = Real(1);
 
+/// From this ratio on between a body and one that it is locked to, its contacts with the ground are borne;
+/// from the second on between it and all that hang together with it, if it presses on the ground with so many
+/// times its weight, or did in the last step and presses with a quarter of that still.
+inline constexpr Real kPressedMass = Real(8);
+inline constexpr Real kPressedGroup = Real(25);
+inline constexpr Real kPressedLoad = Real(20);
+
 /// How many may be borne in a step: some milliseconds.
 inline constexpr std::size_t kMostBorneManifolds = 64;
 
@@ -43,14 +53,26 @@ enum class Holding : std::uint8_t {
   kBorne,   ///< Lies on such.
 };
 
-/// What each body holds by its hooks; to be found again when hooks or bodies come or go. Bodies of nets hold
-/// nothing: nets are relaxed.
-void find_holding(const Joints& joints, const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
-                  std::vector<Holding>& holding);
+/// What may press a body on the ground [kg].
+struct Burden {
+  Real neighbor = Real(0);  ///< The heaviest that a hook holds at its place on it, or at a distance from it.
+  Real group = Real(0);     ///< Its articulation, with what lies on that.
+};
+
+/// What bodies hold by their hooks, by body row.
+struct Holders {
+  std::vector<Holding> holding;
+  std::vector<Burden> burden;
+};
+
+/// To be found again when hooks or bodies come or go. Bodies of nets hold nothing: nets are relaxed.
+void find_holders(const Joints& joints, const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
+                  Holders& holders);
 
 /// Memory of find_borne_contacts.
 struct BorneScratch {
-  std::vector<Holding> holding;  ///< By body.
+  Holders holders;
+  std::vector<Real> load;  ///< By body: the heaviest that lies on it [kg].
   std::vector<std::pair<std::uint32_t, std::uint32_t>> borne_before;
   std::vector<std::uint8_t> bears;  ///< By body: whether it is in a borne contact.
 };
@@ -60,7 +82,7 @@ struct BorneScratch {
 /// wheel of a cart is, but does not hang. Contacts that bounce are not borne. `impulse_to_force` is that of
 /// the impulses that manifolds have from the last step [1/s].
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                         std::span<const std::uint8_t> hooked, std::span<const Holding> holding,
+                         std::span<const std::uint8_t> hooked, const Holders& holders,
                          const state::Bodies& bodies, std::vector<state::Hook>& hooks, state::Pairs& pairs,
                          BorneScratch& scratch);
 

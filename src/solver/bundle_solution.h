@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct TouchForce {
   double normal = 0;
   DVec3 friction;
   bool slides = false;
+  double fast = std::numeric_limits<double>::infinity();  ///< From this speed on it slides at first [m/s].
 };
 
 class BundleSolution {
@@ -52,11 +54,12 @@ class BundleSolution {
   void load_rope_touch(std::size_t index);
   [[nodiscard]] const state::RopeContact& rope_contact(std::size_t index) const;
   void load_borne_touch(std::size_t index);
+  [[nodiscard]] DVec3 velocity_of(std::uint32_t body, DVec3 lever) const;
   void make_touch_rows(std::size_t index, const TouchForce& last);
   void note_rope_in_contact(std::uint32_t node);
   void set_inner_rows(std::size_t index);
   void revise_inner();
-  bool update_inner_friction(std::size_t index);
+  bool update_inner_friction(std::size_t index, bool may_stick);
   [[nodiscard]] Unsettled update_borne_touch(std::size_t index, bool only_join);
   [[nodiscard]] Unsettled update_inner_touch(std::size_t index, bool let_go);
   [[nodiscard]] Unsettled update_inner(bool let_go);

@@ -54,7 +54,10 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
     if (is_tied(t, inner))
       s.insert(s.end(), {row, inner.element, inner.object, inner.body, gives_way(t.bodies, inner.body)});
   }
-  for (const state::BorneContact& borne : t.pairs.borne) s.insert(s.end(), {borne.body_a, borne.body_b});
+  for (const state::BorneContact& borne : t.pairs.borne) {
+    for (const std::uint32_t body : {borne.body_a, borne.body_b})
+      s.insert(s.end(), {body, gives_way(t.bodies, body) ? 1U : 0U});
+  }
   for (std::uint32_t row = 0; row < t.rope_contacts.size(); ++row) {
     const state::RopeContact& contact = t.rope_contacts[row];
     if (contact.joined) s.insert(s.end(), {row, contact.segment_a, contact.segment_b});
@@ -69,7 +72,10 @@ class Groups {
     for (const Hook& hook : t.hooks) {
       if (hook.is_bundled()) join(hook);
     }
-    for (const state::BorneContact& borne : t.pairs.borne) sets_.merge(borne.body_a, borne.body_b);
+    for (const state::BorneContact& borne : t.pairs.borne) {
+      if (gives_way(t.bodies, borne.body_a) && gives_way(t.bodies, borne.body_b))
+        sets_.merge(borne.body_a, borne.body_b);
+    }
     for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
       if (joins(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
     }
@@ -89,7 +95,9 @@ class Groups {
     const std::uint32_t end = of_end(hook.point_end());
     return sets_.root(end != kNone ? end : of_end(hook.other_end()));
   }
-  std::uint32_t of_borne(const state::BorneContact& borne) { return sets_.root(borne.body_a); }
+  std::uint32_t of_borne(const state::BorneContact& borne) {
+    return sets_.root(gives_way(tables_.bodies, borne.body_a) ? borne.body_a : borne.body_b);
+  }
   std::uint32_t of_contact(std::size_t row) {
     return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
   }
@@ -233,7 +241,9 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
     const state::BorneContact& borne = t.pairs.borne[row];
     Bundle& bundle = bundle_at(groups.of_borne(borne));
     bundle.borne.push_back(row);
-    bundle.bodies.insert(bundle.bodies.end(), {borne.body_a, borne.body_b});
+    for (const std::uint32_t body : {borne.body_a, borne.body_b}) {
+      if (gives_way(t.bodies, body)) bundle.bodies.push_back(body);
+    }
   }
   std::uint32_t chain = 0;
   for (std::uint32_t o = 0; o < t.objects.size(); ++o) {

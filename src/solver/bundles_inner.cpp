@@ -4,6 +4,7 @@
 #include "solver/bundle_solution.h"
 #include "solver/contacts.h"
 #include "solver/inner_contacts.h"
+#include "state/body_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,10 @@ namespace hooke::solver {
 namespace {
 
 using state::InnerContact;
+
+/// What would take this many times its weight to stop in a substep slides at first: held, it would press so
+/// hard where it tips over that the friction there seems to hold it.
+constexpr double kMostStopped = 2;
 
 constexpr double kMostDrag = 1e4;  ///< Over the mass at the place: what is dragged harder sticks.
 /// The same of ropes, where a light one carries many times its weight.
@@ -122,24 +127,29 @@ void BundleSolution::load_borne_touch(std::size_t index) {
   touch.surface = vector_cast<double>(m.surface_velocity);
   touch.lever = vector_cast<double>(point.anchor_a);
   touch.lever_b = vector_cast<double>(point.anchor_b);
-  const auto moved = [&](std::uint32_t body, Vec3 lever) {
-    const state::MotionLine& line = t_.bodies.motion[body];
-    return line.dx + cross(t_.bodies.scale[body] * line.theta_scaled, lever);
-  };
-  const Vec3 way = moved(m.body_b, point.anchor_b) - moved(m.body_a, point.anchor_a);
+  const Vec3 way = way_between(t_.bodies, m, point);
   touch.separation = touch.near ? static_cast<double>(contact.separation + dot(m.normal, way)) : 0;
+  // What does not give way moves as it is told.
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  if (a < 0) touch.surface += velocity_of(contact.body_a, touch.lever);
+  if (b < 0) touch.surface -= velocity_of(contact.body_b, touch.lever_b);
   // What hangs is held: it is the heavier body that slides.
-  touch.resistance = std::min(b_.moving[static_cast<std::size_t>(a)].body.inverse_mass,
-                              b_.moving[static_cast<std::size_t>(b)].body.inverse_mass);
+  touch.resistance = 1 / static_cast<double>(contact.load);
   // Where it is wedged in, leaving at the full speed would be work: no more than to lift it.
-  const double weight = static_cast<double>(length(t_.desc.gravity)) / touch.resistance;
+  const auto gravity = static_cast<double>(length(t_.desc.gravity));
+  const double weight = gravity / touch.resistance;
   const double force = static_cast<double>(contact.normal_force);
   touch.push_out = kInnerPushOutSpeed * (force > weight ? weight / force : 1);
   make_touch_rows(index, {.n = vector_cast<double>(m.normal),
                           .normal = force,
                           .friction = vector_cast<double>(contact.friction_force),
-                          .slides = contact.slides});
+                          .slides = contact.slides,
+                          .fast = kMostStopped * touch.friction * h_ * gravity});
+}
+
+DVec3 BundleSolution::velocity_of(std::uint32_t body, DVec3 lever) const {
+  const JointBody now = joint_body_now(t_.bodies, body);
+  return now.v + cross(now.scale * now.omega_scaled, lever);
 }
 
 void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) {
@@ -181,9 +191,10 @@ void BundleSolution::make_touch_rows(std::size_t index, const TouchForce& last) 
   touch.f = friction - dot(axes[0], friction) * axes[0];
   touch.active = touch.near && (touch.normal > 0 || touch.separation <= 0);
   const double size = length(touch.f);
-  touch.slides = last.slides || (size > 0 && size >= kSlidingShare * touch.friction * touch.normal);
+  const double speed = length(sliding_of(index, true));
+  const bool at_bound = size > 0 && size >= kSlidingShare * touch.friction * touch.normal;
+  touch.slides = last.slides || at_bound || speed > last.fast;
   if (touch.slides) {
-    const double speed = length(sliding_of(index, true));
     touch.slides = speed > 0;
     touch.drag = speed > 0 ? touch.friction * touch.normal / speed : 0;
   }
@@ -245,8 +256,8 @@ DVec3 BundleSolution::sliding_of(std::size_t index, bool before) const {
 }
 
 /// Friction of an active contact: whether it sticks, and what drags it if not. True if it is not yet what it
-/// should be.
-bool BundleSolution::update_inner_friction(std::size_t index) {
+/// should be. What slides sticks only if it `may_stick`.
+bool BundleSolution::update_inner_friction(std::size_t index, bool may_stick) {
   InnerTouch& touch = b_.touches[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   const double most = touch.friction * touch.normal;
@@ -266,13 +277,14 @@ bool BundleSolution::update_inner_friction(std::size_t index) {
   const double drag = touch.drag;
   touch.f = -drag * sliding;
   const double most_drag = index < b_.inner.size() ? kMostDrag : kMostRopeDrag;
-  touch.slides = speed > 0 && most * touch.mobility < most_drag * speed;
+  touch.slides = speed > 0 && (!may_stick || most * touch.mobility < most_drag * speed);
   touch.drag = touch.slides ? most / speed : 0;
   return !touch.slides || std::abs(touch.drag - drag) > kSettledDrag * drag;
 }
 
 /// Of what is borne, rows join and leave until they are right. From some number of solutions on they only
-/// join: what is left out is gone through, what holds too long sticks for a substep, which makes no energy.
+/// join, and what slides does not stick again: what is left out is gone through, what holds too long makes no
+/// energy, but friction that holds a substep too long takes all the speed there is.
 Unsettled BundleSolution::update_borne_touch(std::size_t index, bool only_join) {
   InnerTouch& touch = b_.touches[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
@@ -281,7 +293,9 @@ Unsettled BundleSolution::update_borne_touch(std::size_t index, bool only_join) 
   if (touch.active) {
     touch.normal = std::max(0.0, b_.lambda[first]);
     touch.active = touch.normal > 0 || only_join;
-    slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index);
+    const bool stuck = !touch.slides;
+    slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index, !only_join);
+    if (only_join) slides_otherwise = stuck && touch.slides;
   } else {
     touch.normal = 0;
     touch.active = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(touch) < 0;
@@ -289,7 +303,7 @@ Unsettled BundleSolution::update_borne_touch(std::size_t index, bool only_join) 
   }
   if (!touch.active) touch.f = {};
   Unsettled unsettled;
-  unsettled.points = touch.active != was_active || (slides_otherwise && !only_join);
+  unsettled.points = touch.active != was_active || slides_otherwise;
   return unsettled;
 }
 
@@ -303,7 +317,7 @@ Unsettled BundleSolution::update_inner_touch(std::size_t index, bool let_go) {
   if (touch.active) {
     touch.normal = std::max(0.0, b_.lambda[first]);
     touch.active = touch.normal > 0;
-    const bool slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index);
+    const bool slides_otherwise = touch.active && touch.friction > 0 && update_inner_friction(index, true);
     const double pull = -b_.lambda[first];
     unsettled.pulls = touch.firm && pull > 0 && is_work(pull * touch.separation / h_, 1 / touch.mobility);
     touch.let_go = let_go && unsettled.pulls;

@@ -58,6 +58,7 @@ struct BorneContact {
   std::int32_t point = 0;      ///< Of Manifold::kMaxPoints; the manifold may have fewer now.
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
+  Real load = Real(0);          ///< What is lifted where they leave each other [kg].
   Real separation = Real(0);    ///< Where the bodies were at the start of the step, along their lines [m].
   Real normal_force = Real(0);  ///< In the last particle substep [N].
   Vec3 friction_force = {};     ///< On B [N].

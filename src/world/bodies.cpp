@@ -139,7 +139,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
   solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
-                              world.hooked, world.holding, t.bodies, t.hooks, t.pairs, world.borne);
+                              world.hooked, world.holders, t.bodies, t.hooks, t.pairs, world.borne);
   solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.hooked, t.bodies,
                             world.body_contacts, world.hard_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,

@@ -21,11 +21,12 @@ std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b
 void refresh_hooks(WorldData& world) {
   const state::Tables& t = world.tables;
   world.hooked.resize(t.bodies.motion.size());
-  world.holding.resize(t.bodies.motion.size());
+  world.holders.holding.resize(t.bodies.motion.size());
+  world.holders.burden.resize(t.bodies.motion.size());
   if (world.joints_revision == t.hook_revision) return;
   world.joints_revision = t.hook_revision;
   solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
-  solver::find_holding(world.joints, t.bodies, t.hooks, world.holding);
+  solver::find_holders(world.joints, t.bodies, t.hooks, world.holders);
   std::fill(world.hooked.begin(), world.hooked.end(), std::uint8_t{0});
   world.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {

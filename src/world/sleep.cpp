@@ -70,6 +70,15 @@ bool wake_struck(WorldData& world) {
   return any;
 }
 
+/// What is pressed into another leaves it more slowly than what rests may move (solver/borne_contacts.h).
+void keep_rising_awake(state::Tables& t) {
+  constexpr Real kSunk = Real(1e-3);  // [m]
+  for (const state::BorneContact& contact : t.pairs.borne) {
+    if (!(contact.separation < -kSunk)) continue;
+    t.bodies.rest_time[contact.body_a] = t.bodies.rest_time[contact.body_b] = Real(0);
+  }
+}
+
 /// For how long each island has been at rest: the least over its members, at its root.
 void find_rest_of_islands(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
@@ -115,7 +124,6 @@ void put_to_sleep(WorldData& world, Real dt) {
   state::Tables& t = world.tables;
   Bodies& bodies = t.bodies;
   if (!t.desc.sleeping || world.awake.empty()) return;
-  bool any_rests = false;
   for (const state::Hook& hook : t.hooks) {
     if (hook.holds_point()) wake_ends(hook, bodies);  // ropes and cloths never rest
   }
@@ -123,8 +131,11 @@ void put_to_sleep(WorldData& world, Real dt) {
     const Real speed =
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
-    any_rests = any_rests || !(bodies.rest_time[body] < kRestTime);
   }
+  keep_rising_awake(t);
+  const bool any_rests = std::any_of(world.awake.begin(), world.awake.end(), [&](std::uint32_t body) {
+    return !(bodies.rest_time[body] < kRestTime);
+  });
   if (!any_rests) return;
   base::DisjointSets& islands = world.islands;
   islands.reset(bodies.motion.size());

@@ -69,8 +69,8 @@ struct WorldData {
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
   solver::Joints joints;
-  std::vector<std::uint8_t> hooked;      ///< Whether a hook holds the body, by body row.
-  std::vector<solver::Holding> holding;  ///< By body row.
+  std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
+  solver::Holders holders;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
   std::vector<std::uint32_t>
       hooked_begin;                  ///< Of the pairs of each body that is the first; one more at the end.

@@ -20,6 +20,21 @@ BodyId add_box(World& world, DVec3 position, double mass, Vec3 half, double fric
   return take(world.add_body(desc));
 }
 
+/// A ball of 20 kg on an axle across the body; it rolls along x.
+void add_wheel(World& world, BodyId body, DVec3 place, double radius, double speed) {
+  const BodyId wheel = take(world.add_body({.kind = BodyKind::kDynamic,
+                                            .shape = Shape::sphere(static_cast<Real>(radius)),
+                                            .position = place,
+                                            .velocity = {static_cast<Real>(speed), 0, 0},
+                                            .angular_velocity = {0, 0, static_cast<Real>(-speed / radius)},
+                                            .mass = Real(20)}));
+  take(world.add_hook({.kind = HookKind::kHinge,
+                       .a = {.body = body},
+                       .b = {.body = wheel},
+                       .anchor = place,
+                       .axis = {0, 0, 1}}));
+}
+
 /// Asleep, forces are those of a moment.
 WorldDesc awake() {
   WorldDesc desc = without_air();
@@ -120,6 +135,61 @@ struct Ramp {
   static constexpr Real kAngle = Real(0.4);  // [rad]
 };
 
+/// A top on four legs of 1 kg, 1 m high, on the ground or above it.
+struct Stand {
+  World world = make_world(awake());
+  BodyId top;
+  std::vector<BodyId> legs;
+
+  explicit Stand(double mass, double bottom = 0, Vec3 velocity = {}) {
+    BodyDesc ground{.kind = BodyKind::kStatic, .shape = Shape::box({20, 1, 20}), .position = {0, -1, 0}};
+    ground.contact.friction = Real(0.5);
+    take(world.add_body(ground));
+    top = add(mass, {0, bottom + 1.05, 0}, {1, Real(0.05), 1}, velocity);
+    for (const double x : {-0.8, 0.8}) {
+      for (const double z : {-0.8, 0.8}) {
+        legs.push_back(add(kLegMass, {x, bottom + 0.5, z}, {Real(0.05), Real(0.5), Real(0.05)}, velocity));
+        take(world.add_hook({.kind = HookKind::kFixed,
+                             .a = {.body = top},
+                             .b = {.body = legs.back()},
+                             .anchor = {x, bottom + 1, z}}));
+      }
+    }
+  }
+
+  BodyId add(double mass, DVec3 position, Vec3 half, Vec3 velocity) {
+    BodyDesc desc{.kind = BodyKind::kDynamic,
+                  .shape = Shape::box(half),
+                  .position = position,
+                  .velocity = velocity,
+                  .mass = static_cast<Real>(mass)};
+    desc.contact.friction = Real(0.5);
+    return take(world.add_body(desc));
+  }
+
+  /// On all legs, in the last step [N].
+  [[nodiscard]] double load() const {
+    double sum = 0;
+    for (const BodyId leg : legs) {
+      for (const BodyContact& contact : world.body_contacts(leg))
+        sum += std::abs(d(contact.normal_force * contact.normal.y));
+    }
+    return sum;
+  }
+
+  /// The deepest overlap over some steps [m].
+  double deepest(int steps) {
+    double depth = 0;
+    for (int i = 0; i < steps; ++i) {
+      run(world, 1);
+      depth = std::max(depth, world.measure().largest_penetration);
+    }
+    return depth;
+  }
+
+  static constexpr double kLegMass = 1;
+};
+
 }  // namespace
 
 TEST_SUITE("world/borne_contacts") {
@@ -170,16 +240,7 @@ TEST_SUITE("world/borne_contacts") {
     const BodyId chassis = add_box(world, {0.1, 0.3, 0}, 400, {Real(0.6), Real(0.1), Real(0.25)});
     for (const double x : {-0.35, 0.55}) {
       for (const double z : {-0.2, 0.2}) {
-        const DVec3 place = {x, 0.12, z};
-        const BodyId wheel = take(world.add_body({.kind = BodyKind::kDynamic,
-                                                  .shape = Shape::sphere(Real(0.15)),
-                                                  .position = place,
-                                                  .mass = Real(20)}));
-        take(world.add_hook({.kind = HookKind::kHinge,
-                             .a = {.body = chassis},
-                             .b = {.body = wheel},
-                             .anchor = place,
-                             .axis = {0, 0, 1}}));
+        add_wheel(world, chassis, {x, 0.12, z}, 0.15, 0);
       }
     }
     const double start = world.measure().energy.total();
@@ -228,6 +289,69 @@ TEST_SUITE("world/borne_contacts") {
     const auto angle = static_cast<double>(Ramp::kAngle);
     CHECK(gained ==
           doctest::Approx(0.5 * kGravity * (std::sin(angle) - 0.2 * std::cos(angle))).epsilon(0.01));
+  }
+
+  TEST_CASE("a heavy top on legs of a kilogram: it stands on the ground, and falls onto it from 1 m") {
+    for (const double mass : {10.0, 100.0, 1000.0}) {
+      CAPTURE(mass);
+      for (const double bottom : {0.0, 1.0}) {
+        CAPTURE(bottom);
+        Stand stand(mass, bottom);
+        CHECK(stand.deepest(120) < 5e-4);
+        CHECK(stand.deepest(60) < 1e-5);
+        CHECK(stand.world.center_of_mass(stand.top).y == doctest::Approx(1.05).epsilon(1e-3));
+        CHECK(stand.load() == doctest::Approx((mass + 4 * Stand::kLegMass) * kGravity).epsilon(0.01));
+      }
+    }
+  }
+
+  TEST_CASE("a ton laid on a light table that stands on the ground") {
+    Stand stand(1);
+    const BodyId ton = stand.add(kTon, {0, 1.41, 0}, {Real(0.3), Real(0.3), Real(0.3)}, {});
+    CHECK(stand.deepest(120) < 1e-3);
+    CHECK(stand.deepest(60) < 5e-5);
+    CHECK(stand.world.center_of_mass(ton).y == doctest::Approx(1.4).epsilon(1e-3));
+    // That of the last substep: in double the ton rocks by 1e-5 m (docs/decisions/0022-borne-contacts.md).
+    CHECK(stand.load() == doctest::Approx((kTon + 5) * kGravity).epsilon(0.1));
+  }
+
+  TEST_CASE("a heavy top on light legs slides by mu g, whatever its mass") {
+    for (const double mass : {10.0, 1000.0}) {
+      CAPTURE(mass);
+      Stand stand(mass, 0, {5, 0, 0});
+      run(stand.world, 6);
+      const double before = d(stand.world.velocity(stand.top).x);
+      run(stand.world, 30);
+      const Vec3 v = stand.world.velocity(stand.top);
+      CHECK(before - d(v.x) == doctest::Approx(0.5 * 0.5 * kGravity).epsilon(0.005));
+      CHECK(std::abs(d(v.y)) < 1e-4);
+      run(stand.world, 60);
+      CHECK(length(stand.world.velocity(stand.top)) < Real(1e-4));
+    }
+  }
+
+  TEST_CASE("a cart of 400 kg rolls on wheels of 20 kg: at its speed, with its energy, without sinking in") {
+    World world = make_world(awake());
+    BodyDesc ground{.kind = BodyKind::kStatic, .shape = Shape::box({200, 1, 200}), .position = {0, -1, 0}};
+    ground.contact.friction = Real(0.5);
+    take(world.add_body(ground));
+    constexpr double kSpeed = 5;
+    const BodyId chassis = add_box(world, {0, 0.5, 0}, 400, {Real(1.2), Real(0.2), Real(0.5)});
+    world.set_velocity(chassis, {Real(kSpeed), 0, 0});
+    for (const double x : {-0.9, 0.9}) {
+      for (const double z : {-0.65, 0.65}) {
+        add_wheel(world, chassis, {x, 0.3, z}, 0.3, kSpeed);
+      }
+    }
+    const double start = world.measure().energy.total();
+    double deepest = 0;
+    for (int i = 0; i < 240; ++i) {
+      run(world, 1);
+      deepest = std::max(deepest, world.measure().largest_penetration);
+    }
+    CHECK(deepest < 1e-5);
+    CHECK(world.center_of_mass(chassis).x == doctest::Approx(4 * kSpeed).epsilon(1e-4));
+    CHECK(world.measure().energy.total() == doctest::Approx(start).epsilon(1e-5));
   }
 
   TEST_CASE("two hooked planks and what falls on them keep their momentum") {
