@@ -120,6 +120,15 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
   }
 }
 
+/// Ragdolls are of like masses and let to err; they stop being loose where they do by too much.
+void leave_out_loose(const Joints& joints, std::vector<Burden>& burden) {
+  for (const std::uint32_t i : joints.order) {
+    const Articulation& tree = joints.articulations[i];
+    if (!tree.tree.loose) continue;
+    for (const std::uint32_t body : tree.bodies) burden[body] = {};
+  }
+}
+
 /// Marks manifolds of what is pressed on the ground, `chosen` being chosen already.
 void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pairs& pairs) {
   const Bodies& bodies = candidates.bodies;
@@ -230,6 +239,7 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
                                  scratch.holders,      scratch.borne_before};
   const std::size_t chosen = choose(candidates, pairs, scratch.holders.holding);
   if (chosen > 0) add_loads(joints, bodies, pairs, scratch.load, scratch.holders.burden);
+  leave_out_loose(joints, scratch.holders.burden);
   choose_pressed(candidates, chosen, pairs);
   scratch.bears.assign(bodies.motion.size(), 0);
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
