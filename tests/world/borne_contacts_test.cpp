@@ -337,7 +337,7 @@ TEST_SUITE("world/borne_contacts") {
     take(world.add_body(ground));
     constexpr double kSpeed = 5;
     const BodyId chassis = add_box(world, {0, 0.5, 0}, 400, {Real(1.2), Real(0.2), Real(0.5)});
-    world.set_velocity(chassis, {Real(kSpeed), 0, 0});
+    CHECK(world.set_velocity(chassis, {Real(kSpeed), 0, 0}));
     for (const double x : {-0.9, 0.9}) {
       for (const double z : {-0.65, 0.65}) {
         add_wheel(world, chassis, {x, 0.3, z}, 0.3, kSpeed);
