@@ -280,9 +280,14 @@ bool is_moved(const Scene& scene, std::uint32_t collider) {
   return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
 }
 
-/// What each body that moves is near to: one other body, one collider of what nothing moves, or several.
-void find_company(const Scene& scene, std::span<const Pair> pairs, std::vector<std::uint32_t>& company) {
+/// What each body that moves is near to: one other body, one collider of what nothing moves, or several, as
+/// those of `in_company` always are.
+void find_company(const Scene& scene, std::span<const Pair> pairs, std::span<const std::uint8_t> in_company,
+                  std::vector<std::uint32_t>& company) {
   company.assign(scene.bodies.traits.size(), kNone);
+  for (std::size_t body = 0; body < in_company.size(); ++body) {
+    if (in_company[body] != 0) company[body] = kSeveral;
+  }
   const auto meet = [&](std::uint32_t collider, std::uint32_t other) {
     if (!is_moved(scene, collider)) return;
     const std::uint32_t one =
@@ -701,15 +706,15 @@ NarrowPhase& NarrowPhase::operator=(NarrowPhase&&) noexcept = default;
 
 NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                                 const state::Colliders& colliders,
-                                                std::span<const MaterialPairDesc> materials, Real dt,
-                                                int substeps, state::Pairs& pairs) {
+                                                std::span<const MaterialPairDesc> materials,
+                                                const NarrowPhaseStep& step, state::Pairs& pairs) {
   auto& [placed, old, motions, company, all_chunks, first_manifold, ghosts, lively, lively_chunks, look] =
       *buffers_;
   place_all(pool, bodies, colliders, placed);
   find_motions(pool, bodies, pairs.seen, motions);
   base::take_turns(pairs.manifold, old);
-  Scene scene = {bodies, colliders, materials, dt, substeps, placed, old, motions};
-  find_company(scene, pairs.pair, company);
+  Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions};
+  find_company(scene, pairs.pair, step.in_company, company);
   scene.company = company;
   const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
   if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);

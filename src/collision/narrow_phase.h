@@ -25,6 +25,13 @@ struct NarrowPhaseCounts {
   std::uint32_t ghosts = 0;  ///< Manifolds that were left out because another surface covers them.
 };
 
+/// The step that manifolds are made for.
+struct NarrowPhaseStep {
+  Real dt = Real(0);  ///< [s]
+  int substeps = 1;
+  std::span<const std::uint8_t> in_company = {};  ///< By body row: 1 for what counts as in a crowd anyway.
+};
+
 /// Makes manifolds of pairs; what it holds is memory to be used again.
 class NarrowPhase {
  public:
@@ -48,11 +55,12 @@ class NarrowPhase {
   ///
   /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
   /// body turns by more than 0.2 rad (0.02 where one of them is round), or the pair touches and one goes over
-  /// the other by more than it is thick; and which `substeps` looks are enough for. It has at least one
-  /// manifold, a mesh some more, which may be without points until update_lively_manifolds finds some.
+  /// the other by more than it is thick; and which as many looks as there are substeps are enough for. Not in
+  /// a crowd. It has at least one manifold, a mesh some more, which may be without points until
+  /// update_lively_manifolds finds some.
   NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                      const state::Colliders& colliders,
-                                     std::span<const MaterialPairDesc> materials, Real dt, int substeps,
+                                     std::span<const MaterialPairDesc> materials, const NarrowPhaseStep& step,
                                      state::Pairs& pairs);
 
   /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,

@@ -150,14 +150,21 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
   build_net(others, hooks, bodies, degree, colors, joints.net);
 }
 
-void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
-                    Joints& joints) {
+void judge_looseness(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
+                     Joints& joints) {
+  joints.in_loose_tree.assign(bodies.motion.size(), 0);
   parallel::for_ranges(pool, static_cast<int>(joints.order.size()), kTreeGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       Articulation& art = joints.articulations[joints.order[i]];
       art.tree.loose = !art.has_loops() && is_loose(art, hooks, bodies);
+      if (!art.tree.loose) continue;
+      for (const std::uint32_t body : art.bodies) joints.in_loose_tree[body] = 1;
     }
   });
+}
+
+void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
+                    Joints& joints) {
   prepare_net(joints.net);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {

@@ -22,6 +22,7 @@
 ///
 /// The order of calls:
 ///   build_joints                                            when hooks or bodies came or went
+///   judge_looseness, before contacts are looked for         once a step
 ///   prepare_joints                                          once a step
 ///   [solve_joints, then bodies move, then relax_joints]     each substep
 ///   finish_joints                                           once a step
@@ -59,6 +60,8 @@ struct Joints {
   std::vector<std::uint32_t> order;         ///< Articulations: those with loops first, then trees by kind.
   BallJoints balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint_nets.h).
   JointNet net;      ///< All others that are in none of them.
+  std::vector<std::uint8_t>
+      in_loose_tree;  ///< By body row: 1 for members of trees that are loose in this step.
   std::vector<SolveScratch> scratch;
   BuildScratch build;
 };
@@ -70,6 +73,10 @@ inline constexpr double kArticulationBudget = 2e6;
 /// Groups that cost more than `budget` multiplications go into the net.
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints);
+
+/// Which trees are loose in this step (solver/loose_trees.h).
+void judge_looseness(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
+                     const state::Bodies& bodies, Joints& joints);
 
 /// Start of a step of substeps of length h [s]: no impulse yet.
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,

@@ -123,8 +123,9 @@ void find_body_contacts(WorldData& world, Real dt) {
   world.broad_phase.find_pairs(*world.pool, world.pairs_found);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
   world.narrow_phase.merge_pairs(world.pairs_found, t.pairs);
-  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, dt,
-                                      t.desc.substeps, t.pairs);
+  world.narrow_phase.update_manifolds(
+      *world.pool, t.bodies, t.colliders, t.desc.materials,
+      {.dt = dt, .substeps = t.desc.substeps, .in_company = world.joints.in_loose_tree}, t.pairs);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {

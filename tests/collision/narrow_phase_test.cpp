@@ -315,8 +315,8 @@ TEST_SUITE("collision/narrow_phase") {
           for (std::uint32_t b = a + 1; b < 41; ++b) found.push_back({a, b});
         }
         scene.narrow_phase.merge_pairs(found, scene.pairs);
-        scene.narrow_phase.update_manifolds(pool, scene.bodies, scene.colliders, {}, Real(0.01), 8,
-                                            scene.pairs);
+        scene.narrow_phase.update_manifolds(pool, scene.bodies, scene.colliders, {},
+                                            {.dt = Real(0.01), .substeps = 8}, scene.pairs);
         for (std::uint32_t body = 1; body < 41; ++body) scene.move(body, {0.001 * body, -0.002, 0});
       }
       return scene.pairs;

@@ -64,7 +64,8 @@ struct PairScene {
       }
     }
     narrow_phase.merge_pairs(found, pairs);
-    counts = narrow_phase.update_manifolds(pool, bodies, colliders, materials, dt, 8, pairs);
+    counts =
+        narrow_phase.update_manifolds(pool, bodies, colliders, materials, {.dt = dt, .substeps = 8}, pairs);
   }
 };
 
