@@ -24,6 +24,7 @@ struct Candidates {
   std::span<const std::uint8_t> hooked;
   const Holders& holders;
   std::span<const std::pair<std::uint32_t, std::uint32_t>> borne_before;  ///< Bodies, ascending.
+  std::span<const std::uint8_t> in_ragdoll;  ///< Of like masses: what presses there may err.
 
   [[nodiscard]] bool may_be_borne(const Manifold& m) const {
     return !m.borne && m.point_count > 0 && has_contact_rows(m, bodies);
@@ -45,7 +46,7 @@ struct Candidates {
 
   /// Whether it is pressed against what no force moves.
   [[nodiscard]] bool is_pressed(std::uint32_t body, const Manifold& m) const {
-    if (holders.holding[body] == Holding::kNone) return false;
+    if (holders.holding[body] == Holding::kNone || in_ragdoll[body] != 0) return false;
     const Burden& burden = holders.burden[body];
     const Real w = bodies.motion[body].inverse_mass;
     if (w * burden.neighbor >= kPressedMass) return true;
@@ -117,15 +118,6 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
       burden[body].neighbor = std::max(burden[body].neighbor, heaviest);
       burden[body].group += heaviest;
     }
-  }
-}
-
-/// Ragdolls are of like masses and let to err; they stop being loose where they do by too much.
-void leave_out_loose(const Joints& joints, std::vector<Burden>& burden) {
-  for (const std::uint32_t i : joints.order) {
-    const Articulation& tree = joints.articulations[i];
-    if (!tree.tree.loose) continue;
-    for (const std::uint32_t body : tree.bodies) burden[body] = {};
   }
 }
 
@@ -235,11 +227,10 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
   base::sort_unique(scratch.borne_before);
   pairs.borne.clear();
   scratch.holders = holders;
-  const Candidates candidates = {length(step.gravity), impulse_to_force,    bodies, hooked,
-                                 scratch.holders,      scratch.borne_before};
+  const Candidates candidates = {length(step.gravity), impulse_to_force,     bodies,           hooked,
+                                 scratch.holders,      scratch.borne_before, joints.in_ragdoll};
   const std::size_t chosen = choose(candidates, pairs, scratch.holders.holding);
   if (chosen > 0) add_loads(joints, bodies, pairs, scratch.load, scratch.holders.burden);
-  leave_out_loose(joints, scratch.holders.burden);
   choose_pressed(candidates, chosen, pairs);
   scratch.bears.assign(bodies.motion.size(), 0);
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {

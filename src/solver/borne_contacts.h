@@ -37,7 +37,7 @@ inline constexpr Real kBorneLoad = Real(1);
 
 /// From this ratio on between a body and one that it is locked to, its contacts with the ground are borne;
 /// from the second on between it and all that hang together with it, if it presses on the ground with so many
-/// times its weight, or did in the last step and presses with a quarter of that still. Members of loose trees
+/// times its weight, or did in the last step and presses with a quarter of that still. Ragdolls
 /// (loose_trees.h) are left out.
 inline constexpr Real kPressedMass = Real(8);
 inline constexpr Real kPressedGroup = Real(25);

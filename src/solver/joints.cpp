@@ -150,15 +150,16 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
   build_net(others, hooks, bodies, degree, colors, joints.net);
 }
 
-void judge_looseness(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                     Joints& joints) {
-  joints.in_loose_tree.assign(bodies.motion.size(), 0);
+void judge_ragdolls(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
+                    Joints& joints) {
+  joints.in_ragdoll.assign(bodies.motion.size(), 0);
   parallel::for_ranges(pool, static_cast<int>(joints.order.size()), kTreeGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       Articulation& art = joints.articulations[joints.order[i]];
-      art.tree.loose = !art.has_loops() && is_loose(art, hooks, bodies);
-      if (!art.tree.loose) continue;
-      for (const std::uint32_t body : art.bodies) joints.in_loose_tree[body] = 1;
+      const bool ragdoll = !art.has_loops() && is_ragdoll(art, hooks, bodies);
+      art.tree.loose = ragdoll && is_loose(art, hooks);
+      if (!ragdoll) continue;
+      for (const std::uint32_t body : art.bodies) joints.in_ragdoll[body] = 1;
     }
   });
 }

@@ -22,7 +22,7 @@
 ///
 /// The order of calls:
 ///   build_joints                                            when hooks or bodies came or went
-///   judge_looseness, before contacts are looked for         once a step
+///   judge_ragdolls, before contacts are looked for          once a step
 ///   prepare_joints                                          once a step
 ///   [solve_joints, then bodies move, then relax_joints]     each substep
 ///   finish_joints                                           once a step
@@ -60,8 +60,7 @@ struct Joints {
   std::vector<std::uint32_t> order;         ///< Articulations: those with loops first, then trees by kind.
   BallJoints balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint_nets.h).
   JointNet net;      ///< All others that are in none of them.
-  std::vector<std::uint8_t>
-      in_loose_tree;  ///< By body row: 1 for members of trees that are loose in this step.
+  std::vector<std::uint8_t> in_ragdoll;  ///< By body row: 1 for members of ragdolls (solver/loose_trees.h).
   std::vector<SolveScratch> scratch;
   BuildScratch build;
 };
@@ -74,9 +73,9 @@ inline constexpr double kArticulationBudget = 2e6;
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints);
 
-/// Which trees are loose in this step (solver/loose_trees.h).
-void judge_looseness(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
-                     const state::Bodies& bodies, Joints& joints);
+/// Which trees are ragdolls, and which of those are loose in this step (solver/loose_trees.h).
+void judge_ragdolls(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
+                    const state::Bodies& bodies, Joints& joints);
 
 /// Start of a step of substeps of length h [s]: no impulse yet.
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,

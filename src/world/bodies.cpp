@@ -125,7 +125,7 @@ void find_body_contacts(WorldData& world, Real dt) {
   world.narrow_phase.merge_pairs(world.pairs_found, t.pairs);
   world.narrow_phase.update_manifolds(
       *world.pool, t.bodies, t.colliders, t.desc.materials,
-      {.dt = dt, .substeps = t.desc.substeps, .in_company = world.joints.in_loose_tree}, t.pairs);
+      {.dt = dt, .substeps = t.desc.substeps, .in_company = world.joints.in_ragdoll}, t.pairs);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {

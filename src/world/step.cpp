@@ -58,7 +58,7 @@ void detect(WorldData& w, double dt) {
   world::refresh_hooks(w);
   world::set_off_explosions(w, dt);
   world::list_awake_bodies(w);
-  solver::judge_looseness(*w.pool, w.tables.hooks, w.tables.bodies, w.joints);
+  solver::judge_ragdolls(*w.pool, w.tables.hooks, w.tables.bodies, w.joints);
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
   collision::find_contacts(dt, w.particle_contacts, w.tables);

@@ -35,7 +35,8 @@ struct Pair {
 
 bool is_loose(const JointRig& rig) {
   REQUIRE(rig.joints.order.size() == 1);
-  return is_loose(rig.joints.articulations[0], rig.t.hooks, rig.t.bodies);
+  const Articulation& tree = rig.joints.articulations[0];
+  return is_ragdoll(tree, rig.t.hooks, rig.t.bodies) && is_loose(tree, rig.t.hooks);
 }
 
 /// A row of parts on balls that rub, thrown.
