@@ -195,7 +195,7 @@ class PairSweep {
   std::optional<Impact> sweep_triangles(const Closing& closing, Real begin, Real end, Real reach) {
     const PlacedMesh mesh = mesh_at(begin);
     const Convex shape = shape_at(begin);
-    find_triangles_near(mesh, shape, Real(1.01) * reach, scratch_.triangles);
+    find_triangles_near(mesh, shape, MeshReach(Real(1.01) * reach), scratch_.triangles);
     std::optional<Impact> first;
     for (const std::uint32_t index : scratch_.triangles) {
       const Real until = first ? first->time : end;

@@ -18,11 +18,13 @@ namespace {
 
 constexpr std::size_t kMaxPatches = 6;
 
-/// The box of the shape in the frame of the mesh.
-geometry::Box bounds_in(const PlacedMesh& mesh, const Convex& b, Real margin) {
-  const auto reach = [&](Vec3 axis) { return dot(axis, support_of(b, axis)) + skin_of(b) + margin; };
-  const Vec3 upper = {reach(mesh.axes.x), reach(mesh.axes.y), reach(mesh.axes.z)};
-  const Vec3 lower = {-reach(-mesh.axes.x), -reach(-mesh.axes.y), -reach(-mesh.axes.z)};
+/// The box of the shape, and of what is in reach of it, in the frame of the mesh.
+geometry::Box bounds_in(const PlacedMesh& mesh, const Convex& b, const MeshReach& reach) {
+  const auto side = [&](Vec3 axis) {
+    return dot(axis, support_of(b, axis)) + skin_of(b) + reach.along(-axis);
+  };
+  const Vec3 upper = {side(mesh.axes.x), side(mesh.axes.y), side(mesh.axes.z)};
+  const Vec3 lower = {-side(-mesh.axes.x), -side(-mesh.axes.y), -side(-mesh.axes.z)};
   return {mesh.origin + lower, mesh.origin + upper};
 }
 
@@ -73,19 +75,22 @@ Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
   return whole_edge ? geometry::closest_on_segment(p, rim[0], rim[1]).point : rim[0];
 }
 
-/// Whether the way from the triangle to the middle of the shape holds them farther apart than the margin: so
-/// most of the triangles are out that come into the shape's box.
-bool is_apart(const Convex& triangle, const Convex& b, Real margin) {
+/// Whether the way from the triangle to the middle of the shape holds them apart: so most of the triangles
+/// are out that come into the shape's box.
+bool is_apart(const Convex& triangle, const Convex& b, const MeshReach& reach) {
   const auto& [p, q, r] = triangle.corners;
   const Vec3 middle = middle_of(b);
   const Vec3 away = middle - geometry::closest_on_triangle(middle, p, q, r).point;
   const Real size = length(away);
-  return size > Real(0) && separation_along(triangle, b, (Real(1) / size) * away) > margin;
+  if (!(size > Real(0))) return false;
+  const Vec3 n = (Real(1) / size) * away;
+  return separation_along(triangle, b, n) > reach.along(n);
 }
 
-/// False if they are farther apart than the margin, or the shape is behind the triangle.
-bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Real margin,
+/// False if they are too far apart to meet, or the shape is behind the triangle.
+bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, const MeshReach& reach,
                    std::vector<std::uint32_t>& near, Meeting& meeting) {
+  const Real margin = reach.margin();
   const Convex triangle = a.triangle(index);
   if (b.shape.kind == ShapeKind::kSphere) return meet_ball(triangle, b, margin, meeting);
   const Vec3 front = front_of(triangle);
@@ -93,7 +98,7 @@ bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, Re
   meeting.normal = front;
   meeting.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
   const bool in_front = dot(front, middle_of(b) - triangle.corners[0]) > Real(0);
-  if (!in_front || !(meeting.separation <= margin) || is_apart(triangle, b, margin)) return false;
+  if (!in_front || !(meeting.separation <= reach.along(front)) || is_apart(triangle, b, reach)) return false;
   const Real tolerance = axis_tolerance(triangle, b);
   meet_face(triangle, b, meeting);
   if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;
@@ -257,20 +262,20 @@ Convex PlacedMesh::triangle(std::uint32_t index) const {
   return convex;
 }
 
-void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach,
+void find_triangles_near(const PlacedMesh& a, const Convex& b, const MeshReach& reach,
                          std::vector<std::uint32_t>& found) {
   geometry::find_triangles(a.mesh.bvh, bounds_in(a, b, reach), found);
 }
 
-Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch) {
+Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch) {
   scratch.contacts.clear();
   scratch.points.clear();
   scratch.first_point.assign(1, 0);
   scratch.patches.clear();
-  find_triangles_near(a, b, margin, scratch.triangles);
+  find_triangles_near(a, b, reach, scratch.triangles);
   Meeting meeting;
   for (const std::uint32_t index : scratch.triangles) {
-    if (meet_triangle(a, index, b, margin, scratch.near, meeting))
+    if (meet_triangle(a, index, b, reach, scratch.near, meeting))
       append_contact(a.triangle(index), index, meeting, scratch);
   }
   find_ghosts(scratch.contacts, Pieces::kOfOneMesh, scratch.ghosts);
@@ -288,7 +293,8 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& s
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
             [](const PatchMeeting& p, const PatchMeeting& q) { return p.patch < q.patch; });
-  return scratch.triangles.empty() ? margin : Real(0);
+  if (scratch.triangles.empty()) find_triangles_near(a, b, MeshReach(reach.margin()), scratch.triangles);
+  return scratch.triangles.empty() ? reach.margin() : Real(0);
 }
 
 }  // namespace hooke::collision

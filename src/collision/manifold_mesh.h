@@ -7,6 +7,7 @@
 #include "collision/narrow_phase_ghosts.h"
 #include "state/mesh.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +23,28 @@ struct PlacedMesh {
   [[nodiscard]] Convex triangle(std::uint32_t index) const;
 };
 
-/// Replaces `found` by the triangles whose boxes come within `reach` [m] of the shape's, in ascending order.
-void find_triangles_near(const PlacedMesh& a, const Convex& b, Real reach, std::vector<std::uint32_t>& found);
+/// How far off a mesh a shape is looked for.
+class MeshReach {
+ public:
+  /// Everywhere within `margin` [m].
+  explicit MeshReach(Real margin) : margin_(margin), least_(margin) {}
+  /// A part of the margin is for the way of the shape's center in the step, against the mesh [m]: what goes
+  /// along a triangle, or away from it, needs none of that.
+  MeshReach(Real margin, Vec3 way) : margin_(margin), least_(margin - length(way)), way_(way) {}
+
+  [[nodiscard]] Real margin() const { return margin_; }
+  /// How far apart along the unit vector `n`, from the mesh to the shape, they may be and still meet.
+  [[nodiscard]] Real along(Vec3 n) const { return least_ - std::min(dot(n, way_), Real(0)); }
+
+ private:
+  Real margin_;
+  Real least_;  ///< In any direction.
+  Vec3 way_ = {};
+};
+
+/// Replaces `found` by the triangles whose boxes come within reach of the shape's, in ascending order.
+void find_triangles_near(const PlacedMesh& a, const Convex& b, const MeshReach& reach,
+                         std::vector<std::uint32_t>& found);
 
 /// A direction in which a shape may leave a triangle that it overlaps. `n` is one for the triangle alone; it
 /// may lean over the rim, where the surface goes on: in a hollow it would lead through the next triangle.
@@ -56,6 +77,6 @@ struct MeshScratch {
 /// directions are joined. Triangles that others cover (find_ghosts) are left out: a mesh
 /// feels the same however its faces are cut. Returns a distance that they are at least apart if there are no
 /// patches [m].
-Real meet_mesh(const PlacedMesh& a, const Convex& b, Real margin, MeshScratch& scratch);
+Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch);
 
 }  // namespace hooke::collision

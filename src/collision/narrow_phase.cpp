@@ -204,7 +204,14 @@ void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const state::ColliderShape& mesh = scene.colliders.shape[is_a ? pair.collider_a : pair.collider_b];
   const DVec3 from_mesh = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
   const PlacedMesh placed = place_mesh(mesh, is_a ? view.a : view.b, from_mesh);
-  chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, chunk.margin, chunk.mesh);
+  const auto v = [&](std::uint32_t collider) {
+    return scene.bodies.motion[scene.colliders.body[collider]].v;
+  };
+  const Vec3 way = scene.dt * (v(pair.collider_b) - v(pair.collider_a));
+  // The margin of later in the step is not made of the whole way.
+  const MeshReach reach =
+      chunk.time > Real(0) ? MeshReach(chunk.margin) : MeshReach(chunk.margin, is_a ? way : -way);
+  chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, reach, chunk.mesh);
   for (PatchMeeting& patch : chunk.mesh.patches) {
     if (!is_a) swap_sides(patch.meeting);
     append(scene, pair, patch.patch, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},

@@ -49,9 +49,10 @@ class NarrowPhase {
   /// world's table.
   ///
   /// Points up to 2 cm + (|v| + |omega| r) dt apart are kept: the solver lets them come together and no
-  /// farther. A pair whose bodies both sleep or stand keeps its manifolds as they are. A pair that was apart
-  /// is tested again when the odometers of its bodies say that they may have met. Manifolds of convex shapes
-  /// that hardly moved against each other are carried along.
+  /// farther. Of triangles only where the way goes towards them. A pair whose bodies both sleep or stand
+  /// keeps its manifolds as they are. A pair that was apart is tested again when the odometers of its bodies
+  /// say that they may have met. Manifolds of convex shapes that hardly moved against each other are carried
+  /// along.
   ///
   /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
   /// body turns by more than 0.2 rad (0.02 where one of them is round), or the pair touches and one goes over

@@ -136,6 +136,28 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(kept.counts.tested == 1);
   }
 
+  TEST_CASE("what goes along a mesh, or away from it, is not held where it cannot come in the step") {
+    MeshDesc floor;
+    floor.positions = {{-4, 0, -4}, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}};
+    floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const auto manifolds = [&](Vec3 velocity, double gap) {
+      PairScene scene;
+      scene.add_mesh(floor);
+      scene.add_dynamic(kCube, {0.3, 0.5 + gap, 0.1});
+      scene.bodies.motion[1].v = velocity;
+      scene.update();
+      return scene.pairs.manifold.size();
+    };
+    const Real speed = Real(2.4);  // 4 cm in a step
+    for (const Vec3 across : {Vec3{speed, Real(0), Real(0)}, Vec3{Real(0), Real(0), -speed}}) {
+      CHECK(manifolds(across, 0.05) == 0);
+      CHECK(manifolds(across, 0.015) == 1);  // 2 cm are always seen
+    }
+    CHECK(manifolds({Real(0), speed, Real(0)}, 0.05) == 0);
+    CHECK(manifolds({Real(0), -speed, Real(0)}, 0.05) == 1);
+    CHECK(manifolds({Real(0), -speed, Real(0)}, 0.065) == 0);
+  }
+
   TEST_CASE(
       "calm bodies of an island that is too large keep their manifold for 1.5 cm, others for half a "
       "millimeter") {
