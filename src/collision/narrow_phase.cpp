@@ -41,7 +41,7 @@ struct Scene {
   std::span<const MaterialPairDesc> materials;
   Real dt;  ///< Of what is looked ahead: a step, or a substep.
   int substeps = 1;
-  std::span<const Convex> placed = {};  ///< Of each collider, from its body's center of mass.
+  std::span<const Convex> placed = {};  ///< Of colliders in pairs that do not rest, from their body's center.
   std::span<const Manifold> old = {};
   std::span<const SmallMotion> motions = {};    ///< Of each body, since the last step.
   std::span<const std::uint32_t> company = {};  ///< Of each body; see find_company.
@@ -67,13 +67,6 @@ struct Chunk {
     sweep.meeting = {};
   }
 };
-
-/// Whether the body stays where it is in this step.
-bool stands(const state::Bodies& bodies, std::uint32_t body) {
-  if (bodies.asleep[body] != 0 || bodies.traits[body].kind == BodyKind::kStatic) return true;
-  return bodies.traits[body].kind == BodyKind::kKinematic && bodies.motion[body].v == Vec3{} &&
-         bodies.angular_velocity[body] == Vec3{};
-}
 
 /// 2 cm and the way two points of the bodies can come together in a step.
 Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
@@ -425,7 +418,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   add_drift(scene.motions[a], scene.motions[b], pair.drift);
   if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
     // Nothing pushes here; who overlaps is found at the end of the step.
-  } else if (pair.tested && stands(scene.bodies, a) && stands(scene.bodies, b)) {
+  } else if (rests(scene.bodies, scene.colliders, pair)) {
     ++chunk.counts.skipped;
     const auto old = scene.old.begin() + pair.first_manifold;
     chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
@@ -567,12 +560,14 @@ struct Support {
   std::uint32_t manifold = 0;
 };
 
-/// Not those of later in the step: only places of one time can be compared.
+/// Not those of later in the step: only places of one time can be compared. Nor those that rest: they were
+/// looked at before.
 void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Support>& supports) {
   supports.clear();
   for (const Pair& pair : pairs.pair) {
     const bool a_moved = is_moved(scene, pair.collider_a);
     if (pair.time > Real(0) || a_moved == is_moved(scene, pair.collider_b)) continue;
+    if (rests(scene.bodies, scene.colliders, pair)) continue;
     for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
       if (pairs.manifold[i].point_count > 0)
         supports.push_back({a_moved ? pair.collider_a : pair.collider_b, i});
@@ -649,13 +644,22 @@ std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pai
   return static_cast<std::uint32_t>(ghosts.size());
 }
 
-void place_all(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
-               std::vector<Convex>& placed) {
+/// Colliders of pairs that do not rest.
+void find_tested(const state::Bodies& bodies, const state::Colliders& colliders, std::span<const Pair> pairs,
+                 std::vector<std::uint8_t>& tested) {
+  tested.assign(colliders.body.size(), 0);
+  for (const Pair& pair : pairs) {
+    if (!rests(bodies, colliders, pair)) tested[pair.collider_a] = tested[pair.collider_b] = 1;
+  }
+}
+
+void place_tested(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
+                  std::span<const std::uint8_t> tested, std::vector<Convex>& placed) {
   placed.resize(colliders.body.size());
   for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto row = static_cast<std::size_t>(i);
-      if (colliders.body[row] != state::Colliders::kNoBody)
+      if (tested[row] != 0)
         placed[row] = place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
     }
   });
@@ -694,6 +698,7 @@ NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks
 }  // namespace
 
 struct NarrowPhase::Buffers {
+  std::vector<std::uint8_t> tested = {};
   std::vector<Convex> placed = {};
   std::vector<Manifold> old = {};
   std::vector<SmallMotion> motions = {};
@@ -715,9 +720,14 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
                                                 const state::Colliders& colliders,
                                                 std::span<const MaterialPairDesc> materials,
                                                 const NarrowPhaseStep& step, state::Pairs& pairs) {
-  auto& [placed, old, motions, company, all_chunks, first_manifold, ghosts, lively, lively_chunks, look] =
-      *buffers_;
-  place_all(pool, bodies, colliders, placed);
+  auto& [tested, placed, old, motions, company, all_chunks, first_manifold, ghosts, lively, lively_chunks,
+         look] = *buffers_;
+  if (all_rest(bodies, colliders, pairs)) {
+    lively.clear();
+    return {.skipped = static_cast<std::uint32_t>(pairs.pair.size())};
+  }
+  find_tested(bodies, colliders, pairs.pair, tested);
+  place_tested(pool, bodies, colliders, tested, placed);
   find_motions(pool, bodies, pairs.seen, motions);
   base::take_turns(pairs.manifold, old);
   Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions};

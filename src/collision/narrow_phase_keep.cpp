@@ -17,6 +17,13 @@ constexpr Real kCalmRate = Real(0.25);           // speed of all its points over
 
 constexpr int kBodyGrain = 1024;
 
+/// Whether the body stays where it is in this step.
+bool stands(const state::Bodies& bodies, std::uint32_t body) {
+  if (bodies.asleep[body] != 0 || bodies.traits[body].kind == BodyKind::kStatic) return true;
+  return bodies.traits[body].kind == BodyKind::kKinematic && bodies.motion[body].v == Vec3{} &&
+         bodies.angular_velocity[body] == Vec3{};
+}
+
 /// The rotation less one: small turns keep their digits, which rotate(q, x) - x would lose.
 Mat3 displacement_of(Quat q) {
   const Vec3 v = {q.x, q.y, q.z};
@@ -44,6 +51,20 @@ void add_motion(const state::SeenPose& before, const state::SeenPose& now, Small
 }
 
 }  // namespace
+
+bool rests(const state::Bodies& bodies, const state::Colliders& colliders, const state::Pair& pair) {
+  return pair.tested && stands(bodies, colliders.body[pair.collider_a]) &&
+         stands(bodies, colliders.body[pair.collider_b]);
+}
+
+bool all_rest(const state::Bodies& bodies, const state::Colliders& colliders, const state::Pairs& pairs) {
+  std::size_t next = 0;
+  for (const state::Pair& pair : pairs.pair) {
+    if (pair.first_manifold != next || !rests(bodies, colliders, pair)) return false;
+    next += pair.manifold_count;
+  }
+  return next == pairs.manifold.size();
+}
 
 void find_motions(parallel::ThreadPool& pool, const state::Bodies& bodies, std::vector<state::SeenPose>& seen,
                   std::vector<SmallMotion>& motions) {

@@ -2,6 +2,7 @@
 
 #include "parallel/thread_pool.h"
 #include "state/bodies.h"
+#include "state/colliders.h"
 #include "state/manifolds.h"
 
 #include <span>
@@ -16,6 +17,15 @@
 /// by (docs/decisions/0004-body-contacts.md).
 
 namespace hooke::collision {
+
+/// Whether the manifolds of a pair stay those of the last step: it was tested, and both bodies stay where
+/// they are in this step.
+[[nodiscard]] bool rests(const state::Bodies& bodies, const state::Colliders& colliders,
+                         const state::Pair& pair);
+
+/// Whether all pairs rest, and there are no manifolds but theirs.
+[[nodiscard]] bool all_rest(const state::Bodies& bodies, const state::Colliders& colliders,
+                            const state::Pairs& pairs);
 
 /// How a body moved since the narrow phase last saw it.
 struct SmallMotion {

@@ -136,6 +136,37 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(kept.counts.tested == 1);
   }
 
+  TEST_CASE("where all bodies rest nothing is looked at, and what is gone leaves no manifold") {
+    PairScene scene;
+    scene.add_static(Shape::half_space(), {0, 0, 0});
+    scene.add_dynamic(kCube, {-1, 0.499, 0});
+    scene.add_dynamic(kCube, {1, 0.499, 0});
+    scene.update();
+    REQUIRE(scene.pairs.manifold.size() == 2);
+    scene.bodies.asleep[1] = scene.bodies.asleep[2] = 1;
+    scene.update();
+    CHECK(scene.counts.tested == 0);
+    CHECK(scene.counts.skipped == 3);
+    CHECK(scene.pairs.manifold.size() == 2);
+
+    const std::vector<hooke::collision::ColliderPair> left = {{0, 2}};
+    const auto update = [&] {
+      scene.narrow_phase.merge_pairs(left, scene.pairs);
+      scene.counts = scene.narrow_phase.update_manifolds(scene.pool, scene.bodies, scene.colliders, {},
+                                                         {.dt = Real(0.01), .substeps = 8}, scene.pairs);
+    };
+    update();
+    REQUIRE(scene.pairs.manifold.size() == 1);
+    CHECK(scene.pairs.manifold[0].body_b == 2);
+    CHECK(scene.counts.tested == 0);
+
+    scene.bodies.asleep[2] = 0;
+    scene.move(2, {0, 0.3, 0});
+    update();
+    CHECK(scene.counts.tested == 1);
+    CHECK(scene.pairs.manifold.empty());
+  }
+
   TEST_CASE("what goes along a mesh, or away from it, is not held where it cannot come in the step") {
     MeshDesc floor;
     floor.positions = {{-4, 0, -4}, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}};
