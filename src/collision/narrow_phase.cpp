@@ -53,7 +53,8 @@ struct Chunk {
   NarrowPhaseCounts counts = {};
   // Of the pair at hand.
   Real margin = Real(0);
-  Real time = Real(0);  // part of the step after which it is looked at
+  bool is_whole = true;  // the margin is margin_of, for all of the way
+  Real time = Real(0);   // part of the step after which it is looked at
   Meeting meeting = {};
   MeshScratch mesh = {};
   SweepScratch sweep = {};
@@ -201,9 +202,8 @@ void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
     return scene.bodies.motion[scene.colliders.body[collider]].v;
   };
   const Vec3 way = scene.dt * (v(pair.collider_b) - v(pair.collider_a));
-  // The margin of later in the step is not made of the whole way.
   const MeshReach reach =
-      chunk.time > Real(0) ? MeshReach(chunk.margin) : MeshReach(chunk.margin, is_a ? way : -way);
+      chunk.is_whole ? MeshReach(chunk.margin, is_a ? way : -way) : MeshReach(chunk.margin);
   chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, reach, chunk.mesh);
   for (PatchMeeting& patch : chunk.mesh.patches) {
     if (!is_a) swap_sides(patch.meeting);
@@ -358,8 +358,10 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
   const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
   chunk.time = Real(0);
+  chunk.is_whole = true;
   pair.lively = is_lively(scene, a, b, pair, chunk);
   if (!pair.lively && is_fast(a, b, now_a, now_b)) {
+    chunk.is_whole = false;
     const auto impact =
         find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
     chunk.time = impact ? impact->time : Real(0);
@@ -371,6 +373,7 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   if (!pair.lively && chunk.time < kMiddle && (turns(path_a, kSpinning) || turns(path_b, kSpinning)) &&
       goes_on_touching(scene, pair)) {
     chunk.time = kMiddle;
+    chunk.is_whole = false;
     pair.time = Real(0);
   }
   if (!(chunk.time > Real(0))) {
@@ -526,6 +529,7 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
   const Convex shape_b = place(scene.colliders, pair.collider_b, pose_b.rotation);
   chunk.manifolds.clear();
   chunk.margin = margin_of(scene, a, b);
+  chunk.is_whole = true;
   chunk.time = Real(0);
   test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
   keep_first(scene.bodies, std::min(pair.manifold_count, kMostPlaces), chunk.manifolds);

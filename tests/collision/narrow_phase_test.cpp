@@ -187,6 +187,9 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(manifolds({Real(0), speed, Real(0)}, 0.05) == 0);
     CHECK(manifolds({Real(0), -speed, Real(0)}, 0.05) == 1);
     CHECK(manifolds({Real(0), -speed, Real(0)}, 0.065) == 0);
+    // What is too fast for the margin of the whole way is held where it is.
+    CHECK(manifolds({Real(300), Real(0), Real(0)}, -1e-3) == 1);
+    CHECK(manifolds({Real(300), Real(0), Real(0)}, 1e-3) == 1);
   }
 
   TEST_CASE(
