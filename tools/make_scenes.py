@@ -3,8 +3,8 @@
 
 usage: make_scenes.py [--check] [NAME ...]
 
-Without names all are written. With --check it writes nothing and fails if a file there differs. The same bytes each time: no clock, own random numbers, coordinates
-rounded before they are written.
+Without names all are written. With --check it writes nothing and fails if a file there differs. The same bytes
+each time: no clock, own random numbers, coordinates rounded before they are written.
 """
 import json
 import math
@@ -24,6 +24,7 @@ from rope_scenes import ROPE_SCENES
 from solid_scenes import SOLID_SCENES
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+
 # ---- Slopes -----------------------------------------------------------------------------------------------
 
 

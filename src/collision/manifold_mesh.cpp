@@ -293,6 +293,7 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, Mes
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
             [](const PatchMeeting& p, const PatchMeeting& q) { return p.patch < q.patch; });
+  // Out of reach is not yet the whole margin apart, and the bodies may go another way later.
   if (scratch.triangles.empty()) find_triangles_near(a, b, MeshReach(reach.margin()), scratch.triangles);
   return scratch.triangles.empty() ? reach.margin() : Real(0);
 }

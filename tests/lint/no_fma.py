@@ -22,7 +22,7 @@ FORBIDDEN = re.compile(
 )
 
 # Of x86 and of ARM, as objdump writes them behind a tab.
-FUSED_INSTRUCTION = re.compile(r"\tv?f(?:n?madd|n?msub|ml[as]|madd|msub)\w*\b")
+FUSED_INSTRUCTION = re.compile(r"\tv?f(?:n?m(?:add|sub)|ml[as])\w*\b")
 SKIPPED = 77
 
 
