@@ -5,6 +5,7 @@
 #include "build/connection_points.h"
 #include "geometry/mass_properties.h"
 #include "state/body_frames.h"
+#include "state/parked_pairs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -374,9 +375,7 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
 }
 
 void remove_bodies(const std::vector<std::uint8_t>& goes, Tables& t) {
-  std::erase_if(t.pairs.pair, [&](const state::Pair& pair) {
-    return goes[t.colliders.body[pair.collider_a]] != 0 || goes[t.colliders.body[pair.collider_b]] != 0;
-  });
+  state::remove_pairs(goes, t.colliders, t.pairs);
   std::erase_if(t.moving_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   for (std::uint32_t row = 0; row < goes.size(); ++row) {
     if (goes[row] == 0) continue;

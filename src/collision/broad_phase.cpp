@@ -174,6 +174,20 @@ void BroadPhase::update() {
 }
 
 void BroadPhase::find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair>& pairs) {
+  filter_candidates(
+      pool, [](ColliderPair) { return true; }, pairs);
+}
+
+void BroadPhase::find_pairs_of(parallel::ThreadPool& pool, std::span<const std::uint8_t> asked,
+                               std::vector<ColliderPair>& pairs) {
+  if (asked.empty()) return find_pairs(pool, pairs);
+  const auto is_asked = [asked](ColliderPair p) { return (asked[p.first] | asked[p.second]) != 0; };
+  filter_candidates(pool, is_asked, pairs);
+}
+
+template <class IsAsked>
+void BroadPhase::filter_candidates(parallel::ThreadPool& pool, IsAsked&& is_asked,
+                                   std::vector<ColliderPair>& pairs) {
   update();
   if (!changed_.empty()) {
     find_new_candidates(pool);
@@ -186,6 +200,7 @@ void BroadPhase::find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair
                std::size_t kept = begin;
                for (std::size_t i = begin; i < end; ++i) {
                  const ColliderPair pair = candidates_[i];
+                 if (!is_asked(pair)) continue;
                  pairs[kept] = pair;
                  kept += overlap_unpredictably(tight_[pair.first], tight_[pair.second]) ? 1 : 0;
                }

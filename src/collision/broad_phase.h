@@ -52,6 +52,10 @@ class BroadPhase {
 
   /// Replaces `pairs` by all pairs of overlapping boxes of which one moves, sorted, each once.
   void find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair>& pairs);
+  /// The same of those only of which one is asked for (`asked`: by collider, 1 or 0; all without any):
+  /// between two whose boxes are as they were, there is what there was.
+  void find_pairs_of(parallel::ThreadPool& pool, std::span<const std::uint8_t> asked,
+                     std::vector<ColliderPair>& pairs);
 
   /// Replaces `found` by the colliders whose boxes overlap `box`, in ascending order.
   void query(const geometry::Box& box, std::vector<std::uint32_t>& found) const;
@@ -95,6 +99,8 @@ class BroadPhase {
   [[nodiscard]] bool is_candidate(std::uint32_t changed, std::uint32_t other) const;
   void find_candidates_of(std::uint32_t collider, std::vector<ColliderPair>& found) const;
   void find_new_candidates(parallel::ThreadPool& pool);
+  template <class IsAsked>
+  void filter_candidates(parallel::ThreadPool& pool, IsAsked&& is_asked, std::vector<ColliderPair>& pairs);
   void merge_candidates();
 
   // Of each collider.

@@ -43,6 +43,7 @@ bool is_solid(const state::Tables& t, std::uint32_t body) {
 
 void list_solid_colliders(const state::Tables& t, std::vector<std::uint32_t>& rows) {
   rows.clear();
+  if (t.objects.empty()) return;
   for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
     const std::uint32_t body = t.colliders.body[c];
     if (body != state::Colliders::kNoBody && is_solid(t, body)) rows.push_back(c);

@@ -11,10 +11,12 @@
 #include "collision/pair_surface.h"
 #include "collision/placement.h"
 #include "state/body_frames.h"
+#include "state/parked_pairs.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -281,7 +283,7 @@ bool is_moved(const Scene& scene, std::uint32_t collider) {
 }
 
 /// What each body that moves is near to: one other body, one collider of what nothing moves, or several, as
-/// those of `in_company` always are.
+/// those of `in_company` always are, and those that sleep, whose other pairs may be parked.
 void find_company(const Scene& scene, std::span<const Pair> pairs, std::span<const std::uint8_t> in_company,
                   std::vector<std::uint32_t>& company) {
   company.assign(scene.bodies.traits.size(), kNone);
@@ -292,8 +294,9 @@ void find_company(const Scene& scene, std::span<const Pair> pairs, std::span<con
     if (!is_moved(scene, collider)) return;
     const std::uint32_t one =
         is_moved(scene, other) ? scene.colliders.body[other] : other | kStandingCollider;
-    std::uint32_t& known = company[scene.colliders.body[collider]];
-    known = known == kNone || known == one ? one : kSeveral;
+    const std::uint32_t body = scene.colliders.body[collider];
+    std::uint32_t& known = company[body];
+    known = scene.bodies.asleep[body] == 0 && (known == kNone || known == one) ? one : kSeveral;
   };
   for (const Pair& pair : pairs) {
     meet(pair.collider_a, pair.collider_b);
@@ -421,7 +424,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   add_drift(scene.motions[a], scene.motions[b], pair.drift);
   if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
     // Nothing pushes here; who overlaps is found at the end of the step.
-  } else if (rests(scene.bodies, scene.colliders, pair)) {
+  } else if (state::rests(scene.bodies, scene.colliders, pair)) {
     ++chunk.counts.skipped;
     const auto old = scene.old.begin() + pair.first_manifold;
     chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
@@ -571,7 +574,7 @@ void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Su
   for (const Pair& pair : pairs.pair) {
     const bool a_moved = is_moved(scene, pair.collider_a);
     if (pair.time > Real(0) || a_moved == is_moved(scene, pair.collider_b)) continue;
-    if (rests(scene.bodies, scene.colliders, pair)) continue;
+    if (state::rests(scene.bodies, scene.colliders, pair)) continue;
     for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
       if (pairs.manifold[i].point_count > 0)
         supports.push_back({a_moved ? pair.collider_a : pair.collider_b, i});
@@ -653,7 +656,7 @@ void find_tested(const state::Bodies& bodies, const state::Colliders& colliders,
                  std::vector<std::uint8_t>& tested) {
   tested.assign(colliders.body.size(), 0);
   for (const Pair& pair : pairs) {
-    if (!rests(bodies, colliders, pair)) tested[pair.collider_a] = tested[pair.collider_b] = 1;
+    if (!state::rests(bodies, colliders, pair)) tested[pair.collider_a] = tested[pair.collider_b] = 1;
   }
 }
 
@@ -705,7 +708,8 @@ struct NarrowPhase::Buffers {
   std::vector<std::uint8_t> tested = {};
   std::vector<Convex> placed = {};
   std::vector<Manifold> old = {};
-  std::vector<SmallMotion> motions = {};
+  SmallMotions motions = {};
+  std::vector<std::uint32_t> all_bodies = {};  ///< Rows, where it is not said who was stirred.
   std::vector<std::uint32_t> company = {};
   std::vector<Chunk> chunks = {};
   std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
@@ -724,17 +728,17 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
                                                 const state::Colliders& colliders,
                                                 std::span<const MaterialPairDesc> materials,
                                                 const NarrowPhaseStep& step, state::Pairs& pairs) {
-  auto& [tested, placed, old, motions, company, all_chunks, first_manifold, ghosts, lively, lively_chunks,
-         look] = *buffers_;
-  if (all_rest(bodies, colliders, pairs)) {
-    lively.clear();
-    return {.skipped = static_cast<std::uint32_t>(pairs.pair.size())};
+  auto& [tested, placed, old, motions, all_bodies, company, all_chunks, first_manifold, ghosts, lively,
+         lively_chunks, look] = *buffers_;
+  if (!step.stirred) {
+    all_bodies.resize(bodies.traits.size());
+    std::iota(all_bodies.begin(), all_bodies.end(), std::uint32_t{0});
   }
   find_tested(bodies, colliders, pairs.pair, tested);
   place_tested(pool, bodies, colliders, tested, placed);
-  find_motions(pool, bodies, pairs.seen, motions);
+  motions.find(pool, bodies, step.stirred.value_or(all_bodies), pairs.seen);
   base::take_turns(pairs.manifold, old);
-  Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions};
+  Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions.of_bodies()};
   find_company(scene, pairs.pair, step.in_company, company);
   scene.company = company;
   const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
@@ -750,11 +754,16 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
   });
   NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
   counts.ghosts = empty_ghosts(scene, ghosts, pairs);
+  list_lively(pairs);
+  return counts;
+}
+
+void NarrowPhase::list_lively(const state::Pairs& pairs) {
+  std::vector<std::uint32_t>& lively = buffers_->lively;
   lively.clear();
   for (std::uint32_t i = 0; i < pairs.pair.size(); ++i) {
     if (pairs.pair[i].lively && pairs.pair[i].manifold_count > 0) lively.push_back(i);
   }
-  return counts;
 }
 
 void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct NarrowPhaseStep {
   Real dt = Real(0);  ///< [s]
   int substeps = 1;
   std::span<const std::uint8_t> in_company = {};  ///< By body row: 1 for what counts as in a crowd anyway.
+  /// Rows of bodies: all others are where they were in the last step. Without a list it may be any.
+  std::optional<std::span<const std::uint32_t>> stirred = {};
 };
 
 /// Makes manifolds of pairs; what it holds is memory to be used again.
@@ -41,8 +44,14 @@ class NarrowPhase {
   NarrowPhase& operator=(NarrowPhase&&) noexcept;
 
   /// Brings `pairs` up to date with the pairs the broad phase found (sorted): new ones come, lost ones go,
-  /// those that stay keep what they remember. Filters by body, category, mask, group and hooks happen before.
-  void merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs);
+  /// those that stay keep what they remember. Those that nobody asked for stay, too (`asked`: as
+  /// find_pairs_of has it; without any, for all). Filters by body, category, mask, group and hooks happen
+  /// before.
+  void merge_pairs(std::span<const ColliderPair> found, std::span<const std::uint8_t> asked,
+                   state::Pairs& pairs);
+  void merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs) {
+    merge_pairs(found, {}, pairs);
+  }
 
   /// Makes the manifolds of all pairs for this step, in order of pair and patch. Impulses of points that were
   /// there before are carried over: by key, then by the nearest anchor within 2 cm. `materials` is the
@@ -63,6 +72,9 @@ class NarrowPhase {
                                      const state::Colliders& colliders,
                                      std::span<const MaterialPairDesc> materials, const NarrowPhaseStep& step,
                                      state::Pairs& pairs);
+
+  /// After pairs were taken back that had been parked (state/parked_pairs.h): which of all are lively.
+  void list_lively(const state::Pairs& pairs);
 
   /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,
   /// with separations of now and the impulses of the points that are still there. Anchors of A and B are the

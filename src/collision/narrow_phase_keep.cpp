@@ -17,13 +17,6 @@ constexpr Real kCalmRate = Real(0.25);           // speed of all its points over
 
 constexpr int kBodyGrain = 1024;
 
-/// Whether the body stays where it is in this step.
-bool stands(const state::Bodies& bodies, std::uint32_t body) {
-  if (bodies.asleep[body] != 0 || bodies.traits[body].kind == BodyKind::kStatic) return true;
-  return bodies.traits[body].kind == BodyKind::kKinematic && bodies.motion[body].v == Vec3{} &&
-         bodies.angular_velocity[body] == Vec3{};
-}
-
 /// The rotation less one: small turns keep their digits, which rotate(q, x) - x would lose.
 Mat3 displacement_of(Quat q) {
   const Vec3 v = {q.x, q.y, q.z};
@@ -52,36 +45,37 @@ void add_motion(const state::SeenPose& before, const state::SeenPose& now, Small
 
 }  // namespace
 
-bool rests(const state::Bodies& bodies, const state::Colliders& colliders, const state::Pair& pair) {
-  return pair.tested && stands(bodies, colliders.body[pair.collider_a]) &&
-         stands(bodies, colliders.body[pair.collider_b]);
-}
-
-bool all_rest(const state::Bodies& bodies, const state::Colliders& colliders, const state::Pairs& pairs) {
-  std::size_t next = 0;
-  for (const state::Pair& pair : pairs.pair) {
-    if (pair.first_manifold != next || !rests(bodies, colliders, pair)) return false;
-    next += pair.manifold_count;
-  }
-  return next == pairs.manifold.size();
-}
-
-void find_motions(parallel::ThreadPool& pool, const state::Bodies& bodies, std::vector<state::SeenPose>& seen,
-                  std::vector<SmallMotion>& motions) {
-  motions.resize(static_cast<std::size_t>(bodies.count()));
-  seen.resize(motions.size());
-  parallel::for_ranges(pool, bodies.count(), kBodyGrain, [&](parallel::Range range) {
-    for (auto row = static_cast<std::size_t>(range.begin); row < static_cast<std::size_t>(range.end); ++row) {
+void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                        std::span<const std::uint32_t> stirred, std::vector<state::SeenPose>& seen) {
+  const auto count = static_cast<std::size_t>(bodies.count());
+  if (count < motions_.size()) *this = {};  // it is another world
+  motions_.resize(count);
+  seen.resize(count);
+  is_listed_.assign(count, 0);
+  rows_.clear();
+  const auto list = [this](std::span<const std::uint32_t> rows) {
+    for (const std::uint32_t row : rows) {
+      if (is_listed_[row] == 0) rows_.push_back(row);
+      is_listed_[row] = 1;
+    }
+  };
+  list(stirred);
+  const auto new_ones = static_cast<std::ptrdiff_t>(rows_.size());
+  list(before_);
+  parallel::for_ranges(pool, static_cast<int>(rows_.size()), kBodyGrain, [&](parallel::Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const std::uint32_t row = rows_[static_cast<std::size_t>(i)];
       const state::SeenPose now = {bodies.center[row], bodies.rotation[row]};
       const Real radius = bodies.traits[row].radius;
       const bool calm = is_calm(bodies, row);
       const Real tolerance =
           calm ? std::min(kCalmDriftShare * radius, kLargestCalmDrift) : kDriftShare * radius;
-      motions[row] = {.radius = radius, .tolerance = tolerance, .calm = calm};
-      add_motion(seen[row], now, motions[row]);
+      motions_[row] = {.radius = radius, .tolerance = tolerance, .calm = calm};
+      add_motion(seen[row], now, motions_[row]);
       seen[row] = now;
     }
   });
+  before_.assign(rows_.begin(), rows_.begin() + new_ones);
 }
 
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift) {

@@ -18,15 +18,6 @@
 
 namespace hooke::collision {
 
-/// Whether the manifolds of a pair stay those of the last step: it was tested, and both bodies stay where
-/// they are in this step.
-[[nodiscard]] bool rests(const state::Bodies& bodies, const state::Colliders& colliders,
-                         const state::Pair& pair);
-
-/// Whether all pairs rest, and there are no manifolds but theirs.
-[[nodiscard]] bool all_rest(const state::Bodies& bodies, const state::Colliders& colliders,
-                            const state::Pairs& pairs);
-
 /// How a body moved since the narrow phase last saw it.
 struct SmallMotion {
   Vec3 way = {};             ///< Of the center of mass [m].
@@ -37,9 +28,21 @@ struct SmallMotion {
   bool calm = false;         ///< And of a large island.
 };
 
-/// Replaces `motions` by those of all bodies since `seen`, which becomes what is seen now.
-void find_motions(parallel::ThreadPool& pool, const state::Bodies& bodies, std::vector<state::SeenPose>& seen,
-                  std::vector<SmallMotion>& motions);
+/// How all bodies moved, from one narrow phase to the next.
+class SmallMotions {
+ public:
+  /// Since `seen`, which becomes what is seen now. Those not `stirred` (rows) are where they were.
+  void find(parallel::ThreadPool& pool, const state::Bodies& bodies, std::span<const std::uint32_t> stirred,
+            std::vector<state::SeenPose>& seen);
+
+  [[nodiscard]] std::span<const SmallMotion> of_bodies() const { return motions_; }
+
+ private:
+  std::vector<SmallMotion> motions_ = {};
+  std::vector<std::uint32_t> before_ = {};  // stirred in the last step: they may stand now
+  std::vector<std::uint32_t> rows_ = {};
+  std::vector<std::uint8_t> is_listed_ = {};
+};
 
 /// Adds what the two moved.
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);

@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -96,11 +97,21 @@ struct SeenPose {
   Quat rotation = {};
 };
 
+/// Pairs whose bodies all rest; see state/parked_pairs.h.
+struct ParkedPairs {
+  std::vector<Pair> pair;              ///< In order of colliders; first_manifold counts in `manifold`.
+  std::vector<Manifold> manifold;      ///< In order of pair, then patch; some may belong to no pair any more.
+  std::vector<std::uint32_t> of_body;  ///< Number of pairs, by row of body; may be too short for new ones.
+  std::uint32_t contacts = 0;          ///< Points that push.
+  std::size_t waiting = 0;             ///< Pairs at rest that were not parked in the last step.
+};
+
 struct Pairs {
   std::vector<Pair> pair;
   std::vector<Manifold> manifold;   ///< In order of pair, then patch.
   std::vector<BorneContact> borne;  ///< In order of manifold and point; of this step only.
   std::vector<SeenPose> seen;       ///< Of each body.
+  ParkedPairs parked;               ///< Not among those above.
 };
 
 }  // namespace hooke::state

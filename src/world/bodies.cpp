@@ -3,6 +3,7 @@
 #include "collision/shape_bounds.h"
 #include "solver/forces.h"
 #include "state/body_frames.h"
+#include "state/parked_pairs.h"
 #include "world/events.h"
 #include "world/hooks.h"
 
@@ -46,6 +47,18 @@ void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
   }
 }
 
+/// All bodies that are not where they were in the last step, as far as pairs go.
+void list_stirred_bodies(WorldData& world) {
+  const Tables& t = world.tables;
+  world.stirred = world.awake;
+  world.stirred.insert(world.stirred.end(), world.bodies_placed.begin(), world.bodies_placed.end());
+  world.is_stirred.clear();
+  if (!any_sleeps(world)) return;
+  world.is_stirred.assign(t.colliders.body.size(), 0);
+  for (const std::uint32_t body : world.stirred)
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.is_stirred[c] = 1;
+}
+
 /// Bodies that were added, or put elsewhere by hand, since the last step.
 void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
@@ -60,7 +73,20 @@ void refresh_broad_phase(WorldData& world, Real dt) {
     update_bounds(t, body, dt);
     enter_broad_phase(world, body);
   }
+  list_stirred_bodies(world);
   world.bodies_placed.clear();
+}
+
+/// Where a kinematic body stands still, for one.
+bool is_parked(const Tables& t, collision::ColliderPair pair) {
+  if (t.pairs.parked.pair.empty()) return false;
+  const auto stands = [&](std::uint32_t collider) {
+    return state::stands(t.bodies, t.colliders.body[collider]);
+  };
+  if (!stands(pair.first) || !stands(pair.second)) return false;
+  return std::binary_search(t.pairs.parked.pair.begin(), t.pairs.parked.pair.end(),
+                            state::Pair{.collider_a = pair.first, .collider_b = pair.second},
+                            state::comes_before);
 }
 
 }  // namespace
@@ -120,12 +146,20 @@ void find_body_contacts(WorldData& world, Real dt) {
     for (const std::uint32_t body : rows) update_bounds(t, body, dt);
   });
   for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
-  world.broad_phase.find_pairs(*world.pool, world.pairs_found);
-  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) { return !may_collide(world, pair); });
-  world.narrow_phase.merge_pairs(world.pairs_found, t.pairs);
-  world.narrow_phase.update_manifolds(
-      *world.pool, t.bodies, t.colliders, t.desc.materials,
-      {.dt = dt, .substeps = t.desc.substeps, .in_company = world.joints.in_ragdoll}, t.pairs);
+  world.broad_phase.find_pairs_of(*world.pool, world.is_stirred, world.pairs_found);
+  state::unpark_pairs(world.awake, t.bodies, t.colliders, t.pairs, world.parking);
+  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) {
+    return !may_collide(world, pair) || is_parked(t, pair);
+  });
+  world.narrow_phase.merge_pairs(world.pairs_found, world.is_stirred, t.pairs);
+  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
+                                      {.dt = dt,
+                                       .substeps = t.desc.substeps,
+                                       .in_company = world.joints.in_ragdoll,
+                                       .stirred = world.stirred},
+                                      t.pairs);
+  if (t.desc.sleeping) state::reserve_parking(t.pairs, world.parking);
+  if (any_sleeps(world)) state::park_pairs(t.bodies, t.colliders, t.pairs, world.parking);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {

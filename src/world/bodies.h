@@ -37,6 +37,11 @@ void for_contact_colors(WorldData& w, Kernel&& kernel) {
   }
 }
 
+/// Whether some body that may move was asleep when `awake` was filled.
+[[nodiscard]] inline bool any_sleeps(const WorldData& world) {
+  return world.awake.size() < world.tables.moving_bodies.size();
+}
+
 /// Fills `awake`.
 void list_awake_bodies(WorldData& world);
 

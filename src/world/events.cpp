@@ -3,6 +3,7 @@
 #include "base/take_turns.h"
 #include "collision/queries.h"
 #include "state/body_frames.h"
+#include "state/parked_pairs.h"
 #include "world/objects.h"
 
 #include <algorithm>
@@ -68,9 +69,9 @@ void gather_contacts(WorldData& world) {
   std::vector<ContactEvent>& now = world.touches_now;
   now.clear();
   const auto asks = [&](std::uint32_t body) { return t.bodies.traits[body].reports_contacts; };
-  for (const Manifold& m : t.pairs.manifold) {
+  state::for_each_manifold(t.pairs, [&](const Manifold& m) {
     if (m.touching && (asks(m.body_a) || asks(m.body_b))) now.push_back(parts_of(t, m));
-  }
+  });
   compare(now, t.touches, world.events.contact_begins, world.events.contact_ends);
 }
 

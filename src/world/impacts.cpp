@@ -117,25 +117,33 @@ bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
   return false;
 }
 
-/// How bodies go, and which of them go astray.
+/// Puts what does not move among the swept bodies, if the collider is of such a body: there is too much of it
+/// to do so for all.
+void enter_standing(WorldData& world, std::uint32_t collider) {
+  const Bodies& bodies = world.tables.bodies;
+  collision::SweptBodies& swept = world.swept;
+  const std::uint32_t body = world.tables.colliders.body[collider];
+  if (bodies.traits[body].kind != BodyKind::kStatic && bodies.asleep[body] == 0) return;
+  swept.path[body] = collision::path_ahead(bodies, body, Real(0));
+  swept.stoppable[body] = Stoppable::kNever;
+  swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
+  swept.bends[body] = {};
+}
+
+/// How awake bodies go, and which of them go astray.
 void find_ways(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.swept;
   const std::size_t count = bodies.motion.size();
   swept.path.resize(count);
-  swept.stoppable.assign(count, Stoppable::kNever);
+  swept.stoppable.resize(count);
   swept.inverse_mass.resize(count);
-  swept.bends.assign(count, {});
+  swept.bends.resize(count);
   world.astray.assign(count, 0);
-  parallel::for_ranges(*world.pool, static_cast<int>(count), kBodyGrain, [&](parallel::Range rows) {
-    for (int row = rows.begin; row < rows.end; ++row) {
-      const auto body = static_cast<std::uint32_t>(row);
-      swept.path[body] = collision::path_ahead(bodies, body, Real(0));
-      swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
-    }
-  });
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
+      swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
+      swept.bends[body] = {};
       swept.path[body] = path_of(world, body);
       swept.stoppable[body] = stoppable(world, body, world.fast[body] != 0);
       world.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
@@ -152,14 +160,16 @@ void enter_way(WorldData& world, std::uint32_t body) {
 }
 
 /// What a body's colliders may run into.
-void find_in_the_way(const WorldData& world, std::uint32_t body, collision::WayScratch& scratch) {
+void find_in_the_way(WorldData& world, std::uint32_t body, collision::WayScratch& scratch) {
   const state::Tables& t = world.tables;
   scratch.pairs.clear();
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
     world.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
     for (const std::uint32_t other : scratch.near) {
       const ColliderPair pair = {std::min(c, other), std::max(c, other)};
-      if (is_solid(world, other) && may_collide(world, pair)) scratch.pairs.push_back(pair);
+      if (!is_solid(world, other) || !may_collide(world, pair)) continue;
+      scratch.pairs.push_back(pair);
+      enter_standing(world, other);
     }
   }
 }
@@ -172,6 +182,7 @@ void list_encounters(WorldData& world, std::vector<collision::Encounter>& encoun
     const ColliderPair pair = {p.collider_a, p.collider_b};
     if (!is_one_fast(world, pair) || !is_solid(world, pair.first) || !is_solid(world, pair.second)) continue;
     encounters.push_back({pair, p.manifold_count > 0 ? pairs.manifold[p.first_manifold].normal : Vec3{}});
+    for (const std::uint32_t collider : {p.collider_a, p.collider_b}) enter_standing(world, collider);
   }
   const std::size_t foreseen = encounters.size();
   const auto for_each_astray = [&](auto&& visit) {

@@ -6,6 +6,7 @@
 #include "solver/rope_rows.h"
 #include "solver/rope_twist.h"
 #include "solver/shape_matching.h"
+#include "state/parked_pairs.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -87,10 +88,10 @@ void measure_bodies(const Tables& t, Measurement& m) {
 
 double deepest_of_bodies(const Tables& t) {
   double deepest = 0;
-  for (const state::Manifold& manifold : t.pairs.manifold) {
+  state::for_each_manifold(t.pairs, [&](const state::Manifold& manifold) {
     for (int i = 0; i < manifold.point_count; ++i)
       deepest = std::max(deepest, -static_cast<double>(manifold.point[i].separation));
-  }
+  });
   return deepest;
 }
 

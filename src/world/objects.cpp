@@ -1,5 +1,6 @@
 #include "world/objects.h"
 
+#include "state/parked_pairs.h"
 #include "world/hooks.h"
 
 #include <algorithm>
@@ -161,11 +162,11 @@ void hash_bodies(const Tables& t, base::StateHash& hash) {
     hash.add(t.bodies.asleep[body]);
     hash.add(t.bodies.hardness[body]);
   }
-  for (const state::Manifold& manifold : t.pairs.manifold) {
+  state::for_each_manifold(t.pairs, [&hash](const state::Manifold& manifold) {
     hash.add(manifold.collider_a);
     hash.add(manifold.collider_b);
     for (int i = 0; i < manifold.point_count; ++i) hash.add(manifold.point[i].normal_impulse);
-  }
+  });
 }
 
 void restore_tables(const Tables& from, Tables& to) {

@@ -1,5 +1,7 @@
 #include "world/sleep.h"
 
+#include "state/parked_pairs.h"
+#include "world/bodies.h"
 #include "world/hooks.h"
 
 #include <algorithm>
@@ -70,6 +72,13 @@ bool wake_struck(WorldData& world) {
   return any;
 }
 
+/// Of bodies that woke.
+void take_pairs_back(WorldData& world) {
+  state::Tables& t = world.tables;
+  if (state::unpark_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.parking))
+    world.narrow_phase.list_lively(t.pairs);
+}
+
 /// What is pressed into another leaves it more slowly than what rests may move (solver/borne_contacts.h).
 void keep_rising_awake(state::Tables& t) {
   constexpr Real kSunk = Real(1e-3);  // [m]
@@ -94,13 +103,13 @@ void find_rest_of_islands(WorldData& world) {
 }  // namespace
 
 bool wake_touched(WorldData& world, Real dt) {
-  const bool none_sleeps = world.awake.size() == world.tables.moving_bodies.size();
-  if (none_sleeps) return false;
+  if (!any_sleeps(world)) return false;
   Bodies& bodies = world.tables.bodies;
   bool any = wake_struck(world);
   if (world.awake.empty() && !any) return false;
   for (bool changed = true; changed;) {
     changed = false;
+    if (any) take_pairs_back(world);
     for (const Manifold& m : world.tables.pairs.manifold) {
       const bool sleeper_a = bodies.asleep[m.body_a] != 0;
       const bool sleeper_b = bodies.asleep[m.body_b] != 0;

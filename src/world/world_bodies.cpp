@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "solver/bodies.h"
 #include "state/body_frames.h"
+#include "state/parked_pairs.h"
 #include "world/hooks.h"
 #include "world/objects.h"
 #include "world/world_data.h"
@@ -183,7 +184,8 @@ bool World::asleep(BodyId id) const {
 
 std::vector<BodyContact> World::body_contacts() const {
   std::vector<BodyContact> contacts;
-  for (const state::Manifold& m : data_->tables.pairs.manifold) append_contacts(data_->tables, m, contacts);
+  state::for_each_manifold(data_->tables.pairs,
+                           [&](const state::Manifold& m) { append_contacts(data_->tables, m, contacts); });
   sort_contacts(contacts);
   return contacts;
 }
@@ -193,9 +195,9 @@ std::vector<BodyContact> World::body_contacts(BodyId id) const {
   const std::uint32_t row = t.body_slots.find(id);
   std::vector<BodyContact> contacts;
   if (row == kNone) return contacts;
-  for (const state::Manifold& m : t.pairs.manifold) {
+  state::for_each_manifold(t.pairs, [&](const state::Manifold& m) {
     if (m.body_a == row || m.body_b == row) append_contacts(t, m, contacts);
-  }
+  });
   sort_contacts(contacts);
   return contacts;
 }

@@ -26,6 +26,7 @@
 #include "solver/rope_twist.h"
 #include "solver/spring_blocks.h"
 #include "solver/tetrahedra.h"
+#include "state/parked_pairs.h"
 #include "state/tables.h"
 
 #include <atomic>
@@ -86,9 +87,12 @@ struct WorldData {
   Events events;  ///< Of the last step.
 
   // Lives for one step.
-  std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
+  std::vector<std::uint32_t> awake;    ///< Rows of bodies that move in this step, in ascending order.
+  std::vector<std::uint32_t> stirred;  ///< Rows of those, and of bodies placed: all that may meet others now.
+  std::vector<std::uint8_t> is_stirred;  ///< By collider; none where nobody sleeps, all being stirred.
   std::vector<collision::ColliderPair> pairs_found;
   collision::NarrowPhase narrow_phase;
+  state::ParkingScratch parking;
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
   solver::Repulsion repulsion;

@@ -205,6 +205,22 @@ TEST_SUITE("collision/broad_phase") {
     twin.check_pairs(pool);
   }
 
+  TEST_CASE("asked for some, it finds the pairs of those alone, with whom they met before, too") {
+    ThreadPool pool(1);
+    BroadPhase phase;
+    std::vector<ColliderPair> pairs;
+    for (std::uint32_t i = 0; i < 4; ++i) phase.set(i, box_at({Real(i), 0, 0}, {Real(0.6), 1, 1}), true);
+    phase.find_pairs(pool, pairs);
+    CHECK(pairs == std::vector<ColliderPair>{{0, 1}, {1, 2}, {2, 3}});
+    phase.find_pairs_of(pool, std::vector<std::uint8_t>{1, 0, 0, 0}, pairs);
+    CHECK(pairs == std::vector<ColliderPair>{{0, 1}});
+    phase.set(2, box_at({Real(5), 0, 0}, {Real(0.6), 1, 1}), true);
+    phase.find_pairs_of(pool, std::vector<std::uint8_t>{0, 0, 1, 0}, pairs);
+    CHECK(pairs.empty());
+    phase.find_pairs(pool, pairs);
+    CHECK(pairs == std::vector<ColliderPair>{{0, 1}});
+  }
+
   TEST_CASE("boxes that touch are a pair, and those a hair apart are none") {
     ThreadPool pool(1);
     Twin twin;

@@ -353,6 +353,16 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(pairs.pair[1].gap == Real(5));
     CHECK(pairs.pair[2].collider_a == 2);
     CHECK_FALSE(pairs.pair[2].tested);
+
+    // Of those that were asked for, what is not found is gone; the others stay.
+    std::vector<std::uint8_t> asked(10, 0);
+    asked[9] = asked[3] = 1;
+    narrow_phase.merge_pairs(std::vector<hooke::collision::ColliderPair>{{3, 4}}, asked, pairs);
+    REQUIRE(pairs.pair.size() == 3);
+    CHECK(pairs.pair[0].collider_a == 1);
+    CHECK(pairs.pair[0].gap == Real(5));
+    CHECK(pairs.pair[1].collider_a == 2);
+    CHECK(pairs.pair[2].collider_a == 3);
   }
 
   TEST_CASE("any number of workers makes the same manifolds") {

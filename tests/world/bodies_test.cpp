@@ -183,6 +183,54 @@ TEST_SUITE("world/bodies") {
     CHECK(most > 3);  // what it falls on, and what that touches
   }
 
+  TEST_CASE("what sleeps far from what moves keeps its contacts, and falls when its ground goes") {
+    World world = make_world();
+    BodyDesc ground;
+    ground.shape = Shape::box({5, Real(0.5), 5});
+    std::vector<BodyId> grounds, lower, upper;
+    for (int i = 0; i < 20; ++i) {
+      ground.position = {20.0 * i, -0.5, 0};
+      grounds.push_back(take(world.add_body(ground)));
+      lower.push_back(take(world.add_body(cube({20.0 * i, 0.5, 0}))));
+      upper.push_back(take(world.add_body(cube({20.0 * i, 1.5, 0}))));
+    }
+    BodyDesc bird = cube({0, 100, 0});
+    bird.gravity_scale = 0;
+    bird.velocity = {1, 0, 0};
+    take(world.add_body(bird));
+    run(world, 120);
+    CHECK(world.step(Real(1) / Real(60)).bodies_awake == 1);
+    const StepReport asleep = world.step(Real(1) / Real(60));
+    CHECK(asleep.contacts == 20 * 8);
+    CHECK(asleep.pairs == 20 * 2);
+    CHECK(world.body_contacts().size() == 20 * 8);
+    CHECK(world.body_contacts(lower[7]).size() == 8);
+    CHECK(world.measure().largest_penetration > 0);
+
+    // It goes on as one that was restored when all of them slept.
+    const Snapshot at_rest = world.snapshot();
+    const auto strike = [&] {
+      REQUIRE(world.apply_impulse(upper[3], {0, 0, 4000}));
+      CHECK(world.step(Real(1) / Real(60)).pairs == 20 * 2);  // each once
+      run(world, 30);
+      CHECK(world.step(Real(1) / Real(60)).pairs == 20 * 2 - 1);
+      return world.state_hash();
+    };
+    const std::uint64_t struck = strike();
+    CHECK_FALSE(world.asleep(upper[3]));
+    CHECK(world.pose(upper[3]).position.z > 1);
+    CHECK(world.asleep(upper[4]));
+    REQUIRE(world.restore(at_rest));
+    CHECK(strike() == struck);
+
+    REQUIRE(world.remove(grounds[9]));
+    run(world, 30);
+    CHECK(world.pose(lower[9]).position.y == doctest::Approx(0.5 - 0.5 * 9.81 * 0.25).epsilon(0.05));
+    CHECK(world.pose(upper[9]).position.y == doctest::Approx(1.5 - 0.5 * 9.81 * 0.25).epsilon(0.05));
+    CHECK(world.asleep(upper[10]));
+    CHECK(world.body_contacts(lower[9]).size() <= 4);  // those of the two that fall together
+  }
+
   TEST_CASE("the same bits for any number of workers, on any instruction set, and after a restoration") {
     const std::vector<std::uint64_t> expected = hashes_of(make_heap(1), 120);
     for (const int workers : {2, 3, 8}) CHECK(hashes_of(make_heap(workers), 120) == expected);
