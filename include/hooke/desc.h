@@ -381,11 +381,13 @@ struct ClothDesc {
   Real thickness = Real(0.004);         ///< [m]: points keep half of it from what they touch. Positive.
   Real stretch_stiffness = Real(1e4);   ///< Of each spring along an edge [N/m], or kRigid.
   Real shear_stiffness = Real(2e3);     ///< Of each spring across a cell or a pair of triangles [N/m].
-  Real bend_stiffness = Real(1e-4);     ///< See Bend.
-  Real damping = Real(0);               ///< Of each stretch and shear spring [N s/m].
-  Real bend_damping = Real(0);          ///< Of each bend row, in units of bend_stiffness times s.
-  Real yield_angle = kRigid;  ///< A pair of triangles bent farther than this [rad] from its form at rest
-                              ///< keeps the rest of it: a fold. Bend::kAngle only; positive, or kRigid.
+  /// See Bend; in N m the flexural rigidity of a sheet that bends about lines across it. Diagonals fold, too:
+  /// a strip with free sides bends by up to a quarter more (hooke check I23).
+  Real bend_stiffness = Real(1e-4);
+  Real damping = Real(0);       ///< Of each stretch and shear spring [N s/m].
+  Real bend_damping = Real(0);  ///< Of each bend row, in units of bend_stiffness times s.
+  Real yield_angle = kRigid;    ///< A pair of triangles bent farther than this [rad] from its form at rest
+                                ///< keeps the rest of it: a fold. Bend::kAngle only; positive, or kRigid.
   Bend bend = Bend::kAngle;
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
   bool tethers = false;  ///< Hold every point within its rest distance of the pins: inextensible cloth.

@@ -1,6 +1,7 @@
 /// Cloth and closed skins: gas in them, what their rows add up to as a sheet.
 
 #include "cases.h"
+#include "hinged_sheet.h"
 #include "rig.h"
 
 #include <algorithm>
@@ -140,14 +141,15 @@ Rows balloon(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
-/// A strip held level by one edge sags under a small load by q L^4 / 8 B (Euler, Bernoulli). Of n hinges, the
-/// first of them at the clamp, each turns by its moment over B / h: q h sum (i h)^3 / 2 B, i from 1 to n.
+/// A strip held level by one edge sags under a small load as its hinges let it. Of hinges across the strip
+/// alone each would turn by its moment over B / h, which comes to q L^4 / 8 B (Euler, Bernoulli) where cells
+/// have no size; but diagonals fold, too, and let a strip with free sides sag by up to a quarter more.
 Rows overhanging_cloth(const CheckSetting& setting) {
   CheckSetting fine = setting;
   fine.substeps = 64;
   WorldDesc desc = without_air();
   desc.particle_substeps = 4;
-  const double gravity = 0.05, rigidity = 0.001, overhang = 0.4, density = 0.2;  // soft enough for one pass
+  const double gravity = 0.005, rigidity = 0.001, overhang = 0.4, density = 0.2;
   desc.gravity = {0, real(-gravity), 0};
   struct Trial {
     int cells;
@@ -171,38 +173,45 @@ Rows overhanging_cloth(const CheckSetting& setting) {
         strip.pins.push_back({row * static_cast<std::uint32_t>(n + 2) + column});
     }
     const ClothId id = rig.add(strip);
+    HingedSheet sheet = {rig.positions(id), rig.world().triangles(id), {}, rigidity};
+    sheet.is_fixed.resize(sheet.points.size());
+    for (const PinDesc& pin : strip.pins) sheet.is_fixed[pin.point] = 1;
+    const double expected = sag_of(sheet, density * gravity).back();
     rig.run(12);
-    double sum = 0;
-    for (int i = 1; i <= n; ++i) sum += std::pow(i * cell, 3);
-    const double expected = density * gravity * cell * sum / (2 * rigidity);
     const char* kind = bend == ClothDesc::Bend::kIsometric ? ", isometric bends" : "";
     rows.push_back(relative_row("sag of a strip of " + std::to_string(n) + " cells" + kind, "m", expected,
-                                -rig.positions(id).back().y, 0.05));
-    if (n > 4)
-      rows.back() =
-          known_miss(rows.back(), "one pass over bends of light points leaves a part of their stiffness");
+                                -rig.positions(id).back().y, 0.01));
     rows.back().substeps = fine.substeps;
   }
   return by_cloth(rows);
 }
 
 /// In a frame whose four sides turn about its corners, the threads of a fabric turn with them: right angles
-/// become 90 degrees less the angle of shear everywhere (kinematics).
+/// become 90 degrees less the angle of shear everywhere (kinematics). A light fabric needs shorter substeps
+/// for the same stiffness; where it has them is said in the table.
 Rows picture_frame(const CheckSetting& setting) {
   struct Trial {
     double degrees, areal_density;
+    int substeps;
+    bool missed = false;
   };
+  const int own = setting.substeps;
   Rows rows;
-  for (const Trial trial : {Trial{10, 20}, Trial{30, 20}, Trial{10, 0.2}}) {
-    const auto [least, most] = angles_in_frame(setting, trial.degrees, trial.areal_density);
+  for (const Trial trial :
+       {Trial{10, 20, own}, Trial{30, 20, own}, Trial{10, 0.2, own, true}, Trial{10, 0.2, 64}}) {
+    CheckSetting of_trial = setting;
+    of_trial.substeps = trial.substeps;
+    const auto [least, most] = angles_in_frame(of_trial, trial.degrees, trial.areal_density);
     const std::string title = " angle of shear of a cell, " +
                               std::string(trial.areal_density < 1 ? "0.2" : "20") + " kg/m^2, frame at " +
                               std::to_string(std::lround(trial.degrees)) + " deg";
     const CheckRow low = relative_row("least" + title, "deg", trial.degrees, least, 0.05);
     const CheckRow high = relative_row("largest" + title, "deg", trial.degrees, most, 0.05);
     const std::string why = "one pass over springs of light points leaves (w h)^2 of their forces unbalanced";
-    rows.push_back(trial.areal_density < 1 ? known_miss(low, why) : low);
-    rows.push_back(trial.areal_density < 1 ? known_miss(high, why) : high);
+    for (const CheckRow& row : {low, high}) {
+      rows.push_back(trial.missed ? known_miss(row, why) : row);
+      rows.back().substeps = trial.substeps;
+    }
   }
   return by_cloth(rows);
 }
