@@ -51,6 +51,14 @@ struct Manifold {
   bool borne = false;                ///< Its points have places in Pairs::borne in this step.
 };
 
+/// Number of points that pushed in the last substep.
+inline std::uint32_t pushing_points(const Manifold& m) {
+  std::uint32_t count = 0;
+  for (std::int32_t i = 0; i < m.point_count; ++i)
+    count += m.point[static_cast<std::size_t>(i)].normal_impulse > Real(0) ? 1 : 0;
+  return count;
+}
+
 /// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
 /// rows that others have (solver/borne_contacts.h).
 struct BorneContact {

@@ -41,10 +41,8 @@ std::array<std::uint32_t, 2> bodies_of(const Colliders& colliders, const Pair& p
 
 std::uint32_t pushing_points(const Pair& pair, const std::vector<Manifold>& manifolds) {
   std::uint32_t count = 0;
-  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
-    for (std::int32_t k = 0; k < manifolds[i].point_count; ++k)
-      count += manifolds[i].point[static_cast<std::size_t>(k)].normal_impulse > Real(0) ? 1 : 0;
-  }
+  for (std::uint32_t i = 0; i < pair.manifold_count; ++i)
+    count += pushing_points(manifolds[pair.first_manifold + i]);
   return count;
 }
 

@@ -380,10 +380,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   for (const state::RopeContact& contact : tables.rope_contacts)
     report.contacts += contact.normal_force > Real(0) ? 1 : 0;
   report.contacts += tables.pairs.parked.contacts;
-  for (const state::Manifold& manifold : tables.pairs.manifold) {
-    for (int i = 0; i < manifold.point_count; ++i)
-      report.contacts += manifold.point[i].normal_impulse > Real(0) ? 1 : 0;
-  }
+  for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
   report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.parked.pair.size());
   report.bodies_awake = static_cast<std::uint32_t>(
       std::count_if(world.awake.begin(), world.awake.end(),

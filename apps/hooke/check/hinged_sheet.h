@@ -1,11 +1,9 @@
 #pragma once
 
-#include "hooke/desc.h"
 #include "hooke/math.h"
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace hooke::check {
