@@ -111,13 +111,17 @@ void hang_net(World& world) {
 TEST_SUITE("world/allocation") {
   TEST_CASE("what is counted are all calls of operator new") {
     const AllocationCounter counter;
-    std::vector<int> usual(100);
+    const std::vector<int> usual(100);
     struct alignas(64) Line {
       std::byte bytes[64];
     };
-    std::vector<Line> aligned(3);
-    CHECK(usual.size() + aligned.size() == 103);
-    CHECK(counter.count() >= 2);
+    const std::vector<Line> aligned(3);
+    // Compilers may leave out an allocation that nobody sees, and Clang does.
+    const void* volatile seen = usual.data();
+    CHECK(seen != nullptr);
+    seen = aligned.data();
+    CHECK(seen != nullptr);
+    CHECK(counter.count() == 2);
   }
 
   TEST_CASE("stacks, heaps, hulls and meshes allocate nothing") {
