@@ -1,7 +1,8 @@
 #include "hinged_sheet.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -10,7 +11,6 @@ namespace hooke::check {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-using Matrix = std::vector<std::vector<double>>;
 
 /// By point: what its height adds.
 using Weights = std::map<std::uint32_t, double>;
@@ -34,12 +34,13 @@ void add_slope(const HingedSheet& sheet, const Triangle& t, DVec3 n, double sign
 }
 
 /// The second derivatives of the energy with respect to heights.
-Matrix stiffness_of(const HingedSheet& sheet) {
+Eigen::MatrixXd stiffness_of(const HingedSheet& sheet) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Triangle>> sides;
   for (const Triangle& t : sheet.triangles) {
     for (std::size_t i = 0; i < 3; ++i) sides[std::minmax(t[i], t[(i + 1) % 3])].push_back(t);
   }
-  Matrix stiffness(sheet.points.size(), std::vector<double>(sheet.points.size()));
+  const auto size = static_cast<Eigen::Index>(sheet.points.size());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
   for (const auto& [edge, triangles] : sides) {
     if (triangles.size() != 2) continue;
     const DVec3 along = sheet.points[edge.second] - sheet.points[edge.first];
@@ -50,49 +51,29 @@ Matrix stiffness_of(const HingedSheet& sheet) {
     const double areas = 0.5 * (twice_area(sheet, triangles[0]) + twice_area(sheet, triangles[1]));
     const double k = sheet.rigidity * dot(along, along) / areas;
     for (const auto& [i, of_i] : angle) {
-      for (const auto& [j, of_j] : angle) stiffness[i][j] += k * of_i * of_j;
+      for (const auto& [j, of_j] : angle) stiffness(i, j) += k * of_i * of_j;
     }
   }
   return stiffness;
 }
 
-/// Of a symmetric positive matrix, in place.
-void solve(Matrix& a, std::vector<double>& x) {
-  const std::size_t n = x.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
-    a[j][j] = std::sqrt(a[j][j]);
-    for (std::size_t i = j + 1; i < n; ++i) {
-      for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
-      a[i][j] /= a[j][j];
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= a[i][k] * x[k];
-    x[i] /= a[i][i];
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t k = i + 1; k < n; ++k) x[i] -= a[k][i] * x[k];
-    x[i] /= a[i][i];
-  }
-}
-
 }  // namespace
 
 std::vector<double> sag_of(const HingedSheet& sheet, double load) {
-  Matrix stiffness = stiffness_of(sheet);
-  std::vector<double> sag(sheet.points.size());
+  Eigen::MatrixXd stiffness = stiffness_of(sheet);
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(stiffness.rows());
   for (const Triangle& t : sheet.triangles) {
-    for (const std::uint32_t i : t) sag[i] += load * twice_area(sheet, t) / 6;
+    for (const std::uint32_t i : t) forces[i] += load * twice_area(sheet, t) / 6;
   }
-  for (std::size_t i = 0; i < sag.size(); ++i) {
-    if (sheet.is_fixed[i] == 0) continue;
-    for (std::size_t j = 0; j < sag.size(); ++j) stiffness[i][j] = stiffness[j][i] = 0;
-    stiffness[i][i] = 1;
-    sag[i] = 0;
+  for (Eigen::Index i = 0; i < forces.size(); ++i) {
+    if (sheet.is_fixed[static_cast<std::size_t>(i)] == 0) continue;
+    stiffness.row(i).setZero();
+    stiffness.col(i).setZero();
+    stiffness(i, i) = 1;
+    forces[i] = 0;
   }
-  solve(stiffness, sag);
-  return sag;
+  const Eigen::VectorXd sag = stiffness.llt().solve(forces);
+  return {sag.begin(), sag.end()};
 }
 
 }  // namespace hooke::check

@@ -18,7 +18,7 @@ struct HingedSheet {
 };
 
 /// How far each point is down under a small load [N/m^2] on all of the sheet: where the energy is least.
-/// Angles are linear in the heights of points; the system is solved by Cholesky's method.
+/// Angles are linear in the heights of points.
 [[nodiscard]] std::vector<double> sag_of(const HingedSheet& sheet, double load);
 
 }  // namespace hooke::check
