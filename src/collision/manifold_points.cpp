@@ -52,6 +52,30 @@ struct Candidates {
   }
 };
 
+/// Whether `p` lies behind `q`: the body would have to turn by 45 degrees before `p` touches first.
+bool is_behind(const MeetingPoint& p, const MeetingPoint& q, Vec3 normal) {
+  const Real behind = p.separation - q.separation;
+  if (!(behind > Real(0))) return false;
+  const Vec3 apart = p.on_a - q.on_a;
+  const Real along = dot(apart, normal);
+  return length_squared(apart) - along * along < behind * behind;
+}
+
+/// The upper corners of a flat body, say: seen along the normal they are where the lower ones are.
+void remove_points_behind(Meeting& meeting) {
+  std::array<MeetingPoint, Meeting::kMaxPoints> all = meeting.point;
+  const int count = meeting.count;
+  const auto any_before = [&](const MeetingPoint& p) {
+    return std::any_of(all.begin(), all.begin() + count,
+                       [&](const MeetingPoint& q) { return is_behind(p, q, meeting.normal); });
+  };
+  meeting.count = 0;
+  for (int i = 0; i < count; ++i) {
+    const MeetingPoint& p = all[static_cast<std::size_t>(i)];
+    if (!any_before(p)) meeting.point[static_cast<std::size_t>(meeting.count++)] = p;
+  }
+}
+
 }  // namespace
 
 void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t> old_keys) {
@@ -59,6 +83,8 @@ void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t>
   const auto kept = std::remove_if(meeting.point.begin(), end,
                                    [margin](const MeetingPoint& p) { return !(p.separation <= margin); });
   meeting.count = static_cast<int>(kept - meeting.point.begin());
+  if (meeting.count <= state::Manifold::kMaxPoints) return;
+  remove_points_behind(meeting);
   if (meeting.count <= state::Manifold::kMaxPoints) return;
   const Candidates c = {meeting, old_keys};
   const int first = c.outermost_of_deepest();

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase.h"
 
+#include "base/assert.h"
 #include "base/take_turns.h"
 #include "collision/continuous_sweep.h"
 #include "collision/distance.h"
@@ -415,12 +416,18 @@ void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
   }
 }
 
+/// What is left for certain of a gap after what the two moved since the last step. Rounded downwards, so that
+/// it may be called any number of times.
+Real gap_after(const Scene& scene, std::uint32_t a, std::uint32_t b, Real gap) {
+  constexpr Real kRoundOff = Real(2) * std::numeric_limits<Real>::epsilon();
+  return gap - (scene.motions[a].reach + scene.motions[b].reach) - kRoundOff * std::fabs(gap);
+}
+
 /// Makes the pair's manifolds at the end of the chunk's; `first_manifold` counts from the chunk's begin.
 void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const std::uint32_t a = scene.colliders.body[pair.collider_a];
   const std::uint32_t b = scene.colliders.body[pair.collider_b];
   const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
-  const Real odometer = scene.bodies.odometer[a] + scene.bodies.odometer[b];
   add_drift(scene.motions[a], scene.motions[b], pair.drift);
   if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
     // Nothing pushes here; who overlaps is found at the end of the step.
@@ -430,9 +437,8 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
   } else {
     const Real margin = margin_of(scene, a, b);
-    // The sum of odometers is rounded, more so after a long way.
-    const Real way = odometer - pair.odometer + Real(4) * std::numeric_limits<Real>::epsilon() * odometer;
-    if (pair.tested && pair.manifold_count == 0 && pair.gap - way > margin) {
+    pair.gap = gap_after(scene, a, b, pair.gap);
+    if (pair.tested && pair.manifold_count == 0 && pair.gap > margin) {
       ++chunk.counts.skipped;
     } else if (holds(scene, pair, a, b, margin)) {
       ++chunk.counts.kept;
@@ -444,7 +450,6 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       if (pair.lively)
         append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
                       chunk);
-      pair.odometer = odometer;
       pair.drift = {};
       pair.tested = true;
     }
@@ -754,7 +759,6 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
   });
   NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
   counts.ghosts = empty_ghosts(scene, ghosts, pairs);
-  list_lively(pairs);
   return counts;
 }
 
@@ -779,7 +783,10 @@ void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const stat
   for_items(pool, static_cast<int>(count), [&](int item) {
     const std::size_t begin = static_cast<std::size_t>(item) * kLivelyChunk;
     for (std::size_t i = begin; i < std::min(begin + kLivelyChunk, rows.size()); ++i) {
+      HOOKE_ASSERT(rows[i] < pairs.pair.size());
       Pair& pair = pairs.pair[rows[i]];
+      HOOKE_ASSERT(pair.lively && pair.manifold_count > 0);
+      HOOKE_ASSERT(pair.first_manifold + pair.manifold_count <= pairs.manifold.size());
       if (pairs.manifold[pair.first_manifold].borne) continue;  // rows of the step's start
       const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
       const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);

@@ -59,8 +59,8 @@ class NarrowPhase {
   ///
   /// Points up to 2 cm + (|v| + |omega| r) dt apart are kept: the solver lets them come together and no
   /// farther. Of triangles only where the way goes towards them. A pair whose bodies both sleep or stand
-  /// keeps its manifolds as they are. A pair that was apart is tested again when the odometers of its bodies
-  /// say that they may have met. Manifolds of convex shapes that hardly moved against each other are carried
+  /// keeps its manifolds as they are. A pair that was apart is tested again when its bodies may have come
+  /// as near as that since. Manifolds of convex shapes that hardly moved against each other are carried
   /// along.
   ///
   /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
@@ -73,7 +73,8 @@ class NarrowPhase {
                                      std::span<const MaterialPairDesc> materials, const NarrowPhaseStep& step,
                                      state::Pairs& pairs);
 
-  /// After pairs were taken back that had been parked (state/parked_pairs.h): which of all are lively.
+  /// Which pairs update_lively_manifolds is for. To be called when no pair changes its row any more in this
+  /// step: after update_manifolds, and after pairs were parked or taken back (state/parked_pairs.h).
   void list_lively(const state::Pairs& pairs);
 
   /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hooke::collision {
 
@@ -41,6 +42,9 @@ void add_motion(const state::SeenPose& before, const state::SeenPose& now, Small
   motion.way = vector_cast<Real>(now.center - before.center);
   motion.turn = displacement_of(turn);
   motion.angle = (turn.w < Real(0) ? Real(-2) : Real(2)) * Vec3{turn.x, turn.y, turn.z};
+  // The chord of the turn, 2 sin(angle / 2) of a radius, is as long as its vector part twice.
+  constexpr Real kRounding = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
+  motion.reach = kRounding * (length(motion.way) + length(motion.angle) * motion.radius);
 }
 
 }  // namespace

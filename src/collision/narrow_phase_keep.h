@@ -24,6 +24,7 @@ struct SmallMotion {
   Vec3 angle = {};           ///< [rad]
   Mat3 turn = {{}, {}, {}};  ///< How far points moved from their place about the center by turning.
   Real radius = Real(0);     ///< Of the body, around its center of mass [m].
+  Real reach = Real(0);      ///< No point of the body moved farther [m].
   Real tolerance = Real(0);  ///< What two bodies may move against each other before a new test [m].
   bool calm = false;         ///< And of a large island.
 };

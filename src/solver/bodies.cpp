@@ -435,9 +435,7 @@ void turn_back(std::uint32_t row, Quat rotation, Bodies& bodies) {
 void finish_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
   for (const std::uint32_t i : rows) {
     MotionLine& m = bodies.motion[i];
-    const Vec3 theta = bodies.scale[i] * m.theta_scaled;
     bodies.center[i] = bodies.center[i] + vector_cast<double>(m.dx);
-    bodies.odometer[i] += length(m.dx) + length(theta) * bodies.traits[i].radius;
     finish_rotation(i, bodies);
     m = {.v = m.v, .inverse_mass = m.inverse_mass};
     bodies.force[i] = {};

@@ -83,9 +83,8 @@ void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> sta
 void turn_back(std::uint32_t row, Quat rotation, state::Bodies& bodies);
 
 /// End of a step: centers and rotations follow dx and theta, L follows the change of omega_scaled alone (so
-/// that a free body keeps it exactly), angular_velocity follows L, odometers grow by the way of the fastest
-/// point. A body in a steady turn has the rotational energy |omega_scaled|^2 / 2 afterwards. Nothing but v is
-/// left in the motion lines. External forces end.
+/// that a free body keeps it exactly), angular_velocity follows L. A body in a steady turn has the rotational
+/// energy |omega_scaled|^2 / 2 afterwards. Nothing but v is left in the motion lines. External forces end.
 void finish_bodies(std::span<const std::uint32_t> rows, state::Bodies& bodies);
 
 }  // namespace hooke::solver

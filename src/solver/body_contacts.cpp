@@ -60,6 +60,15 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
       (is_swapped(m, block, row.lane) ? -step.impulse_scale : step.impulse_scale) * m.rolling_impulse;
 }
 
+/// Whether it touches without impulses to start from.
+bool is_fresh(const Manifold& m) {
+  constexpr Real kTouching = Real(1e-3);  // [m]
+  const auto end = m.point.begin() + m.point_count;
+  return std::all_of(m.point.begin(), end,
+                     [](const ContactPoint& p) { return p.normal_impulse == Real(0); }) &&
+         std::any_of(m.point.begin(), end, [](const ContactPoint& p) { return p.separation < kTouching; });
+}
+
 /// Cuts the colors into blocks, and finds places for what only some of them have.
 void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contacts) {
   const ContactColors& colors = contacts.colors;
@@ -67,6 +76,7 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
   contacts.manifold_of.clear();
   contacts.rolling.clear();
   contacts.lively.clear();
+  contacts.any_fresh = false;
   std::size_t block_count = 0;
   for (std::size_t color = 0; color + 1 < colors.begin.size(); ++color) {
     int i = colors.begin[color];
@@ -79,12 +89,13 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
       block.point_count = manifolds[first_manifold].point_count;
       block.first_rolling = static_cast<int>(contacts.rolling.size());
       block.count = 0;
-      block.bounces = false;
+      block.bounces = block.fresh = false;
       const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
       for (; i < end && colors.members[i].anchored == anchored && colors.members[i].hard == hard; ++i) {
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
         block.bounces = block.bounces || m.restitution > Real(0);
+        block.fresh = block.fresh || is_fresh(m);
         if (m.lively && !hard) {
           block.point_count = Manifold::kMaxPoints;
           contacts.lively.push_back(
@@ -95,6 +106,7 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
       }
       contacts.manifold_of.resize(block_count * kContactLanes, BodyContacts::kNoManifold);
       block.rolling_count = static_cast<int>(contacts.rolling.size()) - block.first_rolling;
+      contacts.any_fresh = contacts.any_fresh || block.fresh;
     }
     contacts.color_begin.push_back(static_cast<int>(block_count));
   }
@@ -292,16 +304,29 @@ void solve_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
   wide::solve_contacts(all.subspan(pairs), pass(true), bodies.motion.data());
 }
 
+namespace {
+
+/// What comes near and will be struck in the next substep must not be slower by then.
+wide::ContactPass relaxation(const ContactStep& step) {
+  return {.softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
+}
+
+}  // namespace
+
 void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
   for (const ContactBlock& block : all) {
     for (int i = 0; i < block.rolling_count; ++i)
       roll(block, contacts.rolling[block.first_rolling + i], bodies);
   }
-  // What comes near and will be struck in the next substep must not be slower by then.
-  const wide::ContactPass pass = {
-      .softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
-  wide::solve_contacts(soft_blocks_of(contacts, blocks), pass, bodies.motion.data());
+  wide::solve_contacts(soft_blocks_of(contacts, blocks), relaxation(step), bodies.motion.data());
+}
+
+void relax_fresh_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
+  const std::span<ContactBlock> all = soft_blocks_of(contacts, blocks);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].fresh) wide::solve_contacts(all.subspan(i, 1), relaxation(step), bodies.motion.data());
+  }
 }
 
 void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,

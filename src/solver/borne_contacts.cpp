@@ -137,14 +137,18 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
 }
 
 /// The hooks of articulations that a body of `bears` is part of.
-void mark_hooks(const Joints& joints, const std::vector<std::uint8_t>& bears, std::vector<Hook>& hooks) {
+void mark_hooks(const Joints& joints, const Bodies& bodies, const std::vector<std::uint8_t>& bears,
+                std::vector<Hook>& hooks) {
   for (const std::uint32_t i : joints.order) {
     const Articulation& art = joints.articulations[i];
     const bool any = std::any_of(art.bodies.begin(), art.bodies.end(),
                                  [&](std::uint32_t body) { return body < bears.size() && bears[body] != 0; });
     if (!any) continue;
     for (const Articulation::Joint& joint : art.joints) {
-      if (!joint.is_weld()) hooks[joint.hook].bears = true;
+      if (joint.is_weld()) continue;
+      Hook& hook = hooks[joint.hook];
+      // One between sleepers has nothing to solve.
+      hook.bears = gives_way(bodies, hook.a.body) || gives_way(bodies, hook.b.body);
     }
   }
 }
@@ -245,11 +249,13 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
                              .body_a = m.body_a,
                              .body_b = m.body_b,
                              .load = load});
-    scratch.bears[m.body_a] = scratch.bears[m.body_b] = 1;
+    // What nothing moves is a member of each articulation that is tied to it, and joins none to another.
+    for (const std::uint32_t body : {m.body_a, m.body_b})
+      if (is_moved(bodies, body)) scratch.bears[body] = 1;
   }
   if (pairs.borne.empty()) return;
   place_borne_contacts(impulse_to_force, bodies, pairs);
-  mark_hooks(joints, scratch.bears, hooks);
+  mark_hooks(joints, bodies, scratch.bears, hooks);
 }
 
 void place_borne_contacts(Real impulse_to_force, const Bodies& bodies, state::Pairs& pairs) {

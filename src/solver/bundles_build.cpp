@@ -92,8 +92,10 @@ class Groups {
   }
 
   std::uint32_t of_hook(const Hook& hook) {
-    const std::uint32_t end = of_end(hook.point_end());
-    return sets_.root(end != kNone ? end : of_end(hook.other_end()));
+    std::uint32_t end = of_end(hook.point_end());
+    if (end == kNone) end = of_end(hook.other_end());
+    HOOKE_ASSERT(end != kNone);
+    return sets_.root(end);
   }
   std::uint32_t of_borne(const state::BorneContact& borne) {
     return sets_.root(gives_way(tables_.bodies, borne.body_a) ? borne.body_a : borne.body_b);
@@ -153,10 +155,12 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks, std:
   anchors.clear();
   for (const std::uint32_t row : hooks) {
     const Hook& hook = t.hooks[row];
+    HOOKE_ASSERT(may_be_anchor(t, hook));
     const std::uint32_t particle = hook.point_end().particle[0];
     const auto behind =
         std::upper_bound(chains.begin(), chains.end(), particle,
                          [](std::uint32_t p, const Chain& chain) { return p < chain.first_particle; });
+    HOOKE_ASSERT(behind != chains.begin());
     const auto chain = static_cast<std::uint32_t>(behind - chains.begin()) - 1;
     anchors.push_back({chain, particle - chains[chain].first_particle, row, hook.b.is_point()});
   }

@@ -99,7 +99,6 @@ struct Bodies {
   std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.
   std::vector<Vec3> torque;           ///< External, for the current step [N m]; cleared by finish.
   std::vector<FreeLine> free_motion;  ///< Lives for one substep; written by the solver.
-  std::vector<Real> odometer;         ///< Way of the fastest point since the body was made [m].
   std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint8_t> slept;    ///< `asleep` at the end of the last step; written by gather_events.
@@ -129,7 +128,6 @@ struct Bodies {
     visit(self.force);
     visit(self.torque);
     visit(self.free_motion);
-    visit(self.odometer);
     visit(self.rest_time);
     visit(self.asleep);
     visit(self.slept);

@@ -87,11 +87,10 @@ struct Pair {
   std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
   std::uint32_t collider_b = 0;
   // What the last exact test found, so that the next can be skipped or begin where it ended.
-  Real gap = Real(0);       ///< Separation then; negative: overlap [m].
-  Real odometer = Real(0);  ///< Sum of the two bodies' odometers then [m].
-  Drift drift = {};         ///< Since then.
-  std::uint32_t axis = 0;   ///< Features that separated or touched: narrow phase's own code.
-  bool tested = false;      ///< False until the first exact test.
+  Real gap = Real(0);      ///< Separation then, less what the bodies moved since; negative: overlap [m].
+  Drift drift = {};        ///< Since then.
+  std::uint32_t axis = 0;  ///< Features that separated or touched: narrow phase's own code.
+  bool tested = false;     ///< False until the first exact test.
   // Its manifolds of this step.
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;

@@ -164,6 +164,7 @@ void find_body_contacts(WorldData& world, Real dt) {
 
 void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
+  world.narrow_phase.list_lively(t.pairs);  // no pair changes its row any more in this step
   const WorldDesc& desc = t.desc;
   const auto before = static_cast<Real>(t.body_substep);
   world.contact_step = {.gravity = desc.gravity,
@@ -224,6 +225,17 @@ void renew_lively_contacts(WorldData& world, Real h) {
   world.narrow_phase.update_lively_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
                                              t.pairs);
   solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
+}
+
+void relax_contacts(WorldData& world, bool first) {
+  state::Bodies& bodies = world.tables.bodies;
+  for_contact_colors(world, [&](parallel::Range blocks) {
+    solver::relax_body_contacts(blocks, world.contact_step, world.body_contacts, bodies);
+  });
+  if (!first || !world.body_contacts.any_fresh) return;
+  for_contact_colors(world, [&](parallel::Range blocks) {
+    solver::relax_fresh_contacts(blocks, world.contact_step, world.body_contacts, bodies);
+  });
 }
 
 void finish_body_contacts(WorldData& world) {

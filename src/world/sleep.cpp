@@ -75,8 +75,7 @@ bool wake_struck(WorldData& world) {
 /// Of bodies that woke.
 void take_pairs_back(WorldData& world) {
   state::Tables& t = world.tables;
-  if (state::unpark_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.parking))
-    world.narrow_phase.list_lively(t.pairs);
+  state::unpark_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.parking);
 }
 
 /// What is pressed into another leaves it more slowly than what rests may move (solver/borne_contacts.h).

@@ -458,6 +458,7 @@ Result<void> World::restore(const Snapshot& snapshot) {
   if (data_->stepping) return Error{ErrorCode::kUnsupported, "snapshot", "cannot be restored during a step"};
   world::restore_tables(snapshot.data_->tables, data_->tables);
   data_->broad_phase_stale = true;
+  data_->bodies_placed.clear();  // rows of the world that was
   data_->boxes_are_current = false;
   world::clear_events(data_->events);
   data_->broken_hooks.clear();

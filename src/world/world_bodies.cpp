@@ -299,7 +299,6 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.angular_momentum[row] = state::angular_momentum_of(bodies.mass[row], rotation, omega);
   bodies.path_start[row] = bodies.center[row];
   bodies.path_time[row] = data_->tables.time;
-  bodies.odometer[row] += Real(1e6);  // farther than any gap: every pair is tested anew
   data_->bodies_placed.push_back(row);
   data_->boxes_are_current = false;
   world::wake_neighbors(data_->tables, [row](std::uint32_t near) { return near == row; });

@@ -51,7 +51,6 @@ struct PairScene {
   /// Moves a body as a step does.
   void move(std::uint32_t body, DVec3 way) {
     bodies.center[body] = bodies.center[body] + way;
-    bodies.odometer[body] += static_cast<Real>(length(way));
   }
   /// Pairs all bodies that are not both static with each other, and updates their manifolds.
   void update(Real dt = Real(1) / Real(60)) {

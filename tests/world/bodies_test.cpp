@@ -341,6 +341,38 @@ TEST_SUITE("world/bodies") {
     CHECK(world.pose(ball).position.y > -1 + 0.9);  // on the lying arm, 1 m thick
     CHECK(world.pose(ball).position.x > 1);
   }
+
+  TEST_CASE("what touches a slope from the start has all of its friction from the first substep") {
+    constexpr double kSlope = 0.5;
+    constexpr double kFriction = 0.35;
+    const Quat tilt = quaternion_about({Real(0), Real(0), Real(1)}, Real(-kSlope));
+    const DVec3 up = {std::sin(kSlope), std::cos(kSlope), 0};
+    const DVec3 down = {std::cos(kSlope), -std::sin(kSlope), 0};
+    const double acceleration = kGravity * (std::sin(kSlope) - kFriction * std::cos(kSlope));
+    const ContactDesc contact = {.friction = Real(kFriction)};
+    // Cubes, which friction tips most, and plates whose upper corners are within the margin of contact.
+    for (const DVec3 half :
+         {DVec3{0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}, {0.02, 0.0068, 0.02}, {0.1, 0.002, 0.1}}) {
+      for (const double speed : {0.0, 1.2}) {
+        CAPTURE(half.y);
+        CAPTURE(speed);
+        World world = make_world(without_air());
+        take(world.add_body({.shape = Shape::half_space(), .rotation = tilt, .contact = contact}));
+        const BodyId body = take(world.add_body({.kind = BodyKind::kDynamic,
+                                                 .shape = Shape::box(vector_cast<Real>(half)),
+                                                 .position = half.y * up,
+                                                 .rotation = tilt,
+                                                 .velocity = vector_cast<Real>(speed * down),
+                                                 .contact = contact}));
+        for (int step = 1; step <= 4; ++step) {
+          run(world, 1);
+          const DVec3 v = vector_cast<double>(world.velocity(body));
+          CHECK(std::abs(dot(v, down) - speed - acceleration * step / 60) < 1e-3);
+          CHECK(std::abs(dot(v, up)) < 2e-3);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace hooke
