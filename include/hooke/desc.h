@@ -506,9 +506,12 @@ struct FieldDesc {
                 ///< it less by half of that: B = vector + strength (3 (a.d) a - d) / 2, d = x - center, a the
                 ///< direction of `vector`. Force q v x B on charged particles; on bodies with a dipole
                 ///< moment m torque m x B and force grad (m.B).
-    kLiquid,    ///< At rest below y = `height`, or flowing with `vector` [m/s]. Lifts by the weight of what
-                ///< is displaced, at its center, and drags: velocity and spin of a body that displaces
-                ///< its own mass decay at the rate `drag`. The liquid itself does not move.
+    kLiquid,    ///< At rest, or flowing with `vector` [m/s], below `height`: its surface lies across gravity,
+                ///< that far above the origin; across y without gravity. Lifts by the weight of what is
+                ///< displaced, at its center, and drags: velocity and spin of what displaces its own mass
+                ///< decay at the rate `drag`. The liquid itself does not move. Bodies and solids displace
+                ///< their volume, closed cloths with gas what they enclose; ropes and other cloths are as
+                ///< thick as they collide, and loose particles balls.
     kSuction,   ///< Acceleration `strength` (1 - r / reach)^falloff towards `center`, r the distance from it.
     kVortex,    ///< The same about the axis `vector` through `center`, r the distance from the axis:
                 ///< across it, counter-clockwise seen from its tip.
@@ -526,7 +529,7 @@ struct FieldDesc {
                             ///< direction to go by.
   double reach = 1.0;       ///< [m], 1e-6 to 1e9: from there on nothing is felt.
   int falloff = 1;          ///< 0 to 8; 0: as strong everywhere within reach.
-  double height = 0.0;      ///< kLiquid [m].
+  double height = 0.0;      ///< kLiquid: of the surface above the origin, against gravity [m].
   double density = 1000.0;  ///< kLiquid [kg/m^3], 0 to 1e6.
   double drag = 0.0;        ///< kLiquid [1/s], 0 to 1e6.
   double time = 0.0;        ///< kExplosion [s].

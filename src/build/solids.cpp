@@ -326,8 +326,10 @@ std::shared_ptr<const state::RestEdges> rest_edges_of(const TetrahedralMesh& mes
 }
 
 /// The form that points are drawn to; an error where it could not tell how it is turned.
-Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& points, const SolidDesc& desc) {
+Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& points, const SolidDesc& desc,
+                                                              double volume) {
   auto rest = std::make_shared<state::RestShape>();
+  rest->volume = volume;
   DVec3 center;
   for (std::size_t i = 0; i < points.mass.size(); ++i) {
     const auto mass = static_cast<double>(points.mass[i]);
@@ -371,7 +373,7 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   if (!checks.good()) return checks.result();
   std::shared_ptr<const state::RestShape> rest_shape;
   if (is_matched(desc)) {
-    const auto made = rest_shape_of(points, desc);
+    const auto made = rest_shape_of(points, desc, body.value().volume);
     if (!made) return made.error();
     rest_shape = made.value();
   }

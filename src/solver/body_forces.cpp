@@ -3,6 +3,7 @@
 #include "elements/fields.h"
 #include "geometry/immersion.h"
 #include "math/rotation.h"
+#include "solver/liquids.h"
 #include "solver/wind.h"
 #include "state/body_frames.h"
 
@@ -46,15 +47,27 @@ geometry::PlacedShape placed(const BodyNow& body, const state::Colliders& collid
           .position = rotate(rotation, vector_cast<double>(colliders.position[collider]))};
 }
 
+/// The rotation by which the unit vector `up` becomes the y axis.
+Quaternion<double> turn_to_y(DVec3 up) {
+  if (up.y < -1 + 1e-12) return {1, 0, 0, 0};  // half a turn about x
+  return normalize(Quaternion<double>{-up.z, 0, up.x, 1 + up.y});
+}
+
 void add_liquid(const FieldDesc& liquid, const BodyNow& body, const Surroundings& around,
                 const state::Bodies& bodies, Push& push) {
-  const double level = liquid.height - body.center.y;
+  const LiquidSurface surface(liquid, around.desc.gravity);
+  const double level = surface.depth(body.center);
   if (level + static_cast<double>(bodies.traits[body.row].radius) <= 0) return;
+  // Shapes are cut across y: the body is looked at with the surface turned to that.
+  const Quaternion<double> turn = turn_to_y(surface.up);
   geometry::Immersion all;
   for (const std::uint32_t c : state::colliders_of(bodies, body.row)) {
-    const geometry::Immersion part = geometry::immersion(placed(body, around.colliders, c), level);
+    geometry::PlacedShape shape = placed(body, around.colliders, c);
+    shape.rotation = turn * shape.rotation;
+    shape.position = rotate(turn, shape.position);
+    const geometry::Immersion part = geometry::immersion(shape, level);
     all.volume += part.volume;
-    all.moment += part.moment;
+    all.moment += rotate(conjugate(turn), part.moment);
   }
   const DVec3 lift = -liquid.density * vector_cast<double>(around.desc.gravity);
   push.force += all.volume * lift;

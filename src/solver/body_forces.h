@@ -27,7 +27,7 @@ struct Surroundings {
 ///
 /// - fields (elements/fields.h): m a at the center of mass;
 /// - liquid: -rho V g at the center of the volume V that is immersed (geometry/immersion.h), g the world's
-///   gravity; drag -k m (v - flow) and torque -k L, k = drag rho V / m;
+///   gravity, across which its surface lies; drag -k m (v - flow) and torque -k L, k = drag rho V / m;
 /// - air, with u = v - wind at the center of mass: -rho C_d A |u| u / 2, A the area shown to u, shapes of one
 ///   body added up; and C rho V omega x u (Kutta-Joukowski; C = 3/4 for a ball: Rubinow and Keller 1961).
 ///

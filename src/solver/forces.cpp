@@ -1,7 +1,6 @@
 #include "solver/forces.h"
 
 #include "elements/fields.h"
-#include "geometry/immersion.h"
 #include "math/trig.h"
 
 #include <algorithm>
@@ -10,12 +9,6 @@
 namespace hooke::solver {
 
 namespace {
-
-/// Of the liquid where a ball of this radius is [kg].
-double displaced_mass(const FieldDesc& liquid, double y, Real radius) {
-  const auto r = static_cast<double>(radius);
-  return liquid.density * geometry::cap_volume(r, std::clamp(r + (liquid.height - y), 0.0, 2 * r));
-}
 
 /// `v` turned about the flux density b by the angle a charge of q/m turns in h.
 Vec3 turn(Vec3 v, DVec3 b, double charge_per_mass, double h) {
@@ -47,13 +40,6 @@ void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Re
     for (const state::Field& field : inputs.fields) {
       const DVec3 x = object.origin + vector_cast<double>(particles.position[p].x);
       v += h * vector_cast<Real>(elements::acceleration(field.desc, x));
-      if (field.desc.kind == FieldDesc::Kind::kLiquid) {
-        const double ratio =
-            displaced_mass(field.desc, x.y, particles.position[p].radius) * static_cast<double>(w);
-        const Real k = static_cast<Real>(field.desc.drag * ratio);
-        v = field.desc.vector + (Real(1) / (Real(1) + h * k)) * (v - field.desc.vector);
-        v -= (h * static_cast<Real>(ratio)) * inputs.gravity;
-      }
       if (particles.charge[p] != Real(0)) {
         v = turn(v, elements::flux_density(field.desc, x),
                  static_cast<double>(particles.charge[p]) * static_cast<double>(w), static_cast<double>(h));

@@ -16,15 +16,13 @@ namespace hooke::solver {
 /// Viscous drag c and quadratic drag k = rho C_d A / 2 act on v - wind implicitly: v - wind is divided by
 /// 1 + h w (c + k |v - wind|). They act on the velocity before it is accelerated: what is held still by a
 /// rope then weighs m g, not m g / (1 + h w c). A magnetic field turns v by exactly -(q/m) |B| h about B: the
-/// speed does not change. In liquid a particle is a ball of its radius r: with V the volume of what is below
-/// the surface, the lift is -rho V g, and drag as in air with c = drag rho V. `range` counts the particles of
-/// `object`; gravity is not among these (it is added to all at once).
+/// speed does not change. What liquids do is in solver/liquids.h. `range` counts the particles of `object`;
+/// gravity is not among these (it is added to all at once).
 struct ForceInputs {
   const std::vector<state::Field>& fields;
   const std::vector<AirLine>& wind;
   Real air_density = Real(0);
   bool any_force = false;  ///< Some external force is set.
-  Vec3 gravity = {};       ///< [m/s^2]; for the lift of liquids only.
 };
 
 void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Real h, parallel::Range range,

@@ -52,6 +52,7 @@ using RestEdges = std::vector<std::array<Vec3, 3>>;
 struct RestShape {
   std::vector<DVec3> place;  ///< Of each row, from the center of mass [m].
   double mass = 0;           ///< Of all points, pinned ones too [kg].
+  double volume = 0;         ///< [m^3]; 0 of points alone.
   double inertia = 0;        ///< sum m q^2 [kg m^2].
   double stiffness = 0;      ///< k over mass, w^2 [1/s^2]; kRigid for a rigid body.
   double damping = 0;        ///< c over mass [1/s].

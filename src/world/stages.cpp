@@ -223,14 +223,30 @@ void begin_particle_substep(WorldData& world, Real h) {
   }
 }
 
+namespace {
+
+void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
+  state::Tables& t = world.tables;
+  for (const state::Field& field : t.fields) {
+    if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
+    const solver::LiquidSurface surface(field.desc, t.desc.gravity);
+    solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
+                              world.liquid_loads);
+    solver::apply_liquid(field.desc, surface, object, world.liquid_loads, h, t.particles);
+  }
+}
+
+}  // namespace
+
 void apply_forces(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
-                                      tables.any_force, tables.desc.gravity};
+                                      tables.any_force};
   for (const state::Deformable& object : tables.objects) {
     if (tables.fields.empty() && !tables.any_force && !object.points_drag) continue;
     for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
                [&](Range range) { solver::apply_forces(object, inputs, h, range, tables.particles); });
+    apply_liquids(world, object, h);
   }
 }
 

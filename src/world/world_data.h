@@ -21,6 +21,7 @@
 #include "solver/hinges.h"
 #include "solver/hits.h"
 #include "solver/joints.h"
+#include "solver/liquids.h"
 #include "solver/plasticity.h"
 #include "solver/repulsion.h"
 #include "solver/rope_twist.h"
@@ -118,6 +119,7 @@ struct WorldData {
   std::vector<DVec3> start_origin;
   std::vector<state::VelocityLine> velocity_before;  ///< Of rope nodes, before the substep's forces.
   std::vector<solver::AirLine> wind;                 ///< At each particle [m/s].
+  std::vector<solver::LiquidLoad> liquid_loads;      ///< Of the object at hand.
   std::vector<Vec3> law_force;                       ///< What force laws ask for [N].
   std::vector<std::uint32_t> law_bodies;             ///< What force laws see: rows in ascending order.
   std::vector<std::uint32_t> dipole_bodies;          ///< Those with a dipole moment: rows in ascending order.
