@@ -136,23 +136,6 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
   }
 }
 
-/// The hooks of articulations that a body of `bears` is part of.
-void mark_hooks(const Joints& joints, const Bodies& bodies, const std::vector<std::uint8_t>& bears,
-                std::vector<Hook>& hooks) {
-  for (const std::uint32_t i : joints.order) {
-    const Articulation& art = joints.articulations[i];
-    const bool any = std::any_of(art.bodies.begin(), art.bodies.end(),
-                                 [&](std::uint32_t body) { return body < bears.size() && bears[body] != 0; });
-    if (!any) continue;
-    for (const Articulation::Joint& joint : art.joints) {
-      if (joint.is_weld()) continue;
-      Hook& hook = hooks[joint.hook];
-      // One between sleepers has nothing to solve.
-      hook.bears = gives_way(bodies, hook.a.body) || gives_way(bodies, hook.b.body);
-    }
-  }
-}
-
 /// Whether what it joins stays at its distance along any direction in which they may be pressed together.
 bool holds_place(const Hook& hook) {
   if (hook.holds_point()) return false;
@@ -218,12 +201,11 @@ void find_holders(const Joints& joints, const Bodies& bodies, const std::vector<
 
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
                          std::span<const std::uint8_t> hooked, const Holders& holders, const Bodies& bodies,
-                         std::vector<Hook>& hooks, state::Pairs& pairs, BorneScratch& scratch) {
+                         const std::vector<Hook>& hooks, state::Pairs& pairs, BorneScratch& scratch) {
   if (hooks.empty() && pairs.borne.empty()) return;
   // Where none was borne no flag is set.
   if (!pairs.borne.empty()) {
     for (Manifold& m : pairs.manifold) m.borne = false;
-    for (Hook& hook : hooks) hook.bears = false;
   }
   scratch.borne_before.clear();
   for (const BorneContact& contact : pairs.borne)
@@ -236,7 +218,6 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
   const std::size_t chosen = choose(candidates, pairs, scratch.holders.holding);
   if (chosen > 0) add_loads(joints, bodies, pairs, scratch.load, scratch.holders.burden);
   choose_pressed(candidates, chosen, pairs);
-  scratch.bears.assign(bodies.motion.size(), 0);
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const std::uint32_t manifold = pairs.pair[row].first_manifold;
     if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].borne) continue;
@@ -249,13 +230,8 @@ void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const J
                              .body_a = m.body_a,
                              .body_b = m.body_b,
                              .load = load});
-    // What nothing moves is a member of each articulation that is tied to it, and joins none to another.
-    for (const std::uint32_t body : {m.body_a, m.body_b})
-      if (is_moved(bodies, body)) scratch.bears[body] = 1;
   }
-  if (pairs.borne.empty()) return;
   place_borne_contacts(impulse_to_force, bodies, pairs);
-  mark_hooks(joints, bodies, scratch.bears, hooks);
 }
 
 void place_borne_contacts(Real impulse_to_force, const Bodies& bodies, state::Pairs& pairs) {

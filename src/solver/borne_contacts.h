@@ -75,17 +75,16 @@ struct BorneScratch {
   Holders holders;
   std::vector<Real> load;  ///< By body: the heaviest that lies on it [kg].
   std::vector<std::pair<std::uint32_t, std::uint32_t>> borne_before;
-  std::vector<std::uint8_t> bears;  ///< By body: whether it is in a borne contact.
 };
 
-/// Fills `pairs.borne`, and says which hooks between bodies bear. What is borne by a body that hangs is
+/// Fills `pairs.borne`. What is borne by a body that hangs is
 /// heavier than it, or presses harder than that; it may be hooked itself (`hooked`, by body row), as the
 /// wheel of a cart is, but does not hang. Contacts that bounce are not borne. `impulse_to_force` is that of
 /// the impulses that manifolds have from the last step [1/s].
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
                          std::span<const std::uint8_t> hooked, const Holders& holders,
-                         const state::Bodies& bodies, std::vector<state::Hook>& hooks, state::Pairs& pairs,
-                         BorneScratch& scratch);
+                         const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
+                         state::Pairs& pairs, BorneScratch& scratch);
 
 /// Forces and separations by what the manifolds say now.
 void place_borne_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);

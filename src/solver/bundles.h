@@ -96,8 +96,8 @@ struct InnerTouch {
 /// its speed, N and the speed of the solution before: however wrong they are, that takes energy. Along the
 /// normal those of ropes are as soft as contacts of nodes are, and carry their force over like these.
 ///
-/// A share of 1e-6 of each hook row's diagonal is added as compliance: it decides what loops of rigid ropes
-/// leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
+/// A share of 1e-6 of each hook row's diagonal is added as compliance, 1e-10 of a motor's: it decides what loops
+/// of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
 /// direction at b is that of its points blended along the segment.
 struct Bundle {
   std::vector<std::uint32_t> chains;         ///< In order.
@@ -157,8 +157,10 @@ struct Bundle {
   void clear();
 };
 
-/// The share of a hook row's diagonal that it has as compliance.
+/// The share of a hook row's diagonal that it has as compliance; of a motor's, whose row asks for a speed and
+/// does not take back what it has yielded.
 inline constexpr double kHookCompliance = 1e-6;
+inline constexpr double kMotorCompliance = 1e-10;
 
 /// Memory to lay out bundles in.
 struct BundleScratch {

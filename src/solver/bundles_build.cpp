@@ -184,7 +184,7 @@ void sort_members(const Tables& t, std::vector<Chain>& chains, Bundles& bundles)
   std::vector<std::uint8_t>& tied = bundles.scratch.tied;
   tied.assign(group_count, 0);
   for (const Hook& hook : t.hooks) {
-    if (hook.holds_point() && !may_be_anchor(t, hook)) tied[groups.of_hook(hook)] = 1;
+    if (hook.coupled || (hook.holds_point() && !may_be_anchor(t, hook))) tied[groups.of_hook(hook)] = 1;
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
     if (joins(t, row)) tied[groups.of_contact(row)] = 1;

@@ -93,7 +93,8 @@ void BundleSolution::assemble_hooks() {
       const Numbers coupled = numbers(block, body_block(body));
       for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
     }
-    diagonal += b_.rows[row].gamma + kHookCompliance * mobility;
+    const bool drives = b_.rows[row].role == RowRole::kMotor;
+    diagonal += b_.rows[row].gamma + (drives ? kMotorCompliance : kHookCompliance) * mobility;
   });
 }
 

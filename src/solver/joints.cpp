@@ -59,11 +59,11 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
                      [&](std::uint32_t body) { return gives_way(bodies, body); });
 }
 
-/// Whether it bears something, and is solved with that.
+/// Whether it is solved with what touches it.
 bool is_bundled(const Articulation& articulation, const std::vector<Hook>& hooks) {
   const auto joint = std::find_if(articulation.joints.begin(), articulation.joints.end(),
                                   [](const Articulation::Joint& j) { return !j.is_weld(); });
-  return joint != articulation.joints.end() && hooks[joint->hook].bears;
+  return joint != articulation.joints.end() && hooks[joint->hook].coupled;
 }
 
 /// Those awake; trees of a kind together.
@@ -169,6 +169,7 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
   prepare_net(joints.net);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {
+    hook.coupled = false;
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
   });
@@ -185,7 +186,7 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
                         {hooks, bodies});
     for (const std::uint32_t i : some) {
       for (const Articulation::Joint& joint : joints.articulations[i].joints) {
-        if (!joint.is_weld() && !hooks[joint.hook].bears) add_up_impulses(h, hooks[joint.hook]);
+        if (!joint.is_weld() && !hooks[joint.hook].coupled) add_up_impulses(h, hooks[joint.hook]);
       }
     }
   });

@@ -36,7 +36,7 @@ struct Hook {
   HookKind kind = HookKind::kBall;
   bool collide = false;
   bool broken = false;
-  bool bears = false;  ///< Between bodies, of which one bears a contact in this step (BorneContact).
+  bool coupled = false;  ///< Between bodies of an articulation that is part of a bundle in this step.
   HookPlace a = {};
   HookPlace b = {};
   Real break_force = kRigid;
@@ -61,7 +61,7 @@ struct Hook {
   /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
   /// Whether it is solved in a bundle.
-  [[nodiscard]] bool is_bundled() const { return bears || holds_point(); }
+  [[nodiscard]] bool is_bundled() const { return coupled || holds_point(); }
   /// Of such a hook, the end at particles, the first if both are, and the other one.
   [[nodiscard]] const HookPlace& point_end() const { return a.is_point() ? a : b; }
   [[nodiscard]] const HookPlace& other_end() const { return a.is_point() ? b : a; }

@@ -1,6 +1,7 @@
 #include "world/bodies.h"
 
 #include "collision/shape_bounds.h"
+#include "solver/coupled_articulations.h"
 #include "solver/forces.h"
 #include "state/body_frames.h"
 #include "state/parked_pairs.h"
@@ -176,6 +177,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
   t.body_substep = static_cast<double>(h);
   solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
                               world.hooked, world.holders, t.bodies, t.hooks, t.pairs, world.borne);
+  solver::couple_articulations(world.joints, world.touched, t);
   solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.hooked, t.bodies,
                             world.body_contacts, world.hard_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
