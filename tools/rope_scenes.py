@@ -192,6 +192,9 @@ def pulley():
     way = a * (step * DT)**2 / 2
     half = 0.1
     start = axle - straight - half
+    # Nodes that run on to the wheel begin without a force and give way: both weights hang 4 mm lower (0.4 mm at 32
+    # substeps), besides 0.2 % of the way.
+    error = 0.004 + 0.01 * way
     return scene(
         "Pulley",
         "Atwood's machine with a wheel that has mass: the rope does not slip on it. The heavier weight goes "
@@ -204,8 +207,8 @@ def pulley():
             body("light", "steel", box(half, half, half), [-r, start, 0], mass=m1),
             body("heavy", "rose", box(half * 1.15, half * 1.15, half * 1.15), [r, start - 0.15 * half, 0], mass=m2),
         ], [
-            promise("height", "==", start - 0.15 * half - way, "heavy", 0.015 * way, step),
-            promise("height", "==", start + way, "light", 0.015 * way, step),
+            promise("height", "==", start - 0.15 * half - way, "heavy", error, step),
+            promise("height", "==", start + way, "light", error, step),
             promise("angular_speed", "within", a * step * DT / r, "wheel", 0.03, step),
             promise("largest_stretch", "<", 0.005)
         ],
