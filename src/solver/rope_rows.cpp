@@ -48,26 +48,41 @@ bool drives_by_friction(const RopeTouch& t, V sliding) {
   return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
 }
 
-/// Friction of an active contact: holds with f0 - rho u_t up to mu N, slides against u_t beyond. What is
-/// `dragged` is so by mu N over its speed, which never drives, but takes many solutions to come to the force.
+/// Friction that a contact starts from: what it did in the last substep, of the size that N allows now.
+V carried_friction(const RopeTouch& t) {
+  const double most = t.friction * t.normal;
+  const double size = length(t.f0);
+  return size > most ? (most / size) * t.f0 : t.f0;
+}
+
+void slide(V trial, double size, RopeTouch& t) {
+  t.slides = true;
+  t.trial = size;
+  t.against = (1.0 / size) * trial;
+}
+
+/// Of a change of the trial force across its direction, what the friction of a node that slides gets.
+double turned_share(const RopeTouch& t) {
+  return t.trial > 0 ? t.friction * t.normal / t.trial : 0;
+}
+
+/// Friction of an active contact: holds with f0 - rho u_t up to mu N, and is mu N along that beyond: the
+/// nearest force that Coulomb's cone allows. What is `dragged` is so by mu N over its speed, which never
+/// drives, but takes many solutions to come to the force.
 void update_friction(RopeTouch& t, V sliding) {
   const double most = t.friction * t.normal;
-  const double speed = length(sliding);
   if (t.dragged) {
+    const double speed = length(sliding);
     t.f = -t.drag * sliding;
     t.drag = most < t.rho * speed ? most / speed : t.rho;
     return;
   }
-  if (t.slides) {
-    t.slides = dot(sliding, t.against) <= 0;
-    if (t.slides && speed > 0) t.against = (-1.0 / speed) * sliding;
-  } else {
-    t.f = t.f0 - t.rho * sliding;
-    const double size = length(t.f);
-    t.slides = size > most;
-    if (t.slides) t.against = (1.0 / size) * t.f;
-  }
-  if (t.slides) t.f = most * t.against;
+  t.f = carried_friction(t) - t.rho * sliding;
+  const double size = length(t.f);
+  t.slides = size > most;
+  if (!t.slides) return;
+  slide(t.f, size, t);
+  t.f = most * t.against;
 }
 
 /// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
@@ -116,8 +131,7 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
   t.active = t.n0 > 0 || t.separation <= 0;
   const double size = length(t.f0);
   t.normal = t.n0;
-  t.slides = size > 0 && size >= kSlidingShare * t.friction * t.n0;
-  if (t.slides) t.against = (1.0 / size) * t.f0;
+  if (size > 0 && size >= kSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
   return t;
 }
 
@@ -278,15 +292,21 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
   e.compliance = math::axial(e.n, 1.0 / e.along, 1.0 / e.across);
 }
 
+/// What slides is free along its way. Beside it a change of velocity turns the force: mu N for each of the
+/// trial force.
 M grip_of(const RopeTouch& t) {
-  const double beside = t.of_point || t.dragged ? t.drag : t.slides ? 0.0 : t.rho;
-  return math::axial(t.n, t.rho, beside);
+  if (!t.slides || t.of_point || t.dragged)
+    return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho);
+  return math::axial(t.n, t.rho, 0.0) + math::axial(cross(t.n, t.against), t.rho * turned_share(t), 0.0);
 }
 
 V push_of(const RopeTouch& t, double h) {
   const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
   if (t.dragged) return normal;
-  return normal + (t.slides ? (t.friction * t.normal) * t.against : t.f0);
+  const V held = carried_friction(t);
+  if (!t.slides) return normal + held;
+  const V beside = cross(t.n, t.against);
+  return normal + (t.friction * t.normal) * t.against + (turned_share(t) * dot(beside, held)) * beside;
 }
 
 NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h) {

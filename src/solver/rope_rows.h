@@ -61,6 +61,7 @@ struct RopeTouch {
   double rho = 0;  ///< How hard it holds [kg].
   DVec3 n, f0, f;
   DVec3 against;  ///< Direction of friction on a node that slides.
+  double trial = 0;  ///< Of such a one: size of what would have held it [N s].
   DVec3 surface;  ///< Velocity of what is touched, at the contact [m/s].
   int body = -1;  ///< Of a net, whose velocity is solved for; -1: `surface` is given.
   DVec3 lever;    ///< From that body's center [m].
