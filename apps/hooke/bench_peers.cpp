@@ -58,7 +58,7 @@ std::vector<std::string> words_of(const std::string& program, const PeerBench& o
 /// Its status, and what it wrote to standard output; standard error is ours.
 Result<std::string> run_program(std::vector<std::string> words, int& status) {
   auto pipe = process::make_pipe();
-  if (!pipe) return Error{ErrorCode::kLimitExceeded, words[0], "no pipe"};
+  if (!pipe) return Error{ErrorCode::kUnsupported, words[0], "no pipe"};
   auto child =
       process::Child::start(std::move(words), {.output = pipe->write.number(), .error = STDERR_FILENO});
   if (!child) return child.error();

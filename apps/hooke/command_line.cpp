@@ -33,7 +33,6 @@ ExitCode report(const Error& error) {
   switch (error.code) {
     case ErrorCode::kFileNotWritable:
     case ErrorCode::kUnsupported:
-    case ErrorCode::kLimitExceeded:
       return kMachine;
     default:
       return kBadInput;

@@ -1,6 +1,8 @@
 #include "hooke/command_line.h"
 #include "hooke/commands.h"
 
+#include "process/new_file.h"
+
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -66,6 +68,7 @@ int dispatch(Arguments arguments) {
 }  // namespace hooke::app
 
 int main(int argument_count, char** argument_values) {
+  hooke::process::remove_unfinished_files_on_signals();
   try {
     const std::vector<std::string> arguments(argument_values + (argument_count > 0 ? 1 : 0),
                                              argument_values + argument_count);

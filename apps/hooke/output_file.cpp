@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kUsualMode = 0666;
-
 Error failure(const std::string& path, const std::string& reason) {
   return {ErrorCode::kFileNotWritable, path, "cannot be written: " + reason};
 }
@@ -26,25 +24,20 @@ bool is_standard_output(const std::string& path) {
 }
 
 Result<OutputFile> OutputFile::create(const std::string& path) {
-  if (is_standard_output(path)) return OutputFile(stdout, path, "");
+  if (is_standard_output(path)) return OutputFile(stdout, path, std::nullopt);
   std::error_code code;
-  const fs::path real = fs::is_symlink(path, code) ? fs::weakly_canonical(path, code) : fs::path(path);
-  const fs::file_status status = fs::status(real, code);
-  if (fs::is_directory(status)) return failure(path, "it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  const fs::file_status status = fs::status(path, code);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
     std::FILE* device = std::fopen(path.c_str(), "w");
     if (device == nullptr) return failure(path, std::strerror(errno));
-    return OutputFile(device, path, "");
+    return OutputFile(device, path, std::nullopt);
   }
-  const std::string temporary = real.string() + ".part" + std::to_string(::getpid());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
-  std::FILE* file = descriptor >= 0 ? ::fdopen(descriptor, "w") : nullptr;
+  auto whole = process::NewFile::create(path);
+  if (!whole) return whole.error();
+  const int copy = ::fcntl(whole->number(), F_DUPFD_CLOEXEC, 0);
+  std::FILE* file = copy >= 0 ? ::fdopen(copy, "w") : nullptr;
   if (file == nullptr) return failure(path, std::strerror(errno));
-  return OutputFile(file, real.string(), temporary);
-}
-
-OutputFile::~OutputFile() {
-  if (file_ != nullptr && !temporary_.empty()) ::unlink(temporary_.c_str());
+  return OutputFile(file, path, std::move(*whole));
 }
 
 void OutputFile::write(std::string_view text) {
@@ -55,18 +48,14 @@ Result<void> OutputFile::finish() {
   errno = 0;
   const bool flushed = std::fflush(file_.get()) == 0 && std::ferror(file_.get()) == 0;
   if (!flushed) return failure(path_, errno != 0 ? std::strerror(errno) : "an earlier write failed");
-  if (temporary_.empty()) return {};
-  if (::fsync(::fileno(file_.get())) != 0) return failure(path_, std::strerror(errno));
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return failure(path_, std::strerror(errno));
-  file_.reset();
-  return {};
+  return whole_ ? whole_->finish() : Result<void>();
 }
 
 Result<void> write_file(const std::string& path, std::string_view text) {
   auto file = OutputFile::create(path);
   if (!file) return file.error();
-  file.value().write(text);
-  return file.value().finish();
+  file->write(text);
+  return file->finish();
 }
 
 }  // namespace hooke::app

@@ -2,8 +2,11 @@
 
 #include "hooke/result.h"
 
+#include "process/new_file.h"
+
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,11 +21,6 @@ class OutputFile {
   /// kFileNotWritable if the folder or file refuses.
   static Result<OutputFile> create(const std::string& path);
 
-  OutputFile(OutputFile&&) noexcept = default;
-  OutputFile& operator=(OutputFile&&) noexcept = default;
-  /// Removes what was written, unless it was finished.
-  ~OutputFile();
-
   /// A write that fails shows in finish().
   void write(std::string_view text);
 
@@ -36,15 +34,15 @@ class OutputFile {
     }
   };
 
-  OutputFile(std::FILE* file, std::string path, std::string temporary)
-      : file_(file), path_(std::move(path)), temporary_(std::move(temporary)) {}
+  OutputFile(std::FILE* file, std::string path, std::optional<process::NewFile> whole)
+      : whole_(std::move(whole)), file_(file), path_(std::move(path)) {}
 
+  std::optional<process::NewFile> whole_;  ///< None for what is written in place.
   std::unique_ptr<std::FILE, Closer> file_;
   std::string path_;
-  std::string temporary_;  ///< Empty when the file is written in place.
 };
 
-/// All of it, or an Error and the old file.
+/// All of it, or an Error and the old file; pipes and devices as above.
 Result<void> write_file(const std::string& path, std::string_view text);
 
 }  // namespace hooke::app

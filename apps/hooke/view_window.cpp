@@ -329,7 +329,7 @@ Result<void> run_view(const ViewModel& model, const ViewOptions& options) {
   try {
     return run_window(model, options);
   } catch (const std::exception& exception) {
-    return Error{ErrorCode::kLimitExceeded, "view", exception.what()};
+    return Error{ErrorCode::kUnsupported, "view", exception.what()};
   }
 }
 

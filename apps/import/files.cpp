@@ -1,5 +1,6 @@
 #include "files.h"
 
+#include "io/folder_file.h"
 #include "limits.h"
 #include "refusal.h"
 
@@ -8,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -23,7 +25,6 @@ using io::ImporterExit;
 class MemoryStream : public Assimp::IOStream {
  public:
   explicit MemoryStream(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  explicit MemoryStream(std::vector<std::byte> owned) : owned_(std::move(owned)), bytes_(owned_) {}
 
   // NOLINTBEGIN(readability-identifier-naming): assimp's names
   std::size_t Read(void* target, std::size_t size, std::size_t count) override {
@@ -46,7 +47,6 @@ class MemoryStream : public Assimp::IOStream {
   // NOLINTEND(readability-identifier-naming)
 
  private:
-  std::vector<std::byte> owned_;
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
 };
@@ -54,7 +54,7 @@ class MemoryStream : public Assimp::IOStream {
 class OpenFile {
  public:
   explicit OpenFile(const std::string& path)
-      : number_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
+      : number_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW)) {}
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() {
@@ -69,7 +69,10 @@ class OpenFile {
 }  // namespace
 
 std::vector<std::byte> read_regular_file(const std::string& path, std::size_t limit) {
-  const OpenFile file(path);
+  const std::filesystem::path named(path);
+  const auto real = io::resolve_in_folder(named.parent_path(), named.filename().string());
+  if (!real) throw Refusal(ImporterExit::kNotReadable, real.error().message);
+  const OpenFile file(*real);
   struct stat status = {};
   if (file.number() < 0 || ::fstat(file.number(), &status) != 0) {
     throw Refusal(ImporterExit::kNotReadable, std::generic_category().message(errno));
@@ -90,31 +93,37 @@ std::vector<std::byte> read_regular_file(const std::string& path, std::size_t li
   return bytes;
 }
 
-ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes)
-    : path_(std::move(path)), bytes_(bytes), budget_(kMaxFileSize - bytes.size()) {}
+ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes,
+                         const std::vector<std::string>& companions)
+    : path_(std::move(path)), bytes_(bytes) {
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  std::size_t budget = kMaxFileSize - bytes.size();
+  for (const std::string& name : companions) {
+    try {
+      std::vector<std::byte> read = read_regular_file((folder / name).string(), budget);
+      budget -= read.size();
+      companions_.emplace(name, std::move(read));
+    } catch (const Refusal&) {
+      continue;  // the importer misses it, or does not
+    }
+  }
+}
 
-std::string ModelFolder::beside(const std::string& file) const {
-  const auto slash = path_.rfind('/');
-  const std::string folder = slash == std::string::npos ? "" : path_.substr(0, slash + 1);
+const std::vector<std::byte>* ModelFolder::find(const std::string& file) const {
   const auto separator = file.find_last_of("/\\");
-  return folder + (separator == std::string::npos ? file : file.substr(separator + 1));
+  const auto found = companions_.find(separator == std::string::npos ? file : file.substr(separator + 1));
+  return found == companions_.end() ? nullptr : &found->second;
 }
 
 bool ModelFolder::Exists(const char* file) const {
-  struct stat status = {};
-  return file == path_ || (::stat(beside(file).c_str(), &status) == 0 && S_ISREG(status.st_mode));
+  return file == path_ || find(file) != nullptr;
 }
 
 Assimp::IOStream* ModelFolder::Open(const char* file, const char* mode) {
   if (mode == nullptr || mode[0] != 'r') return nullptr;
   if (file == path_) return std::make_unique<MemoryStream>(bytes_).release();
-  try {
-    std::vector<std::byte> bytes = read_regular_file(beside(file), budget_);
-    budget_ -= bytes.size();
-    return std::make_unique<MemoryStream>(std::move(bytes)).release();
-  } catch (const Refusal&) {
-    return nullptr;  // assimp's word for a missing file
-  }
+  const std::vector<std::byte>* bytes = find(file);
+  return bytes != nullptr ? std::make_unique<MemoryStream>(*bytes).release() : nullptr;
 }
 
 void ModelFolder::Close(Assimp::IOStream* stream) {

@@ -2,6 +2,7 @@
 
 #include <assimp/IOSystem.hpp>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,16 +10,17 @@
 
 namespace hooke::importer {
 
-/// All bytes of a regular file, a link to one included. Throws a Refusal for folders, pipes and devices and
-/// for more than `limit` bytes.
+/// All bytes of a regular file. Throws a Refusal for a symbolic link that leaves the file's folder, for
+/// folders, pipes and devices and for more than `limit` bytes.
 [[nodiscard]] std::vector<std::byte> read_regular_file(const std::string& path, std::size_t limit);
 
-/// What the importers may open: the model, already in memory, and regular files beside it by their bare
-/// names (an .mtl, a .bin). Folders in a name are dropped; nothing is ever written.
+/// What the importers may open: the model and the files that came with it, all in memory. Folders in a name
+/// are dropped; nothing is ever opened or written.
 class ModelFolder : public Assimp::IOSystem {
  public:
+  /// Reads those of `companions`, bare names, that lie beside the model and fit the budget of its bytes.
   /// `bytes` must outlive the object.
-  ModelFolder(std::string path, std::span<const std::byte> bytes);
+  ModelFolder(std::string path, std::span<const std::byte> bytes, const std::vector<std::string>& companions);
 
   bool Exists(const char* file) const override;  // NOLINT(readability-identifier-naming): assimp's name
   char getOsSeparator() const override { return '/'; }  // NOLINT(readability-identifier-naming)
@@ -27,11 +29,12 @@ class ModelFolder : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;      // NOLINT(readability-identifier-naming)
 
  private:
-  [[nodiscard]] std::string beside(const std::string& file) const;
+  /// Null for what is not here.
+  [[nodiscard]] const std::vector<std::byte>* find(const std::string& file) const;
 
   std::string path_;
   std::span<const std::byte> bytes_;
-  std::size_t budget_;  ///< Bytes that may still be read from other files.
+  std::map<std::string, std::vector<std::byte>> companions_;
 };
 
 }  // namespace hooke::importer

@@ -11,12 +11,6 @@ namespace hooke::importer {
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kIsSanitized = true;
-#else
-constexpr bool kIsSanitized = false;
-#endif
-
 /// Lowers both limits, never raises one.
 template <class Kind>
 bool lower_limit(Kind kind, rlim_t value) {

@@ -2,14 +2,17 @@
 ///
 /// UP is format, x, y or z; SCALE a number of meters per unit; FIT a length in meters or "none". The exit
 /// code is an io::ImporterExit and the reason one line on standard error. Made to be started by the hooke
-/// library for each file: everything it may do to its own process it does before it opens the file.
+/// library for each file: it gives up memory and time, reads the file and those that belong to it, seals
+/// itself off from the system, and only then begins to understand what it read.
 
+#include "companions.h"
 #include "convert.h"
 #include "files.h"
 #include "io/model_flat.h"
 #include "io/model_geometry.h"
 #include "limits.h"
 #include "refusal.h"
+#include "sandbox.h"
 #include "scan.h"
 
 #include <algorithm>
@@ -118,11 +121,14 @@ Model read_model(const Arguments& arguments) {
   const Format& format = format_of(arguments.path);
   const std::vector<std::byte> bytes = read_regular_file(arguments.path, kMaxFileSize);
   if (bytes.empty()) throw Refusal(ImporterExit::kBadSyntax, "the file is empty");
-  if (format.scan != nullptr) format.scan(bytes);
-
+  auto folder = std::make_unique<ModelFolder>(arguments.path, bytes,
+                                              companion_names(arguments.path, format.ending, bytes));
   Assimp::Importer importer;
   keep_only(importer, format.importer);
-  importer.SetIOHandler(std::make_unique<ModelFolder>(arguments.path, bytes).release());  // it takes over
+  importer.SetIOHandler(folder.release());  // it takes over
+  if (!kIsSanitized)
+    static_cast<void>(seal_process());  // where there is no seal, the limits are what there is
+  if (format.scan != nullptr) format.scan(bytes);
   const aiScene* scene = importer.ReadFile(arguments.path, 0);
   if (scene == nullptr) {
     throw Refusal(ImporterExit::kBadSyntax,

@@ -29,7 +29,11 @@ struct Error {
   std::string message = {};  ///< One sentence, with the offending value and the accepted range.
 };
 
-/// Either a value or an Error. The names follow std::expected, so a later switch is a rename.
+/// Prints the error in one line to stderr and aborts. What a Result does when it is asked for what it lacks.
+[[noreturn]] void abort_with(const Error& error);
+
+/// Either a value or an Error. The names follow std::expected, so a later switch is a rename; unlike there,
+/// `*` and `->` are checked as value() is.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -39,15 +43,41 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool has_value() const { return content_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
-  /// Precondition: has_value().
-  [[nodiscard]] T& value() & { return *std::get_if<0>(&content_); }
-  [[nodiscard]] const T& value() const& { return *std::get_if<0>(&content_); }
-  [[nodiscard]] T&& value() && { return std::move(*std::get_if<0>(&content_)); }
+  /// The value. On an error prints it and aborts: for programs that cannot go on without.
+  [[nodiscard]] T& value() & { return *checked(this); }
+  [[nodiscard]] const T& value() const& { return *checked(this); }
+  [[nodiscard]] T&& value() && { return std::move(*checked(this)); }
 
-  /// Precondition: !has_value().
-  [[nodiscard]] const Error& error() const { return *std::get_if<1>(&content_); }
+  /// The same as value().
+  [[nodiscard]] T& operator*() & { return value(); }
+  [[nodiscard]] const T& operator*() const& { return value(); }
+  [[nodiscard]] T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return checked(this); }
+  const T* operator->() const { return checked(this); }
+
+  /// The value, or `other` on an error.
+  template <class U>
+  [[nodiscard]] T value_or(U&& other) const& {
+    return has_value() ? *std::get_if<0>(&content_) : static_cast<T>(std::forward<U>(other));
+  }
+  template <class U>
+  [[nodiscard]] T value_or(U&& other) && {
+    return has_value() ? std::move(*std::get_if<0>(&content_)) : static_cast<T>(std::forward<U>(other));
+  }
+
+  /// Why there is no value. Aborts if there is one.
+  [[nodiscard]] const Error& error() const {
+    if (has_value()) abort_with({ErrorCode::kOutOfRange, "Result::error", "asked of a result without one"});
+    return *std::get_if<1>(&content_);
+  }
 
  private:
+  template <class Self>
+  static auto checked(Self* self) {
+    if (!self->has_value()) abort_with(*std::get_if<1>(&self->content_));
+    return std::get_if<0>(&self->content_);
+  }
+
   std::variant<T, Error> content_;
 };
 
@@ -61,7 +91,15 @@ class [[nodiscard]] Result<void> {
 
   [[nodiscard]] bool has_value() const { return !failed_; }
   explicit operator bool() const { return has_value(); }
-  [[nodiscard]] const Error& error() const { return error_; }
+  /// Does nothing if done; on an error prints it and aborts.
+  void value() const {
+    if (failed_) abort_with(error_);
+  }
+  /// Why it was not done. Aborts if it was.
+  [[nodiscard]] const Error& error() const {
+    if (!failed_) abort_with({ErrorCode::kOutOfRange, "Result::error", "asked of a result without one"});
+    return error_;
+  }
 
  private:
   Error error_;

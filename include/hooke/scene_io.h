@@ -209,10 +209,14 @@ struct SceneEvent {
     kNone,
     kAdd,
     kRemove,
-    kMotion,  ///< Pins `point` and moves it.
+    kMotion,  ///< Pins `point` and moves it; of a kinematic body, its path from where it is.
     kUnpin,
     kForce,
     kImpulse,
+    kVelocity,
+    kMotor,     ///< World::set_motor
+    kSpring,    ///< World::set_spring
+    kSteering,  ///< World::set_steering
     kWind,
     kGravity,
   };
@@ -221,10 +225,16 @@ struct SceneEvent {
   std::uint32_t at_step = 0;  ///< Number of steps done before it happens.
   SceneObjects add = {};
   std::string object = {};
-  ScenePoint point = {};
+  std::optional<ScenePoint> point = {};  ///< Of a rope, cloth, solid or particles; none of a body.
+  std::optional<DVec3> at = {};  ///< Of a force or impulse on a body: where [m]; its center of mass without.
   MotionDesc motion = {};
-  Vec3 vector = {};         ///< Force [N], impulse [N s] or gravity [m/s^2].
-  std::uint32_t steps = 1;  ///< kForce: for so many steps.
+  Vec3 vector = {};                           ///< Force [N], impulse [N s] or gravity [m/s^2].
+  std::uint32_t steps = 1;                    ///< kForce: for so many steps.
+  std::optional<Vec3> velocity = {};          ///< kVelocity [m/s]; without it, as it was.
+  std::optional<Vec3> angular_velocity = {};  ///< kVelocity of a body [rad/s]; likewise.
+  HookMotor motor = {};
+  HookSpring spring = {};
+  Real angle = Real(0);  ///< kSteering [rad].
   WindDesc wind = {};
 };
 

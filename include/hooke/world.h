@@ -327,6 +327,8 @@ class World {
   Result<void> set_velocity(BodyId body, Vec3 velocity);  ///< [m/s], now; a static body keeps still.
   Result<void> set_angular_velocity(BodyId body, Vec3 angular_velocity);  ///< [rad/s], now.
   Result<void> set_pose(BodyId body, const Pose& pose);  ///< Of the body's frame, now; keeps its velocity.
+  /// Of a kinematic body: its path, from where it is now; kStill stops it. Rotation: set_angular_velocity.
+  Result<void> set_motion(BodyId body, const MotionDesc& motion);
   Result<void> set_motor(HookId hook, const HookMotor& motor);     ///< Of what moves; see HookDesc::motor.
   Result<void> set_spring(HookId hook, const HookSpring& spring);  ///< Of what moves; see HookDesc::spring.
   Result<void> set_steering(HookId hook, Real angle);              ///< Of a wheel [rad].

@@ -145,7 +145,7 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
   }
   auto output = process::make_pipe();
   auto reason = process::make_pipe();
-  if (!output || !reason) return Error{ErrorCode::kLimitExceeded, path, "no pipe for the importer"};
+  if (!output || !reason) return Error{ErrorCode::kUnsupported, path, "no pipe for the importer"};
   auto child = process::Child::start(arguments(program, path, options),
                                      {.output = output->write.number(), .error = reason->write.number()});
   if (!child) {

@@ -1,8 +1,8 @@
 #include "hooke/model_io.h"
 
-#include "io/model_file.h"
 #include "io/model_flat.h"
 #include "io/model_write.h"
+#include "process/new_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +10,6 @@
 #include <exception>
 #include <filesystem>
 #include <set>
-#include <span>
 #include <string>
 #include <system_error>
 
@@ -58,10 +57,6 @@ bool has_uvs(const Model& model) {
 
 namespace {
 
-Result<void> write_text(const std::string& path, const std::string& text) {
-  return io::replace_file(path, std::as_bytes(std::span(text)));
-}
-
 Result<void> export_checked(const Model& model, const std::string& path) {
   if (path.empty() || path.find('\0') != std::string::npos) {
     return Error{ErrorCode::kFileNotWritable, path, "not a file name"};
@@ -73,16 +68,16 @@ Result<void> export_checked(const Model& model, const std::string& path) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".stl") return io::replace_file(path, io::write_stl(model));
-  if (ending == ".glb") return io::replace_file(path, io::write_glb(model));
-  if (ending == ".3ds") return io::replace_file(path, io::write_3ds(model));
+  if (ending == ".stl") return process::write_file(path, io::write_stl(model));
+  if (ending == ".glb") return process::write_file(path, io::write_glb(model));
+  if (ending == ".3ds") return process::write_file(path, io::write_3ds(model));
   if (ending != ".obj") return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};
   std::filesystem::path library = file;
   library.replace_extension(".mtl");
   const io::ObjText text = io::write_obj(model, library.filename().string());
   // The materials first: an .obj that is there finds its .mtl.
-  if (auto written = write_text(library.string(), text.mtl); !written) return written;
-  return write_text(path, text.obj);
+  if (auto written = process::write_file(library.string(), text.mtl); !written) return written;
+  return process::write_file(path, text.obj);
 }
 
 }  // namespace

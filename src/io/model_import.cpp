@@ -1,5 +1,6 @@
 #include "hooke/model_io.h"
 
+#include "io/folder_file.h"
 #include "io/model_child.h"
 #include "io/model_flat.h"
 #include "io/model_geometry.h"
@@ -27,16 +28,23 @@ std::string lower(std::string text) {
   return text;
 }
 
+/// Whether `folder` itself holds a regular file of this name.
+bool has_file(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  const auto real = io::resolve_in_folder(folder, name);
+  return real && fs::is_regular_file(*real, error);
+}
+
 /// The file of this name in `folder`, upper and lower case being the same; empty if there is none.
 std::string find_image(const fs::path& folder, const std::string& name) {
+  if (has_file(folder, name)) return (folder / name).string();
   std::error_code error;
-  if (fs::is_regular_file(folder / name, error)) return (folder / name).string();
   int seen = 0;
   std::string best;  // the smallest name, so that the folder's order does not matter
   for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), end;
        !error && entry != end && seen < kMaxFolderEntries; entry.increment(error), ++seen) {
     const std::string candidate = entry->path().filename().string();
-    if (lower(candidate) != lower(name) || !entry->is_regular_file(error)) continue;
+    if (lower(candidate) != lower(name) || !has_file(folder, candidate)) continue;
     if (best.empty() || candidate < best) best = candidate;
   }
   return best.empty() ? std::string() : (folder / best).string();

@@ -19,6 +19,8 @@ struct NamedObject {
   bool is_array = false;
   std::size_t instances = 1;
   std::size_t points = 0;  ///< Of each instance; 0 if not known.
+  const SceneBody* body = nullptr;
+  std::optional<HookKind> hook = {};
 };
 
 /// What a quantity is measured on.
@@ -26,8 +28,13 @@ enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook
 
 class Checker {
  public:
-  Checker(const Scene& scene, const JsonDocument& document, std::vector<JsonError>& errors)
-      : scene_(scene), document_(document), errors_(errors), found_before_(errors.size()) {}
+  Checker(const Scene& scene, const JsonDocument& document, std::vector<JsonError>& errors,
+          std::vector<JsonError>& ignored)
+      : scene_(scene),
+        document_(document),
+        errors_(errors),
+        ignored_(ignored),
+        found_before_(errors.size()) {}
 
   void collect_names();
   void check_references();
@@ -41,6 +48,12 @@ class Checker {
     errors_.push_back({document_.find_closest(path).offset, {code, path, std::move(reason)}});
   }
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
+  /// What stands at this path changes nothing.
+  void ignore(const std::string& path, const std::string& reason) {
+    if (ignored_.size() >= kMostErrors) return;
+    ignored_.push_back(
+        {document_.find_closest(path).offset, {ErrorCode::kOutOfRange, path, "has no effect: " + reason}});
+  }
   /// The reader found something wrong here: members may be defaults, and more errors would mislead.
   [[nodiscard]] bool is_damaged(const std::string& path) const {
     return std::any_of(errors_.begin(), errors_.begin() + static_cast<std::ptrdiff_t>(found_before_),
@@ -56,6 +69,8 @@ class Checker {
   void check_hook(const SceneHook& hook, const std::string& path);
   void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
+  /// A ball that holds a point turns freely.
+  void check_ball_of_points(const SceneHook& hook, const std::string& path);
   void check_seam(const SceneSeam& seam, const std::string& path);
   void check_seam_edge(const SceneSeam& seam, const std::string& edge,
                        const std::vector<std::uint32_t>& points, const std::string& path);
@@ -63,6 +78,8 @@ class Checker {
   void check_copies(const SceneArray& array, const std::string& name, const NamedObject& object,
                     const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
+  void check_event_on_body(const SceneEvent& event, const SceneBody& body, const std::string& inner);
+  void check_event_on_points(const SceneEvent& event, const NamedObject& object, const std::string& inner);
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
   void check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
                      const std::string& path);
@@ -82,6 +99,7 @@ class Checker {
   const Scene& scene_;
   const JsonDocument& document_;
   std::vector<JsonError>& errors_;
+  std::vector<JsonError>& ignored_;
   std::size_t found_before_;
   std::unordered_map<std::string, NamedObject> objects_;
   std::unordered_set<std::string> materials_;
@@ -122,10 +140,19 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
   const auto add = [&](const SceneTag& tag, const std::string& path, SceneObject::Kind kind,
                        std::size_t points) {
     if (is_damaged(path)) points = 0;
-    add_name(tag.name, {path, kind, tag.array.kind != SceneArray::Kind::kSingle, tag.array.count(), points});
+    add_name(tag.name, {.path = path,
+                        .kind = kind,
+                        .is_array = tag.array.kind != SceneArray::Kind::kSingle,
+                        .instances = tag.array.count(),
+                        .points = points});
   };
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    add(objects.bodies[i].tag, indexed(prefix + "bodies", i), SceneObject::Kind::kBody, 0);
+    const SceneTag& tag = objects.bodies[i].tag;
+    const bool is_array = tag.array.kind != SceneArray::Kind::kSingle;
+    add_name(tag.name, {.path = indexed(prefix + "bodies", i),
+                        .is_array = is_array,
+                        .instances = tag.array.count(),
+                        .body = &objects.bodies[i]});
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     const SceneRope& rope = objects.ropes[i];
@@ -150,13 +177,19 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
   }
   for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
     const SceneHook& hook = objects.hooks[i];
-    add_name(hook.name, {indexed(prefix + "hooks", i), SceneObject::Kind::kHook,
-                         hook.array.kind != SceneArray::Kind::kSingle, hook.array.count()});
+    add_name(hook.name, {.path = indexed(prefix + "hooks", i),
+                         .kind = SceneObject::Kind::kHook,
+                         .is_array = hook.array.kind != SceneArray::Kind::kSingle,
+                         .instances = hook.array.count(),
+                         .hook = hook.desc.kind});
   }
   for (std::size_t i = 0; i < objects.seams.size(); ++i) {
     // How many stitches there are shows when it is sewn.
-    add_name(objects.seams[i].name,
-             {indexed(prefix + "seams", i), SceneObject::Kind::kHook, true, kMostScenePoints});
+    add_name(objects.seams[i].name, {.path = indexed(prefix + "seams", i),
+                                     .kind = SceneObject::Kind::kHook,
+                                     .is_array = true,
+                                     .instances = kMostScenePoints,
+                                     .hook = HookKind::kBall});
   }
 }
 
@@ -342,6 +375,25 @@ void Checker::check_hook(const SceneHook& hook, const std::string& path) {
   }
   if (!hook.a.empty()) check_hook_end(hook, hook.a, hook.a_point, path + ".a");
   check_hook_end(hook, hook.b, hook.b_point, path + ".b");
+  check_ball_of_points(hook, path);
+}
+
+void Checker::check_ball_of_points(const SceneHook& hook, const std::string& path) {
+  const auto is_point = [&](const std::string& end) {
+    const auto named = [&](const std::string& name) {
+      const std::optional<CopyName> copy = take_copy_name(name);
+      auto found = objects_.find(name);
+      if (found == objects_.end() && copy) found = objects_.find(copy->array);
+      return found;
+    };
+    const auto found = named(is_known(end) ? end : take_end_name(end).object);
+    return found != objects_.end() && has_points(found->second.kind);
+  };
+  if (hook.desc.kind != HookKind::kBall || (!is_point(hook.a) && !is_point(hook.b))) return;
+  const JsonNode& node = document_.find_closest(path);
+  for (const char* key : {"limits", "cone", "spring", "motor"}) {
+    if (node.find(key) != nullptr) ignore(path + "." + key, "a point has no rotation");
+  }
 }
 
 void Checker::check_point(ScenePoint point, std::size_t count, const std::string& path) {
@@ -360,9 +412,67 @@ const char* key_of(SceneEvent::Kind kind) {
       return ".force";
     case SceneEvent::Kind::kImpulse:
       return ".impulse";
+    case SceneEvent::Kind::kVelocity:
+      return ".velocity";
+    case SceneEvent::Kind::kMotor:
+      return ".motor";
+    case SceneEvent::Kind::kSpring:
+      return ".spring";
+    case SceneEvent::Kind::kSteering:
+      return ".steering";
     default:
       return "";
   }
+}
+
+bool acts_on_hook(SceneEvent::Kind kind) {
+  return kind == SceneEvent::Kind::kMotor || kind == SceneEvent::Kind::kSpring ||
+         kind == SceneEvent::Kind::kSteering;
+}
+
+/// Whether a hook of this kind has what an event changes.
+bool has_part(HookKind hook, SceneEvent::Kind event) {
+  if (event == SceneEvent::Kind::kSteering) return hook == HookKind::kWheel;
+  return hook != HookKind::kFixed && hook != HookKind::kSixDegrees && hook != HookKind::kRopeSlide;
+}
+
+/// Why an event cannot act on a body; empty if it can.
+std::string refusal(const SceneEvent& event, const BodyDesc& body) {
+  using EventKind = SceneEvent::Kind;
+  const bool pushes = event.kind == EventKind::kForce || event.kind == EventKind::kImpulse;
+  if (event.kind == EventKind::kUnpin) return " is a body, which is not pinned";
+  if (pushes && body.kind != BodyKind::kDynamic) return " is not dynamic: nothing pushes it";
+  if (event.kind == EventKind::kMotion && body.kind != BodyKind::kKinematic) {
+    return " is not kinematic: only such a body moves as told";
+  }
+  if (event.kind != EventKind::kVelocity) return "";
+  if (body.kind == BodyKind::kStatic) return " is static: it never moves";
+  const bool has_path = body.kind == BodyKind::kKinematic && body.motion.kind != MotionDesc::Kind::kStill;
+  return has_path && event.velocity ? " moves by its 'motion', which gives its velocity" : "";
+}
+
+void Checker::check_event_on_body(const SceneEvent& event, const SceneBody& body, const std::string& inner) {
+  const std::string reason = refusal(event, body.desc);
+  if (!reason.empty()) {
+    fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + reason);
+    return;
+  }
+  if (event.point) ignore(inner + ".point", in_quotes(event.object) + " is a body, which has no points");
+}
+
+void Checker::check_event_on_points(const SceneEvent& event, const NamedObject& object,
+                                    const std::string& inner) {
+  if (!has_points(object.kind)) {
+    fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
+    return;
+  }
+  if (!event.point) {
+    fail(inner, ErrorCode::kOutOfRange, "needs 'point': " + in_quotes(event.object) + " is no body");
+    return;
+  }
+  check_point(*event.point, object.points, inner + ".point");
+  if (event.at) ignore(inner + ".at", "it is for a body; a point is pushed where it is");
+  if (event.angular_velocity) ignore(inner + ".angular_velocity", "a point has none");
 }
 
 void Checker::check_event(const SceneEvent& event, const std::string& path) {
@@ -377,13 +487,15 @@ void Checker::check_event(const SceneEvent& event, const std::string& path) {
   if (inner == path) return;
   const NamedObject* object = find_object(event.object, inner + ".object");
   if (object == nullptr) return;
-  const bool pushes = event.kind == SceneEvent::Kind::kForce || event.kind == SceneEvent::Kind::kImpulse;
-  if (object->kind == SceneObject::Kind::kBody && pushes) return;
-  if (!has_points(object->kind)) {
-    fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + " has no points");
-    return;
+  if (acts_on_hook(event.kind)) {
+    const bool fits = object->hook && has_part(*object->hook, event.kind);
+    const std::string reason = !object->hook ? " is not a hook" : " is a hook of a kind that has none";
+    if (!fits) fail(inner + ".object", ErrorCode::kOutOfRange, in_quotes(event.object) + reason);
+  } else if (object->body != nullptr) {
+    check_event_on_body(event, *object->body, inner);
+  } else {
+    check_event_on_points(event, *object, inner);
   }
-  check_point(event.point, object->points, inner + ".point");
 }
 
 Subject subject_of(SceneExpectation::Quantity quantity) {
@@ -437,6 +549,8 @@ void Checker::check_subject(const SceneExpectation& expectation, Subject subject
     wrong(" is not a rope");
   } else if (subject == Subject::kPoint && !body && !expectation.point.has_value()) {
     fail(path, ErrorCode::kOutOfRange, "this quantity needs 'point'");
+  } else if (body && expectation.point.has_value()) {
+    ignore(path + ".point", in_quotes(expectation.of) + " is a body, which has no points");
   } else if (expectation.point.has_value() && object.points > 0) {
     const bool segment = subject == Subject::kRope;
     check_point(*expectation.point, object.points - (segment ? 1 : 0), path + ".point");
@@ -692,9 +806,9 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
 }
 
 void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
-                 std::vector<JsonError>& errors) {
+                 std::vector<JsonError>& errors, std::vector<JsonError>& ignored) {
   const bool clean = errors.empty();
-  Checker checker(scene, document, errors);
+  Checker checker(scene, document, errors, ignored);
   // Too many objects are not looked at one by one.
   if (clean) checker.check_total();
   if (clean && !errors.empty()) return;

@@ -1,6 +1,7 @@
 #include "hooke/scene_io.h"
 
 #include "io/scene_check.h"
+#include "io/scene_ignored.h"
 #include "io/scene_source.h"
 #include "io/scene_table.h"
 
@@ -60,15 +61,18 @@ bool check_version(const JsonDocument& document, std::vector<JsonError>& errors)
   return false;
 }
 
-std::vector<Error> warn(const Scene& scene) {
-  std::vector<Error> warnings;
-  for (std::size_t i = 0; i < scene.timeline.size() && warnings.size() < kMostErrors; ++i) {
+/// What the scene says and nothing comes of.
+std::vector<Error> warnings_of(const Scene& scene, const JsonDocument& document,
+                               std::vector<JsonError> ignored) {
+  for (JsonError& one : find_ignored_keys(scene, document)) ignored.push_back(std::move(one));
+  for (std::size_t i = 0; i < scene.timeline.size() && ignored.size() < kMostErrors; ++i) {
     if (scene.timeline[i].at_step < scene.step_count()) continue;
-    warnings.push_back(
-        error_at(scene.source.get(), indexed("timeline", i) + ".at_step", ErrorCode::kOutOfRange,
-                 "never happens: the scene ends at step " + std::to_string(scene.step_count())));
+    const std::string path = indexed("timeline", i) + ".at_step";
+    ignored.push_back({document.find_closest(path).offset,
+                       {ErrorCode::kOutOfRange, path,
+                        "never happens: the scene ends at step " + std::to_string(scene.step_count())}});
   }
-  return warnings;
+  return finish(document, std::move(ignored));
 }
 
 Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files) {
@@ -79,16 +83,17 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files
   const bool parsed = std::all_of(errors.begin(), errors.end(), [](const JsonError& one) {
     return one.error.code == ErrorCode::kUnknownKey;
   });
+  std::vector<JsonError> ignored;
   Scene scene;
   scene.path = std::move(name);
   if (parsed && check_version(document, errors)) {
     Reader reader(document, errors);
     read_object(reader, document.root, kind_of<Scene>(), &scene);
-    check_scene(scene, document, look_for_files, errors);
+    check_scene(scene, document, look_for_files, errors, ignored);
   }
   if (!errors.empty()) return {.errors = finish(document, std::move(errors))};
+  std::vector<Error> warnings = warnings_of(scene, document, std::move(ignored));
   scene.source = std::move(source);
-  std::vector<Error> warnings = warn(scene);
   return {.value = std::move(scene), .warnings = std::move(warnings)};
 }
 

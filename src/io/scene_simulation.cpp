@@ -62,18 +62,47 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
   return {};
 }
 
-Result<void> act_on_point(SimulationData& data, const SceneEvent& event) {
+Result<void> act_on_body(World& world, BodyId body, const SceneEvent& event) {
+  using EventKind = SceneEvent::Kind;
+  switch (event.kind) {
+    case EventKind::kMotion:
+      return world.set_motion(body, event.motion);
+    case EventKind::kImpulse:
+      return event.at ? world.apply_impulse(body, event.vector, *event.at)
+                      : world.apply_impulse(body, event.vector);
+    case EventKind::kVelocity: {
+      Result<void> done;
+      if (event.velocity) done = world.set_velocity(body, *event.velocity);
+      if (done && event.angular_velocity) done = world.set_angular_velocity(body, *event.angular_velocity);
+      return done;
+    }
+    default:
+      return event.at ? world.apply_force(body, event.vector, *event.at)
+                      : world.apply_force(body, event.vector);
+  }
+}
+
+Result<void> act_on_hook(World& world, HookId hook, const SceneEvent& event) {
+  switch (event.kind) {
+    case SceneEvent::Kind::kMotor:
+      return world.set_motor(hook, event.motor);
+    case SceneEvent::Kind::kSpring:
+      return world.set_spring(hook, event.spring);
+    default:
+      return world.set_steering(hook, event.angle);
+  }
+}
+
+Result<void> act_on_object(SimulationData& data, const SceneEvent& event) {
   const auto found = data.row_of.find(event.object);
   if (found == data.row_of.end()) {
     return Error{ErrorCode::kStaleId, "",
                  "there is no object " + io::in_quotes(event.object) + " at this step"};
   }
   const SceneObject& object = data.objects[found->second];
-  if (object.kind == SceneObject::Kind::kBody) {
-    return event.kind == SceneEvent::Kind::kImpulse ? data.world.apply_impulse(object.body, event.vector)
-                                                    : data.world.apply_force(object.body, event.vector);
-  }
-  const PointRef point = io::point_of(data.world, object, event.point);
+  if (object.kind == SceneObject::Kind::kBody) return act_on_body(data.world, object.body, event);
+  if (object.kind == SceneObject::Kind::kHook) return act_on_hook(data.world, object.hook, event);
+  const PointRef point = io::point_of(data.world, object, event.point.value_or(ScenePoint{}));
   switch (event.kind) {
     case SceneEvent::Kind::kMotion:
       return data.world.pin(point, event.motion);
@@ -81,6 +110,8 @@ Result<void> act_on_point(SimulationData& data, const SceneEvent& event) {
       return data.world.unpin(point);
     case SceneEvent::Kind::kImpulse:
       return data.world.apply_impulse(point, event.vector);
+    case SceneEvent::Kind::kVelocity:
+      return data.world.set_velocity(point, event.velocity.value_or(Vec3{}));
     default:
       return data.world.apply_force(point, event.vector);
   }
@@ -104,7 +135,7 @@ Result<void> apply_event(SimulationData& data, std::size_t index) {
     case SceneEvent::Kind::kGravity:
       return data.world.set_gravity(event.vector);
     default:
-      return act_on_point(data, event);
+      return act_on_object(data, event);
   }
 }
 
@@ -116,7 +147,7 @@ void apply_due_events(SimulationData& data) {
     record(data, event, apply_event(data, event));
   }
   for (ActiveForce& force : data.forces) {
-    record(data, force.event, act_on_point(data, data.scene.timeline[force.event]));
+    record(data, force.event, act_on_object(data, data.scene.timeline[force.event]));
     --force.steps_left;
   }
   std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
@@ -126,7 +157,8 @@ void apply_due_events(SimulationData& data) {
 std::vector<Error> check(const Scene& scene) {
   const io::JsonDocument nothing;
   std::vector<io::JsonError> found;
-  io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found);
+  std::vector<io::JsonError> ignored;  // was said when the file was read
+  io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found, ignored);
   std::vector<Error> errors;
   errors.reserve(found.size());
   for (io::JsonError& one : found) {

@@ -7,14 +7,27 @@ namespace hooke::io {
 
 namespace {
 
+Field event_object_row(const char* help) {
+  return required(field<&SceneEvent::object>("object", "", kNotEmpty, help));
+}
+
+Field event_point_row() {
+  return field<&SceneEvent::point>("point", "", kAny,
+                                   "Of a rope, cloth, solid or particles; a body has none.");
+}
+
+Field event_place_row() {
+  return field<&SceneEvent::at>("at", "m", kAny,
+                                "Of a body: where in the world; at its center of mass without it.");
+}
+
 const Kind& motion_event_kind() {
   static const Kind kind = {
       .name = "motion_event",
-      .help = "Holds a point from now on and moves it.",
-      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
-                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
+      .help = "Holds a point from now on and moves it, or gives a kinematic body its path.",
+      .fields = {event_object_row("Its name."), event_point_row(),
                  field<&SceneEvent::motion>("motion", "", kAny,
-                                            "Starts now; without it the point stands still.")},
+                                            "Starts now, from where it is; without it, it stands still.")},
       .defaults = defaults_of<SceneEvent>};
   return kind;
 }
@@ -23,7 +36,7 @@ const Kind& unpin_event_kind() {
   static const Kind kind = {
       .name = "unpin_event",
       .help = "Lets a held point go.",
-      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
+      .fields = {event_object_row("Its name."),
                  required(field<&SceneEvent::point>("point", "", kAny, "Of the object."))},
       .defaults = defaults_of<SceneEvent>};
   return kind;
@@ -32,9 +45,8 @@ const Kind& unpin_event_kind() {
 const Kind& force_event_kind() {
   static const Kind kind = {
       .name = "force_event",
-      .help = "Pushes a point for some steps.",
-      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
-                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
+      .help = "Pushes a point or a body for some steps.",
+      .fields = {event_object_row("Its name."), event_point_row(), event_place_row(),
                  required(field<&SceneEvent::vector>("force", "N", kAny, "Constant.")),
                  field<&SceneEvent::steps>("steps", "", between(1, 1e9), "For so many steps.")},
       .defaults = defaults_of<SceneEvent>};
@@ -42,13 +54,68 @@ const Kind& force_event_kind() {
 }
 
 const Kind& impulse_event_kind() {
+  static const Kind kind = {.name = "impulse_event",
+                            .help = "Hits a point or a body.",
+                            .fields = {event_object_row("Its name."), event_point_row(), event_place_row(),
+                                       required(field<&SceneEvent::vector>(
+                                           "impulse", "N s", kAny, "Mass times change of velocity."))},
+                            .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+bool check_velocity_event(Reader& reader, const JsonNode& node, const void* object) {
+  const auto& event = *static_cast<const SceneEvent*>(object);
+  if (event.velocity || event.angular_velocity) return true;
+  return reader.fail(node, ErrorCode::kOutOfRange, "needs 'velocity' or 'angular_velocity'");
+}
+
+const Kind& velocity_event_kind() {
   static const Kind kind = {
-      .name = "impulse_event",
-      .help = "Hits a point.",
-      .fields = {required(field<&SceneEvent::object>("object", "", kNotEmpty, "Its name.")),
-                 required(field<&SceneEvent::point>("point", "", kAny, "Of the object.")),
-                 required(
-                     field<&SceneEvent::vector>("impulse", "N s", kAny, "Mass times change of velocity."))},
+      .name = "velocity_event",
+      .help = "Sets the velocity of a point or a body.",
+      .fields = {event_object_row("Its name."), event_point_row(),
+                 field<&SceneEvent::velocity>("velocity", "m/s", kAny, "Of a body, of its center of mass."),
+                 field<&SceneEvent::angular_velocity>("angular_velocity", "rad/s", kAny,
+                                                      "Of a body, in the world's axes.")},
+      .defaults = defaults_of<SceneEvent>,
+      .check = check_velocity_event};
+  return kind;
+}
+
+const Kind& motor_event_kind() {
+  static const Kind kind = {
+      .name = "motor_event",
+      .help = "Gives a hook another motor.",
+      .fields = {event_object_row("Of a hook."),
+                 field<&SceneEvent::motor, &HookMotor::speed>(
+                     "speed", "m/s or rad/s", kAny, "Of b relative to a; without it the motor is friction."),
+                 required(field<&SceneEvent::motor, &HookMotor::max_force>(
+                     "max_force", "N or N m", kNotNegative, "0 switches the motor off."))},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+const Kind& spring_event_kind() {
+  static const Kind kind = {
+      .name = "spring_event",
+      .help = "Gives a hook another spring.",
+      .fields = {event_object_row("Of a hook."),
+                 required(field<&SceneEvent::spring, &HookSpring::stiffness>("stiffness", "N/m or N m/rad",
+                                                                             kNotNegative, "k.")),
+                 field<&SceneEvent::spring, &HookSpring::damping>("damping", "N s/m or N m s/rad",
+                                                                  kNotNegative, "c."),
+                 field<&SceneEvent::spring, &HookSpring::target>(
+                     "target", "m or rad", kAny, "Value at rest, from how things stood when hooked.")},
+      .defaults = defaults_of<SceneEvent>};
+  return kind;
+}
+
+const Kind& steering_event_kind() {
+  static const Kind kind = {
+      .name = "steering_event",
+      .help = "Turns a wheel.",
+      .fields = {event_object_row("Of a hook of kind wheel."),
+                 required(field<&SceneEvent::angle>("angle", "rad", kAny, "About its suspension's axis."))},
       .defaults = defaults_of<SceneEvent>};
   return kind;
 }
@@ -265,13 +332,21 @@ const Kind& kind_of<SceneEvent>() {
                  choice<EventKind::kRemove, &SceneEvent::kind>(field<&SceneEvent::object>(
                      "remove", "", kNotEmpty, "Name of an object that disappears, or of an array.")),
                  choice<EventKind::kMotion, &SceneEvent::kind>(
-                     group("motion", motion_event_kind, "Holds and moves a point.")),
+                     group("motion", motion_event_kind, "Moves a point or a kinematic body.")),
                  choice<EventKind::kUnpin, &SceneEvent::kind>(
                      group("unpin", unpin_event_kind, "Lets a held point go.")),
                  choice<EventKind::kForce, &SceneEvent::kind>(
-                     group("force", force_event_kind, "Pushes a point for some steps.")),
+                     group("force", force_event_kind, "Pushes a point or a body for some steps.")),
                  choice<EventKind::kImpulse, &SceneEvent::kind>(
-                     group("impulse", impulse_event_kind, "Hits a point.")),
+                     group("impulse", impulse_event_kind, "Hits a point or a body.")),
+                 choice<EventKind::kVelocity, &SceneEvent::kind>(
+                     group("velocity", velocity_event_kind, "Sets the velocity of a point or a body.")),
+                 choice<EventKind::kMotor, &SceneEvent::kind>(
+                     group("motor", motor_event_kind, "Gives a hook another motor.")),
+                 choice<EventKind::kSpring, &SceneEvent::kind>(
+                     group("spring", spring_event_kind, "Gives a hook another spring.")),
+                 choice<EventKind::kSteering, &SceneEvent::kind>(
+                     group("steering", steering_event_kind, "Turns a wheel.")),
                  choice<EventKind::kWind, &SceneEvent::kind>(
                      field<&SceneEvent::wind>("wind", "", kAny, "Replaces the wind.")),
                  choice<EventKind::kGravity, &SceneEvent::kind>(
@@ -405,9 +480,11 @@ std::span<const Kind* const> all_kinds() {
     list.insert(list.end(), hook_kinds().begin(), hook_kinds().end());
     list.insert(list.end(), object_kinds().begin(), object_kinds().end());
     const std::initializer_list<const Kind*> last = {
-        &kind_of<SceneEvent>(),  &kind_of<SceneObjects>(),  &motion_event_kind(),
-        &unpin_event_kind(),     &force_event_kind(),       &impulse_event_kind(),
-        &kind_of<SceneCamera>(), &kind_of<SceneKeyframe>(), &kind_of<SceneExpectation>()};
+        &kind_of<SceneEvent>(),      &kind_of<SceneObjects>(), &motion_event_kind(),
+        &unpin_event_kind(),         &force_event_kind(),      &impulse_event_kind(),
+        &velocity_event_kind(),      &motor_event_kind(),      &spring_event_kind(),
+        &steering_event_kind(),      &kind_of<SceneCamera>(),  &kind_of<SceneKeyframe>(),
+        &kind_of<SceneExpectation>()};
     list.insert(list.end(), last);
     return list;
   }();

@@ -78,6 +78,8 @@ class Child {
   int wait();
   /// The same; nothing if the program still runs at `deadline`.
   std::optional<int> wait_until(TimePoint deadline);
+  /// The system's number of the process; 0 when there is none, or no more.
+  [[nodiscard]] pid_t number() const { return id_; }
   /// Ends it, if it runs.
   void kill();
 

@@ -79,8 +79,7 @@ Result<void> take_gl_error(const std::string& where) {
   // A lost context reports errors without end.
   for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
   }
-  const auto code = first == GL_OUT_OF_MEMORY ? ErrorCode::kLimitExceeded : ErrorCode::kUnsupported;
-  return Error{code, where, "OpenGL error " + std::to_string(first)};
+  return Error{ErrorCode::kUnsupported, where, "OpenGL error " + std::to_string(first)};
 }
 
 }  // namespace hooke::render

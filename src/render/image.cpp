@@ -1,12 +1,13 @@
 #include "render/image.h"
 
+#include "process/new_file.h"
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <system_error>
-#include <unistd.h>
 
 // Static, because other libraries of a program bring their own copies. The formats left out are those nobody
 // needs and whose decoders had the most faults.
@@ -37,25 +38,8 @@ struct PixelsFreer {
   void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
 };
 
-struct PngSink {
-  std::FILE* file = nullptr;
-  bool failed = false;
-};
-
-void write_bytes(void* context, void* data, int size) {
-  auto* sink = static_cast<PngSink*>(context);
-  const auto count = static_cast<std::size_t>(size);
-  if (std::fwrite(data, 1, count, sink->file) != count) sink->failed = true;
-}
-
-bool write_png_file(const Image& image, const std::string& path) {
-  File file(std::fopen(path.c_str(), "wb"));
-  if (!file) return false;
-  PngSink sink{file.get()};
-  const int done = stbi_write_png_to_func(write_bytes, &sink, image.width, image.height, image.channels,
-                                          image.pixels.data(), image.width * image.channels);
-  const bool closed = std::fclose(file.release()) == 0;
-  return done != 0 && !sink.failed && closed;
+void append_bytes(void* context, void* data, int size) {
+  static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
 
 Result<std::vector<std::uint8_t>> read_file(const std::string& path, std::size_t max_bytes) {
@@ -90,20 +74,12 @@ bool is_consistent(const Image& image) {
 Result<void> write_png(const Image& image, const std::string& path) {
   if (!is_consistent(image))
     return Error{ErrorCode::kOutOfRange, path, "the image's size and pixels disagree"};
-  const std::string temporary = path + ".part-" + std::to_string(::getpid());
-  std::error_code code;
-  if (!write_png_file(image, temporary)) {
-    const std::string reason = std::strerror(errno);
-    std::filesystem::remove(temporary, code);
-    return Error{ErrorCode::kFileNotWritable, path, "cannot write: " + reason};
+  std::string bytes;
+  if (stbi_write_png_to_func(append_bytes, &bytes, image.width, image.height, image.channels,
+                             image.pixels.data(), image.width * image.channels) == 0) {
+    return Error{ErrorCode::kFileNotWritable, path, "cannot be written: not enough memory"};
   }
-  std::filesystem::rename(temporary, path, code);
-  if (code) {
-    const std::string reason = code.message();
-    std::filesystem::remove(temporary, code);
-    return Error{ErrorCode::kFileNotWritable, path, "cannot rename into place: " + reason};
-  }
-  return {};
+  return process::write_file(path, bytes);
 }
 
 Result<Image> load_image(const std::string& path, const ImageLimits& limits) {

@@ -1,17 +1,15 @@
 #include "render/video.h"
 
 #include "process/child.h"
+#include "process/new_file.h"
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fcntl.h>
-#include <filesystem>
 #include <optional>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <system_error>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -82,8 +80,8 @@ Result<Format> format_of(const VideoOptions& options) {
   return Error{ErrorCode::kOutOfRange, options.path, "the name must end in .mp4, .gif or %04d.png"};
 }
 
-std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format format,
-                                          const std::string& output) {
+/// The film goes to standard output, by a name: the encoder goes back in it, and reads it again.
+std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format format) {
   std::vector<std::string> words = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y"};
   const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
   const std::string rate = std::to_string(options.frames_per_second);
@@ -120,8 +118,7 @@ std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format fo
                                        "[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
                                "-f", "gif"});
   }
-  // Without the prefix a colon in the name would be read as a protocol.
-  words.push_back("file:" + output);
+  words.emplace_back("file:/dev/fd/1");
   return words;
 }
 
@@ -130,9 +127,9 @@ std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format fo
 struct VideoData {
   VideoOptions options;
   Format format = Format::kMp4;
-  NumberedName name;      ///< Of numbered pictures.
-  std::string temporary;  ///< What ffmpeg writes.
-  Descriptor input;       ///< Our end of ffmpeg's input.
+  NumberedName name;                     ///< Of numbered pictures.
+  std::optional<process::NewFile> film;  ///< What ffmpeg writes.
+  Descriptor input;                      ///< Our end of ffmpeg's input.
   std::unique_ptr<std::FILE, FileCloser> messages;
   process::Child ffmpeg;
   int frame_count = 0;
@@ -147,8 +144,7 @@ struct VideoData {
   void abandon() {
     input.close();
     ffmpeg.kill();
-    if (!temporary.empty()) ::unlink(temporary.c_str());
-    temporary.clear();
+    film.reset();
   }
 
   /// Whether ffmpeg ended well.
@@ -179,20 +175,20 @@ namespace {
 Result<void> start_ffmpeg(VideoData& data) {
   data.messages.reset(std::tmpfile());
   if (!data.messages) return data.fail(ErrorCode::kFileNotWritable, "no room for temporary files");
-  const std::string temporary = data.options.path + ".part-" + std::to_string(::getpid());
-  const Descriptor probe(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (probe.number() < 0) return data.fail(ErrorCode::kFileNotWritable, std::strerror(errno));
-  data.temporary = temporary;
+  auto film = process::NewFile::create(data.options.path);
+  if (!film) return data.fail(film.error().code, film.error().message);
+  data.film.emplace(std::move(*film));
 
   // A socket instead of a pipe: writing to it can be told not to raise SIGPIPE when ffmpeg has ended.
   std::array<int, 2> ends = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    return data.fail(ErrorCode::kLimitExceeded, std::strerror(errno));
+    return data.fail(ErrorCode::kUnsupported, std::strerror(errno));
   }
   data.input = Descriptor(ends[0]);
   const Descriptor theirs(ends[1]);
-  auto started = process::Child::start(ffmpeg_arguments(data.options, data.format, data.temporary),
-                                       {.input = theirs.number(), .error = ::fileno(data.messages.get())});
+  auto started = process::Child::start(
+      ffmpeg_arguments(data.options, data.format),
+      {.input = theirs.number(), .output = data.film->number(), .error = ::fileno(data.messages.get())});
   if (!started) {
     return data.fail(ErrorCode::kUnsupported, "cannot start the program ffmpeg: " + started.error().message +
                                                   " (Debian: package ffmpeg)");
@@ -261,10 +257,8 @@ Result<void> VideoWriter::finish() {
   if (!data.wait_for_end()) {
     return data.fail(ErrorCode::kFileNotWritable, "ffmpeg failed: " + data.read_messages());
   }
-  std::error_code code;
-  std::filesystem::rename(data.temporary, data.options.path, code);
-  if (code) return data.fail(ErrorCode::kFileNotWritable, "cannot rename into place: " + code.message());
-  data.temporary.clear();
+  const auto named = data.film->finish();
+  if (!named) return data.fail(named.error().code, named.error().message);
   return {};
 }
 

@@ -284,6 +284,22 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
   return {};
 }
 
+Result<void> World::set_motion(BodyId body, const MotionDesc& motion) {
+  Bodies& bodies = data_->tables.bodies;
+  const std::uint32_t row = data_->tables.body_slots.find(body);
+  if (row == kNone) return world::stale("body");
+  if (bodies.traits[row].kind != BodyKind::kKinematic) {
+    return Error{ErrorCode::kOutOfRange, "body", "is not kinematic: only such a body moves as told"};
+  }
+  if (auto good = build::validate(motion, "motion"); !good) return good;
+  bodies.path[row] = motion;
+  bodies.path_start[row] = bodies.center[row];
+  bodies.path_time[row] = data_->tables.time;
+  if (motion.kind == MotionDesc::Kind::kStill) bodies.motion[row].v = {};
+  state::wake(bodies, row);
+  return {};
+}
+
 Result<void> World::set_pose(BodyId body, const Pose& pose) {
   Bodies& bodies = data_->tables.bodies;
   const std::uint32_t row = data_->tables.body_slots.find(body);
