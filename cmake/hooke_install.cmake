@@ -34,7 +34,7 @@ endif()
 get_target_property(hooke_type hooke TYPE)
 string(COMPARE EQUAL ${hooke_type} STATIC_LIBRARY HOOKE_IS_STATIC)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/HookeConfig.cmake.in ${PROJECT_BINARY_DIR}/HookeConfig.cmake
-                              INSTALL_DESTINATION ${HOOKE_PACKAGE_DIR})
+                              INSTALL_DESTINATION ${HOOKE_PACKAGE_DIR} PATH_VARS CMAKE_INSTALL_BINDIR)
 # Before 1.0 a minor version may break what was there.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/HookeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/HookeConfig.cmake ${PROJECT_BINARY_DIR}/HookeConfigVersion.cmake

@@ -63,7 +63,7 @@ Result<void> check(CompareOptions& options) {
   std::vector<std::string> once;
   for (const std::string& name : options.steppers) {
     const auto known = check_stepper(name);
-    if (!known) return known;
+    if (!known && known.error().code != ErrorCode::kUnsupported) return known;
     if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
   }
   options.steppers = std::move(once);
@@ -75,18 +75,32 @@ bool only_solver(const CompareOptions& options) {
   return options.steppers.size() == 1 && options.steppers.front() == kSolverName;
 }
 
-/// Whether the laboratory takes the scene by every stepper, before the long work. It knows no names of
-/// scenes.
-Result<void> check_stage(const Stage& stage, const CompareOptions& options) {
+/// Leaves out the steppers that the laboratory does not run this scene by, before the long work, and says so:
+/// one that would diverge is no reason to be without the others. Errors: none is left. The laboratory knows
+/// no names of scenes.
+Result<std::vector<Skipped>> skip_refused(const Stage& stage, CompareOptions& options) {
+  std::vector<Skipped> skipped;
+  std::optional<Error> first;
   for (const std::string& name : options.steppers) {
-    const auto made = make_player(stage, name, stage.dt(), options.force);
+    const auto available = check_stepper(name);
+    const auto made =
+        available ? make_player(stage, name, stage.dt(), options.force) : Result<Player>(available.error());
     if (made) continue;
-    const bool forced = !options.force && make_player(stage, name, stage.dt(), true);
+    const bool forced = available && !options.force && make_player(stage, name, stage.dt(), true);
     Error error = refusal(options.scene, made.error());
     if (forced) error.message += "; --force runs it all the same";
-    return error;
+    skipped.push_back({name, error.message});
+    if (!first) first = error;
   }
-  return {};
+  const bool is_declared = stage.scene().accuracy.has_value();
+  if (first && skipped.size() == options.steppers.size() && !is_declared) return *first;
+  std::erase_if(options.steppers, [&](const std::string& name) {
+    return std::any_of(skipped.begin(), skipped.end(), [&](const Skipped& one) { return one.name == name; });
+  });
+  for (const Skipped& one : skipped) {
+    warn({ErrorCode::kUnsupported, options.scene, one.name + " is skipped: " + one.reason});
+  }
+  return skipped;
 }
 
 Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
@@ -177,6 +191,9 @@ ExitCode write(const Comparison& comparison, const std::string& folder) {
   for (const Trial& trial : comparison.trials) {
     std::printf("%s %s\n", trial.name.c_str(), verdict_of(trial, comparison).c_str());
   }
+  for (const Skipped& one : comparison.skipped) {
+    std::printf("%s was skipped: %s\n", one.name.c_str(), one.reason.c_str());
+  }
   std::vector<Picture> pictures;
   const auto drawn = write_plots(comparison, folder, pictures);
   const std::string note = drawn ? "" : "Pictures are missing: " + to_line(drawn.error());
@@ -209,12 +226,13 @@ int command_compare(Arguments arguments) {
   }
   auto stage = make_stage(std::move(scene), options.point);
   if (!stage) return report(stage.error());
-  const auto accepted = check_stage(stage.value(), options);
-  if (!accepted) return report(accepted.error());
+  auto skipped = skip_refused(stage.value(), options);
+  if (!skipped) return report(skipped.error());
   const auto folder = make_folder(options.output);
   if (!folder) return report(folder.error());
-  const auto comparison = compare(stage.value(), options);
+  auto comparison = compare(stage.value(), options);
   if (!comparison) return report(comparison.error());
+  comparison->skipped = std::move(*skipped);
   return write(comparison.value(), options.output);
 }
 

@@ -14,7 +14,8 @@
 /// Models from files and to files: .3ds .obj .stl .ply .gltf .glb. Part of the library `hooke::io`.
 ///
 /// A file from outside is never parsed in this process: `hooke-import`, a child process with limits on
-/// memory, time, depth and size, reads it, and this library reads back one flat, checked format.
+/// memory, time, depth and size and, where the kernel allows it, without files and network, reads it, and
+/// this library reads back one flat, checked format.
 
 namespace hooke {
 
@@ -77,9 +78,13 @@ struct ImportOptions {
 ///
 /// Errors name the path, and the reason in one line; no process, file or descriptor is left behind. Limits:
 /// 1 GiB and 10 s for the child, 15 s in all, 256 MiB for the file and those it needs, which must be regular
-/// files beside it, 2^24 vertices, 2^25 triangles, nodes 64 deep. Any thread may call it, several at a time.
-/// The child is $HOOKE_IMPORT if that is set, else `hooke-import` beside the running program, else the
-/// installed one.
+/// files beside it, 2^24 vertices, 2^25 triangles, nodes 64 deep. Symbolic links that lead out of the model's
+/// folder are refused: of the model, with an Error; of what belongs to it, as if it were missing. Any thread
+/// may call it, several at a time.
+///
+/// The child is $HOOKE_IMPORT if that is set; else `hooke-import` beside the running program; else the one
+/// installed with this library, as find_package(Hooke) found it or as it was configured; else the one in
+/// PATH.
 [[nodiscard]] Result<Model> import_model(const std::string& path, const ImportOptions& options = {});
 
 /// Writes the drawn half of a model in meters: .obj (and .mtl beside it), .glb (y up), .stl or .3ds (z up),
@@ -93,5 +98,13 @@ struct ImportOptions {
 /// Wound and cleaned as by import_model; triangles with a bad index or a coordinate that is not finite are
 /// left out, so the model may be empty.
 [[nodiscard]] Model model_of(const MeshDesc& mesh, double crease = 0.7);
+
+/// Names the folder of the installed importer; the first call counts. Always true.
+bool set_importer_folder(const char* folder) noexcept;
+
+#ifdef HOOKE_IMPORTER_FOLDER
+/// find_package(Hooke COMPONENTS io) knows where it found the package, which may be under any prefix.
+[[maybe_unused]] inline const bool kImporterFolderIsSet = set_importer_folder(HOOKE_IMPORTER_FOLDER);
+#endif
 
 }  // namespace hooke

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <optional>
 #include <poll.h>
+#include <sstream>
 #include <string_view>
 #include <sys/wait.h>
 #include <system_error>
@@ -30,14 +32,34 @@ using process::Descriptor;
 constexpr std::size_t kMaxReason = 400;  // bytes of a refusal that are shown
 constexpr const char* kProgram = "hooke-import";
 
+/// As set_importer_folder was told; null before.
+std::atomic<const char*> importer_folder = nullptr;
+
+/// The importer in a folder; empty if it is not there, or the folder is empty.
+std::string find_in(const std::string& folder) {
+  const std::string path = (fs::path(folder) / kProgram).string();
+  return !folder.empty() && ::access(path.c_str(), X_OK) == 0 ? path : std::string();
+}
+
+std::string find_in_path() {
+  const char* folders = std::getenv("PATH");
+  std::istringstream list(folders != nullptr ? folders : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (std::string found = find_in(folder); !found.empty()) return found;
+  }
+  return {};
+}
+
 std::string find_program() {
   if (const char* chosen = std::getenv("HOOKE_IMPORT"); chosen != nullptr && *chosen != '\0') return chosen;
   if (std::string beside = process::find_beside(kProgram); !beside.empty()) return beside;
-#ifdef HOOKE_IMPORT_FOLDER
-  const fs::path installed = fs::path(HOOKE_IMPORT_FOLDER) / kProgram;
-  if (::access(installed.c_str(), X_OK) == 0) return installed.string();
+  if (const char* folder = importer_folder.load(); folder != nullptr) {
+    if (std::string found = find_in(folder); !found.empty()) return found;
+  }
+#ifdef HOOKE_CONFIGURED_IMPORTER_FOLDER
+  if (std::string found = find_in(HOOKE_CONFIGURED_IMPORTER_FOLDER); !found.empty()) return found;
 #endif
-  return {};
+  return find_in_path();
 }
 
 std::string number_text(double value) {
@@ -141,7 +163,8 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
   const std::string program = find_program();
   if (program.empty()) {
     return Error{ErrorCode::kUnsupported, path,
-                 "the program hooke-import is missing: put it beside this one or name it in HOOKE_IMPORT"};
+                 "the program hooke-import is missing: put it beside this one or into PATH, or name it in "
+                 "HOOKE_IMPORT"};
   }
   auto output = process::make_pipe();
   auto reason = process::make_pipe();
@@ -166,3 +189,13 @@ Result<std::vector<std::byte>> run_importer(const std::string& path, const Impor
 }
 
 }  // namespace hooke::io
+
+namespace hooke {
+
+bool set_importer_folder(const char* folder) noexcept {
+  const char* none = nullptr;
+  io::importer_folder.compare_exchange_strong(none, folder);
+  return true;
+}
+
+}  // namespace hooke

@@ -1,5 +1,6 @@
 /// The public class over the parts: from a World to one part per object, and from their states to points.
 
+#include "lab/body_laws.h"
 #include "lab/collisions.h"
 #include "lab/part.h"
 #include "math/rotation.h"
@@ -141,8 +142,9 @@ Result<Run> Run::create(const World& world, const Options& options) {
 Result<void> Run::Data::add_bodies(const state::Tables& tables, const Options& options) {
   body_slots = tables.body_slots;
   body_of_row.assign(tables.bodies.motion.size(), kNone);
+  const std::shared_ptr<BodyLaws> laws = BodyLaws::create(tables);
   for (const std::uint32_t row : tables.moving_bodies) {
-    Result<Part> part = make_part(System::create_body(tables, row), {}, tables.time, options);
+    Result<Part> part = make_part(System::create_body(tables, row, laws), {}, tables.time, options);
     if (!part) return part.error();
     body_of_row[row] = static_cast<std::uint32_t>(bodies.size());
     bodies.push_back(std::move(part).value());
@@ -175,6 +177,7 @@ Result<void> Run::advance() {
 /// All or none of them.
 Result<void> Run::Data::advance_bodies(double t) {
   const std::vector<Part> before = bodies;
+  for (const Part& part : bodies) part.system.show_laws(t, part.y);
   Result<void> moved = collisions.advance(t, dt, bodies);
   for (std::size_t i = 0; i < bodies.size() && moved; ++i) {
     if (!collisions.collides(i)) moved = lab::advance(bodies[i]);

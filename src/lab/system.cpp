@@ -118,6 +118,7 @@ State System::acceleration(double t, const State& y) const {
     laws_->add(t, m.x, m.v, force);
     for (std::size_t i = 0; i < a.size(); ++i) a[i] += (1 / mass_[i]) * force[i];
   }
+  if (body_laws_ != nullptr) add_body_laws(t, m, a);
   return flat(*this, a);
 }
 

@@ -51,13 +51,14 @@ struct Oscillation {
 };
 
 class Laws;
+class BodyLaws;
 
 class System {
  public:
   /// Object `object` of the tables. Errors: a rigid spring or segment.
   static Result<System> create(const state::Tables& tables, std::uint32_t object);
-  /// A rigid body that moves freely, or as told (kinematic).
-  static System create_body(const state::Tables& tables, std::uint32_t row);
+  /// A rigid body that moves freely, or as told (kinematic). `laws` may be null.
+  static System create_body(const state::Tables& tables, std::uint32_t row, std::shared_ptr<BodyLaws> laws);
 
   [[nodiscard]] State initial_state() const;
   [[nodiscard]] Eigen::Index coordinates() const { return coordinates_; }  ///< 3 per free point.
@@ -91,12 +92,12 @@ class System {
   [[nodiscard]] std::vector<DVec3> velocities(double t, const State& y) const;
 
   /// Nothing in f is unknown to series: no force law, no gusts.
-  [[nodiscard]] bool differentiable() const { return laws_ == nullptr && !gusts_; }
+  [[nodiscard]] bool differentiable() const { return !has_laws() && !gusts_; }
   /// Forces depend on velocities.
   [[nodiscard]] bool velocity_dependent() const { return velocity_dependent_; }
   /// Nothing but gravity and uniform fields acts.
   [[nodiscard]] bool ballistic() const { return ballistic_; }
-  [[nodiscard]] bool has_laws() const { return laws_ != nullptr; }
+  [[nodiscard]] bool has_laws() const { return laws_ != nullptr || body_laws_ != nullptr; }
 
   [[nodiscard]] PointRef::Kind kind() const { return kind_; }
   [[nodiscard]] std::uint32_t slot() const { return slot_; }
@@ -117,6 +118,8 @@ class System {
   /// Force and torque about the center from now on, in world axes [N], [N m]. Bearings take what an axle does
   /// not follow.
   void set_load(DVec3 force, DVec3 torque);
+  /// Shows force laws where the body is at the start of a step, for what they do to other bodies.
+  void show_laws(double t, const State& y) const;
   /// Takes the rotation of `y` as the new origin of turns, if it is far from the old one. \return Whether it
   /// was: states kept from before then mean nothing.
   bool lay_chart(State& y);
@@ -174,6 +177,9 @@ class System {
   }
   [[nodiscard]] std::vector<DVec3> wind(double t, const std::vector<DVec3>& x) const;
   [[nodiscard]] std::vector<DVec3> body_positions(double t, const State& y) const;
+  [[nodiscard]] BodyMotion body_of(const Motion<double>& motion, double t) const;
+  /// Adds what force laws do to a body, to the accelerations of its two rows.
+  void add_body_laws(double t, const Motion<double>& motion, std::vector<DVec3>& accelerations) const;
   [[nodiscard]] Motion<double> motion_now(double t, const State& y) const;
 
   std::vector<SpringRow> springs_;  ///< Of the table, then the segments of a rope.
@@ -188,7 +194,9 @@ class System {
   std::optional<DVec3> kinematic_spin_;  ///< Of a body that moves as told [rad/s].
   std::optional<Axle> axle_;             ///< Of a body that only turns.
   std::shared_ptr<const std::vector<FieldDesc>> attractors_;
-  std::shared_ptr<Laws> laws_;  ///< None: null.
+  std::shared_ptr<Laws> laws_;           ///< None: null.
+  std::shared_ptr<BodyLaws> body_laws_;  ///< Shared by all bodies. None: null.
+  std::uint32_t body_row_ = 0;           ///< In the World's tables.
 
   Eigen::Index coordinates_ = 0;
   std::vector<std::uint32_t> free_rows_;

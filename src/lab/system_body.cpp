@@ -1,9 +1,11 @@
 /// A rigid body as a system of two points: its center of mass and its turn.
 
+#include "lab/body_laws.h"
 #include "lab/system.h"
 #include "math/rotation.h"
 
 #include <cmath>
+#include <utility>
 
 namespace hooke::lab {
 
@@ -37,7 +39,7 @@ state::Pin path_of(const state::Tables& tables, std::uint32_t row) {
 
 }  // namespace
 
-System System::create_body(const state::Tables& tables, std::uint32_t row) {
+System System::create_body(const state::Tables& tables, std::uint32_t row, std::shared_ptr<BodyLaws> laws) {
   const state::Bodies& bodies = tables.bodies;
   const state::BodyMass& mass = bodies.mass[row];
   const state::BodyTraits& traits = bodies.traits[row];
@@ -72,6 +74,12 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
                     .inertia = vector_cast<double>(mass.inertia),
                     .damping = static_cast<double>(traits.angular_damping)}};
   system.velocity_dependent_ = true;  // by the gyroscopic term
+  system.body_row_ = row;
+  system.body_laws_ = std::move(laws);
+  if (system.body_laws_ != nullptr && system.body_laws_->body_count() > 1) {
+    system.left_out_.emplace_back(
+        "the motion of other bodies in force laws: they see them where the step began");
+  }
   if (bodies.force[row] != Vec3{} || bodies.torque[row] != Vec3{})
     system.left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
   system.axle_ = axle_of(tables, row);
@@ -94,13 +102,32 @@ System System::create_body(const state::Tables& tables, std::uint32_t row) {
 }
 
 BodyMotion System::body(double t, const State& y) const {
-  const Motion<double> m = motion_now(t, y);
+  return body_of(motion_now(t, y), t);
+}
+
+BodyMotion System::body_of(const Motion<double>& m, double t) const {
   const DVec3 p = m.x[kTurn];
   if (kinematic_spin_) {
     const DVec3 turn = (t - pins_[kTurn].start_time) * *kinematic_spin_;
     return {m.x[kCenter], normalize(math::quaternion_of(turn) * chart_), m.v[kCenter], *kinematic_spin_};
   }
   return {m.x[kCenter], normalize(rotation_of(p) * chart_), m.v[kCenter], spin_of(p, m.v[kTurn])};
+}
+
+void System::show_laws(double t, const State& y) const {
+  if (body_laws_ != nullptr) body_laws_->place(body_row_, body(t, y));
+}
+
+void System::add_body_laws(double t, const Motion<double>& m, std::vector<DVec3>& accelerations) const {
+  BodyLaws::Load load = body_laws_->load(body_row_, t, body_of(m, t));
+  TurnRow turn = turns_[0];
+  Points<double, 1> point = {.x = {m.x[kTurn]}, .v = {m.v[kTurn]}, .wind = {}};
+  if (axle_) {  // its bearings take the rest
+    load = {.torque = dot(axle_->axis, load.torque) * axle_->axis};
+  }
+  turn.torque += load.torque;
+  accelerations[kCenter] += (1 / mass_[kCenter]) * load.force;
+  accelerations[kTurn] = turn.force(point)[0];
 }
 
 std::array<DVec3, 2> System::body_acceleration(double t, const State& y) const {

@@ -49,7 +49,9 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   if (const Result<void> added = system.add_segments(tables, object); !added) return added.error();
   system.add_bends(tables, object);
   system.add_air(tables, object);
-  if (!tables.force_laws.empty()) system.laws_ = std::make_shared<Laws>(tables, object_row);
+  const auto asks = [](const state::ForceLawEntry& entry) { return entry.law != nullptr; };
+  if (std::any_of(tables.force_laws.begin(), tables.force_laws.end(), asks))
+    system.laws_ = std::make_shared<Laws>(tables, object_row);
   system.note(tables, object);
   return system;
 }

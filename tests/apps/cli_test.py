@@ -7,10 +7,12 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from png import read_png
@@ -168,6 +170,20 @@ class BadInput(Program):
         content = {"version": 1, "meshes": {"m": {"file": "none.3ds"}}}
         self.assertIn("none.3ds", self.hooke("validate", self.scene(content), code=2)[1])
 
+    def test_a_limit_that_a_hostile_model_hits_is_bad_input(self):
+        (self.folder / "deep.gltf").write_text("[" * 100000)
+        self.assert_one_line(self.hooke("convert", "deep.gltf", "x.obj", code=2)[1], r"^deep\.gltf: .*64 deep")
+        with open(self.folder / "large.stl", "wb") as large:
+            large.truncate((256 << 20) + 1)  # sparse
+        self.assert_one_line(self.hooke("convert", "large.stl", "x.obj", code=2)[1], r"^large\.stl: .*256 MiB")
+
+    def test_what_a_scene_says_in_vain_fails_validation_and_warns_a_run(self):
+        content = copy.deepcopy(FALLING)
+        content["bodies"] = [{"name": "wall", "shape": {"box": {}}, "position": [9, 0, 0], "mass": 3}]
+        name = self.scene(content)
+        self.assert_one_line(self.hooke("validate", name, code=2)[1], r"bodies\[0\]\.mass: has no effect: ")
+        self.assert_one_line(self.hooke("run", name, "--hash")[1], r"^warning: .*has no effect: ")
+
     def test_arguments_that_make_no_sense(self):
         name = self.scene(FALLING)
         for words in ([], ["fly"], ["run"], ["run", name, "--workers", "0"], ["run", name, "--seconds", "-1"],
@@ -214,6 +230,19 @@ class Output(Program):
             self.assertTrue(run.stdout.read(1000))
             run.kill()
         self.assertEqual((self.folder / "steps.csv").read_text(), "old")
+        self.assertEqual(self.files(), ["steps.csv"])
+
+    def test_a_film_that_is_interrupted_leaves_nothing(self):
+        self.draw("scenes/rope.json", "-o", "now.png", "--at", 0.1, "--size", "64x64")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            with subprocess.Popen([PROGRAM, "render", "scenes/rope.json", "-o", "film.mp4", "--seconds", "100000",
+                                   "--size", "64x64"], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL) as film:
+                time.sleep(1)
+                self.assertIsNone(film.poll())
+                film.send_signal(number)
+                self.assertEqual(film.wait(LIMIT), -number)
+            self.assertEqual(self.files(), ["now.png"])
 
     def test_a_link_is_written_through(self):
         (self.folder / "real.json").write_text("old")

@@ -117,6 +117,22 @@ class Compare(Program):
         self.assertIn("Pictures are missing", page)
         self.assertNotIn("<svg", page)
 
+    def test_a_stepper_that_would_diverge_is_skipped_and_the_others_run(self):
+        name = self.scene(stiff())
+        if shutil.which("gnuplot") is None:
+            self.skipTest("gnuplot is not installed")
+        out, err = self.hooke("compare", name, "--steppers", "euler,rk4,heun,solver", "--no-limits", "--out", "out")
+        self.assertEqual(list(self.summary()), ["rk4", "solver"])
+        for stepper in ("euler", "heun"):
+            self.assertRegex(err, f"warning: scene.json: {stepper} is skipped: .*diverges.*--force runs it")
+            self.assertRegex(out, f"\n{stepper} was skipped: ")
+            self.assertRegex((self.folder / "out" / "index.html").read_text(), f"<b>{stepper}</b> was skipped: ")
+        rows = self.compare(name, "--steppers", "euler,rk4", "--no-limits", "--force")
+        self.assertEqual(list(rows), ["euler", "rk4"])
+
+    def test_the_default_steppers_run_a_scene_that_some_of_them_cannot(self):
+        self.assertEqual(set(self.compare(self.scene(stiff()), "--no-limits")), {"rk4", "solver"})
+
     def test_a_declared_accuracy_is_chosen_for_and_judged(self):
         scene = stiff() | {"accuracy": {"max_error": 1e-6}, "seconds": 0.5}
         rows = self.compare(self.scene(scene), "--steppers", "rk4", "--no-limits")

@@ -1,7 +1,7 @@
 # Installs a build of Hooke to a fresh prefix, builds the program beside this file against it, and runs it.
 set(prefix ${FOLDER}/prefix)
 set(build ${FOLDER}/build)
-file(REMOVE_RECURSE ${prefix} ${build})
+file(REMOVE_RECURSE ${prefix} ${FOLDER}/moved ${build})
 
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -20,4 +20,18 @@ run(${build}/rope)
 # Ten seconds in thick air: it hangs still, and 2 m of rope are 2 m.
 if(NOT output MATCHES "is 2\\.00 m below")
   message(FATAL_ERROR "unexpected output: ${output}")
+endif()
+
+# The prefix is none that the build was configured for, the program stands elsewhere: it finds its importer all the same.
+if(APPS)
+  unset(ENV{HOOKE_IMPORT})
+  run(${build}/model ${MODEL})
+  if(NOT output MATCHES "^[1-9][0-9]* triangles")
+    message(FATAL_ERROR "unexpected output: ${output}")
+  endif()
+  # Only in PATH.
+  file(RENAME ${prefix} ${FOLDER}/moved)
+  set(ENV{PATH} "${FOLDER}/moved/bin:$ENV{PATH}")
+  run(${build}/model ${MODEL})
+  file(RENAME ${FOLDER}/moved ${prefix})
 endif()

@@ -176,8 +176,34 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "timeline": [{"at_step": 1, "remove": "x"}]})",
      {"1:54: timeline[0].remove: there is no object 'x'"}},
     {R"({"version": 1, "timeline": [{"at_step": 1}]})",
-     {"1:29: timeline[0]: needs one of 'add', 'remove', 'motion', 'unpin', 'force', 'impulse', 'wind', "
-      "'gravity'"}},
+     {"1:29: timeline[0]: needs one of 'add', 'remove', 'motion', 'unpin', 'force', 'impulse', 'velocity', "
+      "'motor', 'spring', 'steering', 'wind', 'gravity'"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "shape": {"box": {}}}],)"
+     R"( "timeline": [{"at_step": 1, "impulse": {"object": "b", "impulse": [1, 0, 0]}}]})",
+     {"1:117: timeline[0].impulse.object: 'b' is not dynamic: nothing pushes it"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "shape": {"box": {}}}],)"
+     R"( "timeline": [{"at_step": 1, "velocity": {"object": "b", "velocity": [1, 0, 0]}}]})",
+     {"1:118: timeline[0].velocity.object: 'b' is static: it never moves"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
+     R"( "timeline": [{"at_step": 1, "motion": {"object": "b"}}]})",
+     {"1:135: timeline[0].motion.object: 'b' is not kinematic: only such a body moves as told"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "kind": "kinematic", "shape": {"box": {}}, )"
+     R"("motion": {"velocity": [1, 0, 0]}}], "timeline": [)"
+     R"({"at_step": 1, "velocity": {"object": "b", "velocity": [1, 0, 0]}}]})",
+     {"1:173: timeline[0].velocity.object: 'b' moves by its 'motion', which gives its velocity"}},
+    {R"({"version": 1, "ropes": [{"name": "r"}], "timeline": [{"at_step": 1, "force": {"object": "r",)"
+     R"( "force": [1, 0, 0]}}]})",
+     {"1:79: timeline[0].force: needs 'point': 'r' is no body"}},
+    {R"({"version": 1, "ropes": [{"name": "r"}], "timeline": [{"at_step": 1, "motor": {"object": "r",)"
+     R"( "max_force": 1}}]})",
+     {"1:90: timeline[0].motor.object: 'r' is not a hook"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
+     R"( "hooks": [{"name": "h", "kind": "fixed", "b": "b", "anchor": [0, 0, 0]}],)"
+     R"( "timeline": [{"at_step": 1, "motor": {"object": "h", "max_force": 1}}]})",
+     {"1:208: timeline[0].motor.object: 'h' is a hook of a kind that has none"}},
+    {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
+     R"( "timeline": [{"at_step": 1, "velocity": {"object": "b"}}]})",
+     {"1:126: timeline[0].velocity: needs 'velocity' or 'angular_velocity'"}},
     {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]},)"
      R"( {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
      {"1:26: camera: the times of the path must increase; keyframe 1 does not"}},

@@ -154,6 +154,58 @@ TEST_SUITE("io/scene_load") {
           "demo.json:1:55: timeline[0].at_step: never happens: the scene ends at step 60");
   }
 
+  TEST_CASE("what a scene says in vain is a warning, with its place and the reason") {
+    struct Vain {
+      const char* content;  ///< Of the scene.
+      std::vector<const char*> lines;
+    };
+    const std::string head = R"({"version": 1, )";
+    const Vain cases[] = {
+        {R"("bodies": [{"shape": {"box": {}}, "mass": 3, "velocity": [1, 0, 0]}])",
+         {"1:50: bodies[0].mass: has no effect: forces do not move this body, which is not dynamic",
+          "1:61: bodies[0].velocity: has no effect: a static body never moves"}},
+        {R"("bodies": [{"kind": "kinematic", "shape": {"box": {}}, "velocity": [1, 0, 0], "motion": {"velocity": [0, 1, 0]}}])",
+         {"1:71: bodies[0].velocity: has no effect: 'motion' replaces it"}},
+        {R"("bodies": [{"kind": "dynamic", "shape": {"box": {}}, "mass": 1, "density": 2}])",
+         {"1:80: bodies[0].density: has no effect: 'mass' replaces it"}},
+        {R"("ropes": [{"points": [[0, 0, 0], [1, 0, 0]], "masses": 4, "poisson_ratio": 0.3}])",
+         {"1:61: ropes[0].masses: has no effect: 'points' replaces it",
+          "1:74: ropes[0].poisson_ratio: has no effect: it is for 'youngs_modulus'"}},
+        {R"("cloths": [{"bend": "none", "bend_stiffness": 1, "position": [1, 0, 0]}])",
+         {"1:44: cloths[0].bend_stiffness: has no effect: 'bend' is \"none\"",
+          "1:65: cloths[0].position: has no effect: it is for a mesh; a grid has a 'corner'"}},
+        {R"("solids": [{"match_hz": 3, "cell": 0.2}])",
+         {"1:28: solids[0].match_hz: has no effect: it is for shape matching",
+          "1:43: solids[0].cell: has no effect: it is for a mesh; a box has 'cells'"}},
+        {R"("world": {"wind": {"gust": 0.5}})",
+         {"1:35: world.wind.gust: has no effect: gusts are relative to 'velocity', which is zero"}},
+        {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], "hooks": [{"b": "b", "kind": "fixed",)"
+         R"( "anchor": [0, 0, 0], "motor": {"max_force": 3}}])",
+         {"1:141: hooks[0].motor: has no effect: this kind of hook has none"}},
+        {R"("ropes": [{}], "hooks": [{"a": "ropes[0].end", "b": "ropes[0].start", "cone": 1}])",
+         {"1:94: hooks[0].cone: has no effect: a point has no rotation"}},
+        {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], )"
+         R"("timeline": [{"at_step": 1, "impulse": {"object": "b", "point": 0, "impulse": [1, 0, 0]}}])",
+         {"1:147: timeline[0].impulse.point: has no effect: 'b' is a body, which has no points"}},
+        {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], )"
+         R"("expect": [{"quantity": "y", "of": "b", "point": 0, "op": "<", "value": 1, "tolerance": 1}])",
+         {"1:133: expect[0].point: has no effect: 'b' is a body, which has no points",
+          "1:159: expect[0].tolerance: has no effect: it is for \"==\" and \"within\""}},
+        {R"("ropes": [{"stiffness": 100, "masses": 4, "repulsion_strength": 1, "repulsion_range": 0.1}])",
+         {}},
+    };
+    for (const Vain& one : cases) {
+      INFO(one.content);
+      const auto loaded = hooke::parse_scene(head + one.content + "}", "demo.json");
+      REQUIRE(loaded);
+      std::vector<std::string> lines;
+      for (const hooke::Error& warning : loaded.warnings) lines.push_back(hooke::to_line(warning));
+      REQUIRE(lines.size() == one.lines.size());
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        CHECK(lines[i] == std::string("demo.json:") + one.lines[i]);
+    }
+  }
+
   TEST_CASE("a byte order mark is not part of the first line") {
     CHECK(hooke::parse_scene("\xEF\xBB\xBF{\"version\": 1}", "demo.json"));
   }

@@ -1,5 +1,7 @@
 #include "hooke/scene_io.h"
 
+#include <array>
+#include <cmath>
 #include <doctest/doctest.h>
 
 namespace {
@@ -454,6 +456,92 @@ TEST_SUITE("io/scene_simulation") {
     CHECK(speed_x(simulation) == 0.0);
     step(simulation, 1);
     CHECK(speed_x(simulation) == doctest::Approx(0.5));
+    CHECK(simulation.errors().empty());
+  }
+
+  TEST_CASE("a body is hit, pushed and given velocities without a point") {
+    // A cube of 1 m and 6 kg: its moment about any axis is 1 kg m^2.
+    const std::string box = R"({"version": 1, "world": {"gravity": [0, 0, 0]}, "seconds": 1,
+      "bodies": [{"name": "box", "kind": "dynamic", "mass": 6, "shape": {"box": {"half_extents": [0.5, 0.5, 0.5]}}}],
+      "timeline": [{"at_step": 1, )";
+    const auto after = [&](const std::string& event) {
+      hooke::Simulation simulation = simulate(box + event + "}]}");
+      step(simulation, 40);
+      const hooke::BodyId id = simulation.find("box")->body;
+      return std::array{simulation.world().velocity(id), simulation.world().angular_velocity(id)};
+    };
+    const auto center = after(R"("impulse": {"object": "box", "impulse": [12, 0, 0]})");
+    CHECK(static_cast<double>(center[0].x) == doctest::Approx(2));
+    CHECK(center[1] == hooke::Vec3{});
+    const auto top = after(R"("impulse": {"object": "box", "at": [0, 0.5, 0], "impulse": [2, 0, 0]})");
+    CHECK(static_cast<double>(top[0].x) == doctest::Approx(1.0 / 3));
+    CHECK(static_cast<double>(top[1].z) == doctest::Approx(-1).epsilon(1e-5));
+    const auto pushed = after(R"("force": {"object": "box", "force": [0, 0, 18], "steps": 30})");
+    CHECK(static_cast<double>(pushed[0].z) == doctest::Approx(1.5).epsilon(1e-5));
+    const auto spun =
+        after(R"("velocity": {"object": "box", "velocity": [0, 3, 0], "angular_velocity": [0, 0, 2]})");
+    CHECK(static_cast<double>(spun[0].y) == doctest::Approx(3));
+    CHECK(static_cast<double>(spun[1].z) == doctest::Approx(2));
+  }
+
+  TEST_CASE("a point is given a velocity") {
+    hooke::Simulation simulation = simulate(particle_scene(
+        R"("timeline": [{"at_step": 3, "velocity": {"object": "ball", "point": 0, "velocity": [5, 0, 0]}}])"));
+    step(simulation, 10);
+    CHECK(speed_x(simulation) == doctest::Approx(5));
+  }
+
+  TEST_CASE("the timeline drives, brakes and steers hooks") {
+    const std::string wheel = R"({"version": 1, "world": {"gravity": [0, 0, 0]}, "seconds": 4,
+      "bodies": [{"name": "wheel", "kind": "dynamic", "mass": 6, "shape": {"box": {"half_extents": [0.5, 0.5, 0.5]}}}],
+      "hooks": [{"name": "hook", "b": "wheel", "anchor": [0, 0, 0], )";
+    hooke::Simulation hinge = simulate(wheel + R"("kind": "hinge", "axis": [0, 0, 1]}], "timeline": [
+      {"at_step": 1, "motor": {"object": "hook", "speed": 3, "max_force": 6}},
+      {"at_step": 100, "motor": {"object": "hook", "max_force": 0}},
+      {"at_step": 120, "motor": {"object": "hook", "max_force": 1.5}}]})");
+    const auto spin = [&] {
+      return static_cast<double>(hinge.world().angular_velocity(hinge.find("wheel")->body).z);
+    };
+    step(hinge, 16);  // 15 steps of 6 N m on 1 kg m^2
+    CHECK(spin() == doctest::Approx(1.5).epsilon(0.001));
+    step(hinge, 100);
+    CHECK(spin() == doctest::Approx(3).epsilon(0.001));
+    step(hinge, 64);  // a second of a brake of 1.5 N m
+    CHECK(spin() == doctest::Approx(1.5).epsilon(0.001));
+
+    hooke::Simulation slider = simulate(wheel + R"("kind": "slider", "axis": [1, 0, 0]}], "timeline": [
+      {"at_step": 1, "spring": {"object": "hook", "stiffness": 600, "damping": 120, "target": 0.25}}]})");
+    step(slider, 240);  // critically damped, at 10 / s
+    CHECK(slider.world().pose(slider.find("wheel")->body).position.x == doctest::Approx(0.25).epsilon(0.001));
+
+    hooke::Simulation car =
+        simulate(wheel + R"("kind": "wheel", "axis": [0, 1, 0], "second_axis": [0, 0, 1]}],
+      "timeline": [{"at_step": 1, "steering": {"object": "hook", "angle": 0.5}}]})");
+    step(car, 120);
+    const hooke::Quat turn = car.world().pose(car.find("wheel")->body).rotation;
+    CHECK(static_cast<double>(2 * std::atan2(turn.y, turn.w)) == doctest::Approx(0.5).epsilon(0.001));
+  }
+
+  TEST_CASE("a kinematic body takes the path that the timeline tells, from where it is") {
+    hooke::Simulation simulation = simulate(R"({"version": 1, "seconds": 3,
+      "bodies": [{"name": "lift", "kind": "kinematic", "position": [1, 2, 3], "shape": {"box": {}}}],
+      "timeline": [
+        {"at_step": 30, "motion": {"object": "lift", "motion": {"velocity": [0, 2, 0]}}},
+        {"at_step": 60, "motion": {"object": "lift", "motion": {"keyframes": [
+          {"time": 0, "offset": [0, 0, 0]}, {"time": 0.5, "offset": [4, 0, 0]}]}}},
+        {"at_step": 120, "velocity": {"object": "lift", "angular_velocity": [0, 1, 0]}},
+        {"at_step": 150, "motion": {"object": "lift"}}]})");
+    const auto place = [&] { return simulation.world().pose(simulation.find("lift")->body).position; };
+    step(simulation, 30);
+    CHECK(place() == hooke::DVec3{1, 2, 3});
+    step(simulation, 30);
+    CHECK(length(place() - hooke::DVec3{1, 3, 3}) < 1e-5);
+    step(simulation, 60);
+    CHECK(length(place() - hooke::DVec3{5, 3, 3}) < 1e-5);
+    step(simulation, 60);
+    CHECK(length(place() - hooke::DVec3{5, 3, 3}) < 1e-5);
+    const hooke::Quat turn = simulation.world().pose(simulation.find("lift")->body).rotation;
+    CHECK(static_cast<double>(2 * std::atan2(turn.y, turn.w)) == doctest::Approx(1).epsilon(0.001));
     CHECK(simulation.errors().empty());
   }
 

@@ -82,6 +82,9 @@ std::string verdicts(const Comparison& comparison) {
   for (const Trial& trial : comparison.trials) {
     text += "<li><b>" + escaped(trial.name) + "</b> " + escaped(verdict_of(trial, comparison)) + ".</li>\n";
   }
+  for (const Skipped& one : comparison.skipped) {
+    text += "<li><b>" + escaped(one.name) + "</b> was skipped: " + escaped(one.reason) + ".</li>\n";
+  }
   return text + "</ul>\n";
 }
 

@@ -7,6 +7,12 @@
 
 namespace hooke::app {
 
+/// A stepper that was asked for and does not run.
+struct Skipped {
+  std::string name;
+  std::string reason;
+};
+
 /// Everything a comparison found.
 struct Comparison {
   std::string scene;  ///< As the user named it.
@@ -19,6 +25,7 @@ struct Comparison {
   Reference reference;
   std::optional<ExactMotion> rigid;  ///< Drawn beside, see rigid_pendulum.
   std::vector<Trial> trials;
+  std::vector<Skipped> skipped = {};
 };
 
 /// A table of words: the first row names the columns.
