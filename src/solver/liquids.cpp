@@ -98,16 +98,20 @@ struct Loads {
   }
   [[nodiscard]] LiquidLoad& of(std::uint32_t p) const { return loads[p - object.particles.first]; }
 
-  void add_ball(std::uint32_t p, double radius) const {
+  /// `scale`: of the volume displaced over that of the ball.
+  void add_ball(std::uint32_t p, double radius, double scale = 1) const {
     const double cap = std::clamp(radius + surface.depth(place(p)), 0.0, 2 * radius);
+    const double volume = scale * geometry::cap_volume(radius, cap);
     LiquidLoad& load = of(p);
-    load.volume += geometry::cap_volume(radius, cap);
-    load.area += kPi * cap * (2 * radius - cap);
-    load.push += geometry::cap_volume(radius, cap) * surface.up;
+    load.volume += volume;
+    load.area += scale * kPi * cap * (2 * radius - cap);
+    load.push += volume * surface.up;
   }
 
-  void add_ball_of(std::uint32_t p, double volume) const {
-    add_ball(p, math::cube_root(0.75 / kPi * volume));
+  /// Volume at a particle that comes and goes over the thickness of the particle.
+  void add_volume(std::uint32_t p, double volume) const {
+    const double r = radius(p);
+    add_ball(p, r, volume / geometry::cap_volume(r, 2 * r));
   }
 
   void add_tetrahedra(const state::Tetrahedra& tetrahedra) const {
@@ -197,7 +201,7 @@ struct Loads {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const double volume = 2 * radius(p) * of(p).area;
       of(p).area = 0;
-      add_ball_of(p, volume);
+      add_volume(p, volume);
     }
   }
 
@@ -209,14 +213,14 @@ struct Loads {
     for (std::uint32_t k = 0; k < object.particles.count; ++k) {
       const std::uint32_t p = object.particles.first + k;
       const double length = (k > 0 ? half(k - 1) : 0.0) + (k < count ? half(k) : 0.0);
-      add_ball_of(p, kPi * radius(p) * radius(p) * length);
+      add_volume(p, kPi * radius(p) * radius(p) * length);
     }
   }
 
   void add_matched(const state::RestShape& rest) const {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
       const auto w = static_cast<double>(particles.velocity[p].inverse_mass);
-      if (w > 0) add_ball_of(p, rest.volume / (w * rest.mass));
+      if (w > 0) add_ball(p, math::cube_root(0.75 / kPi * rest.volume / (w * rest.mass)));
     }
   }
 

@@ -41,7 +41,7 @@ struct LiquidLoad {
 /// - a solid that is matched to its form: its volume, shared out by mass;
 /// - loose particles, and points that are matched: the balls they are.
 ///
-/// What belongs to a point is immersed as a ball of that volume would be.
+/// What belongs to a point is immersed over its thickness, as a ball is.
 struct LiquidRows {
   const state::Segments& segments;
   const state::Triangles& triangles;

@@ -345,7 +345,7 @@ TEST_SUITE("world/bodies") {
   TEST_CASE("what touches a slope from the start has all of its friction from the first substep") {
     constexpr double kSlope = 0.5;
     constexpr double kFriction = 0.35;
-    const Quat tilt = quaternion_about({Real(0), Real(0), Real(1)}, Real(-kSlope));
+    const Quat tilt = quaternion_about(Vec3{Real(0), Real(0), Real(1)}, Real(-kSlope));
     const DVec3 up = {std::sin(kSlope), std::cos(kSlope), 0};
     const DVec3 down = {std::cos(kSlope), -std::sin(kSlope), 0};
     const double acceleration = kGravity * (std::sin(kSlope) - kFriction * std::cos(kSlope));

@@ -97,8 +97,7 @@ TEST_SUITE("world/liquids") {
     for (const double density : {250.0, 2000.0}) {
       // Deep below: as a whole at g (1 - rho_w / rho), without drag.
       Pool pool(turns()[1], Real(0));
-      RopeDesc desc = {
-          .total_mass = static_cast<Real>(density * volume), .radius = Real(radius), .pins = {}};
+      RopeDesc desc = {.total_mass = static_cast<Real>(density * volume), .pins = {}, .radius = Real(radius)};
       for (int i = 0; i <= 20; ++i) desc.points.push_back({length * i / 20, -30, 0});
       const RopeId rope = take(pool.world.add_rope(desc));
       run(pool.world, 30);
@@ -107,7 +106,7 @@ TEST_SUITE("world/liquids") {
       CHECK(dot(v, pool.up) == doctest::Approx(way).epsilon(0.01));
     }
     Pool pool(Quat{});
-    RopeDesc desc = {.total_mass = Real(0.5 * kWater * volume), .radius = Real(radius), .pins = {}};
+    RopeDesc desc = {.total_mass = Real(0.5 * kWater * volume), .pins = {}, .radius = Real(radius)};
     for (int i = 0; i <= 20; ++i) desc.points.push_back({length * i / 20, 2.3, 0});
     const RopeId rope = take(pool.world.add_rope(desc));
     run(pool.world, 900);

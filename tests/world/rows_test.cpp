@@ -4,6 +4,7 @@
 
 #include "world/make.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,7 +23,7 @@ void add_sleepers_and_rollers(World& world, int seed) {
     if (i % 3 == 0) {
       desc.shape = Shape::capsule(Real(0.1), Real(0.3));
       desc.position.y = 0.1 + 0.2 * (k % 4);
-      desc.rotation = quaternion_about({Real(1), Real(0), Real(0)}, Real(1.5707963));
+      desc.rotation = quaternion_about(Vec3{Real(1), Real(0), Real(0)}, Real(1.5707963));
       desc.angular_velocity = {Real(0), Real(0), Real(-20 + k)};
       desc.can_sleep = false;
     } else {
@@ -74,7 +75,7 @@ DVec3 normal_of(const Slab& slab) {
 BodyId add_slab(World& world, const Slab& slab) {
   return take(world.add_body({.shape = Shape::box({Real(10), Real(0.2), Real(10)}),
                               .position = slab.place,
-                              .rotation = quaternion_about({Real(0), Real(0), Real(1)}, slab.lean)}));
+                              .rotation = quaternion_about(Vec3{Real(0), Real(0), Real(1)}, slab.lean)}));
 }
 BodyId add_ball(World& world, DVec3 position) {
   return take(world.add_body({.kind = BodyKind::kDynamic,
