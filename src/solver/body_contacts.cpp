@@ -64,9 +64,16 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
 bool is_fresh(const Manifold& m) {
   constexpr Real kTouching = Real(1e-3);  // [m]
   const auto end = m.point.begin() + m.point_count;
-  return std::all_of(m.point.begin(), end,
-                     [](const ContactPoint& p) { return p.normal_impulse == Real(0); }) &&
-         std::any_of(m.point.begin(), end, [](const ContactPoint& p) { return p.separation < kTouching; });
+  const auto rests = [](const ContactPoint& p) { return p.normal_impulse == Real(0); };
+  const auto touches = [](const ContactPoint& p) { return p.separation < kTouching; };
+  return std::all_of(m.point.begin(), end, rests) && std::any_of(m.point.begin(), end, touches);
+}
+
+/// Whether a body turns so far in a substep that rows of its inertia at the start may drive it.
+bool spins(const Manifold& m, const Bodies& bodies, Real h) {
+  constexpr Real kFar = Real(0.02);  // [rad]
+  return h * std::max(length(bodies.angular_velocity[m.body_a]), length(bodies.angular_velocity[m.body_b])) >
+         kFar;
 }
 
 /// Cuts the colors into blocks, and finds places for what only some of them have.
@@ -76,7 +83,6 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
   contacts.manifold_of.clear();
   contacts.rolling.clear();
   contacts.lively.clear();
-  contacts.any_fresh = false;
   std::size_t block_count = 0;
   for (std::size_t color = 0; color + 1 < colors.begin.size(); ++color) {
     int i = colors.begin[color];
@@ -89,13 +95,12 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
       block.point_count = manifolds[first_manifold].point_count;
       block.first_rolling = static_cast<int>(contacts.rolling.size());
       block.count = 0;
-      block.bounces = block.fresh = false;
+      block.bounces = false;
       const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
       for (; i < end && colors.members[i].anchored == anchored && colors.members[i].hard == hard; ++i) {
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
         block.bounces = block.bounces || m.restitution > Real(0);
-        block.fresh = block.fresh || is_fresh(m);
         if (m.lively && !hard) {
           block.point_count = Manifold::kMaxPoints;
           contacts.lively.push_back(
@@ -106,7 +111,6 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
       }
       contacts.manifold_of.resize(block_count * kContactLanes, BodyContacts::kNoManifold);
       block.rolling_count = static_cast<int>(contacts.rolling.size()) - block.first_rolling;
-      contacts.any_fresh = contacts.any_fresh || block.fresh;
     }
     contacts.color_begin.push_back(static_cast<int>(block_count));
   }
@@ -123,6 +127,10 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
   source.impulse_scale = step.impulse_scale;
   for (int lane = 0; lane < kContactLanes; ++lane)
     fill_lane(rows[std::min(lane, block.count - 1)], contacts.colors, bodies, lane, source, block);
+  const auto any = [&](auto&& is) {
+    return std::any_of(rows, rows + block.count, [&](std::uint32_t row) { return is(manifolds[row]); });
+  };
+  block.fresh = any(is_fresh) && !any([&](const Manifold& m) { return spins(m, bodies, step.h); });
   wide::compute_contact_rows(source, block);
   for (int i = 0; i < block.rolling_count; ++i) {
     RollingRow& row = contacts.rolling[block.first_rolling + i];
@@ -280,6 +288,8 @@ void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<Manifol
   for_ranges(pool, static_cast<int>(contacts.blocks.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) fill_block(i, manifolds, bodies, step, contacts);
   });
+  contacts.any_fresh = std::any_of(contacts.blocks.begin(), contacts.blocks.end(),
+                                   [](const ContactBlock& block) { return block.fresh; });
   for (int color = 0; color < contacts.color_count(); ++color) {
     const int first = contacts.color_begin[color];
     for_ranges(pool, contacts.color_begin[color + 1] - first, kWarmGrain, [&](Range range) {
