@@ -36,6 +36,7 @@ std::string footer() {
     text += info.available ? "\n" : " (not built in)\n";
   }
   return text +
+         "A stepper that would diverge is skipped, and that is said.\n"
          "A scene that declares an accuracy is also run by what that chooses, as 'declared'.\n\n"
          "Writes into DIR: index.html, summary.csv, order.csv, series_*.csv and each plot as .png and .svg.\n"
          "Exit code 3 if gnuplot is missing: tables and page are then written without pictures.\n\n"

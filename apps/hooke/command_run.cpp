@@ -43,7 +43,10 @@ void describe(CLI::App& app, RunOptions& options) {
       ->check(CLI::PositiveNumber)
       ->excludes(stepper);
   app.footer(
-      "Exit code 1 if an expectation of the scene failed. Expectations later than --seconds do not count.\n\n"
+      "Exit code 1 if an expectation of the scene failed. Expectations later than --seconds do not count.\n"
+      "What went wrong on the way is a warning, once, with the object, the worst number, its time and what "
+      "helps;\n"
+      "in the report also under `problems`.\n\n"
       "Examples:\n"
       "  hooke run scenes/rope.json\n"
       "  hooke run scenes/flag.json --seconds 2 --json report.json --csv steps.csv\n"
@@ -62,6 +65,7 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     csv->write(csv_header());
   }
   record.start = simulation.world().measure().energy;
+  RunWatch watch(simulation);
   Progress progress("simulating", steps);
   for (std::uint64_t i = 0; i < steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -70,8 +74,7 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     if (!step.moved) return Error{ErrorCode::kOutOfRange, options.scene, "the step did not move"};
     record.step_ms.push_back(std::chrono::duration<double, std::milli>(elapsed).count());
     record.contacts = step.contacts;
-    record.rows_quarantined += step.rows_quarantined;
-    record.steps_unconverged += step.chains_unconverged > 0 ? 1 : 0;
+    watch.look(simulation, step);
     if (csv) csv->write(csv_line(simulation.world(), step.contacts));
     if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {
       std::printf("%s %s\n", std::to_string(i + 1).c_str(),
@@ -79,19 +82,10 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     }
     progress.show(i + 1);
   }
+  record.problems = watch.warnings();
+  for (const RunWarning& problem : record.problems) record.warnings.push_back(problem.line());
   if (csv) return csv->finish();
   return {};
-}
-
-void add_numerical_warnings(RunRecord& record) {
-  if (record.rows_quarantined > 0) {
-    record.warnings.push_back(std::to_string(record.rows_quarantined) +
-                              " times a particle was put back because its state was not finite");
-  }
-  if (record.steps_unconverged > 0) {
-    record.warnings.push_back("in " + std::to_string(record.steps_unconverged) +
-                              " steps a rope stayed more than 1 % off its length in some substep");
-  }
 }
 
 ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record) {
@@ -144,7 +138,6 @@ int command_run(Arguments arguments) {
   Simulation& simulation = *built.value;
   const auto done = simulate(simulation, options, steps, record);
   if (!done) return report(done.error());
-  add_numerical_warnings(record);
   return print_results(simulation, options, record);
 }
 

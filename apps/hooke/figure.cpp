@@ -1,5 +1,7 @@
 #include "hooke/figure.h"
 
+#include "hooke/scene_path.h"
+
 #include "render/shapes.h"
 
 #include <algorithm>
@@ -81,22 +83,6 @@ std::vector<PaintedRange> ranges_of(const Scene& scene, const Look& look, const 
   if (look.model != nullptr) ranges = model_ranges(*look.model, textures);
   if (ranges.empty()) ranges.push_back({0, 0, {.color = usual_color(look.kind)}});
   return ranges;
-}
-
-/// Names of an object's description: "ropes[2]", or "timeline[0].add.ropes[2]".
-const SceneObjects& objects_of(const Scene& scene, const std::string& path, std::size_t& row) {
-  const auto number_after = [&](std::size_t bracket) {
-    std::size_t value = 0;
-    for (std::size_t i = bracket + 1; i < path.size() && path[i] >= '0' && path[i] <= '9'; ++i) {
-      value = 10 * value + static_cast<std::size_t>(path[i] - '0');
-    }
-    return value;
-  };
-  const std::size_t last = path.rfind('[');
-  row = last == std::string::npos ? 0 : number_after(last);
-  if (path.rfind("timeline[", 0) != 0) return scene.objects;
-  const std::size_t event = number_after(path.find('['));
-  return event < scene.timeline.size() ? scene.timeline[event].add : scene.objects;
 }
 
 /// The ball of iron of that mass.

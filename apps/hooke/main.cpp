@@ -27,13 +27,15 @@ constexpr std::array kCommands = {
     Command{"check", "run cases with known answers", command_check},
     Command{"compare", "run a scene by several methods of integration, and plot them", command_compare},
     Command{"bench", "time scenes", command_bench},
-    Command{"convert", "convert a model between .3ds .obj .stl .ply .gltf .glb", command_convert},
-    Command{"validate", "check scene files and the models they use", command_validate},
+    Command{"convert", "convert a model from .3ds .obj .stl .ply .gltf .glb to .3ds .obj .stl .glb",
+            command_convert},
+    Command{"validate", "check scene files and the models they use; nothing may be in vain",
+            command_validate},
     Command{"new", "write a scene to start from", command_new},
 };
 
 int print_help() {
-  std::printf("hooke: a physics engine for ropes, cloth and everything in one world\n\n");
+  std::printf("hooke: a physics engine for rigid bodies, ropes, cloth and jelly in one world\n\n");
   std::printf("Usage: hooke COMMAND [ARGUMENTS]\n       hooke COMMAND --help\n\nCommands:\n");
   for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.summary);
   std::printf(
@@ -41,7 +43,7 @@ int print_help() {
       "  0  good\n"
       "  1  an expectation or a check failed\n"
       "  2  bad input: a file or an argument\n"
-      "  3  the machine cannot: no OpenGL, no display, no ffmpeg or gnuplot, a write that failed\n"
+      "  3  the machine cannot: no OpenGL, no display, no ffmpeg, gnuplot or SUNDIALS, a write that failed\n"
       "\nExamples:\n"
       "  hooke run scenes/rope.json\n"
       "  hooke render scenes/rope.json -o rope.png --at 1\n"

@@ -31,6 +31,20 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
+static Json json_of_problems(const std::vector<RunWarning>& problems) {
+  Json list = Json::array();
+  for (const RunWarning& one : problems) {
+    list.push_back({{"object", one.object},
+                    {"what", one.what},
+                    {"worst", one.worst},
+                    {"limit", one.limit},
+                    {"unit", one.unit},
+                    {"time", one.time},
+                    {"cure", one.cure}});
+  }
+  return list;
+}
+
 std::string run_json(const Simulation& simulation, const RunRecord& record) {
   const World& world = simulation.world();
   const Measurement end = world.measure();
@@ -54,6 +68,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"passed", passed(simulation)},
       {"errors", errors},
       {"warnings", record.warnings},
+      {"problems", json_of_problems(record.problems)},
   };
   // A file's name may be anything, a report is UTF-8.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

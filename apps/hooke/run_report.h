@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hooke/run_watch.h"
 #include "hooke/scene_io.h"
 
 #include <cstdint>
@@ -14,9 +15,8 @@ struct RunRecord {
   std::vector<double> step_ms = {};  ///< Wall time of each step.
   Energy start = {};
   std::uint32_t contacts = 0;              ///< After the last step.
-  std::uint64_t rows_quarantined = 0;      ///< Sum over the steps.
-  std::uint64_t steps_unconverged = 0;     ///< Steps in which some rope did not converge.
-  std::vector<std::string> warnings = {};  ///< One line each.
+  std::vector<std::string> warnings = {};  ///< One line each, of the file and of the run.
+  std::vector<RunWarning> problems = {};   ///< Of the run.
 };
 
 struct StepTimes {

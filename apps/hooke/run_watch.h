@@ -3,23 +3,23 @@
 #include "hooke/scene_io.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace hooke::app {
 
-/// What a user should know of a run that went on all the same: of whom, what, how bad it was at worst, when
-/// that was, and what helps.
+/// What a user should know of a run that went on all the same.
 struct RunWarning {
-  std::string object;  ///< Its name; empty for the scene.
-  std::string what;    ///< "stretched by 12 %, beyond its extension_max of 5 %"
-  double worst = 0;    ///< The number in `what`.
-  double limit = 0;    ///< What it is measured against.
-  std::string unit;    ///< Of both; empty for a ratio or a count.
-  double time = 0;     ///< When it was worst [s].
-  std::string cure;    ///< "more particle_substeps"
+  std::string object = {};  ///< Its name; empty for the scene.
+  std::string what = {};    ///< With the number: "stretched by 12 %, its extension_max is 5 %".
+  double worst = 0;         ///< The number.
+  double limit = 0;         ///< What it is measured against; 0 where nothing is to happen at all.
+  std::string unit = {};    ///< Of both; empty for a ratio or a count.
+  double time = 0;          ///< When it was worst [s].
+  std::string cure = {};    ///< "more particle_substeps".
 
-  /// "'rope' stretched by 12 % (at 0.85 s), beyond its extension_max of 5 %: more particle_substeps"
+  /// "'rope' stretched by 12 %, its extension_max is 5 %, at 0.85 s: more particle_substeps".
   [[nodiscard]] std::string line() const;
 };
 
@@ -30,45 +30,50 @@ class RunWatch {
   /// not fit, hooks whose ends are apart.
   explicit RunWatch(const Simulation& simulation);
 
-  /// Looks at the state after a step and at its report.
+  /// Looks at the state after a step and at the step's report.
   void look(const Simulation& simulation, const StepReport& report);
 
-  /// In order of the objects' creation, the scene's own last.
+  /// In order of the objects' creation, what is nobody's own last.
   [[nodiscard]] std::vector<RunWarning> warnings() const;
 
  private:
-  /// Two points that are not to be farther apart than `length` times 1 + limit.
+  /// Two points and how far they are from each other at rest [m].
   struct Edge {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
-    double length = 0;  ///< At rest [m].
+    double length = 0;
   };
-  /// What is looked at of one object.
   struct Watched {
     SceneObject object = {};
-    double extension_max = 0;  ///< Declared; 0 for none.
-    std::vector<Edge> edges = {};
-    double first_gap = 0;  ///< Of a hook, when it was seen first [m].
-    bool was_closed = false;
+    std::uint64_t order = 0;       ///< Of creation.
+    double extension_max = 0;      ///< 0 for none.
+    bool is_rigid = false;         ///< A rope that is to keep its length.
+    std::vector<Edge> edges = {};  ///< Of what has a limit, or is rigid.
+    bool was_closed = false;       ///< A hook, whose ends have been at one place.
   };
-  /// The worst of one kind of trouble of one object.
   struct Worst {
-    std::uint64_t order = 0;  ///< Of the object's creation.
+    std::uint64_t order = 0;
     int kind = 0;
-    double ratio = 0;  ///< Worst over limit, to tell which is worse.
+    double ratio = 0;  ///< Worst over limit.
     RunWarning warning = {};
   };
 
+  /// Whether nothing came or went; then it also notes what broke.
+  bool knows_all(std::span<const SceneObject> objects);
   void take_new_objects(const Simulation& simulation);
-  void look_at_start(const Simulation& simulation, const Watched& watched, std::uint64_t order);
-  void look_at_stretch(const World& world, const Watched& watched, std::uint64_t order);
-  void look_at_gap(const World& world, Watched& watched, std::uint64_t order);
+  void look_at_start(const Simulation& simulation, Watched& watched);
+  static void take_rope(const World& world, const SceneRope& rope, Watched& watched);
+  void look_at_stretch(const World& world, const Watched& watched);
+  void look_at_gap(const World& world, Watched& watched);
   void look_at_overlaps(const World& world);
-  void look_at_report(const Simulation& simulation, const StepReport& report);
+  void look_at_report(const World& world, const StepReport& report);
+  /// The rigid rope that is farthest off its length; null if there is none.
+  [[nodiscard]] const Watched* least_rigid_rope(const World& world) const;
   void note(std::uint64_t order, int kind, double ratio, RunWarning warning);
 
   std::vector<Watched> watched_;
   std::vector<Worst> worst_;
+  std::uint64_t created_ = 0;
   double next_overlaps_ = 0;  ///< When contacts are looked at again [s].
 };
 

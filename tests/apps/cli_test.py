@@ -202,6 +202,80 @@ class BadInput(Program):
         self.assertEqual(self.files(), ["scene.json"])
 
 
+class Warnings(Program):
+    """What `hooke run` says of a scene that runs and is not what it seems."""
+
+    def problems(self, content, *words):
+        out, err = self.hooke("run", self.scene({"version": 1, "seconds": 0.5} | content), "--json", "-", *words)
+        report = json.loads(out)
+        lines = [f"warning: {line}" for line in report["warnings"]]
+        self.assertEqual(err.splitlines(), lines)
+        self.assertEqual(len(report["warnings"]), len(report["problems"]))
+        for one, line in zip(report["problems"], lines):
+            self.assertIn(one["what"], line)
+            self.assertTrue(line.endswith(one["cure"]) and one["cure"], line)
+        return {one["object"]: one for one in report["problems"]}
+
+    def test_jelly_that_the_substeps_cannot_carry(self):
+        jelly = {"name": "jelly", "cells": [4, 4, 4], "size": [1, 1, 1], "density": 1000, "young_modulus": 1e7,
+                 "poisson_ratio": 0.25, "position": [0, 5, 0]}
+        told = self.problems({"solids": [jelly]})["jelly"]
+        # A wave goes one cell of 0.25 m in four substeps of 1/480 s: mu = rho 30^2, E = 2.5 mu.
+        self.assertAlmostEqual(told["worst"] / (2.5 * 1000 * 30**2), 1, delta=1e-5)
+        self.assertEqual((told["limit"], told["unit"]), (1e7, "Pa"))
+        wanted = int(re.match(r"particle_substeps (\d+), or larger cells", told["cure"])[1])
+        self.assertEqual(self.problems({"solids": [jelly]}, "--particle-substeps", wanted), {})
+        self.assertEqual(self.problems({"solids": [jelly | {"young_modulus": 1e5}]}), {})
+
+    def test_cloth_that_loses_its_bending(self):
+        # A strip of 10 cells held at one edge: 1.5 Nm bend it far less than its weight would.
+        strip = {"name": "strip", "columns": 12, "rows": 3, "width": 0.55, "height": 0.1, "areal_density": 0.2,
+                 "row_direction": [0, 0, 1], "bend_stiffness": 0.3, "pins": [{"column": 0}, {"column": 1}]}
+        told = self.problems({"cloths": [strip]})["strip"]
+        self.assertRegex(told["what"], "has hardly any of its bend_stiffness of 0.3 N m: a substep of 0.00208 s")
+        self.assertEqual(self.problems({"cloths": [strip | {"bend_stiffness": 1e-4}]}), {})
+        self.assertEqual(self.problems({"cloths": [strip | {"bend": "none", "bend_stiffness": 0}]}), {})
+
+    def test_cells_that_do_not_fit(self):
+        cloth = {"name": "felt", "columns": 21, "rows": 21, "thickness": 0.06, "pins": [0]}
+        self.assertRegex(self.problems({"cloths": [cloth]})["felt"]["what"], "thickness of 0.06 m.*cells of 0.05 m")
+        corners = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+        # A table: a top of 0.2 m, and a leg of 0.05 m that cells of 0.2 m lose.
+        faces = [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+                 [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]]
+        boxes = [((0, 1, 0), (1, 0.2, 1)), ((0.4, 0, 0.4), (0.3, 0.9, 0.3)), ((2, 0, 0), (2, 0.02, 2))]
+        vertices = [[o + s * c for o, s, c in zip(origin, size, corner)] for origin, size in boxes for corner in corners]
+        triangles = [[i + 8 * k for i in face] for k in range(len(boxes)) for face in faces]
+        scene = {"meshes": {"parts": {"vertices": vertices, "triangles": triangles}},
+                 "solids": [{"name": "parts", "mesh": "parts", "cell": 0.15}], "world": {"gravity": [0, 0, 0]}}
+        told = self.problems(scene).get("parts")
+        self.assertRegex(told["what"], r"fills \d+(\.\d+)? % of its mesh")
+        self.assertLess(told["worst"], 0.95)
+
+    def test_limits_that_do_not_hold(self):
+        rope = {"name": "rope", "masses": 8, "stiffness": 100, "extension_max": 0.05, "hook_point": [0, 3, 0],
+                "direction": [0, -1, 0], "loads": [{"point": "last", "mass": 5}]}
+        self.assertEqual(self.problems({"ropes": [rope]}), {})
+        net = {"name": "net", "columns": 9, "rows": 9, "extension_max": 0.05, "areal_density": 0.1,
+               "stretch_stiffness": 100, "pins": [{"row": 0}], "loads": [{"point": 76, "mass": 50}]}
+        told = self.problems({"cloths": [net]})["net"]
+        self.assertRegex(told["what"], "stretched by .* %, its extension_max is 5 %")
+        self.assertGreater(told["worst"], 0.055)
+        self.assertAlmostEqual(told["limit"], 0.05, delta=1e-6)
+        self.assertGreater(told["time"], 0)
+
+    def test_hooks_that_are_open(self):
+        box = {"kind": "dynamic", "shape": {"box": {"half_extents": [0.1, 0.1, 0.1]}}}
+        scene = {"world": {"gravity": [0, 0, 0]},
+                 "bodies": [box | {"name": "a"}, box | {"name": "b", "position": [0.7, 0, 0]}],
+                 "hooks": [{"name": "far", "a": "a.right", "b": "b.left"}]}
+        told = self.problems(scene)["far"]
+        self.assertRegex(told["what"], "began with its ends 0.5 m apart")
+        self.assertAlmostEqual(told["worst"], 0.5, delta=1e-6)
+        scene["bodies"][1]["position"] = [0.2, 0, 0]
+        self.assertEqual(self.problems(scene), {})
+
+
 class Output(Program):
     def test_a_folder_that_refuses_is_exit_code_3_and_leaves_nothing(self):
         name = self.scene(FALLING)

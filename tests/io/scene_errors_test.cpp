@@ -180,17 +180,17 @@ const BadScene kBadScenes[] = {
       "'motor', 'spring', 'steering', 'wind', 'gravity'"}},
     {R"({"version": 1, "bodies": [{"name": "b", "shape": {"box": {}}}],)"
      R"( "timeline": [{"at_step": 1, "impulse": {"object": "b", "impulse": [1, 0, 0]}}]})",
-     {"1:117: timeline[0].impulse.object: 'b' is not dynamic: nothing pushes it"}},
+     {"1:115: timeline[0].impulse.object: 'b' is not dynamic: nothing pushes it"}},
     {R"({"version": 1, "bodies": [{"name": "b", "shape": {"box": {}}}],)"
      R"( "timeline": [{"at_step": 1, "velocity": {"object": "b", "velocity": [1, 0, 0]}}]})",
-     {"1:118: timeline[0].velocity.object: 'b' is static: it never moves"}},
+     {"1:116: timeline[0].velocity.object: 'b' is static: it never moves"}},
     {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
      R"( "timeline": [{"at_step": 1, "motion": {"object": "b"}}]})",
-     {"1:135: timeline[0].motion.object: 'b' is not kinematic: only such a body moves as told"}},
+     {"1:133: timeline[0].motion.object: 'b' is not kinematic: only such a body moves as told"}},
     {R"({"version": 1, "bodies": [{"name": "b", "kind": "kinematic", "shape": {"box": {}}, )"
      R"("motion": {"velocity": [1, 0, 0]}}], "timeline": [)"
      R"({"at_step": 1, "velocity": {"object": "b", "velocity": [1, 0, 0]}}]})",
-     {"1:173: timeline[0].velocity.object: 'b' moves by its 'motion', which gives its velocity"}},
+     {"1:172: timeline[0].velocity.object: 'b' moves by its 'motion', which gives its velocity"}},
     {R"({"version": 1, "ropes": [{"name": "r"}], "timeline": [{"at_step": 1, "force": {"object": "r",)"
      R"( "force": [1, 0, 0]}}]})",
      {"1:79: timeline[0].force: needs 'point': 'r' is no body"}},
@@ -200,10 +200,10 @@ const BadScene kBadScenes[] = {
     {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
      R"( "hooks": [{"name": "h", "kind": "fixed", "b": "b", "anchor": [0, 0, 0]}],)"
      R"( "timeline": [{"at_step": 1, "motor": {"object": "h", "max_force": 1}}]})",
-     {"1:208: timeline[0].motor.object: 'h' is a hook of a kind that has none"}},
+     {"1:206: timeline[0].motor.object: 'h' is a hook of a kind that has none"}},
     {R"({"version": 1, "bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}],)"
      R"( "timeline": [{"at_step": 1, "velocity": {"object": "b"}}]})",
-     {"1:126: timeline[0].velocity: needs 'velocity' or 'angular_velocity'"}},
+     {"1:124: timeline[0].velocity: needs 'velocity' or 'angular_velocity'"}},
     {R"({"version": 1, "camera": {"path": [{"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]},)"
      R"( {"time": 1, "eye": [0, 0, 0], "target": [0, 0, 1]}]}})",
      {"1:26: camera: the times of the path must increase; keyframe 1 does not"}},

@@ -181,12 +181,12 @@ TEST_SUITE("io/scene_load") {
          {"1:35: world.wind.gust: has no effect: gusts are relative to 'velocity', which is zero"}},
         {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], "hooks": [{"b": "b", "kind": "fixed",)"
          R"( "anchor": [0, 0, 0], "motor": {"max_force": 3}}])",
-         {"1:141: hooks[0].motor: has no effect: this kind of hook has none"}},
+         {"1:143: hooks[0].motor: has no effect: this kind of hook has none"}},
         {R"("ropes": [{}], "hooks": [{"a": "ropes[0].end", "b": "ropes[0].start", "cone": 1}])",
          {"1:94: hooks[0].cone: has no effect: a point has no rotation"}},
         {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], )"
          R"("timeline": [{"at_step": 1, "impulse": {"object": "b", "point": 0, "impulse": [1, 0, 0]}}])",
-         {"1:147: timeline[0].impulse.point: has no effect: 'b' is a body, which has no points"}},
+         {"1:148: timeline[0].impulse.point: has no effect: 'b' is a body, which has no points"}},
         {R"("bodies": [{"name": "b", "kind": "dynamic", "shape": {"box": {}}}], )"
          R"("expect": [{"quantity": "y", "of": "b", "point": 0, "op": "<", "value": 1, "tolerance": 1}])",
          {"1:133: expect[0].point: has no effect: 'b' is a body, which has no points",

@@ -249,7 +249,8 @@ TEST_SUITE("lab/bodies") {
     CHECK(angle_between(take(run.body(id)).rotation, math::quaternion_of(DVec3{0, 0, theta})) < 1e-5);
   }
 
-  TEST_CASE("a law over bodies sees all of them in order, the others where the step began, and that is said") {
+  TEST_CASE(
+      "a law over bodies sees all of them in order, the others where the step began, and that is said") {
     World world = make_world(test::empty_space());
     std::vector<BodyId> ids;
     for (const double x : {-1.0, 1.0, 5.0}) {

@@ -1,0 +1,452 @@
+#include "hooke/run_watch.h"
+
+#include "hooke/scene_path.h"
+#include "hooke/text_of.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+/// Kinds of trouble; those of StepReport come after them, in the order of kCounts.
+enum Kind : int { kStretch, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
+
+constexpr double kBeyondLimit = 1.1;       ///< Of a declared extension, before it is said.
+constexpr double kOpen = 0.01;             ///< Gap of a hook that is said [m].
+constexpr double kPressed = 0.25;          ///< Overlap of two bodies, over the size of the smaller one.
+constexpr double kOverlapInterval = 0.05;  ///< Between two looks at all contacts [s].
+constexpr double kTooSoft = 1.05;          ///< Jelly, softer than declared by so much.
+constexpr double kTooFlexible = 0.25;      ///< Cloth that bends farther than declared by so much.
+constexpr double kHardlyAny = 2;           ///< The same, beyond which the estimate says no number.
+constexpr double kLost = 0.05;             ///< Share of a mesh's volume that its cells do not have.
+constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
+constexpr std::int32_t kMostSubsteps = 64;  ///< That a scene may have.
+
+/// A number of StepReport that is zero while all is well.
+struct Count {
+  std::uint32_t StepReport::*number;
+  const char* what;  ///< After the number.
+  const char* cure;
+  bool of_rope = false;  ///< The worst rope is named.
+};
+
+constexpr std::array kCounts = {
+    Count{&StepReport::rows_quarantined, "particles were put back because their state was not finite",
+          "less extreme masses, stiffnesses or forces, or more substeps"},
+    Count{&StepReport::chains_unconverged,
+          "ropes stayed more than 1 % off their length: Newton's steps did not converge",
+          "more particle_substeps, or a load that is not as heavy", true},
+};
+
+double in_double(Real value) {
+  return static_cast<double>(value);
+}
+
+double percent(double ratio) {
+  return 100 * ratio;
+}
+
+/// What the scene says of an object of the kind that `list` holds.
+template <class T>
+const T& declared(const Scene& scene, const SceneObject& object, std::vector<T> SceneObjects::*list) {
+  static const T usual = {};
+  std::size_t row = 0;
+  const std::vector<T>& all = objects_of(scene, object.path, row).*list;
+  return row < all.size() ? all[row] : usual;
+}
+
+double substep_of(const Scene& scene) {
+  return in_double(scene.dt) / (scene.world.substeps * scene.world.particle_substeps);
+}
+
+/// The setting that makes a substep shorter by `factor`, as an advice.
+std::string more_substeps(const Scene& scene, double factor, const char* otherwise) {
+  const double wanted = std::ceil(scene.world.particle_substeps * factor);
+  if (wanted > kMostSubsteps) return otherwise;
+  return "particle_substeps " + text_of("%.0f", wanted) + ", or " + otherwise;
+}
+
+/// Size of the smallest cell along an edge [m]; 0 for what has no cells.
+double cell_of(const SceneSolid& solid) {
+  if (solid.desc.elasticity != SolidDesc::Elasticity::kTetrahedra) return 0;
+  if (!solid.mesh.empty()) return in_double(solid.desc.cell);
+  const auto edge = [](Real size, std::int32_t cells) { return in_double(size) / std::max(cells, 1); };
+  return std::min({edge(solid.desc.size.x, solid.desc.cells[0]), edge(solid.desc.size.y, solid.desc.cells[1]),
+                   edge(solid.desc.size.z, solid.desc.cells[2])});
+}
+
+double cell_of(const SceneCloth& cloth) {
+  if (!cloth.mesh.empty()) return 0;
+  return std::min(in_double(cloth.desc.width) / std::max(cloth.desc.columns - 1, 1),
+                  in_double(cloth.desc.height) / std::max(cloth.desc.rows - 1, 1));
+}
+
+/// Half of the thinnest side of a body [m]; 0 where it is not known.
+double half_size(const Shape& shape) {
+  switch (shape.kind) {
+    case ShapeKind::kSphere:
+    case ShapeKind::kCapsule:
+      return in_double(shape.radius);
+    case ShapeKind::kBox:
+      return in_double(std::min({shape.half_extents.x, shape.half_extents.y, shape.half_extents.z}));
+    case ShapeKind::kCylinder:
+    case ShapeKind::kCone:
+      return in_double(std::min(shape.radius, shape.half_height));
+    default:
+      return 0;
+  }
+}
+
+double volume_of(const MeshDesc& mesh) {
+  double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](std::size_t i) { return vector_cast<double>(mesh.positions[t[i]]); };
+    volume += dot(corner(0), cross(corner(1), corner(2))) / 6;
+  }
+  return volume;
+}
+
+/// A jelly whose shear is stiffer than a substep carries acts as one that is softer (SolidDesc).
+std::optional<RunWarning> softness(const Scene& scene, const SceneSolid& solid) {
+  const double cell = cell_of(solid);
+  if (!(cell > 0) || solid.desc.total_mass) return std::nullopt;
+  const double shear = in_double(solid.desc.young_modulus) / (2 * (1 + in_double(solid.desc.poisson_ratio)));
+  const double wave = cell / (4 * substep_of(scene));
+  const double carried = in_double(solid.desc.density) * wave * wave;
+  const double softer = shear / carried;
+  if (!(softer > kTooSoft)) return std::nullopt;
+  return RunWarning{
+      .what = text_of(
+          "acts as if young_modulus were about %.3g Pa, not %.3g: a substep of %.3g s carries no more",
+          in_double(solid.desc.young_modulus) / softer, in_double(solid.desc.young_modulus),
+          substep_of(scene)),
+      .worst = in_double(solid.desc.young_modulus) / softer,
+      .limit = in_double(solid.desc.young_modulus),
+      .unit = "Pa",
+      .cure = more_substeps(scene, std::sqrt(softer), "larger cells")};
+}
+
+/// Bends are solved one after the other, once in a substep, and undo in part what their neighbors did: over n
+/// cells of size a, cloth of rigidity D and density rho bends by about 1 + n^1.3 sqrt(D / rho) h / a^2 times
+/// as far as it should, measured on strips of 5 and 10 cells that hang from a clamped edge. Weight lets no
+/// more of the cloth act as one than its bending length (D / rho g)^(1/3).
+std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) {
+  const ClothDesc& desc = cloth.desc;
+  const double cell = cell_of(cloth);
+  const double rigidity = in_double(desc.bend_stiffness);
+  const bool has_bends = desc.bend == ClothDesc::Bend::kAngle || desc.bend == ClothDesc::Bend::kIsometric;
+  if (!(cell > 0) || !has_bends || !(rigidity > 0)) return std::nullopt;
+  const double area = in_double(desc.width) * in_double(desc.height);
+  const double density = desc.total_mass ? in_double(*desc.total_mass) / area : in_double(desc.areal_density);
+  const double weight = density * in_double(length(scene.world.gravity));
+  const double size = in_double(std::max(desc.width, desc.height));
+  const double acts_as_one = weight > 0 ? std::min(size, std::cbrt(rigidity / weight)) : size;
+  const double excess =
+      std::pow(acts_as_one / cell, 1.3) * std::sqrt(rigidity / density) * substep_of(scene) / (cell * cell);
+  if (acts_as_one < cell || !(excess > kTooFlexible)) return std::nullopt;
+  const std::string far = excess < kHardlyAny ? text_of("bends about %.2g times as far as", 1 + excess)
+                                              : std::string("has hardly any of");
+  return RunWarning{
+      .what =
+          far +
+          text_of(" its bend_stiffness of %.3g N m%s: a substep of %.3g s carries no more in cells of %.3g m",
+                  rigidity, excess < kHardlyAny ? " says" : "", substep_of(scene), cell),
+      .worst = 1 + excess,
+      .limit = 1,
+      .cure = more_substeps(scene, excess / kTooFlexible, "larger cells")};
+}
+
+/// Points keep half the thickness from what they touch: more than a cell of it is more than the cells can
+/// show.
+std::optional<RunWarning> thickness(double cell, Real thickness) {
+  if (!(cell > 0) || !(in_double(thickness) > cell)) return std::nullopt;
+  return RunWarning{
+      .what = text_of("has a thickness of %.3g m, more than its cells of %.3g m: its points keep other "
+                      "things off by more than they are apart",
+                      in_double(thickness), cell),
+      .worst = in_double(thickness),
+      .limit = cell,
+      .unit = "m",
+      .cure = "less thickness, or larger cells"};
+}
+
+/// A solid that fills a mesh loses what is thinner than its cells.
+std::optional<RunWarning> lost_parts(const World& world, const SceneObject& object, const SceneSolid& solid) {
+  if (object.model == nullptr || !(cell_of(solid) > 0)) return std::nullopt;
+  const double whole = volume_of(object.model->mesh);
+  const double filled = world.volume(object.solid);
+  if (!(whole > 0) || !(filled < (1 - kLost) * whole)) return std::nullopt;
+  return RunWarning{
+      .what = text_of("fills %.3g %% of its mesh: parts thinner than its cells of %.3g m are lost",
+                      percent(filled / whole), cell_of(solid)),
+      .worst = filled / whole,
+      .limit = 1,
+      .cure = "a smaller cell"};
+}
+
+RunWarning gap_at_start(double gap) {
+  return {.what = text_of("began with its ends %.3g m apart: it draws them together", gap),
+          .worst = gap,
+          .limit = kOpen,
+          .unit = "m",
+          .cure = "place what it holds where the hook is"};
+}
+
+}  // namespace
+
+std::string RunWarning::line() const {
+  std::string text = object.empty() ? what : "'" + object + "' " + what;
+  if (time > 0) text += text_of(", at %.3g s", time);
+  return text + ": " + cure;
+}
+
+RunWatch::RunWatch(const Simulation& simulation) {
+  take_new_objects(simulation);
+}
+
+void RunWatch::note(std::uint64_t order, int kind, double ratio, RunWarning warning) {
+  const auto same = std::find_if(worst_.begin(), worst_.end(),
+                                 [&](const Worst& one) { return one.order == order && one.kind == kind; });
+  if (same == worst_.end()) {
+    worst_.push_back({order, kind, ratio, std::move(warning)});
+  } else if (ratio > same->ratio) {
+    same->ratio = ratio;
+    same->warning = std::move(warning);
+  }
+}
+
+bool RunWatch::knows_all(std::span<const SceneObject> objects) {
+  if (objects.size() != watched_.size()) return false;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (watched_[i].object.name != objects[i].name) return false;
+    watched_[i].object.broken = objects[i].broken;
+  }
+  return true;
+}
+
+void RunWatch::take_new_objects(const Simulation& simulation) {
+  const std::span<const SceneObject> objects = simulation.objects();
+  if (knows_all(objects)) return;
+  // Both stand in order of creation: what is not found further on is new, what is passed over is gone.
+  std::vector<Watched> now;
+  std::size_t next = 0;
+  for (const SceneObject& object : objects) {
+    std::size_t at = next;
+    while (at < watched_.size() && watched_[at].object.name != object.name) ++at;
+    if (at < watched_.size()) {
+      now.push_back(std::move(watched_[at]));
+      next = at + 1;
+      continue;
+    }
+    now.push_back({.object = object, .order = created_++});
+    look_at_start(simulation, now.back());
+  }
+  watched_ = std::move(now);
+}
+
+/// The springs along the edges of a cloth, which have its limit: of a grid those of its cells.
+template <class Edge>
+static std::vector<Edge> edges_of(const World& world, const SceneObject& object, const SceneCloth& cloth) {
+  std::vector<Edge> edges;
+  const PointView points = world.positions(object.cloth);
+  const std::uint32_t columns = object.columns;
+  if (columns > 0) {
+    const double across = in_double(cloth.desc.width) / (columns - 1);
+    const double down = in_double(cloth.desc.height) / (object.rows - 1);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      if ((i + 1) % columns != 0) edges.push_back({i, i + 1, across});
+      if (i + columns < points.size()) edges.push_back({i, i + columns, down});
+    }
+    return edges;
+  }
+  for (const auto& t : world.triangles(object.cloth)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (a < b) edges.push_back({a, b, length(points[b] - points[a])});
+    }
+  }
+  return edges;
+}
+
+void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
+  const Scene& scene = simulation.scene();
+  const World& world = simulation.world();
+  const SceneObject& object = watched.object;
+  const auto add = [&](int kind, std::optional<RunWarning> warning) {
+    if (!warning) return;
+    warning->object = object.name;
+    note(watched.order, kind, 0, *std::move(warning));
+  };
+  switch (object.kind) {
+    case SceneObject::Kind::kRope:
+      take_rope(world, declared(scene, object, &SceneObjects::ropes), watched);
+      break;
+    case SceneObject::Kind::kCloth: {
+      const SceneCloth& cloth = declared(scene, object, &SceneObjects::cloths);
+      add(kTooStiff, softness(scene, cloth));
+      add(kCells, thickness(cell_of(cloth), cloth.desc.thickness));
+      if (cloth.desc.extension_max == kRigid) break;
+      watched.extension_max = in_double(cloth.desc.extension_max);
+      watched.edges = edges_of<Edge>(world, object, cloth);
+      break;
+    }
+    case SceneObject::Kind::kSolid: {
+      const SceneSolid& solid = declared(scene, object, &SceneObjects::solids);
+      add(kTooStiff, softness(scene, solid));
+      add(kCells, thickness(cell_of(solid), solid.desc.thickness));
+      add(kLostParts, lost_parts(world, object, solid));
+      break;
+    }
+    case SceneObject::Kind::kHook: {
+      const double gap = in_double(world.hook_gap(object.hook));
+      watched.was_closed = gap <= kOpen;
+      if (!watched.was_closed) add(kGapAtStart, gap_at_start(gap));
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+void RunWatch::take_rope(const World& world, const SceneRope& rope, Watched& watched) {
+  const RopeDesc& desc = rope.desc;
+  const PointView points = world.positions(watched.object.rope);
+  watched.is_rigid = desc.stiffness == kRigid && !desc.axial_stiffness && !desc.youngs_modulus;
+  if (desc.extension_max < kRigid) watched.extension_max = in_double(desc.extension_max);
+  for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
+    const double even = watched.object.rest_length / static_cast<double>(points.size() - 1);
+    const double rest = desc.points.empty() ? even : length(desc.points[i + 1] - desc.points[i]);
+    watched.edges.push_back({i, i + 1, rest});
+  }
+}
+
+void RunWatch::look_at_stretch(const World& world, const Watched& watched) {
+  if (!(watched.extension_max > 0)) return;
+  const PointView points = positions_of(world, watched.object);
+  double most = 0;
+  for (const Edge& edge : watched.edges) {
+    if (edge.b >= points.size() || !(edge.length > 0)) continue;
+    most = std::max(most, length(points[edge.b] - points[edge.a]) / edge.length - 1);
+  }
+  if (!(most > kBeyondLimit * watched.extension_max)) return;
+  note(watched.order, kStretch, most / watched.extension_max,
+       {.object = watched.object.name,
+        .what = text_of("stretched by %.3g %%, its extension_max is %.3g %%", percent(most),
+                        percent(watched.extension_max)),
+        .worst = most,
+        .limit = watched.extension_max,
+        .time = world.time(),
+        .cure = "more particle_substeps, a lighter load, or a slower one"});
+}
+
+void RunWatch::look_at_gap(const World& world, Watched& watched) {
+  if (watched.object.kind != SceneObject::Kind::kHook || watched.object.broken) return;
+  const double gap = in_double(world.hook_gap(watched.object.hook));
+  if (!(gap > kOpen)) {
+    watched.was_closed = true;
+    return;
+  }
+  if (!watched.was_closed) return;
+  note(watched.order, kGap, gap / kOpen,
+       {.object = watched.object.name,
+        .what = text_of("was open by %.3g m", gap),
+        .worst = gap,
+        .limit = kOpen,
+        .unit = "m",
+        .time = world.time(),
+        .cure = "more substeps, or masses that differ less"});
+}
+
+void RunWatch::look_at_overlaps(const World& world) {
+  const auto watched_of = [&](BodyId id) -> const Watched* {
+    const auto found = std::find_if(watched_.begin(), watched_.end(), [&](const Watched& one) {
+      return one.object.kind == SceneObject::Kind::kBody && one.object.body == id;
+    });
+    return found == watched_.end() ? nullptr : &*found;
+  };
+  for (const BodyContact& contact : world.body_contacts()) {
+    const double depth = -in_double(contact.separation);
+    if (!(depth > kOpen * kPressed)) continue;  // most contacts: nobody is looked up
+    const Watched* a = watched_of(contact.a);
+    const Watched* b = watched_of(contact.b);
+    if (a == nullptr || b == nullptr) continue;
+    const double sizes[] = {half_size(a->object.shape), half_size(b->object.shape)};
+    const double size =
+        sizes[0] > 0 && sizes[1] > 0 ? std::min(sizes[0], sizes[1]) : std::max(sizes[0], sizes[1]);
+    if (!(size > 0) || !(depth > kPressed * size)) continue;
+    const Watched* pressed = sizes[0] > 0 && (sizes[0] <= sizes[1] || !(sizes[1] > 0)) ? a : b;
+    const Watched* other = pressed == a ? b : a;
+    note(pressed->order, kOverlap, depth / size,
+         {.object = pressed->object.name,
+          .what = text_of("was pressed %.3g m into '", depth) + other->object.name +
+                  text_of("', its half size is %.3g m", size),
+          .worst = depth,
+          .limit = kPressed * size,
+          .unit = "m",
+          .time = world.time(),
+          .cure = "more substeps, or masses that differ less"});
+  }
+}
+
+const RunWatch::Watched* RunWatch::least_rigid_rope(const World& world) const {
+  const Watched* worst = nullptr;
+  double most = 0;
+  for (const Watched& watched : watched_) {
+    if (!watched.is_rigid) continue;
+    const PointView points = world.positions(watched.object.rope);
+    for (const Edge& edge : watched.edges) {
+      const double off = std::abs(length(points[edge.b] - points[edge.a]) / edge.length - 1);
+      if (!(off > most)) continue;
+      most = off;
+      worst = &watched;
+    }
+  }
+  return worst;
+}
+
+void RunWatch::look_at_report(const World& world, const StepReport& report) {
+  for (std::size_t i = 0; i < kCounts.size(); ++i) {
+    const Count& count = kCounts[i];
+    const std::uint32_t number = report.*count.number;
+    if (number == 0) continue;
+    const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;
+    std::string what = text_of("in one step %u ", number) + count.what;
+    if (rope != nullptr) what += ", '" + rope->object.name + "' the most";
+    note(kNobody, kFirstCount + static_cast<int>(i), number,
+         {.what = std::move(what),
+          .worst = static_cast<double>(number),
+          .time = world.time(),
+          .cure = count.cure});
+  }
+}
+
+void RunWatch::look(const Simulation& simulation, const StepReport& report) {
+  const World& world = simulation.world();
+  take_new_objects(simulation);
+  for (Watched& watched : watched_) {
+    look_at_stretch(world, watched);
+    look_at_gap(world, watched);
+  }
+  look_at_report(world, report);
+  if (world.time() < next_overlaps_) return;
+  next_overlaps_ = world.time() + kOverlapInterval;
+  look_at_overlaps(world);
+}
+
+std::vector<RunWarning> RunWatch::warnings() const {
+  std::vector<Worst> sorted = worst_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Worst& a, const Worst& b) {
+    return std::pair(a.order, a.kind) < std::pair(b.order, b.kind);
+  });
+  std::vector<RunWarning> warnings;
+  for (Worst& one : sorted) warnings.push_back(std::move(one.warning));
+  return warnings;
+}
+
+}  // namespace hooke::app
