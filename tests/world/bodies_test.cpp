@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -372,6 +373,47 @@ TEST_SUITE("world/bodies") {
         }
       }
     }
+  }
+
+  TEST_CASE("a kinematic body is given a path, from where it is, and lifts what sleeps on it") {
+    World world = make_world();
+    BodyDesc lift = {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(1), Real(0.25), Real(1)})};
+    const BodyId id = take(world.add_body(lift));
+    const BodyId box = take(world.add_body(cube({0, 0.75, 0})));
+    run(world, 120);
+    REQUIRE(world.asleep(box));
+    MotionDesc up = {.kind = MotionDesc::Kind::kConstantVelocity, .velocity = {Real(0), Real(0.5), Real(0)}};
+    REQUIRE(world.set_motion(id, up).has_value());
+    run(world, 60);
+    CHECK(world.pose(id).position.y == doctest::Approx(0.5).epsilon(1e-4));
+    CHECK(world.pose(box).position.y == doctest::Approx(1.25).epsilon(0.01));
+    // Another path begins at the place that the first one reached; none is rest.
+    up = {.kind = MotionDesc::Kind::kKeyframes,
+          .keyframes = {{0, {}}, {0.5, {Real(0), Real(0.25), Real(0)}}}};
+    REQUIRE(world.set_motion(id, up).has_value());
+    const Snapshot before = world.snapshot();
+    run(world, 60);
+    CHECK(world.pose(id).position.y == doctest::Approx(0.75).epsilon(1e-4));
+    const std::uint64_t hash = world.state_hash();
+    REQUIRE(world.restore(before).has_value());
+    run(world, 60);
+    CHECK(world.state_hash() == hash);
+    REQUIRE(world.set_motion(id, {}).has_value());
+    run(world, 30);
+    CHECK(world.pose(id).position.y == doctest::Approx(0.75).epsilon(1e-4));
+  }
+
+  TEST_CASE("only a kinematic body is given a path, and only a path that there is") {
+    World world = make_world();
+    const BodyId box = take(world.add_body(cube({0, 1, 0})));
+    const BodyId lift = take(world.add_body(
+        {.kind = BodyKind::kKinematic, .shape = Shape::sphere(Real(1)), .position = {9, 0, 0}}));
+    CHECK(world.set_motion(box, {}).error().code == ErrorCode::kOutOfRange);
+    CHECK(world.set_motion(BodyId{}, {}).error().code == ErrorCode::kStaleId);
+    CHECK_FALSE(world.set_motion(lift, {.kind = MotionDesc::Kind::kKeyframes}).has_value());
+    const Real nan = std::numeric_limits<Real>::quiet_NaN();
+    CHECK_FALSE(
+        world.set_motion(lift, {.kind = MotionDesc::Kind::kConstantVelocity, .velocity = {nan, 0, 0}}));
   }
 }
 
