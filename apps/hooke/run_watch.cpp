@@ -176,14 +176,14 @@ std::optional<RunWarning> thickness(double cell, Real thickness) {
       .cure = "less thickness, or larger cells"};
 }
 
-/// A solid that fills a mesh loses what is thinner than its cells.
+/// A solid that fills a mesh loses what is thinner than its cells, and of what is round the outermost.
 std::optional<RunWarning> lost_parts(const World& world, const SceneObject& object, const SceneSolid& solid) {
   if (object.model == nullptr || !(cell_of(solid) > 0)) return std::nullopt;
   const double whole = volume_of(object.model->mesh);
   const double filled = world.volume(object.solid);
   if (!(whole > 0) || !(filled < (1 - kLost) * whole)) return std::nullopt;
   return RunWarning{
-      .what = text_of("fills %.3g %% of its mesh: parts thinner than its cells of %.3g m are lost",
+      .what = text_of("fills %.3g %% of its mesh: its cells of %.3g m are too large for its form",
                       percent(filled / whole), cell_of(solid)),
       .worst = filled / whole,
       .limit = 1,

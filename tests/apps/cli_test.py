@@ -228,13 +228,14 @@ class Warnings(Program):
         self.assertEqual(self.problems({"solids": [jelly | {"young_modulus": 1e5}]}), {})
 
     def test_cloth_that_loses_its_bending(self):
-        # A strip of 10 cells held at one edge: 1.5 Nm bend it far less than its weight would.
+        # A strip of 10 cells held at one edge.
         strip = {"name": "strip", "columns": 12, "rows": 3, "width": 0.55, "height": 0.1, "areal_density": 0.2,
                  "row_direction": [0, 0, 1], "bend_stiffness": 0.3, "pins": [{"column": 0}, {"column": 1}]}
         told = self.problems({"cloths": [strip]})["strip"]
         self.assertRegex(told["what"], "has hardly any of its bend_stiffness of 0.3 N m: a substep of 0.00208 s")
         self.assertEqual(self.problems({"cloths": [strip | {"bend_stiffness": 1e-4}]}), {})
-        self.assertEqual(self.problems({"cloths": [strip | {"bend": "none", "bend_stiffness": 0}]}), {})
+        del strip["bend_stiffness"]
+        self.assertEqual(self.problems({"cloths": [strip | {"bend": "none"}]}), {})
 
     def test_cells_that_do_not_fit(self):
         cloth = {"name": "felt", "columns": 21, "rows": 21, "thickness": 0.06, "pins": [0]}
