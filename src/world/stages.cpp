@@ -120,35 +120,18 @@ void weigh_triangles(WorldData& world, const state::Deformable& object, Real h) 
   });
 }
 
-/// Bodies have had the gravity of all particle substeps at once, and what contacts did. Those in bundles get
-/// both as their ropes get their gravity, share by share: what hangs on ropes would feel it all in the first
-/// substep and none in the others, and what stands, with a load tied to it, would rise and fall.
-void share_out_impulses(WorldData& world, Real h, bool first) {
+/// Bodies have had the gravity of all particle substeps at once. Those that hang on ropes get it as the ropes
+/// do, share by share: the ropes would feel it all in the first substep and none in the others.
+void share_out_gravity(WorldData& world, Real h, bool first) {
   state::Tables& tables = world.tables;
   const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
   if (others == Real(0)) return;
-  state::Bodies& bodies = tables.bodies;
-  const auto give = [&](const BodyShare& share, Real times) {
-    state::MotionLine& m = bodies.motion[share.body];
-    m.v += times * (share.gravity + share.by_contacts);
-    m.omega_scaled += times * share.turn_by_contacts;
-    bodies.free_motion[share.body].v += times * share.gravity;
-  };
-  if (!first) {
-    for (const BodyShare& share : world.body_shares) give(share, Real(1));
-    return;
-  }
-  world.body_shares.clear();
-  const Real part = Real(1) / (others + Real(1));
+  const Real time = first ? -others * h : h;
   for (const solver::Bundle& bundle : world.bundles.live()) {
     for (const std::uint32_t body : bundle.bodies) {
-      const state::MotionLine& m = bodies.motion[body];
-      const state::FreeLine& free = bodies.free_motion[body];
-      world.body_shares.push_back({.body = body,
-                                   .gravity = (h * bodies.traits[body].gravity_scale) * tables.desc.gravity,
-                                   .by_contacts = part * (m.v - free.v),
-                                   .turn_by_contacts = part * (m.omega_scaled - free.omega_scaled)});
-      give(world.body_shares.back(), -others);
+      const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
+      tables.bodies.motion[body].v += change;
+      tables.bodies.free_motion[body].v += change;
     }
   }
 }
@@ -374,7 +357,7 @@ void begin_ties(WorldData& world, Real h, bool first) {
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_bundles(world.tables, world.chains, world.bundles);
-  share_out_impulses(world, h, first);
+  share_out_gravity(world, h, first);
   solver::weigh_points(world.bundles, world.tables, world.hooked_points);
 }
 
