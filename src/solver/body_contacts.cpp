@@ -60,22 +60,6 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
       (is_swapped(m, block, row.lane) ? -step.impulse_scale : step.impulse_scale) * m.rolling_impulse;
 }
 
-/// Whether it touches without impulses to start from.
-bool is_fresh(const Manifold& m) {
-  constexpr Real kTouching = Real(1e-3);  // [m]
-  const auto end = m.point.begin() + m.point_count;
-  const auto rests = [](const ContactPoint& p) { return p.normal_impulse == Real(0); };
-  const auto touches = [](const ContactPoint& p) { return p.separation < kTouching; };
-  return std::all_of(m.point.begin(), end, rests) && std::any_of(m.point.begin(), end, touches);
-}
-
-/// Whether a body turns so far in a substep that rows of its inertia at the start may drive it.
-bool spins(const Manifold& m, const Bodies& bodies, Real h) {
-  constexpr Real kFar = Real(0.02);  // [rad]
-  return h * std::max(length(bodies.angular_velocity[m.body_a]), length(bodies.angular_velocity[m.body_b])) >
-         kFar;
-}
-
 /// Cuts the colors into blocks, and finds places for what only some of them have.
 void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contacts) {
   const ContactColors& colors = contacts.colors;
@@ -127,10 +111,6 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
   source.impulse_scale = step.impulse_scale;
   for (int lane = 0; lane < kContactLanes; ++lane)
     fill_lane(rows[std::min(lane, block.count - 1)], contacts.colors, bodies, lane, source, block);
-  const auto any = [&](auto&& is) {
-    return std::any_of(rows, rows + block.count, [&](std::uint32_t row) { return is(manifolds[row]); });
-  };
-  block.fresh = any(is_fresh) && !any([&](const Manifold& m) { return spins(m, bodies, step.h); });
   wide::compute_contact_rows(source, block);
   for (int i = 0; i < block.rolling_count; ++i) {
     RollingRow& row = contacts.rolling[block.first_rolling + i];
@@ -288,8 +268,6 @@ void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<Manifol
   for_ranges(pool, static_cast<int>(contacts.blocks.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) fill_block(i, manifolds, bodies, step, contacts);
   });
-  contacts.any_fresh = std::any_of(contacts.blocks.begin(), contacts.blocks.end(),
-                                   [](const ContactBlock& block) { return block.fresh; });
   for (int color = 0; color < contacts.color_count(); ++color) {
     const int first = contacts.color_begin[color];
     for_ranges(pool, contacts.color_begin[color + 1] - first, kWarmGrain, [&](Range range) {
@@ -314,29 +292,16 @@ void solve_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
   wide::solve_contacts(all.subspan(pairs), pass(true), bodies.motion.data());
 }
 
-namespace {
-
-/// What comes near and will be struck in the next substep must not be slower by then.
-wide::ContactPass relaxation(const ContactStep& step) {
-  return {.softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
-}
-
-}  // namespace
-
 void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
   for (const ContactBlock& block : all) {
     for (int i = 0; i < block.rolling_count; ++i)
       roll(block, contacts.rolling[block.first_rolling + i], bodies);
   }
-  wide::solve_contacts(soft_blocks_of(contacts, blocks), relaxation(step), bodies.motion.data());
-}
-
-void relax_fresh_contacts(Range blocks, const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
-  const std::span<ContactBlock> all = soft_blocks_of(contacts, blocks);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].fresh) wide::solve_contacts(all.subspan(i, 1), relaxation(step), bodies.motion.data());
-  }
+  // What comes near and will be struck in the next substep must not be slower by then.
+  const wide::ContactPass pass = {
+      .softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
+  wide::solve_contacts(soft_blocks_of(contacts, blocks), pass, bodies.motion.data());
 }
 
 void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,

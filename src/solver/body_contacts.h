@@ -25,7 +25,6 @@
 ///   solve_body_contacts, each color, `sweeps` times
 ///   move_bodies
 ///   relax_body_contacts, each color                                substeps times
-///   relax_fresh_contacts, each color                               in the first substep
 ///   finish_bodies, store_body_contacts                             once
 ///
 /// One point, with n the normal from A to B, s its separation, v = n.(v_b - v_a) + j_b.omega_b - j_a.omega_a
@@ -91,7 +90,6 @@ struct alignas(64) ContactBlock {
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
   bool hard = false;      ///< Its manifolds are of hard islands: only rolling is solved here.
   bool bounces = false;   ///< Some lane has restitution.
-  bool fresh = false;     ///< Some lane touches and knows no impulses yet.
   int first_rolling = 0;  ///< Its rolling rows.
   int rolling_count = 0;
 };
@@ -125,7 +123,6 @@ struct BodyContacts {
   std::vector<RollingRow> rolling;
   std::vector<ContactLane> lively;  ///< Lanes of lively manifolds that soft contacts solve.
   ContactColors colors;
-  bool any_fresh = false;  ///< Among the blocks.
 
   [[nodiscard]] int color_count() const { return static_cast<int>(color_begin.size()) - 1; }
 };
@@ -165,12 +162,6 @@ void solve_body_contacts(parallel::Range blocks, const ContactStep& step, BodyCo
 /// One pass without bias over blocks of one color, rolling resistance first, friction last.
 void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
-
-/// In the first substep once more over the fresh ones: without impulses to start from, friction holds the
-/// place of contact by turning the body, before the points resist that. All others have this from the substep
-/// before.
-void relax_fresh_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
-                          state::Bodies& bodies);
 
 /// After accelerate_bodies, which repeats what contacts did in the substep before: takes that of a lane back.
 void drop_warm_start(const ContactLane& lane, BodyContacts& contacts, state::Bodies& bodies);

@@ -229,17 +229,6 @@ void renew_lively_contacts(WorldData& world, Real h) {
   solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
 }
 
-void relax_contacts(WorldData& world, bool first) {
-  state::Bodies& bodies = world.tables.bodies;
-  for_contact_colors(world, [&](parallel::Range blocks) {
-    solver::relax_body_contacts(blocks, world.contact_step, world.body_contacts, bodies);
-  });
-  if (!first || !world.body_contacts.any_fresh) return;
-  for_contact_colors(world, [&](parallel::Range blocks) {
-    solver::relax_fresh_contacts(blocks, world.contact_step, world.body_contacts, bodies);
-  });
-}
-
 void finish_body_contacts(WorldData& world) {
   Tables& t = world.tables;
   parallel::for_ranges(*world.pool, static_cast<int>(world.body_contacts.blocks.size()), kContactBlockGrain,

@@ -67,9 +67,6 @@ void resolve_hits(WorldData& world, Real h);
 /// After bodies have moved by a substep of length `h`: rows of lively contacts from where bodies are now.
 void renew_lively_contacts(WorldData& world, Real h);
 
-/// Contacts without bias, and friction: the last to write velocities in a substep; `first` in the first.
-void relax_contacts(WorldData& world, bool first);
-
 /// After the last substep: what contacts did, for the next step and for those who ask.
 void finish_body_contacts(WorldData& world);
 

@@ -142,7 +142,8 @@ void substep(WorldData& w, int i, double time, Real h) {
   world::keep_inertia(w, h, true);
   world::renew_lively_contacts(w, h);
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
-  world::relax_contacts(w, step.first);
+  for_contact_colors(
+      w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });
 }
 
 void finish_bodies(WorldData& w, double dt) {

