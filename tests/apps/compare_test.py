@@ -124,7 +124,7 @@ class Compare(Program):
         out, err = self.hooke("compare", name, "--steppers", "euler,rk4,heun,solver", "--no-limits", "--out", "out")
         self.assertEqual(list(self.summary()), ["rk4", "solver"])
         for stepper in ("euler", "heun"):
-            self.assertRegex(err, f"warning: scene.json: {stepper} is skipped: .*diverges.*--force runs it")
+            self.assertRegex(err, f"warning: scene.json: {stepper} is skipped: .*(diverges|is stable below).*--force runs it")
             self.assertRegex(out, f"\n{stepper} was skipped: ")
             self.assertRegex((self.folder / "out" / "index.html").read_text(), f"<b>{stepper}</b> was skipped: ")
         rows = self.compare(name, "--steppers", "euler,rk4", "--no-limits", "--force")
