@@ -85,7 +85,8 @@ def magnet():
         body("tube", "glass", {"cylinder": {"radius": 0.115, "half_height": 0.45}}, add(bottom, [0, 0.42, 0]), collides=False,
              kind="static"),
         *(body(f"disc_{k}", tone, {"cylinder": {"radius": 0.1, "half_height": 0.03}}, [bottom[0], y, 0], kind,
-               mass=mass, linear_damping=2, dipole_moment=[0, disc * (-1)**k, 0])
+               dipole_moment=[0, disc * (-1)**k, 0],
+               **({} if kind == "static" else {"mass": mass, "linear_damping": 2}))
           for k, (tone, kind, y) in enumerate((("slate", "static", bottom[1]),
                                                ("rose", "dynamic", bottom[1] + 0.35), ("slate", "dynamic", bottom[1] + 0.6)))),
         body("bar_north", "rose", box(0.06, 0.03, 0.03), add(bar_at, [0.06, -0.01, 0]), "static"),

@@ -416,13 +416,6 @@ void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
   }
 }
 
-/// What is left for certain of a gap after what the two moved since the last step. Rounded downwards, so that
-/// it may be called any number of times.
-Real gap_after(const Scene& scene, std::uint32_t a, std::uint32_t b, Real gap) {
-  constexpr Real kRoundOff = Real(2) * std::numeric_limits<Real>::epsilon();
-  return gap - (scene.motions[a].reach + scene.motions[b].reach) - kRoundOff * std::fabs(gap);
-}
-
 /// Makes the pair's manifolds at the end of the chunk's; `first_manifold` counts from the chunk's begin.
 void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const std::uint32_t a = scene.colliders.body[pair.collider_a];
@@ -437,7 +430,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
   } else {
     const Real margin = margin_of(scene, a, b);
-    pair.gap = gap_after(scene, a, b, pair.gap);
+    pair.gap = gap_after(scene.motions[a], scene.motions[b], pair.gap);
     if (pair.tested && pair.manifold_count == 0 && pair.gap > margin) {
       ++chunk.counts.skipped;
     } else if (holds(scene, pair, a, b, margin)) {

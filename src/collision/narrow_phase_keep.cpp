@@ -92,6 +92,11 @@ Real largest_drift(const SmallMotion& a, const SmallMotion& b, const state::Drif
   return length(drift.way) + length(drift.angle_a) * a.radius + length(drift.angle_b) * b.radius;
 }
 
+Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap) {
+  constexpr Real kRoundOff = Real(2) * std::numeric_limits<Real>::epsilon();
+  return gap - (a.reach + b.reach) - kRoundOff * std::fabs(gap);
+}
+
 void carry_along(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& m) {
   const bool stays = a.calm && b.calm;
   const Vec3 apart = b.way - a.way;

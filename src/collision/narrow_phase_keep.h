@@ -51,6 +51,10 @@ void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);
 /// How far points of the two can be from where they were against each other [m].
 [[nodiscard]] Real largest_drift(const SmallMotion& a, const SmallMotion& b, const state::Drift& drift);
 
+/// What is left for certain of a gap [m] after what the two moved since the last step. Rounded downwards, so
+/// that it may be called any number of times.
+[[nodiscard]] Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap);
+
 /// Moves points and normals along with their bodies; the normal belongs to `fixed`, A or B. Separations
 /// follow to first order in what the bodies turned against each other. Between two calm bodies only they do.
 void carry_along(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& manifold);

@@ -440,8 +440,8 @@ const Kind& liquid_kind() {
   static const Kind kind = {
       .name = "liquid",
       .help = "Lifts by the weight of what is displaced, and drags. The liquid itself does not move.",
-      .fields = {required(field<desc, &FieldDesc::height>("height", "m", between(-1e9, 1e9),
-                                                          "Of the surface above the origin, against gravity.")),
+      .fields = {required(field<desc, &FieldDesc::height>(
+                     "height", "m", between(-1e9, 1e9), "Of the surface above the origin, against gravity.")),
                  field<desc, &FieldDesc::density>("density", "kg/m^3", between(0, 1e6),
                                                   "Mass of a cubic meter."),
                  field<desc, &FieldDesc::drag>(

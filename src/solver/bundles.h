@@ -96,9 +96,9 @@ struct InnerTouch {
 /// its speed, N and the speed of the solution before: however wrong they are, that takes energy. Along the
 /// normal those of ropes are as soft as contacts of nodes are, and carry their force over like these.
 ///
-/// A share of 1e-6 of each hook row's diagonal is added as compliance, 1e-10 of a motor's: it decides what loops
-/// of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b across the rope, whose
-/// direction at b is that of its points blended along the segment.
+/// A share of 1e-6 of each hook row's diagonal is added as compliance, 1e-10 of a motor's: it decides what
+/// loops of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b
+/// across the rope, whose direction at b is that of its points blended along the segment.
 struct Bundle {
   std::vector<std::uint32_t> chains;         ///< In order.
   std::vector<std::uint32_t> points;         ///< Particles of no rope, in order of rows.

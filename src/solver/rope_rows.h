@@ -60,12 +60,12 @@ struct RopeTouch {
   std::uint32_t row = 0, node = 0;
   double rho = 0;  ///< How hard it holds [kg].
   DVec3 n, f0, f;
-  DVec3 against;  ///< Direction of friction on a node that slides.
+  DVec3 against;     ///< Direction of friction on a node that slides.
   double trial = 0;  ///< Of such a one: size of what would have held it [N s].
-  DVec3 surface;  ///< Velocity of what is touched, at the contact [m/s].
-  int body = -1;  ///< Of a net, whose velocity is solved for; -1: `surface` is given.
-  DVec3 lever;    ///< From that body's center [m].
-  DVec3 belt;     ///< Velocity of the surface against that body [m/s].
+  DVec3 surface;     ///< Velocity of what is touched, at the contact [m/s].
+  int body = -1;     ///< Of a net, whose velocity is solved for; -1: `surface` is given.
+  DVec3 lever;       ///< From that body's center [m].
+  DVec3 belt;        ///< Velocity of the surface against that body [m/s].
   double separation = 0, friction = 0, n0 = 0, normal = 0;
   bool active = false, slides = false;
   bool let_go = false;    ///< For the rest of the substep: it pulled too often.

@@ -136,6 +136,47 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   }
 }
 
+/// Marks the bodies that contacts between bodies push in this step.
+void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::vector<std::uint8_t>& pushed) {
+  pushed.assign(count, 0);
+  for (const solver::ContactBlock& block : contacts.blocks) {
+    for (int lane = 0; lane < block.count; ++lane) {
+      pushed[block.line_a[lane] / 16] = 1;
+      if (!block.anchored) pushed[block.line_b[lane] / 16] = 1;
+    }
+  }
+}
+
+/// So with what contacts did to them: what stands with a load tied to it would rise and fall in each substep.
+/// Shares go to the bodies that gave them, also if they leave their bundle meanwhile.
+void share_out_contacts(WorldData& world, bool first) {
+  state::Bodies& bodies = world.tables.bodies;
+  const auto count = static_cast<Real>(world.tables.desc.particle_substeps);
+  if (count == Real(1)) return;
+  const auto give = [&bodies](const ContactShare& share, Real times) {
+    bodies.motion[share.body].v += times * share.v;
+    bodies.motion[share.body].omega_scaled += times * share.omega_scaled;
+  };
+  if (!first) {
+    for (const ContactShare& share : world.contact_shares) give(share, Real(1));
+    return;
+  }
+  world.contact_shares.clear();
+  find_pushed(world.body_contacts, bodies.motion.size(), world.touched);
+  for (const solver::Bundle& bundle : world.bundles.live()) {
+    for (const std::uint32_t body : bundle.bodies) {
+      if (world.touched[body] == 0) continue;
+      const state::MotionLine& m = bodies.motion[body];
+      const state::FreeLine& free = bodies.free_motion[body];
+      world.contact_shares.push_back(
+          {.body = body,
+           .v = (Real(1) / count) * (m.v - free.v),
+           .omega_scaled = (Real(1) / count) * (m.omega_scaled - free.omega_scaled)});
+      give(world.contact_shares.back(), Real(1) - count);
+    }
+  }
+}
+
 /// Pins and hooks say where ropes are held against bending and twist.
 void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
@@ -357,6 +398,7 @@ void begin_ties(WorldData& world, Real h, bool first) {
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_bundles(world.tables, world.chains, world.bundles);
+  share_out_contacts(world, first);
   share_out_gravity(world, h, first);
   solver::weigh_points(world.bundles, world.tables, world.hooked_points);
 }

@@ -46,6 +46,13 @@ struct Approach {
   DVec3 point = {};      ///< Where they will meet [m].
 };
 
+/// What contacts did to a body in a bundle, for each particle substep when there are several in a substep.
+struct ContactShare {
+  std::uint32_t body = 0;  ///< Row.
+  Vec3 v = {};             ///< [m/s]
+  Vec3 omega_scaled = {};
+};
+
 /// A World's inside: the tables, what is derived from them, and what lasts one step.
 struct WorldData {
   state::Tables tables;
@@ -64,6 +71,7 @@ struct WorldData {
   std::vector<solver::Chain> chains;                ///< One per rope, in order of creation.
   std::vector<solver::ChainScratch> chain_scratch;  ///< One per part of a parallel loop.
   solver::Bundles bundles;                          ///< Of ropes with what they are tied to.
+  std::vector<ContactShare> contact_shares;         ///< Lives for one substep.
   std::vector<solver::HookedPoint> hooked_points;   ///< Lives for one substep.
   std::uint64_t clamps_revision = 0;                ///< Sum of both revisions, which only grow.
   std::vector<solver::TwistRow> twist_rows;         ///< Lives for one substep.

@@ -49,9 +49,7 @@ struct PairScene {
     return row;
   }
   /// Moves a body as a step does.
-  void move(std::uint32_t body, DVec3 way) {
-    bodies.center[body] = bodies.center[body] + way;
-  }
+  void move(std::uint32_t body, DVec3 way) { bodies.center[body] = bodies.center[body] + way; }
   /// Pairs all bodies that are not both static with each other, and updates their manifolds.
   void update(Real dt = Real(1) / Real(60)) {
     std::vector<collision::ColliderPair> found;

@@ -352,8 +352,7 @@ TEST_SUITE("world/bodies") {
     const double acceleration = kGravity * (std::sin(kSlope) - kFriction * std::cos(kSlope));
     const ContactDesc contact = {.friction = Real(kFriction)};
     // Plates, whose upper corners are within the margin of contact.
-    for (const DVec3 half :
-         {DVec3{0.02, 0.0068, 0.02}, {0.1, 0.002, 0.1}}) {
+    for (const DVec3 half : {DVec3{0.02, 0.0068, 0.02}, {0.1, 0.002, 0.1}}) {
       for (const double speed : {0.0, 1.2}) {
         CAPTURE(half.y);
         CAPTURE(speed);
