@@ -2,7 +2,6 @@
 
 #include "hooke/desc.h"
 
-#include "math/rotation.h"
 #include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
@@ -31,6 +30,13 @@ struct LiquidLoad {
   double area = 0;    ///< By which the lift grows with depth, or more [m^2].
 };
 
+/// The tables that say what the particles of an object enclose.
+struct LiquidRows {
+  const state::Segments& segments;
+  const state::Triangles& triangles;
+  const state::Tetrahedra& tetrahedra;
+};
+
 /// Refills `loads`, one for each particle of the object. It displaces
 ///
 /// - a solid of tetrahedra: what of each lies below the surface, at the center of that part;
@@ -42,11 +48,6 @@ struct LiquidLoad {
 /// - loose particles, and points that are matched: the balls they are.
 ///
 /// What belongs to a point is immersed over its thickness, as a ball is.
-struct LiquidRows {
-  const state::Segments& segments;
-  const state::Triangles& triangles;
-  const state::Tetrahedra& tetrahedra;
-};
 void find_liquid_loads(const state::Deformable& object, const LiquidRows& rows, const LiquidSurface& surface,
                        const state::Particles& particles, std::vector<LiquidLoad>& loads);
 

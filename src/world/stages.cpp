@@ -177,6 +177,17 @@ void share_out_contacts(WorldData& world, bool first) {
   }
 }
 
+void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
+  state::Tables& t = world.tables;
+  for (const state::Field& field : t.fields) {
+    if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
+    const solver::LiquidSurface surface(field.desc, t.desc.gravity);
+    solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
+                              world.liquid_loads);
+    solver::apply_liquid(field.desc, surface, object, world.liquid_loads, h, t.particles);
+  }
+}
+
 /// Pins and hooks say where ropes are held against bending and twist.
 void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
@@ -263,21 +274,6 @@ void begin_particle_substep(WorldData& world, Real h) {
     std::copy(first, first + chain.node_count, world.velocity_before.begin() + chain.first_particle);
   }
 }
-
-namespace {
-
-void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
-  state::Tables& t = world.tables;
-  for (const state::Field& field : t.fields) {
-    if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
-    const solver::LiquidSurface surface(field.desc, t.desc.gravity);
-    solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
-                              world.liquid_loads);
-    solver::apply_liquid(field.desc, surface, object, world.liquid_loads, h, t.particles);
-  }
-}
-
-}  // namespace
 
 void apply_forces(WorldData& world, Real h) {
   state::Tables& tables = world.tables;

@@ -122,7 +122,7 @@ struct WorldData {
   solver::Hits hits;
   solver::HardIslands hard_islands;
   solver::BorneScratch borne;
-  std::vector<std::uint8_t> touched;  ///< Of bodies; see solver/coupled_articulations.h.
+  std::vector<std::uint8_t> touched;  ///< Of bodies: scratch of couple_articulations and share_out_contacts.
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
   std::vector<DVec3> start_origin;
