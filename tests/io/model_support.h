@@ -2,6 +2,8 @@
 
 #include "hooke/model_io.h"
 
+#include "temporary_folder.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,32 +48,7 @@ class ScopedVariable {
   std::string old_ = {};
 };
 
-/// A new empty folder, gone with everything in it at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "hooke_model_XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-
-  [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
-  /// Writes a file and tells its path.
-  [[nodiscard]] std::string file(const std::string& name, std::string_view content) const {
-    std::ofstream(path_ / name, std::ios::binary).write(content.data(), static_cast<long>(content.size()));
-    return *this / name;
-  }
-
- private:
-  fs::path path_;
-};
+using test::TemporaryFolder;
 
 inline std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -1,5 +1,7 @@
 #include "process/new_file.h"
 
+#include "temporary_folder.h"
+
 #include <csignal>
 #include <cstdlib>
 #include <doctest/doctest.h>
@@ -15,27 +17,9 @@ namespace fs = std::filesystem;
 using hooke::ErrorCode;
 using hooke::process::NewFile;
 using hooke::process::write_file;
+using hooke::test::TemporaryFolder;
 
 namespace {
-
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "hooke_file_XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { fs::remove_all(path_); }
-
-  [[nodiscard]] std::string operator/(const char* name) const { return (path_ / name).string(); }
-  [[nodiscard]] std::ptrdiff_t entries() const {
-    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-  }
-
- private:
-  fs::path path_;
-};
 
 std::string text_in(const std::string& path) {
   std::ifstream file(path);
@@ -64,7 +48,7 @@ int end_in_the_middle(const std::string& path, NewFile::Start start, int signal)
 TEST_SUITE("process/new_file") {
   TEST_CASE("a file has its name when it is finished, and not before") {
     for (const auto start : {NewFile::Start::kUnnamed, NewFile::Start::kNamed}) {
-      const Folder folder;
+      const TemporaryFolder folder;
       auto file = NewFile::create(folder / "a.csv", start);
       REQUIRE(file.has_value());
       REQUIRE(file->write("one,").has_value());
@@ -78,7 +62,7 @@ TEST_SUITE("process/new_file") {
 
   TEST_CASE("a file that is given up leaves the old one and nothing else") {
     for (const auto start : {NewFile::Start::kUnnamed, NewFile::Start::kNamed}) {
-      const Folder folder;
+      const TemporaryFolder folder;
       REQUIRE(write_file(folder / "a.csv", std::string_view("old")).has_value());
       {
         auto file = NewFile::create(folder / "a.csv", start);
@@ -92,7 +76,7 @@ TEST_SUITE("process/new_file") {
   }
 
   TEST_CASE("a process that is ended in the middle leaves nothing") {
-    const Folder folder;
+    const TemporaryFolder folder;
     // Where the file system has files without names, not even the signal that no process sees leaves any.
     if (const auto probe = ::open((folder / ".").c_str(), O_TMPFILE | O_RDWR, 0600); probe >= 0) {
       ::close(probe);
@@ -107,7 +91,7 @@ TEST_SUITE("process/new_file") {
   }
 
   TEST_CASE("what a killed process left does not stand in the way") {
-    const Folder folder;
+    const TemporaryFolder folder;
     for (const int attempt : {0, 1}) {
       const std::string name = "a.part" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
       const std::ofstream left(folder / name.c_str());
@@ -121,7 +105,7 @@ TEST_SUITE("process/new_file") {
   }
 
   TEST_CASE("a replaced file keeps its permissions and a link leads to the new content") {
-    const Folder folder;
+    const TemporaryFolder folder;
     REQUIRE(write_file(folder / "a", std::string_view("old")).has_value());
     REQUIRE(::chmod((folder / "a").c_str(), 0640) == 0);
     fs::create_symlink("a", folder / "link");
@@ -132,7 +116,7 @@ TEST_SUITE("process/new_file") {
   }
 
   TEST_CASE("what cannot be a file is an error that names it") {
-    const Folder folder;
+    const TemporaryFolder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
     for (const std::string& path : {folder / ".", folder / "missing/a", folder / "pipe", std::string()}) {
       const auto file = NewFile::create(path);
