@@ -75,6 +75,37 @@ TEST_SUITE("world/rope") {
     CHECK((t[2] - t[0]) / small_swing == doctest::Approx(1.180341).epsilon(2e-4));
   }
 
+  TEST_CASE("a rope of one segment or more that goes round a cone pulls with m g / cos") {
+    // At 40 degrees the load goes round with v^2 = g L sin tan. Some ropes side by side, in all directions.
+    const double angle = 40 * std::numbers::pi / 180;
+    const double length = 0.8;
+    const double speed = std::sqrt(9.81 * length * std::sin(angle) * std::tan(angle));
+    for (const std::uint32_t segments : {1U, 2U, 5U}) {
+      for (const int count : {1, 5}) {
+        World world = make_world(without_air());
+        std::vector<RopeId> ropes;
+        for (int k = 0; k < count; ++k) {
+          const double turn = 0.3 + 1.1 * k;
+          const DVec3 out = {std::cos(turn), 0, std::sin(turn)};
+          RopeDesc desc{.total_mass = Real(0.002), .loads = {{.point = segments, .mass = Real(2)}}};
+          for (std::uint32_t i = 0; i <= segments; ++i)
+            desc.points.push_back((length * i / segments) *
+                                  (std::sin(angle) * out - DVec3{0, std::cos(angle), 0}));
+          ropes.push_back(take(world.add_rope(desc)));
+          const Vec3 along = vector_cast<Real>(speed * DVec3{-std::sin(turn), 0, std::cos(turn)});
+          REQUIRE(world.set_velocity(point(ropes.back(), segments), along).has_value());
+        }
+        run(world, 30);
+        for (int i = 0; i < 60; ++i) {
+          run(world, 1);
+          for (const RopeId rope : ropes)
+            CHECK(d(world.tensions(rope).back()) ==
+                  doctest::Approx(2.001 * 9.81 / std::cos(angle)).epsilon(0.01));
+        }
+      }
+    }
+  }
+
   TEST_CASE("a swing from the horizontal gains no energy, measured at any step") {
     World world = make_world(without_air());
     RopeDesc desc;

@@ -8,7 +8,7 @@
 /// A node with the diagonal S + K and the right side f - K o meets the next by -K + F and the one behind that
 /// by c; S, F and c are of masses, contacts, bends and of what is eliminated already. k may be 1e7 times as
 /// large as S: differences of both would lose that many digits. So its rank of one is kept apart, and only
-/// multiplies what is small. With B = F - b 1 and
+/// multiplies what is small; that which S has of the node before likewise. With B = F - b 1 and
 ///
 ///   P = (S + b 1)^-1,  r = P n,  t' = n + B^T r,  tau = k / (1 + k n.r),
 ///   eta = r.(f - b o) + n.o,   z = P (f - b o) - tau eta r                (u, if the next two nodes stood)
@@ -77,6 +77,17 @@ HWY_INLINE Scale<Number> difference(const Scale<Number>& a, const Scale<Number>&
   return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
 }
 
+/// [v] m [v]^T, where [v] w = v x w: what a^2 v v^T adds to the cofactors of m is a^2 times this.
+template <class Number>
+HWY_INLINE Scale<Number> across(const Triple<Number>& v, const Scale<Number>& m) {
+  const Columns3<Number> columns = full(m);
+  const Columns3<Number> c = {cross(v, columns.x), cross(v, columns.y), cross(v, columns.z)};  // [v] m
+  const Triple<Number> x = {c.x.x, c.y.x, c.z.x};
+  const Triple<Number> y = {c.x.y, c.y.y, c.z.y};
+  return {v.y * x.z - v.z * x.y, v.z * x.x - v.x * x.z, v.x * x.y - v.y * x.x,
+          v.z * y.x - v.x * y.z, v.x * y.y - v.y * y.x, v.x * c.y.z - v.y * c.x.z};
+}
+
 template <class Number, std::size_t kCount>
 HWY_INLINE Scale<Number> get6(const double (&from)[6][kCount], int i) {
   return {get<Number>(from[0] + i), get<Number>(from[1] + i), get<Number>(from[2] + i),
@@ -125,11 +136,13 @@ class RopeSweep {
   }
 
  private:
-  /// A node while it is eliminated: the diagonal, mass + share 1, and the right side.
+  /// A node while it is eliminated: the diagonal, mass + share 1 + firm way way^T, and the right side.
   struct Pivot {
     Scale<Number> mass;
     Number share;
     Triple<Number> impulse;
+    Number firm;
+    Triple<Number> way;
   };
 
   HWY_INLINE SegmentTraits<Number> traits_of(std::size_t i) const {
@@ -224,7 +237,7 @@ class RopeSweep {
   HWY_INLINE void forward() {
     const Number zero(0.0);
     const Columns3<Number> no_meeting = full(diagonal(zero));
-    const Pivot none = {diagonal(zero), zero, {zero, zero, zero}};
+    const Pivot none = {diagonal(zero), zero, {zero, zero, zero}, zero, {zero, zero, zero}};
     const std::size_t last = ropes_.nodes.size() - 1;
     Pivot here = none;
     Pivot next = none;
@@ -243,14 +256,28 @@ class RopeSweep {
       }
     }
     add_own(last, here);
-    add_diagonal(here.share, here.mass);
+    const Cofactors c = cofactors_of(here, zero);
+    const Triple<Number> u = scaled(quotient(Number(1.0), c.determinant), c.a.times(here.impulse));
     RopeNodeLanes<kCount>& node = ropes_.nodes[last];
-    put3(choose3(moves(last), inverse(here.mass).times(here.impulse), get3<Number>(node.v_free, lane_)),
-         node.u, lane_);
+    put3(choose3(moves(last), u, get3<Number>(node.v_free, lane_)), node.u, lane_);
   }
 
-  /// P, r and tau of a node, by one division: with A the cofactors of S + b 1 and D its determinant,
-  /// P = A / D, r = A n / D, tau = k D / (D + k n.A n).
+  /// Of a node's diagonal with b 1. With S0 what of it is not firm, A0 its cofactors, D0 its determinant:
+  /// A = A0 + tau [t] S0 [t]^T, D = D0 + tau t.A0 t. Behind a node that is held tau is all of k, and
+  /// cofactors of the sum would be what is left of numbers 1e14 times as large.
+  struct Cofactors {
+    Scale<Number> a;
+    Number determinant;
+  };
+  static HWY_INLINE Cofactors cofactors_of(const Pivot& pivot, Number b) {
+    Scale<Number> m = pivot.mass;
+    add_diagonal(pivot.share + b, m);
+    const Scale<Number> a = cofactors(m);
+    return {sum(a, scaled(pivot.firm, across(pivot.way, m))),
+            determinant(m, a) + pivot.firm * dot(pivot.way, a.times(pivot.way))};
+  }
+
+  /// P, r and tau of a node, by one division: P = A / D, r = A n / D, tau = k D / (D + k n.A n).
   struct Inverse {
     Scale<Number> p;
     Triple<Number> r;
@@ -258,10 +285,7 @@ class RopeSweep {
   };
   static HWY_INLINE Inverse invert(const Pivot& pivot, const Segment& segment) {
     const auto& [n, o, n_o, k, b] = segment;
-    Scale<Number> m = pivot.mass;
-    add_diagonal(pivot.share + b, m);
-    const Scale<Number> a = cofactors(m);
-    const Number d = determinant(m, a);
+    const auto [a, d] = cofactors_of(pivot, b);
     const Triple<Number> an = a.times(n);
     const Number whole = d + k * dot(n, an);
     const Number per_both = quotient(Number(1.0), d * whole);
@@ -299,7 +323,9 @@ class RopeSweep {
       pass_on_bent(i, segment, {p, r, tau}, given, difference(y, scaled(given, r)), next, second, meeting);
     } else {
       const Triple<Number> t = difference(n, scaled(b, r));
-      next.mass = difference(square(tau, t), scaled(b * b, p));
+      next.mass = scaled(Number(0.0) - b * b, p);
+      next.firm = tau;
+      next.way = t;
       next.share = b;
       next.impulse = sum(scaled(b, sum(o, y)), scaled(given, t));
     }
@@ -316,7 +342,9 @@ class RopeSweep {
     add_diagonal(Number(0.0) - b, meets);
     const Columns3<Number> pb = product(p, meets);
     const Triple<Number> t = sum(n, meets.transposed_times(r));
-    next.mass = sum(next.mass, difference(square(tau, t), symmetric_product(meets, pb)));
+    next.mass = difference(next.mass, symmetric_product(meets, pb));
+    next.firm = tau;
+    next.way = t;
     next.share = next.share + b;
     add(b, o, next.impulse);
     add(given, n, next.impulse);
