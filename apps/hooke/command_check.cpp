@@ -14,6 +14,9 @@ int command_check(Arguments arguments) {
   app.add_option("--substeps", options.substeps, "Substeps of every world")->check(CLI::Range(1, 64));
   app.add_option("--stepper", options.stepper,
                  "Also by this method of the laboratory; all: which method reaches which goal");
+  app.add_option("--turned", options.turned,
+                 "Turn every world by a random rotation of this seed, and move it: the answers stay the same")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--ground-truth", options.ground_truth,
                "Instead: how far the solver is from SUNDIALS in scenes without a closed form");
   app.add_flag("--list", options.list, "Only print ids and titles");
@@ -23,6 +26,7 @@ int command_check(Arguments arguments) {
       "  hooke check\n"
       "  hooke check V7 V17 --json check.json\n"
       "  hooke check --stepper rk4\n"
+      "  hooke check V14 --turned 3\n"
       "  hooke check V1 V4 --stepper all --markdown goals.md\n"
       "  hooke check --list");
   if (const auto code = parse(app, arguments)) return *code;

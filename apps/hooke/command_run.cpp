@@ -24,6 +24,7 @@ struct RunOptions {
   std::uint64_t hash_every = 0;  ///< Steps; 0 is never.
   std::string stepper;           ///< Of the laboratory; empty for the solver.
   bool force = false;
+  std::uint32_t turned = 0;  ///< Seed of a placement; 0 for none.
 };
 
 void describe(CLI::App& app, RunOptions& options) {
@@ -40,6 +41,11 @@ void describe(CLI::App& app, RunOptions& options) {
       ->needs(stepper);
   app.add_flag("--hash", options.hash, "Print only the hash of the last state")->excludes(stepper);
   app.add_option("--hash-every", options.hash_every, "Print step and hash after every so many steps")
+      ->check(CLI::PositiveNumber)
+      ->excludes(stepper);
+  app.add_option(
+         "--turned", options.turned,
+         "Turn the whole scene by a random rotation of this seed, and move it: what it promises stays")
       ->check(CLI::PositiveNumber)
       ->excludes(stepper);
   app.footer(
@@ -130,7 +136,9 @@ int command_run(Arguments arguments) {
                                              .json = options.json});
   }
   const std::uint64_t steps = options.seconds ? steps_in(scene, *options.seconds) : scene.step_count();
-  Loaded<Simulation> built = Simulation::create(std::move(scene));
+  const Placement placement =
+      options.turned == 0 ? Placement{} : random_placement(options.turned, scene.world.gravity);
+  Loaded<Simulation> built = Simulation::create(std::move(scene), placement);
   if (!built) return report(built.errors, built.warnings);
   for (const Error& warning : loaded.warnings) record.warnings.push_back(to_line(warning));
   for (const Error& warning : built.warnings) record.warnings.push_back(to_line(warning));

@@ -4,6 +4,7 @@
 #include "hooke/event.h"
 #include "hooke/id.h"
 #include "hooke/math.h"
+#include "hooke/placement.h"
 #include "hooke/query.h"
 #include "hooke/result.h"
 #include "hooke/shape.h"

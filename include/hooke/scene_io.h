@@ -3,6 +3,7 @@
 #include "hooke/desc.h"
 #include "hooke/lab.h"
 #include "hooke/model_io.h"
+#include "hooke/placement.h"
 #include "hooke/result.h"
 #include "hooke/world.h"
 
@@ -436,7 +437,9 @@ struct SceneVerdict {
 class Simulation {
  public:
   /// Reads the meshes, builds the world, evaluates the expectations of step 0.
-  [[nodiscard]] static Loaded<Simulation> create(Scene scene);
+  /// With a placement the whole scene is turned and moved; its timeline and its expectations are still in the
+  /// scene's own frame. Energies keep the world's origin as their zero.
+  [[nodiscard]] static Loaded<Simulation> create(Scene scene, const Placement& placement = {});
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();

@@ -300,7 +300,7 @@ void Builder::build(const SceneBody& body, const std::string& path) {
     object.shape = desc.shape;
     object.parts = parts;
     object.model = model;
-    if (!keep(object, &SceneObject::body, data_.world.add_body(desc))) return;
+    if (!keep(object, &SceneObject::body, data_.world.add_body(placed(desc, data_.placement)))) return;
   }
 }
 
@@ -319,7 +319,7 @@ void Builder::build(const SceneRope& rope, const std::string& path) {
     SceneObject object = make_object(rope.tag, SceneObject::Kind::kRope, path, i);
     object.radius = desc.radius;
     object.rest_length = desc.points.empty() ? static_cast<double>(desc.length_at_rest) : length_of(points);
-    if (!keep(object, &SceneObject::rope, data_.world.add_rope(desc))) return;
+    if (!keep(object, &SceneObject::rope, data_.world.add_rope(placed(desc, data_.placement)))) return;
   }
 }
 
@@ -346,7 +346,7 @@ void Builder::build(const SceneCloth& cloth, const std::string& path) {
     object.columns = static_cast<std::uint32_t>(columns);
     object.rows = columns > 0 ? static_cast<std::uint32_t>(desc.rows) : 0;
     object.model = model.model;
-    if (!keep(object, &SceneObject::cloth, data_.world.add_cloth(desc))) return;
+    if (!keep(object, &SceneObject::cloth, data_.world.add_cloth(placed(desc, data_.placement)))) return;
   }
 }
 
@@ -364,14 +364,17 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
     SceneObject object = make_object(solid.tag, SceneObject::Kind::kSolid, path, i);
     object.radius = Real(0.5) * desc.thickness;
     object.model = model;
-    const Result<SolidId> added = data_.world.add_solid(desc);
+    const Result<SolidId> added = data_.world.add_solid(placed(desc, data_.placement));
     if (!keep(object, &SceneObject::solid, added)) return;
     // The lattice in a mesh is known only now.
     std::vector<DVec3> points(data_.world.positions(added.value()).size());
-    for (std::size_t k = 0; k < points.size(); ++k) points[k] = data_.world.positions(added.value())[k];
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      points[k] = data_.placement.own_point(data_.world.positions(added.value())[k]);
+    }
     if (!reserve(points.size(), path)) return;
     for (const PinDesc& pin : pins_of(solid.pins, points, 0, path)) {
-      (void)data_.world.pin(point(added.value(), pin.point), pin.motion);  // a motion that was checked
+      const MotionDesc motion = placed(pin.motion, data_.placement);
+      (void)data_.world.pin(point(added.value(), pin.point), motion);  // a motion that was checked
     }
   }
 }
@@ -389,7 +392,8 @@ void Builder::build(const SceneParticles& particles, const std::string& path) {
     desc.connection_points = moved(particles.desc.connection_points, offset);
     SceneObject object = make_object(particles.tag, SceneObject::Kind::kParticles, path, i);
     object.radius = desc.particles.front().radius;
-    if (!keep(object, &SceneObject::particles, data_.world.add_particles(desc))) return;
+    if (!keep(object, &SceneObject::particles, data_.world.add_particles(placed(desc, data_.placement))))
+      return;
   }
 }
 
@@ -398,7 +402,8 @@ void Builder::build(const SceneField& field, const std::string& path) {
   object.name = field.name.empty() ? path : field.name;
   object.kind = SceneObject::Kind::kField;
   object.path = path;
-  keep(object, &SceneObject::field, data_.world.add_field(field.desc));
+  const FieldDesc desc = placed(field.desc, data_.placement, data_.world.desc().gravity);
+  keep(object, &SceneObject::field, data_.world.add_field(desc));
 }
 
 Result<const SceneObject*> Builder::find_end(const std::string& name, const SceneArray& array,
@@ -457,7 +462,7 @@ void Builder::build(const SceneHook& hook, const std::string& path) {
         make_object({.name = hook.name, .array = hook.array}, SceneObject::Kind::kHook, path, i);
     object.hook_kind = desc.kind;
     object.hooked = held;
-    if (!keep(object, &SceneObject::hook, data_.world.add_hook(desc))) return;
+    if (!keep(object, &SceneObject::hook, data_.world.add_hook(placed(desc, data_.placement)))) return;
   }
 }
 

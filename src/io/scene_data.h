@@ -10,7 +10,7 @@ namespace hooke {
 
 /// A force of the timeline that acts for some more steps.
 struct ActiveForce {
-  std::size_t event = 0;  ///< In Scene::timeline.
+  std::size_t event = 0;  ///< In SimulationData::timeline.
   std::uint32_t steps_left = 0;
 };
 
@@ -27,12 +27,14 @@ struct SceneModel {
 struct SimulationData {
   Scene scene;
   World world;
+  Placement placement = {};                                       ///< Of the scene's frame in the world.
   std::unordered_map<std::string, std::size_t> material_of = {};  ///< From names to Scene::materials.
   std::unordered_map<std::string, SceneModel> models = {};
   std::vector<SceneObject> objects = {};
   std::unordered_map<std::string, std::size_t> row_of = {};  ///< From names to `objects`.
   std::size_t points = 0;                                    ///< Added so far, for kMostScenePoints.
-  std::vector<std::size_t> events = {};                      ///< The timeline in the order of its steps.
+  std::vector<SceneEvent> timeline = {};                     ///< Of the scene, placed in the world.
+  std::vector<std::size_t> events = {};                      ///< `timeline` in the order of its steps.
   std::size_t next_event = 0;                                ///< In `events`.
   std::vector<ActiveForce> forces = {};
   std::uint32_t contacts = 0;  ///< Of the last step.

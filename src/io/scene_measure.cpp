@@ -37,7 +37,8 @@ double coordinate(DVec3 position, Quantity quantity) {
   return quantity == Quantity::kZ ? position.z : position.y;
 }
 
-double body_figure(const World& world, BodyId body, Quantity quantity) {
+double body_figure(const SimulationData& data, BodyId body, Quantity quantity) {
+  const World& world = data.world;
   const Pose pose = world.pose(body);
   switch (quantity) {
     case Quantity::kSpeed:
@@ -45,22 +46,23 @@ double body_figure(const World& world, BodyId body, Quantity quantity) {
     case Quantity::kAngularSpeed:
       return length(vector_cast<double>(world.angular_velocity(body)));
     case Quantity::kTilt: {
-      const DVec3 up = vector_cast<double>(rotate(pose.rotation, Vec3{Real(0), Real(1), Real(0)}));
+      const DVec3 up = data.placement.own_direction(
+          vector_cast<double>(rotate(pose.rotation, Vec3{Real(0), Real(1), Real(0)})));
       return std::atan2(std::hypot(up.x, up.z), up.y) * kDegreesPerRadian;
     }
     default:
-      return coordinate(pose.position, quantity);
+      return coordinate(data.placement.own_point(pose.position), quantity);
   }
 }
 
-double point_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
-  if (object.kind == SceneObject::Kind::kBody) return body_figure(world, object.body, wanted.quantity);
+double point_figure(const SimulationData& data, const SceneObject& object, const SceneExpectation& wanted) {
+  if (object.kind == SceneObject::Kind::kBody) return body_figure(data, object.body, wanted.quantity);
   const bool speed = wanted.quantity == Quantity::kSpeed;
-  const PointView view = speed ? velocities_of(world, object) : positions_of(world, object);
+  const PointView view = speed ? velocities_of(data.world, object) : positions_of(data.world, object);
   if (view.empty() || !wanted.point.has_value()) return kNothing;
   const std::size_t index = wanted.point->last ? view.size() - 1 : wanted.point->index;
   if (index >= view.size()) return kNothing;
-  if (!speed) return coordinate(view[index], wanted.quantity);
+  if (!speed) return coordinate(data.placement.own_point(view[index]), wanted.quantity);
   return length(vector_cast<double>(view.offset(index)));
 }
 
@@ -88,11 +90,11 @@ double extension_of(const World& world, const SceneObject& object) {
   return sum - object.rest_length;
 }
 
-double extreme_height(const World& world, const SceneObject& object, bool highest) {
-  const PointView view = positions_of(world, object);
+double extreme_height(const SimulationData& data, const SceneObject& object, bool highest) {
+  const PointView view = positions_of(data.world, object);
   double extreme = kNothing;
   for (std::size_t i = 0; i < view.size(); ++i) {
-    const double y = view[i].y;
+    const double y = data.placement.own_point(view[i]).y;
     if (i == 0 || (highest ? y > extreme : y < extreme)) extreme = y;
   }
   return extreme;
@@ -113,12 +115,13 @@ double hook_figure(const World& world, const SceneObject& object, Quantity quant
   }
 }
 
-double object_figure(const World& world, const SceneObject& object, const SceneExpectation& wanted) {
+double object_figure(const SimulationData& data, const SceneObject& object, const SceneExpectation& wanted) {
+  const World& world = data.world;
   if (object.kind == SceneObject::Kind::kHook) return hook_figure(world, object, wanted.quantity);
   switch (wanted.quantity) {
     case Quantity::kLowest:
     case Quantity::kHighest:
-      return extreme_height(world, object, wanted.quantity == Quantity::kHighest);
+      return extreme_height(data, object, wanted.quantity == Quantity::kHighest);
     case Quantity::kExtension:
       return extension_of(world, object);
     case Quantity::kTension:
@@ -126,7 +129,7 @@ double object_figure(const World& world, const SceneObject& object, const SceneE
     case Quantity::kTorque:
       return segment_figure(world, object.rope, wanted);
     default:
-      return point_figure(world, object, wanted);
+      return point_figure(data, object, wanted);
   }
 }
 
@@ -224,7 +227,7 @@ SceneVerdict measure_expectation(const SimulationData& data, std::size_t index) 
   if (wanted.of.empty()) {
     verdict.achieved = world_figure(data, wanted.quantity);
   } else if (const auto found = data.row_of.find(wanted.of); found != data.row_of.end()) {
-    verdict.achieved = object_figure(data.world, data.objects[found->second], wanted);
+    verdict.achieved = object_figure(data, data.objects[found->second], wanted);
   }
   verdict.passed = holds(wanted, verdict.achieved);
   verdict.text = sentence(wanted, verdict.achieved);

@@ -58,7 +58,7 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
   }
   io::index_objects(data);
   std::erase_if(data.forces,
-                [&](const ActiveForce& force) { return data.scene.timeline[force.event].object == name; });
+                [&](const ActiveForce& force) { return data.timeline[force.event].object == name; });
   return {};
 }
 
@@ -118,7 +118,7 @@ Result<void> act_on_object(SimulationData& data, const SceneEvent& event) {
 }
 
 Result<void> apply_event(SimulationData& data, std::size_t index) {
-  const SceneEvent& event = data.scene.timeline[index];
+  const SceneEvent& event = data.timeline[index];
   switch (event.kind) {
     case SceneEvent::Kind::kNone:
       return {};
@@ -143,11 +143,11 @@ void apply_due_events(SimulationData& data) {
   const std::uint64_t step = data.world.step_count();
   for (; data.next_event < data.events.size(); ++data.next_event) {
     const std::size_t event = data.events[data.next_event];
-    if (data.scene.timeline[event].at_step > step) break;
+    if (data.timeline[event].at_step > step) break;
     record(data, event, apply_event(data, event));
   }
   for (ActiveForce& force : data.forces) {
-    record(data, force.event, act_on_object(data, data.scene.timeline[force.event]));
+    record(data, force.event, act_on_object(data, data.timeline[force.event]));
     --force.steps_left;
   }
   std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
@@ -168,23 +168,41 @@ std::vector<Error> check(const Scene& scene) {
   return errors;
 }
 
-Loaded<std::unique_ptr<SimulationData>> build(Scene scene) {
+/// Places and directions of an event, in the world. What it adds is placed when it is built.
+void place(SceneEvent& event, const Placement& at) {
+  if (event.at) event.at = at.point(*event.at);
+  event.motion = placed(event.motion, at);
+  event.vector = at.direction(event.vector);
+  if (event.velocity) event.velocity = at.direction(*event.velocity);
+  if (event.angular_velocity) event.angular_velocity = at.direction(*event.angular_velocity);
+  event.wind = placed(event.wind, at);
+}
+
+std::vector<SceneEvent> placed_timeline(const Scene& scene, const Placement& at) {
+  std::vector<SceneEvent> timeline = scene.timeline;
+  if (at == Placement{}) return timeline;
+  for (SceneEvent& event : timeline) place(event, at);
+  return timeline;
+}
+
+Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& placement) {
   std::vector<Error> errors = check(scene);
   if (!errors.empty()) return {.errors = std::move(errors)};
-  Result<World> world = World::create(io::world_of(scene));
+  Result<World> world = World::create(placed(io::world_of(scene), placement));
   if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
   auto data = std::make_unique<SimulationData>(
-      SimulationData{.scene = std::move(scene), .world = std::move(world).value()});
+      SimulationData{.scene = std::move(scene), .world = std::move(world).value(), .placement = placement});
   for (std::size_t i = 0; i < data->scene.materials.size(); ++i) {
     data->material_of[data->scene.materials[i].name] = i;
   }
   io::build_meshes(*data, errors);
   if (errors.empty()) io::build_objects(data->scene.objects, "", *data, errors);
   if (!errors.empty()) return {.errors = std::move(errors)};
-  data->events.resize(data->scene.timeline.size());
+  data->timeline = placed_timeline(data->scene, placement);
+  data->events.resize(data->timeline.size());
   std::iota(data->events.begin(), data->events.end(), std::size_t{0});
   std::stable_sort(data->events.begin(), data->events.end(), [&](std::size_t a, std::size_t b) {
-    return data->scene.timeline[a].at_step < data->scene.timeline[b].at_step;
+    return data->timeline[a].at_step < data->timeline[b].at_step;
   });
   evaluate_due(*data);
   return {.value = std::move(data)};
@@ -211,9 +229,9 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Loaded<Simulation> Simulation::create(Scene scene) {
+Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement) {
   try {
-    Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene));
+    Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene), placement);
     Loaded<Simulation> loaded = {.errors = std::move(built.errors), .warnings = std::move(built.warnings)};
     if (built) loaded.value = Simulation(std::move(*built.value));
     return loaded;

@@ -38,6 +38,14 @@ std::string temporary(const char* name) {
 }  // namespace
 
 TEST_SUITE("check/cases") {
+  TEST_CASE("a case that is turned has the same answer, and notices what is wrong") {
+    for (const char* id : {"V1", "V15", "V43", "V81"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, {.turned = 5}) == 0);
+      CHECK(failed_rows(id, {.gravity_scale = 1.05, .turned = 5}) > 0);
+    }
+  }
+
   TEST_CASE("half the gravity is found by every case that weighs something") {
     const CheckSetting light{.gravity_scale = 0.5};
     CHECK(failed_rows("V1", light) == 3);

@@ -1,5 +1,5 @@
 /// hooke_check [CASE...] [--json F] [--markdown F] [--substeps N] [--stepper NAME]
-///             [--ground-truth] [--list]
+///             [--turned SEED] [--ground-truth] [--list]
 
 #include "check.h"
 
@@ -22,6 +22,8 @@ int main(int count, char** words) {
       options.substeps = std::atoi(words[++i]);
     } else if (word == "--stepper" && more) {
       options.stepper = words[++i];
+    } else if (word == "--turned" && more) {
+      options.turned = static_cast<std::uint32_t>(std::atoi(words[++i]));
     } else if (word == "--ground-truth") {
       options.ground_truth = true;
     } else if (word.starts_with("--")) {

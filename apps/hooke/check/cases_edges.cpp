@@ -70,8 +70,10 @@ Rows seam_rows(const CheckSetting& setting, const std::string& floor,
   const BodyDesc ball = moving(Shape::sphere(real(0.1)), {1, 0.1, 0.07});
   Rows rows;
   for (const auto& [name, desc] : {std::pair{"box", box}, {"turned box", turned}, {"ball", ball}}) {
-    rows.push_back(absolute_row(std::string("change of velocity of a ") + name + " over " + floor, "m/s", 0,
-                                bump(setting, add_floor, desc), 1e-4));
+    const CheckRow row = absolute_row(std::string("change of velocity of a ") + name + " over " + floor,
+                                      "m/s", 0, bump(setting, add_floor, desc), 1e-4);
+    rows.push_back(known_miss_turned(
+        setting, row, "tops of boxes in line differ by a rounding: a step of 40 nm tilts a ball's normal"));
   }
   return rows;
 }

@@ -72,9 +72,9 @@ Rows laboratory_orders(const CheckSetting& setting) {
   Rig swing(setting);
   add_shaken_pendulum(swing);
   return {order_row("order on a planet's orbit", info.order,
-                    must(lab::measure_order(orbit.world(), options, 2, 3)).order),
+                    must(lab::measure_order(orbit.world().in_its_frame(), options, 2, 3)).order),
           order_row("order on a damped pendulum on a shaken pivot", info.order,
-                    must(lab::measure_order(swing.world(), options, 1, 3)).order)};
+                    must(lab::measure_order(swing.world().in_its_frame(), options, 1, 3)).order)};
 }
 
 CheckRow stiffness_row(const std::string& stepper, double springs) {

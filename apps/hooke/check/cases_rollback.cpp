@@ -17,10 +17,11 @@ constexpr double kStep = 1.0 / 60;
 const double kHeld = static_cast<double>(real(kGravity));  ///< Gravity as a World holds it.
 
 lab::Run run_of(Rig& rig, Search search, double epsilon) {
-  return must(lab::Run::create(
-      rig.world(), {.stepper = "rk4",
-                    .dt = kStep,
-                    .collisions = {.search = search, .epsilon = epsilon, .iteration_limit = 200}}));
+  return must(
+      lab::Run::create(rig.world().in_its_frame(),
+                       {.stepper = "rk4",
+                        .dt = kStep,
+                        .collisions = {.search = search, .epsilon = epsilon, .iteration_limit = 200}}));
 }
 
 BodyDesc elastic(const Shape& shape, DVec3 position, DVec3 velocity = {}) {

@@ -34,7 +34,7 @@ struct String {
 /// Period of the string's first mode.
 double string_period(const CheckSetting& setting, const String& string) {
   Rig rig(setting, weightless());
-  World& world = rig.world();
+  PlacedWorld& world = rig.world();
   const RopeId id = rig.add(RopeDesc{.direction = {real(1), real(0), real(0)},
                                      .total_mass = real(1),
                                      .masses = String::kSegments + 1,
@@ -74,7 +74,7 @@ enum class Count { kAll, kNotElastic };
 /// The energy of springs is left out where it is read off a rounded and linearized length,
 /// which k = 1e9 N/m makes large; it is never negative and none at the start, so what is left may not grow
 /// either.
-double energy_of(const World& world, Count count) {
+double energy_of(const PlacedWorld& world, Count count) {
   const Energy now = world.measure().energy;
   return count == Count::kAll ? now.total() : now.kinetic + now.potential;
 }
@@ -173,7 +173,7 @@ Rows folded_rope(const CheckSetting& setting) {
   const RopeId id = rig.add(desc);
   const double start = rig.world().measure().energy.total();
   const Swing swing = watch(rig, 20, 500 * kGravity);
-  const PointView x = rig.world().positions(id);
+  const std::vector<DVec3> x = rig.world().positions(id);
   bool finite = swing.healthy && std::isfinite(start);
   for (std::size_t i = 0; i < x.size(); ++i) finite = finite && is_finite(x[i]);
   return {limit_row("particles reset or not finite", finite ? 0 : 1, 0),

@@ -96,7 +96,7 @@ double particle_response(const CheckSetting& setting) {
   const ParticlesId id = rig.add(cloud);
   std::vector<double> speeds;
   rig.run(20, [&] {
-    const PointView v = rig.world().velocities(id);
+    const std::vector<DVec3> v = rig.world().velocities(id);
     for (std::size_t i = 0; i < v.size() && rig.time() > 2; ++i) {
       speeds.push_back(length(v[i] - DVec3{6, 0, 0}));
     }

@@ -2,6 +2,7 @@
 
 #include "hooke/result.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct CheckSetting {
   double gravity_scale = 1.0;   ///< Times the gravity of every world; 1 is right.
   double friction_scale = 1.0;  ///< Times the friction of every contact; 1 is right.
   std::string stepper = {};     ///< A name of lab::steppers(); empty for the World's own solver.
+  std::uint32_t turned = 0;     ///< Not 0: the solver's worlds lie as random_placement of this seed says.
 
   [[nodiscard]] bool laboratory() const { return !stepper.empty(); }
 };
@@ -63,6 +65,7 @@ struct CheckCase {
   /// The same for methods without a limit of stability, where stability asks for smaller steps than the
   /// answer does; 0 stands for laboratory_dt.
   double implicit_dt = 0;
+  const char* not_turned = nullptr;  ///< Why the answer holds only as the case lies; null where it does not.
 };
 
 /// All cases, in the order of the report.
@@ -85,6 +88,7 @@ struct CheckOptions {
   /// Also run the cases that have a laboratory_dt by this method; kAllSteppers: by all there are, and print
   /// which reaches which goal.
   std::string stepper = {};
+  std::uint32_t turned = 0;   ///< CheckSetting::turned.
   bool ground_truth = false;  ///< Instead: print, or write to markdown_file, the table of ground_truth.h.
 };
 

@@ -57,7 +57,11 @@ void run_and_print(const CheckCase& check, const CheckSetting& setting, std::vec
 int check_one(const CheckOptions& options, const std::vector<const CheckCase*>& chosen) {
   std::vector<Ran> ran;
   for (const CheckCase* check : chosen) {
-    run_and_print(*check, {.substeps = options.substeps}, ran);
+    if (options.turned != 0 && check->not_turned != nullptr) {
+      std::printf("not  %-4s %s: %s\n", check->id.c_str(), check->title.c_str(), check->not_turned);
+      continue;
+    }
+    run_and_print(*check, {.substeps = options.substeps, .turned = options.turned}, ran);
     if (options.stepper.empty() || !(check->laboratory_dt > 0)) continue;
     run_and_print(*check, {.substeps = options.substeps, .stepper = options.stepper}, ran);
   }

@@ -9,10 +9,12 @@ namespace hooke::check {
 
 namespace {
 
-World make_world(const CheckSetting& setting, WorldDesc desc) {
+PlacedWorld make_world(const CheckSetting& setting, WorldDesc desc) {
   desc.gravity = real(setting.gravity_scale) * desc.gravity;
   desc.substeps = setting.substeps;
-  return must(World::create(desc));
+  const bool turned = setting.turned != 0 && !setting.laboratory();
+  const Placement at = turned ? random_placement(setting.turned, desc.gravity) : Placement{};
+  return {must(World::create(placed(desc, at))), at};
 }
 
 }  // namespace
@@ -39,11 +41,12 @@ BodyId Rig::add(BodyDesc desc) {
 
 bool Rig::step() {
   if (setting_.laboratory()) {
-    if (!run_) run_ = must(lab::Run::create(world_, {.stepper = setting_.stepper, .dt = setting_.dt}));
+    if (!run_)
+      run_ = must(lab::Run::create(world_.in_its_frame(), {.stepper = setting_.stepper, .dt = setting_.dt}));
     must(run_->advance());
     return true;
   }
-  healthy_ = world_.step(real(setting_.dt)).healthy() && healthy_;
+  healthy_ = world_.in_its_frame().step(real(setting_.dt)).healthy() && healthy_;
   return healthy_;
 }
 
@@ -52,25 +55,26 @@ DVec3 Rig::center(BodyId id) const {
 }
 
 DVec3 Rig::velocity(BodyId id) const {
-  return run_ ? must(run_->body(id)).velocity : vector_cast<double>(world_.velocity(id));
+  return run_ ? must(run_->body(id)).velocity : world_.velocity(id);
 }
 
 DVec3 Rig::spin(BodyId id) const {
-  return run_ ? must(run_->body(id)).angular_velocity : vector_cast<double>(world_.angular_velocity(id));
+  return run_ ? must(run_->body(id)).angular_velocity : world_.angular_velocity(id);
 }
 
 DVec3 Rig::own_spin(BodyId id) const {
   if (run_) return rotate(conjugate(must(run_->body(id)).rotation), spin(id));
-  return vector_cast<double>(rotate(conjugate(world_.pose(id).rotation), world_.angular_velocity(id)));
+  const World& world = world_.in_its_frame();
+  return vector_cast<double>(rotate(conjugate(world.pose(id).rotation), world.angular_velocity(id)));
 }
 
 DVec3 Rig::direction(BodyId id, DVec3 own) const {
   if (run_) return rotate(must(run_->body(id)).rotation, own);
-  return vector_cast<double>(rotate(world_.pose(id).rotation, real(own)));
+  return world_.direction(id, own);
 }
 
 std::uint64_t Rig::state_hash() const {
-  if (!run_) return world_.state_hash();
+  if (!run_) return world_.in_its_frame().state_hash();
   std::uint64_t hash = 14695981039346656037U;  // FNV-1a, over whole numbers
   for (const auto& points : {run_->positions(), run_->velocities()}) {
     for (const DVec3 p : points) {
@@ -142,6 +146,10 @@ CheckRow absolute_row(std::string title, std::string unit, double expected, doub
 CheckRow known_miss(CheckRow row, std::string reason) {
   row.known_miss = std::move(reason);
   return row;
+}
+
+CheckRow known_miss_turned(const CheckSetting& setting, CheckRow row, std::string reason) {
+  return setting.turned != 0 ? known_miss(std::move(row), std::move(reason)) : row;
 }
 
 double Curve::cubic(std::size_t left, double time) const {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "hooke/clock.h"
 #include "hooke/hooke.h"
 #include "hooke/lab.h"
 
 #include "check.h"
+#include "placed_world.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -58,14 +58,14 @@ inline Real stiff(const CheckSetting& setting, double finite) {
 CheckSetting finer(CheckSetting setting);
 
 /// A world moved as the setting says: by its own steps, or by a method of the laboratory, which takes over
-/// the world as it stands at the first step. Gravity is scaled by the setting, and friction with bodies that
-/// forces do not move.
+/// the world as it stands at the first step and is never turned. Gravity is scaled by the setting, and
+/// friction with bodies that forces do not move.
 class Rig {
  public:
   explicit Rig(const CheckSetting& setting, const WorldDesc& desc = {});
 
-  [[nodiscard]] World& world() { return world_; }
-  [[nodiscard]] const World& world() const { return world_; }
+  [[nodiscard]] PlacedWorld& world() { return world_; }
+  [[nodiscard]] const PlacedWorld& world() const { return world_; }
 
   RopeId add(const RopeDesc& desc) { return must(world_.add_rope(desc)); }
   ClothId add(const ClothDesc& desc) { return must(world_.add_cloth(desc)); }
@@ -81,12 +81,12 @@ class Rig {
   /// Of a rope, a cloth or particles, in the order their maker gave them.
   template <class IdType>
   [[nodiscard]] std::vector<DVec3> positions(IdType id) const {
-    return run_ ? run_->positions(id) : copy_points(world_.positions(id));
+    return run_ ? run_->positions(id) : world_.positions(id);
   }
-  [[nodiscard]] std::vector<DVec3> positions(SolidId id) const { return copy_points(world_.positions(id)); }
+  [[nodiscard]] std::vector<DVec3> positions(SolidId id) const { return world_.positions(id); }
   template <class IdType>
   [[nodiscard]] std::vector<DVec3> velocities(IdType id) const {
-    return run_ ? run_->velocities(id) : copy_points(world_.velocities(id));
+    return run_ ? run_->velocities(id) : world_.velocities(id);
   }
   [[nodiscard]] DVec3 center(BodyId id) const;
   [[nodiscard]] DVec3 velocity(BodyId id) const;
@@ -99,11 +99,11 @@ class Rig {
   /// Equal numbers mean the same bits of every position and velocity.
   [[nodiscard]] std::uint64_t state_hash() const;
 
-  [[nodiscard]] double time() const { return run_ ? run_->time() : world_.time(); }
+  [[nodiscard]] double time() const { return run_ ? run_->time() : world_.in_its_frame().time(); }
   [[nodiscard]] bool healthy() const { return healthy_; }
 
  private:
-  World world_;
+  PlacedWorld world_;
   std::optional<lab::Run> run_;  ///< From the first step on, if the setting names a stepper.
   CheckSetting setting_;
   bool healthy_ = true;
@@ -129,6 +129,8 @@ CheckRow relative_row(std::string title, std::string unit, double expected, doub
 CheckRow absolute_row(std::string title, std::string unit, double expected, double achieved,
                       double tolerance);
 CheckRow known_miss(CheckRow row, std::string reason);
+/// The same where the worlds of the setting are turned; the row as it is where they are not.
+CheckRow known_miss_turned(const CheckSetting& setting, CheckRow row, std::string reason);
 
 /// A curve sampled once a frame.
 class Curve {
