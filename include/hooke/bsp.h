@@ -121,9 +121,9 @@ struct BspSize {
 /// The tree as bytes, little-endian: eight letters "HOOKEBSP", the version, the three counts, then nodes,
 /// faces and corners. The same bytes for the same tree on every machine.
 [[nodiscard]] std::vector<std::byte> save_bsp(const BspTree& tree);
-/// The tree back. Bytes from outside are not trusted: sizes, indices and numbers are checked, every node but
-/// the root is the child of exactly one before it, so that no query runs astray or for ever. One line of
-/// error says what is wrong.
+/// The tree back. Bytes from outside are not trusted: sizes, indices and numbers are checked, every face
+/// is of exactly one node, every node but the root is the child of exactly one before it, so that no query
+/// runs astray or for ever. One line of error says what is wrong.
 [[nodiscard]] Result<BspTree> load_bsp(std::span<const std::byte> bytes);
 
 }  // namespace hooke

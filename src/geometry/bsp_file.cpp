@@ -114,6 +114,20 @@ Result<void> check_nodes(const BspTree& tree) {
   return item_error("nodes", static_cast<std::size_t>(orphan - has_parent.begin()), "no node's child");
 }
 
+/// Painter's order names each face once: it lies in the plane of one node. The nodes' ranges are there.
+Result<void> check_owners(const BspTree& tree) {
+  std::vector<bool> has_node(tree.faces.size(), false);
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const auto first = has_node.begin() + tree.nodes[i].first_face;
+    const auto last = first + tree.nodes[i].face_count;
+    if (std::find(first, last, true) != last) return item_error("nodes", i, "faces that are another's");
+    std::fill(first, last, true);
+  }
+  const auto stray = std::find(has_node.begin(), has_node.end(), false);
+  if (stray == has_node.end()) return {};
+  return item_error("faces", static_cast<std::size_t>(stray - has_node.begin()), "in no node's plane");
+}
+
 Result<void> check_faces(const BspTree& tree) {
   for (std::size_t i = 0; i < tree.faces.size(); ++i) {
     const BspFace& face = tree.faces[i];
@@ -172,6 +186,7 @@ Result<BspTree> load_bsp(std::span<const std::byte> bytes) {
   }
   const BspTree tree = read_tree(reader, counts);
   if (Result<void> sound = check_nodes(tree); !sound) return sound.error();
+  if (Result<void> sound = check_owners(tree); !sound) return sound.error();
   if (Result<void> sound = check_faces(tree); !sound) return sound.error();
   return tree;
 }

@@ -18,7 +18,8 @@ JsonNode number_node(double value, std::string digits) {
   JsonNode node;
   node.kind = JsonNode::Kind::kNumber;
   node.number = value;
-  if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
+  // "-0" would be read as the whole number 0.
+  if (digits.ends_with(".0") && digits != "-0.0") digits.resize(digits.size() - 2);
   node.text = std::move(digits);
   return node;
 }

@@ -4,6 +4,7 @@
 
 #include "io/json_document.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -176,16 +177,22 @@ struct Codec<T> {
     if (rule.rigid && node.kind != JsonNode::Kind::kNumber)
       return reader.fail_type(node, "a number or \"rigid\"");
     if (!read_number(reader, node, rule, number)) return false;
-    if (std::abs(number) > static_cast<double>(std::numeric_limits<T>::max())) {
+    // The shortest text of the largest number is a little more than it.
+    constexpr auto most = std::numeric_limits<T>::max();
+    constexpr double rounding = 1 + static_cast<double>(std::numeric_limits<T>::epsilon()) / 4;
+    if (std::abs(number) / rounding > static_cast<double>(most)) {
       return reader.fail(node, ErrorCode::kOutOfRange, "is too large for a number of this precision");
     }
-    const T rounded = static_cast<T>(number);
+    const bool is_most = std::abs(number) > static_cast<double>(most);
+    const T rounded =
+        is_most ? std::copysign(most, static_cast<T>(number > 0 ? 1 : -1)) : static_cast<T>(number);
     if (!reader.check(node, static_cast<double>(rounded), rule)) return false;
     value = rounded;
     return true;
   }
   static JsonNode write(T value) { return std::isinf(value) ? make_string("rigid") : make_number(value); }
-  static bool same(T a, T b) { return a == b; }
+  /// With their signs: a scene that has -0 runs to other bits.
+  static bool same(T a, T b) { return a == b && std::signbit(a) == std::signbit(b); }
   static JsonNode schema(const Rule& rule) { return schema_number(rule, false); }
   static std::string type() { return "number"; }
 };
@@ -290,7 +297,9 @@ struct Codec<std::array<T, N>> {
     for (const T& element : value) list.add(Codec<T>::write(element));
     return list;
   }
-  static bool same(const std::array<T, N>& a, const std::array<T, N>& b) { return a == b; }
+  static bool same(const std::array<T, N>& a, const std::array<T, N>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), Codec<T>::same);
+  }
   static JsonNode schema(const Rule& rule) { return schema_list(Codec<T>::schema(rule), N, N); }
   static std::string type() { return "[" + std::to_string(N) + " x " + Codec<T>::type() + "]"; }
 };
@@ -301,7 +310,9 @@ struct Codec<Vector3<T>> {
     return read_elements<T, 3>(reader, node, rule, {&value.x, &value.y, &value.z});
   }
   static JsonNode write(const Vector3<T>& v) { return Codec<std::array<T, 3>>::write({v.x, v.y, v.z}); }
-  static bool same(const Vector3<T>& a, const Vector3<T>& b) { return a == b; }
+  static bool same(const Vector3<T>& a, const Vector3<T>& b) {
+    return Codec<std::array<T, 3>>::same({a.x, a.y, a.z}, {b.x, b.y, b.z});
+  }
   static JsonNode schema(const Rule& rule) { return Codec<std::array<T, 3>>::schema(rule); }
   static std::string type() { return "[x, y, z]"; }
 };
@@ -311,7 +322,9 @@ template <>
 struct Codec<Quat> {
   static bool read(Reader& reader, const JsonNode& node, const Rule& rule, Quat& value);
   static JsonNode write(const Quat& q) { return Codec<std::array<Real, 4>>::write({q.x, q.y, q.z, q.w}); }
-  static bool same(const Quat& a, const Quat& b) { return a == b; }
+  static bool same(const Quat& a, const Quat& b) {
+    return Codec<std::array<Real, 4>>::same({a.x, a.y, a.z, a.w}, {b.x, b.y, b.z, b.w});
+  }
   static JsonNode schema(const Rule& rule);
   static std::string type() { return "[rotation](#rotation)"; }
 };

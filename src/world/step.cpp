@@ -26,6 +26,7 @@
 #include "solver/joints.h"
 #include "solver/repulsion.h"
 #include "solver/wide/wide.h"
+#include "state/check_tables.h"
 #include "world/bodies.h"
 #include "world/body_forces.h"
 #include "world/events.h"
@@ -180,13 +181,16 @@ StepReport World::step(Real dt) {
   const int substeps = w.tables.desc.substeps;
   const Real h = dt / static_cast<Real>(substeps);
 
+  state::check_tables(w.tables);  // after the calls since the last step
   detect(w, frame);
+  state::check_tables(w.tables);
   report.detect_ms = watch.lap_ms();
   prepare(w, frame, h);
   report.prepare_ms = watch.lap_ms();
   for (int i = 0; i < substeps; ++i) substep(w, i, w.tables.time + i * (frame / substeps), h);
   report.substep_ms = watch.lap_ms();
   finish(w, frame, report);
+  state::check_tables(w.tables);
   report.finish_ms = watch.lap_ms();
   w.stepping = false;
   return report;

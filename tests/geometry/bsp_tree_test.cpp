@@ -432,6 +432,14 @@ TEST_SUITE("geometry/bsp_tree") {
     CHECK(saved.error_with(saved.node(static_cast<std::size_t>(leaf)) + 32, {0, 0, 0, 0}).find(": a child") !=
           std::string::npos);
     CHECK(saved.error_with(saved.node(0) + 40, {0, 0, 0, 0x7F}) == "bsp.nodes[0]: faces that are not there");
+    // A node takes a face of the next one as well; or none, and its own are nobody's.
+    const auto has_faces = [](const auto& node) { return node.face_count > 0; };
+    const auto owner =
+        static_cast<std::size_t>(std::find_if(nodes.begin(), nodes.end(), has_faces) - nodes.begin());
+    const auto own = static_cast<unsigned char>(nodes[owner].face_count + 1);
+    CHECK(saved.error_with(saved.node(owner) + 44, {own, 0, 0, 0}).find(": faces that are another's") !=
+          std::string::npos);
+    CHECK(saved.error_with(saved.node(owner) + 44, {0, 0, 0, 0}) == "bsp.faces[0]: in no node's plane");
     // Infinite, and not of length one.
     CHECK(saved.error_with(saved.node(2) + 6, {0xF0, 0x7F}) == "bsp.nodes[2]: a plane that is none");
     CHECK(saved.error_with(saved.node(2) + 30, {0xF8, 0x7F}) == "bsp.nodes[2]: a plane that is none");

@@ -1,10 +1,12 @@
 #include "hooke/scene_io.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -219,6 +221,33 @@ TEST_SUITE("io/scene_write") {
     other = *loaded.value;
     other.objects.bodies[5].tag.array.rotations.pop_back();
     CHECK_FALSE(other == *loaded.value);
+  }
+
+  TEST_CASE("a negative zero keeps its sign, also where the default is zero") {
+    hooke::Scene scene;
+    scene.world.gravity = {-0.0f, -9.81f, 0};
+    scene.objects.bodies.push_back({.desc = {.position = {-0.0, 0, -0.0}}});
+    const auto again = hooke::parse_scene(hooke::write_scene(scene), "zero.json");
+    REQUIRE(again);
+    CHECK(std::signbit(again.value->world.gravity.x));
+    CHECK_FALSE(std::signbit(again.value->world.gravity.z));
+    const hooke::DVec3 position = again.value->objects.bodies[0].desc.position;
+    CHECK(std::signbit(position.x));
+    CHECK_FALSE(std::signbit(position.y));
+    CHECK(std::signbit(position.z));
+    CHECK(*again.value == scene);
+    scene.world.gravity.x = 0;
+    CHECK_FALSE(*again.value == scene);
+  }
+
+  TEST_CASE("the largest number there is comes back, and one of the next power of two does not") {
+    hooke::Scene scene;
+    scene.world.gravity = {-std::numeric_limits<hooke::Real>::max(), 0, 0};
+    const auto again = hooke::parse_scene(hooke::write_scene(scene), "most.json");
+    REQUIRE(again);
+    CHECK(again.value->world.gravity == scene.world.gravity);
+    CHECK_FALSE(
+        hooke::parse_scene(R"({"version": 1, "world": {"gravity": [3.40283e38, 0, 0]}})", "more.json"));
   }
 
   TEST_CASE("an empty scene is written as its version alone") {
