@@ -31,6 +31,41 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
+/// The hooks that broke, the first first.
+static std::vector<const SceneObject*> broken_hooks(const Simulation& simulation) {
+  std::vector<const SceneObject*> broken;
+  for (const SceneObject& object : simulation.objects()) {
+    if (object.broken) broken.push_back(&object);
+  }
+  std::stable_sort(broken.begin(), broken.end(),
+                   [](const SceneObject* a, const SceneObject* b) { return a->broke.time < b->broke.time; });
+  return broken;
+}
+
+static Json json_of_breaks(const Simulation& simulation) {
+  Json list = Json::array();
+  for (const SceneObject* hook : broken_hooks(simulation)) {
+    list.push_back({{"hook", hook->name},
+                    {"time", hook->broke.time},
+                    {"force", hook->broke.force},
+                    {"torque", hook->broke.torque}});
+  }
+  return list;
+}
+
+/// "'glue' first, at 0.853 s, as it needed 312 N and 4.1 N m; 4 hooks in all".
+static std::string text_of_breaks(const Simulation& simulation) {
+  const std::vector<const SceneObject*> broken = broken_hooks(simulation);
+  if (broken.empty()) return {};
+  const BreakEvent& first = broken.front()->broke;
+  std::string text =
+      "broke     '" + broken.front()->name + "' first" +
+      text_of(", at %.6g s, as it needed %.4g N", first.time, static_cast<double>(first.force));
+  if (first.torque > Real(0)) text += text_of(" and %.4g N m", static_cast<double>(first.torque));
+  if (broken.size() > 1) text += text_of("; %zu hooks in all", broken.size());
+  return text + "\n";
+}
+
 static Json json_of_problems(const std::vector<RunWarning>& problems) {
   Json list = Json::array();
   for (const RunWarning& one : problems) {
@@ -63,6 +98,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"largest_penetration", end.largest_penetration},
       {"largest_gap", end.largest_gap},
       {"contacts", record.contacts},
+      {"broke", json_of_breaks(simulation)},
       {"state_hash", hash_text(world.state_hash())},
       {"expect", json_of(simulation, simulation.verdicts())},
       {"passed", passed(simulation)},
@@ -91,6 +127,7 @@ std::string run_summary(const Simulation& simulation, const RunRecord& record) {
   text += text_of("stretch   %.3g %% at most, %.3g %% on average\n", 100 * end.largest_stretch,
                   100 * end.mean_stretch);
   text += text_of("contacts  %u, deepest overlap %.3g mm\n", record.contacts, 1000 * end.largest_penetration);
+  text += text_of_breaks(simulation);
   text += "hash      " + hash_text(world.state_hash()) + "\n";
   text += simulation.report();
   const std::size_t due = simulation.verdicts().size();

@@ -276,7 +276,7 @@ struct HookDesc {
                                              ///< about `axis`, friction about every axis.
   HookFreedom steering = {.locked = true};   ///< kWheel: about the suspension's axis.
   std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y, z, then angles.
-  Real break_force = kRigid;                 ///< [N], positive: lets go above this in two substeps.
+  Real break_force = kRigid;                 ///< [N], positive: takes no more, and breaks if it needs more.
   Real break_torque = kRigid;                ///< [N m], positive.
   /// Whether the two bodies may touch each other; of a body and a point, the point and what of its object was
   /// inside the body when it was hooked.

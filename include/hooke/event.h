@@ -36,9 +36,16 @@ struct SensorEvent {
   friend constexpr bool operator==(const SensorEvent&, const SensorEvent&) = default;
 };
 
+/// A hook that broke, as it needed more than its break_force or break_torque. It is gone: its id is stale.
+struct BreakEvent {
+  HookId hook = {};
+  Real force = Real(0);   ///< That it needed, mean over the substep in which it broke [N].
+  Real torque = Real(0);  ///< The same [N m].
+  double time = 0;        ///< Of the world, at the end of that substep [s].
+};
+
 /// Each list is in order of the bodies' creation, and the same for any number of workers. A body that was
 /// removed while it touched something or was in a sensor ends that in the next step: its id is stale then.
-/// Hooks that broke: World::broken_hooks.
 struct Events {
   std::vector<ContactEvent> contact_begins;
   std::vector<ContactEvent> contact_ends;
@@ -47,6 +54,7 @@ struct Events {
   std::vector<SensorEvent> sensor_leaves;
   std::vector<BodyId> fell_asleep;
   std::vector<BodyId> woke_up;
+  std::vector<BreakEvent> breaks;  ///< In order of time, then of the hooks' creation.
 };
 
 }  // namespace hooke

@@ -417,6 +417,7 @@ struct SceneObject {
   HookKind hook_kind = HookKind::kBall;
   std::array<std::string, 2> hooked = {};   ///< Names of what a hook holds; empty for the world.
   bool broken = false;                      ///< Of a hook: its id is stale.
+  BreakEvent broke = {};                    ///< Of one that is broken.
   std::shared_ptr<const Model> model = {};  ///< Of a mesh body, cloth or solid; of a hull, its faces.
 };
 

@@ -258,7 +258,8 @@ class World {
   [[nodiscard]] Result<DVec3> find_place(const HookEnd& end) const;
   /// How far b is from the nearest place at which the hook holds it [m]; a spring holds nothing.
   [[nodiscard]] Real hook_gap(HookId id) const;
-  /// The hooks that broke in the last step, in order of creation. They are gone.
+  /// The hooks that broke in the last step, in order of creation. They are gone. Why, and when:
+  /// Events::breaks.
   [[nodiscard]] const std::vector<HookId>& broken_hooks() const;
   /// Tension of each segment of a rope, from the first point on [N]; positive pulls. Mean over the last step.
   [[nodiscard]] std::vector<Real> tensions(RopeId id) const;

@@ -209,10 +209,14 @@ Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& plac
 }
 
 void note_broken_hooks(SimulationData& data) {
-  const std::vector<HookId>& broken = data.world.broken_hooks();
-  if (broken.empty()) return;
+  const std::vector<BreakEvent>& breaks = data.world.events().breaks;
+  if (breaks.empty()) return;
   for (SceneObject& object : data.objects) {
-    if (std::find(broken.begin(), broken.end(), object.hook) != broken.end()) object.broken = true;
+    const auto event = std::find_if(breaks.begin(), breaks.end(),
+                                    [&](const BreakEvent& one) { return one.hook == object.hook; });
+    if (event == breaks.end()) continue;
+    object.broken = true;
+    object.broke = *event;
   }
 }
 

@@ -84,7 +84,7 @@ std::vector<Field> hook_rows() {
       field<desc, &HookDesc::freedoms>(
           "freedoms", "", kAny, "Of six_degrees: ways along x (`axis`), y, z, then angles about them."),
       field<desc, &HookDesc::break_force>("break_force", "N", kPositiveOrRigid,
-                                          "Lets go above this in two substeps."),
+                                          "Takes no more, and breaks if it needs more."),
       field<desc, &HookDesc::break_torque>("break_torque", "N m", kPositiveOrRigid,
                                            "The same of its torque."),
       field<desc, &HookDesc::collide>("collide", "", kAny, "Whether the two bodies may touch each other."),

@@ -77,6 +77,7 @@ class Group {
       }
       load(of_lane, tables);
       wide::make_tree_rows(h, *form_, fresh_.lanes);
+      for (int lane = 0; lane < count; ++lane) give_way(*trees[lane], tables.hooks, lane, fresh_.lanes);
       do {
         solve_block(tables, fresh_);
       } while (count_busy(fresh_) >= kFewestThatStay);
@@ -105,13 +106,13 @@ class Group {
     wide::solve_trees(h_, *form_, block.lanes);
     for (int lane = 0; lane < kCount; ++lane) {
       Slot& slot = block.slots[lane];
-      if (is_free(slot) || needs_another(lane, block)) continue;
+      if (is_free(slot) || needs_another(tables.hooks, lane, block)) continue;
       store(*slot.tree, block.lanes, lane, tables);
       slot = {};
     }
   }
 
-  bool needs_another(int lane, Block<Kind>& block) {
+  bool needs_another(const std::vector<Hook>& hooks, int lane, Block<Kind>& block) {
     Slot& slot = block.slots[lane];
     if (block.lanes.changed[lane] > 0) {
       if (++slot.pass < kMostBoundPasses) return true;
@@ -119,18 +120,46 @@ class Group {
     }
     slot.pass = 0;
     const bool grew = block.lanes.grew[lane] > 0;
-    const bool bent = is_bent(lane, block);
+    const bool bent = is_bent(hooks, lane, block);
     return (grew || bent) && ++slot.solution < kMaxSolves;
   }
 
   /// Makes its rows anew if it turns fast; whether a lock is off by too much then.
-  bool is_bent(int lane, Block<Kind>& block) const {
+  bool is_bent(const std::vector<Hook>& hooks, int lane, Block<Kind>& block) const {
     if constexpr (Kind::kLoose)
       return false;
     else {
       const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
-      return turns_fast && wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes) > kLargeError;
+      if (!turns_fast) return false;
+      const double error = wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes);
+      give_way(*block.slots[lane].tree, hooks, lane, block.lanes);
+      return error > kLargeError;
     }
+  }
+
+  /// The compliance of hooks that give way, in series with their rows as they have been made.
+  void give_way(const Articulation& art, const std::vector<Hook>& hooks, int lane,
+                wide::TreeLanes<Kind>& lanes) const {
+    if (!art.breakable) return;
+    for (std::size_t i = 0; i < art.joints.size(); ++i) {
+      const Hook& hook = hooks[art.joints[i].hook];
+      if (hook.giving == Hook::Giving::kHolds) continue;
+      const wide::TreeJoint& joint = form_->joints[i];
+      for (int r = joint.first; r < joint.first + joint.count; ++r) {
+        const wide::TreeRowForm& form = form_->rows[r];
+        soften(form, static_cast<Lane>(hook.compliance[form.turns() ? 1 : 0]), lane, lanes.rows[r]);
+      }
+    }
+  }
+
+  /// Rows of locks are not always made anew: theirs is all that they have.
+  static void soften(const wide::TreeRowForm& form, Lane compliance, int lane, RowLanes& row) {
+    const bool is_soft = form.role == RowRole::kSpring || (Kind::kLoose && form.role == RowRole::kMotor);
+    row.gamma[lane] = is_soft ? row.gamma[lane] + compliance : compliance;
+    if (!form.sprung) return;
+    row.spring_gamma[lane] += compliance;
+    if (!Kind::kLoose)
+      row.held_spring[lane] = (row.spring_target[lane] - row.target[lane]) / row.spring_gamma[lane];
   }
 
   /// To a lane of those that take longer.

@@ -294,6 +294,8 @@ bool make_articulation(std::span<const std::uint32_t> hook_rows, const std::vect
                        Articulation& art) {
   Lists& lists = scratch.lists();
   clear(art);
+  art.breakable = std::any_of(hook_rows.begin(), hook_rows.end(),
+                              [&](std::uint32_t row) { return hooks[row].can_break(); });
   make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max(), lists.frame);
   if (!has_loops(lists.frame, bodies)) return make_tree(hooks, bodies, kTreesMayTake * budget, lists, art);
   make_frame(hook_rows, hooks, bodies, kMostHooks, lists.frame);

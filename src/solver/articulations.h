@@ -73,6 +73,7 @@ struct Articulation {
 
   std::vector<std::uint32_t> bodies;  ///< Rows; HookPlace::kWorld for the world. One for each link.
   std::vector<Joint> joints;          ///< In order of elimination.
+  bool breakable = false;             ///< Some hook of it can break.
 
   // Of what has loops, for one substep.
   std::vector<Link> links;  ///< As bodies.

@@ -109,12 +109,14 @@ void fill_block(Real h, const BallJoints& joints, std::size_t begin, std::size_t
   }
 }
 
-void store_lane(const BallBlock& block, int lane, const Bodies& bodies, Hook& hook) {
+void store_lane(const BallBlock& block, int lane, Real h, const Bodies& bodies, Hook& hook) {
   const Real sign = ends_of(hook, bodies).sign;
   hook.impulse = sign * vector_at(block.impulse, lane);
   hook.impulse_sum = sign * vector_at(block.impulse_sum, lane);
   hook.last_impulse = block.size[lane];
   hook.broken = block.broken[lane] > Real(0);
+  hook.held = static_cast<double>(h * block.held[lane]);
+  hook.needed_force = block.needed[lane] / h;
   const Vec3 rows = transpose(row_axes(hook, bodies)) * hook.impulse;
   hook.row_impulse[0] = rows.x;
   hook.row_impulse[1] = rows.y;
@@ -207,13 +209,14 @@ void relax_ball_joints(parallel::ThreadPool& pool, Bodies& bodies, BallJoints& j
                  [&](auto blocks) { wide::relax_balls(blocks, bodies.motion.data()); });
 }
 
-void store_ball_joints(parallel::ThreadPool& pool, int substeps, const Bodies& bodies,
+void store_ball_joints(parallel::ThreadPool& pool, Real dt, int substeps, const Bodies& bodies,
                        const BallJoints& joints, std::vector<Hook>& hooks) {
   parallel::for_ranges(pool, static_cast<int>(joints.blocks.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const BallBlock& block = joints.blocks[i];
       for (int lane = 0; lane < block.count; ++lane)
-        store_lane(block, lane, bodies, hooks[joints.hook_of[block.first + static_cast<std::size_t>(lane)]]);
+        store_lane(block, lane, dt / static_cast<Real>(substeps), bodies,
+                   hooks[joints.hook_of[block.first + static_cast<std::size_t>(lane)]]);
     }
   });
   for (const std::uint32_t row : joints.resting)

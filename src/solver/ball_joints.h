@@ -45,9 +45,11 @@ struct alignas(64) BallBlock {
   Lane mass[6];                 ///< K^-1.
   Lane impulse[3];              ///< On B [N s].
   Lane impulse_sum[3];          ///< Over the step so far [N s].
-  Lane size;                    ///< Of the impulse.
-  Lane strength;                ///< Impulse at which the hook breaks if two substeps ask for more [N s].
+  Lane size;                    ///< Of the impulse that was needed [N s].
+  Lane strength;                ///< The most that the hook takes; it breaks if two substeps need more [N s].
   Lane broken;                  ///< 1 or 0.
+  Lane held;                    ///< Substeps that it has held in this step.
+  Lane needed;                  ///< As it broke [N s].
 
   std::size_t first = 0;  ///< Place of the first lane's hook in BallJoints::hook_of.
   int count = 0;          ///< Lanes with a hook of their own.
@@ -85,8 +87,8 @@ void solve_ball_joints(parallel::ThreadPool& pool, Real h, state::Bodies& bodies
 /// The same without their errors, after the bodies have moved.
 void relax_ball_joints(parallel::ThreadPool& pool, state::Bodies& bodies, BallJoints& joints);
 
-/// End of a step of `substeps`: what the hooks did, in the hooks.
-void store_ball_joints(parallel::ThreadPool& pool, int substeps, const state::Bodies& bodies,
+/// End of a step of length dt [s] in `substeps`: what the hooks did, in the hooks.
+void store_ball_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,
                        const BallJoints& joints, std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

@@ -31,6 +31,8 @@ class BundleSolution {
 
   void load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains);
   void run(std::vector<Chain>& chains);
+  /// Whether hooks give way (solver/hook_breaks.h), so that everything is to be loaded and run again.
+  [[nodiscard]] bool gives_way(int round);
   void store(const std::vector<Chain>& chains);
 
  private:

@@ -6,6 +6,7 @@
 #include "solver/bundle_solution.h"
 #include "solver/contacts.h"
 #include "solver/geometric_stiffness.h"
+#include "solver/hook_breaks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -292,6 +293,24 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     chains[c].unconverged = chains[c].unconverged || !(error <= kReportedError) || !is_sound();
 }
 
+bool BundleSolution::gives_way(int round) {
+  b_.breakable.clear();
+  for (const std::uint32_t row : b_.hooks) {
+    if (t_.hooks[row].can_break() && !t_.hooks[row].broken) b_.breakable.push_back(row);
+  }
+  if (b_.breakable.empty() || !is_sound()) return false;
+  return give_way(h_, b_.breakable, round, t_.hooks, [&](std::uint32_t hook) -> HookLoad {
+    const auto i = std::lower_bound(b_.hooks.begin(), b_.hooks.end(), hook) - b_.hooks.begin();
+    DVec3 linear;
+    DVec3 angular;
+    for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row) {
+      linear += b_.lambda[row] * b_.rows[row].n;
+      angular += b_.lambda[row] * b_.rows[row].axis;
+    }
+    return {length(linear), length(angular)};
+  });
+}
+
 void BundleSolution::store(const std::vector<Chain>& chains) {
   if (!is_sound()) return;
   std::size_t node = 0;
@@ -335,6 +354,10 @@ void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle
   BundleSolution solution(static_cast<double>(h), bundle, tables);
   solution.load(before, chains);
   solution.run(chains);
+  for (int round = 0; solution.gives_way(round); ++round) {
+    solution.load(before, chains);
+    solution.run(chains);
+  }
   solution.store(chains);
 }
 

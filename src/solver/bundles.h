@@ -150,8 +150,9 @@ struct Bundle {
   std::vector<int> sizes;                  ///< Of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
-  std::vector<double> right_side;  ///< Then the solution.
-  std::vector<BodyRow> start;      ///< Of bodies.
+  std::vector<double> right_side;        ///< Then the solution.
+  std::vector<BodyRow> start;            ///< Of bodies.
+  std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
 
   /// No members, no matrix; keeps its memory.
   void clear();

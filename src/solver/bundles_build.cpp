@@ -144,9 +144,9 @@ void add_points(const Tables& t, const HookPlace& end, std::vector<std::uint32_t
 bool may_be_anchor(const Tables& t, const Hook& hook) {
   const HookPlace& point = hook.point_end();
   const HookPlace& other = hook.other_end();
-  return hook.kind == HookKind::kBall && count_joint_rows(hook) == 3 && point.particle_count == 1 &&
-         t.objects[point.object].kind == PointRef::Kind::kRope && !other.is_point() &&
-         !gives_way(t.bodies, other.body);
+  return hook.kind == HookKind::kBall && count_joint_rows(hook) == 3 && !hook.can_break() &&
+         point.particle_count == 1 && t.objects[point.object].kind == PointRef::Kind::kRope &&
+         !other.is_point() && !gives_way(t.bodies, other.body);
 }
 
 /// Anchors of the chains, which are in order of their particles as ropes are.

@@ -107,7 +107,7 @@ void weigh_points(Bundles& bundles, Tables& t, std::vector<HookedPoint>& points)
     }
     for (const std::uint32_t row : bundle.hooks) {
       const Hook& hook = t.hooks[row];
-      if (hook.kind != HookKind::kBall) continue;
+      if (hook.kind != HookKind::kBall || hook.broken) continue;
       for (const HookPlace* end : {&hook.a, &hook.b}) {
         const HookPlace& other = end == &hook.a ? hook.b : hook.a;
         // Of several points that share a place, each moves freely against the others.

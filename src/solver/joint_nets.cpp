@@ -1,5 +1,6 @@
 #include "solver/joint_nets.h"
 
+#include "solver/hook_breaks.h"
 #include "solver/soft_locks.h"
 #include "solver/sweep_order.h"
 
@@ -110,8 +111,32 @@ void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, JointNet& n
   store_velocity(ends.b, hook.b.body, bodies);
 }
 
-void solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
-                 state::Bodies& bodies, JointNet& net) {
+/// What the rows of a hook take.
+HookLoad load_of(std::span<const JointRow> rows, const Hook& hook) {
+  DVec3 linear;
+  DVec3 angular;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    linear += static_cast<double>(hook.row_impulse[k]) * rows[k].n;
+    angular += static_cast<double>(hook.row_impulse[k]) * rows[k].axis;
+  }
+  return {length(linear), length(angular)};
+}
+
+/// Takes from the impulses of a hook what is more than it can take.
+void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImpulse& done, Hook& hook) {
+  if (!hook.broken && !(need > 1)) return;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Real before = hook.row_impulse[k];
+    hook.row_impulse[k] = hook.broken ? Real(0) : static_cast<Real>(static_cast<double>(before) / need);
+    const JointImpulse p = impulse_of(rows[k], static_cast<double>(hook.row_impulse[k] - before));
+    apply(p, ends);
+    add(p, done);
+  }
+}
+
+/// Returns what the hook needed.
+HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
+                     state::Bodies& bodies, JointNet& net) {
   Ends ends;
   load_velocity(bodies, hook.a.body, ends.a);
   load_velocity(bodies, hook.b.body, ends.b);
@@ -127,8 +152,26 @@ void solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Ho
     apply(p, ends);
     add(p, net.done[i]);
   }
+  HookLoad load;
+  if (hook.can_break()) {
+    const auto rows = std::span(net.rows).subspan(static_cast<std::size_t>(net.first_row[i]),
+                                                  static_cast<std::size_t>(count));
+    load = load_of(rows, hook);
+    cap_joint(rows, need_of(hook, load, h), ends, net.done[i], hook);
+  }
   store_velocity(ends.a, hook.a.body, bodies);
   store_velocity(ends.b, hook.b.body, bodies);
+  return load;
+}
+
+/// Sweeps need more than there is now and then, until they have settled: two substeps in a row count.
+void note_need(double h, const HookLoad& load, Hook& hook) {
+  const HookLoad last = {static_cast<double>(hook.last_impulse),
+                         static_cast<double>(hook.last_angular_impulse)};
+  const double need = need_of(hook, load, h);
+  if (std::min(need, need_of(hook, last, h)) > 1) let_go(h, need, load, hook);
+  hook.last_impulse = static_cast<Real>(load.impulse);
+  hook.last_angular_impulse = static_cast<Real>(load.angular_impulse);
 }
 
 }  // namespace
@@ -179,7 +222,8 @@ void relax_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, s
   constexpr SweepOrder kOrder = SweepOrder::kBackward;
   for_each_joint(pool, hooks, bodies, net, kOrder, [&](int i) {
     Hook& hook = hooks[net.hooks[i]];
-    solve_joint(i, h, {}, kOrder, hook, bodies, net);
+    const HookLoad load = solve_joint(i, h, {}, kOrder, hook, bodies, net);
+    if (hook.can_break()) note_need(h, load, hook);
     std::array<double, Hook::kMaxRows> lambda = {};
     std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());
     const auto first = static_cast<std::size_t>(net.first_row[i]);

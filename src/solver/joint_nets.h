@@ -53,6 +53,9 @@ void count_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<sta
 ///
 ///   K = k_a + k_b + (n_a k_a^2 + n_b k_b^2) / (k_a + k_b).
 ///
+/// A hook that can break takes h times its strength at most. It breaks where it needs more in two substeps in
+/// a row: sweeps that have not settled ask for more than there is.
+///
 /// Source of the soft form: Catto 2023, "Solver2D".
 struct JointNet {
   std::vector<std::uint32_t> hooks;  ///< Rows, by color.

@@ -169,11 +169,6 @@ void make_limit(const HookLimits& limits, double value, double h, JointRow& row)
   row.target = std::min(-row.rate * row.c, kLimitSpeed);
 }
 
-/// Beyond `most` in this substep and in the last.
-bool breaks(Real now, Real last, Real h, Real most) {
-  return std::min(now, last) > most * h;
-}
-
 }  // namespace
 
 JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
@@ -262,7 +257,10 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     row.j_a = a.scale * (is_way ? cross(f.r_a, row.n) : row.axis);
     row.j_b = b.scale * (is_way ? cross(f.r_b, row.n) : row.axis);
     const double fastest = is_way ? fastest_way : fastest_turn;
-    if (i == kCone) return make_limit({.upper = hook.cone}, f.value[i], h, row);
+    if (i == kCone) {
+      row.gamma = hook.compliance[1];
+      return make_limit({.upper = hook.cone}, f.value[i], h, row);
+    }
     const HookFreedom& freedom = hook.freedom[i];
     row.c = f.value[i] - static_cast<double>(freedom.spring.target);
     switch (role) {
@@ -283,6 +281,7 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
         make_limit(freedom.limits, f.value[i], h, row);
         break;
     }
+    row.gamma += hook.compliance[is_way ? 0 : 1];
   });
   return count;
 }
@@ -318,16 +317,17 @@ std::int8_t first_bound(const JointRow& row, double last) {
 }
 
 void add_up_impulses(Real h, Hook& hook) {
-  const Real force = length(hook.impulse);
-  const Real torque = length(hook.angular_impulse);
+  if (hook.broken) {
+    hook.impulse = {};
+    hook.angular_impulse = {};
+    hook.row_impulse = {};
+    return;
+  }
   hook.impulse_sum += hook.impulse;
   hook.angular_impulse_sum += hook.angular_impulse;
-  if (breaks(force, hook.last_impulse, h, hook.break_force) ||
-      breaks(torque, hook.last_angular_impulse, h, hook.break_torque)) {
-    hook.broken = true;
-  }
-  hook.last_impulse = force;
-  hook.last_angular_impulse = torque;
+  hook.held += static_cast<double>(h);
+  hook.broken = hook.giving != Hook::Giving::kHolds;
+  if (hook.broken) hook.compliance = {kNoHold, kNoHold};
 }
 
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, Hook& hook) {

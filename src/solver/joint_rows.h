@@ -95,10 +95,12 @@ int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMa
 /// bodies. Springs as in solver/springs.h. Angles are those of the rotation taken apart about a's x, then y,
 /// then b's z; their rates are the dual basis of these axes, which ends where the second angle comes to 87
 /// degrees. A ball's spring and friction act on the rotation vector, its cone on the angle between the x
-/// axes, its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b).
+/// axes, its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b). Rows of a hook that gives way have
+/// its compliance in series (solver/hook_breaks.h).
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
+inline constexpr double kNoHold = 1e15;       ///< Compliance of a hook that takes nothing [1/kg, 1/(kg m^2)].
 inline constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
 inline constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
 inline constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
@@ -128,7 +130,8 @@ inline constexpr int kMaxSolves = 4;
 /// How far b's anchor is from the nearest place that locks and limits leave to it [m].
 [[nodiscard]] double joint_gap(const state::Hook& hook, const JointBody& a, const JointBody& b);
 
-/// Adds the impulses of a substep of length h [s] to those of the step, and marks the hook if it breaks.
+/// Adds the impulses of a substep of length h [s] to those of the step. A hook that gave way in it is broken:
+/// it takes nothing from then on.
 void add_up_impulses(Real h, state::Hook& hook);
 
 /// Notes the impulses of a substep in the hook.

@@ -92,6 +92,21 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
   solve();
 }
 
+/// The same, until no hook needs more than it can take.
+void solve_with_breaks(double h, std::span<const std::uint32_t> order,
+                       std::vector<Articulation>& articulations, SolveScratch& scratch, JointTables tables) {
+  scratch.breaks.clear();
+  for (const std::uint32_t i : order) {
+    const Articulation& art = articulations[i];
+    if (!art.breakable || !any_awake(art, tables.bodies) || is_bundled(art, tables.hooks)) continue;
+    scratch.breaks.note(i, art, tables);
+  }
+  while (!order.empty()) {
+    solve_articulations(h, order, articulations, scratch, tables);
+    order = scratch.breaks.give_way(h, tables);
+  }
+}
+
 /// Brings trees of one form together. What has loops has no form, and comes first.
 void sort_articulations(std::vector<Articulation>& articulations, std::vector<std::uint32_t>& order) {
   const auto form = [&](std::uint32_t i) -> const wide::TreeForm& { return articulations[i].tree.form; };
@@ -170,6 +185,7 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {
     hook.coupled = false;
+    hook.held = 0;
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
   });
@@ -182,8 +198,8 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
   parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range, int part) {
     const auto first = static_cast<std::size_t>(range.begin);
     const auto some = std::span(joints.order).subspan(first, static_cast<std::size_t>(range.count()));
-    solve_articulations(static_cast<double>(h), some, joints.articulations, joints.scratch[part],
-                        {hooks, bodies});
+    solve_with_breaks(static_cast<double>(h), some, joints.articulations, joints.scratch[part],
+                      {hooks, bodies});
     for (const std::uint32_t i : some) {
       for (const Articulation::Joint& joint : joints.articulations[i].joints) {
         if (!joint.is_weld() && !hooks[joint.hook].coupled) add_up_impulses(h, hooks[joint.hook]);
@@ -203,7 +219,7 @@ void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
 
 void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,
                    const Joints& joints, std::vector<Hook>& hooks) {
-  store_ball_joints(pool, substeps, bodies, joints.balls, hooks);
+  store_ball_joints(pool, dt, substeps, bodies, joints.balls, hooks);
   for_hooks(pool, hooks, [dt](Hook& hook) {
     hook.force = (Real(1) / dt) * hook.impulse_sum;
     hook.torque = (Real(1) / dt) * hook.angular_impulse_sum;

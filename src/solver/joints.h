@@ -6,6 +6,7 @@
 #include "parallel/thread_pool.h"
 #include "solver/articulations.h"
 #include "solver/ball_joints.h"
+#include "solver/hook_breaks.h"
 #include "solver/hook_colors.h"
 #include "solver/joint_nets.h"
 #include "state/bodies.h"
@@ -33,6 +34,7 @@ namespace hooke::solver {
 struct SolveScratch {
   std::vector<Articulation*> trees;
   TreeScratch side_by_side;
+  BreakScratch breaks;
 };
 
 /// Hooks that share bodies which forces move, directly or through others; groups in order of their first.

@@ -40,7 +40,6 @@ struct Hook {
   HookPlace a = {};
   HookPlace b = {};
   Real break_force = kRigid;
-  Real last_impulse = Real(0);                  ///< Length of `impulse` in the substep before, for breaking.
   Vec3 impulse = {};                            ///< On b in the last substep [N s].
   Vec3 impulse_sum = {};                        ///< Over the step so far.
   Vec3 force = {};                              ///< On b, mean over the last step [N].
@@ -50,8 +49,22 @@ struct Hook {
   Vec3 angular_impulse = {};  ///< [N m s]
   Vec3 angular_impulse_sum = {};
   Vec3 torque = {};  ///< [N m]
-  Real last_angular_impulse = Real(0);
   Real break_torque = kRigid;
+  // Of solver/hook_breaks.h.
+  enum class Giving : std::uint8_t {
+    kHolds,
+    kNothing,  ///< It takes nothing in this solution, which shows how fast its ends part then.
+    kSome,     ///< Nearly what it can.
+    kMost,     ///< What it can.
+  };
+  Giving giving = Giving::kHolds;
+  std::array<double, 2> compliance = {};  ///< In series with its ways [1/kg] and angles [1/(kg m^2)].
+  std::array<double, 2> most = {};        ///< What they take while it gives way [N s, N m s].
+  Real needed_force = Real(0);            ///< In the substep in which it breaks [N].
+  Real needed_torque = Real(0);           ///< [N m]
+  double held = 0;                        ///< How long it has held in this step [s].
+  Real last_impulse = Real(0);            ///< Of nets: what was needed in the substep before [N s].
+  Real last_angular_impulse = Real(0);    ///< [N m s]
   // Of solver/joint_energy.h, while something turns far.
   double energy_debt = 0;     ///< Its part of what joints have added to the energy of bodies [J].
   double spring_energy = -1;  ///< What its springs should hold after the last substep [J]; -1: not known.
@@ -60,6 +73,7 @@ struct Hook {
   std::array<HookFreedom, 6> freedom = {};
   /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
+  [[nodiscard]] bool can_break() const { return break_force < kRigid || break_torque < kRigid; }
   /// Whether it is solved in a bundle.
   [[nodiscard]] bool is_bundled() const { return coupled || holds_point(); }
   /// Of such a hook, the end at particles, the first if both are, and the other one.

@@ -194,7 +194,7 @@ void note_approaches(WorldData& world, Real dt) {
 void clear_events(Events& events) {
   const auto clear = [](auto&... lists) { (lists.clear(), ...); };
   clear(events.contact_begins, events.contact_ends, events.hits, events.sensor_enters, events.sensor_leaves,
-        events.fell_asleep, events.woke_up);
+        events.fell_asleep, events.woke_up, events.breaks);
 }
 
 void gather_events(WorldData& world) {

@@ -53,9 +53,19 @@ bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body
 
 void drop_broken_hooks(WorldData& world) {
   state::Tables& t = world.tables;
+  std::vector<BreakEvent>& breaks = world.events.breaks;
   world.broken_hooks.clear();
+  breaks.clear();
   for (const Hook& hook : t.hooks) {
-    if (hook.broken) world.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
+    if (!hook.broken) continue;
+    world.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
+    breaks.push_back({world.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
+  }
+  // Few; a stable sort would allocate.
+  for (auto at = breaks.begin(); at != breaks.end(); ++at) {
+    const auto place = std::upper_bound(breaks.begin(), at, at->time,
+                                        [](double time, const BreakEvent& e) { return time < e.time; });
+    std::rotate(place, at, at + 1);
   }
   for (const HookId id : world.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
   if (!world.broken_hooks.empty()) ++t.hook_revision;

@@ -92,6 +92,23 @@ class Run(Program):
         self.assertAlmostEqual(expectation["achieved"], 1, delta=1e-4)
         self.assertIn("x of 'ball'", expectation["text"])
 
+    def test_the_hook_that_broke_first_is_named_with_what_it_needed(self):
+        names = ("weak", "strong")
+        scene = {"version": 1, "seconds": 0.5, "world": {"gravity": [0, -9.81, 0]},
+                 "bodies": [{"name": name + "_load", "kind": "dynamic", "shape": {"sphere": {"radius": 0.1}},
+                             "position": [i, 0, 0], "mass": 2}
+                            for i, name in enumerate(names)],
+                 # Both need 2 kg x 9.81 m/s2 = 19.6 N; one bears it.
+                 "hooks": [{"name": name, "b": name + "_load", "anchor": [i, 1, 0], "break_force": 15 + 10 * i}
+                           for i, name in enumerate(names)]}
+        out, _ = self.hooke("run", self.scene(scene), "--json", "report.json")
+        self.assertRegex(out, r"broke     'weak' first, at 0\.00208333 s, as it needed 19\.62 N\n")
+        (broke,) = json.loads((self.folder / "report.json").read_text())["broke"]
+        self.assertEqual(broke["hook"], "weak")
+        self.assertAlmostEqual(broke["force"], 19.62, places=2)
+        self.assertEqual(broke["torque"], 0)
+        self.assertAlmostEqual(broke["time"], 1 / 480, places=6)
+
     def test_a_promise_that_is_broken_is_exit_code_1(self):
         content = copy.deepcopy(FALLING)
         content["expect"][0]["value"] = 2

@@ -155,7 +155,7 @@ TEST_SUITE("world/allocation") {
       REQUIRE(world.set_workers(workers).has_value());
       int broken = 0;
       CHECK(count_allocations(world, Real(1) / Real(60), &broken) == 0);
-      CHECK(broken > 10);
+      CHECK(broken > 6);
     }
   }
 

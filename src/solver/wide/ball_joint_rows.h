@@ -139,6 +139,37 @@ HWY_INLINE Triple<Number> parting(const BallRows<Number>& a, const BallRows<Numb
              difference(b.rates(bodies.b.omega), a.rates(bodies.a.omega)));
 }
 
+/// What is left of `change` where the impulse `before` may not become larger than the hook takes.
+template <class Number>
+HWY_INLINE Triple<Number> capped(const Triple<Number>& before, const Triple<Number>& change,
+                                 const BallBlock& block, int lane) {
+  const Number strength = get<Number>(block.strength + lane);
+  const Triple<Number> impulse = sum(before, change);
+  const Number square = dot(impulse, impulse);
+  const auto over = above(square, strength * strength);
+  const Triple<Number> less = difference(scaled(quotient(strength, root(square)), impulse), before);
+  return {choose(over, less.x, change.x), choose(over, less.y, change.y), choose(over, less.z, change.z)};
+}
+
+/// A hook that needs more than it takes, as it did in the last substep, breaks.
+template <class Number>
+HWY_INLINE void note_need(const Triple<Number>& needed, BallBlock& block, int lane) {
+  const Number zero(Real(0));
+  const Number one(Real(1));
+  const Number size = root(dot(needed, needed));
+  const Number least = smaller(size, get<Number>(block.size + lane));
+  const Number strength = get<Number>(block.strength + lane);
+  const Number was_broken = get<Number>(block.broken + lane);
+  const auto whole = above(one, was_broken);
+  const auto breaks = above(least, strength);
+  const Number held = get<Number>(block.held + lane);
+  write(size, block.size + lane);
+  write(choose(whole, held + one, held), block.held + lane);
+  write(choose(whole, size, get<Number>(block.needed + lane)), block.needed + lane);
+  write(choose(breaks, one, was_broken), block.broken + lane);
+  write(choose(breaks, zero, strength), block.strength + lane);
+}
+
 /// Start of a step, in which bodies carry nothing over yet: the impulses of the last substep.
 template <class Number, bool kAnchored>
 HWY_INLINE void warm_start_ball_lanes(BallBlock& block, int lane, Real* motion) {
@@ -190,6 +221,7 @@ HWY_INLINE void solve_ball_lanes(BallBlock& block, int lane, const BallPass& pas
   const Triple<Number> solved = mass.times(wish);
   Triple<Number> change = scaled(Number(Real(0) - pass.impulse_scale), before);
   take(Number(pass.mass_scale), solved, change);
+  change = capped(before, change, block, lane);
   put3(sum(before, change), block.impulse, lane);
   turn(change, a, b, bodies);
   push(change, block, lane, bodies);
@@ -203,19 +235,17 @@ HWY_INLINE void relax_ball_lanes(BallBlock& block, int lane, Real* motion) {
   const BallRows<Number> a = get_rows<Number>(block.j_a, lane);
   const BallRows<Number> b = get_rows<Number>(block.j_b, lane);
   const Triple<Number> solved = get6<Number>(block.mass, lane).times(parting(a, b, bodies));
-  const Triple<Number> change = scaled(Number(Real(-1)), solved);
+  const Triple<Number> before = get3<Number>(block.impulse, lane);
+  const Triple<Number> wish = scaled(Number(Real(-1)), solved);
+  const Triple<Number> change = capped(before, wish, block, lane);
   turn(change, a, b, bodies);
   push(change, block, lane, bodies);
   pair.write_back(block, lane, motion);
 
-  const Triple<Number> impulse = sum(get3<Number>(block.impulse, lane), change);
+  const Triple<Number> impulse = sum(before, change);
   put3(impulse, block.impulse, lane);
   put3(sum(get3<Number>(block.impulse_sum, lane), impulse), block.impulse_sum, lane);
-  const Number size = root(dot(impulse, impulse));
-  const Number least = smaller(size, get<Number>(block.size + lane));
-  const auto breaks = above(least, get<Number>(block.strength + lane));
-  write(size, block.size + lane);
-  write(choose(breaks, Number(Real(1)), get<Number>(block.broken + lane)), block.broken + lane);
+  note_need(sum(before, wish), block, lane);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
