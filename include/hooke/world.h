@@ -79,8 +79,8 @@ struct HookForce {
 
 /// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
 struct StepReport {
-  bool moved =
-      false;  ///< False: `dt` was not a positive finite number, or the step was called from a force law.
+  bool moved = false;  ///< False: `dt` was not a positive finite number, or there was no world to step, or it
+                       ///< was in a step already.
   std::uint32_t contacts = 0;  ///< Points that touched something in the last substep.
   std::uint32_t pairs = 0;     ///< Shapes of bodies that are near each other.
   std::uint32_t bodies_awake = 0;
@@ -182,6 +182,13 @@ class BodyForceView {
 /// and the world is then unchanged. One thread uses a World at a time, but for queries. Two Worlds are
 /// independent. Two Worlds built by the same calls hold bit-identical state after the same steps, whatever
 /// the number of workers.
+///
+/// During a step, which is where force laws are called, nothing else changes the world: every call that would
+/// is an Error, or returns false or 0. A World that was moved from answers in the same way, and reads as one
+/// that holds nothing; a force law may move or destroy its World, whose step still ends.
+///
+/// Exceptions are those of force laws, which pass through step(), and std::bad_alloc. After one of a call
+/// that adds something, the world is unchanged; after one of a step, see there.
 class World {
  public:
   [[nodiscard]] static Result<World> create(const WorldDesc& desc = {});
@@ -205,8 +212,8 @@ class World {
   [[nodiscard]] Result<ForceLawId> add_force_law(ForceLaw law);
   [[nodiscard]] Result<ForceLawId> add_force_law(BodyForceLaw law);
 
-  // A stale or null id is ignored and returns false. A mesh in use stays with those that use it; the hooks of
-  // a body go with it.
+  // A stale or null id is ignored and returns false, as during a step. A mesh in use stays with those that
+  // use it; the hooks of a body go with it.
   bool remove(MeshId id);
   bool remove(BodyId id);
   bool remove(HookId id);
@@ -336,6 +343,8 @@ class World {
   Result<void> pin(PointRef point,
                    const MotionDesc& motion = {});  ///< Holds the point; its motion starts now.
   Result<void> unpin(PointRef point);
+  // Where what acts on sleepers changes, by these or by what is added or removed, they wake; a force law does
+  // not see those that sleep (BodyDesc::can_sleep), and its changes with time do not wake them.
   Result<void> set_gravity(Vec3 gravity);
   Result<void> set_wind(const WindDesc& wind);
   Result<void> set_workers(int workers);
@@ -343,6 +352,11 @@ class World {
   /// Advances time by `dt` [s], usually 1/60. Anything that is not a positive finite number moves nothing.
   /// Allocates only where something came, went or broke since the last step, or where there is more of
   /// something (contacts, islands) than there ever was.
+  ///
+  /// A step that ends by an exception is taken back: time, places, velocities, pending forces and who sleeps
+  /// are as before it, to the bit, and steps that follow are sound. Contacts begin anew, and what ropes,
+  /// hooks and folds have of the step that broke off stays: the next step does not have the bits that this
+  /// one had.
   StepReport step(Real dt);
 
   [[nodiscard]] double time() const;               ///< Sum of all dt [s].
@@ -356,9 +370,10 @@ class World {
   /// Hash of the full dynamic state. Equal hashes mean bit-identical state.
   [[nodiscard]] std::uint64_t state_hash() const;
 
-  /// A copy of everything but the workers.
+  /// A copy of everything but the workers. Empty during a step.
   [[nodiscard]] Snapshot snapshot() const;
-  /// Puts the world back as it was. Ids made since then are stale. Errors: an empty snapshot.
+  /// Puts the world back as it was. Ids made since then are stale. Errors: an empty snapshot. After a
+  /// std::bad_alloc nothing is in the world; it can be restored again.
   Result<void> restore(const Snapshot& snapshot);
 
   /// Bytes held for particles and for springs, for reports.
@@ -372,8 +387,8 @@ class World {
 
  private:
   friend struct WorldAccess;
-  explicit World(std::unique_ptr<WorldData> data);
-  std::unique_ptr<WorldData> data_;
+  explicit World(std::shared_ptr<WorldData> data);
+  std::shared_ptr<WorldData> data_;  ///< Shared with the step that runs, and with none else.
 };
 
 }  // namespace hooke

@@ -11,15 +11,15 @@ namespace hooke::base {
 
 /// Sets round-to-nearest and gradual underflow for the calling thread and puts back what the host had on
 /// destruction: a host that flushes denormals or rounds upward must not change the bits (and must get its own
-/// settings back).
+/// settings back). A few nanoseconds where the host has the same.
 class FloatEnvironment {
  public:
 #ifdef HOOKE_HAS_MXCSR
   FloatEnvironment() : saved_(_mm_getcsr()) {
-    _mm_setcsr(kDefault);
+    if (differs()) _mm_setcsr(kDefault);
   }
   ~FloatEnvironment() {
-    _mm_setcsr(saved_);
+    if (differs()) _mm_setcsr(saved_);
   }
 #else
   FloatEnvironment() {
@@ -36,6 +36,10 @@ class FloatEnvironment {
  private:
 #ifdef HOOKE_HAS_MXCSR
   static constexpr unsigned kDefault = 0x1F80;  // all exceptions masked, nearest, no FTZ, no DAZ
+  static constexpr unsigned kFlags = 0x3F;      // what has happened so far
+  [[nodiscard]] bool differs() const {
+    return (saved_ & ~kFlags) != kDefault;
+  }
   unsigned saved_;
 #else
   std::fenv_t saved_;

@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/make_room.h"
 #include "build/build.h"
 #include "build/checks.h"
 #include "build/connection_points.h"
@@ -95,8 +96,8 @@ MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
 /// The convex parts of a mesh, made where the tables have none.
 Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t) {
   const std::uint32_t row = t.mesh_slots.find(mesh);
-  auto& parts = t.convex_parts[row];
-  if (!parts.empty()) return {};
+  if (!t.convex_parts[row].empty()) return {};
+  std::vector<std::shared_ptr<const geometry::ConvexHull>> parts;
   const MeshDesc& solid = t.meshes[row]->desc;
   geometry::Box bounds;
   for (const Vec3 p : solid.positions) bounds = merge(bounds, geometry::Box{p, p});
@@ -111,6 +112,7 @@ Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t)
     if (!hull) return Error{hull.error().code, where + "shape.mesh", hull.error().message};
     parts.push_back(std::make_shared<const geometry::ConvexHull>(std::move(hull).value()));
   }
+  t.convex_parts[row] = std::move(parts);
   return {};
 }
 
@@ -216,6 +218,18 @@ Extent extent_of(const Part& part, Vec3 center) {
 template <class Table>
 void grow(Table& table, std::size_t size) {
   Table::for_each_column(table, [&](auto& column) { column.resize(size); });
+}
+
+template <class Table>
+void make_room(Table& table, std::size_t more) {
+  Table::for_each_column(table, [&](auto& column) { base::make_room(column, more); });
+}
+
+/// For a body and its colliders; what is added then cannot fail for want of memory.
+void make_room_for_body(Tables& t, std::size_t colliders) {
+  make_room(t.bodies, 1);
+  make_room(t.colliders, colliders);
+  base::make_room(t.moving_bodies);
 }
 
 std::uint32_t take_body_row(Tables& t) {
@@ -349,6 +363,9 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   if (!made) return made.error();
   const std::vector<Part>& parts = made.value();
   const state::BodyMass mass = mass_of_parts(desc, parts);
+  MotionDesc path = desc.motion;
+  auto connection_points = connection_points_of(desc.connection_points, mass.center);
+  make_room_for_body(t, parts.size());
 
   const std::uint32_t row = take_body_row(t);
   const Quat rotation = normalize(desc.rotation);
@@ -363,10 +380,10 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.angular_velocity[row] = moves ? desc.angular_velocity : Vec3{};
   b.traits[row] = traits_of(desc, parts, mass.center);
   b.hardness[row] = desc.kind == BodyKind::kDynamic ? state::Bodies::kNew : std::int8_t{0};
-  b.path[row] = desc.motion;
+  b.path[row] = std::move(path);
   b.path_start[row] = b.center[row];
   b.path_time[row] = t.time;
-  b.connection_points[row] = connection_points_of(desc.connection_points, mass.center);
+  b.connection_points[row] = std::move(connection_points);
   add_colliders(parts, mass.center, row, t);
   t.any_reports = t.any_reports || desc.sensor || desc.reports_contacts || std::isfinite(desc.hit_speed);
   if (moves)

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace hooke::parallel {
@@ -45,6 +47,7 @@ struct ThreadPool::Shared {
   std::atomic<bool> stopping{false};
   std::atomic<int> sleepers{0};
   void (*job)(void*, int) = nullptr;
+  std::exception_ptr failure;  ///< Of the first part that failed; under `mutex`.
   void* context = nullptr;
   std::mutex mutex;
   std::condition_variable wake;
@@ -70,7 +73,12 @@ struct ThreadPool::Shared {
       const int part = own + i < count ? own + i : own + i - count;
       std::uint64_t before = number - 1;
       if (!parts[part].begun.compare_exchange_strong(before, number, std::memory_order_acq_rel)) continue;
-      job(context, part);
+      try {
+        job(context, part);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (!failure) failure = std::current_exception();
+      }
       unfinished.fetch_sub(1, std::memory_order_release);
     }
   }
@@ -122,6 +130,7 @@ void ThreadPool::run(void (*job)(void*, int), void* context) {
       std::this_thread::yield();
     }
   }
+  if (shared.failure) std::rethrow_exception(std::exchange(shared.failure, nullptr));
 }
 
 }  // namespace hooke::parallel

@@ -23,7 +23,8 @@ class ThreadPool {
   [[nodiscard]] int workers() const { return workers_; }
 
   /// Calls `job(context, part)` once for each part in [0, workers), on whichever thread is free; each thread
-  /// prefers the same part every time. Returns when all are done. Not reentrant.
+  /// prefers the same part every time. Returns when all are done, also where some end by an exception, and
+  /// then throws one of these. Not reentrant.
   void run(void (*job)(void* context, int part), void* context);
 
  private:

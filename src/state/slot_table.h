@@ -1,5 +1,8 @@
 #pragma once
 
+#include "base/make_room.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +33,12 @@ class SlotTable {
     return {.slot = slot, .generation = entries_[slot - 1].generation};
   }
 
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+  /// Room for one more.
+  void make_room() { base::make_room(entries_); }
+  /// Forgets the slots after the first `size`, as though they had never been.
+  void shorten(std::size_t size) { entries_.resize(size); }
+
   void move(std::uint32_t slot, std::uint32_t row) { entries_[slot - 1].row = row; }
 
   [[nodiscard]] std::uint32_t generation() const { return generation_; }
@@ -37,8 +46,8 @@ class SlotTable {
 
  private:
   struct Entry {
-    std::uint32_t row;
-    std::uint32_t generation;
+    std::uint32_t row = 0;
+    std::uint32_t generation = 0;
   };
   std::vector<Entry> entries_;
   std::uint32_t generation_ = 1;

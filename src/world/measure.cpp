@@ -7,6 +7,7 @@
 #include "solver/rope_twist.h"
 #include "solver/shape_matching.h"
 #include "state/parked_pairs.h"
+#include "world/claim.h"
 #include "world/hooks.h"
 #include "world/world_data.h"
 
@@ -232,7 +233,8 @@ double measure_matches(const Tables& t) {
 }  // namespace
 
 Measurement World::measure() const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   Measurement m;
   Stretch stretch;
   measure_particles(t, m);

@@ -4,6 +4,7 @@
 #include "world/hooks.h"
 
 #include <algorithm>
+#include <array>
 
 namespace hooke::world {
 
@@ -76,8 +77,7 @@ std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
   return ParticleRow{first + tables.particles.row_of[first + point.index], row};
 }
 
-bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
-  if (row == state::SlotTable<RopeId>::kNone || t.objects[row].kind != kind) return false;
+void remove_object(Tables& t, std::uint32_t row) {
   remove_hooks_of_object(row, t);
   renumber_hooked_objects(t, row);
   const Deformable gone = t.objects[row];
@@ -109,7 +109,6 @@ bool remove_object(Tables& t, PointRef::Kind kind, std::uint32_t row) {
     move_slot(t, object, i);
   }
   ++t.revision;
-  return true;
 }
 
 void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
@@ -169,27 +168,39 @@ void hash_bodies(const Tables& t, base::StateHash& hash) {
   });
 }
 
+namespace {
+
+template <class Visit>
+void for_each_slots(Tables& t, Visit&& visit) {
+  const auto each = [&](auto&... slots) { (visit(slots), ...); };
+  each(t.mesh_slots, t.body_slots, t.rope_slots, t.cloth_slots, t.particles_slots, t.field_slots,
+       t.force_law_slots, t.hook_slots, t.solid_slots);
+}
+
+}  // namespace
+
 void restore_tables(const Tables& from, Tables& to) {
   const int workers = to.desc.workers;
   const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
   const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
-  const std::uint32_t generations[] = {
-      to.mesh_slots.generation(),      to.body_slots.generation(),      to.rope_slots.generation(),
-      to.cloth_slots.generation(),     to.particles_slots.generation(), to.field_slots.generation(),
-      to.force_law_slots.generation(), to.hook_slots.generation(),      to.solid_slots.generation()};
-  to = from;
-  to.desc.workers = workers;
-  to.revision = revision;
-  to.hook_revision = hook_revision;
-  to.mesh_slots.set_generation(generations[0] + 1);
-  to.body_slots.set_generation(generations[1] + 1);
-  to.rope_slots.set_generation(generations[2] + 1);
-  to.cloth_slots.set_generation(generations[3] + 1);
-  to.particles_slots.set_generation(generations[4] + 1);
-  to.field_slots.set_generation(generations[5] + 1);
-  to.force_law_slots.set_generation(generations[6] + 1);
-  to.hook_slots.set_generation(generations[7] + 1);
-  to.solid_slots.set_generation(generations[8] + 1);
+  std::array<std::uint32_t, 9> generations = {};
+  std::size_t i = 0;
+  for_each_slots(to, [&](const auto& slots) { generations[i++] = slots.generation() + 1; });
+  const auto go_on = [&] {
+    to.desc.workers = workers;
+    to.revision = revision;
+    to.hook_revision = hook_revision;
+    i = 0;
+    for_each_slots(to, [&](auto& slots) { slots.set_generation(generations[i++]); });
+  };
+  try {
+    to = from;  // where there is room already, nothing is allocated
+  } catch (...) {
+    to = Tables();
+    go_on();
+    throw;
+  }
+  go_on();
 }
 
 }  // namespace hooke::world

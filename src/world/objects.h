@@ -26,14 +26,14 @@ struct ParticleRow {
 /// Nothing for a stale id or an index beyond the object's points.
 [[nodiscard]] std::optional<ParticleRow> find_particle(const state::Tables& tables, PointRef point);
 
-/// Takes an object's ranges out of every table and moves what stands behind them. `row` may be SlotTable's
-/// kNone: false then.
-bool remove_object(state::Tables& tables, PointRef::Kind kind, std::uint32_t row);
+/// Takes an object's ranges out of every table and moves what stands behind them.
+void remove_object(state::Tables& tables, std::uint32_t row);
 
 void pin_particle(state::Tables& tables, ParticleRow row, const MotionDesc& motion);
 void unpin_particle(state::Tables& tables, ParticleRow row);
 
-/// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers.
+/// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers. Where
+/// there is not the memory, nothing is left in `to`.
 void restore_tables(const state::Tables& from, state::Tables& to);
 
 [[nodiscard]] BodyId id_of(const state::Tables& tables, std::uint32_t body);

@@ -1,5 +1,6 @@
 #include "world/sleep.h"
 
+#include "collision/shape_bounds.h"
 #include "state/parked_pairs.h"
 #include "world/bodies.h"
 #include "world/hooks.h"
@@ -165,6 +166,37 @@ void put_to_sleep(WorldData& world, Real dt) {
     bodies.angular_velocity[body] = {};
     bodies.free_motion[body] = {};
   }
+}
+
+void wake_within(const geometry::Box& box, state::Tables& t) {
+  for (const std::uint32_t body : t.moving_bodies) {
+    if (t.bodies.asleep[body] == 0) continue;
+    for (const std::uint32_t collider : state::colliders_of(t.bodies, body)) {
+      if (overlap(t.colliders.bounds[collider], box)) state::wake(t.bodies, body);
+    }
+  }
+}
+
+void wake_near_points(const state::Deformable& object, state::Tables& t) {
+  const auto sleeps = [&](std::uint32_t body) { return t.bodies.asleep[body] != 0; };
+  if (std::none_of(t.moving_bodies.begin(), t.moving_bodies.end(), sleeps)) return;
+  constexpr Real kNear = Real(0.01);  // what bears something touches it [m]
+  geometry::Box3<double> around;
+  for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+    const state::PositionLine& line = t.particles.position[p];
+    const auto size = static_cast<double>(line.radius + kNear);
+    const DVec3 place = object.origin + vector_cast<double>(line.x);
+    const DVec3 half = {size, size, size};
+    around = merge(around, geometry::Box3<double>{place - half, place + half});
+  }
+  wake_within({vector_cast<Real>(around.lower), vector_cast<Real>(around.upper)}, t);
+}
+
+void wake_near_body(std::uint32_t body, state::Tables& t) {
+  const state::BodyTraits& traits = t.bodies.traits[body];
+  if (traits.kind == BodyKind::kDynamic || !traits.collides || traits.sensor) return;
+  for (const std::uint32_t collider : colliders_of(t.bodies, body))
+    wake_within(collision::reach_of(t.bodies, t.colliders, collider, Real(0)), t);
 }
 
 }  // namespace hooke::world

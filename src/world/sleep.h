@@ -14,4 +14,13 @@ bool wake_touched(WorldData& world, Real dt);
 /// have been slower than 5 cm/s for half a second.
 void put_to_sleep(WorldData& world, Real dt);
 
+/// Wakes the bodies that sleep within a box [m], when something else there comes, goes or is let go.
+void wake_within(const geometry::Box& box, state::Tables& tables);
+
+/// Those near the points of an object.
+void wake_near_points(const state::Deformable& object, state::Tables& tables);
+
+/// Those near a body that nothing moves; who touches one that moves wakes by that.
+void wake_near_body(std::uint32_t body, state::Tables& tables);
+
 }  // namespace hooke::world

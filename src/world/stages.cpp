@@ -243,9 +243,6 @@ void prepare_rows(WorldData& world, Real h) {
 
 void begin_step(WorldData& world, double dt) {
   state::Tables& tables = world.tables;
-  world.start_position = tables.particles.position;
-  world.start_origin.clear();
-  for (const state::Deformable& object : tables.objects) world.start_origin.push_back(object.origin);
   read_wind(world, tables.time + 0.5 * dt);
   begin_body_forces(world);
 

@@ -10,7 +10,6 @@
 
 #include "hooke/world.h"
 
-#include "base/float_environment.h"
 #include "collision/inner_contacts.h"
 #include "collision/particle_contacts.h"
 #include "collision/rope_contacts.h"
@@ -29,15 +28,18 @@
 #include "state/check_tables.h"
 #include "world/bodies.h"
 #include "world/body_forces.h"
+#include "world/claim.h"
 #include "world/events.h"
 #include "world/hooks.h"
 #include "world/impacts.h"
 #include "world/sleep.h"
 #include "world/stages.h"
+#include "world/stepping.h"
 #include "world/stopwatch.h"
 #include "world/world_data.h"
 
 #include <cmath>
+#include <memory>
 
 namespace hooke {
 
@@ -171,17 +173,17 @@ void finish(WorldData& w, double dt, StepReport& report) {
 }  // namespace
 
 StepReport World::step(Real dt) {
-  WorldData& w = *data_;
+  const std::shared_ptr<WorldData> data = data_;  // force laws may move this World, or destroy it
+  const world::Claim claim(data);
   StepReport report;
-  if (!(dt > Real(0)) || !std::isfinite(dt) || w.stepping) return report;
-  const base::FloatEnvironment environment;
-  w.stepping = true;
+  if (!claim || !(dt > Real(0)) || !std::isfinite(dt)) return report;
+  WorldData& w = *claim;
+  world::Stepping stepping(w);
   world::Stopwatch watch;
   const auto frame = static_cast<double>(dt);
   const int substeps = w.tables.desc.substeps;
   const Real h = dt / static_cast<Real>(substeps);
 
-  state::check_tables(w.tables);  // after the calls since the last step
   detect(w, frame);
   state::check_tables(w.tables);
   report.detect_ms = watch.lap_ms();
@@ -190,9 +192,8 @@ StepReport World::step(Real dt) {
   for (int i = 0; i < substeps; ++i) substep(w, i, w.tables.time + i * (frame / substeps), h);
   report.substep_ms = watch.lap_ms();
   finish(w, frame, report);
-  state::check_tables(w.tables);
   report.finish_ms = watch.lap_ms();
-  w.stepping = false;
+  stepping.end();
   return report;
 }
 

@@ -9,9 +9,12 @@
 #include "solver/gas.h"
 #include "solver/rope_twist.h"
 #include "solver/wind.h"
+#include "world/claim.h"
 #include "world/events.h"
 #include "world/hooks.h"
 #include "world/objects.h"
+#include "world/sleep.h"
+#include "world/undo.h"
 #include "world/world_data.h"
 
 #include <cmath>
@@ -25,11 +28,22 @@ namespace {
 /// Runs `add`, which appends an object, and gives that object an id.
 template <class IdType, class Add>
 Result<IdType> add_object(state::Tables& tables, state::SlotTable<IdType>& slots, Add&& add) {
+  world::Undo undo(tables);
   const Result<void> added = add();
   if (!added) return added.error();
   const IdType id = slots.add(static_cast<std::uint32_t>(tables.objects.size()) - 1);
   tables.objects.back().slot = id.slot;
+  undo.keep();
   return id;
+}
+
+template <class IdType>
+bool remove_object(state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id) {
+  const std::uint32_t row = slots.find(id);
+  if (row == slots.kNone) return false;
+  world::wake_near_points(tables.objects[row], tables);
+  world::remove_object(tables, row);
+  return true;
 }
 
 /// An object's part of a column of lines. Places are seen from the object's origin, velocities from zero.
@@ -78,11 +92,14 @@ Error no_function() {
 }
 
 Result<ForceLawId> add_law(WorldData& w, state::ForceLawEntry entry) {
-  if (w.stepping) return Error{ErrorCode::kUnsupported, "force_law", "cannot be added during a step"};
   state::Tables& t = w.tables;
+  world::Undo undo(t);
   const ForceLawId id = t.force_law_slots.add(static_cast<std::uint32_t>(t.force_laws.size()));
   entry.slot = id.slot;
+  const bool of_bodies = entry.body_law != nullptr;
   t.force_laws.push_back(std::move(entry));
+  undo.keep();
+  if (of_bodies) world::wake_all(t);
   return id;
 }
 
@@ -110,18 +127,20 @@ void ForceView::add_force(std::size_t i, Vec3 force) {
 Result<World> World::create(const WorldDesc& desc) {
   const Result<void> good = build::validate(desc);
   if (!good) return good.error();
-  auto data = std::make_unique<WorldData>();
+  auto data = std::make_shared<WorldData>();
   data->tables.desc = desc;
   data->pool = std::make_unique<parallel::ThreadPool>(desc.workers);
   return World(std::move(data));
 }
 
-World::World(std::unique_ptr<WorldData> data) : data_(std::move(data)) {}
+World::World(std::shared_ptr<WorldData> data) : data_(std::move(data)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   const Result<void> good = geometry::validate_mesh(desc);
   if (!good) return good.error();
   auto mesh = std::make_shared<state::Mesh>();
@@ -133,55 +152,76 @@ Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
     if (!planes) return planes.error();
     mesh->planes = std::move(planes).value();
   }
-  state::Tables& t = data_->tables;
+  state::Tables& t = claim.tables();
+  world::Undo undo(t);
   t.meshes.push_back(std::move(mesh));
   t.hulls.push_back(nullptr);
   t.convex_parts.emplace_back();
-  return t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
+  const MeshId id = t.mesh_slots.add(static_cast<std::uint32_t>(t.meshes.size()) - 1);
+  undo.keep();
+  return id;
 }
 
 Result<RopeId> World::add_rope(const RopeDesc& desc) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  state::Tables& t = claim.tables();
   return add_object(t, t.rope_slots, [&] { return build::add_rope(desc, t); });
 }
 
 Result<ClothId> World::add_cloth(const ClothDesc& desc) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  state::Tables& t = claim.tables();
   return add_object(t, t.cloth_slots, [&] { return build::add_cloth(desc, t); });
 }
 
 Result<SolidId> World::add_solid(const SolidDesc& desc) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  state::Tables& t = claim.tables();
   return add_object(t, t.solid_slots, [&] { return build::add_solid(desc, t); });
 }
 
 Result<ParticlesId> World::add_particles(const ParticlesDesc& desc) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  state::Tables& t = claim.tables();
   return add_object(t, t.particles_slots, [&] { return build::add_particles(desc, t); });
 }
 
 Result<FieldId> World::add_field(const FieldDesc& desc) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   const Result<void> good = build::validate(desc);
   if (!good) return good.error();
-  state::Tables& t = data_->tables;
+  state::Tables& t = claim.tables();
+  world::Undo undo(t);
   const FieldId id = t.field_slots.add(static_cast<std::uint32_t>(t.fields.size()));
   t.fields.push_back({desc, id.slot});
+  undo.keep();
   world::wake_all(t);
   return id;
 }
 
 Result<ForceLawId> World::add_force_law(ForceLaw law) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (!law) return no_function();
-  return add_law(*data_, {.law = std::move(law)});
+  return add_law(*claim, {.law = std::move(law)});
 }
 
 Result<ForceLawId> World::add_force_law(BodyForceLaw law) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (!law) return no_function();
-  return add_law(*data_, {.body_law = std::move(law)});
+  return add_law(*claim, {.body_law = std::move(law)});
 }
 
 bool World::remove(MeshId id) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  state::Tables& t = claim.tables();
   const std::uint32_t row = t.mesh_slots.find(id);
   if (row == t.mesh_slots.kNone || !t.meshes[row]) return false;
   t.meshes[row] = nullptr;  // bodies that use it share it
@@ -192,89 +232,115 @@ bool World::remove(MeshId id) {
 }
 
 bool World::remove(FieldId id) {
-  state::Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  state::Tables& t = claim.tables();
   if (!world::remove_row(t.field_slots, id, t.fields)) return false;
   world::wake_all(t);
   return true;
 }
 
 bool World::remove(ForceLawId id) {
-  if (data_->stepping) return false;
-  return world::remove_row(data_->tables.force_law_slots, id, data_->tables.force_laws);
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  state::Tables& t = claim.tables();
+  const std::uint32_t row = t.force_law_slots.find(id);
+  if (row == t.force_law_slots.kNone) return false;
+  if (t.force_laws[row].body_law) world::wake_all(t);
+  return world::remove_row(t.force_law_slots, id, t.force_laws);
 }
 
 bool World::remove(RopeId id) {
-  return world::remove_object(data_->tables, PointRef::Kind::kRope, data_->tables.rope_slots.find(id));
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  return remove_object(claim.tables(), claim.tables().rope_slots, id);
 }
 
 bool World::remove(ClothId id) {
-  return world::remove_object(data_->tables, PointRef::Kind::kCloth, data_->tables.cloth_slots.find(id));
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  return remove_object(claim.tables(), claim.tables().cloth_slots, id);
 }
 
 bool World::remove(SolidId id) {
-  return world::remove_object(data_->tables, PointRef::Kind::kSolid, data_->tables.solid_slots.find(id));
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  return remove_object(claim.tables(), claim.tables().solid_slots, id);
 }
 
 bool World::remove(ParticlesId id) {
-  return world::remove_object(data_->tables, PointRef::Kind::kParticles,
-                              data_->tables.particles_slots.find(id));
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  return remove_object(claim.tables(), claim.tables().particles_slots, id);
 }
 
 PointView World::positions(RopeId id) const {
-  return view_of(data_->tables, data_->tables.rope_slots, id, data_->tables.particles.position);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().rope_slots, id, reading.tables().particles.position);
 }
 PointView World::positions(ClothId id) const {
-  return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.position);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().cloth_slots, id, reading.tables().particles.position);
 }
 PointView World::positions(SolidId id) const {
-  return view_of(data_->tables, data_->tables.solid_slots, id, data_->tables.particles.position);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().solid_slots, id, reading.tables().particles.position);
 }
 PointView World::positions(ParticlesId id) const {
-  return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.position);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().particles_slots, id, reading.tables().particles.position);
 }
 PointView World::velocities(RopeId id) const {
-  return view_of(data_->tables, data_->tables.rope_slots, id, data_->tables.particles.velocity);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().rope_slots, id, reading.tables().particles.velocity);
 }
 PointView World::velocities(ClothId id) const {
-  return view_of(data_->tables, data_->tables.cloth_slots, id, data_->tables.particles.velocity);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().cloth_slots, id, reading.tables().particles.velocity);
 }
 PointView World::velocities(SolidId id) const {
-  return view_of(data_->tables, data_->tables.solid_slots, id, data_->tables.particles.velocity);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().solid_slots, id, reading.tables().particles.velocity);
 }
 PointView World::velocities(ParticlesId id) const {
-  return view_of(data_->tables, data_->tables.particles_slots, id, data_->tables.particles.velocity);
+  const world::Reading reading(data_);
+  return view_of(reading.tables(), reading.tables().particles_slots, id, reading.tables().particles.velocity);
 }
 
 std::vector<Real> World::tensions(RopeId id) const {
-  const std::uint32_t row = data_->tables.rope_slots.find(id);
-  if (row == data_->tables.rope_slots.kNone) return {};
-  const state::Rows rows = data_->tables.objects[row].segments;
-  const auto first = data_->tables.segments.mean_tension.begin() + rows.first;
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().rope_slots.find(id);
+  if (row == reading.tables().rope_slots.kNone) return {};
+  const state::Rows rows = reading.tables().objects[row].segments;
+  const auto first = reading.tables().segments.mean_tension.begin() + rows.first;
   return {first, first + rows.count};
 }
 
 std::vector<Real> World::twists(RopeId id) const {
-  return twist_figures(data_->tables, id, [&](const state::TwistSpan& span, double rest) {
-    return static_cast<Real>(solver::twist_now(data_->tables, span) * rest / span.length);
+  const world::Reading reading(data_);
+  return twist_figures(reading.tables(), id, [&](const state::TwistSpan& span, double rest) {
+    return static_cast<Real>(solver::twist_now(reading.tables(), span) * rest / span.length);
   });
 }
 
 std::vector<Real> World::torques(RopeId id) const {
-  return twist_figures(data_->tables, id,
+  const world::Reading reading(data_);
+  return twist_figures(reading.tables(), id,
                        [](const state::TwistSpan& span, double) { return span.mean_torque; });
 }
 
 std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
-  const std::uint32_t row = data_->tables.cloth_slots.find(id);
-  if (row == data_->tables.cloth_slots.kNone) return {};
-  const state::Deformable& object = data_->tables.objects[row];
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().cloth_slots.find(id);
+  if (row == reading.tables().cloth_slots.kNone) return {};
+  const state::Deformable& object = reading.tables().objects[row];
   std::vector<std::uint32_t> point_of(object.particles.count);
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
-    point_of[data_->tables.particles.row_of[object.particles.first + i]] = i;
+    point_of[reading.tables().particles.row_of[object.particles.first + i]] = i;
   }
   std::vector<std::array<std::uint32_t, 3>> result;
   for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
-    const auto [a, b, c] = data_->tables.triangles.corners[i];
+    const auto [a, b, c] = reading.tables().triangles.corners[i];
     const std::uint32_t first = object.particles.first;
     result.push_back({point_of[a - first], point_of[b - first], point_of[c - first]});
   }
@@ -282,18 +348,21 @@ std::vector<std::array<std::uint32_t, 3>> World::triangles(ClothId id) const {
 }
 
 Real World::pressure(ClothId id) const {
-  const std::uint32_t row = data_->tables.cloth_slots.find(id);
-  if (row == data_->tables.cloth_slots.kNone || !(data_->tables.objects[row].gas > 0)) return Real(0);
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().cloth_slots.find(id);
+  if (row == reading.tables().cloth_slots.kNone || !(reading.tables().objects[row].gas > 0)) return Real(0);
   solver::GasVolume gas;
-  solver::measure_gas(data_->tables.objects[row], data_->tables.triangles, data_->tables.particles, gas);
-  return static_cast<Real>(solver::gas_pressure(data_->tables.objects[row], gas.volume));
+  solver::measure_gas(reading.tables().objects[row], reading.tables().triangles, reading.tables().particles,
+                      gas);
+  return static_cast<Real>(solver::gas_pressure(reading.tables().objects[row], gas.volume));
 }
 
 std::vector<DVec3> World::surface(SolidId id) const {
+  const world::Reading reading(data_);
   const PointView points = positions(id);
   if (points.empty()) return {};
   std::vector<DVec3> surface;
-  for (const auto& anchor : data_->tables.objects[data_->tables.solid_slots.find(id)].skin->vertices) {
+  for (const auto& anchor : reading.tables().objects[reading.tables().solid_slots.find(id)].skin->vertices) {
     DVec3& place = surface.emplace_back(points.origin());
     for (std::size_t k = 0; k < 4; ++k)
       place += static_cast<double>(anchor.weights[k]) * vector_cast<double>(points.offset(anchor.points[k]));
@@ -302,13 +371,15 @@ std::vector<DVec3> World::surface(SolidId id) const {
 }
 
 std::vector<std::array<std::uint32_t, 3>> World::triangles(SolidId id) const {
-  const std::uint32_t row = data_->tables.solid_slots.find(id);
-  if (row == data_->tables.solid_slots.kNone) return {};
-  return data_->tables.objects[row].skin->triangles;
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().solid_slots.find(id);
+  if (row == reading.tables().solid_slots.kNone) return {};
+  return reading.tables().objects[row].skin->triangles;
 }
 
 double World::volume(SolidId id) const {
-  const state::Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const state::Tables& t = reading.tables();
   const std::uint32_t row = t.solid_slots.find(id);
   if (row == t.solid_slots.kNone) return 0;
   double sum = 0;
@@ -326,38 +397,46 @@ double World::volume(SolidId id) const {
 }
 
 Result<void> World::apply_force(PointRef point, Vec3 force) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
   if (!is_finite(force)) return world::not_finite("force");
-  data_->tables.particles.force[row->particle] += force;
-  data_->tables.any_force = true;
+  claim.tables().particles.force[row->particle] += force;
+  claim.tables().any_force = true;
   return {};
 }
 
 Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
   if (!is_finite(impulse)) return world::not_finite("impulse");
-  state::Particles& particles = data_->tables.particles;
+  state::Particles& particles = claim.tables().particles;
   particles.velocity[row->particle].v += particles.velocity[row->particle].inverse_mass * impulse;
   return {};
 }
 
 Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
   if (!is_finite(velocity)) return world::not_finite("velocity");
-  state::Particles& particles = data_->tables.particles;
+  state::Particles& particles = claim.tables().particles;
   if (particles.velocity[row->particle].inverse_mass > Real(0))
     particles.velocity[row->particle].v = velocity;
   return {};
 }
 
 Result<void> World::set_position(PointRef point, DVec3 position) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
   if (!is_finite(position)) return world::not_finite("position");
-  state::Tables& t = data_->tables;
+  state::Tables& t = claim.tables();
   t.particles.position[row->particle].x = vector_cast<Real>(position - t.objects[row->object].origin);
   for (state::Pin& pin : t.pins) {
     if (pin.particle == row->particle)
@@ -367,57 +446,79 @@ Result<void> World::set_position(PointRef point, DVec3 position) {
 }
 
 Result<void> World::pin(PointRef point, const MotionDesc& motion) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
   const Result<void> good = build::validate(motion, "motion");
   if (!good) return good.error();
-  world::pin_particle(data_->tables, *row, motion);
+  world::pin_particle(claim.tables(), *row, motion);
+  world::wake_near_points(claim.tables().objects[row->object], claim.tables());
   return {};
 }
 
 Result<void> World::unpin(PointRef point) {
-  const auto row = world::find_particle(data_->tables, point);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  world::unpin_particle(data_->tables, *row);
+  world::unpin_particle(claim.tables(), *row);
+  world::wake_near_points(claim.tables().objects[row->object], claim.tables());
   return {};
 }
 
 Result<void> World::set_gravity(Vec3 gravity) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (!is_finite(gravity)) return world::not_finite("gravity");
-  data_->tables.desc.gravity = gravity;
+  state::Tables& t = claim.tables();
+  if (gravity == t.desc.gravity) return {};
+  t.desc.gravity = gravity;
+  world::wake_all(t);
   return {};
 }
 
 Result<void> World::set_wind(const WindDesc& wind) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   Result<void> good = build::validate(wind);
-  if (good) data_->tables.desc.wind = wind;
-  return good;
+  state::Tables& t = claim.tables();
+  if (!good || wind == t.desc.wind) return good;
+  t.desc.wind = wind;
+  world::wake_all(t);
+  return {};
 }
 
 Result<void> World::set_workers(int workers) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (workers < 1 || workers > 64) return Error{ErrorCode::kOutOfRange, "workers", "must be 1 to 64"};
-  if (data_->stepping) return Error{ErrorCode::kUnsupported, "workers", "cannot change during a step"};
-  data_->tables.desc.workers = workers;
-  data_->pool = std::make_unique<parallel::ThreadPool>(workers);
+  claim->pool = std::make_unique<parallel::ThreadPool>(workers);
+  claim.tables().desc.workers = workers;
   return {};
 }
 
 double World::time() const {
-  return data_->tables.time;
+  const world::Reading reading(data_);
+  return reading.tables().time;
 }
 std::uint64_t World::step_count() const {
-  return data_->tables.step_count;
+  const world::Reading reading(data_);
+  return reading.tables().step_count;
 }
 const WorldDesc& World::desc() const {
-  return data_->tables.desc;
+  const world::Reading reading(data_);
+  return reading.tables().desc;
 }
 
 Vec3 World::wind_at(DVec3 place, double time) const {
-  return solver::wind_at(data_->tables.desc.wind, place, time, data_->tables.step_count);
+  const world::Reading reading(data_);
+  return solver::wind_at(reading.tables().desc.wind, place, time, reading.tables().step_count);
 }
 
 std::uint64_t World::state_hash() const {
-  const state::Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const state::Tables& t = reading.tables();
   base::StateHash hash;
   hash.add(t.time);
   hash.add(t.step_count);
@@ -450,24 +551,28 @@ std::uint64_t World::state_hash() const {
 }
 
 Snapshot World::snapshot() const {
-  return Snapshot(std::make_shared<const SnapshotData>(SnapshotData{data_->tables}));
+  const world::Reading reading(data_);
+  if (!data_ || reading->stepping) return {};
+  return Snapshot(std::make_shared<const SnapshotData>(SnapshotData{reading.tables()}));
 }
 
 Result<void> World::restore(const Snapshot& snapshot) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
-  if (data_->stepping) return Error{ErrorCode::kUnsupported, "snapshot", "cannot be restored during a step"};
-  world::restore_tables(snapshot.data_->tables, data_->tables);
-  data_->broad_phase_stale = true;
-  data_->bodies_placed.clear();  // rows of the world that was
-  data_->boxes_are_current = false;
-  world::clear_events(data_->events);
-  data_->broken_hooks.clear();
+  claim->broad_phase_stale = true;
+  claim->bodies_placed.clear();  // rows of the world that was
+  claim->boxes_are_current = false;
+  world::clear_events(claim->events);
+  claim->broken_hooks.clear();
+  world::restore_tables(snapshot.data_->tables, claim.tables());
   return {};
 }
 
 World::Memory World::memory() const {
+  const world::Reading reading(data_);
   Memory memory;
-  const state::Tables& t = data_->tables;
+  const state::Tables& t = reading.tables();
   memory.particles = static_cast<std::size_t>(t.particles.count());
   memory.springs = static_cast<std::size_t>(t.springs.count());
   const auto bytes = [](const auto& column) { return column.size() * sizeof(column[0]); };
@@ -475,9 +580,9 @@ World::Memory World::memory() const {
                                     [&](const auto& column) { memory.particle_bytes += bytes(column); });
   state::Springs::for_each_column(t.springs,
                                   [&](const auto& column) { memory.spring_bytes += bytes(column); });
-  memory.particle_bytes += bytes(data_->start_position) + bytes(data_->velocity_before) + bytes(data_->wind) +
-                           bytes(data_->law_force);
-  memory.spring_bytes += bytes(data_->spring_blocks.blocks);
+  memory.particle_bytes += bytes(reading->start_position) + bytes(reading->velocity_before) +
+                           bytes(reading->wind) + bytes(reading->law_force);
+  memory.spring_bytes += bytes(reading->spring_blocks.blocks);
   return memory;
 }
 

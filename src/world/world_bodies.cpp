@@ -2,13 +2,16 @@
 
 #include "hooke/world.h"
 
+#include "base/make_room.h"
 #include "build/build.h"
 #include "math/rotation.h"
 #include "solver/bodies.h"
 #include "state/body_frames.h"
 #include "state/parked_pairs.h"
+#include "world/claim.h"
 #include "world/hooks.h"
 #include "world/objects.h"
+#include "world/sleep.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -115,13 +118,18 @@ void BodyForceView::add_torque(std::size_t i, Vec3 torque) {
 }
 
 Result<BodyId> World::add_body(const BodyDesc& desc) {
-  Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Tables& t = claim.tables();
+  t.body_slots.make_room();
+  base::make_room(claim->bodies_placed);
   const Result<std::uint32_t> row = build::add_body(desc, t);
   if (!row) return row.error();
   const BodyId id = t.body_slots.add(row.value());
   t.bodies.slot[row.value()] = id.slot;
-  data_->bodies_placed.push_back(row.value());
-  data_->boxes_are_current = false;
+  claim->bodies_placed.push_back(row.value());
+  claim->boxes_are_current = false;
+  world::wake_near_body(row.value(), t);
   return id;
 }
 
@@ -130,14 +138,16 @@ bool World::remove(BodyId id) {
 }
 
 std::size_t World::remove(std::span<const BodyId> ids) {
-  Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return 0;
+  Tables& t = claim.tables();
   std::vector<std::uint8_t> goes(t.bodies.traits.size(), 0);
   std::size_t count = 0;
   for (const BodyId id : ids) {
     const std::uint32_t row = t.body_slots.find(id);
     if (row == kNone) continue;
     for (const std::uint32_t collider : state::colliders_of(t.bodies, row))
-      data_->broad_phase.remove(collider);
+      claim->broad_phase.remove(collider);
     t.body_slots.move(id.slot, kNone);
     goes[row] = 1;
     ++count;
@@ -145,7 +155,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   if (count == 0) return 0;
   world::wake_neighbors(t, [&](std::uint32_t row) { return goes[row] != 0; });
   world::remove_hooks_of(goes, t);
-  std::erase_if(data_->bodies_placed, [&](std::uint32_t row) { return goes[row] != 0; });
+  std::erase_if(claim->bodies_placed, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
   t.contacts = {};  // detect finds those that remain again
   t.inner_contacts.clear();
@@ -153,45 +163,53 @@ std::size_t World::remove(std::span<const BodyId> ids) {
 }
 
 Pose World::pose(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row == kNone ? Pose{} : state::frame_of_body(data_->tables.bodies, row);
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row == kNone ? Pose{} : state::frame_of_body(reading.tables().bodies, row);
 }
 
 Vec3 World::velocity(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row == kNone ? Vec3{} : data_->tables.bodies.motion[row].v;
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row == kNone ? Vec3{} : reading.tables().bodies.motion[row].v;
 }
 
 Vec3 World::angular_velocity(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row == kNone ? Vec3{} : angular_velocity_of(data_->tables.bodies, row);
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row == kNone ? Vec3{} : angular_velocity_of(reading.tables().bodies, row);
 }
 
 DVec3 World::center_of_mass(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row == kNone ? DVec3{} : data_->tables.bodies.center[row];
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row == kNone ? DVec3{} : reading.tables().bodies.center[row];
 }
 
 Real World::mass(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row == kNone ? Real(0) : data_->tables.bodies.mass[row].mass;
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row == kNone ? Real(0) : reading.tables().bodies.mass[row].mass;
 }
 
 bool World::asleep(BodyId id) const {
-  const std::uint32_t row = data_->tables.body_slots.find(id);
-  return row != kNone && data_->tables.bodies.asleep[row] != 0;
+  const world::Reading reading(data_);
+  const std::uint32_t row = reading.tables().body_slots.find(id);
+  return row != kNone && reading.tables().bodies.asleep[row] != 0;
 }
 
 std::vector<BodyContact> World::body_contacts() const {
+  const world::Reading reading(data_);
   std::vector<BodyContact> contacts;
-  state::for_each_manifold(data_->tables.pairs,
-                           [&](const state::Manifold& m) { append_contacts(data_->tables, m, contacts); });
+  state::for_each_manifold(reading.tables().pairs,
+                           [&](const state::Manifold& m) { append_contacts(reading.tables(), m, contacts); });
   sort_contacts(contacts);
   return contacts;
 }
 
 std::vector<BodyContact> World::body_contacts(BodyId id) const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   const std::uint32_t row = t.body_slots.find(id);
   std::vector<BodyContact> contacts;
   if (row == kNone) return contacts;
@@ -203,26 +221,32 @@ std::vector<BodyContact> World::body_contacts(BodyId id) const {
 }
 
 const Events& World::events() const {
-  return data_->events;
+  const world::Reading reading(data_);
+  return reading->events;
 }
 
 std::vector<BodyId> World::visitors(BodyId sensor) const {
+  const world::Reading reading(data_);
   std::vector<BodyId> visitors;
-  for (const SensorEvent& visit : data_->tables.visits) {
+  for (const SensorEvent& visit : reading.tables().visits) {
     if (visit.sensor == sensor) visitors.push_back(visit.visitor);
   }
   return visitors;
 }
 
 Result<void> World::apply_force(BodyId body, Vec3 force) {
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  return apply_force(body, force, data_->tables.bodies.center[row]);
+  return apply_force(body, force, claim.tables().bodies.center[row]);
 }
 
 Result<void> World::apply_force(BodyId body, Vec3 force, DVec3 at) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(force)) return world::not_finite("force");
   if (!is_finite(at)) return world::not_finite("at");
@@ -233,8 +257,10 @@ Result<void> World::apply_force(BodyId body, Vec3 force, DVec3 at) {
 }
 
 Result<void> World::apply_torque(BodyId body, Vec3 torque) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(torque)) return world::not_finite("torque");
   bodies.torque[row] += torque;
@@ -243,14 +269,18 @@ Result<void> World::apply_torque(BodyId body, Vec3 torque) {
 }
 
 Result<void> World::apply_impulse(BodyId body, Vec3 impulse) {
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  return apply_impulse(body, impulse, data_->tables.bodies.center[row]);
+  return apply_impulse(body, impulse, claim.tables().bodies.center[row]);
 }
 
 Result<void> World::apply_impulse(BodyId body, Vec3 impulse, DVec3 at) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(impulse)) return world::not_finite("impulse");
   if (!is_finite(at)) return world::not_finite("at");
@@ -262,8 +292,10 @@ Result<void> World::apply_impulse(BodyId body, Vec3 impulse, DVec3 at) {
 }
 
 Result<void> World::set_velocity(BodyId body, Vec3 velocity) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(velocity)) return world::not_finite("velocity");
   if (bodies.traits[row].kind != BodyKind::kStatic) bodies.motion[row].v = velocity;
@@ -272,8 +304,10 @@ Result<void> World::set_velocity(BodyId body, Vec3 velocity) {
 }
 
 Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(angular_velocity)) return world::not_finite("angular_velocity");
   if (bodies.traits[row].kind == BodyKind::kStatic) return {};
@@ -285,8 +319,10 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
 }
 
 Result<void> World::set_motion(BodyId body, const MotionDesc& motion) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (bodies.traits[row].kind != BodyKind::kKinematic) {
     return Error{ErrorCode::kOutOfRange, "body", "is not kinematic: only such a body moves as told"};
@@ -294,15 +330,17 @@ Result<void> World::set_motion(BodyId body, const MotionDesc& motion) {
   if (auto good = build::validate(motion, "motion"); !good) return good;
   bodies.path[row] = motion;
   bodies.path_start[row] = bodies.center[row];
-  bodies.path_time[row] = data_->tables.time;
+  bodies.path_time[row] = claim.tables().time;
   if (motion.kind == MotionDesc::Kind::kStill) bodies.motion[row].v = {};
   state::wake(bodies, row);
   return {};
 }
 
 Result<void> World::set_pose(BodyId body, const Pose& pose) {
-  Bodies& bodies = data_->tables.bodies;
-  const std::uint32_t row = data_->tables.body_slots.find(body);
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Bodies& bodies = claim.tables().bodies;
+  const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
   if (!is_finite(pose.position)) return world::not_finite("pose.position");
   const Quat rotation = normalize(pose.rotation);
@@ -314,10 +352,11 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.center[row] = pose.position + vector_cast<double>(rotate(rotation, bodies.mass[row].center));
   bodies.angular_momentum[row] = state::angular_momentum_of(bodies.mass[row], rotation, omega);
   bodies.path_start[row] = bodies.center[row];
-  bodies.path_time[row] = data_->tables.time;
-  data_->bodies_placed.push_back(row);
-  data_->boxes_are_current = false;
-  world::wake_neighbors(data_->tables, [row](std::uint32_t near) { return near == row; });
+  bodies.path_time[row] = claim.tables().time;
+  claim->bodies_placed.push_back(row);
+  claim->boxes_are_current = false;
+  world::wake_neighbors(claim.tables(), [row](std::uint32_t near) { return near == row; });
+  world::wake_near_body(row, claim.tables());
   state::wake(bodies, row);
   return {};
 }

@@ -46,6 +46,19 @@ struct Approach {
   DVec3 point = {};      ///< Where they will meet [m].
 };
 
+/// How a body that is awake was when the step began.
+struct StartOfBody {
+  std::uint32_t row = 0;
+  Real rest_time = Real(0);
+  DVec3 center = {};
+  Quat rotation = {};
+  Vec3 v = {};
+  Vec3 angular_momentum = {};
+  Vec3 angular_velocity = {};
+  Vec3 force = {};
+  Vec3 torque = {};
+};
+
 /// What contacts did to a body in a bundle, for each particle substep when there are several in a substep.
 struct ContactShare {
   std::uint32_t body = 0;  ///< Row.
@@ -125,7 +138,9 @@ struct WorldData {
   std::vector<std::uint8_t> touched;  ///< Of bodies: scratch of couple_articulations and share_out_contacts.
   std::vector<state::PositionLine>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
+  std::vector<state::VelocityLine> start_velocity;
   std::vector<DVec3> start_origin;
+  std::vector<StartOfBody> start_bodies;             ///< Those awake; see world::Stepping.
   std::vector<state::VelocityLine> velocity_before;  ///< Of rope nodes, before the substep's forces.
   std::vector<solver::AirLine> wind;                 ///< At each particle [m/s].
   std::vector<solver::LiquidLoad> liquid_loads;      ///< Of the object at hand.

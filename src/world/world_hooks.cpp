@@ -8,8 +8,10 @@
 #include "collision/particle_contacts.h"
 #include "solver/bundles.h"
 #include "solver/joint_rows.h"
+#include "world/claim.h"
 #include "world/hooks.h"
 #include "world/objects.h"
+#include "world/undo.h"
 #include "world/world_data.h"
 
 #include <algorithm>
@@ -81,24 +83,35 @@ HookId enter_hook(Tables& t, std::size_t row) {
 }  // namespace
 
 Result<HookId> World::add_hook(const HookDesc& desc) {
-  Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Tables& t = claim.tables();
+  world::Undo undo(t);
   const Result<void> added = build::add_hook(desc, t);
   if (!added) return added.error();
-  return enter_hook(t, t.hooks.size() - 1);
+  const HookId id = enter_hook(t, t.hooks.size() - 1);
+  undo.keep();
+  return id;
 }
 
 Result<std::vector<HookId>> World::sew(const SeamDesc& desc) {
-  Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
+  Tables& t = claim.tables();
+  world::Undo undo(t);
   const Result<std::uint32_t> sewn = build::sew(desc, t);
   if (!sewn) return sewn.error();
   std::vector<HookId> stitches;
   for (std::size_t row = t.hooks.size() - sewn.value(); row < t.hooks.size(); ++row)
     stitches.push_back(enter_hook(t, row));
+  undo.keep();
   return stitches;
 }
 
 bool World::remove(HookId id) {
-  Tables& t = data_->tables;
+  const world::Claim claim(data_);
+  if (!claim) return false;
+  Tables& t = claim.tables();
   const Hook* hook = find_hook(t, id);
   if (hook == nullptr) return false;
   world::wake_ends(*hook, t.bodies);
@@ -107,18 +120,21 @@ bool World::remove(HookId id) {
 }
 
 HookForce World::hook_force(HookId id) const {
-  const Hook* hook = find_hook(data_->tables, id);
+  const world::Reading reading(data_);
+  const Hook* hook = find_hook(reading.tables(), id);
   return hook == nullptr ? HookForce{} : HookForce{hook->force, hook->torque};
 }
 
 Real World::hook_value(HookId id) const {
-  const Hook* hook = find_hook(data_->tables, id);
+  const world::Reading reading(data_);
+  const Hook* hook = find_hook(reading.tables(), id);
   if (hook == nullptr || main_freedom(hook->kind) < 0) return Real(0);
   return static_cast<Real>(hook->value[main_freedom(hook->kind)]);
 }
 
 std::array<DVec3, 2> World::hook_anchors(HookId id) const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   const Hook* hook = find_hook(t, id);
   if (hook == nullptr) return {};
   const auto place = [&](const state::HookPlace& end) {
@@ -129,7 +145,8 @@ std::array<DVec3, 2> World::hook_anchors(HookId id) const {
 }
 
 std::vector<std::string> World::connection_points(const HookEnd& of) const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   const std::uint32_t object = state::object_row(t, of.point);
   const std::uint32_t body = t.body_slots.find(of.body);
   std::vector<std::string> names;
@@ -145,7 +162,8 @@ std::vector<std::string> World::connection_points(const HookEnd& of) const {
 }
 
 Result<DVec3> World::find_place(const HookEnd& end) const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   const Result<build::FoundEnd> found = build::find_end(end, {}, "end", t);
   if (!found) return found.error();
   const std::uint32_t body = found.value().place.body;
@@ -156,19 +174,23 @@ Result<DVec3> World::find_place(const HookEnd& end) const {
 }
 
 Real World::hook_gap(HookId id) const {
-  const Tables& t = data_->tables;
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
   const Hook* hook = find_hook(t, id);
   return hook == nullptr ? Real(0) : static_cast<Real>(world::gap_of(*hook, t));
 }
 
 const std::vector<HookId>& World::broken_hooks() const {
-  return data_->broken_hooks;
+  const world::Reading reading(data_);
+  return reading->broken_hooks;
 }
 
 Result<void> World::set_motor(HookId id, const HookMotor& motor) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   const Result<void> good = build::validate(motor);
   if (!good) return good.error();
-  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+  return change_hook(claim.tables(), id, [&](Hook& hook) -> Result<void> {
     if (hook.kind == HookKind::kBall) {
       for (int i = 3; i < 6; ++i) hook.freedom[i].motor = {Real(0), motor.max_force};
       hook.freedom[3].motor.speed = motor.speed;
@@ -187,9 +209,11 @@ Result<void> World::set_motor(HookId id, const HookMotor& motor) {
 }
 
 Result<void> World::set_spring(HookId id, const HookSpring& spring) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   const Result<void> good = build::validate(spring);
   if (!good) return good.error();
-  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+  return change_hook(claim.tables(), id, [&](Hook& hook) -> Result<void> {
     if (hook.kind == HookKind::kBall) {
       for (int i = 3; i < 6; ++i) hook.freedom[i].spring = {spring.stiffness, spring.damping};
       return {};
@@ -208,8 +232,10 @@ Result<void> World::set_spring(HookId id, const HookSpring& spring) {
 }
 
 Result<void> World::set_steering(HookId id, Real angle) {
+  const world::Claim claim(data_);
+  if (!claim) return claim.error();
   if (!std::isfinite(angle)) return world::not_finite("angle");
-  return change_hook(data_->tables, id, [&](Hook& hook) -> Result<void> {
+  return change_hook(claim.tables(), id, [&](Hook& hook) -> Result<void> {
     if (hook.kind != HookKind::kWheel) return no_such_freedom("steering");
     hook.freedom[3].spring.target = angle;
     return {};

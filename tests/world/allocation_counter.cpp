@@ -9,9 +9,13 @@ namespace {
 
 std::atomic<bool> counting{false};
 std::atomic<std::uint64_t> calls{0};
+std::atomic<std::uint64_t> failing{0};  // the number of the call that fails
 
 void* allocate(std::size_t size, std::size_t alignment) {
-  if (counting.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+  if (counting.load(std::memory_order_relaxed) &&
+      calls.fetch_add(1, std::memory_order_relaxed) == failing.load(std::memory_order_relaxed)) {
+    return nullptr;
+  }
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
   return std::aligned_alloc(alignment, whole > 0 ? whole : alignment);
 }
@@ -28,8 +32,9 @@ constexpr std::size_t kUsual = __STDCPP_DEFAULT_NEW_ALIGNMENT__;
 
 namespace hooke::test {
 
-AllocationCounter::AllocationCounter() {
+AllocationCounter::AllocationCounter(std::uint64_t most) {
   calls = 0;
+  failing = most;
   counting = true;
 }
 AllocationCounter::~AllocationCounter() {

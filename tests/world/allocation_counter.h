@@ -8,7 +8,8 @@ namespace hooke::test {
 /// program that uses it has operators new of its own (allocation_counter.cpp).
 class AllocationCounter {
  public:
-  AllocationCounter();
+  /// The call after the first `most` fails, and only that one.
+  explicit AllocationCounter(std::uint64_t most = ~std::uint64_t{0});
   ~AllocationCounter();
   AllocationCounter(const AllocationCounter&) = delete;
   AllocationCounter& operator=(const AllocationCounter&) = delete;

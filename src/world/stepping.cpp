@@ -1,0 +1,102 @@
+#include "world/stepping.h"
+
+#include "state/check_tables.h"
+#include "world/events.h"
+
+#include <algorithm>
+
+namespace hooke::world {
+
+namespace {
+
+void note_start(WorldData& world) {
+  const state::Tables& t = world.tables;
+  world.start_position = t.particles.position;
+  world.start_velocity = t.particles.velocity;
+  world.start_origin.clear();
+  for (const state::Deformable& object : t.objects) world.start_origin.push_back(object.origin);
+  const state::Bodies& b = t.bodies;
+  world.start_bodies.clear();
+  for (const std::uint32_t row : t.moving_bodies) {
+    if (b.asleep[row] != 0) continue;
+    world.start_bodies.push_back({.row = row,
+                                  .rest_time = b.rest_time[row],
+                                  .center = b.center[row],
+                                  .rotation = b.rotation[row],
+                                  .v = b.motion[row].v,
+                                  .angular_momentum = b.angular_momentum[row],
+                                  .angular_velocity = b.angular_velocity[row],
+                                  .force = b.force[row],
+                                  .torque = b.torque[row]});
+  }
+}
+
+void put_bodies_back(WorldData& world) {
+  state::Bodies& b = world.tables.bodies;
+  for (const std::uint32_t row : world.tables.moving_bodies) {
+    // Those that slept are where they were, and stood still.
+    b.motion[row] = {.inverse_mass = b.motion[row].inverse_mass};
+    b.free_motion[row] = {};
+    b.steady_turn[row] = {};
+    b.angular_momentum[row] = b.angular_velocity[row] = {};
+    b.asleep[row] = 1;
+  }
+  for (const StartOfBody& start : world.start_bodies) {
+    const std::uint32_t row = start.row;
+    b.rest_time[row] = start.rest_time;
+    b.center[row] = start.center;
+    b.rotation[row] = start.rotation;
+    b.motion[row].v = start.v;
+    b.angular_momentum[row] = start.angular_momentum;
+    b.angular_velocity[row] = start.angular_velocity;
+    b.force[row] = start.force;
+    b.torque[row] = start.torque;
+    b.asleep[row] = 0;
+  }
+}
+
+void put_points_back(WorldData& world) {
+  state::Tables& t = world.tables;
+  std::copy(world.start_position.begin(), world.start_position.end(), t.particles.position.begin());
+  std::copy(world.start_velocity.begin(), world.start_velocity.end(), t.particles.velocity.begin());
+  for (std::size_t i = 0; i < t.objects.size(); ++i) t.objects[i].origin = world.start_origin[i];
+}
+
+/// All that is found or derived anew from where things are; it may have been left half done.
+void forget_contacts(WorldData& world) {
+  state::Tables& t = world.tables;
+  t.pairs = {};
+  t.contacts = {};
+  t.inner_contacts.clear();
+  t.rope_contacts.clear();
+  for (state::Hook& hook : t.hooks) hook.broken = false;
+  ++t.revision;
+  ++t.hook_revision;
+  world.broad_phase_stale = true;
+  world.bodies_placed.clear();
+  world.boxes_are_current = false;
+  clear_events(world.events);
+}
+
+}  // namespace
+
+Stepping::Stepping(WorldData& world) : world_(world) {
+  state::check_tables(world.tables);  // after the calls since the last step
+  note_start(world);
+  world.stepping = true;
+}
+
+void Stepping::end() {
+  ended_ = true;
+  state::check_tables(world_.tables);
+}
+
+Stepping::~Stepping() {
+  world_.stepping = false;
+  if (ended_) return;
+  put_bodies_back(world_);
+  put_points_back(world_);
+  forget_contacts(world_);
+}
+
+}  // namespace hooke::world
