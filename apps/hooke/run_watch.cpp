@@ -42,6 +42,9 @@ constexpr std::array kCounts = {
     Count{&StepReport::chains_unconverged,
           "ropes stayed more than 1 % off their length: Newton's steps did not converge",
           "more particle_substeps, or a load that is not as heavy", true},
+    Count{&StepReport::pairs_left_out,
+          "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
+          "places that are not the same for many bodies"},
 };
 
 double in_double(Real value) {

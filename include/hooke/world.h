@@ -81,8 +81,9 @@ struct HookForce {
 struct StepReport {
   bool moved = false;  ///< False: `dt` was not a positive finite number, or there was no world to step, or it
                        ///< was in a step already.
-  std::uint32_t contacts = 0;  ///< Points that touched something in the last substep.
-  std::uint32_t pairs = 0;     ///< Shapes of bodies that are near each other.
+  std::uint32_t contacts = 0;        ///< Points that touched something in the last substep.
+  std::uint32_t pairs = 0;           ///< Shapes of bodies that are near each other.
+  std::uint32_t pairs_left_out = 0;  ///< Of bodies deep in several others: all but those with the 8 nearest.
   std::uint32_t bodies_awake = 0;
   std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
   std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.

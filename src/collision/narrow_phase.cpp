@@ -611,22 +611,6 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   return contact;
 }
 
-/// Closes the gaps that manifolds without points leave; those of lively pairs stay.
-void remove_empty(state::Pairs& pairs) {
-  std::uint32_t kept = 0;
-  for (Pair& pair : pairs.pair) {
-    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
-    const std::uint32_t first = kept;
-    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
-      if (pairs.manifold[i].point_count == 0 && !pair.lively) continue;
-      pairs.manifold[kept++] = pairs.manifold[i];
-    }
-    pair.first_manifold = first;
-    pair.manifold_count = kept - first;
-  }
-  pairs.manifold.resize(kept);
-}
-
 /// Removes the manifolds that others of the same collider cover. Returns how many.
 std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
   auto& [supports, contacts, found, ghosts] = scratch;

@@ -98,4 +98,7 @@ class NarrowPhase {
   std::vector<state::Pair> merged_;
 };
 
+/// Closes the gaps that manifolds without points leave; those of lively pairs stay.
+void remove_empty(state::Pairs& pairs);
+
 }  // namespace hooke::collision

@@ -3,6 +3,21 @@
 
 namespace hooke::collision {
 
+void remove_empty(state::Pairs& pairs) {
+  std::uint32_t kept = 0;
+  for (state::Pair& pair : pairs.pair) {
+    const std::uint32_t end = pair.first_manifold + pair.manifold_count;
+    const std::uint32_t first = kept;
+    for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
+      if (pairs.manifold[i].point_count == 0 && !pair.lively) continue;
+      pairs.manifold[kept++] = pairs.manifold[i];
+    }
+    pair.first_manifold = first;
+    pair.manifold_count = kept - first;
+  }
+  pairs.manifold.resize(kept);
+}
+
 void NarrowPhase::merge_pairs(std::span<const ColliderPair> found, std::span<const std::uint8_t> asked,
                               state::Pairs& pairs) {
   merged_.clear();

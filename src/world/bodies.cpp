@@ -2,6 +2,7 @@
 
 #include "collision/shape_bounds.h"
 #include "solver/coupled_articulations.h"
+#include "solver/crowds.h"
 #include "solver/forces.h"
 #include "state/body_frames.h"
 #include "state/parked_pairs.h"
@@ -152,6 +153,7 @@ void find_body_contacts(WorldData& world, Real dt) {
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) {
     return !may_collide(world, pair) || is_parked(t, pair);
   });
+  world.crowds.thin_out(t.bodies, t.colliders, world.pairs_found);
   world.narrow_phase.merge_pairs(world.pairs_found, world.is_stirred, t.pairs);
   world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
                                       {.dt = dt,
@@ -159,6 +161,7 @@ void find_body_contacts(WorldData& world, Real dt) {
                                        .in_company = world.joints.in_ragdoll,
                                        .stirred = world.stirred},
                                       t.pairs);
+  world.crowds.thin_out(t.bodies, t.pairs);
   if (t.desc.sleeping) state::reserve_parking(t.pairs, world.parking);
   if (any_sleeps(world)) state::park_pairs(t.bodies, t.colliders, t.pairs, world.parking);
 }
@@ -227,6 +230,14 @@ void renew_lively_contacts(WorldData& world, Real h) {
   world.narrow_phase.update_lively_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
                                              t.pairs);
   solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
+}
+
+void slow_crowds(WorldData& world) {
+  const std::span<const std::uint32_t> begins = world.crowds.begins();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const auto crowd = world.crowds.members().subspan(begins[i], begins[i + 1] - begins[i]);
+    solver::slow_crowd(crowd, world.tables.bodies);
+  }
 }
 
 void finish_body_contacts(WorldData& world) {

@@ -4,6 +4,7 @@
 #include "solver/shape_matching.h"
 #include "solver/springs.h"
 #include "solver/wind.h"
+#include "state/check_tables.h"
 #include "world/access.h"
 #include "world/body_forces.h"
 
@@ -201,6 +202,7 @@ void refresh_clamps(WorldData& world) {
 }  // namespace
 
 void refresh_derived(WorldData& world) {
+  state::check_tables(world.tables);  // after the calls since the last step
   state::Tables& tables = world.tables;
   refresh_clamps(world);
   if (world.derived_revision == tables.revision) return;
@@ -235,6 +237,7 @@ void refresh_derived(WorldData& world) {
 }
 
 void prepare_rows(WorldData& world, Real h) {
+  state::check_tables(world.tables);  // after all contacts were found
   solver::prepare_springs(world.spring_blocks.materials, h);
   solver::prepare_hinges(world.hinge_blocks, h);
   solver::prepare_bends(world.bend_blocks, h);
@@ -433,6 +436,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   report.contacts += tables.pairs.parked.contacts;
   for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
   report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.parked.pair.size());
+  report.pairs_left_out = world.crowds.left_out();
   report.bodies_awake = static_cast<std::uint32_t>(
       std::count_if(world.awake.begin(), world.awake.end(),
                     [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
@@ -442,6 +446,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   tables.substep = dt / substeps;
   ++tables.step_count;
   report.moved = true;
+  state::check_tables(tables);
 }
 
 }  // namespace hooke::world

@@ -25,7 +25,6 @@
 #include "solver/joints.h"
 #include "solver/repulsion.h"
 #include "solver/wide/wide.h"
-#include "state/check_tables.h"
 #include "world/bodies.h"
 #include "world/body_forces.h"
 #include "world/claim.h"
@@ -136,6 +135,7 @@ void substep(WorldData& w, int i, double time, Real h) {
     });
   }
   solver::solve_hard_islands(*w.pool, step, w.hard_islands, w.body_contacts, bodies);
+  world::slow_crowds(w);
   solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   solver::lead_from_hits(bodies, w.hits);
   for (int k = 1; k <= particle_substeps; ++k) {
@@ -147,6 +147,7 @@ void substep(WorldData& w, int i, double time, Real h) {
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(
       w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });
+  world::slow_crowds(w);
 }
 
 void finish_bodies(WorldData& w, double dt) {
@@ -185,7 +186,6 @@ StepReport World::step(Real dt) {
   const Real h = dt / static_cast<Real>(substeps);
 
   detect(w, frame);
-  state::check_tables(w.tables);
   report.detect_ms = watch.lap_ms();
   prepare(w, frame, h);
   report.prepare_ms = watch.lap_ms();

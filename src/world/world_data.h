@@ -5,6 +5,7 @@
 #include "base/disjoint_sets.h"
 #include "collision/broad_phase.h"
 #include "collision/continuous.h"
+#include "collision/crowds.h"
 #include "collision/narrow_phase.h"
 #include "collision/particle_contacts.h"
 #include "collision/rope_contacts.h"
@@ -113,6 +114,7 @@ struct WorldData {
   std::vector<std::uint32_t> stirred;  ///< Rows of those, and of bodies placed: all that may meet others now.
   std::vector<std::uint8_t> is_stirred;  ///< By collider; none where nobody sleeps, all being stirred.
   std::vector<collision::ColliderPair> pairs_found;
+  collision::Crowds crowds;
   collision::NarrowPhase narrow_phase;
   state::ParkingScratch parking;
   collision::ParticleContactScratch particle_contacts;
