@@ -10,12 +10,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace {
 
-void call(void (*check)(std::string), const std::uint8_t* data, std::size_t size) {
-  check({reinterpret_cast<const char*>(data), size});
-}
-
-void call(void (*check)(std::span<const std::byte>), const std::uint8_t* data, std::size_t size) {
-  check({reinterpret_cast<const std::byte*>(data), size});
+/// Text, or bytes: what the check takes.
+template <class Input>
+void call(void (*check)(Input), const std::uint8_t* data, std::size_t size) {
+  using Item = typename Input::value_type;
+  check(Input(reinterpret_cast<const Item*>(data), size));
 }
 
 }  // namespace
