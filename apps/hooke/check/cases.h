@@ -119,6 +119,19 @@ Rows painleve_rod(const CheckSetting& setting);
 Rows leaning_ladder(const CheckSetting& setting);
 Rows resisted_balls(const CheckSetting& setting);
 
+// cases_modes.cpp: chains and springs that swing
+Rows hanging_chain_modes(const CheckSetting& setting);
+Rows falling_folded_chain(const CheckSetting& setting);
+Rows swinging_spring(const CheckSetting& setting);
+
+// cases_spin.cpp: tops, crossed shafts, rolling balls, wobbling discs, stacked blocks
+Rows steady_precession(const CheckSetting& setting);
+Rows hookes_joint(const CheckSetting& setting);
+Rows half_ball_hit(const CheckSetting& setting);
+Rows ball_on_turntable(const CheckSetting& setting);
+Rows eulers_disk(const CheckSetting& setting);
+Rows overhanging_blocks(const CheckSetting& setting);
+
 // cases_rattleback.cpp
 Rows rattleback(const CheckSetting& setting);
 
