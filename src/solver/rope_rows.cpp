@@ -114,6 +114,16 @@ wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, doub
           true};
 }
 
+/// A force across the normal of before, across the one of now: of the same size, as its node has gone round
+/// what it touches; but of a new place only what is across there too.
+V across_anew(V n, V force) {
+  constexpr double kSamePlace = 0.95;  // cosine of the turn
+  const V now = across(n, force);
+  const double size = length(now);
+  const double before = length(force);
+  return size > kSamePlace * before ? (before / size) * now : now;
+}
+
 RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Contacts& contacts = tables.contacts;
   RopeTouch t;
@@ -127,11 +137,13 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
   t.separation = static_cast<double>(contacts.separation[row]);
   t.friction = static_cast<double>(contacts.friction[row]);
   t.n0 = h * static_cast<double>(contacts.normal_force[row]);
-  t.f0 = across(t.n, h * vector_cast<double>(contacts.friction_force[row]));
+  t.f0 = across_anew(t.n, h * vector_cast<double>(contacts.friction_force[row]));
   t.active = t.n0 > 0 || t.separation <= 0;
   const double size = length(t.f0);
   t.normal = t.n0;
   if (size > 0 && size >= kSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
+  // Held in the first solution, a whole rope would stop.
+  if (!(t.friction > 0)) t.slides = true;
   return t;
 }
 
