@@ -22,8 +22,9 @@ struct Placement {
   [[nodiscard]] DVec3 point(DVec3 own) const { return position + rotate(rotation, own); }
   /// A direction, velocity or force of the arrangement, in the world.
   [[nodiscard]] DVec3 direction(DVec3 own) const { return rotate(rotation, own); }
-  [[nodiscard]] Vec3 direction(Vec3 own) const {
-    return vector_cast<Real>(rotate(rotation, vector_cast<double>(own)));
+  template <class T>
+  [[nodiscard]] Vector3<T> direction(Vector3<T> own) const {
+    return vector_cast<T>(rotate(rotation, vector_cast<double>(own)));
   }
   /// A point of the world, in the arrangement's frame [m].
   [[nodiscard]] DVec3 own_point(DVec3 world) const { return rotate(conjugate(rotation), world - position); }
