@@ -1,8 +1,10 @@
 #include "hooke/command_line.h"
 #include "hooke/commands.h"
+#include "hooke/machine.h"
 
 #include "process/new_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -38,6 +40,12 @@ int print_help() {
   std::printf("hooke: a physics engine for rigid bodies, ropes, cloth and jelly in one world\n\n");
   std::printf("Usage: hooke COMMAND [ARGUMENTS]\n       hooke COMMAND --help\n\nCommands:\n");
   for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.summary);
+  std::printf("\nOf every command:\n");
+  std::printf(
+      "  --instruction-set NAME  steps use those instructions, not the widest; the bits are the same:\n");
+  std::printf("                         ");
+  for (const std::string& set : instruction_sets()) std::printf(" %s", set.c_str());
+  std::printf("\n");
   std::printf(
       "\nExit codes:\n"
       "  0  good\n"
@@ -49,6 +57,21 @@ int print_help() {
       "  hooke render scenes/rope.json -o rope.png --at 1\n"
       "  hooke validate scenes/rope.json\n");
   return kGood;
+}
+
+/// Takes `--instruction-set NAME` out of the arguments, wherever it stands, and does what it says.
+bool choose_instructions(std::vector<std::string>& arguments) {
+  const auto option = std::find(arguments.begin(), arguments.end(), "--instruction-set");
+  if (option == arguments.end()) return true;
+  const std::string name = option + 1 == arguments.end() ? "" : option[1];
+  const Result<void> used =
+      name.empty() ? Error{ErrorCode::kOutOfRange, "", "needs a name"} : use_instruction_set(name);
+  if (!used) {
+    std::fprintf(stderr, "hooke: --instruction-set %s\n", used.error().message.c_str());
+    return false;
+  }
+  arguments.erase(option, option + 2);
+  return true;
 }
 
 int dispatch(Arguments arguments) {
@@ -72,8 +95,9 @@ int dispatch(Arguments arguments) {
 int main(int argument_count, char** argument_values) {
   hooke::process::remove_unfinished_files_on_signals();
   try {
-    const std::vector<std::string> arguments(argument_values + (argument_count > 0 ? 1 : 0),
-                                             argument_values + argument_count);
+    std::vector<std::string> arguments(argument_values + (argument_count > 0 ? 1 : 0),
+                                       argument_values + argument_count);
+    if (!hooke::app::choose_instructions(arguments)) return hooke::app::kBadInput;
     const int code = hooke::app::dispatch(arguments);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
     std::fputs("standard output: cannot be written\n", stderr);

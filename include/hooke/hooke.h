@@ -3,6 +3,8 @@
 #include "hooke/desc.h"
 #include "hooke/event.h"
 #include "hooke/id.h"
+#include "hooke/limits.h"
+#include "hooke/machine.h"
 #include "hooke/math.h"
 #include "hooke/placement.h"
 #include "hooke/query.h"

@@ -3,15 +3,19 @@
 #include <cstdint>
 
 /// \file
-/// Handles. A handle is a value: copy it, compare it, store it in a file. It is never a pointer, so it can be
-/// stale but it cannot dangle. A default-constructed handle refers to nothing.
+/// Handles. A handle is a value: copy it, compare it. It is never a pointer, so it can be stale but it cannot
+/// dangle. A default-constructed handle refers to nothing. One of another World is refused like a stale one.
+///
+/// For a file, or for another World that the same calls built, take slot and generation, and leave `world` 0.
 
 namespace hooke {
 
 template <class Tag>
 struct Id {
   std::uint32_t slot = 0;        ///< Row of the slot table plus one; 0 means "none".
-  std::uint32_t generation = 0;  ///< Grows each time the slot is reused.
+  std::uint32_t generation = 0;  ///< Of objects made since a World was last restored.
+  std::uint32_t world = 0;  ///< Which World of this process made it; 0, which no World gives: any. State and
+                            ///< hashes do not know it.
 
   friend constexpr bool operator==(Id, Id) = default;
   explicit constexpr operator bool() const { return slot != 0; }
@@ -39,21 +43,22 @@ struct PointRef {
   std::uint32_t slot = 0;
   std::uint32_t generation = 0;
   std::uint32_t index = 0;
+  std::uint32_t world = 0;  ///< As of Id.
 
   friend constexpr bool operator==(PointRef, PointRef) = default;
 };
 
 constexpr PointRef point(ParticlesId id, std::uint32_t index) {
-  return {PointRef::Kind::kParticles, id.slot, id.generation, index};
+  return {PointRef::Kind::kParticles, id.slot, id.generation, index, id.world};
 }
 constexpr PointRef point(RopeId id, std::uint32_t index) {
-  return {PointRef::Kind::kRope, id.slot, id.generation, index};
+  return {PointRef::Kind::kRope, id.slot, id.generation, index, id.world};
 }
 constexpr PointRef point(ClothId id, std::uint32_t index) {
-  return {PointRef::Kind::kCloth, id.slot, id.generation, index};
+  return {PointRef::Kind::kCloth, id.slot, id.generation, index, id.world};
 }
 constexpr PointRef point(SolidId id, std::uint32_t index) {
-  return {PointRef::Kind::kSolid, id.slot, id.generation, index};
+  return {PointRef::Kind::kSolid, id.slot, id.generation, index, id.world};
 }
 
 /// One shape of a body.

@@ -368,7 +368,9 @@ class World {
   /// The wind at a place and time [m/s].
   [[nodiscard]] Vec3 wind_at(DVec3 place, double time) const;
 
-  /// Hash of the full dynamic state. Equal hashes mean bit-identical state.
+  /// Of all that the bits of later steps depend upon: what moves, what it is made of, what acts on it, forces
+  /// that wait, and what contacts and hooks remember. Worlds with equal hashes go on alike, whatever their
+  /// workers, as far as the same is done to them. Not covered: what functions of force laws hold and do.
   [[nodiscard]] std::uint64_t state_hash() const;
 
   /// A copy of everything but the workers. Empty during a step.

@@ -31,26 +31,22 @@ struct Part {
   MassProperties solid;  // of density 1, in the body's frame
 };
 
-bool is_rotation(Quat q) {
-  const Real squared = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  return std::isfinite(squared) && squared > Real(0);
-}
-
 void check_surface(const ContactDesc& contact, const std::string& prefix, Checks& checks) {
   const auto number = [](Real value) { return static_cast<double>(value); };
   checks.in_range(prefix + "friction", number(contact.friction), 0, 100)
       .in_range(prefix + "restitution", number(contact.restitution), 0, 1)
-      .not_negative(prefix + "rolling_friction", number(contact.rolling_friction))
-      .not_negative(prefix + "spinning_friction", number(contact.spinning_friction))
-      .finite(prefix + "surface_velocity", contact.surface_velocity);
+      .up_to(prefix + "rolling_friction", number(contact.rolling_friction), limits::kSize)
+      .up_to(prefix + "spinning_friction", number(contact.spinning_friction), limits::kSize)
+      .velocity(prefix + "surface_velocity", contact.surface_velocity);
   if (!contact.static_friction) return;
   checks.in_range(prefix + "static_friction", number(*contact.static_friction), number(contact.friction),
                   100);
 }
 
 void check_shape(const Shape& shape, const std::string& prefix, Checks& checks) {
+  checks.require(shape.kind <= ShapeKind::kCompound, prefix + "kind", "must be one of ShapeKind");
   const auto size = [&](const char* field, Real value) {
-    checks.in_range(prefix + field, static_cast<double>(value), 1e-6, 1e6);
+    checks.size(prefix + field, static_cast<double>(value));
   };
   switch (shape.kind) {
     case ShapeKind::kHalfSpace:
@@ -326,26 +322,27 @@ Result<void> validate(const Shape& shape) {
 
 Result<void> validate(const BodyDesc& body) {
   Checks checks("body");
-  checks.place("position", body.position)
+  checks.require(body.kind <= BodyKind::kDynamic, "kind", "must be one of BodyKind")
+      .place("position", body.position)
       .require(is_rotation(body.rotation), "rotation", "must be finite and not zero")
-      .finite("velocity", body.velocity)
-      .finite("angular_velocity", body.angular_velocity)
+      .velocity("velocity", body.velocity)
+      .within("angular_velocity", body.angular_velocity, limits::kSpin)
       .in_range("linear_damping", static_cast<double>(body.linear_damping), 0, 1e6)
       .in_range("angular_damping", static_cast<double>(body.angular_damping), 0, 1e6)
-      .finite("gravity_scale", static_cast<double>(body.gravity_scale))
+      .in_range("gravity_scale", static_cast<double>(body.gravity_scale), -1e6, 1e6)
       .in_range("drag_coefficient", static_cast<double>(body.drag_coefficient), 0, 1e6)
       .in_range("magnus_coefficient", static_cast<double>(body.magnus_coefficient), -1e6, 1e6)
       .require(length(vector_cast<double>(body.dipole_moment)) <= 1e9, "dipole_moment",
                "must be at most 1e9 long")
       .require(body.hit_speed >= Real(0), "hit_speed", static_cast<double>(body.hit_speed),
                "must be zero, positive or infinite");
-  if (body.mass) checks.in_range("mass", static_cast<double>(*body.mass), 1e-9, 1e12);
+  if (body.mass) checks.mass("mass", static_cast<double>(*body.mass));
   const std::vector<PartDesc> parts = parts_of(body);
   checks.require(!parts.empty(), "parts", "needs at least one part");
   check_connection_points(checks, body.connection_points, 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string prefix = prefix_of(body, i);
-    checks.finite(prefix + "position", parts[i].position)
+    checks.within(prefix + "position", parts[i].position, limits::kSize)
         .require(is_rotation(parts[i].rotation), prefix + "rotation", "must be finite and not zero")
         .in_range(prefix + "density", static_cast<double>(parts[i].density), 1e-6, 1e9);
     check_shape(parts[i].shape, prefix + "shape.", checks);

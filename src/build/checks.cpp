@@ -29,13 +29,13 @@ std::string indexed(const std::string& name, std::size_t i) {
 
 Checks& Checks::require(bool good, const std::string& field, double value, const char* must) {
   if (good || error_) return *this;
-  error_ = Error{ErrorCode::kOutOfRange, object_ + "." + field, number(value) + " is out of range, " + must};
+  error_ = Error{ErrorCode::kOutOfRange, place_of(field), number(value) + " is out of range, " + must};
   return *this;
 }
 
 Checks& Checks::require(bool good, const std::string& field, const char* must) {
   if (good || error_) return *this;
-  error_ = Error{ErrorCode::kOutOfRange, object_ + "." + field, must};
+  error_ = Error{ErrorCode::kOutOfRange, place_of(field), must};
   return *this;
 }
 
@@ -45,6 +45,16 @@ Checks& Checks::in_range(const std::string& field, double value, double least, d
   if ((value >= std::min(least, real(least)) && value <= std::max(most, real(most))) || error_) return *this;
   const std::string must = "must be " + number(least) + " to " + number(most);
   return require(false, field, value, must.c_str());
+}
+
+Checks& Checks::within(const std::string& field, DVec3 value, double most, const char* unit) {
+  const double bound = as_real(most);
+  const bool good = std::abs(value.x) <= bound && std::abs(value.y) <= bound && std::abs(value.z) <= bound;
+  if (good || error_) return *this;
+  const std::string given = "[" + number(value.x) + ", " + number(value.y) + ", " + number(value.z) + "]";
+  error_ = Error{ErrorCode::kOutOfRange, place_of(field),
+                 given + " is out of range, must be finite and within " + number(most) + unit};
+  return *this;
 }
 
 }  // namespace hooke::build

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "hooke/limits.h"
 #include "hooke/math.h"
 #include "hooke/result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -28,7 +30,12 @@ class Checks {
   }
   /// A stiffness: positive, or kRigid.
   Checks& stiffness(const std::string& field, double value) {
-    return require(value > 0, field, value, "must be positive, or rigid");
+    return require(value > 0 && (value <= as_real(limits::kStiffness) || std::isinf(value)), field, value,
+                   value > 0 ? "must be at most 1e30, or rigid" : "must be positive, or rigid");
+  }
+  /// The same, or zero.
+  Checks& stiffness_or_none(const std::string& field, double value) {
+    return value == 0 ? *this : stiffness(field, value);
   }
   Checks& in_range(const std::string& field, double value, double least, double most);
   Checks& finite(const std::string& field, double value) {
@@ -38,20 +45,52 @@ class Checks {
   Checks& finite(const std::string& field, Vector3<T> value) {
     return require(is_finite(value), field, "must be finite");
   }
-  /// World coordinates beyond this lose more than the engine's accuracy [m].
+  /// Each component from -most to most.
+  Checks& within(const std::string& field, DVec3 value, double most, const char* unit = "");
+  Checks& within(const std::string& field, Vector3<float> value, double most, const char* unit = "") {
+    return within(field, vector_cast<double>(value), most, unit);
+  }
   Checks& place(const std::string& field, DVec3 value) {
-    const double most = 1e9;
-    const bool good = std::abs(value.x) <= most && std::abs(value.y) <= most && std::abs(value.z) <= most;
-    return require(good, field, "must be finite and within 1e9 m of the origin");
+    return within(field, value, limits::kPlace, " m of the origin");
+  }
+  template <class T>
+  Checks& velocity(const std::string& field, Vector3<T> value) {
+    return within(field, vector_cast<double>(value), limits::kSpeed, " m/s");
+  }
+  Checks& size(const std::string& field, double value) {
+    return in_range(field, value, limits::kLeastSize, limits::kSize);
+  }
+  Checks& mass(const std::string& field, double value) {
+    return in_range(field, value, limits::kLeastMass, limits::kMass);
+  }
+  /// Zero or more.
+  Checks& up_to(const std::string& field, double value, double most) {
+    return in_range(field, value, 0, most);
   }
 
   [[nodiscard]] bool good() const { return !error_.has_value(); }
   [[nodiscard]] Result<void> result() const { return error_ ? Result<void>(*error_) : Result<void>(); }
 
  private:
-  std::string object_;
+  /// The number of type Real that is nearest to a bound, above it or not, meets it too.
+  static double as_real(double bound) {
+    return std::max(bound, static_cast<double>(static_cast<Real>(bound)));
+  }
+  [[nodiscard]] std::string place_of(const std::string& field) const {
+    return object_.empty() ? field : object_ + "." + field;
+  }
+
+  std::string object_;  ///< Empty where fields stand for themselves.
   std::optional<Error> error_;
 };
+
+/// Whether it can be normalized.
+[[nodiscard]] inline bool is_rotation(Quat q) {
+  const auto square = [](Real part) { return static_cast<double>(part) * static_cast<double>(part); };
+  const double squared = square(q.x) + square(q.y) + square(q.z) + square(q.w);
+  // Of the squares that are taken in float.
+  return squared >= 1e-30 && squared <= 1e30;
+}
 
 /// "has no edge 'to', there are left, right".
 [[nodiscard]] Error no_such_name(const char* what, const std::string& name,

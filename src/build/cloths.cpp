@@ -39,33 +39,34 @@ Checks check(const ClothDesc& desc, std::size_t count, bool is_grid) {
     checks.place("corner", desc.corner)
         .finite("column_direction", desc.column_direction)
         .finite("row_direction", desc.row_direction)
-        .positive("width", static_cast<double>(desc.width))
-        .positive("height", static_cast<double>(desc.height));
-    const Vec3 normal = cross(normalize(desc.column_direction), normalize(desc.row_direction));
-    checks.require(length(normal) > Real(1e-3), "row_direction",
-                   "must not be zero or along column_direction");
+        .size("width", static_cast<double>(desc.width))
+        .size("height", static_cast<double>(desc.height));
+    const DVec3 normal = cross(normalize(vector_cast<double>(desc.column_direction)),
+                               normalize(vector_cast<double>(desc.row_direction)));
+    checks.require(length(normal) > 1e-3, "row_direction", "must not be zero or along column_direction");
   }
-  checks.place("position", desc.position)
-      .positive("areal_density", static_cast<double>(desc.areal_density))
-      .positive("thickness", static_cast<double>(desc.thickness))
+  checks.require(desc.bend <= ClothDesc::Bend::kIsometric, "bend", "must be one of ClothDesc::Bend")
+      .place("position", desc.position)
+      .require(is_rotation(desc.rotation), "rotation", "must be finite and not zero")
+      .in_range("areal_density", static_cast<double>(desc.areal_density), 1e-9, 1e9)
+      .size("thickness", static_cast<double>(desc.thickness))
       .stiffness("stretch_stiffness", static_cast<double>(desc.stretch_stiffness))
-      .require(desc.shear_stiffness >= Real(0), "shear_stiffness", static_cast<double>(desc.shear_stiffness),
-               "must be zero or positive, or rigid")
-      .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
-      .not_negative("damping", static_cast<double>(desc.damping))
-      .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
+      .stiffness_or_none("shear_stiffness", static_cast<double>(desc.shear_stiffness))
+      .up_to("bend_stiffness", static_cast<double>(desc.bend_stiffness), limits::kResistance)
+      .up_to("damping", static_cast<double>(desc.damping), limits::kResistance)
+      .up_to("bend_damping", static_cast<double>(desc.bend_damping), limits::kResistance)
       .stiffness("yield_angle", static_cast<double>(desc.yield_angle))
       .require(desc.yield_angle == kRigid || desc.bend == ClothDesc::Bend::kAngle, "yield_angle",
                "needs bends by angle")
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
-      .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
-      .not_negative("lift_coefficient", static_cast<double>(desc.lift_coefficient))
-      .not_negative("air_friction", static_cast<double>(desc.air_friction))
-      .finite("charge", static_cast<double>(desc.charge))
-      .finite("velocity", desc.velocity)
+      .up_to("drag_coefficient", static_cast<double>(desc.drag_coefficient), 1e6)
+      .up_to("lift_coefficient", static_cast<double>(desc.lift_coefficient), 1e6)
+      .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
+      .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
+      .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.pressure) checks.in_range("pressure", static_cast<double>(*desc.pressure), -1e5, 1e8);
-  if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
+  if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
   check_points(checks, desc.pins, desc.loads, count);
   check_connection_points(checks, desc.connection_points, count);
   return checks;

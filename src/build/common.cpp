@@ -46,7 +46,7 @@ void check_points(Checks& checks, const std::vector<PinDesc>& pins, const std::v
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const std::string where = indexed("loads", i);
     checks.in_range(where + ".point", loads[i].point, 0, static_cast<double>(count) - 1);
-    checks.not_negative(where + ".mass", static_cast<double>(loads[i].mass));
+    checks.up_to(where + ".mass", static_cast<double>(loads[i].mass), limits::kMass);
   }
 }
 

@@ -26,23 +26,27 @@ void check_limits(const HookLimits& limits, const std::string& field, Checks& ch
   checks.require(limits.lower <= limits.upper, field, "must have lower not above upper")
       .require(number(limits.lower) < HUGE_VAL && number(limits.upper) > -HUGE_VAL, field,
                "must leave some value in between");
+  for (const Real bound : {limits.lower, limits.upper}) {
+    const bool good = std::isinf(bound) || std::abs(number(bound)) <= limits::kPlace;
+    checks.require(good, field, number(bound), "must be within 1e9, or infinite");
+  }
 }
 
 void check_spring(const HookSpring& spring, const std::string& field, Checks& checks) {
-  checks.not_negative(field + ".stiffness", number(spring.stiffness))
-      .not_negative(field + ".damping", number(spring.damping))
-      .finite(field + ".target", number(spring.target));
+  checks.up_to(field + "stiffness", number(spring.stiffness), limits::kStiffness)
+      .up_to(field + "damping", number(spring.damping), limits::kResistance)
+      .in_range(field + "target", number(spring.target), -limits::kPlace, limits::kPlace);
 }
 
 void check_motor(const HookMotor& motor, const std::string& field, Checks& checks) {
-  checks.finite(field + ".speed", number(motor.speed))
-      .not_negative(field + ".max_force", number(motor.max_force));
+  checks.in_range(field + "speed", number(motor.speed), -limits::kSpeed, limits::kSpeed)
+      .not_negative(field + "max_force", number(motor.max_force));
 }
 
 void check_freedom(const HookFreedom& freedom, const std::string& field, Checks& checks) {
   check_limits(freedom.limits, field + ".limits", checks);
-  check_spring(freedom.spring, field + ".spring", checks);
-  check_motor(freedom.motor, field + ".motor", checks);
+  check_spring(freedom.spring, field + ".spring.", checks);
+  check_motor(freedom.motor, field + ".motor.", checks);
 }
 
 /// True if `second` says which way the second axis points.
@@ -222,15 +226,13 @@ void begin_slide(const Tables& t, Hook& hook) {
 
 Result<void> validate(const HookMotor& motor) {
   Checks checks("motor");
-  checks.finite("speed", number(motor.speed)).not_negative("max_force", number(motor.max_force));
+  check_motor(motor, "", checks);
   return checks.result();
 }
 
 Result<void> validate(const HookSpring& spring) {
   Checks checks("spring");
-  checks.not_negative("stiffness", number(spring.stiffness))
-      .not_negative("damping", number(spring.damping))
-      .finite("target", number(spring.target));
+  check_spring(spring, "", checks);
   return checks.result();
 }
 
@@ -256,8 +258,8 @@ Result<void> validate(const HookDesc& desc) {
         .require(is_across(desc.axis, *desc.second_axis), "second_axis", "must not be zero or along `axis`");
   }
   check_limits(desc.limits, "limits", checks);
-  check_spring(desc.spring, "spring", checks);
-  check_motor(desc.motor, "motor", checks);
+  check_spring(desc.spring, "spring.", checks);
+  check_motor(desc.motor, "motor.", checks);
   if (desc.cone) checks.in_range("cone", number(*desc.cone), 1e-6, kPi + 1e-6);
   check_freedom(desc.steering, "steering", checks);
   for (std::size_t i = 0; i < desc.freedoms.size(); ++i)

@@ -13,18 +13,23 @@ constexpr std::size_t kMostParticles = std::size_t{1} << 24;
 Checks check(const ParticlesDesc& desc) {
   Checks checks("particles");
   const std::size_t count = desc.particles.size();
-  checks.in_range("particles", static_cast<double>(count), 1, static_cast<double>(kMostParticles))
-      .not_negative("air_friction", static_cast<double>(desc.air_friction))
-      .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
+  checks
+      .require(desc.direction <= ParticlesDesc::Direction::kPredicted, "direction",
+               "must be one of ParticlesDesc::Direction")
+      .require(desc.damping <= ParticlesDesc::Damping::kIsotropic, "damping",
+               "must be one of ParticlesDesc::Damping")
+      .in_range("particles", static_cast<double>(count), 1, static_cast<double>(kMostParticles))
+      .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
+      .up_to("drag_coefficient", static_cast<double>(desc.drag_coefficient), 1e6)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   for (std::size_t i = 0; i < count && checks.good(); ++i) {
     const ParticleDesc& p = desc.particles[i];
     const std::string where = indexed("particles", i);
     checks.place(where + ".position", p.position)
-        .finite(where + ".velocity", p.velocity)
-        .positive(where + ".mass", static_cast<double>(p.mass))
-        .finite(where + ".charge", static_cast<double>(p.charge))
-        .positive(where + ".radius", static_cast<double>(p.radius));
+        .velocity(where + ".velocity", p.velocity)
+        .mass(where + ".mass", static_cast<double>(p.mass))
+        .in_range(where + ".charge", static_cast<double>(p.charge), -1e9, 1e9)
+        .size(where + ".radius", static_cast<double>(p.radius));
   }
   for (std::size_t i = 0; i < desc.springs.size() && checks.good(); ++i) {
     const SpringDesc& s = desc.springs[i];
@@ -33,10 +38,10 @@ Checks check(const ParticlesDesc& desc) {
     checks.in_range(where + ".a", s.a, 0, last)
         .in_range(where + ".b", s.b, 0, last)
         .require(s.a != s.b, where + ".b", "joins a particle to itself")
-        .require(s.stiffness >= Real(0), where + ".stiffness", static_cast<double>(s.stiffness),
-                 "must be zero or positive, or rigid")
-        .not_negative(where + ".damping", static_cast<double>(s.damping));
-    if (s.rest_length) checks.not_negative(where + ".rest_length", static_cast<double>(*s.rest_length));
+        .stiffness_or_none(where + ".stiffness", static_cast<double>(s.stiffness))
+        .up_to(where + ".damping", static_cast<double>(s.damping), limits::kResistance);
+    if (s.rest_length)
+      checks.up_to(where + ".rest_length", static_cast<double>(*s.rest_length), limits::kPlace);
   }
   check_points(checks, desc.pins, {}, count);
   check_connection_points(checks, desc.connection_points, count);

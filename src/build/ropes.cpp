@@ -13,33 +13,37 @@ constexpr int kMostNodes = 65536;
 
 Checks check(const RopeDesc& desc) {
   Checks checks("rope");
-  checks.positive("total_mass", static_cast<double>(desc.total_mass))
+  checks
+      .require(desc.stiffness_of <= RopeDesc::StiffnessOf::kSegment, "stiffness_of",
+               "must be one of RopeDesc::StiffnessOf")
+      .mass("total_mass", static_cast<double>(desc.total_mass))
       .stiffness("stiffness", static_cast<double>(desc.stiffness))
-      .not_negative("inner_friction", static_cast<double>(desc.inner_friction))
-      .not_negative("air_friction", static_cast<double>(desc.air_friction))
+      .up_to("inner_friction", static_cast<double>(desc.inner_friction), limits::kResistance)
+      .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
       .stiffness("extension_max", static_cast<double>(desc.extension_max))
-      .not_negative("bend_stiffness", static_cast<double>(desc.bend_stiffness))
-      .not_negative("bend_damping", static_cast<double>(desc.bend_damping))
-      .not_negative("twist_stiffness", static_cast<double>(desc.twist_stiffness))
-      .finite("twist", static_cast<double>(desc.twist))
+      .up_to("bend_stiffness", static_cast<double>(desc.bend_stiffness), limits::kResistance)
+      .up_to("bend_damping", static_cast<double>(desc.bend_damping), limits::kResistance)
+      .up_to("twist_stiffness", static_cast<double>(desc.twist_stiffness), limits::kResistance)
+      .in_range("twist", static_cast<double>(desc.twist), -limits::kSpin, limits::kSpin)
       .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), -0.99, 0.5)
-      .positive("radius", static_cast<double>(desc.radius))
-      .not_negative("drag_coefficient", static_cast<double>(desc.drag_coefficient))
-      .not_negative("repulsion_strength", static_cast<double>(desc.repulsion_strength))
-      .positive("repulsion_range", static_cast<double>(desc.repulsion_range))
-      .finite("charge", static_cast<double>(desc.charge))
-      .finite("velocity", desc.velocity)
+      .size("radius", static_cast<double>(desc.radius))
+      .up_to("drag_coefficient", static_cast<double>(desc.drag_coefficient), 1e6)
+      .up_to("repulsion_strength", static_cast<double>(desc.repulsion_strength), limits::kResistance)
+      .size("repulsion_range", static_cast<double>(desc.repulsion_range))
+      .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
+      .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
-  if (desc.youngs_modulus) checks.positive("youngs_modulus", static_cast<double>(*desc.youngs_modulus));
+  if (desc.youngs_modulus)
+    checks.in_range("youngs_modulus", static_cast<double>(*desc.youngs_modulus), 1e-6, limits::kResistance);
   checks.require(!(desc.twist_stiffness > Real(0)) || desc.bend_stiffness > Real(0) || desc.youngs_modulus,
                  "twist_stiffness", "needs a bend_stiffness");
   if (desc.points.empty()) {
     checks.in_range("masses", desc.masses, 2, kMostNodes)
-        .positive("length_at_rest", static_cast<double>(desc.length_at_rest))
+        .size("length_at_rest", static_cast<double>(desc.length_at_rest))
         .place("hook_point", desc.hook_point)
         .finite("direction", desc.direction)
-        .require(length(desc.direction) > Real(0), "direction", "must not be zero");
+        .require(length(vector_cast<double>(desc.direction)) > 0, "direction", "must not be zero");
   } else {
     checks.in_range("points", static_cast<double>(desc.points.size()), 2, kMostNodes);
   }

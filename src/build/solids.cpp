@@ -39,11 +39,6 @@ bool is_matched(const SolidDesc& desc) {
   return desc.elasticity == SolidDesc::Elasticity::kShapeMatching;
 }
 
-bool is_turn(Quat q) {
-  const Real size = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  return std::isfinite(size) && size > Real(0);
-}
-
 /// Neither a mesh nor tetrahedra as given.
 bool is_box(const SolidDesc& desc) {
   return !desc.mesh && desc.tetrahedra.empty() && desc.points.empty();
@@ -51,20 +46,23 @@ bool is_box(const SolidDesc& desc) {
 
 Checks check(const SolidDesc& desc) {
   Checks checks("solid");
-  checks.place("position", desc.position)
-      .require(is_turn(desc.rotation), "rotation", "must be finite and not zero")
-      .positive("density", static_cast<double>(desc.density))
+  checks
+      .require(desc.elasticity <= SolidDesc::Elasticity::kShapeMatching, "elasticity",
+               "must be one of SolidDesc::Elasticity")
+      .place("position", desc.position)
+      .require(is_rotation(desc.rotation), "rotation", "must be finite and not zero")
+      .in_range("density", static_cast<double>(desc.density), 1e-6, 1e9)
       .positive("young_modulus", static_cast<double>(desc.young_modulus))
-      .in_range("young_modulus", static_cast<double>(desc.young_modulus), 0, 1e12)
+      .in_range("young_modulus", static_cast<double>(desc.young_modulus), 1e-6, 1e12)
       .in_range("poisson_ratio", static_cast<double>(desc.poisson_ratio), 0, 0.499)
       .in_range("damping", static_cast<double>(desc.damping), 0, 0.1)
       .stiffness("yield_stress", static_cast<double>(desc.yield_stress))
-      .positive("thickness", static_cast<double>(desc.thickness))
-      .not_negative("air_friction", static_cast<double>(desc.air_friction))
-      .finite("charge", static_cast<double>(desc.charge))
-      .finite("velocity", desc.velocity)
+      .size("thickness", static_cast<double>(desc.thickness))
+      .up_to("air_friction", static_cast<double>(desc.air_friction), limits::kResistance)
+      .in_range("charge", static_cast<double>(desc.charge), -1e9, 1e9)
+      .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
-  if (desc.total_mass) checks.positive("total_mass", static_cast<double>(*desc.total_mass));
+  if (desc.total_mass) checks.mass("total_mass", static_cast<double>(*desc.total_mass));
   if (!is_matched(desc)) return checks;
   return checks.stiffness("match_hz", static_cast<double>(desc.match_hz))
       .in_range("match_damping_ratio", static_cast<double>(desc.match_damping_ratio), 0, 100)
@@ -80,9 +78,9 @@ Checks check_box(const SolidDesc& desc) {
     count *= desc.cells[k];
   }
   checks.require(count <= kMostCells, "cells", "must not be more than 1048576 in all");
-  return checks.positive("size.x", static_cast<double>(desc.size.x))
-      .positive("size.y", static_cast<double>(desc.size.y))
-      .positive("size.z", static_cast<double>(desc.size.z));
+  return checks.size("size.x", static_cast<double>(desc.size.x))
+      .size("size.y", static_cast<double>(desc.size.y))
+      .size("size.z", static_cast<double>(desc.size.z));
 }
 
 TetrahedralMesh fill_box(const SolidDesc& desc) {
@@ -100,7 +98,7 @@ Result<TetrahedralMesh> take_given(const SolidDesc& desc) {
   checks.in_range("tetrahedra", static_cast<double>(desc.tetrahedra.size()), 1, kMostTetrahedra);
   for (std::size_t i = 0; i < desc.points.size(); ++i) {
     const DVec3 p = vector_cast<double>(desc.points[i]);
-    checks.place(indexed("points", i), p);
+    checks.within(indexed("points", i), p, limits::kSize, " m");
     mesh.points.push_back(p);
   }
   std::vector<std::uint8_t> used(desc.points.size(), 0);

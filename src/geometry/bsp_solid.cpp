@@ -1,5 +1,6 @@
 #include "geometry/bsp_solid.h"
 
+#include "base/float_environment.h"
 #include "geometry/box.h"
 #include "geometry/bsp_seams.h"
 #include "geometry/bsp_shells.h"
@@ -303,6 +304,7 @@ Result<SolidMesh> combine_solids(const SolidMesh& a, const SolidMesh& b, SolidOp
 namespace hooke {
 
 Result<MeshDesc> combine_solids(const MeshDesc& a, const MeshDesc& b, SolidOperation operation) {
+  const base::FloatEnvironment environment;
   const auto combined =
       geometry::combine_solids(geometry::solid_mesh_of(a), geometry::solid_mesh_of(b), operation);
   if (!combined) return combined.error();

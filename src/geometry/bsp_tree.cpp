@@ -1,5 +1,7 @@
 #include "geometry/bsp_tree.h"
 
+#include "base/float_environment.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -63,6 +65,7 @@ Result<BspTree> build_painters_bsp(const SolidMesh& mesh) {
 namespace hooke {
 
 Result<BspTree> build_bsp(const MeshDesc& mesh) {
+  const base::FloatEnvironment environment;
   return geometry::build_bsp(geometry::solid_mesh_of(mesh));
 }
 

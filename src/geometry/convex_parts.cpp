@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/float_environment.h"
 #include "geometry/box.h"
 #include "geometry/convex_hull.h"
 #include "geometry/mass_properties.h"
@@ -248,6 +249,7 @@ void join_parts(const JoinLimits& limits, double on_plane, std::vector<Part>& pa
 }  // namespace
 
 Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concavity_max, int parts_max) {
+  const base::FloatEnvironment environment;
   if (!(concavity_max > Real(0)) || !std::isfinite(concavity_max)) {
     return Error{.where = "concavity_max", .message = "the largest concavity is positive and finite"};
   }

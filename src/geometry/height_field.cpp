@@ -1,5 +1,7 @@
 #include "hooke/geometry.h"
 
+#include "base/float_environment.h"
+
 #include <cmath>
 #include <string>
 #include <utility>
@@ -41,6 +43,7 @@ Result<void> validate_field(int columns, int rows, Real cell, std::span<const Re
 }  // namespace
 
 Result<MeshDesc> make_height_field(int columns, int rows, Real cell, std::span<const Real> heights) {
+  const base::FloatEnvironment environment;
   if (const Result<void> valid = validate_field(columns, rows, cell, heights); !valid) return valid.error();
   MeshDesc mesh;
   mesh.positions.reserve(heights.size());

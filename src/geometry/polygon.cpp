@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/float_environment.h"
 #include "geometry/closest.h"
 #include "geometry/orientation.h"
 #include "math/trig.h"
@@ -65,6 +66,7 @@ DVec3 area_of(std::span<const DVec3> corners) {
 }  // namespace
 
 Result<Plane> plane_through(DVec3 a, DVec3 b, DVec3 c) {
+  const base::FloatEnvironment environment;
   if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return refusal("points", "a point is not finite");
   const double longest =
       std::max({geometry::safe_length(b - a), geometry::safe_length(c - b), geometry::safe_length(a - c)});
@@ -76,6 +78,7 @@ Result<Plane> plane_through(DVec3 a, DVec3 b, DVec3 c) {
 }
 
 Result<Plane> plane_across(DVec3 normal, DVec3 point) {
+  const base::FloatEnvironment environment;
   if (!is_finite(normal) || !is_finite(point)) return refusal("plane", "a number is not finite");
   const DVec3 unit = geometry::direction_or(normal, {});
   if (unit == DVec3{}) return refusal("plane", "the normal has no length");
@@ -83,6 +86,7 @@ Result<Plane> plane_across(DVec3 normal, DVec3 point) {
 }
 
 Result<Plane> plane_of_equation(double a, double b, double c, double d) {
+  const base::FloatEnvironment environment;
   const DVec3 normal = {a, b, c};
   const double scale = geometry::safe_length(normal);
   if (!is_finite(normal) || !std::isfinite(d / scale)) {
@@ -97,6 +101,7 @@ int side_of(const Plane& plane, DVec3 p, double tolerance) {
 }
 
 Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance) {
+  const base::FloatEnvironment environment;
   const std::size_t count = corners.size();
   if (count < 3 || count > kCornersMax) {
     return refusal("corners",
@@ -142,6 +147,7 @@ Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance) {
 }
 
 bool is_inside_by_cross_products(const Polygon& polygon, DVec3 p, double tolerance) {
+  const base::FloatEnvironment environment;
   if (!is_on_plane(polygon, p, tolerance)) return false;
   const std::size_t count = polygon.corners.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -153,12 +159,14 @@ bool is_inside_by_cross_products(const Polygon& polygon, DVec3 p, double toleran
 }
 
 bool is_inside_by_side_planes(const Polygon& polygon, DVec3 p, double tolerance) {
+  const base::FloatEnvironment environment;
   return is_on_plane(polygon, p, tolerance) &&
          std::all_of(polygon.sides.begin(), polygon.sides.end(),
                      [&](const Plane& side) { return side_of(side, p, tolerance) >= 0; });
 }
 
 bool is_inside_by_angles(const Polygon& polygon, DVec3 p, double tolerance) {
+  const base::FloatEnvironment environment;
   if (!is_on_plane(polygon, p, tolerance)) return false;
   if (is_on_outline(polygon, p, tolerance)) return true;
   const DVec3 normal = polygon.plane.normal;
@@ -174,6 +182,7 @@ bool is_inside_by_angles(const Polygon& polygon, DVec3 p, double tolerance) {
 }
 
 int winding_number(const Polygon& polygon, DVec3 p) {
+  const base::FloatEnvironment environment;
   using geometry::Point2;
   const View view = view_of(polygon.plane.normal);
   const Point2 q = geometry::seen_along(view.axis, p);
@@ -189,6 +198,7 @@ int winding_number(const Polygon& polygon, DVec3 p) {
 }
 
 bool is_inside_by_winding(const Polygon& polygon, DVec3 p, double tolerance) {
+  const base::FloatEnvironment environment;
   if (!is_on_plane(polygon, p, tolerance)) return false;
   // Where the point is off the plane it is seen along the normal, as by the others.
   const DVec3 q = p - signed_distance(polygon.plane, p) * polygon.plane.normal;

@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/float_environment.h"
 #include "base/sort_unique.h"
 #include "geometry/mesh_clean.h"
 
@@ -198,6 +199,7 @@ Result<void> check_solid(const Draft& draft) {
 }  // namespace
 
 Result<SolidRepair> repair_solid(const MeshDesc& mesh) {
+  const base::FloatEnvironment environment;
   if (Result<void> usable = check_numbers(mesh); !usable) return usable.error();
   SolidRepair repair;
   Draft draft = welded(mesh);

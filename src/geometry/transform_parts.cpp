@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/float_environment.h"
 #include "geometry/closest.h"
 
 #include <cmath>
@@ -52,6 +53,7 @@ Matrix3<double> axes_of(const Matrix3<double>& m) {
 }  // namespace
 
 Quaternion<double> quaternion_from(const Matrix3<double>& r) {
+  const base::FloatEnvironment environment;
   const double trace = r.x.x + r.y.y + r.z.z;
   Quaternion<double> q = {r.y.z - r.z.y, r.z.x - r.x.z, r.x.y - r.y.x, 1 + trace};
   if (r.x.x >= trace && r.x.x >= r.y.y && r.x.x >= r.z.z) {
@@ -65,6 +67,7 @@ Quaternion<double> quaternion_from(const Matrix3<double>& r) {
 }
 
 TransformParts decompose(const Matrix4<double>& matrix) {
+  const base::FloatEnvironment environment;
   const Matrix3<double> m = linear_part(matrix);
   const Matrix3<double> axes = axes_of(m);
   return {.translation = translation_part(matrix),
@@ -76,6 +79,7 @@ TransformParts decompose(const Matrix4<double>& matrix) {
 }
 
 Matrix4<double> compose(const TransformParts& parts) {
+  const base::FloatEnvironment environment;
   const Matrix3<double> r = matrix_of(parts.rotation);
   const DVec3 s = parts.scale;
   return affine(Matrix3<double>{s.x * r.x, parts.shear_xy * r.x + s.y * r.y,

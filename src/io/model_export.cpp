@@ -1,5 +1,6 @@
 #include "hooke/model_io.h"
 
+#include "base/float_environment.h"
 #include "io/model_flat.h"
 #include "io/model_write.h"
 #include "process/new_file.h"
@@ -83,6 +84,7 @@ Result<void> export_checked(const Model& model, const std::string& path) {
 }  // namespace
 
 Result<void> export_model(const Model& model, const std::string& path) {
+  const base::FloatEnvironment environment;
   try {
     return export_checked(model, path);
   } catch (const std::exception&) {

@@ -1,5 +1,6 @@
 #include "hooke/model_io.h"
 
+#include "base/float_environment.h"
 #include "io/folder_file.h"
 #include "io/model_child.h"
 #include "io/model_flat.h"
@@ -99,6 +100,7 @@ Result<Model> import_checked(const std::string& path, const ImportOptions& optio
 }  // namespace
 
 Result<Model> import_model(const std::string& path, const ImportOptions& options) {
+  const base::FloatEnvironment environment;
   try {
     return import_checked(path, options);
   } catch (const std::exception&) {  // no memory; or a path that no folder can have
@@ -107,6 +109,7 @@ Result<Model> import_model(const std::string& path, const ImportOptions& options
 }
 
 Model model_of(const MeshDesc& mesh, double crease) {
+  const base::FloatEnvironment environment;
   io::Soup soup;
   soup.materials.push_back({.name = "gray"});
   std::vector<std::uint8_t> is_usable;

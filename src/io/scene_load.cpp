@@ -1,5 +1,6 @@
 #include "hooke/scene_io.h"
 
+#include "base/float_environment.h"
 #include "io/scene_check.h"
 #include "io/scene_ignored.h"
 #include "io/scene_source.h"
@@ -119,10 +120,12 @@ std::string to_line(const Error& error) {
 }
 
 Loaded<Scene> parse_scene(std::string text, std::string name) {
+  const base::FloatEnvironment environment;
   return io::read_scene(std::move(text), std::move(name), false);
 }
 
 Loaded<Scene> load_scene(const std::string& path) {
+  const base::FloatEnvironment environment;
   std::error_code failure;
   const std::filesystem::path file(path);
   // Devices and pipes may never end.

@@ -1,5 +1,6 @@
 #include "hooke/scene_io.h"
 
+#include "base/float_environment.h"
 #include "io/scene_check.h"
 #include "io/scene_data.h"
 #include "io/scene_source.h"
@@ -234,6 +235,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement) {
+  const base::FloatEnvironment environment;
   try {
     Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene), placement);
     Loaded<Simulation> loaded = {.errors = std::move(built.errors), .warnings = std::move(built.warnings)};
@@ -245,6 +247,7 @@ Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement) {
 }
 
 StepReport Simulation::step() {
+  const base::FloatEnvironment environment;
   apply_due_events(*data_);
   const StepReport report = data_->world.step(data_->scene.dt);
   note_broken_hooks(*data_);
@@ -254,6 +257,7 @@ StepReport Simulation::step() {
 }
 
 StepReport Simulation::run() {
+  const base::FloatEnvironment environment;
   StepReport report;
   while (data_->world.step_count() < data_->scene.step_count()) {
     report = step();
@@ -281,6 +285,7 @@ const SceneObject* Simulation::find(std::string_view name) const {
 }
 
 SceneVerdict Simulation::check(std::size_t expectation) const {
+  const base::FloatEnvironment environment;
   if (expectation >= data_->scene.expect.size()) return {.index = expectation};
   return io::measure_expectation(*data_, expectation);
 }

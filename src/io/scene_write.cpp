@@ -1,11 +1,13 @@
 #include "hooke/scene_io.h"
 
+#include "base/float_environment.h"
 #include "io/scene_table.h"
 #include "process/new_file.h"
 
 namespace hooke {
 
 std::string write_scene(const Scene& scene) {
+  const base::FloatEnvironment environment;
   return io::to_text(io::write_object(io::kind_of<Scene>(), &scene));
 }
 

@@ -1,5 +1,6 @@
 /// Orders and limits of stability, by experiment and by theory.
 
+#include "base/float_environment.h"
 #include "lab/growth.h"
 #include "lab/method.h"
 
@@ -125,6 +126,7 @@ Result<const Method*> method_for(std::string_view stepper, const Chain& chain) {
 
 Result<OrderMeasurement> measure_order(const World& world, const Options& options, double seconds,
                                        int halvings) {
+  const base::FloatEnvironment environment;
   if (!(seconds >= options.dt && seconds <= 1e6 * options.dt))
     return out_of_range("seconds", "one to a million times dt");
   if (halvings < 1 || halvings > 16) return out_of_range("halvings", "1 to 16");
@@ -157,6 +159,7 @@ Result<OrderMeasurement> measure_order(const World& world, const Options& option
 }
 
 Result<double> largest_stable_stiffness(std::string_view stepper, const Chain& chain) {
+  const base::FloatEnvironment environment;
   if (const auto method = method_for(stepper, chain); !method) return method.error();
   constexpr int kSteps = 2000;
   const double unit = chain.mass / (chain.dt * chain.dt);
@@ -172,6 +175,7 @@ Result<double> largest_stable_stiffness(std::string_view stepper, const Chain& c
 }
 
 Result<double> stable_stiffness_in_theory(std::string_view stepper, const Chain& chain) {
+  const base::FloatEnvironment environment;
   const Result<const Method*> method = method_for(stepper, chain);
   if (!method) return method.error();
   const double limit = method.value()->info.imaginary_limit;
@@ -181,6 +185,7 @@ Result<double> stable_stiffness_in_theory(std::string_view stepper, const Chain&
 }
 
 Result<double> largest_stable_step(std::string_view stepper, double zeta) {
+  const base::FloatEnvironment environment;
   if (const auto method = method_for(stepper); !method) return method.error();
   if (!(zeta >= 0 && zeta <= 100)) return out_of_range("zeta", "0 to 100");
   constexpr int kSteps = 4000;
@@ -196,6 +201,7 @@ Result<double> largest_stable_step(std::string_view stepper, double zeta) {
 }
 
 Result<double> stable_step_in_theory(std::string_view stepper, double zeta) {
+  const base::FloatEnvironment environment;
   const Result<const Method*> method = method_for(stepper);
   if (!method) return method.error();
   if (!(zeta >= 0 && zeta <= 100)) return out_of_range("zeta", "0 to 100");

@@ -1,5 +1,6 @@
 /// The public class over the parts: from a World to one part per object, and from their states to points.
 
+#include "base/float_environment.h"
 #include "lab/body_laws.h"
 #include "lab/collisions.h"
 #include "lab/part.h"
@@ -120,6 +121,7 @@ Run::Run(Run&&) noexcept = default;
 Run& Run::operator=(Run&&) noexcept = default;
 
 Result<Run> Run::create(const World& world, const Options& options) {
+  const base::FloatEnvironment environment;
   const state::Tables& tables = WorldAccess::tables(world);
   if (const auto good = check_numbers(options); !good) return good.error();
   if (const auto good = check_names(tables, options); !good) return good.error();
@@ -158,6 +160,7 @@ Result<void> Run::Data::add_bodies(const state::Tables& tables, const Options& o
 }
 
 Result<void> Run::advance() {
+  const base::FloatEnvironment environment;
   std::vector<State> before;
   for (Part& part : data_->parts) {
     before.push_back(part.y);
@@ -261,6 +264,7 @@ Result<BodyState> Run::body(BodyId id) const {
 }
 
 Energy Run::energy() const {
+  const base::FloatEnvironment environment;
   Energy sum;
   data_->for_each_part([&](const Part& part) {
     const Energy energy = part.system.energy(part.time(), part.y);

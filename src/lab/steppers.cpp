@@ -1,5 +1,6 @@
 /// The table of methods: what is listed, refused and explained comes from here.
 
+#include "base/float_environment.h"
 #include "lab/methods/methods.h"
 
 #include <cmath>
@@ -96,6 +97,7 @@ Result<StepperInfo> find_stepper(std::string_view name) {
 }
 
 Result<double> growth_per_step(std::string_view stepper, double omega_dt, double zeta) {
+  const base::FloatEnvironment environment;
   const Method* method = find_method(stepper);
   if (method == nullptr) return unknown_method(stepper);
   if (!(omega_dt >= 0 && zeta >= 0 && std::isfinite(omega_dt) && std::isfinite(zeta)))

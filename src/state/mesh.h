@@ -6,6 +6,8 @@
 #include "geometry/bvh.h"
 #include "geometry/protrusions.h"
 
+#include <cstdint>
+
 namespace hooke::state {
 
 /// Triangles that bodies and cloths share; never changes after it was made.
@@ -14,6 +16,7 @@ struct Mesh {
   geometry::Bvh bvh;  ///< Over `desc.triangles`.
   BspTree planes;     ///< With MeshTree::kPlanes; else without nodes.
   geometry::Protrusions protrusions;
+  std::uint64_t hash = 0;  ///< Of `desc`.
 
   [[nodiscard]] bool is_solid() const { return !planes.nodes.empty(); }
 };

@@ -9,7 +9,8 @@
 namespace hooke::state {
 
 /// Maps ids to dense rows. Slots only grow; the generation of new slots rises when a snapshot is restored, so
-/// that an id made between the snapshot and its restoration never means a later object.
+/// that an id made between the snapshot and its restoration never means a later object. A snapshot may be
+/// restored in another World, where ids of the first go on to mean what they meant.
 template <class IdType>
 class SlotTable {
  public:
@@ -17,20 +18,22 @@ class SlotTable {
 
   /// The id of a new object that lives in `row`.
   IdType add(std::uint32_t row) {
-    entries_.push_back({row, generation_});
-    return {.slot = static_cast<std::uint32_t>(entries_.size()), .generation = generation_};
+    entries_.push_back({row, generation_, world_});
+    return id_of(static_cast<std::uint32_t>(entries_.size()));
   }
 
   /// The row, or kNone for a null, stale or foreign id.
   [[nodiscard]] std::uint32_t find(IdType id) const {
     if (id.slot == 0 || id.slot > entries_.size()) return kNone;
     const Entry& entry = entries_[id.slot - 1];
-    return entry.generation == id.generation ? entry.row : kNone;
+    const bool is_same = entry.generation == id.generation && (entry.world == id.world || id.world == 0);
+    return is_same ? entry.row : kNone;
   }
 
   /// The id whose slot this is.
   [[nodiscard]] IdType id_of(std::uint32_t slot) const {
-    return {.slot = slot, .generation = entries_[slot - 1].generation};
+    const Entry& entry = entries_[slot - 1];
+    return {.slot = slot, .generation = entry.generation, .world = entry.world};
   }
 
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
@@ -44,13 +47,19 @@ class SlotTable {
   [[nodiscard]] std::uint32_t generation() const { return generation_; }
   void set_generation(std::uint32_t generation) { generation_ = generation; }
 
+  /// Whose table it is: ids that are made from now on say so.
+  [[nodiscard]] std::uint32_t world() const { return world_; }
+  void set_world(std::uint32_t world) { world_ = world; }
+
  private:
   struct Entry {
     std::uint32_t row = 0;
     std::uint32_t generation = 0;
+    std::uint32_t world = 0;
   };
   std::vector<Entry> entries_;
   std::uint32_t generation_ = 1;
+  std::uint32_t world_ = 0;
 };
 
 }  // namespace hooke::state

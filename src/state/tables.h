@@ -81,13 +81,13 @@ struct Tables {
 inline std::uint32_t object_row(const Tables& t, PointRef point) {
   switch (point.kind) {
     case PointRef::Kind::kRope:
-      return t.rope_slots.find({point.slot, point.generation});
+      return t.rope_slots.find({point.slot, point.generation, point.world});
     case PointRef::Kind::kCloth:
-      return t.cloth_slots.find({point.slot, point.generation});
+      return t.cloth_slots.find({point.slot, point.generation, point.world});
     case PointRef::Kind::kSolid:
-      return t.solid_slots.find({point.slot, point.generation});
+      return t.solid_slots.find({point.slot, point.generation, point.world});
     case PointRef::Kind::kParticles:
-      return t.particles_slots.find({point.slot, point.generation});
+      return t.particles_slots.find({point.slot, point.generation, point.world});
     case PointRef::Kind::kNone:
       break;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "world/claim.h"
 #include "world/world_data.h"
 
 #include <cstddef>
@@ -10,7 +11,8 @@
 namespace hooke {
 
 struct WorldAccess {
-  static const state::Tables& tables(const World& world) { return world.data_->tables; }
+  /// Of a World that was moved from: empty ones.
+  static const state::Tables& tables(const World& world) { return world::Reading(world.data_).tables(); }
 };
 
 /// The one place that may fill a ForceView.

@@ -1,5 +1,7 @@
 #include "hooke/clock.h"
 
+#include "base/float_environment.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,6 +37,7 @@ Result<Clock> Clock::create(const ClockDesc& desc) {
 }
 
 Clock::Due Clock::advance(double elapsed_seconds) {
+  const base::FloatEnvironment environment;
   const double owed = remainder_ + (elapsed_seconds > 0 ? std::min(elapsed_seconds, kLongestElapsed) : 0.0);
   // fmod is exact, so nothing accumulates but the rounding of the sum above.
   remainder_ = std::fmod(owed, desc_.step_seconds);
@@ -55,11 +58,13 @@ double Clock::dropped_seconds() const {
 }
 
 DVec3 blend(DVec3 before, DVec3 after, double part) {
+  const base::FloatEnvironment environment;
   const double t = unit_part(part);
   return (1 - t) * before + t * after;
 }
 
 Quat blend(Quat before, Quat after, double part) {
+  const base::FloatEnvironment environment;
   const double t = unit_part(part);
   const double product = static_cast<double>(before.x) * after.x + static_cast<double>(before.y) * after.y +
                          static_cast<double>(before.z) * after.z + static_cast<double>(before.w) * after.w;
@@ -80,6 +85,7 @@ Pose blend(const Pose& before, const Pose& after, double part) {
 }
 
 std::vector<DVec3> blend(std::span<const DVec3> before, std::span<const DVec3> after, double part) {
+  const base::FloatEnvironment environment;
   std::vector<DVec3> points(after.begin(), after.end());
   const std::size_t common = std::min(before.size(), after.size());
   for (std::size_t i = 0; i < common; ++i) points[i] = blend(before[i], after[i], part);

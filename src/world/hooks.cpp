@@ -117,16 +117,4 @@ double gap_of(const Hook& hook, const state::Tables& t) {
   return solver::joint_gap(hook, a, solver::joint_end(t, hook.b));
 }
 
-void hash_hooks(const state::Tables& t, base::StateHash& hash) {
-  for (const Hook& hook : t.hooks) {
-    hash.add(hook.a.body);
-    hash.add(hook.b.body);
-    hash.add(hook.a.particle[0]);  // where it slides
-    for (const Real impulse : hook.row_impulse) hash.add(impulse);
-    hash.add(hook.energy_debt);
-    hash.add(hook.spring_energy);
-    for (const double value : hook.value) hash.add(value);
-  }
-}
-
 }  // namespace hooke::world

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "base/hash.h"
 #include "state/tables.h"
 #include "world/world_data.h"
 
@@ -32,8 +31,5 @@ void wake_ends(const state::Hook& hook, state::Bodies& bodies);
 
 /// How far the ends of a hook are from where it holds them [m]; see World::hook_gap.
 [[nodiscard]] double gap_of(const state::Hook& hook, const state::Tables& tables);
-
-/// Adds the state of hooks.
-void hash_hooks(const state::Tables& tables, base::StateHash& hash);
 
 }  // namespace hooke::world

@@ -1,5 +1,6 @@
 #include "world/objects.h"
 
+#include "build/checks.h"
 #include "state/parked_pairs.h"
 #include "world/hooks.h"
 
@@ -64,8 +65,11 @@ Error stale(const char* what) {
   return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
 }
 
-Error not_finite(const char* what) {
-  return {ErrorCode::kOutOfRange, what, "must be finite"};
+Result<void> check_force(const char* what, Vec3 force, Vec3 sum) {
+  return build::Checks("")
+      .within(what, force, limits::kForce, " N")
+      .within(what, sum, limits::kForce, " N with what was given before")
+      .result();
 }
 
 std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
@@ -152,22 +156,6 @@ void wake_all(Tables& t) {
   for (const std::uint32_t body : t.moving_bodies) state::wake(t.bodies, body);
 }
 
-void hash_bodies(const Tables& t, base::StateHash& hash) {
-  for (const std::uint32_t body : t.moving_bodies) {
-    hash.add(t.bodies.center[body]);
-    hash.add(t.bodies.rotation[body]);
-    hash.add(t.bodies.motion[body].v);
-    hash.add(t.bodies.angular_momentum[body]);
-    hash.add(t.bodies.asleep[body]);
-    hash.add(t.bodies.hardness[body]);
-  }
-  state::for_each_manifold(t.pairs, [&hash](const state::Manifold& manifold) {
-    hash.add(manifold.collider_a);
-    hash.add(manifold.collider_b);
-    for (int i = 0; i < manifold.point_count; ++i) hash.add(manifold.point[i].normal_impulse);
-  });
-}
-
 namespace {
 
 template <class Visit>
@@ -179,10 +167,15 @@ void for_each_slots(Tables& t, Visit&& visit) {
 
 }  // namespace
 
+void mark_ids(std::uint32_t mark, Tables& t) {
+  for_each_slots(t, [&](auto& slots) { slots.set_world(mark); });
+}
+
 void restore_tables(const Tables& from, Tables& to) {
   const int workers = to.desc.workers;
   const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
   const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
+  const std::uint32_t mark = to.body_slots.world();
   std::array<std::uint32_t, 9> generations = {};
   std::size_t i = 0;
   for_each_slots(to, [&](const auto& slots) { generations[i++] = slots.generation() + 1; });
@@ -192,6 +185,7 @@ void restore_tables(const Tables& from, Tables& to) {
     to.hook_revision = hook_revision;
     i = 0;
     for_each_slots(to, [&](auto& slots) { slots.set_generation(generations[i++]); });
+    mark_ids(mark, to);
   };
   try {
     to = from;  // where there is room already, nothing is allocated

@@ -3,7 +3,6 @@
 #include "hooke/id.h"
 #include "hooke/result.h"
 
-#include "base/hash.h"
 #include "state/tables.h"
 
 #include <cstdint>
@@ -16,7 +15,8 @@
 namespace hooke::world {
 
 [[nodiscard]] Error stale(const char* what);
-[[nodiscard]] Error not_finite(const char* what);
+/// Of a force [N] or torque [N m], and with what was given for the same step.
+[[nodiscard]] Result<void> check_force(const char* what, Vec3 force, Vec3 sum);
 
 struct ParticleRow {
   std::uint32_t particle = 0;  ///< Row of the particle table.
@@ -31,6 +31,9 @@ void remove_object(state::Tables& tables, std::uint32_t row);
 
 void pin_particle(state::Tables& tables, ParticleRow row, const MotionDesc& motion);
 void unpin_particle(state::Tables& tables, ParticleRow row);
+
+/// Ids that are made from now on say that they are of the World that has this mark.
+void mark_ids(std::uint32_t mark, state::Tables& tables);
 
 /// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers. Where
 /// there is not the memory, nothing is left in `to`.
@@ -57,9 +60,6 @@ void wake_neighbors(state::Tables& t, Is&& is) {
 
 /// Wakes every body: a force on all of them has changed.
 void wake_all(state::Tables& tables);
-
-/// Adds the state of bodies and their contacts.
-void hash_bodies(const state::Tables& tables, base::StateHash& hash);
 
 /// Removes one row of a table whose rows know their slot; those behind it move up.
 template <class IdType, class Entry>

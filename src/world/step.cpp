@@ -37,7 +37,6 @@
 #include "world/stopwatch.h"
 #include "world/world_data.h"
 
-#include <cmath>
 #include <memory>
 
 namespace hooke {
@@ -177,7 +176,7 @@ StepReport World::step(Real dt) {
   const std::shared_ptr<WorldData> data = data_;  // force laws may move this World, or destroy it
   const world::Claim claim(data);
   StepReport report;
-  if (!claim || !(dt > Real(0)) || !std::isfinite(dt)) return report;
+  if (!claim || !world::is_step(dt)) return report;
   WorldData& w = *claim;
   world::Stepping stepping(w);
   world::Stopwatch watch;

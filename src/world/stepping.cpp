@@ -69,7 +69,10 @@ void forget_contacts(WorldData& world) {
   t.contacts = {};
   t.inner_contacts.clear();
   t.rope_contacts.clear();
-  for (state::Hook& hook : t.hooks) hook.broken = false;
+  for (state::Hook& hook : t.hooks) {
+    hook.broken = false;
+    hook.giving = state::Hook::Giving::kHolds;
+  }
   ++t.revision;
   ++t.hook_revision;
   world.broad_phase_stale = true;

@@ -1,8 +1,15 @@
 #pragma once
 
+#include "hooke/limits.h"
+
 #include "world/world_data.h"
 
 namespace hooke::world {
+
+/// Whether it is a length that a step may have [s].
+[[nodiscard]] inline bool is_step(Real dt) {
+  return dt >= static_cast<Real>(limits::kShortestStep) && dt <= static_cast<Real>(limits::kLongestStep);
+}
 
 /// A step that runs. One that ends by an exception, of a force law or for want of memory, is taken back:
 /// places, velocities, pending forces and who sleeps are as before it. What contacts, ropes and hooks

@@ -2,8 +2,8 @@
 
 #include "hooke/world.h"
 
-#include "base/hash.h"
 #include "build/build.h"
+#include "build/checks.h"
 #include "geometry/triangle_mesh.h"
 #include "solver/forces.h"
 #include "solver/gas.h"
@@ -12,11 +12,14 @@
 #include "world/claim.h"
 #include "world/events.h"
 #include "world/hooks.h"
+#include "world/machine.h"
 #include "world/objects.h"
 #include "world/sleep.h"
+#include "world/state_hash.h"
 #include "world/undo.h"
 #include "world/world_data.h"
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -24,6 +27,8 @@
 namespace hooke {
 
 namespace {
+
+using build::Checks;
 
 /// Runs `add`, which appends an object, and gives that object an id.
 template <class IdType, class Add>
@@ -74,17 +79,11 @@ std::vector<Real> twist_figures(const state::Tables& t, RopeId id, Figure&& figu
   return figures;
 }
 
-/// Of objects whose form at rest changes.
-void hash_rest_forms(const state::Tables& t, base::StateHash& hash) {
-  for (const state::Deformable& object : t.objects) {
-    if (object.yield_angle < kRigid) {
-      for (std::uint32_t i = object.bends.first; i < object.bends.end(); ++i) hash.add(t.bends.rest_angle[i]);
-    }
-    if (object.yield_stress < kRigid) {
-      for (std::uint32_t i = object.tetrahedra.first; i < object.tetrahedra.end(); ++i)
-        hash.add(t.tetrahedra.shape_gradient[i]);
-    }
-  }
+/// Of a World, for its ids; none has 0.
+std::uint32_t next_mark() {
+  static std::atomic<std::uint32_t> last = 0;
+  const std::uint32_t mark = ++last;
+  return mark != 0 ? mark : ++last;
 }
 
 Error no_function() {
@@ -125,10 +124,13 @@ void ForceView::add_force(std::size_t i, Vec3 force) {
 }
 
 Result<World> World::create(const WorldDesc& desc) {
+  const base::FloatEnvironment environment;
   const Result<void> good = build::validate(desc);
   if (!good) return good.error();
+  if (const Result<void> heeded = world::heed_environment(); !heeded) return heeded.error();
   auto data = std::make_shared<WorldData>();
   data->tables.desc = desc;
+  world::mark_ids(next_mark(), data->tables);
   data->pool = std::make_unique<parallel::ThreadPool>(desc.workers);
   return World(std::move(data));
 }
@@ -141,12 +143,16 @@ World& World::operator=(World&&) noexcept = default;
 Result<MeshId> World::add_mesh(const MeshDesc& desc, MeshTree tree) {
   const world::Claim claim(data_);
   if (!claim) return claim.error();
-  const Result<void> good = geometry::validate_mesh(desc);
-  if (!good) return good.error();
+  if (const Result<void> good = geometry::validate_mesh(desc); !good) return good.error();
+  Checks checks("mesh");
+  for (std::size_t i = 0; i < desc.positions.size() && checks.good(); ++i)
+    checks.within(build::indexed("positions", i), desc.positions[i], limits::kSize, " m");
+  if (!checks.good()) return checks.result().error();
   auto mesh = std::make_shared<state::Mesh>();
   mesh->desc = desc;
   mesh->bvh = geometry::build_bvh(desc.positions, desc.triangles);
   mesh->protrusions = geometry::find_protrusions(desc);
+  mesh->hash = world::hash_of(desc);
   if (tree == MeshTree::kPlanes) {
     Result<BspTree> planes = build_bsp(desc);
     if (!planes) return planes.error();
@@ -401,8 +407,10 @@ Result<void> World::apply_force(PointRef point, Vec3 force) {
   if (!claim) return claim.error();
   const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  if (!is_finite(force)) return world::not_finite("force");
-  claim.tables().particles.force[row->particle] += force;
+  Vec3& given = claim.tables().particles.force[row->particle];
+  Result<void> good = world::check_force("force", force, given + force);
+  if (!good) return good;
+  given += force;
   claim.tables().any_force = true;
   return {};
 }
@@ -412,10 +420,14 @@ Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
   if (!claim) return claim.error();
   const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  if (!is_finite(impulse)) return world::not_finite("impulse");
-  state::Particles& particles = claim.tables().particles;
-  particles.velocity[row->particle].v += particles.velocity[row->particle].inverse_mass * impulse;
-  return {};
+  state::VelocityLine& line = claim.tables().particles.velocity[row->particle];
+  const Vec3 v = line.v + line.inverse_mass * impulse;
+  Result<void> good = Checks("")
+                          .within("impulse", impulse, limits::kForce)
+                          .within("impulse", v, limits::kSpeed, " m/s, the velocity that it gives")
+                          .result();
+  if (good) line.v = v;
+  return good;
 }
 
 Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
@@ -423,7 +435,7 @@ Result<void> World::set_velocity(PointRef point, Vec3 velocity) {
   if (!claim) return claim.error();
   const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  if (!is_finite(velocity)) return world::not_finite("velocity");
+  if (auto good = Checks("").velocity("velocity", velocity).result(); !good) return good;
   state::Particles& particles = claim.tables().particles;
   if (particles.velocity[row->particle].inverse_mass > Real(0))
     particles.velocity[row->particle].v = velocity;
@@ -435,7 +447,7 @@ Result<void> World::set_position(PointRef point, DVec3 position) {
   if (!claim) return claim.error();
   const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  if (!is_finite(position)) return world::not_finite("position");
+  if (auto good = Checks("").place("position", position).result(); !good) return good;
   state::Tables& t = claim.tables();
   t.particles.position[row->particle].x = vector_cast<Real>(position - t.objects[row->object].origin);
   for (state::Pin& pin : t.pins) {
@@ -470,7 +482,8 @@ Result<void> World::unpin(PointRef point) {
 Result<void> World::set_gravity(Vec3 gravity) {
   const world::Claim claim(data_);
   if (!claim) return claim.error();
-  if (!is_finite(gravity)) return world::not_finite("gravity");
+  const auto good = Checks("").within("gravity", gravity, limits::kAcceleration, " m/s^2").result();
+  if (!good) return good;
   state::Tables& t = claim.tables();
   if (gravity == t.desc.gravity) return {};
   t.desc.gravity = gravity;
@@ -518,36 +531,7 @@ Vec3 World::wind_at(DVec3 place, double time) const {
 
 std::uint64_t World::state_hash() const {
   const world::Reading reading(data_);
-  const state::Tables& t = reading.tables();
-  base::StateHash hash;
-  hash.add(t.time);
-  hash.add(t.step_count);
-  for (const state::Deformable& object : t.objects) hash.add(object.origin);
-  hash.add(t.particles.position);
-  hash.add(t.particles.velocity);
-  hash_rest_forms(t, hash);
-  hash.add(t.segments.tension);
-  hash.add(t.segments.limited);
-  for (const state::TwistSpan& span : t.twists) {
-    hash.add(span.angle);
-    hash.add(span.expected);
-    hash.add(span.reaction);
-  }
-  hash.add(t.contacts.particle);
-  hash.add(t.contacts.normal_force);
-  hash.add(t.contacts.friction_force);
-  for (const state::InnerContact& inner : t.inner_contacts) {
-    hash.add(inner.particle);
-    hash.add(inner.normal_force);
-    hash.add(inner.friction_force);
-  }
-  for (const state::RopeContact& contact : t.rope_contacts) {
-    hash.add(contact.normal_force);
-    hash.add(contact.friction_force);
-  }
-  world::hash_bodies(t, hash);
-  world::hash_hooks(t, hash);
-  return hash.value();
+  return world::hash_of(reading.tables());
 }
 
 Snapshot World::snapshot() const {

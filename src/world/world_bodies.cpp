@@ -4,6 +4,7 @@
 
 #include "base/make_room.h"
 #include "build/build.h"
+#include "build/checks.h"
 #include "math/rotation.h"
 #include "solver/bodies.h"
 #include "state/body_frames.h"
@@ -23,22 +24,41 @@ namespace hooke {
 
 namespace {
 
+using build::Checks;
 using state::Bodies;
 using state::Tables;
 
 constexpr std::uint32_t kNone = state::SlotTable<BodyId>::kNone;
 
-Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
-  if (!is_dynamic(bodies, row)) return bodies.angular_velocity[row];
+/// Of a dynamic body with that angular momentum.
+Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row, Vec3 momentum) {
   const Quat axes = bodies.rotation[row] * bodies.mass[row].principal;
   const Vec3 inertia = bodies.mass[row].inertia;
-  const Vec3 l = rotate(conjugate(axes), bodies.angular_momentum[row]);
+  const Vec3 l = rotate(conjugate(axes), momentum);
   return rotate(axes, {l.x / inertia.x, l.y / inertia.y, l.z / inertia.z});
+}
+
+Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
+  if (!is_dynamic(bodies, row)) return bodies.angular_velocity[row];
+  return angular_velocity_of(bodies, row, bodies.angular_momentum[row]);
 }
 
 /// From the center of mass to a place in the world.
 Vec3 lever(const Bodies& bodies, std::uint32_t row, DVec3 at) {
   return vector_cast<Real>(at - bodies.center[row]);
+}
+
+/// During the next step.
+Result<void> push(Bodies& bodies, std::uint32_t row, Vec3 force, Vec3 torque) {
+  const Vec3 force_in_all = bodies.force[row] + force;
+  const Vec3 torque_in_all = bodies.torque[row] + torque;
+  Result<void> good = world::check_force("force", force, force_in_all);
+  if (good) good = world::check_force("torque", torque, torque_in_all);
+  if (!good || !is_dynamic(bodies, row)) return good;
+  bodies.force[row] = force_in_all;
+  bodies.torque[row] = torque_in_all;
+  state::wake(bodies, row);
+  return {};
 }
 
 /// Appends the points of a manifold that touched, seen from the body that was created first.
@@ -248,12 +268,8 @@ Result<void> World::apply_force(BodyId body, Vec3 force, DVec3 at) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(force)) return world::not_finite("force");
-  if (!is_finite(at)) return world::not_finite("at");
-  bodies.force[row] += force;
-  bodies.torque[row] += cross(lever(bodies, row, at), force);
-  state::wake(bodies, row);
-  return {};
+  if (auto good = Checks("").place("at", at).result(); !good) return good;
+  return push(bodies, row, force, cross(lever(bodies, row, at), force));
 }
 
 Result<void> World::apply_torque(BodyId body, Vec3 torque) {
@@ -262,10 +278,7 @@ Result<void> World::apply_torque(BodyId body, Vec3 torque) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(torque)) return world::not_finite("torque");
-  bodies.torque[row] += torque;
-  state::wake(bodies, row);
-  return {};
+  return push(bodies, row, {}, torque);
 }
 
 Result<void> World::apply_impulse(BodyId body, Vec3 impulse) {
@@ -282,11 +295,17 @@ Result<void> World::apply_impulse(BodyId body, Vec3 impulse, DVec3 at) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(impulse)) return world::not_finite("impulse");
-  if (!is_finite(at)) return world::not_finite("at");
-  if (!is_dynamic(bodies, row)) return {};
-  bodies.motion[row].v += bodies.mass[row].inverse_mass * impulse;
-  bodies.angular_momentum[row] += cross(lever(bodies, row, at), impulse);
+  Checks checks("");
+  checks.within("impulse", impulse, limits::kForce, " N s").place("at", at);
+  if (!checks.good() || !is_dynamic(bodies, row)) return checks.result();
+  const Vec3 v = bodies.motion[row].v + bodies.mass[row].inverse_mass * impulse;
+  const Vec3 momentum = bodies.angular_momentum[row] + cross(lever(bodies, row, at), impulse);
+  checks.within("impulse", v, limits::kSpeed, " m/s, the velocity that it gives")
+      .within("impulse", angular_velocity_of(bodies, row, momentum), limits::kSpin,
+              " rad/s, the angular velocity that it gives");
+  if (!checks.good()) return checks.result();
+  bodies.motion[row].v = v;
+  bodies.angular_momentum[row] = momentum;
   state::wake(bodies, row);
   return {};
 }
@@ -297,7 +316,7 @@ Result<void> World::set_velocity(BodyId body, Vec3 velocity) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(velocity)) return world::not_finite("velocity");
+  if (auto good = Checks("").velocity("velocity", velocity).result(); !good) return good;
   if (bodies.traits[row].kind != BodyKind::kStatic) bodies.motion[row].v = velocity;
   state::wake(bodies, row);
   return {};
@@ -309,7 +328,8 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(angular_velocity)) return world::not_finite("angular_velocity");
+  const auto good = Checks("").within("angular_velocity", angular_velocity, limits::kSpin, " rad/s").result();
+  if (!good) return good;
   if (bodies.traits[row].kind == BodyKind::kStatic) return {};
   bodies.angular_velocity[row] = angular_velocity;
   bodies.angular_momentum[row] =
@@ -342,11 +362,12 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  if (!is_finite(pose.position)) return world::not_finite("pose.position");
+  const auto good = Checks("pose")
+                        .place("position", pose.position)
+                        .require(build::is_rotation(pose.rotation), "rotation", "must be finite and not zero")
+                        .result();
+  if (!good) return good;
   const Quat rotation = normalize(pose.rotation);
-  if (!std::isfinite(rotation.x + rotation.y + rotation.z + rotation.w)) {
-    return world::not_finite("pose.rotation");
-  }
   const Vec3 omega = angular_velocity_of(bodies, row);
   bodies.rotation[row] = rotation;
   bodies.center[row] = pose.position + vector_cast<double>(rotate(rotation, bodies.mass[row].center));

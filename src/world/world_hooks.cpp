@@ -3,6 +3,7 @@
 #include "hooke/world.h"
 
 #include "build/build.h"
+#include "build/checks.h"
 #include "build/connection_points.h"
 #include "build/hook_ends.h"
 #include "collision/particle_contacts.h"
@@ -234,7 +235,10 @@ Result<void> World::set_spring(HookId id, const HookSpring& spring) {
 Result<void> World::set_steering(HookId id, Real angle) {
   const world::Claim claim(data_);
   if (!claim) return claim.error();
-  if (!std::isfinite(angle)) return world::not_finite("angle");
+  const double most = limits::kSpin;
+  if (auto good = build::Checks("").in_range("angle", static_cast<double>(angle), -most, most).result();
+      !good)
+    return good;
   return change_hook(claim.tables(), id, [&](Hook& hook) -> Result<void> {
     if (hook.kind != HookKind::kWheel) return no_such_freedom("steering");
     hook.freedom[3].spring.target = angle;

@@ -141,6 +141,24 @@ class Run(Program):
         self.assertEqual(len(hashes), 1, hashes)
         self.assertRegex(hashes.pop(), "^[0-9a-f]{16}\n$")
 
+    def test_instructions_do_not_change_a_bit(self):
+        scene = "scenes/flag.json"
+        expected, _ = self.hooke("run", scene, "--seconds", 0.2, "--hash")
+        scalar, _ = self.hooke("--instruction-set", "scalar", "run", scene, "--seconds", 0.2, "--hash")
+        self.assertEqual(scalar, expected)
+        by_environment, _ = self.hooke("run", scene, "--seconds", 0.2, "--hash",
+                                       environment={**os.environ, "HOOKE_INSTRUCTION_SET": "scalar"})
+        self.assertEqual(by_environment, expected)
+
+    def test_instructions_that_there_are_not(self):
+        scene = self.scene(FALLING)
+        _, errors = self.hooke("run", scene, "--instruction-set", "abacus", code=2)
+        self.assertIn("'abacus'", errors)
+        self.assertIn("scalar", errors)
+        _, errors = self.hooke("run", scene, code=2, environment={**os.environ, "HOOKE_INSTRUCTION_SET": "abacus"})
+        self.assertIn("HOOKE_INSTRUCTION_SET", errors)
+        self.hooke("run", scene, "--instruction-set", code=2)
+
     def test_substeps_change_the_motion(self):
         def hash_of(*words):
             return self.hooke("run", "scenes/flag.json", "--seconds", 0.05, "--hash", *words)[0]

@@ -7,14 +7,10 @@
 namespace hooke::fuzz {
 
 struct Exclusions {
-  /// Calls of a World from within one of its own force laws.
-  bool calls_within_laws = true;
   /// Finite values so large that float overflows in a step: a world that took one is not asked for health.
   bool health_after_huge_values = true;
   /// Steps of cloths: light ones with a heavy load, a limit of their extension, or hardly any width.
   bool health_of_cloths = true;
-  /// Kinds that are none of their enumeration.
-  bool unknown_kinds = true;
   /// How fast things may become that begin in each other, or of which some are cloths or hooked.
   bool speed_in_crowds = true;
   bool speed_of_cloths = true;
@@ -24,8 +20,6 @@ struct Exclusions {
   bool energy_of_ropes = true;
   bool energy_of_solids = true;
   bool energy_of_hooks = true;
-  /// Ids of another world, and its snapshots.
-  bool foreign_ids = true;
 };
 inline constexpr Exclusions kLeftOut = {};
 

@@ -252,7 +252,8 @@ TEST_SUITE("world/connection_points") {
     CHECK(body({{"a", {}, 0}}) ==
           "body.connection_points.a: must be a place [x, y, z]: a body has no points");
     CHECK(body({{"a", {std::nan(""), 0, 0}}}) ==
-          "body.connection_points.a: must be finite and within 1e9 m of the origin");
+          "body.connection_points.a: [nan, 0, 0] is out of range, must be finite and within 1e+09 m of the "
+          "origin");
     const auto added = world.add_rope({.masses = 4, .connection_points = {{"a", {}, 4}}});
     REQUIRE_FALSE(added.has_value());
     CHECK(added.error().where + ": " + added.error().message ==

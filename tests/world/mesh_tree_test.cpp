@@ -65,7 +65,7 @@ TEST_SUITE("world/mesh_tree") {
       if (!a) continue;
       ++hits;
       REQUIRE(std::abs(a->distance - b->distance) < 3e-8);
-      REQUIRE(a->body == b->body);
+      REQUIRE(a->body.slot == b->body.slot);
       same_triangle += a->triangle == b->triangle && dot(a->normal, b->normal) > Real(0.999999);
     }
     CHECK(hits > 10000);
