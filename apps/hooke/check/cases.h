@@ -38,6 +38,7 @@ Rows cantilevers(const CheckSetting& setting);
 Rows bent_to_circle(const CheckSetting& setting);
 Rows elastica(const CheckSetting& setting);
 Rows euler_columns(const CheckSetting& setting);
+Rows heavy_column(const CheckSetting& setting);
 Rows atwood(const CheckSetting& setting);
 Rows cycloid(const CheckSetting& setting);
 Rows swinging_load(const CheckSetting& setting);
@@ -118,6 +119,12 @@ Rows loop_the_loop(const CheckSetting& setting);
 Rows painleve_rod(const CheckSetting& setting);
 Rows leaning_ladder(const CheckSetting& setting);
 Rows resisted_balls(const CheckSetting& setting);
+
+// cases_couplings.cpp: ropes, bodies and hooks that act on each other
+Rows pendulum_on_cart(const CheckSetting& setting);
+Rows four_cords(const CheckSetting& setting);
+Rows bead_on_cord(const CheckSetting& setting);
+Rows chain_then_rope(const CheckSetting& setting);
 
 // cases_modes.cpp: chains and springs that swing
 Rows hanging_chain_modes(const CheckSetting& setting);

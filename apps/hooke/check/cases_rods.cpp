@@ -62,6 +62,21 @@ bool buckles(const CheckSetting& setting, const Column& column, double load) {
   return std::abs(rig.positions(id)[seen].x) > 0.03;
 }
 
+/// Whether a clamped rod of 1 m and EI = 1 bends visibly under its own weight of `weight` [N/m] in 12 s.
+bool bows(const CheckSetting& setting, double weight) {
+  const int segments = 48;
+  RopeDesc desc = rod({0, 1, 0}, segments, true, false);
+  desc.bend_stiffness = real(1);
+  desc.pins = {{.point = 0}, {.point = 1}};
+  const double share = weight / kGravity / segments;  // of a segment, of which one more is in the clamp
+  desc.total_mass = real(share * (segments + 1));
+  Rig rig(setting, without_air());
+  const RopeId id = rig.add(desc);
+  must(rig.world().apply_impulse(point(id, segments + 1), {real(1e-3 * share), real(0), real(0)}));
+  rig.run(12);
+  return std::abs(rig.positions(id).back().x) > 0.03;
+}
+
 }  // namespace
 
 /// Where the end of a clamped rod is under a load across it: Bisshopp and Drucker 1945, Mattiasson 1981,
@@ -171,6 +186,16 @@ Rows euler_columns(const CheckSetting& setting) {
     rows.push_back(known_miss_turned(setting, row, "roundings across the column hold a bend that creeps"));
   }
   return rows;
+}
+
+/// A clamped column bows under its own weight q from q L^3 / EI = 7.8373 on (Greenhill 1881).
+Rows heavy_column(const CheckSetting& setting) {
+  const double expected = 7.8373;
+  const double found =
+      bisect(0.9 * expected, 1.1 * expected, 6, [&](double weight) { return !bows(setting, weight); });
+  CheckRow row = relative_row("own weight that bows a clamped column, q L^3 / EI", "", expected, found, 0.02);
+  row.solver = "rope";
+  return {row};
 }
 
 }  // namespace hooke::check

@@ -89,6 +89,7 @@ const std::vector<CheckCase>& check_cases() {
       {"V61", "Dominoes at any scale", domino_scaling},
       {"V62", "Cantilevers", cantilevers},
       {"V63", "Elastica", elastica},
+      {"V64", "Column under its own weight", heavy_column},
       {"V65", "Columns that buckle", euler_columns},
       {"V66", "Rods bent and twisted evenly", bent_and_twisted},
       {"V67", "Torsion of a round wire", torsion},
@@ -127,6 +128,10 @@ const std::vector<CheckCase>& check_cases() {
       {"I21", "Bodies in the laboratory", bodies_by_rk4, 0, 0, kOfLaboratory},
       {"I22", "Magnetic dipoles", magnetic_dipoles},
       {"I23", "Overhanging cloth", overhanging_cloth},
+      {"C1", "Pendulum on a cart", pendulum_on_cart},
+      {"C2", "Weight on four cords", four_cords},
+      {"C3", "Bead on a cord", bead_on_cord},
+      {"C4", "Chain, rope, load", chain_then_rope},
       {"T74", "Cubes pushed by 10 kN", pushed_cubes},
       {"T79", "Rod bent into a circle", bent_to_circle, 0, 0, kOnlyInPlane},
   };
