@@ -45,6 +45,10 @@ constexpr std::array kCounts = {
     Count{&StepReport::pairs_left_out,
           "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
           "places that are not the same for many bodies"},
+    Count{&StepReport::islands_refused, "stacks were too many to be solved directly, and may sink",
+          "fewer bodies that lie on much lighter ones, or more substeps"},
+    Count{&StepReport::contacts_refused, "contacts were too many to be solved with hooks, and may sink",
+          "fewer bodies on what hangs, masses that differ less, or more substeps"},
 };
 
 double in_double(Real value) {

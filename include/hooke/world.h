@@ -88,6 +88,10 @@ struct StepReport {
   std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
   std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.
   std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
+  /// Stacks that need a direct solution and are beyond its budget: they sink.
+  std::uint32_t islands_refused = 0;
+  /// Contacts that need to be solved with the hooks of what they press on and are beyond their number.
+  std::uint32_t contacts_refused = 0;
   double detect_ms = 0;
   double prepare_ms = 0;
   double substep_ms = 0;

@@ -44,7 +44,7 @@ inline constexpr Real kPressedGroup = Real(25);
 inline constexpr Real kPressedLoad = Real(20);
 
 /// How many may be borne in a step: some milliseconds.
-inline constexpr std::size_t kMostBorneManifolds = 64;
+inline constexpr std::size_t kMostBorneManifolds = 512;
 
 /// How a body can hold another that lies on it.
 enum class Holding : std::uint8_t {
@@ -58,6 +58,7 @@ enum class Holding : std::uint8_t {
 struct Burden {
   Real neighbor = Real(0);  ///< The heaviest that a hook holds at its place on it, or at a distance from it.
   Real group = Real(0);     ///< Its articulation, with what lies on that.
+  bool driven = false;      ///< A hook's motor or spring moves it.
 };
 
 /// What bodies hold by their hooks, by body row.
@@ -70,17 +71,46 @@ struct Holders {
 void find_holders(const Joints& joints, const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
                   Holders& holders);
 
+/// By what a body is carried.
+enum class Footing : std::uint8_t {
+  kStands,   ///< By contacts under it, or it has no hook.
+  kHangs,    ///< By its hooks, or not at all.
+  kRagdoll,  ///< Of a ragdoll (loose_trees.h).
+};
+
+/// What contacts did to a body in the last step, along gravity.
+struct Carried {
+  Real from_below = Real(0);  ///< [N s]
+  Real from_above = Real(0);  ///< [N s]
+  bool on_something = false;  ///< Something touches it from below.
+};
+
+/// A contact that brings weight from one body to another.
+struct Prop {
+  std::uint32_t upper = 0;  ///< Body row.
+  std::uint32_t lower = 0;
+  Real impulse = Real(0);  ///< In the last substep, along gravity [N s].
+};
+
 /// Memory of find_borne_contacts.
 struct BorneScratch {
   Holders holders;
-  std::vector<Real> load;  ///< By body: the heaviest that lies on it [kg].
+  std::vector<Footing> footing;  ///< By body.
+  std::uint32_t refused = 0;     ///< Over kMostBorneManifolds.
+  std::vector<Prop> props;
+  std::vector<Carried> carried;     ///< By body.
+  std::vector<Real> weights;        ///< By body, in a substep [N s].
+  std::vector<std::uint32_t> bore;  ///< Bodies of the contacts that were borne, ascending.
+  std::vector<Real> load;           ///< By body: the heaviest that lies on it [kg].
   std::vector<std::pair<std::uint32_t, std::uint32_t>> borne_before;
 };
 
 /// Fills `pairs.borne`. What is borne by a body that hangs is
 /// heavier than it, or presses harder than that; it may be hooked itself (`hooked`, by body row), as the
-/// wheel of a cart is, but does not hang. Contacts that bounce are not borne. `impulse_to_force` is that of
-/// the impulses that manifolds have from the last step [1/s].
+/// wheel of a cart is, but does not hang. What may bounce is borne once it touches. A body that its contacts
+/// carry bears nothing by its hooks: a crate with a slack rope tied to it; and what stands is borne by what
+/// it lies on, not by what leans on its side. `impulse_to_force` is that of the impulses that manifolds have
+/// from the last step [1/s].
 void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
                          std::span<const std::uint8_t> hooked, const Holders& holders,
                          const state::Bodies& bodies, const std::vector<state::Hook>& hooks,

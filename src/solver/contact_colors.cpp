@@ -73,7 +73,8 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     return color < kColors ? color + lone : color - kColors + kPairColors;
   };
   const auto is_hard = [&](const Manifold& m) {
-    return !colors.hard.empty() && (colors.hard[m.body_a] != 0 || colors.hard[m.body_b] != 0);
+    if (colors.hard.empty() || (colors.hard[m.body_a] == 0 && colors.hard[m.body_b] == 0)) return false;
+    return is_anchored(m) || colors.hard[m.body_a] == colors.hard[m.body_b];
   };
   constexpr int kKinds = 4 * Manifold::kMaxPoints;
   const auto key = [&](std::size_t i) {

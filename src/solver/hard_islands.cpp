@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace hooke::solver {
 
@@ -70,8 +72,8 @@ bool is_judged(const ContactBlock& block, const Bodies& bodies) {
   return false;
 }
 
-void judge_contacts(const ContactStep& step, const BodyContacts& contacts, const Bodies& bodies,
-                    base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
+void judge_contacts(const ContactStep& step, const BodyContacts& contacts, IslandMembers members,
+                    const Bodies& bodies, base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
   for (const ContactBlock& block : contacts.blocks) {
     if (!is_judged(block, bodies)) continue;
     const Real stiffness = stiffness_of(block, step);
@@ -81,6 +83,7 @@ void judge_contacts(const ContactStep& step, const BodyContacts& contacts, const
     for (int lane = 0; lane < block.count; ++lane) {
       const std::uint32_t a = block.line_a[lane] / 16;
       const std::uint32_t b = block.line_b[lane] / 16;
+      if (members[a] == Footing::kHangs || (!block.anchored && members[b] == Footing::kHangs)) continue;
       if (!block.anchored) sets.merge(a, b);
       if (!(sag[lane] > Real(0))) continue;
       const Real size = size_of(block, lane, bodies);
@@ -128,14 +131,14 @@ std::int8_t judge(const IslandDemand& island) {
 }
 
 /// New bodies become hard where they stand on each other, or judged like others from now on.
-void judge_new_bodies(std::span<const std::uint32_t> awake, const ContactStep& step,
-                      std::span<const std::uint8_t> hooked, HardIslands& hard, Bodies& bodies) {
+void judge_new_bodies(std::span<const std::uint32_t> awake, const ContactStep& step, IslandMembers members,
+                      HardIslands& hard, Bodies& bodies) {
   const auto is_new = [&](std::uint32_t body) { return bodies.hardness[body] == Bodies::kNew; };
   if (std::none_of(awake.begin(), awake.end(), is_new)) return;
   hard.demands.assign(bodies.motion.size(), {});
   for (const std::uint32_t body : awake) {
     if (!is_moved(bodies, body)) continue;
-    const bool stands = hooked[body] == 0 && length(bodies.motion[body].v) <= kFast;
+    const bool stands = members[body] == Footing::kStands && length(bodies.motion[body].v) <= kFast;
     const std::int8_t as = is_new(body) && !stands ? std::int8_t{0} : bodies.hardness[body];
     IslandDemand& island = hard.demands[hard.sets.root(body)];
     ++island.count;
@@ -147,6 +150,12 @@ void judge_new_bodies(std::span<const std::uint32_t> awake, const ContactStep& s
     const bool together = island.count > 1 && island.least == Bodies::kNew;
     bodies.hardness[body] = together && !(step.gravity == Vec3{}) ? kHard : std::int8_t{0};
   }
+}
+
+/// Whether it joins two bodies to one island.
+bool joins(const Manifold& m, IslandMembers members, const Bodies& bodies) {
+  return has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b) &&
+         members[m.body_a] != Footing::kHangs && members[m.body_b] != Footing::kHangs;
 }
 
 /// Numbers the islands with hard bodies by their lowest body, and lists their bodies.
@@ -171,9 +180,10 @@ void number_islands(std::span<const std::uint32_t> awake, const Bodies& bodies, 
   }
 }
 
-void list_edges(const std::vector<Manifold>& manifolds, const Bodies& bodies, HardIslands& hard) {
+void list_edges(const std::vector<Manifold>& manifolds, IslandMembers members, const Bodies& bodies,
+                HardIslands& hard) {
   for (const Manifold& m : manifolds) {
-    if (!has_contact_rows(m, bodies) || !is_moved(bodies, m.body_a) || !is_moved(bodies, m.body_b)) continue;
+    if (!joins(m, members, bodies)) continue;
     const std::uint32_t island = hard.island_of[m.body_a];
     if (island == kNoIsland) continue;
     const std::uint32_t a = node_of(hard.found[island].bodies, m.body_a);
@@ -201,39 +211,76 @@ bool make_pattern(const HardGraph& graph, HardIslands& hard, HardIsland& island)
   return true;
 }
 
+/// Of each island that was found, the largest speed at which its lighter bodies would leave their contacts
+/// without what they carried in the last substep [m/s].
+void find_loads(const std::vector<Manifold>& manifolds, IslandMembers members, const Bodies& bodies,
+                HardIslands& hard) {
+  hard.loads.assign(static_cast<std::size_t>(hard.count), Real(0));
+  for (const Manifold& m : manifolds) {
+    if (!joins(m, members, bodies) || hard.island_of[m.body_a] == kNoIsland) continue;
+    Real impulse = Real(0);
+    for (std::int32_t k = 0; k < m.point_count; ++k)
+      impulse += m.point[static_cast<std::size_t>(k)].normal_impulse;
+    const Real w = std::max(bodies.motion[m.body_a].inverse_mass, bodies.motion[m.body_b].inverse_mass);
+    Real& load = hard.loads[hard.island_of[m.body_a]];
+    load = std::max(load, w * impulse);
+  }
+}
+
+/// Costs nothing more than the budget: the islands with the largest loads come first.
+void spend_budget(const std::vector<Manifold>& manifolds, IslandMembers members, const Bodies& bodies,
+                  HardIslands& hard) {
+  find_loads(manifolds, members, bodies, hard);
+  std::vector<int>& order = hard.order;
+  order.resize(static_cast<std::size_t>(hard.count));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return hard.loads[a] > hard.loads[b]; });
+  double cost = 0;
+  for (const int i : order) {
+    if (hard.fits[i] == 0) continue;
+    const double operations = hard.islands[i].pattern.operations;
+    hard.fits[i] = cost + operations <= kHardBudget ? 1 : 0;
+    if (hard.fits[i] != 0) cost += operations;
+  }
+}
+
 /// Keeps what is within the budget and not too large. An island whose bodies and contacts are those of the
 /// step before keeps its matrix.
-void take_islands(Bodies& bodies, HardIslands& hard) {
-  int taken = 0;
+void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
+                  HardIslands& hard) {
+  const auto found = static_cast<std::size_t>(hard.count);
+  if (hard.islands.size() < found) hard.islands.resize(found);
+  hard.fits.assign(found, 0);
   double cost = 0;
-  hard.refused = 0;
-  for (int i = 0; i < hard.count; ++i) {
+  for (std::size_t i = 0; i < found; ++i) {
     const HardGraph& graph = hard.found[i];
-    if (static_cast<int>(hard.islands.size()) == taken) hard.islands.emplace_back();
-    HardIsland& island = hard.islands[taken];
-    const bool fits = graph.bodies.size() <= kMaxHardBodies &&
-                      (island.graph == graph || make_pattern(graph, hard, island)) &&
-                      cost + island.pattern.operations <= kHardBudget;
-    for (const std::uint32_t body : graph.bodies) {
+    HardIsland& island = hard.islands[i];
+    const bool fits =
+        graph.bodies.size() <= kMaxHardBodies && (island.graph == graph || make_pattern(graph, hard, island));
+    hard.fits[i] = fits ? 1 : 0;
+    if (fits) cost += island.pattern.operations;
+  }
+  if (cost > kHardBudget) spend_budget(manifolds, members, bodies, hard);
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < found; ++i) {
+    const bool fits = hard.fits[i] != 0;
+    for (const std::uint32_t body : hard.found[i].bodies) {
       hard.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
       // What would be hard for this step only, as new bodies are, is judged at its end like others.
       if (!fits) bodies.hardness[body] = bodies.hardness[body] == kHard ? std::int8_t{0} : kNotJudged;
     }
-    if (fits) {
-      cost += island.pattern.operations;
-      ++taken;
-    } else {
-      ++hard.refused;
-    }
+    if (fits && taken != i) std::swap(hard.islands[taken], hard.islands[i]);
+    taken += fits ? 1 : 0;
   }
-  hard.count = taken;
+  hard.count = static_cast<int>(taken);
+  hard.refused = static_cast<std::uint32_t>(found - taken);
 }
 
 }  // namespace
 
 void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
-                       const std::vector<Manifold>& manifolds, std::span<const std::uint8_t> hooked,
-                       Bodies& bodies, BodyContacts& contacts, HardIslands& hard) {
+                       const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
+                       BodyContacts& contacts, HardIslands& hard) {
   contacts.colors.hard.clear();
   hard.count = 0;
   hard.refused = 0;
@@ -242,13 +289,15 @@ void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& 
   if (!any) return;
   hard.sets.reset(bodies.motion.size());
   for (const Manifold& m : manifolds) {
-    if (has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b))
-      hard.sets.merge(m.body_a, m.body_b);
+    if (joins(m, members, bodies)) hard.sets.merge(m.body_a, m.body_b);
   }
-  judge_new_bodies(awake, step, hooked, hard, bodies);
+  judge_new_bodies(awake, step, members, hard, bodies);
+  for (const std::uint32_t body : awake) {
+    if (members[body] == Footing::kHangs && bodies.hardness[body] >= kHard) bodies.hardness[body] = 0;
+  }
   number_islands(awake, bodies, hard);
-  list_edges(manifolds, bodies, hard);
-  take_islands(bodies, hard);
+  list_edges(manifolds, members, bodies, hard);
+  take_islands(manifolds, members, bodies, hard);
   contacts.colors.hard.assign(bodies.motion.size(), 0);
   for (const std::uint32_t body : awake)
     contacts.colors.hard[body] = is_moved(bodies, body) && hard.island_of[body] != kNoIsland ? 1 : 0;
@@ -281,8 +330,7 @@ void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIs
 }
 
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
-                    const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
-                    Bodies& bodies) {
+                    const BodyContacts& contacts, IslandMembers members, HardIslands& hard, Bodies& bodies) {
   // Without weight there are hits, but no loads.
   if (step.gravity == Vec3{}) {
     for (const std::uint32_t body : awake) bodies.hardness[body] = 0;
@@ -290,7 +338,7 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
   }
   hard.demands.assign(bodies.motion.size(), {});
   hard.sets.reset(bodies.motion.size());
-  judge_contacts(step, contacts, bodies, hard.sets, hard.demands);
+  judge_contacts(step, contacts, members, bodies, hard.sets, hard.demands);
   const Vec3 down = normalize(step.gravity);
   for (const std::uint32_t body : awake) {
     if (!is_moved(bodies, body)) continue;
@@ -298,9 +346,9 @@ void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& ste
     add_own_weight(bodies.motion[body].inverse_mass, step, own);
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.hardness[body];
-    // Hooks take turns with soft contacts only, and what is soft and fast falls anyway.
+    // Ragdolls take turns with soft contacts only, and what is soft and fast falls anyway.
     const bool falls = own.most < kHard && length(bodies.motion[body].v) > kFast;
-    if (hooked[body] != 0 || falls) own.least = std::min(own.least, std::int8_t{-1});
+    if (members[body] != Footing::kStands || falls) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = hard.sets.root(body);
     if (root == body) hard.demands[body] = {.sag = own.sag, .lean = own.lean};

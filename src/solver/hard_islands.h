@@ -5,6 +5,7 @@
 #include "base/disjoint_sets.h"
 #include "parallel/thread_pool.h"
 #include "solver/body_contacts.h"
+#include "solver/borne_contacts.h"
 #include "solver/hard_contacts.h"
 #include "state/bodies.h"
 #include "state/manifolds.h"
@@ -39,12 +40,16 @@ namespace hooke::solver {
 
 /// Multiplications of one factorization, of one island and of all: some milliseconds a step.
 inline constexpr double kHardIslandBudget = 4e4;
-inline constexpr double kHardBudget = 4e4;
+inline constexpr double kHardBudget = 1e6;
 inline constexpr std::uint32_t kMaxHardBodies = 256;
 
 /// hardness of a body: below 0 its island was refused and is not judged for as many steps, then steps in
 /// which it has asked for a direct solution, and from kHard on it is hard for as many steps and more.
 inline constexpr std::int8_t kHard = 2;
+
+/// Who may be in a hard island, by body row. What hangs is no member: its contacts stay soft, whatever its
+/// neighbors are. Islands with a body of a ragdoll stay soft as a whole.
+using IslandMembers = std::span<const Footing>;
 
 /// What an island asks for; of each body at first, then of all at its root.
 struct IslandDemand {
@@ -68,6 +73,9 @@ struct HardIslands {
   base::DisjointSets sets;
   std::vector<std::uint32_t> island_of;  ///< By body row.
   std::vector<HardGraph> found;
+  std::vector<std::uint8_t> fits;     ///< Of `found`: within the budget.
+  std::vector<Real> loads;            ///< Of `found` [m/s].
+  std::vector<int> order;             ///< Of `found`, by load.
   BlockGraph matrix;                  ///< Of one island.
   std::vector<int> sizes;             ///< Of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
@@ -76,10 +84,9 @@ struct HardIslands {
 };
 
 /// Islands of hard bodies, with all that touches them; `contacts.colors.hard` says so to the soft contacts.
-/// `awake` are rows in ascending order; islands with a body that a hook holds (`hooked`, by body row) stay
-/// soft. No body is new after it.
+/// `awake` are rows in ascending order. No body is new after it.
 void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
-                       const std::vector<state::Manifold>& manifolds, std::span<const std::uint8_t> hooked,
+                       const std::vector<state::Manifold>& manifolds, IslandMembers members,
                        state::Bodies& bodies, BodyContacts& contacts, HardIslands& hard);
 
 /// The rows of their contacts.
@@ -90,9 +97,9 @@ void prepare_hard_islands(parallel::ThreadPool& pool, const BodyContacts& contac
 void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIslands& hard,
                         BodyContacts& contacts, state::Bodies& bodies);
 
-/// Updates the hardness of bodies by the impulses of the last substep. `hooked` as above.
+/// Updates the hardness of bodies by the impulses of the last substep.
 void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
-                    const BodyContacts& contacts, std::span<const std::uint8_t> hooked, HardIslands& hard,
+                    const BodyContacts& contacts, IslandMembers members, HardIslands& hard,
                     state::Bodies& bodies);
 
 }  // namespace hooke::solver

@@ -181,7 +181,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
   solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
                               world.hooked, world.holders, t.bodies, t.hooks, t.pairs, world.borne);
   solver::couple_articulations(world.joints, world.touched, t);
-  solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.hooked, t.bodies,
+  solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.borne.footing, t.bodies,
                             world.body_contacts, world.hard_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
                                 world.body_contacts);
@@ -247,7 +247,7 @@ void finish_body_contacts(WorldData& world) {
                          solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
                        });
   solver::store_borne_contacts(world.contact_step.h, t.pairs);
-  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.hooked,
+  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.borne.footing,
                          world.hard_islands, t.bodies);
 }
 

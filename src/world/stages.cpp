@@ -426,6 +426,8 @@ void end_step(WorldData& world, double dt, StepReport& report) {
     report.chain_solves += chain.solves;
     report.chains_unconverged += chain.unconverged ? 1 : 0;
   }
+  report.islands_refused = world.hard_islands.refused;
+  report.contacts_refused = world.borne.refused;
   report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
                                                              tables.contacts.normal_force.end(),
                                                              [](Real n) { return n > Real(0); }));
