@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string>
 #include <string_view>
@@ -59,17 +60,23 @@ int print_help() {
   return kGood;
 }
 
-/// Takes `--instruction-set NAME` out of the arguments, wherever it stands, and does what it says.
-bool choose_instructions(std::vector<std::string>& arguments) {
-  const auto option = std::find(arguments.begin(), arguments.end(), "--instruction-set");
-  if (option == arguments.end()) return true;
-  const std::string name = option + 1 == arguments.end() ? "" : option[1];
+bool use_instructions(const std::string& name, const char* said_by) {
   const Result<void> used =
       name.empty() ? Error{ErrorCode::kOutOfRange, "", "needs a name"} : use_instruction_set(name);
-  if (!used) {
-    std::fprintf(stderr, "hooke: --instruction-set %s\n", used.error().message.c_str());
-    return false;
+  if (!used) std::fprintf(stderr, "hooke: %s %s\n", said_by, used.error().message.c_str());
+  return static_cast<bool>(used);
+}
+
+/// Takes `--instruction-set NAME` out of the arguments, wherever it stands, and does what it says; without
+/// it, what the environment says.
+bool choose_instructions(std::vector<std::string>& arguments) {
+  const auto option = std::find(arguments.begin(), arguments.end(), "--instruction-set");
+  if (option == arguments.end()) {
+    const char* name = std::getenv("HOOKE_INSTRUCTION_SET");
+    return name == nullptr || *name == '\0' || use_instructions(name, "HOOKE_INSTRUCTION_SET");
   }
+  const std::string name = option + 1 == arguments.end() ? "" : option[1];
+  if (!use_instructions(name, "--instruction-set")) return false;
   arguments.erase(option, option + 2);
   return true;
 }

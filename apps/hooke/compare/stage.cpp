@@ -53,7 +53,7 @@ Result<Player> make_solver_player(const Stage& stage, double dt) {
   Loaded<Simulation> built = Simulation::create(stage.scene());
   if (!built) return built.errors.front();
   const auto simulation = std::make_shared<Simulation>(std::move(*built.value));
-  const SceneObject object = stage.object;
+  const SceneObject object = *simulation->find(stage.object.name);  // ids are of one world
   const WorldDesc& desc = stage.scene().world;
   const double evaluations_per_step = static_cast<double>(desc.substeps) * desc.particle_substeps;
   return Player{
