@@ -15,7 +15,7 @@ namespace hooke::app {
 namespace {
 
 /// Kinds of trouble; those of StepReport come after them, in the order of kCounts.
-enum Kind : int { kStretch, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
+enum Kind : int { kStretch, kSlack, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
 
 constexpr double kBeyondLimit = 1.1;       ///< Of a declared extension, before it is said.
 constexpr double kOpen = 0.01;             ///< Gap of a hook that is said [m].
@@ -23,6 +23,8 @@ constexpr double kPressed = 0.25;          ///< Overlap of two bodies, over the 
 constexpr double kOverlapInterval = 0.05;  ///< Between two looks at all contacts [s].
 constexpr double kTooSoft = 1.05;          ///< Jelly, softer than declared by so much.
 constexpr double kTooFlexible = 0.25;      ///< Cloth that bends farther than declared by so much.
+constexpr double kSlackFrom = 1.25;        ///< Cloth, stiffer than what a substep carries by so much,
+constexpr double kFarStretched = 0.02;     ///< that stretches by so much.
 constexpr double kHardlyAny = 2;           ///< The same, beyond which the estimate says no number.
 constexpr double kLost = 0.05;             ///< Share of a mesh's volume that its cells do not have.
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
@@ -169,6 +171,15 @@ std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) 
       .cure = more_substeps(scene, excess / kTooFlexible, "larger cells")};
 }
 
+/// What a substep carries of the stiffness of a spring along an edge of cloth, k = 1.4 m / h^2 with the mass
+/// m of a point: sheets of 9 to 31 points a side whose edge is pulled stretch as if they had no more [N/m].
+double carried_stiffness(const Scene& scene, const SceneCloth& cloth, std::uint32_t points, double area) {
+  const ClothDesc& desc = cloth.desc;
+  const double mass = desc.total_mass ? in_double(*desc.total_mass) : in_double(desc.areal_density) * area;
+  const double h = substep_of(scene);
+  return 1.4 * mass / points / (h * h);
+}
+
 /// Points keep half the thickness from what they touch: more than a cell of it is more than the cells can
 /// show.
 std::optional<RunWarning> thickness(double cell, Real thickness) {
@@ -298,9 +309,7 @@ void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
       const SceneCloth& cloth = declared(scene, object, &SceneObjects::cloths);
       add(kTooStiff, softness(scene, cloth));
       add(kCells, thickness(cell_of(cloth), cloth.desc.thickness));
-      if (cloth.desc.extension_max == kRigid) break;
-      watched.extension_max = in_double(cloth.desc.extension_max);
-      watched.edges = edges_of<Edge>(world, object, cloth);
+      take_cloth(scene, world, cloth, watched);
       break;
     }
     case SceneObject::Kind::kSolid: {
@@ -321,6 +330,23 @@ void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
   }
 }
 
+void RunWatch::take_cloth(const Scene& scene, const World& world, const SceneCloth& cloth, Watched& watched) {
+  const ClothDesc& desc = cloth.desc;
+  const PointView points = world.positions(watched.object.cloth);
+  double area = in_double(desc.width) * in_double(desc.height);
+  if (!cloth.mesh.empty()) {
+    area = 0;
+    for (const auto& t : world.triangles(watched.object.cloth))
+      area += length(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]])) / 2;
+  }
+  const double carried = carried_stiffness(scene, cloth, points.size(), area);
+  watched.stiffness = in_double(desc.stretch_stiffness);
+  if (watched.stiffness > kSlackFrom * carried) watched.carried = carried;
+  if (desc.extension_max != kRigid) watched.extension_max = in_double(desc.extension_max);
+  if (watched.carried > 0 || watched.extension_max > 0)
+    watched.edges = edges_of<Edge>(world, watched.object, cloth);
+}
+
 void RunWatch::take_rope(const World& world, const SceneRope& rope, Watched& watched) {
   const RopeDesc& desc = rope.desc;
   const PointView points = world.positions(watched.object.rope);
@@ -333,14 +359,39 @@ void RunWatch::take_rope(const World& world, const SceneRope& rope, Watched& wat
   }
 }
 
-void RunWatch::look_at_stretch(const World& world, const Watched& watched) {
-  if (!(watched.extension_max > 0)) return;
+/// The largest of its edges' relative elongations.
+double RunWatch::stretch_of(const World& world, const Watched& watched) {
   const PointView points = positions_of(world, watched.object);
   double most = 0;
   for (const Edge& edge : watched.edges) {
     if (edge.b >= points.size() || !(edge.length > 0)) continue;
     most = std::max(most, length(points[edge.b] - points[edge.a]) / edge.length - 1);
   }
+  return most;
+}
+
+void RunWatch::look_at_softness(const Simulation& simulation, const Watched& watched) {
+  if (!(watched.carried > 0)) return;
+  const World& world = simulation.world();
+  const double most = stretch_of(world, watched);
+  if (!(most > kFarStretched)) return;
+  const Scene& scene = simulation.scene();
+  note(
+      watched.order, kSlack, most,
+      {.object = watched.object.name,
+       .what = text_of("stretched by %.3g %%: a substep of %.3g s carries no more than about %.3g N/m of its "
+                       "stretch_stiffness",
+                       percent(most), substep_of(scene), watched.carried),
+       .worst = most,
+       .limit = kFarStretched,
+       .time = world.time(),
+       .cure = more_substeps(scene, std::sqrt(watched.stiffness / watched.carried),
+                             "larger cells, or heavier cloth")});
+}
+
+void RunWatch::look_at_stretch(const World& world, const Watched& watched) {
+  if (!(watched.extension_max > 0)) return;
+  const double most = stretch_of(world, watched);
   if (!(most > kBeyondLimit * watched.extension_max)) return;
   note(watched.order, kStretch, most / watched.extension_max,
        {.object = watched.object.name,
@@ -444,6 +495,13 @@ void RunWatch::look(const Simulation& simulation, const StepReport& report) {
   if (world.time() < next_overlaps_) return;
   next_overlaps_ = world.time() + kOverlapInterval;
   look_at_overlaps(world);
+  for (const Watched& watched : watched_) look_at_softness(simulation, watched);
+}
+
+/// Whether two names are of one object of a scene that asks for many: "flag[0]" and "flag[63]".
+static bool are_copies(const std::string& a, const std::string& b) {
+  const std::size_t end = a.rfind('[');
+  return end != std::string::npos && b.rfind('[') == end && a.compare(0, end, b, 0, end) == 0;
 }
 
 std::vector<RunWarning> RunWatch::warnings() const {
@@ -451,8 +509,26 @@ std::vector<RunWarning> RunWatch::warnings() const {
   std::stable_sort(sorted.begin(), sorted.end(), [](const Worst& a, const Worst& b) {
     return std::pair(a.order, a.kind) < std::pair(b.order, b.kind);
   });
+  // Copies that have the same trouble speak once, by the worst of them.
+  std::vector<Worst> told;
+  std::vector<int> copies;
+  for (Worst& one : sorted) {
+    const auto same = std::find_if(told.begin(), told.end(), [&](const Worst& other) {
+      return other.kind == one.kind && are_copies(other.warning.object, one.warning.object);
+    });
+    if (same == told.end()) {
+      told.push_back(std::move(one));
+      copies.push_back(1);
+      continue;
+    }
+    ++copies[static_cast<std::size_t>(same - told.begin())];
+    if (one.ratio > same->ratio) *same = std::move(one);
+  }
   std::vector<RunWarning> warnings;
-  for (Worst& one : sorted) warnings.push_back(std::move(one.warning));
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    warnings.push_back(std::move(told[i].warning));
+    if (copies[i] > 1) warnings.back().what += text_of(" (the worst of %d)", copies[i]);
+  }
   return warnings;
 }
 

@@ -33,7 +33,8 @@ class RunWatch {
   /// Looks at the state after a step and at the step's report.
   void look(const Simulation& simulation, const StepReport& report);
 
-  /// In order of the objects' creation, what is nobody's own last.
+  /// In order of the objects' creation, what is nobody's own last. Copies of one object ("flag[3]") that have
+  /// the same trouble are told of once, by the worst of them.
   [[nodiscard]] std::vector<RunWarning> warnings() const;
 
  private:
@@ -48,7 +49,9 @@ class RunWatch {
     std::uint64_t order = 0;       ///< Of creation.
     double extension_max = 0;      ///< 0 for none.
     bool is_rigid = false;         ///< A rope that is to keep its length.
-    std::vector<Edge> edges = {};  ///< Of what has a limit, or is rigid.
+    double stiffness = 0;          ///< Of cloth: declared, of a spring along an edge [N/m].
+    double carried = 0;            ///< Of it what a substep carries [N/m]; 0 where that is all.
+    std::vector<Edge> edges = {};  ///< Of what has a limit, is rigid, or softer than declared.
     bool was_closed = false;       ///< A hook, whose ends have been at one place.
   };
   struct Worst {
@@ -62,8 +65,11 @@ class RunWatch {
   bool knows_all(std::span<const SceneObject> objects);
   void take_new_objects(const Simulation& simulation);
   void look_at_start(const Simulation& simulation, Watched& watched);
+  static void take_cloth(const Scene& scene, const World& world, const SceneCloth& cloth, Watched& watched);
   static void take_rope(const World& world, const SceneRope& rope, Watched& watched);
+  static double stretch_of(const World& world, const Watched& watched);
   void look_at_stretch(const World& world, const Watched& watched);
+  void look_at_softness(const Simulation& simulation, const Watched& watched);
   void look_at_gap(const World& world, Watched& watched);
   void look_at_overlaps(const World& world);
   void look_at_report(const World& world, const StepReport& report);

@@ -272,6 +272,21 @@ class Warnings(Program):
         del strip["bend_stiffness"]
         self.assertEqual(self.problems({"cloths": [strip | {"bend": "none"}]}), {})
 
+    def test_cloth_that_stretches_more_than_declared(self):
+        sheet = {"name": "sheet", "columns": 11, "rows": 11, "width": 1, "height": 1, "total_mass": 0.2,
+                 "pins": [{"row": 0}], "loads": [{"point": 110 + i, "mass": 0.1} for i in range(11)]}
+        told = self.problems({"cloths": [sheet]})["sheet"]
+        # 1.4 m / h^2 with 0.2 kg on 121 points and substeps of 1/480 s.
+        self.assertRegex(told["what"], "carries no more than about 533 N/m of its stretch_stiffness")
+        # The upper cells bear 1.3 kg on 11 strands, 1.2 N each: 0.1 % of 0.1 m by 1e4 N/m, and twice that as they fall.
+        self.assertGreater(told["worst"], 0.02)
+        self.assertEqual(self.problems({"cloths": [sheet | {"stretch_stiffness": 500}]}), {})
+        self.assertEqual(self.problems({"cloths": [sheet]}, "--particle-substeps", 10), {})
+        # Of copies one speaks for all.
+        told = self.problems({"cloths": [sheet | {"array": {"grid": [3, 1, 1], "spacing": [2, 1, 1]}}]})
+        self.assertEqual(len(told), 1)
+        self.assertRegex(*[(one["what"], r"\(the worst of 3\)") for one in told.values()][0])
+
     def test_cells_that_do_not_fit(self):
         cloth = {"name": "felt", "columns": 21, "rows": 21, "thickness": 0.06, "pins": [0]}
         self.assertRegex(self.problems({"cloths": [cloth]})["felt"]["what"], "thickness of 0.06 m.*cells of 0.05 m")
