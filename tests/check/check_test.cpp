@@ -122,6 +122,21 @@ TEST_SUITE("check/cases") {
     }
   }
 
+  TEST_CASE("half the gravity, or no friction, is found by the cases of couplings") {
+    for (const char* id : {"C5", "C6", "C9", "C10", "C12", "C13", "C14", "C15", "C16", "C18"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, {.gravity_scale = 0.5}) > failed_rows(id, {}));
+    }
+    for (const char* id : {"C7", "V52"}) {
+      CAPTURE(id);
+      CHECK(failed_rows(id, {.friction_scale = 0.2}) > failed_rows(id, {}));
+    }
+  }
+
+  TEST_CASE("four substeps are too few for a light rope over a driven drum") {
+    CHECK(failed_rows("C20", {.substeps = 4}) == 3);
+  }
+
   TEST_CASE("two substeps are too few for the period of a stiff spring") {
     CHECK(failed_rows("V4", {.substeps = 2}) > 0);
   }

@@ -50,6 +50,7 @@ Rows heavy_load(const CheckSetting& setting);
 Rows bent_and_twisted(const CheckSetting& setting);
 Rows torsion(const CheckSetting& setting);
 Rows link_of_loop(const CheckSetting& setting);
+Rows twisted_rod(const CheckSetting& setting);
 
 // cases_rope_motion.cpp
 Rows wave_speeds(const CheckSetting& setting);
@@ -80,6 +81,8 @@ Rows pushed_cubes(const CheckSetting& setting);
 
 // cases_cloth.cpp: sheets and closed skins
 Rows balloon(const CheckSetting& setting);
+Rows supported_plate(const CheckSetting& setting);
+Rows tethered_balloon(const CheckSetting& setting);
 Rows overhanging_cloth(const CheckSetting& setting);
 Rows cusick_drape(const CheckSetting& setting);
 Rows flag_flutter(const CheckSetting& setting);
@@ -87,6 +90,7 @@ Rows picture_frame(const CheckSetting& setting);
 
 // cases_time.cpp: the same physics at any rate
 Rows display_rate(const CheckSetting& setting);
+Rows there_and_back(const CheckSetting& setting);
 Rows overload(const CheckSetting& setting);
 Rows gusts(const CheckSetting& setting);
 
@@ -168,5 +172,27 @@ Rows hook_springs(const CheckSetting& setting);
 // cases_rollback.cpp: bodies in the laboratory
 Rows rollback(const CheckSetting& setting);
 Rows bodies_by_rk4(const CheckSetting& setting);
+
+// cases_machines.cpp: ropes, drums and bodies
+Rows winch(const CheckSetting& setting);
+Rows braked_drum(const CheckSetting& setting);
+Rows elevator(const CheckSetting& setting);
+Rows driven_rope(const CheckSetting& setting);
+Rows tackle(const CheckSetting& setting);
+Rows unrolling_drum(const CheckSetting& setting);
+Rows carousel(const CheckSetting& setting);
+Rows bodies_on_rods(const CheckSetting& setting);
+
+// cases_soft_couplings.cpp: bodies and ropes with cloth and jelly
+Rows load_in_hammock(const CheckSetting& setting);
+Rows sheet_on_ropes(const CheckSetting& setting);
+Rows plate_on_jelly(const CheckSetting& setting);
+Rows floating_jelly(const CheckSetting& setting);
+Rows jelly_on_rope(const CheckSetting& setting);
+Rows free_rooms(const CheckSetting& setting);
+Rows caught_ball(const CheckSetting& setting);
+
+// cases_arch.cpp
+Rows stone_arch(const CheckSetting& setting);
 
 }  // namespace hooke::check

@@ -218,4 +218,69 @@ Rows picture_frame(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
+/// A square plate on four edges under its weight: 0.004062 q a^4 / D at its center, whatever its Poisson
+/// ratio (Navier 1820; Timoshenko).
+Rows supported_plate(const CheckSetting& setting) {
+  constexpr int kPoints = 9;
+  const double rigidity = 0.02;  // D [N m]
+  const double sag = 2e-3;
+  const double areal_density = 0.2;
+  Rows rows;
+  for (const auto& [bend, name] :
+       {std::pair{ClothDesc::Bend::kAngle, "angles"}, std::pair{ClothDesc::Bend::kIsometric, "curvatures"}}) {
+    WorldDesc world = without_air();
+    world.gravity = {real(0), real(-sag * rigidity / 0.004062 / areal_density), real(0)};
+    Rig rig(setting, world);
+    ClothDesc desc{.columns = kPoints, .rows = kPoints, .row_direction = {real(0), real(0), real(1)}};
+    desc.areal_density = real(areal_density);
+    desc.bend = bend;
+    desc.bend_stiffness = real(rigidity);
+    desc.stretch_stiffness = real(1000);
+    desc.shear_stiffness = real(200);
+    desc.air_friction = real(1);
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+      for (std::uint32_t k = 0; k < kPoints; ++k) {
+        if (i % (kPoints - 1) == 0 || k % (kPoints - 1) == 0) desc.pins.push_back({.point = k * kPoints + i});
+      }
+    }
+    const ClothId id = rig.add(desc);
+    rig.run(8);
+    rows.push_back(known_miss(relative_row(std::string("sag of a square plate that bends by ") + name, "m",
+                                           sag, -rig.positions(id)[kPoints * kPoints / 2].y, 0.05),
+                              "cells that twist fold along their diagonals, which resist twice as much"));
+  }
+  return by_cloth(rows);
+}
+
+/// A balloon under water pulls on its rope with the weight of the water in its place less its own
+/// (Archimedes).
+Rows tethered_balloon(const CheckSetting& setting) {
+  WorldDesc desc = without_air();
+  desc.particle_substeps = 4;
+  Rig rig(setting, desc);
+  must(rig.world().add_field({.kind = FieldDesc::Kind::kLiquid, .density = 1000, .drag = 3}));
+  ClothDesc skin;
+  skin.mesh = must(rig.world().add_mesh(sphere(0.1)));
+  skin.position = {0, -0.5, 0};
+  skin.areal_density = Real(2);
+  skin.pressure = Real(20000);
+  skin.damping = Real(1);
+  const ClothId id = rig.add(skin);
+  RopeDesc rope{.total_mass = real(0.001), .points = {}, .radius = real(0.001)};
+  for (int i = 0; i <= 10; ++i) rope.points.push_back({0, -1.6 + 0.1 * i, 0});
+  const RopeId tether = rig.add(rope);
+  must(rig.world().add_hook({.a = {.point = point(tether, 10)},
+                             .b = {.point = point(id, PointRef::kNearest)},
+                             .anchor = {0, -0.6, 0}}));
+  rig.run(10);
+  double pull = 0;
+  rig.run(2, [&] { pull += static_cast<double>(rig.world().tensions(tether)[0]) * setting.dt / 2; });
+  const auto [volume, area] = size_of(rig, id);
+  CheckRow row = relative_row("pull of a balloon under water on its rope", "N",
+                              (1000 * volume - 2 * 0.1 * 0.1 * 2 * kTau) * kGravity, pull, 0.01);
+  row.solver = "cloth, rope";
+  static_cast<void>(area);
+  return {row};
+}
+
 }  // namespace hooke::check

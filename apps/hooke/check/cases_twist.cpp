@@ -234,4 +234,43 @@ Rows link_of_loop(const CheckSetting& setting) {
   return rows;
 }
 
+namespace {
+
+/// Whether a rod with a twist that is clamped at one end, and at the other to what slides along it, bends
+/// out.
+bool throws_itself(const CheckSetting& setting, double twist) {
+  const int segments = 48;
+  RopeDesc desc = straight_rod(segments);
+  desc.twist = real(twist * (segments + 2) / segments);
+  desc.bend_damping = real(0.002);  // Much of it would hide how slowly it grows near the torque sought.
+  desc.pins = {{.point = 0}, {.point = 1}};
+  Rig rig(setting, empty_space());
+  const RopeId rope = rig.add(desc);
+  const BodyId slide = rig.add(hand(BodyKind::kDynamic, {1, 0, 0}, 0));
+  must(rig.world().add_hook(
+      {.kind = HookKind::kSlider, .b = {slide}, .anchor = {1, 0, 0}, .axis = {real(1), real(0), real(0)}}));
+  clamp(rig, slide, rope, segments + 1);
+  must(rig.world().apply_impulse(point(rope, segments / 2), {real(0), real(1e-6), real(0)}));
+  double away = 0;
+  for (int i = 0; i < 10 && away < 0.02; ++i) {
+    rig.run(1);
+    for (const DVec3& x : rig.positions(rope)) away = std::max(away, std::hypot(x.y, x.z));
+  }
+  return away >= 0.02;
+}
+
+}  // namespace
+
+/// A rod clamped at both ends, which are free to come nearer, bends to a helix when the torque in it passes
+/// 8.9868 EI / L: the first root of tan(M L / 2 EI) = M L / 2 EI (Greenhill 1883).
+Rows twisted_rod(const CheckSetting& setting) {
+  const double expected = 2 * 4.493409;
+  const double stiffness = 0.8;  // GJ over EI
+  const double found = bisect(0.9 * expected, 1.1 * expected, 6,
+                              [&](double torque) { return !throws_itself(setting, torque / stiffness); });
+  CheckRow row = relative_row("torque that throws a twisted rod out, M L / EI", "", expected, found, 0.02);
+  row.solver = "rope";
+  return {row};
+}
+
 }  // namespace hooke::check
