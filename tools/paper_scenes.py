@@ -29,7 +29,7 @@ def fig5():
         ], [
             fall("ball", radius + height, 24),
             promise("height", "==", radius + bounce**2 * height - G * late**2 / 2, "ball", 0.01, step),
-            promise("x", "==", 0, "ball", 1e-6)
+            promise("x", "==", 0, "ball", 1e-4)
         ], **laboratory(rollback="halving", epsilon=1e-4))
 
 

@@ -27,6 +27,9 @@ constexpr double kMostRopeDrag = 1e4;
 /// many times as fast as the place.
 constexpr double kInnerPushOutSpeed = 0.05;
 
+/// Of a body on others, over its lever there: overlap, or gap, that is none.
+constexpr double kBorneSlop = 1e-5;
+
 constexpr int kRopeSlidingSolves = 7;
 /// By how much a contact of ropes gives way to its force, at most [m/s].
 constexpr double kRopeYieldSpeed = 0.02;
@@ -128,7 +131,10 @@ void BundleSolution::load_borne_touch(std::size_t index) {
   touch.lever = vector_cast<double>(point.anchor_a);
   touch.lever_b = vector_cast<double>(point.anchor_b);
   const Vec3 way = way_between(t_.bodies, m, point);
-  touch.separation = touch.near ? static_cast<double>(contact.separation + dot(m.normal, way)) : 0;
+  const double separation = touch.near ? static_cast<double>(contact.separation + dot(m.normal, way)) : 0;
+  // Where it stands on several feet their loads must not hang on how each was rounded.
+  const double slop = kBorneSlop * std::min(length(touch.lever), length(touch.lever_b));
+  touch.separation = separation - std::clamp(separation, -slop, slop);
   // What does not give way moves as it is told.
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
   if (a < 0) touch.surface += velocity_of(contact.body_a, touch.lever);

@@ -21,6 +21,10 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// Of a lock's levers, and of its angles: errors about as large as directions kept in Reals have. Locks that
+/// say the same twice, as those of a row of hinges between two walls do, would strain to remove them. Points
+/// do not turn.
+constexpr double kRounding = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 // The freedoms of a hook, and two more of balls.
 constexpr int kTwist = 3;
@@ -154,6 +158,11 @@ void make_spring(const HookSpring& spring, double h, JointRow& row) {
   row.target = -row.rate * row.c;
 }
 
+/// An error of which those much smaller than `rounding` count little.
+double without_rounding(double c, double rounding) {
+  return c == 0 ? 0 : c * std::abs(c) / (std::abs(c) + rounding);
+}
+
 void make_limit(const HookLimits& limits, double value, double h, JointRow& row) {
   const double above = value - static_cast<double>(limits.lower);
   const double below = static_cast<double>(limits.upper) - value;
@@ -266,6 +275,8 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     switch (role) {
       case RowRole::kLock:
         if (!is_way) row.c -= math::whole_turns(row.c);
+        if (!hook.holds_point())
+          row.c = without_rounding(row.c, kRounding * (is_way ? length(f.r_a) + length(f.r_b) : 1));
         row.rate = 1 / h;
         row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;
