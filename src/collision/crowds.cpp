@@ -39,15 +39,18 @@ bool Crowds::Nearest::chooses(const CrowdKey& key) const {
 void Crowds::note(const state::Bodies& bodies, const Deep& deep) {
   if (!gives_way(bodies, deep.a) || !gives_way(bodies, deep.b)) return;
   deep_.push_back(deep);
-  ++count_[deep.a];
-  ++count_[deep.b];
 }
 
 /// Of those noted. Fills `nearest_` if there are so many that some may be left out.
-void Crowds::find_members() {
+void Crowds::find_members(std::size_t body_count) {
   found_.clear();
   nearest_.clear();
   if (deep_.size() < kLeastInCrowd) return;
+  count_.assign(body_count, 0);
+  for (const Deep& deep : deep_) {
+    ++count_[deep.a];
+    ++count_[deep.b];
+  }
   for (std::uint32_t body = 0; body < count_.size(); ++body) {
     if (count_[body] >= kLeastInCrowd) found_.push_back(body);
   }
@@ -89,7 +92,6 @@ void Crowds::thin_out(const state::Bodies& bodies, const state::Colliders& colli
   begins_.clear();
   left_out_ = 0;
   deep_.clear();
-  count_.assign(bodies.traits.size(), 0);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::uint32_t a = colliders.body[pairs[i].first];
     const std::uint32_t b = colliders.body[pairs[i].second];
@@ -98,7 +100,7 @@ void Crowds::thin_out(const state::Bodies& bodies, const state::Colliders& colli
     const double distance_squared = length_squared(bodies.center[b] - bodies.center[a]);
     if (distance_squared < reach * reach) note(bodies, {i, a, b, distance_squared});
   }
-  find_members();
+  find_members(bodies.traits.size());
   goes_.assign(nearest_.empty() ? 0 : pairs.size(), 0);
   for_each_left_out([&](std::size_t row) { goes_[row] = 1; });
   if (left_out_ == 0) return;
@@ -111,7 +113,6 @@ void Crowds::thin_out(const state::Bodies& bodies, const state::Colliders& colli
 
 void Crowds::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
   deep_.clear();
-  count_.assign(bodies.traits.size(), 0);
   for (std::size_t i = 0; i < pairs.manifold.size(); ++i) {
     const state::Manifold& m = pairs.manifold[i];
     Real overlap = Real(0);
@@ -122,7 +123,7 @@ void Crowds::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
     if (!(overlap > kDeepOverlap * thin)) continue;
     note(bodies, {i, m.body_a, m.body_b, length_squared(bodies.center[m.body_b] - bodies.center[m.body_a])});
   }
-  find_members();
+  find_members(bodies.traits.size());
   const std::uint32_t before = left_out_;
   for_each_left_out([&](std::size_t row) { pairs.manifold[row].point_count = 0; });
   if (left_out_ > before) remove_empty(pairs);

@@ -70,7 +70,7 @@ class Crowds {
 
   void divide();
   void note(const state::Bodies& bodies, const Deep& deep);
-  void find_members();
+  void find_members(std::size_t body_count);
   /// Calls visit(row) for those of `deep_` that neither body chooses.
   template <class Visit>
   void for_each_left_out(Visit&& visit);

@@ -15,6 +15,7 @@ using state::Bodies;
 using state::BorneContact;
 using state::Hook;
 using state::Manifold;
+using state::normal_impulse;
 
 constexpr Real kTouches = Real(1e-3);      ///< Surfaces so near may press on each other [m].
 constexpr Real kLiesOn = Real(0.3);        ///< Cosine between the normal and gravity.
@@ -36,13 +37,10 @@ void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) 
   for (const Manifold& m : pairs.manifold) {
     const Real slope = dot(m.normal, down);  // positive where a lies on b
     if (std::abs(slope) < kLiesOn || !touches(m)) continue;
-    Real impulse = Real(0);
-    for (std::int32_t k = 0; k < m.point_count; ++k)
-      impulse += m.point[static_cast<std::size_t>(k)].normal_impulse;
     const bool a_is_upper = slope > Real(0);
     props.push_back({.upper = a_is_upper ? m.body_a : m.body_b,
                      .lower = a_is_upper ? m.body_b : m.body_a,
-                     .impulse = impulse * std::abs(slope)});
+                     .impulse = normal_impulse(m) * std::abs(slope)});
   }
 }
 
@@ -403,9 +401,7 @@ void place_borne_contacts(Real impulse_to_force, const Bodies& bodies, state::Pa
     const state::ContactPoint& p = m.point[static_cast<std::size_t>(contact.point)];
     contact.separation = p.separation - dot(m.normal, way_between(bodies, m, p));
     contact.normal_force = impulse_to_force * p.normal_impulse;
-    Real load = Real(0);
-    for (std::int32_t k = 0; k < m.point_count; ++k)
-      load += m.point[static_cast<std::size_t>(k)].normal_impulse;
+    const Real load = normal_impulse(m);
     if (load > Real(0))
       contact.friction_force = (impulse_to_force * p.normal_impulse / load) * m.friction_impulse;
   }

@@ -14,6 +14,7 @@ namespace {
 using parallel::Range;
 using state::Bodies;
 using state::Manifold;
+using state::normal_impulse;
 
 constexpr std::uint32_t kNoIsland = 0xFFFFFFFF;
 constexpr Real kLargestSag = Real(0.005);  ///< Of the size of a body.
@@ -218,12 +219,9 @@ void find_loads(const std::vector<Manifold>& manifolds, IslandMembers members, c
   hard.loads.assign(static_cast<std::size_t>(hard.count), Real(0));
   for (const Manifold& m : manifolds) {
     if (!joins(m, members, bodies) || hard.island_of[m.body_a] == kNoIsland) continue;
-    Real impulse = Real(0);
-    for (std::int32_t k = 0; k < m.point_count; ++k)
-      impulse += m.point[static_cast<std::size_t>(k)].normal_impulse;
     const Real w = std::max(bodies.motion[m.body_a].inverse_mass, bodies.motion[m.body_b].inverse_mass);
     Real& load = hard.loads[hard.island_of[m.body_a]];
-    load = std::max(load, w * impulse);
+    load = std::max(load, w * normal_impulse(m));
   }
 }
 

@@ -59,6 +59,13 @@ inline std::uint32_t pushing_points(const Manifold& m) {
   return count;
 }
 
+/// Sum over its points of the last substep [N s].
+inline Real normal_impulse(const Manifold& m) {
+  Real sum = Real(0);
+  for (std::int32_t i = 0; i < m.point_count; ++i) sum += m.point[static_cast<std::size_t>(i)].normal_impulse;
+  return sum;
+}
+
 /// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
 /// rows that others have (solver/borne_contacts.h).
 struct BorneContact {

@@ -22,12 +22,6 @@ using testing::Surface;
 constexpr Vec3 kUp = {Real(0), Real(1), Real(0)};
 constexpr Real kG = Real(9.81);
 
-Real normal_impulse(const Manifold& m) {
-  Real sum = Real(0);
-  for (int k = 0; k < m.point_count; ++k) sum += m.point[k].normal_impulse;
-  return sum;
-}
-
 /// Boxes of edge 1 m and 1000 kg in a column on the plane y = 0, touching.
 void add_column(BodyScene& scene, int count) {
   std::uint32_t below = scene.add({Real(0)}, {});

@@ -8,6 +8,7 @@
 #include <cfenv>
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -128,6 +129,7 @@ TEST_SUITE("world/same_bits") {
     const std::vector<std::string> sets = instruction_sets();
     REQUIRE_FALSE(sets.empty());
     CHECK(sets.front() == "scalar");
+    CHECK(std::set<std::string>(sets.begin(), sets.end()).size() == sets.size());
     for (const std::string& set : sets) {
       REQUIRE(use_instruction_set(set).has_value());
       CHECK_MESSAGE(life() == expected, set);
