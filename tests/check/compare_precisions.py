@@ -7,7 +7,7 @@ import json
 import re
 import sys
 
-FIGURES = re.compile(r"stretch|energy|extension|gain|sag|pull|tension", re.IGNORECASE)
+FIGURES = re.compile(r"stretch|energy|extension|gain|sag|\bpull\b|tension", re.IGNORECASE)
 
 
 def rows_of(path):
