@@ -1,24 +1,26 @@
 #pragma once
 
+#include <cfenv>
 #if defined(__SSE2__) || defined(_M_X64)
 #include <xmmintrin.h>
 #define HOOKE_HAS_MXCSR 1
-#else
-#include <cfenv>
 #endif
 
 namespace hooke::base {
 
 /// Sets round-to-nearest and gradual underflow for the calling thread and puts back what the host had on
 /// destruction: a host that flushes denormals or rounds upward must not change the bits (and must get its own
-/// settings back). A few nanoseconds where the host has the same.
+/// settings back). A few nanoseconds where the host has the same. Texts become numbers, and numbers texts, by
+/// the rounding of the x87 unit, whatever computes: it is set too.
 class FloatEnvironment {
  public:
 #ifdef HOOKE_HAS_MXCSR
-  FloatEnvironment() : saved_(_mm_getcsr()) {
+  FloatEnvironment() : saved_(_mm_getcsr()), rounding_(std::fegetround()) {
+    if (rounding_ != FE_TONEAREST) std::fesetround(FE_TONEAREST);
     if (differs()) _mm_setcsr(kDefault);
   }
   ~FloatEnvironment() {
+    if (rounding_ != FE_TONEAREST) std::fesetround(rounding_);
     if (differs()) _mm_setcsr(saved_);
   }
 #else
@@ -41,6 +43,7 @@ class FloatEnvironment {
     return (saved_ & ~kFlags) != kDefault;
   }
   unsigned saved_;
+  int rounding_;
 #else
   std::fenv_t saved_;
 #endif

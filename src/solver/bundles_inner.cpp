@@ -27,8 +27,8 @@ constexpr double kMostRopeDrag = 1e4;
 /// many times as fast as the place.
 constexpr double kInnerPushOutSpeed = 0.05;
 
-/// Of a body on others, over its lever there: overlap, or gap, that is none.
-constexpr double kBorneSlop = 1e-5;
+/// Of a body on others, over its lever there: overlap, or gap, that is none. Some roundings' worth.
+constexpr double kBorneSlop = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 constexpr int kRopeSlidingSolves = 7;
 /// By how much a contact of ropes gives way to its force, at most [m/s].

@@ -1,5 +1,7 @@
 #include "hooke/placement.h"
 
+#include "base/float_environment.h"
+
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -30,6 +32,7 @@ void place(std::vector<ConnectionPointDesc>& points, const Placement& at) {
 }  // namespace
 
 WorldDesc placed(WorldDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.gravity = at.direction(desc.gravity);
   desc.wind = placed(desc.wind, at);
@@ -37,11 +40,13 @@ WorldDesc placed(WorldDesc desc, const Placement& at) {
 }
 
 WindDesc placed(WindDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (!is_identity(at)) desc.velocity = at.direction(desc.velocity);
   return desc;
 }
 
 MotionDesc placed(MotionDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.velocity = at.direction(desc.velocity);
   desc.amplitude = at.direction(desc.amplitude);
@@ -50,6 +55,7 @@ MotionDesc placed(MotionDesc desc, const Placement& at) {
 }
 
 BodyDesc placed(BodyDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.position = at.point(desc.position);
   desc.rotation = turned(desc.rotation, at);
@@ -60,6 +66,7 @@ BodyDesc placed(BodyDesc desc, const Placement& at) {
 }
 
 RopeDesc placed(RopeDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.hook_point = at.point(desc.hook_point);
   desc.direction = at.direction(desc.direction);
@@ -71,6 +78,7 @@ RopeDesc placed(RopeDesc desc, const Placement& at) {
 }
 
 ClothDesc placed(ClothDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   if (!desc.mesh) place(desc.connection_points, at);
   desc.corner = at.point(desc.corner);
@@ -84,6 +92,7 @@ ClothDesc placed(ClothDesc desc, const Placement& at) {
 }
 
 SolidDesc placed(SolidDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.position = at.point(desc.position);
   desc.rotation = turned(desc.rotation, at);
@@ -93,6 +102,7 @@ SolidDesc placed(SolidDesc desc, const Placement& at) {
 }
 
 ParticlesDesc placed(ParticlesDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   for (ParticleDesc& particle : desc.particles) {
     particle.position = at.point(particle.position);
@@ -104,6 +114,7 @@ ParticlesDesc placed(ParticlesDesc desc, const Placement& at) {
 }
 
 HookDesc placed(HookDesc desc, const Placement& at) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   desc.anchor = at.point(desc.anchor);
   if (desc.anchor_b) desc.anchor_b = at.point(*desc.anchor_b);
@@ -113,6 +124,7 @@ HookDesc placed(HookDesc desc, const Placement& at) {
 }
 
 FieldDesc placed(FieldDesc desc, const Placement& at, Vec3 gravity) {
+  const base::FloatEnvironment environment;
   if (is_identity(at)) return desc;
   const DVec3 up = -1.0 * normalize(vector_cast<double>(gravity));
   desc.vector = at.direction(desc.vector);
@@ -123,6 +135,7 @@ FieldDesc placed(FieldDesc desc, const Placement& at, Vec3 gravity) {
 
 /// A uniform rotation from three uniform numbers (Shoemake, Uniform random rotations, 1992).
 Placement random_placement(std::uint32_t seed, Vec3 gravity) {
+  const base::FloatEnvironment environment;
   std::mt19937 bits(seed);
   const auto draw = [&] { return static_cast<double>(bits()) / 4294967296.0; };
   const auto angle = [&] { return 2 * std::numbers::pi * draw(); };

@@ -1,8 +1,10 @@
 #include "hooke/scene_io.h"
 
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <doctest/doctest.h>
+#include <utility>
 
 namespace {
 
@@ -55,6 +57,29 @@ TEST_SUITE("io/scene_simulation") {
     REQUIRE(rope != nullptr);
     CHECK(simulation.world().positions(rope->rope).size() == 5);
     CHECK(simulation.find("box") == nullptr);
+  }
+
+  TEST_CASE("a scene is the same under every rounding mode of the host") {
+    const auto life = [] {
+      auto scene = hooke::load_scene(HOOKE_SCENES "/plank_bridge.json");
+      REQUIRE(scene);
+      const hooke::Placement at = hooke::random_placement(4, scene.value->world.gravity);
+      auto simulation = hooke::Simulation::create(std::move(*scene.value), at);
+      REQUIRE(simulation);
+      step(*simulation.value, 20);
+      const auto found = simulation.value->check(0);
+      return std::pair(simulation.value->world().state_hash(), found.achieved);
+    };
+    const auto expected = life();
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      CAPTURE(mode);
+      std::fesetround(mode);
+      const auto got = life();
+      const int after = std::fegetround();
+      std::fesetround(FE_TONEAREST);
+      CHECK(got == expected);
+      CHECK(after == mode);
+    }
   }
 
   TEST_CASE("a pyramid narrows by one in each row and is centered") {

@@ -291,10 +291,10 @@ TEST_SUITE("world/calls") {
     const std::size_t count = all_calls(probe, {}).size();
     for (std::size_t i = 0; i + 1 < count; ++i) {
       Hall h = make_hall();
-      const auto [name, call] = all_calls(h, {})[i];
-      const bool steers = std::string(name) == "set_steering";  // not of a ball
-      CHECK_MESSAGE(call(h.world) == !steers, name);
-      CHECK_MESSAGE(h.world.step(kDt).moved, name);
+      const Call call = all_calls(h, {})[i];
+      const bool steers = std::string(call.first) == "set_steering";  // not of a ball
+      CHECK_MESSAGE(call.second(h.world) == !steers, call.first);
+      CHECK_MESSAGE(h.world.step(kDt).moved, call.first);
     }
   }
 
@@ -331,7 +331,7 @@ TEST_SUITE("world/calls") {
     const std::vector<Call> calls = all_calls(h, h.world.snapshot());
     const World there = take_away(h.world);
     World& gone = h.world;
-    for (const auto& [name, call] : calls) CHECK_FALSE_MESSAGE(call(gone), name);
+    for (const Call& call : calls) CHECK_FALSE_MESSAGE(call.second(gone), call.first);
     CHECK(gone.add_rope({}).error().message.find("moved from") != std::string::npos);
     CHECK_FALSE(gone.cast_ray({0, 9, 0}, {0, -9, 0}).has_value());
     CHECK_FALSE(gone.find_closest({}, 1).has_value());
