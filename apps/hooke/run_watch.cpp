@@ -51,6 +51,9 @@ constexpr std::array kCounts = {
           "fewer bodies that lie on much lighter ones, or more substeps"},
     Count{&StepReport::contacts_refused, "contacts were too many to be solved with hooks, and may sink",
           "fewer bodies on what hangs, masses that differ less, or more substeps"},
+    Count{&StepReport::bundles_cut_short,
+          "groups of ropes and what they hold took too much work to be solved to the end",
+          "fewer points, or fewer ropes that touch each other"},
 };
 
 double in_double(Real value) {

@@ -92,6 +92,8 @@ struct StepReport {
   std::uint32_t islands_refused = 0;
   /// Contacts that need to be solved with the hooks of what they press on and are beyond their number.
   std::uint32_t contacts_refused = 0;
+  /// Groups of ropes, of what hangs on them and touches them, whose solution ended by its budget of work.
+  std::uint32_t bundles_cut_short = 0;
   double detect_ms = 0;
   double prepare_ms = 0;
   double substep_ms = 0;

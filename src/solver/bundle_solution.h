@@ -48,6 +48,8 @@ class BundleSolution {
   void read_solution();
   void move_nodes();
   [[nodiscard]] bool is_sound() const;
+  /// Whether its matrix may be factored once more in this substep; notes in the bundle that it may not.
+  bool within_budget();
   void push_out_points();
 
   // Contacts between points: bundles_inner.cpp.

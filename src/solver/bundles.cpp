@@ -205,17 +205,24 @@ bool BundleSolution::revise_bounds(bool release) {
 
 void BundleSolution::solve_with_bounds() {
   bool changed = true;
-  for (int pass = 0; changed && pass < kMostBoundPasses; ++pass) {
+  for (int pass = 0; changed && pass < kMostBoundPasses && (pass == 0 || within_budget()); ++pass) {
     hold_nodes(h_, b_.ropes);
     resize_rope_touches();
     fill_right_side();
     assemble();
     factor(b_.pattern, b_.numbers, b_.factor_scratch);
+    ++b_.factored;
     solve(b_.pattern, b_.numbers, b_.right_side);
     read_solution();
     if (!is_sound()) return;
     changed = revise_bounds(pass < kFreeBoundPasses);
   }
+}
+
+bool BundleSolution::within_budget() {
+  if (b_.factored < kFewestFactorizations || b_.factored * b_.pattern.operations < kBundleBudget) return true;
+  b_.cut_short = true;
+  return false;
 }
 
 bool BundleSolution::is_sound() const {
@@ -265,7 +272,7 @@ void BundleSolution::run(std::vector<Chain>& chains) {
     const bool slides = solves == kMostRopeSolves && error > kReportedError && let_inner_slide();
     return solve_again(solves, error, unsettled.pulls, b_.ropes.touches) || slides;
   };
-  for (int solves = 1; solves == 1 || again(solves - 1); ++solves) {
+  for (int solves = 1; solves == 1 || (again(solves - 1) && within_budget()); ++solves) {
     std::size_t segment = 0;
     for (std::size_t k = 0; k < b_.chains.size(); ++k) {
       Chain& chain = chains[b_.chains[k]];
@@ -351,6 +358,7 @@ void BundleSolution::push_out_points() {
 
 void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle& bundle,
                   std::vector<Chain>& chains, state::Tables& tables) {
+  bundle.factored = 0;
   BundleSolution solution(static_cast<double>(h), bundle, tables);
   solution.load(before, chains);
   solution.run(chains);

@@ -136,7 +136,11 @@ struct Bundle {
   std::vector<std::uint32_t> pair_block;      ///< For each two incidents of a node (j <= i), by node, i, j.
   std::vector<std::uint32_t> first_pair;      ///< Of each node.
 
+  // Lives for one step.
+  bool cut_short = false;  ///< Its solution ended by kBundleBudget in some substep.
+
   // Lives for one substep.
+  int factored = 0;                        ///< How often its matrix was factored.
   RopeScratch ropes;                       ///< Nodes of chains, then points.
   std::vector<RopeSetting> settings;       ///< Of chains.
   std::vector<std::uint32_t> chain_nodes;  ///< Of chains: how many.
@@ -157,6 +161,11 @@ struct Bundle {
   /// No members, no matrix; keeps its memory.
   void clear();
 };
+
+/// Multiplications of all factorizations of one bundle in a substep, some 20 ms; it is factored four times
+/// whatever that takes. Contacts of ropes that let go and come back could ask for 256.
+inline constexpr double kBundleBudget = 2e7;
+inline constexpr int kFewestFactorizations = 4;
 
 /// The share of a hook row's diagonal that it has as compliance; of a motor's, whose row asks for a speed and
 /// does not take back what it has yielded.

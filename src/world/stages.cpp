@@ -427,6 +427,8 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   }
   report.islands_refused = world.hard_islands.refused;
   report.contacts_refused = world.borne.refused;
+  for (solver::Bundle& bundle : world.bundles.bundles)
+    report.bundles_cut_short += std::exchange(bundle.cut_short, false) ? 1 : 0;
   report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
                                                              tables.contacts.normal_force.end(),
                                                              [](Real n) { return n > Real(0); }));
