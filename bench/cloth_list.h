@@ -39,6 +39,7 @@ inline ClothList cloth_100(int side = 100) {
     list.springs.rest_length.push_back(length(list.particles.position[a].x - list.particles.position[b].x));
     list.springs.stiffness.push_back(bend ? Real(1e4) : std::numeric_limits<Real>::infinity());
     list.springs.damping.push_back(Real(0));
+    list.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
     list.springs.kind.push_back(kind);
     list.springs.form.push_back(state::SpringForm::kExplicit);
   };

@@ -386,7 +386,9 @@ struct ClothDesc {
   /// See Bend; in N m the flexural rigidity of a sheet that bends about lines across it. Diagonals fold, too:
   /// a strip with free sides bends by up to a quarter more (hooke check I23).
   Real bend_stiffness = Real(1e-4);
-  Real damping = Real(0);       ///< Of each stretch and shear spring [N s/m].
+  /// Of each stretch and shear spring [N s/m]. Beyond ten times the spring's stiffness times a substep, and
+  /// beyond half the mass of a point over a substep, it counts as that much.
+  Real damping = Real(0);
   Real bend_damping = Real(0);  ///< Of each bend row, in units of bend_stiffness times s.
   Real yield_angle = kRigid;    ///< A pair of triangles bent farther than this [rad] from its form at rest
                                 ///< keeps the rest of it: a fold. Bend::kAngle only; positive, or kRigid.

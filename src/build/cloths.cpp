@@ -198,9 +198,10 @@ std::vector<SpringRow> mesh_springs(const Surface& s, const ClothDesc& desc) {
   return rows;
 }
 
-void append_springs(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
-  const std::vector<SpringRow> rows = s.is_grid ? grid_springs(s, desc) : mesh_springs(s, desc);
-  for (const SpringRow& row : rows) {
+void append_springs(const Surface& s, const ClothDesc& desc, double mass, state::Tables& tables) {
+  std::vector<SpringRow> rows = s.is_grid ? grid_springs(s, desc) : mesh_springs(s, desc);
+  for (SpringRow& row : rows) {
+    row.damped_mass = static_cast<Real>(mass / static_cast<double>(s.points.size()));
     if (row.stiffness > Real(0) && row.rest_length > Real(0)) append_spring(row, tables);
   }
   if (std::isinf(desc.extension_max)) return;
@@ -396,10 +397,10 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   object.columns = static_cast<std::uint32_t>(surface.columns);
   object.drag_coefficient = desc.drag_coefficient;
   object.lift_coefficient = desc.lift_coefficient;
-  append_springs(surface, desc, tables);
-  append_bends(surface, desc, tables);
   const double mass = desc.total_mass ? static_cast<double>(*desc.total_mass)
                                       : area * static_cast<double>(desc.areal_density);
+  append_springs(surface, desc, mass, tables);
+  append_bends(surface, desc, tables);
   append_triangles(surface, mass / area, tables);
   append_tethers(surface, desc, tables);
   if (surface.is_grid) {

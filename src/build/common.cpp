@@ -105,6 +105,7 @@ void append_spring(const SpringRow& spring, state::Tables& tables) {
   springs.rest_length.push_back(spring.rest_length);
   springs.stiffness.push_back(spring.stiffness);
   springs.damping.push_back(spring.damping);
+  springs.damped_mass.push_back(spring.damped_mass);
   springs.kind.push_back(spring.kind);
   springs.form.push_back(spring.form);
   ++object.springs.count;

@@ -5,6 +5,7 @@
 #include "build/checks.h"
 #include "state/tables.h"
 
+#include <limits>
 #include <vector>
 
 namespace hooke::build {
@@ -42,6 +43,7 @@ struct SpringRow {
   Real rest_length = Real(0);
   Real stiffness = Real(0);
   Real damping = Real(0);
+  Real damped_mass = std::numeric_limits<Real>::infinity();
   state::SpringClass kind = state::SpringClass::kStretch;
   state::SpringForm form = state::SpringForm::kExplicit;
 };

@@ -78,6 +78,13 @@ void set_lane(const Hinge& hinge, const state::Bends& bends, std::size_t lane, H
   stiffness[lane] = bends.stiffness[hinge.bend];
 }
 
+/// Of a bend, k sum |weight|^2 [N/m]: over the mass of a point the square of how fast it acts.
+Real resistance(const state::Bends& bends, std::uint32_t row) {
+  Real sum = Real(0);
+  for (const Real weight : bends.weights[row]) sum += weight * weight;
+  return bends.stiffness[row] * sum;
+}
+
 /// Isometric bends with their springs, sorted by color and materials.
 std::vector<Hinge> list_hinges(const state::Bends& bends, const state::Springs& springs, int particle_count,
                                std::vector<std::uint8_t>& taken, HingeBlocks& hinges) {
@@ -125,6 +132,7 @@ std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const st
       pass.last_count = 0;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const bool own = more();
+        if (own) pass.stiffest = std::max(pass.stiffest, resistance(bends, list[i].bend));
         set_lane(list[own ? i++ : i - 1], bends, lane, block, stiffness);
         if (own) ++pass.last_count;
       }
@@ -138,7 +146,9 @@ std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const st
 void prepare_hinges(HingeBlocks& hinges, Real h) {
   prepare_springs(hinges.materials, h);
   for (HingePass& pass : hinges.passes) {
-    const Real damped = Real(1) / (pass.damping + h);
+    const Real mass = hinges.materials[pass.edge].damped_mass;  // of the same cloth
+    const Real most = most_damping(mass, pass.stiffest, h) / pass.stiffest;
+    const Real damped = Real(1) / (std::min(pass.damping, most) + h);
     pass.softness = {.bias = Real(1) / h, .damped_bias = damped, .gamma_share = h * damped};
   }
   for (std::size_t i = 0; i < hinges.blocks.size(); ++i) {

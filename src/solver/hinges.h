@@ -39,6 +39,7 @@ struct HingePass {
   std::uint32_t edge = 0;   ///< Material of the springs along edges; kNoSpring.
   std::uint32_t wings = 0;  ///< Material of those between wings; kNoSpring.
   Real damping = Real(0);   ///< tau of the bends [s].
+  Real stiffest = Real(0);  ///< Largest k sum |weight|^2 of its rows [N/m].
   int first = 0;
   int end = 0;
   int last_count = kLanes;  ///< Hinges in the last block.

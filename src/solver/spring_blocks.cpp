@@ -31,6 +31,7 @@ SpringMaterial material_of(const state::Springs& springs, std::size_t row) {
   const SpringClass kind = springs.kind[row];
   return {.stiffness = springs.stiffness[row],
           .damping = springs.damping[row],
+          .damped_mass = springs.damped_mass[row],
           .one_sided = kind == SpringClass::kTether || kind == SpringClass::kLimit,
           .anchored = kind == SpringClass::kTether,
           .form = springs.form[row],
@@ -127,9 +128,17 @@ Softness softness(Real stiffness, Real damping, Real h) {
   return {.bias = stiffness / s, .gamma = Real(1) / (h * s)};
 }
 
+Real most_damping(Real mass, Real stiffness, Real h) {
+  constexpr Real kMostDamped = Real(0.5);
+  constexpr Real kMostOverdamped = Real(10);
+  return std::max(kMostDamped * mass / h, kMostOverdamped * h * stiffness);
+}
+
 void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
   for (SpringMaterial& material : materials) {
-    const Softness soft = softness(material.stiffness, material.damping, h);
+    const Real damping =
+        std::min(material.damping, most_damping(material.damped_mass, material.stiffness, h));
+    const Softness soft = softness(material.stiffness, damping, h);
     material.bias = soft.bias;
     material.gamma = soft.gamma;
   }

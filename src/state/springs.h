@@ -35,6 +35,7 @@ struct Springs {
   std::vector<Real> rest_length;  ///< L [m]; for limits and tethers the largest length.
   std::vector<Real> stiffness;    ///< k [N/m]; infinity is a rigid link.
   std::vector<Real> damping;      ///< c [N s/m]
+  std::vector<Real> damped_mass;  ///< Mass that c acts on at most, see solver/springs.h [kg].
   std::vector<SpringClass> kind;
   std::vector<SpringForm> form;
 
@@ -47,6 +48,7 @@ struct Springs {
     visit(self.rest_length);
     visit(self.stiffness);
     visit(self.damping);
+    visit(self.damped_mass);
     visit(self.kind);
     visit(self.form);
   }

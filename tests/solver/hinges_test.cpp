@@ -36,6 +36,7 @@ void add_spring(Net& net, std::uint32_t a, std::uint32_t b, SpringClass kind, Re
   net.springs.rest_length.push_back(rest_length);
   net.springs.stiffness.push_back(stiffness);
   net.springs.damping.push_back(Real(0));
+  net.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
   net.springs.kind.push_back(kind);
   net.springs.form.push_back(state::SpringForm::kExplicit);
 }

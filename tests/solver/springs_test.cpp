@@ -24,6 +24,7 @@ struct PairDesc {
   Real w_b = Real(1);
   Real stiffness = Real(100);
   Real damping = Real(0);
+  Real damped_mass = std::numeric_limits<Real>::infinity();
   state::SpringClass kind = state::SpringClass::kStretch;
   state::SpringForm form = state::SpringForm::kExplicit;
 };
@@ -32,7 +33,7 @@ Pair make_pair(const PairDesc& d) {
   Pair pair;
   pair.particles.position = {{}, {{d.separation, Real(0), Real(0)}}};
   pair.particles.velocity = {{{}, d.w_a}, {{}, d.w_b}};
-  pair.springs = {{0}, {1}, {d.rest_length}, {d.stiffness}, {d.damping}, {d.kind}, {d.form}};
+  pair.springs = {{0}, {1}, {d.rest_length}, {d.stiffness}, {d.damping}, {d.damped_mass}, {d.kind}, {d.form}};
   return pair;
 }
 
@@ -67,6 +68,7 @@ Pair random_net(int particles, int springs, state::SpringClass kind) {
     net.springs.rest_length.push_back(Real(0.3) * real());
     net.springs.stiffness.push_back(i % 3 == 0 ? kStiff : Real(1000));
     net.springs.damping.push_back(i % 2 == 0 ? Real(0) : Real(0.1));
+    net.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
     net.springs.kind.push_back(kind);
     net.springs.form.push_back(state::SpringForm::kExplicit);
   }
@@ -178,6 +180,7 @@ TEST_SUITE("solver/springs") {
       star.springs.rest_length.push_back(Real(0.5));
       star.springs.stiffness.push_back(Real(10));
       star.springs.damping.push_back(Real(0));
+      star.springs.damped_mass.push_back(std::numeric_limits<Real>::infinity());
       star.springs.kind.push_back(state::SpringClass::kStretch);
       star.springs.form.push_back(state::SpringForm::kExplicit);
     }

@@ -1,6 +1,7 @@
 #include "world/make.h"
 #include "world/world_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hooke {
@@ -203,6 +204,52 @@ TEST_SUITE("world/cloth") {
       const double area = 7 * 0.1 * 0.1;
       const double expected = 0.5 * kRigidity * area / (kRadius * kRadius);
       CHECK(world.measure().energy.elastic == doctest::Approx(expected).epsilon(0.005).scale(0));
+    }
+  }
+
+  TEST_CASE("no damping, however strong beside light points and weak springs, makes a sheet fast") {
+    struct Sheet {
+      int columns, rows;
+      double width, height, density, stretch, shear, damping, bend, bend_damping;
+      ClothDesc::Bend kind;
+    };
+    // A second of free fall is 9.8 m/s, and a tip may whip; these came to 1e9 m/s and more, or were not
+    // finite.
+    const double rigid = static_cast<double>(kRigid);
+    for (const Sheet& sheet : {
+             Sheet{11, 11, 0.69, 0.096, 0.03, rigid, 756, 4.6, 2e-5, 0, ClothDesc::Bend::kNone},
+             Sheet{10, 8, 0.243, 0.122, 0.107, 6e5, 11, 0.97, 2e-3, 0, ClothDesc::Bend::kAngle},
+             Sheet{7, 8, 0.102, 0.055, 0.0206, rigid, 4.5, 1.5, 10, 0, ClothDesc::Bend::kSpring},
+             Sheet{11, 8, 0.097, 0.087, 0.0152, 1.3e5, 119, 0.003, 5e-4, 0.25, ClothDesc::Bend::kIsometric},
+             Sheet{9, 9, 0.07, 0.542, 0.0136, 7.7e4, 0, 0.08, 0.0065, 0.16, ClothDesc::Bend::kIsometric},
+         }) {
+      for (const int particle_substeps : {1, 2, 4, 8}) {
+        CAPTURE(sheet.shear);
+        CAPTURE(particle_substeps);
+        WorldDesc world_desc = without_air();
+        world_desc.particle_substeps = particle_substeps;
+        World world = make_world(world_desc);
+        ClothDesc desc{.columns = sheet.columns, .rows = sheet.rows, .row_direction = {0, 0, Real(1)}};
+        desc.width = static_cast<Real>(sheet.width);
+        desc.height = static_cast<Real>(sheet.height);
+        desc.areal_density = static_cast<Real>(sheet.density);
+        desc.stretch_stiffness = static_cast<Real>(sheet.stretch);
+        desc.shear_stiffness = static_cast<Real>(sheet.shear);
+        desc.damping = static_cast<Real>(sheet.damping);
+        desc.bend = sheet.kind;
+        desc.bend_stiffness = static_cast<Real>(sheet.bend);
+        desc.bend_damping = static_cast<Real>(sheet.bend_damping);
+        desc.pins = {{0}};
+        const ClothId id = take(world.add_cloth(desc));
+        double fastest = 0;
+        for (int i = 0; i < 60; ++i) {
+          run(world, 1);
+          const auto v = world.velocities(id);
+          for (std::uint32_t k = 0; k < v.size(); ++k)
+            fastest = std::max(fastest, static_cast<double>(length(v[k])));
+        }
+        CHECK(fastest < 50);
+      }
     }
   }
 
