@@ -269,8 +269,10 @@ Rows free_rooms(const CheckSetting& setting) {
                                    length(end.momentum - start.momentum) / scale, 1e-6);
   CheckRow turning = absolute_row("angular momentum lost in 60 s, share", "", 0,
                                   length(end.angular_momentum - start.angular_momentum) / scale, 1e-5);
-  momentum = known_miss(momentum, "velocities of points come of positions, which are floats");
-  turning = known_miss(turning, "rows of cloth pull along where points are about to be");
+  momentum = known_miss(momentum, "velocities are rounded to floats in each substep; 5e-11 in double");
+  turning = known_miss(
+      turning,
+      "ropes and hooks at points pull along where these are about to be; cloth and jelly alone keep it");
   return by("all", {momentum, turning, absolute_row("energy gained, share", "", 0, gain, 1e-3)});
 }
 
