@@ -254,6 +254,7 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
   for (int i = 0; i < 6; ++i) hook.value[i] = f.value[i];
   const double fastest_way = kPushSpeed + length(b.v - a.v);
   const double fastest_turn = kPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
+  const double levers = length(f.r_a) + length(f.r_b);
   int count = 0;
   for_each_row(hook, [&](int i, RowRole role) {
     const bool is_way = i < 3;
@@ -275,8 +276,7 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     switch (role) {
       case RowRole::kLock:
         if (!is_way) row.c -= math::whole_turns(row.c);
-        if (!hook.holds_point())
-          row.c = without_rounding(row.c, kRounding * (is_way ? length(f.r_a) + length(f.r_b) : 1));
+        if (!hook.holds_point()) row.c = without_rounding(row.c, kRounding * (is_way ? levers : 1));
         row.rate = 1 / h;
         row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;
