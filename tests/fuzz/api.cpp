@@ -41,9 +41,21 @@ struct Ids {
     return std::find(alive.begin(), alive.end(), id) != alive.end();
   }
   [[nodiscard]] IdType pick(Random& random) const {
-    if (random.chance(0.03)) return {random.index(5), random.index(3)};
+    if (random.chance(0.03)) return make_up(random);
     if (random.chance(0.85) && !alive.empty()) return random.one_of(alive);
     return ever.empty() ? IdType{} : random.one_of(ever);
+  }
+  /// One of another World, which is refused, or of none in particular, which is the one of this World that it
+  /// hits.
+  [[nodiscard]] IdType make_up(Random& random) const {
+    constexpr std::uint32_t kOther = 0xFFFFFFFE;
+    IdType id = {random.index(5), random.index(3), kOther};
+    if (random.chance(0.5)) return id;
+    id.world = 0;
+    for (const IdType mine : alive) {
+      if (mine.slot == id.slot && mine.generation == id.generation) return mine;
+    }
+    return id;
   }
 };
 
