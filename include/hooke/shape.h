@@ -31,7 +31,8 @@ enum class ShapeKind : std::uint8_t {
   kSphere,
   kBox,
   kMesh,  ///< Triangles, solid on the inner side of each. Of a dynamic body: a closed surface, which has the
-          ///< mass of its inside and collides by its convex parts (decompose_convex).
+          ///< mass of its inside and collides by its convex parts (decompose_convex). One that crosses itself
+          ///< so that it bounds no matter has the mass of these parts.
   kCapsule,   ///< A cylinder along y between two half spheres.
   kCylinder,  ///< Along y, its center at the origin.
   kCone,      ///< Along y, the tip up; the origin is halfway up, not the center of mass.

@@ -112,17 +112,21 @@ Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t)
   return {};
 }
 
-/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole.
+/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole; of its parts
+/// where its surface crosses itself so that it bounds no matter.
 Result<void> add_convex_parts(Part whole, const std::string& where, Tables& t, std::vector<Part>& parts) {
   const MeshId id = whole.desc.shape.mesh;
   if (const Result<void> made = make_convex_parts(id, where, t); !made) return made.error();
   const MeshDesc& mesh = whole.shape.mesh->desc;
   const MassProperties solid = geometry::mass_of(mesh.positions, mesh.triangles);
-  whole.solid = geometry::moved(solid, whole.desc.rotation, vector_cast<double>(whole.desc.position));
+  const bool bounds_matter = geometry::is_physical(solid);
+  if (bounds_matter)
+    whole.solid = geometry::moved(solid, whole.desc.rotation, vector_cast<double>(whole.desc.position));
   whole.desc.shape = Shape::hull_of(id);
   for (const auto& hull : t.convex_parts[t.mesh_slots.find(id)]) {
     Part part = whole;
     part.shape = {.shape = whole.desc.shape, .mesh = nullptr, .hull = hull, .whole = whole.shape.mesh};
+    if (!bounds_matter) part.solid = solid_of(part.shape, part.desc);
     parts.push_back(std::move(part));
     whole.solid = {};
   }

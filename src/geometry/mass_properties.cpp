@@ -2,6 +2,7 @@
 
 #include "math/rotation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -121,6 +122,8 @@ class Tetrahedra {
 
 constexpr int kSweeps = 8;
 constexpr double kNegligible = 1e-13;
+constexpr double kFlat = 1e-9;   ///< A disk's moment about its axis is the sum of the two across.
+constexpr double kThin = 1e-12;  ///< Moments of less than this part of the largest are rounding.
 
 /// The rotation about one axis that takes the element `off` between the two others out of a matrix with `p`
 /// and `q` on its diagonal there: cosine and sine of half its angle, at most 45 degrees.
@@ -176,6 +179,13 @@ MassProperties mass_of(std::span<const Vec3> positions,
   Tetrahedra sum(positions[triangles[0][0]]);
   for (const auto& t : triangles) sum.add(positions[t[0]], positions[t[1]], positions[t[2]]);
   return sum.total();
+}
+
+bool is_physical(const MassProperties& solid) {
+  const DVec3 m = principal_axes(solid.inertia).moments;
+  const double sum = (1 + kFlat) * (m.x + m.y + m.z);
+  const double most = std::max({m.x, m.y, m.z});
+  return solid.volume > 0 && std::min({m.x, m.y, m.z}) > kThin * most && sum > 2 * most;
 }
 
 MassProperties moved(const MassProperties& solid, Quat rotation, DVec3 shift) {

@@ -29,6 +29,10 @@ struct MassProperties {
 [[nodiscard]] MassProperties mass_of(std::span<const Vec3> positions,
                                      std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// Whether matter can be so: the moments are positive, none above the sum of the others. A surface that
+/// crosses itself counts space twice, or negative, and may bound nothing of the kind.
+[[nodiscard]] bool is_physical(const MassProperties& solid);
+
 /// The same solid moved: rotated about the origin, then shifted [m].
 [[nodiscard]] MassProperties moved(const MassProperties& solid, Quat rotation, DVec3 shift);
 /// Two solids as one, each with its density as a factor (parallel axes). Without mass: zero.

@@ -210,6 +210,9 @@ class Buckets {
     for (const Tetrahedron& t : mesh.tetrahedra)
       volume += volume6(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
     size_ = std::cbrt(2.0 * volume / static_cast<double>(mesh.tetrahedra.size()));
+    if (!(size_ > 0)) size_ = 1;
+    // A spike of kilometers in a solid of centimeters would lie in more cubes than memory holds.
+    while (count_entries() > kMostCubes * static_cast<double>(mesh.tetrahedra.size())) size_ *= 2;
     for (std::uint32_t i = 0; i < mesh.tetrahedra.size(); ++i) insert(i);
     std::sort(entries_.begin(), entries_.end());
   }
@@ -245,16 +248,33 @@ class Buckets {
   using Cube = std::array<int, 3>;
   using Entry = std::pair<Cube, std::uint32_t>;
 
+  static constexpr double kMostCubes = 16;  // of a tetrahedron, on average
+
   [[nodiscard]] Cube cube_of(DVec3 p) const {
     const auto at = [&](double x) { return static_cast<int>(std::clamp(std::floor(x / size_), -1e9, 1e9)); };
     return {at(p.x), at(p.y), at(p.z)};
   }
 
-  void insert(std::uint32_t i) {
-    const Tetrahedron& t = mesh_.tetrahedra[i];
+  /// The first and the last cube of those that the box around a tetrahedron overlaps.
+  [[nodiscard]] std::pair<Cube, Cube> cubes_of(const Tetrahedron& t) const {
     const auto& x = mesh_.points;
     const Box3<double> box = merge(box_of(x[t[0]], x[t[1]], x[t[2]]), box_of(x[t[1]], x[t[2]], x[t[3]]));
-    const Cube a = cube_of(box.lower), b = cube_of(box.upper);
+    return {cube_of(box.lower), cube_of(box.upper)};
+  }
+
+  [[nodiscard]] double count_entries() const {
+    double count = 0;
+    for (const Tetrahedron& t : mesh_.tetrahedra) {
+      const auto [a, b] = cubes_of(t);
+      double cubes = 1;
+      for (std::size_t axis = 0; axis < 3; ++axis) cubes *= 1.0 + b[axis] - a[axis];
+      count += cubes;
+    }
+    return count;
+  }
+
+  void insert(std::uint32_t i) {
+    const auto [a, b] = cubes_of(mesh_.tetrahedra[i]);
     for (int i0 = a[0]; i0 <= b[0]; ++i0) {
       for (int i1 = a[1]; i1 <= b[1]; ++i1) {
         for (int i2 = a[2]; i2 <= b[2]; ++i2) entries_.push_back({{i0, i1, i2}, i});

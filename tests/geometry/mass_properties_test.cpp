@@ -265,6 +265,22 @@ TEST_SUITE("geometry/mass_properties") {
     }
   }
 
+  TEST_CASE("matter has moments that a surface which crosses itself may not have") {
+    using hooke::geometry::is_physical;
+    CHECK(is_physical(mass_of(Shape::cylinder(1, Real(1e-5)))));
+    CHECK(is_physical(mass_of(Shape::cylinder(Real(1e-5), 1))));
+    MeshDesc ring = hooke::test::make_torus(1, Real(0.2), 12, 6);
+    CHECK(is_physical(mass_of_mesh(ring)));
+    MeshDesc inside_out = ring;
+    for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
+    CHECK_FALSE(is_physical(mass_of_mesh(inside_out)));
+    ring.positions[2].z = 64;
+    const auto crossing = mass_of_mesh(ring);
+    CHECK(crossing.volume > 0);
+    CHECK_FALSE(is_physical(crossing));
+    CHECK_FALSE(is_physical({}));
+  }
+
   TEST_CASE("the paper's center, the mean of the vertices, is where the vertices are") {
     // A cube of side 1 at 0, a ball of radius 0.5 at x = 3 and a thin rod between them: the center of volume
     // is at 1.036, the mean of the vertices at 2.976, because the ball has almost all of them.

@@ -117,6 +117,17 @@ TEST_SUITE("geometry/tetrahedral_mesh") {
     CHECK(std::isfinite(locate(mesh, far).front().weights[0]));
   }
 
+  TEST_CASE("places are found beside a spike of a hundred kilometers") {
+    TetrahedralMesh mesh = filled(test::make_cube(Real(0.5)), 0.25);
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), {{0, 0, 2}, {1e-3, 0, 2}, {0, 1e-3, 2}, {1e5, 1e5, 1e5}});
+    mesh.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+    const std::vector<DVec3> places = {{0.1, 0.2, 0.3}};
+    const auto [tetrahedron, weights] = locate(mesh, places).front();
+    CHECK(tetrahedron + 1 < mesh.tetrahedra.size());
+    CHECK(*std::min_element(weights.begin(), weights.end()) >= 0);
+  }
+
   TEST_CASE("what is no solid, or no cell, is refused with one clear line") {
     MeshDesc open = test::make_cube(Real(0.5));
     open.triangles.pop_back();
