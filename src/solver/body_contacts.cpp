@@ -217,10 +217,16 @@ int end_of(const ContactBlock& block, int lane) {
   return lane + 1 == block.count ? kContactLanes : lane + 1;
 }
 
+/// Rows for a manifold that has more points now than any of the block's had; the other lanes have none there.
+void make_room(int point_count, ContactBlock& block) {
+  while (block.point_count < point_count) block.point[block.point_count++] = {};
+}
+
 void refill_lane(const ContactLane& at, const std::vector<Manifold>& manifolds, Real time, Bodies& bodies,
                  BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[at.block];
   move_impulses(block, at.lane, Real(1), bodies);
+  make_room(manifolds[at.manifold].point_count, block);
   const Real pushed = block.pushed[at.lane];
   wide::ContactSource source;
   source.manifolds = manifolds.data();
