@@ -2,7 +2,10 @@
 
 #include "hooke/math.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace hooke::math {
 
@@ -32,13 +35,26 @@ constexpr Symmetric3<T> axial(Vector3<T> n, T along, T across) {
           across + d * n.y * n.y, d * n.y * n.z, across + d * n.z * n.z};
 }
 
+/// A power of two that brings x to about 1; products of three such numbers neither overflow nor vanish.
+constexpr float power_to_one(float x) {
+  constexpr std::uint32_t kExponent = 0x7F80'0000;
+  const std::uint32_t exponent = std::bit_cast<std::uint32_t>(x) & kExponent;
+  return std::bit_cast<float>(std::clamp(0x7F00'0000 - exponent, 0x0080'0000U, 0x7F00'0000U));
+}
+constexpr double power_to_one(double /*x*/) {
+  return 1;  // its range is wide enough
+}
+
 /// The inverse by cofactors; meant for positive definite matrices. Not finite if the determinant is zero.
 template <class T>
-constexpr Symmetric3<T> inverse(const Symmetric3<T>& m) {
+constexpr Symmetric3<T> inverse(const Symmetric3<T>& matrix) {
+  const T unit = power_to_one(std::max({matrix.xx, matrix.yy, matrix.zz}));
+  const Symmetric3<T> m = {unit * matrix.xx, unit * matrix.xy, unit * matrix.xz,
+                           unit * matrix.yy, unit * matrix.yz, unit * matrix.zz};
   const T xx = m.yy * m.zz - m.yz * m.yz;
   const T xy = m.xz * m.yz - m.xy * m.zz;
   const T xz = m.xy * m.yz - m.xz * m.yy;
-  const T s = T(1) / (m.xx * xx + m.xy * xy + m.xz * xz);
+  const T s = unit / (m.xx * xx + m.xy * xy + m.xz * xz);
   return {s * xx,
           s * xy,
           s * xz,

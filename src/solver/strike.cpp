@@ -287,7 +287,8 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
                    .b = struck(bodies, first.body_b, time),
                    .effort = pair.in_crowd ? kInCrowd : kFull};
   // One of them has to give way: what is backed does not only where the other does.
-  const DVec3 n = vector_cast<double>(first.normal);
+  // Its direction is a unit vector in double, lest a heavy partner give way less than rounding takes back.
+  const DVec3 n = normalize(vector_cast<double>(first.normal));
   const bool a_gives_way = impact.a.body.inverse_mass > 0 && !pair.a_is_backed;
   const bool b_gives_way = impact.b.body.inverse_mass > 0 && !pair.b_is_backed;
   if (pair.a_is_backed && b_gives_way) impact.a.backed = n;

@@ -1,6 +1,7 @@
 #include "hooke/math.h"
 
 #include "math/random.h"
+#include "math/symmetric.h"
 
 #include <cmath>
 #include <cstdint>
@@ -131,6 +132,16 @@ TEST_SUITE("math/matrix3") {
       const double tolerance = 1e-13 / std::fabs(hooke::determinant(a));
       CHECK(difference(a * hooke::inverse(a), DMat3{}) < tolerance);
       CHECK(difference(hooke::inverse(a) * a, DMat3{}) < tolerance);
+    }
+  }
+
+  TEST_CASE("the inverse of a symmetric matrix of tiny or huge numbers is finite") {
+    for (const float size : {1e-30F, 1e-14F, 1e14F, 1e30F}) {
+      const hooke::math::Symmetric3<float> m = {2 * size, size, 0, 2 * size, 0, 4 * size};
+      const auto back = hooke::math::inverse(m);
+      CHECK(back.xx * size == doctest::Approx(2.0 / 3));
+      CHECK(back.xy * size == doctest::Approx(-1.0 / 3));
+      CHECK(back.zz * size == doctest::Approx(0.25));
     }
   }
 

@@ -221,6 +221,32 @@ TEST_SUITE("world/hits") {
     CHECK(top == doctest::Approx(0.64 * 0.5).epsilon(0.03));
   }
 
+  TEST_CASE(
+      "a tile on the floor takes the hit of a ball ten thousand million times heavier, however they lie") {
+    for (int i = 0; i < 20; ++i) {
+      WorldDesc desc = empty_space();
+      World world = make_world(desc);
+      const Quat turn =
+          quaternion_about(normalize(Vec3{Real(1), Real(0.3) * i, Real(2 - i)}), Real(0.37) * i);
+      const auto place = [&](double y) { return vector_cast<double>(rotate(turn, Vec3{0, Real(y), 0})); };
+      BodyDesc floor = bouncing(Shape::half_space(), {}, 0);
+      floor.kind = BodyKind::kStatic;
+      floor.rotation = turn;
+      take(world.add_body(floor));
+      BodyDesc tile = bouncing(Shape::box({Real(0.3), Real(0.1), Real(0.3)}), place(0.1), 0, 0.5);
+      tile.rotation = turn;
+      tile.mass = Real(0.3);
+      const BodyId low = take(world.add_body(tile));
+      BodyDesc heavy = bouncing(Shape::sphere(1), place(1.45), 0.5, 0.5);
+      heavy.mass = Real(3e9);
+      heavy.velocity = rotate(turn, Vec3{0, -1, 0});
+      const BodyId high = take(world.add_body(heavy));
+      for (int step = 0; step < 60; ++step) CHECK(world.step(Real(1) / 60).healthy());
+      CHECK(dot(velocity(world, high), place(1)) == doctest::Approx(0.5).epsilon(0.02));
+      CHECK(length(velocity(world, low)) < 3);
+    }
+  }
+
   TEST_CASE("a body between a floor that does not bounce and a ceiling that does is not torn apart") {
     World world = make_world();
     add_floor(world);
