@@ -29,7 +29,7 @@ void BundleSolution::load(const std::vector<state::VelocityLine>& before, const 
     const std::size_t first_segment = b_.ropes.segments.size();
     const std::size_t first_touch = b_.ropes.touches.size();
     load_rope(chains[c], before, h_, t_, b_.ropes);
-    load_bends(chains[c], first, h_, t_.segments, b_.ropes);
+    load_bends(chains[c], first, t_.segments, b_.ropes);
     b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
     b_.chain_nodes.push_back(chains[c].node_count);
   }
@@ -274,8 +274,11 @@ void BundleSolution::run(std::vector<Chain>& chains) {
   };
   for (int solves = 1; solves == 1 || (again(solves - 1) && within_budget()); ++solves) {
     std::size_t segment = 0;
+    std::size_t bend = 0;
     for (std::size_t k = 0; k < b_.chains.size(); ++k) {
       Chain& chain = chains[b_.chains[k]];
+      for (std::uint32_t i = 1; chain.bend_stiffness > 0 && i + 1 < chain.node_count; ++i)
+        linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.bends[bend++]);
       for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i)
         linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
       ++chain.solves;

@@ -100,7 +100,9 @@ class Members {
     to.before[lane] = bend.before;
     to.behind[lane] = bend.behind;
     to.pull[lane] = -h * bend.stiffness;
-    to.grip[lane] = h * (bend.damping + h * bend.stiffness);
+    to.grip[lane] = h * bend.grip(h, false);
+    to.whipping_grip[lane] = h * bend.grip(h, true);
+    to.back[lane] = kBendNewmark * h;
   }
 
   std::vector<Chain*> chains_;

@@ -67,8 +67,10 @@ class ChainScratch {
 /// At an inner node of a rope that resists bending, with the segments' vectors over their lengths m_d, m_e
 /// before and behind it, and EI over the length between their middles B:
 ///
-///   bending      M = -B (c / h + d r_c),  c = m_e - m_d at the end of the substep, r_c its rate, d the
-///   damping
+///   bending      M = -B (c / h + beta (r_c - r_c0) + delta r_c + d r_c)
+///
+/// c = m_e - m_d at the start of the substep, r_c its rate, r_c0 that before this substep's forces, d the
+/// damping, beta = 1/4 and delta = 0.03: see RopeBend.
 ///
 /// A sweep from the first node eliminates one after the other (wide/rope_sweep.h; exact for k = infinity), a
 /// sweep back gives u and q. The solve repeats, linearized anew, while a length error exceeds 0.1 %, at most

@@ -260,18 +260,25 @@ RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& s
   return bend;
 }
 
-void load_bends(const Chain& chain, std::size_t first_node, double h, const state::Segments& segments,
-                RopeScratch& s) {
+void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s) {
   if (!(chain.bend_stiffness > 0)) return;
   for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
-    const RopeNode* node = &s.nodes[first_node + i];
     RopeBend bend = load_bend(chain, chain.first_segment + i - 1, segments);
     bend.node = static_cast<std::uint32_t>(first_node + i);
-    bend.gamma = 1 / (h * (bend.damping + h * bend.stiffness));
-    const V change = bend.behind * (node[1].x - node[0].x) - bend.before * (node[0].x - node[-1].x);
-    bend.target = (-bend.stiffness / (bend.damping + h * bend.stiffness)) * change;
     s.bends.push_back(bend);
   }
+}
+
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend) {
+  const bool whips = !setting.first;
+  const double grip = bend.grip(h, whips);
+  const double back = whips ? 0 : kBendNewmark * h;
+  const RopeNode* node = &nodes[bend.node];
+  const auto line = [&](int i) {
+    return node[i + 1].x - node[i].x - back * (node[i + 1].v_before - node[i].v_before);
+  };
+  bend.gamma = 1 / (h * grip);
+  bend.target = (-bend.stiffness / grip) * (bend.behind * line(0) - bend.before * line(-1));
 }
 
 RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V line, V speed) {

@@ -40,6 +40,14 @@ struct RopeSegment {
   bool limited = false;
 };
 
+/// A bend's moment is that of the change c of direction at the substep's start, of the growth of its rate r
+/// since before the substep, and of a little of r itself: B (c + h beta (r - r0) + h delta r). Newmark's beta
+/// keeps the energy of any stiffness, delta takes that of what swings faster than substeps follow (Newmark
+/// 1959, "A method of computation for structural dynamics"). What whips, so that its segments are linearized
+/// anew, is bent with c of the substep's end, which takes more.
+inline constexpr double kBendNewmark = 0.25;
+inline constexpr double kBendDamping = 0.03;
+
 /// Resistance to bending at an inner node: the change of direction there, m_e - m_d of the two segments'
 /// vectors over their lengths, which is 2 sin(angle / 2).
 struct RopeBend {
@@ -50,6 +58,11 @@ struct RopeBend {
   double gamma = 0;
   DVec3 target;   ///< Of the rate at which the change of direction grows.
   DVec3 impulse;  ///< [N m s]
+
+  /// Moment per rate, over h, in a substep of length h [s].
+  [[nodiscard]] double grip(double h, bool whips) const {
+    return damping + (whips ? 1 : kBendNewmark + kBendDamping) * h * stiffness;
+  }
 };
 
 /// A contact of a node, or a tether: what holds a point within a distance of its pin holds it as a plane
@@ -166,10 +179,10 @@ void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t f
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                RopeSegment& segment);
 
-/// Bends of a rope whose nodes begin at `first_node`, as rows of a substep of length h [s]: implicit Euler,
-/// as for springs (solver/springs.h).
-void load_bends(const Chain& chain, std::size_t first_node, double h, const state::Segments& segments,
-                RopeScratch& s);
+/// Bends of a rope whose nodes begin at `first_node`.
+void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s);
+/// The bend's equation r = target - gamma * impulse in a substep of length h [s].
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend);
 
 /// W and v* of every node, with what touches it.
 void hold_nodes(double h, RopeScratch& s);

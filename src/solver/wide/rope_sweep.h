@@ -207,9 +207,15 @@ class RopeSweep {
     const Number before = get<Number>(bend.before + lane_);
     const Number behind = get<Number>(bend.behind + lane_);
     const Number middle = Number(0.0) - (before + behind);
-    const Number grip = get<Number>(bend.grip + lane_);
-    const Triple<Number> change = difference(scaled(behind, get3<Number>(ropes_.segments[i + 1].line, lane_)),
-                                             scaled(before, get3<Number>(ropes_.segments[i].line, lane_)));
+    const auto first = above(terms_.first, Number(0.0));
+    const Number grip =
+        choose(first, get<Number>(bend.grip + lane_), get<Number>(bend.whipping_grip + lane_));
+    const Number back = choose(first, get<Number>(bend.back + lane_), Number(0.0));
+    const auto line = [&](const RopeSegmentLanes<kCount>& s) HWY_ATTR {
+      return difference(get3<Number>(s.line, lane_), scaled(back, get3<Number>(s.before, lane_)));
+    };
+    const Triple<Number> change =
+        difference(scaled(behind, line(ropes_.segments[i + 1])), scaled(before, line(ropes_.segments[i])));
     const Triple<Number> pull = scaled(get<Number>(bend.pull + lane_), change);
     const auto add_to = [&](Number weight, Pivot& pivot) HWY_ATTR {
       pivot.share = pivot.share + grip * weight * weight;

@@ -33,11 +33,12 @@ struct alignas(kCount * sizeof(double)) RopeTraitLanes {
 };
 
 /// Bending at node i + 1, as RopeBend. Its compliance and target in one: `pull` is what it gives for each
-/// unit of the change of direction, `grip` for each unit of its rate.
+/// unit of the change of direction, `grip` for each unit of its rate. The change is that of `back` before
+/// [s].
 template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeBendLanes {
   double before[kCount], behind[kCount];
-  double pull[kCount], grip[kCount];
+  double pull[kCount], grip[kCount], back[kCount], whipping_grip[kCount];
 };
 
 /// What stays of ropes from substep to substep.
