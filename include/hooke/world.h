@@ -90,7 +90,8 @@ struct StepReport {
   std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
   /// Stacks that need a direct solution and are beyond its budget: they sink.
   std::uint32_t islands_refused = 0;
-  /// Contacts that need to be solved with the hooks of what they press on and are beyond their number.
+  /// Contacts that need to be solved with the hooks of what they press on and are beyond their number, and
+  /// those of ropes that touch each other in more places than can be solved.
   std::uint32_t contacts_refused = 0;
   /// Groups of ropes, of what hangs on them and touches them, whose solution ended by its budget of work.
   std::uint32_t bundles_cut_short = 0;

@@ -105,6 +105,7 @@ struct Bundle {
   std::vector<std::uint32_t> hooks;          ///< Rows, in order.
   std::vector<std::uint32_t> inner;          ///< Contacts between points: rows, in order.
   std::vector<std::uint32_t> rope_contacts;  ///< Rows, in order.
+  std::uint32_t refused = 0;                 ///< Contacts of ropes that kBundleBudget left out.
   std::vector<std::uint32_t> borne;          ///< Contacts between bodies: of state::Pairs::borne, in order.
   std::vector<std::uint32_t> bodies;         ///< Rows, in order.
   /// Of each hook, inner contact, contact of ropes and borne contact, a and b: index into `bodies`, or -1.
@@ -163,7 +164,9 @@ struct Bundle {
 };
 
 /// Multiplications of all factorizations of one bundle in a substep, some 20 ms; it is factored four times
-/// whatever that takes. Contacts of ropes that let go and come back could ask for 256.
+/// whatever that takes. Contacts of ropes that let go and come back could ask for 256. Where contacts of
+/// ropes ask for more in one, as of segments that each touch all others, every second one is left out until
+/// it is enough: a choice that knows only who touches whom.
 inline constexpr double kBundleBudget = 2e7;
 inline constexpr int kFewestFactorizations = 4;
 

@@ -21,6 +21,7 @@ using state::HookPlace;
 using state::Tables;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::size_t kMostRopeContacts = 8;  // for each node of the bundle's ropes, on average
 constexpr double kNoBudget = std::numeric_limits<double>::infinity();
 
 bool is_of_rope(const Tables& t, std::size_t contact) {
@@ -287,6 +288,7 @@ struct Layout {
 
   void list_incidents() {
     std::uint32_t nodes = 0;
+    vector_count = 0;
     first_node.clear();
     for (const std::uint32_t c : bundle.chains) {
       first_node.push_back(nodes);
@@ -398,8 +400,8 @@ void list_pairs(const Layout& layout, Bundle& bundle) {
   bundle.first_incident.push_back(static_cast<std::uint32_t>(bundle.incidents.size()));
 }
 
-void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScratch& scratch, Bundle& bundle) {
-  Layout layout = {t, chains, bundle, scratch};
+/// False if a factorization takes more than `budget` multiplications.
+bool try_pattern(const Tables& t, double budget, Layout& layout, BundleScratch& scratch, Bundle& bundle) {
   layout.list_incidents();
   layout.join_blocks();
   std::vector<int>& sizes = scratch.sizes;
@@ -416,11 +418,30 @@ void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScrat
   scratch.signs.assign(sizes.size(), 1);
   sizes.resize(sizes.size() + bundle.bodies.size(), 6);
   scratch.signs.resize(sizes.size(), -1);
-  [[maybe_unused]] const bool made = make_block_pattern(scratch.matrix, sizes, kNoBudget, bundle.pattern);
-  HOOKE_ASSERT(made);
+  return make_block_pattern(scratch.matrix, sizes, budget, bundle.pattern);
+}
+
+void leave_out_every_second(std::vector<std::uint32_t>& rows) {
+  for (std::size_t i = 0; 2 * i < rows.size(); ++i) rows[i] = rows[2 * i];
+  rows.resize((rows.size() + 1) / 2);
+}
+
+void make_pattern(const Tables& t, const std::vector<Chain>& chains, BundleScratch& scratch, Bundle& bundle) {
+  Layout layout = {t, chains, bundle, scratch};
+  const std::size_t asked = bundle.rope_contacts.size();
+  std::size_t nodes = 0;
+  for (const std::uint32_t c : bundle.chains) nodes += chains[c].node_count;
+  while (bundle.rope_contacts.size() > kMostRopeContacts * nodes)
+    leave_out_every_second(bundle.rope_contacts);
+  double budget = kBundleBudget;
+  while (!try_pattern(t, budget, layout, scratch, bundle)) {
+    if (bundle.rope_contacts.size() <= 1) budget = kNoBudget;
+    leave_out_every_second(bundle.rope_contacts);
+  }
+  bundle.refused = static_cast<std::uint32_t>(asked - bundle.rope_contacts.size());
   set_signs(scratch.signs, bundle.pattern);
-  bundle.place.resize(sizes.size());
-  for (std::uint32_t i = 0; i < sizes.size(); ++i) bundle.place[bundle.pattern.order[i]] = i;
+  bundle.place.resize(scratch.sizes.size());
+  for (std::uint32_t i = 0; i < scratch.sizes.size(); ++i) bundle.place[bundle.pattern.order[i]] = i;
   list_pairs(layout, bundle);
   bundle.rows.resize(bundle.first_row.back());
   bundle.bound.resize(bundle.first_row.back());

@@ -427,6 +427,7 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   }
   report.islands_refused = world.hard_islands.refused;
   report.contacts_refused = world.borne.refused;
+  for (const solver::Bundle& bundle : world.bundles.live()) report.contacts_refused += bundle.refused;
   for (solver::Bundle& bundle : world.bundles.bundles)
     report.bundles_cut_short += std::exchange(bundle.cut_short, false) ? 1 : 0;
   report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),

@@ -423,6 +423,24 @@ TEST_CASE("rope contacts: three long ropes that rush into each other take no mor
   CHECK(world.measure().largest_stretch < 0.02);
 }
 
+TEST_CASE(
+    "rope contacts: ropes so thick that each segment touches all others are solved in part, which is said") {
+  World world = make_world();
+  std::uint32_t refused = 0;
+  for (int r = 0; r < 2; ++r) {
+    RopeDesc rope = touching(straight({-0.5, 0.1 * r, 0}, {0.5, 0.1 * r, 0}, 81), 0.3, 0.5);
+    rope.radius = Real(1);
+    rope.pins = {{.point = 0}};
+    take(world.add_rope(rope));
+  }
+  for (int i = 0; i < 5; ++i) {
+    const StepReport report = world.step(Real(1) / Real(60));
+    CHECK(report.healthy());
+    refused += report.contacts_refused;
+  }
+  CHECK(refused > 0);
+}
+
 TEST_CASE("rope contacts: ropes that do not ask for it pass through each other") {
   World world = make_world(empty_space());
   RopeDesc low = touching(straight({-0.5, 0, 0}, {0.5, 0, 0}, 21), 0.1, 0.3);
