@@ -141,6 +141,9 @@ void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
     const Softness soft = softness(material.stiffness, damping, h);
     material.bias = soft.bias;
     material.gamma = soft.gamma;
+    const bool rigid = std::isinf(material.stiffness);
+    material.recovery = rigid ? h * kRecoverySpeed : SpringMaterial::kWhole;
+    material.recovery_time = rigid ? h : Real(0);
   }
 }
 

@@ -37,9 +37,19 @@ struct SpringMaterial {
   state::SpringForm form = state::SpringForm::kExplicit;
   Real bias = Real(0);   ///< b = k / (c + h k) [1/s]; written by prepare_springs.
   Real gamma = Real(0);  ///< 1 / (h (c + h k)) [1/kg]; written by prepare_springs.
+  /// What is rigid takes back no more than this [m] of its error in a substep, and no more of how fast that
+  /// grows than in `recovery_time` [s]. Written by prepare_springs.
+  Real recovery = kWhole;
+  Real recovery_time = Real(0);
+
+  static constexpr Real kWhole = Real(1e30);
+
+  [[nodiscard]] bool is_rigid() const { return recovery < kWhole; }
 
   friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
 };
+
+inline constexpr Real kRecoverySpeed = Real(100);  ///< [m/s]; less lets through what flies into a net.
 
 /// What an implicit Euler step of h [s] makes of a stiffness k and a damping c, see solver/springs.h.
 struct Softness {

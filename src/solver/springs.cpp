@@ -2,6 +2,7 @@
 
 #include "solver/wide/wide.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hooke::solver {
@@ -34,7 +35,10 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
     const Vec3 n = (Real(1) / l) * d;
     const Real vn = dot(n, dv);
     const Real rate = predicted ? (Real(1) - material.bias * h) * vn : vn;
-    Vec3 p = (-(rate + material.bias * (l - block.rest_length[lane])) / (w + material.gamma)) * n;
+    const Real most = material.recovery + material.recovery_time * std::max(vn, Real(0));
+    const Real least = material.recovery_time * std::min(vn, Real(0)) - material.recovery;
+    const Real error = std::clamp(l - block.rest_length[lane], least, most);
+    Vec3 p = (-(rate + material.bias * error) / (w + material.gamma)) * n;
     if (isotropic && material.damping > Real(0)) {
       p -= (Real(1) / (w + Real(1) / (h * material.damping))) * (dv - vn * n);
     }

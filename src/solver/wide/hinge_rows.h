@@ -23,7 +23,12 @@ HWY_INLINE void solve_spring(const Triple<Number>& d, Number rest_length, const 
   const Number l2 = dot(d, d);
   const Number l = root(l2);
   const Number rate = d.x * (a.x - b.x) + d.y * (a.y - b.y) + d.z * (a.z - b.z);
-  const Number numerator = rate + Number(material.bias) * (l * (l - rest_length));
+  const Number none(Real(0));
+  const Number whole = l * Number(material.recovery);
+  const Number most = whole + Number(material.recovery_time) * larger(rate, none);
+  const Number least = Number(material.recovery_time) * smaller(rate, none) - whole;
+  const Number error = smaller(larger(l * (l - rest_length), least), most);
+  const Number numerator = rate + Number(material.bias) * error;
   const Number denominator = l2 * (a.w + b.w + Number(material.gamma));
   const Number zero(Real(0));
   const Number s = choose(above(denominator, zero), quotient(numerator, denominator), zero);

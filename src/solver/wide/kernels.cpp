@@ -69,18 +69,31 @@ HWY_INLINE void load_rows(const SpringBlock& block, int first, const float* posi
   rows.v_b = load_columns(velocity, b);
 }
 
-template <bool kOneSided>
-HWY_INLINE void compute_impulses(Rows& rows, Vector rest_length, Vector bias, Vector gamma) {
+/// How springs of a material are solved.
+struct Law {
+  Vector bias, gamma, recovery, recovery_time;
+};
+
+template <bool kOneSided, bool kRigid>
+HWY_INLINE void compute_impulses(Rows& rows, Vector rest_length, const Law& law) {
   const Vector l2 =
       hn::Add(hn::Add(hn::Mul(rows.dx, rows.dx), hn::Mul(rows.dy, rows.dy)), hn::Mul(rows.dz, rows.dz));
   const Vector l = hn::Sqrt(l2);
   const Vector rate = hn::Add(hn::Add(hn::Mul(rows.dx, hn::Sub(rows.v_a.x, rows.v_b.x)),
                                       hn::Mul(rows.dy, hn::Sub(rows.v_a.y, rows.v_b.y))),
                               hn::Mul(rows.dz, hn::Sub(rows.v_a.z, rows.v_b.z)));
-  Vector numerator = hn::Add(rate, hn::Mul(bias, hn::Mul(l, hn::Sub(l, rest_length))));
+  Vector error = hn::Mul(l, hn::Sub(l, rest_length));
+  if constexpr (kRigid) {
+    const Vector none = hn::Zero(kTag);
+    const Vector whole = hn::Mul(l, law.recovery);
+    const Vector most = hn::Add(whole, hn::Mul(law.recovery_time, hn::Max(rate, none)));
+    const Vector least = hn::Sub(hn::Mul(law.recovery_time, hn::Min(rate, none)), whole);
+    error = hn::Min(hn::Max(error, least), most);
+  }
+  Vector numerator = hn::Add(rate, hn::Mul(law.bias, error));
   const Vector zero = hn::Zero(kTag);
   if constexpr (kOneSided) numerator = hn::IfThenElseZero(hn::Gt(numerator, zero), numerator);
-  const Vector denominator = hn::Mul(l2, hn::Add(hn::Add(rows.v_a.w, rows.v_b.w), gamma));
+  const Vector denominator = hn::Mul(l2, hn::Add(hn::Add(rows.v_a.w, rows.v_b.w), law.gamma));
   rows.s = hn::IfThenElseZero(hn::Gt(denominator, zero), hn::Div(numerator, denominator));
 }
 
@@ -121,32 +134,43 @@ HWY_INLINE Place<Block> place_of(const Run<Block>& run, int vector) {
 /// Solves `kCount` vectors in three stages, not one after the other: the processor works on one while it
 /// waits for the roots and quotients of the other. All loads come before the first store, so the copies of
 /// the last row that fill a partial block store what that row stores.
-template <int kCount, bool kOneSided, bool kAnchored>
-HWY_INLINE void solve_vectors(const Place<SpringBlock> (&at)[kCount], Vector bias, Vector gamma,
-                              const float* position, float* velocity) {
+template <int kCount, bool kOneSided, bool kAnchored, bool kRigid>
+HWY_INLINE void solve_vectors(const Place<SpringBlock> (&at)[kCount], const Law& law, const float* position,
+                              float* velocity) {
   Rows rows, more;
   load_rows(*at[0].block, at[0].first, position, velocity, rows);
   if constexpr (kCount > 1) load_rows(*at[1].block, at[1].first, position, velocity, more);
-  compute_impulses<kOneSided>(rows, hn::LoadU(kTag, at[0].block->rest_length + at[0].first), bias, gamma);
+  compute_impulses<kOneSided, kRigid>(rows, hn::LoadU(kTag, at[0].block->rest_length + at[0].first), law);
   if constexpr (kCount > 1) {
-    compute_impulses<kOneSided>(more, hn::LoadU(kTag, at[1].block->rest_length + at[1].first), bias, gamma);
+    compute_impulses<kOneSided, kRigid>(more, hn::LoadU(kTag, at[1].block->rest_length + at[1].first), law);
   }
   apply_impulses<kAnchored>(rows, *at[0].block, at[0].first, velocity);
   if constexpr (kCount > 1) apply_impulses<kAnchored>(more, *at[1].block, at[1].first, velocity);
 }
 
-template <bool kOneSided, bool kAnchored>
+template <bool kOneSided, bool kAnchored, bool kRigid>
 void solve_run(const SpringRun& run, const SpringMaterial& material, const float* position, float* velocity) {
-  const Vector bias = hn::Set(kTag, material.bias);
-  const Vector gamma = hn::Set(kTag, material.gamma);
+  const Law law = {hn::Set(kTag, material.bias), hn::Set(kTag, material.gamma),
+                   hn::Set(kTag, material.recovery), hn::Set(kTag, material.recovery_time)};
   const int vectors = count_vectors(run);
   int i = 0;
   for (; i + 1 < vectors; i += 2) {
-    solve_vectors<2, kOneSided, kAnchored>({place_of(run, i), place_of(run, i + 1)}, bias, gamma, position,
-                                           velocity);
+    solve_vectors<2, kOneSided, kAnchored, kRigid>({place_of(run, i), place_of(run, i + 1)}, law, position,
+                                                   velocity);
   }
-  if (i < vectors) {
-    solve_vectors<1, kOneSided, kAnchored>({place_of(run, i)}, bias, gamma, position, velocity);
+  if (i < vectors)
+    solve_vectors<1, kOneSided, kAnchored, kRigid>({place_of(run, i)}, law, position, velocity);
+}
+
+template <bool kRigid>
+void solve_kind(const SpringRun& run, const SpringMaterial& material, const float* position,
+                float* velocity) {
+  if (material.anchored) {
+    solve_run<true, true, kRigid>(run, material, position, velocity);
+  } else if (material.one_sided) {
+    solve_run<true, false, kRigid>(run, material, position, velocity);
+  } else {
+    solve_run<false, false, kRigid>(run, material, position, velocity);
   }
 }
 
@@ -154,12 +178,10 @@ void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
                         const state::PositionLine* positions, state::VelocityLine* velocities) {
   const auto* position = reinterpret_cast<const float*>(positions);
   auto* velocity = reinterpret_cast<float*>(velocities);
-  if (material.anchored) {
-    solve_run<true, true>(run, material, position, velocity);
-  } else if (material.one_sided) {
-    solve_run<true, false>(run, material, position, velocity);
+  if (material.is_rigid()) {
+    solve_kind<true>(run, material, position, velocity);
   } else {
-    solve_run<false, false>(run, material, position, velocity);
+    solve_kind<false>(run, material, position, velocity);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "math/trig.h"
 #include "solver/wide/wide.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,8 +21,15 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
   const Real w = velocity[a].inverse_mass + velocity[b].inverse_mass;
   const Real l2 = (d.x * d.x + d.y * d.y) + d.z * d.z;
   const Real l = std::sqrt(l2);
-  Real numerator =
-      ((d.x * dv.x + d.y * dv.y) + d.z * dv.z) + material.bias * (l * (l - block.rest_length[lane]));
+  const Real rate = (d.x * dv.x + d.y * dv.y) + d.z * dv.z;
+  Real error = l * (l - block.rest_length[lane]);
+  if (material.is_rigid()) {
+    const Real whole = l * material.recovery;
+    const Real most = whole + material.recovery_time * std::max(rate, Real(0));
+    const Real least = material.recovery_time * std::min(rate, Real(0)) - whole;
+    error = std::min(std::max(error, least), most);
+  }
+  Real numerator = rate + material.bias * error;
   if (material.one_sided) numerator = numerator > Real(0) ? numerator : Real(0);
   const Real denominator = l2 * (w + material.gamma);
   const Real s = denominator > Real(0) ? numerator / denominator : Real(0);
