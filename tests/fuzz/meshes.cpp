@@ -47,7 +47,15 @@ void try_geometry(Random& random, const MeshDesc& mesh) {
   }
 }
 
-void add_of_mesh(Random& random, MeshId mesh, World& world, Population& all) {
+constexpr Real kLeastCell = Real(0.02);  ///< Of a mesh: a needle of a million cells takes minutes.
+
+Real extent_of(const MeshDesc& mesh) {
+  Real extent = 0;
+  for (const Vec3 p : mesh.positions) extent = std::max(extent, length(p - mesh.positions[0]));
+  return extent;
+}
+
+void add_of_mesh(Random& random, MeshId mesh, Real extent, World& world, Population& all) {
   const auto take = [](auto result, auto& ids, const char* what) {
     note(result ? what : std::string(what) + " refused: " + result.error().message);
     if (result) ids.push_back(*result);
@@ -73,7 +81,7 @@ void add_of_mesh(Random& random, MeshId mesh, World& world, Population& all) {
     SolidDesc solid = fuzz::make_solid(random, {0, -3, 0}, {});
     solid.mesh = mesh;
     solid.pins.clear();
-    solid.cell = random.real(0.2, 0.6);
+    solid.cell = std::max(random.real(0.2, 0.6), kLeastCell * extent);
     take(world.add_solid(solid), all.solids, "solid");
   }
 }
@@ -116,7 +124,7 @@ void try_meshes(Random& random) {
     return;
   }
   Population all;
-  add_of_mesh(random, *id, world, all);
+  add_of_mesh(random, *id, extent_of(mesh), world, all);
   drop_things(random, world, all);
   const bool is_huge = std::any_of(mesh.positions.begin(), mesh.positions.end(),
                                    [](Vec3 p) { return !(length(p) < Real(1e6)); });
