@@ -7,9 +7,9 @@
 /// `ns_per_contact` divides it by 14 950.
 
 #include "parallel/thread_pool.h"
-#include "solver/bodies.h"
-#include "solver/body_contacts.h"
-#include "solver/wide/wide.h"
+#include "solver/body/body_motion.h"
+#include "solver/contact/body_contacts.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
 #include <benchmark/benchmark.h>

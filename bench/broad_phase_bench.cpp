@@ -7,7 +7,7 @@
 ///
 /// The counter `pairs` is how many overlap in the last step.
 
-#include "collision/broad_phase.h"
+#include "collision/broad_phase/broad_phase.h"
 
 #include <benchmark/benchmark.h>
 #include <cmath>

@@ -2,9 +2,9 @@
 /// tree, by the tree of boxes, by all triangles, and by Embree where it is installed. Then what it takes to
 /// build the trees. `hits` is the share of rays that hit: the same for all.
 
-#include "geometry/bsp_tree.h"
+#include "geometry/bsp/bsp_tree.h"
 #include "geometry/building.h"
-#include "geometry/bvh.h"
+#include "geometry/mesh/bvh.h"
 #include "geometry/solids.h"
 
 #include <benchmark/benchmark.h>

@@ -1,8 +1,8 @@
 /// Contacts of two solids of triangles by trees of oriented boxes and by all pairs, over the number of their
 /// faces: two rings that are linked and touch.
 
-#include "collision/mesh_contacts.h"
 #include "geometry/meshes.h"
+#include "lab/shape/mesh_contacts.h"
 
 #include <benchmark/benchmark.h>
 #include <cmath>

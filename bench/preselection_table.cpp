@@ -3,8 +3,8 @@
 
 #include "hooke/model_io.h"
 
+#include "geometry/mesh/preselection.h"
 #include "geometry/meshes.h"
-#include "geometry/preselection.h"
 #include "math/random.h"
 
 #include <cstdio>

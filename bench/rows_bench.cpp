@@ -6,10 +6,10 @@
 /// by the number of rows, `bytes_per_row` is what the solver reads of each.
 
 #include "cloth_list.h"
-#include "solver/bends.h"
-#include "solver/hinges.h"
-#include "solver/springs.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/bending.h"
+#include "solver/soft/isometric_bending.h"
+#include "solver/soft/particle_kernels.h"
+#include "solver/soft/spring_solve.h"
 
 #include <benchmark/benchmark.h>
 #include <string>

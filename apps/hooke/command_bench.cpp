@@ -1,5 +1,5 @@
-#include "hooke/bench_ofg.h"
-#include "hooke/bench_peers.h"
+#include "hooke/bench/bench_ofg.h"
+#include "hooke/bench/bench_peers.h"
 #include "hooke/command_line.h"
 #include "hooke/output_file.h"
 #include "hooke/progress.h"

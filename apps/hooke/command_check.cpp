@@ -1,5 +1,6 @@
-#include "hooke/check/check.h"
 #include "hooke/command_line.h"
+
+#include "validation/check.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 #include "hooke/command_line.h"
-#include "hooke/drawing_style.h"
-#include "hooke/scene_drawing.h"
+#include "hooke/drawing/drawing_style.h"
+#include "hooke/drawing/scene_drawing.h"
 #include "hooke/view_window.h"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #include "convert.h"
 
-#include "io/model_flat.h"
+#include "io/model/model_flat.h"
 #include "limits.h"
 #include "refusal.h"
 

@@ -2,7 +2,7 @@
 
 #include "hooke/model_io.h"
 
-#include "io/model_geometry.h"
+#include "io/model/model_geometry.h"
 
 #include <assimp/scene.h>
 

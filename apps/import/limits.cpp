@@ -1,6 +1,6 @@
 #include "limits.h"
 
-#include "io/model_flat.h"
+#include "io/model/model_flat.h"
 
 #include <algorithm>
 #include <csignal>

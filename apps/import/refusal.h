@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/model_flat.h"
+#include "io/model/model_flat.h"
 
 #include <stdexcept>
 #include <string>

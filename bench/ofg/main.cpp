@@ -2,9 +2,9 @@
 /// triangles it finds, and what it costs, over k and mesh size, against brute force and trees. `hooke bench
 /// ofg` starts it.
 
-#include "collision/opposing_faces.h"
-#include "geometry/convex_hull.h"
+#include "geometry/convex/convex_hull.h"
 #include "geometry/meshes.h"
+#include "lab/shape/opposing_faces.h"
 #include "math/random.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "hooke/model_io.h"
 
-#include "geometry/convex_hull.h"
-#include "geometry/mass_properties.h"
+#include "geometry/convex/convex_hull.h"
+#include "geometry/convex/mass_properties.h"
 
 #include <algorithm>
 #include <cmath>

@@ -314,8 +314,8 @@ struct SceneExpectation {
   std::optional<std::uint32_t> at_step = {};  ///< Number of steps done; at the end by default.
 };
 
-struct SceneSource;     // the file a scene came from; src/io/scene_source.h
-struct SimulationData;  // src/io/scene_simulation.cpp
+struct SceneSource;     // the file a scene came from; src/io/scene/scene_source.h
+struct SimulationData;  // src/io/scene/scene_simulation.cpp
 
 /// Everything a scene file says.
 struct Scene {

@@ -4,9 +4,9 @@
 #include "build/build.h"
 #include "build/checks.h"
 #include "build/connection_points.h"
-#include "geometry/mass_properties.h"
+#include "state/sleeping_pairs.h"
+#include "geometry/convex/mass_properties.h"
 #include "state/body_frames.h"
-#include "state/parked_pairs.h"
 
 #include <algorithm>
 #include <cmath>

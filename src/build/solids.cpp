@@ -4,7 +4,7 @@
 #include "build/common.h"
 #include "build/connection_points.h"
 #include "elements/tetrahedron.h"
-#include "geometry/tetrahedral_mesh.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 #include "geometry/triangle_mesh.h"
 #include "geometry/vertex_order.h"
 

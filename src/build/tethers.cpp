@@ -1,6 +1,6 @@
 #include "build/tethers.h"
 
-#include "geometry/geodesic.h"
+#include "geometry/mesh/geodesic.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 /// The public class over the parts: from a World to one part per object, and from their states to points.
 
 #include "base/float_environment.h"
-#include "lab/body_laws.h"
-#include "lab/collisions.h"
-#include "lab/part.h"
+#include "lab/methods/part.h"
+#include "lab/rigid/collisions.h"
+#include "lab/system/body_laws.h"
 #include "math/rotation.h"
 #include "world/access.h"
 

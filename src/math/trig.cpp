@@ -129,7 +129,7 @@ float atan2(float y, float x) {
   return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
 }
 
-// The order of every operation here is that of solver/wide/kernels.cpp.
+// The order of every operation here is that of solver/soft/particle_kernels.cpp.
 float quick_atan2(float y, float x) {
   const float size_x = std::fabs(x);
   const float size_y = std::fabs(y);

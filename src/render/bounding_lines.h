@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/preselection.h"
+#include "geometry/mesh/preselection.h"
 #include "render/draw_list.h"
 
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "render/draw_list.h"
-#include "render/gl_objects.h"
+#include "render/gl/gl_objects.h"
 
 #include <unordered_map>
 

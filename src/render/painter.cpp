@@ -1,6 +1,6 @@
 #include "render/painter.h"
 
-#include "geometry/bsp_tree.h"
+#include "geometry/bsp/bsp_tree.h"
 
 #include <algorithm>
 #include <iterator>

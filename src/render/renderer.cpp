@@ -2,8 +2,8 @@
 
 #include "render/batches.h"
 #include "render/frame.h"
+#include "render/gl/programs.h"
 #include "render/gpu_cache.h"
-#include "render/programs.h"
 #include "render/targets.h"
 #include "render/text.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/gl_objects.h"
+#include "render/gl/gl_objects.h"
 #include "render/image.h"
 
 /// \file

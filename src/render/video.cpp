@@ -22,7 +22,7 @@ using process::Descriptor;
 
 enum class Format { kMp4, kGif, kPictures };
 
-struct FileCloser {
+struct MessageCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
@@ -130,7 +130,7 @@ struct VideoData {
   NumberedName name;                     ///< Of numbered pictures.
   std::optional<process::NewFile> film;  ///< What ffmpeg writes.
   Descriptor input;                      ///< Our end of ffmpeg's input.
-  std::unique_ptr<std::FILE, FileCloser> messages;
+  std::unique_ptr<std::FILE, MessageCloser> messages;
   process::Child ffmpeg;
   int frame_count = 0;
   bool failed = false;

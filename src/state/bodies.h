@@ -89,7 +89,7 @@ struct Bodies {
   std::vector<MotionLine> motion;
   std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
   std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
-                                       ///< that tumble, now (solver/bodies.h).
+                                       ///< that tumble, now (solver/body/body_motion.h).
   std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
   std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
@@ -103,7 +103,7 @@ struct Bodies {
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint8_t> slept;    ///< `asleep` at the end of the last step; written by gather_events.
   std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
-                                      ///< (solver/hard_islands.h); kNew before its first step.
+                                      ///< (solver/coupled/direct_islands.h); kNew before its first step.
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.

@@ -1,7 +1,7 @@
 #include "state/check_tables.h"
 
 #include "base/assert.h"
-#include "state/parked_pairs.h"
+#include "state/sleeping_pairs.h"
 
 #include <algorithm>
 #include <span>

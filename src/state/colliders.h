@@ -5,7 +5,7 @@
 #include "hooke/shape.h"
 
 #include "geometry/box.h"
-#include "geometry/convex_hull.h"
+#include "geometry/convex/convex_hull.h"
 #include "state/mesh.h"
 
 #include <cstdint>

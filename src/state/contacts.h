@@ -56,7 +56,7 @@ struct InnerContact {
   std::uint32_t collider = 0;
   std::uint32_t element = 0;  ///< Row of the segment or the triangle.
   std::uint32_t edge = 0;     ///< 1 + k: only the triangle's edge from corner k; 0: all of it.
-  std::uint32_t feature = 0;  ///< Of a mesh: the ridge or the peak (geometry/protrusions.h).
+  std::uint32_t feature = 0;  ///< Of a mesh: the ridge or the peak (geometry/mesh/protrusions.h).
   std::uint32_t body = 0;
   std::uint32_t count = 0;                     ///< Of points: 2 or 3.
   std::array<std::uint32_t, 3> particle = {};  ///< In ascending order.

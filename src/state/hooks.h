@@ -50,7 +50,7 @@ struct Hook {
   Vec3 angular_impulse_sum = {};
   Vec3 torque = {};  ///< [N m]
   Real break_torque = kRigid;
-  // Of solver/hook_breaks.h.
+  // Of solver/joint/hook_breaks.h.
   enum class Giving : std::uint8_t {
     kHolds,
     kNothing,  ///< It takes nothing in this solution, which shows how fast its ends part then.
@@ -65,13 +65,14 @@ struct Hook {
   double held = 0;                        ///< How long it has held in this step [s].
   Real last_impulse = Real(0);            ///< Of nets: what was needed in the substep before [N s].
   Real last_angular_impulse = Real(0);    ///< [N m s]
-  // Of solver/joint_energy.h, while something turns far.
+  // Of solver/joint/joint_energy.h, while something turns far.
   double energy_debt = 0;     ///< Its part of what joints have added to the energy of bodies [J].
   double spring_energy = -1;  ///< What its springs should hold after the last substep [J]; -1: not known.
   /// Ways along a's x, y, z, then angles. kDistance uses the first, along the line between the anchors; kBall
   /// has its twist limits in the fourth and one spring and motor for each axis.
   std::array<HookFreedom, 6> freedom = {};
-  /// Whether a particle is at an end: such hooks are solved with their ropes (solver/bundles.h).
+  /// Whether a particle is at an end: such hooks are solved with their ropes
+  /// (solver/coupled/coupled_groups.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
   [[nodiscard]] bool can_break() const { return break_force < kRigid || break_torque < kRigid; }
   /// Whether it is solved in a bundle.

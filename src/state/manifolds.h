@@ -67,7 +67,7 @@ inline Real normal_impulse(const Manifold& m) {
 }
 
 /// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
-/// rows that others have (solver/borne_contacts.h).
+/// rows that others have (solver/coupled/load_bearing_contacts.h).
 struct BorneContact {
   std::uint32_t pair = 0;      ///< Row.
   std::uint32_t manifold = 0;  ///< Row: the only one of the pair.
@@ -102,7 +102,8 @@ struct Pair {
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
   Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
-  bool lively = false;  ///< Its manifolds are made anew in each substep (collision/narrow_phase.h).
+  bool lively =
+      false;  ///< Its manifolds are made anew in each substep (collision/narrow_phase/narrow_phase.h).
 };
 
 /// Where the narrow phase saw a body last.
@@ -111,7 +112,7 @@ struct SeenPose {
   Quat rotation = {};
 };
 
-/// Pairs whose bodies all rest; see state/parked_pairs.h.
+/// Pairs whose bodies all rest; see state/sleeping_pairs.h.
 struct ParkedPairs {
   std::vector<Pair> pair;              ///< In order of colliders; first_manifold counts in `manifold`.
   std::vector<Manifold> manifold;      ///< In order of pair, then patch; some may belong to no pair any more.

@@ -3,8 +3,8 @@
 #include "hooke/bsp.h"
 #include "hooke/shape.h"
 
-#include "geometry/bvh.h"
-#include "geometry/protrusions.h"
+#include "geometry/mesh/bvh.h"
+#include "geometry/mesh/protrusions.h"
 
 #include <cstdint>
 

@@ -47,8 +47,8 @@ using NamedPlaces = std::vector<NamedPlace>;
 /// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
 using RestEdges = std::vector<std::array<Vec3, 3>>;
 
-/// The form at rest of a solid that is matched to it (solver/shape_matching.h). Never changes after it was
-/// made.
+/// The form at rest of a solid that is matched to it (solver/soft/shape_matching.h). Never changes after it
+/// was made.
 struct RestShape {
   std::vector<DVec3> place;  ///< Of each row, from the center of mass [m].
   double mass = 0;           ///< Of all points, pinned ones too [kg].

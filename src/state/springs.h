@@ -8,7 +8,7 @@
 
 /// \file
 /// Rows between particles of one object, in the order they were made. The solver keeps its own colored copy
-/// (solver/spring_blocks.h), made anew when rows come or go.
+/// (solver/soft/spring_blocks.h), made anew when rows come or go.
 
 namespace hooke::state {
 
@@ -35,7 +35,7 @@ struct Springs {
   std::vector<Real> rest_length;  ///< L [m]; for limits and tethers the largest length.
   std::vector<Real> stiffness;    ///< k [N/m]; infinity is a rigid link.
   std::vector<Real> damping;      ///< c [N s/m]
-  std::vector<Real> damped_mass;  ///< Mass that c acts on at most, see solver/springs.h [kg].
+  std::vector<Real> damped_mass;  ///< Mass that c acts on at most, see solver/soft/spring_solve.h [kg].
   std::vector<SpringClass> kind;
   std::vector<SpringForm> form;
 

@@ -1,10 +1,10 @@
 #include "world/events.h"
 
 #include "base/take_turns.h"
-#include "collision/queries.h"
+#include "state/sleeping_pairs.h"
+#include "collision/query/queries.h"
 #include "state/body_frames.h"
-#include "state/parked_pairs.h"
-#include "world/objects.h"
+#include "world/object_edits.h"
 
 #include <algorithm>
 #include <cmath>

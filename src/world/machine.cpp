@@ -3,7 +3,7 @@
 #include "hooke/machine.h"
 
 #include "build/checks.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <atomic>
 #include <cstdlib>

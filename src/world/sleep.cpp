@@ -1,9 +1,9 @@
 #include "world/sleep.h"
 
-#include "collision/shape_bounds.h"
-#include "state/parked_pairs.h"
-#include "world/bodies.h"
-#include "world/hooks.h"
+#include "collision/continuous/shape_bounds.h"
+#include "state/sleeping_pairs.h"
+#include "world/body_stages.h"
+#include "world/hook_stages.h"
 
 #include <algorithm>
 #include <limits>
@@ -79,7 +79,8 @@ void take_pairs_back(WorldData& world) {
   state::unpark_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.parking);
 }
 
-/// What is pressed into another leaves it more slowly than what rests may move (solver/borne_contacts.h).
+/// What is pressed into another leaves it more slowly than what rests may move
+/// (solver/coupled/load_bearing_contacts.h).
 void keep_rising_awake(state::Tables& t) {
   constexpr Real kSunk = Real(1e-3);  // [m]
   for (const state::BorneContact& contact : t.pairs.borne) {

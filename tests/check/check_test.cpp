@@ -1,4 +1,4 @@
-#include "check.h"
+#include "validation/check.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "ground_truth.h"
+#include "validation/ground_truth.h"
 
 #include "hooke/lab.h"
 

@@ -1,7 +1,7 @@
 /// hooke_check [CASE...] [--json F] [--markdown F] [--substeps N] [--stepper NAME]
 ///             [--turned SEED] [--ground-truth] [--list]
 
-#include "check.h"
+#include "validation/check.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "collision/broad_phase.h"
+#include "collision/broad_phase/broad_phase.h"
 
 #include <algorithm>
 #include <cmath>

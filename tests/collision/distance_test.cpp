@@ -1,4 +1,4 @@
-#include "collision/distance.h"
+#include "collision/distance/distance.h"
 
 #include "collision/pairs.h"
 #include "geometry/closest.h"

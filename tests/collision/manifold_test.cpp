@@ -1,7 +1,7 @@
-#include "collision/manifold_points.h"
+#include "collision/manifold/manifold_points.h"
 #include "collision/pairs.h"
 #include "geometry/box.h"
-#include "geometry/convex_hull.h"
+#include "geometry/convex/convex_hull.h"
 
 #include <array>
 #include <cmath>

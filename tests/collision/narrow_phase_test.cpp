@@ -1,4 +1,4 @@
-#include "collision/narrow_phase.h"
+#include "collision/narrow_phase/narrow_phase.h"
 
 #include "collision/scene.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "collision/distance.h"
-#include "collision/manifold_points.h"
+#include "collision/distance/distance.h"
+#include "collision/manifold/manifold_points.h"
 
 #include <algorithm>
 #include <cmath>

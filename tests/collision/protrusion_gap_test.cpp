@@ -1,4 +1,4 @@
-#include "collision/protrusion_gap.h"
+#include "collision/distance/protrusion_gap.h"
 
 #include "geometry/meshes.h"
 

@@ -1,10 +1,10 @@
-#include "collision/queries.h"
+#include "collision/query/queries.h"
 
-#include "collision/queries_ray.h"
+#include "collision/continuous/shape_bounds.h"
+#include "collision/distance/shape_gap.h"
+#include "collision/query/queries_ray.h"
 #include "collision/scene.h"
-#include "collision/shape_bounds.h"
-#include "collision/shape_gap.h"
-#include "geometry/bvh.h"
+#include "geometry/mesh/bvh.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "collision/narrow_phase.h"
-#include "geometry/convex_hull.h"
+#include "collision/narrow_phase/narrow_phase.h"
+#include "geometry/convex/convex_hull.h"
 
 #include <memory>
 #include <utility>

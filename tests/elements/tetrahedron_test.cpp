@@ -1,6 +1,6 @@
 #include "elements/tetrahedron.h"
 
-#include "geometry/tetrahedral_mesh.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 #include "math/random.h"
 
 #include <cmath>

@@ -5,8 +5,8 @@
 #include "fuzz/bytes.h"
 #include "fuzz/mesh_maker.h"
 #include "fuzz/target.h"
-#include "io/model_flat.h"
-#include "io/model_geometry.h"
+#include "io/model/model_flat.h"
+#include "io/model/model_geometry.h"
 
 namespace hooke::fuzz {
 

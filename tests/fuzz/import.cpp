@@ -6,7 +6,7 @@
 #include "fuzz/bytes.h"
 #include "fuzz/mesh_maker.h"
 #include "fuzz/target.h"
-#include "io/model_flat.h"
+#include "io/model/model_flat.h"
 #include "temporary_folder.h"
 
 #include <algorithm>

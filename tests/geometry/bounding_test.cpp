@@ -1,8 +1,8 @@
-#include "geometry/bounding.h"
+#include "geometry/mesh/bounding.h"
 
+#include "geometry/mesh/preselection.h"
+#include "geometry/mesh/volume_tree.h"
 #include "geometry/meshes.h"
-#include "geometry/preselection.h"
-#include "geometry/volume_tree.h"
 #include "math/random.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "geometry/bsp_solid.h"
+#include "geometry/bsp/bsp_solid.h"
 
-#include "geometry/bsp_slivers.h"
-#include "geometry/mesh_clean.h"
+#include "geometry/bsp/bsp_slivers.h"
+#include "geometry/mesh/mesh_clean.h"
 #include "geometry/solids.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "geometry/bsp_space.h"
+#include "geometry/bsp/bsp_space.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

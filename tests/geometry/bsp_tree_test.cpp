@@ -1,4 +1,4 @@
-#include "geometry/bsp_tree.h"
+#include "geometry/bsp/bsp_tree.h"
 
 #include "geometry/building.h"
 #include "geometry/closest.h"

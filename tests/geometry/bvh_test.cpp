@@ -1,4 +1,4 @@
-#include "geometry/bvh.h"
+#include "geometry/mesh/bvh.h"
 
 #include "base/hash.h"
 #include "geometry/closest.h"

@@ -1,6 +1,6 @@
 #include "geometry/closest.h"
 
-#include "geometry/closest_hull.h"
+#include "geometry/convex/closest_hull.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "geometry/contact_mesh.h"
+#include "geometry/mesh/contact_mesh.h"
 
 #include "geometry/closest.h"
 #include "geometry/meshes.h"

@@ -1,6 +1,6 @@
-#include "geometry/convex_hull.h"
+#include "geometry/convex/convex_hull.h"
 
-#include "geometry/mass_properties.h"
+#include "geometry/convex/mass_properties.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>

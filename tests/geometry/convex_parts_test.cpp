@@ -1,8 +1,8 @@
 #include "hooke/geometry.h"
 
 #include "constants.h"
-#include "geometry/convex_hull.h"
-#include "geometry/mass_properties.h"
+#include "geometry/convex/convex_hull.h"
+#include "geometry/convex/mass_properties.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "geometry/geodesic.h"
+#include "geometry/mesh/geodesic.h"
 
 #include "base/hash.h"
 #include "geometry/meshes.h"

@@ -1,6 +1,6 @@
-#include "geometry/immersion.h"
+#include "geometry/convex/immersion.h"
 
-#include "geometry/mass_properties.h"
+#include "geometry/convex/mass_properties.h"
 #include "math/rotation.h"
 
 #include <cmath>

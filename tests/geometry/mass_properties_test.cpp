@@ -1,4 +1,4 @@
-#include "geometry/mass_properties.h"
+#include "geometry/convex/mass_properties.h"
 
 #include "constants.h"
 #include "geometry/meshes.h"

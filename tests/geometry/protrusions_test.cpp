@@ -1,4 +1,4 @@
-#include "geometry/protrusions.h"
+#include "geometry/mesh/protrusions.h"
 
 #include "geometry/meshes.h"
 

@@ -1,7 +1,7 @@
 #include "hooke/geometry.h"
 
-#include "geometry/contact_mesh.h"
-#include "geometry/mesh_clean.h"
+#include "geometry/mesh/contact_mesh.h"
+#include "geometry/mesh/mesh_clean.h"
 #include "geometry/meshes.h"
 #include "math/random.h"
 

@@ -1,7 +1,7 @@
-#include "geometry/solid_cut.h"
+#include "geometry/solid/solid_cut.h"
 
-#include "geometry/convex_hull.h"
-#include "geometry/mass_properties.h"
+#include "geometry/convex/convex_hull.h"
+#include "geometry/convex/mass_properties.h"
 #include "geometry/meshes.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/bsp_solid.h"
+#include "geometry/bsp/bsp_solid.h"
 #include "geometry/meshes.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "geometry/tetrahedral_mesh.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 
 #include "geometry/meshes.h"
 

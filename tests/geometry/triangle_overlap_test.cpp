@@ -1,4 +1,4 @@
-#include "geometry/triangle_overlap.h"
+#include "geometry/mesh/triangle_overlap.h"
 
 #include "geometry/orientation.h"
 #include "math/random.h"

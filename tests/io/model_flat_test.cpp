@@ -1,4 +1,4 @@
-#include "io/model_flat.h"
+#include "io/model/model_flat.h"
 
 #include "io/model_support.h"
 

@@ -1,4 +1,4 @@
-#include "io/model_geometry.h"
+#include "io/model/model_geometry.h"
 
 #include "geometry/meshes.h"
 #include "io/model_support.h"

@@ -1,6 +1,6 @@
 #include "hooke/model_io.h"
 
-#include "io/model_child.h"
+#include "io/model/model_child.h"
 #include "io/model_support.h"
 
 #include <cerrno>

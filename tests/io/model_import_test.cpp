@@ -1,6 +1,6 @@
 #include "hooke/model_io.h"
 
-#include "geometry/preselection.h"
+#include "geometry/mesh/preselection.h"
 #include "io/model_support.h"
 
 #include <doctest/doctest.h>

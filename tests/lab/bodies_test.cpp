@@ -1,5 +1,5 @@
 #include "lab/scenes.h"
-#include "lab/turn.h"
+#include "lab/system/turn.h"
 #include "math/rotation.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 /// benchmark and an inclusion-based algorithm for continuous collision detection). docs/geometry_cases.md
 /// lists them.
 
-#include "lab/dense.h"
+#include "lab/rigid/dense.h"
 
 #include <algorithm>
 #include <doctest/doctest.h>

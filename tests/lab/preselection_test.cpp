@@ -1,5 +1,4 @@
-#include "lab/preselection.h"
-
+#include "lab/rigid/body_preselection.h"
 #include "lab/scenes.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-#include "geometry/convex_hull.h"
-#include "lab/dense.h"
+#include "geometry/convex/convex_hull.h"
+#include "lab/rigid/dense.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "lab/system.h"
+#include "lab/system/system.h"
 
 #include "lab/scenes.h"
-#include "lab/series.h"
+#include "lab/system/series.h"
 #include "world/access.h"
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
 #include "solver/joint_rig.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
-#include "solver/ball_joints.h"
+#include "solver/joint/ball_joints.h"
 
 #include "constants.h"
 #include "solver/joint_rig.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,7 +1,6 @@
-#include "solver/bends.h"
-
 #include "elements/dihedral.h"
 #include "solver/pass_rows.h"
+#include "solver/soft/bending.h"
 #include "solver/target_bits.h"
 
 #include <array>

@@ -1,6 +1,5 @@
-#include "solver/bodies.h"
-
 #include "math/rotation.h"
+#include "solver/body/body_motion.h"
 #include "solver/body_scene.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
-#include "solver/body_contacts.h"
 #include "solver/body_scene.h"
-#include "solver/wide/wide.h"
+#include "solver/contact/body_contacts.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
 #include <cstring>

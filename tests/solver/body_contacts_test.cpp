@@ -1,7 +1,7 @@
-#include "solver/body_contacts.h"
+#include "solver/contact/body_contacts.h"
 
 #include "solver/body_scene.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "parallel/thread_pool.h"
-#include "solver/bodies.h"
-#include "solver/body_contacts.h"
+#include "solver/body/body_motion.h"
+#include "solver/contact/body_contacts.h"
 #include "state/bodies.h"
 #include "state/manifolds.h"
 

@@ -1,7 +1,6 @@
-#include "solver/wide/free_turns.h"
-
-#include "solver/bodies.h"
-#include "solver/wide/wide.h"
+#include "solver/body/body_motion.h"
+#include "solver/body/free_turn_kernels.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <array>
 #include <cmath>

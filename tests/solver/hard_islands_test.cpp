@@ -1,6 +1,5 @@
-#include "solver/hard_islands.h"
-
 #include "constants.h"
+#include "solver/coupled/direct_islands.h"
 #include "world/access.h"
 #include "world/make.h"
 

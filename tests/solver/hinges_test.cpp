@@ -1,9 +1,8 @@
-#include "solver/hinges.h"
-
 #include "hooke/desc.h"
 
 #include "elements/isometric_bend.h"
 #include "solver/pass_rows.h"
+#include "solver/soft/isometric_bending.h"
 #include "solver/target_bits.h"
 
 #include <array>

@@ -1,6 +1,5 @@
-#include "solver/joint_nets.h"
-
 #include "constants.h"
+#include "solver/joint/iterative_joints.h"
 #include "solver/joint_rig.h"
 
 #include <cmath>

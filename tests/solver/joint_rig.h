@@ -5,8 +5,8 @@
 
 #include "build/build.h"
 #include "parallel/thread_pool.h"
-#include "solver/bodies.h"
-#include "solver/joints.h"
+#include "solver/body/body_motion.h"
+#include "solver/joint/joints.h"
 #include "state/tables.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/joints.h"
+#include "solver/joint/joints.h"
 
 #include "constants.h"
 #include "solver/joint_rig.h"

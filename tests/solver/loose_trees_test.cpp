@@ -1,5 +1,4 @@
-#include "solver/loose_trees.h"
-
+#include "solver/joint/approximate_trees.h"
 #include "solver/joint_rig.h"
 
 #include <algorithm>

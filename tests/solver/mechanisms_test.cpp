@@ -1,7 +1,7 @@
 #include "constants.h"
-#include "planar_mechanism.h"
+#include "validation/planar_mechanism.h"
+#include "solver/joint/joints.h"
 #include "solver/joint_rig.h"
-#include "solver/joints.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/spring_blocks.h"
+#include "solver/soft/spring_blocks.h"
 
 #include <cstddef>
 #include <doctest/doctest.h>

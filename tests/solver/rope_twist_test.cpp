@@ -1,4 +1,4 @@
-#include "solver/rope_twist.h"
+#include "solver/rope/rope_twist.h"
 
 #include "build/build.h"
 

@@ -1,5 +1,4 @@
-#include "solver/springs.h"
-
+#include "solver/soft/spring_solve.h"
 #include "solver/target_bits.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 
 #include <cstring>
 #include <doctest/doctest.h>

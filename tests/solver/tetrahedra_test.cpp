@@ -1,8 +1,7 @@
-#include "solver/tetrahedra.h"
-
 #include "elements/tetrahedron.h"
-#include "geometry/tetrahedral_mesh.h"
+#include "geometry/solid/tetrahedral_mesh.h"
 #include "math/random.h"
+#include "solver/soft/tetrahedron_solve.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include "solver/wind.h"
+#include "solver/air/wind.h"
 
 #include <algorithm>
 #include <cmath>

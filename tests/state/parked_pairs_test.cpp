@@ -1,5 +1,4 @@
-#include "state/parked_pairs.h"
-
+#include "state/sleeping_pairs.h"
 #include "collision/scene.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 #include "constants.h"
 #include "geometry/meshes.h"
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 #include "world/make.h"
 
 #include <algorithm>

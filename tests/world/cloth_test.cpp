@@ -148,7 +148,8 @@ TEST_SUITE("world/cloth") {
       const double end = world.measure().energy.elastic;
       CHECK(end < 0.02 * start);
       // Momentum and angular momentum of a free strip stay zero, the latter but for what implicit Euler takes
-      // from an isometric bend that turns (solver/hinges.h): 0.01 of what the halves of the strip turn with.
+      // from an isometric bend that turns (solver/soft/isometric_bending.h): 0.01 of what the halves of the
+      // strip turn with.
       CHECK(length(world.measure().momentum) < 1e-5);
       CHECK(length(world.measure().angular_momentum) < (bend == ClothDesc::Bend::kAngle ? 1e-5 : 1e-4));
     }

@@ -17,7 +17,7 @@ using namespace test;
 
 namespace {
 
-/// So thick is a rope in the middle of a segment, over its radius (collision/inner_contacts.h).
+/// So thick is a rope in the middle of a segment, over its radius (collision/deformable/element_contacts.h).
 constexpr double kThickness = 0.8;
 
 /// How high the second segment of a rope runs at x.

@@ -1,4 +1,4 @@
-#include "solver/wide/wide.h"
+#include "solver/soft/particle_kernels.h"
 #include "world/make.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "lab/implicit.h"
+#include "lab/methods/implicit.h"
 #include "lab/methods/methods.h"
 
 #include <algorithm>

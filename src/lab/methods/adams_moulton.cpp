@@ -1,4 +1,4 @@
-#include "lab/implicit.h"
+#include "lab/methods/implicit.h"
 #include "lab/methods/methods.h"
 
 namespace hooke::lab {
@@ -13,9 +13,9 @@ constexpr double kAm4[] = {9.0 / 24, 19.0 / 24, -5.0 / 24, 1.0 / 24};
 ///
 ///     y' = y + h (beta_0 f(t + h, y') + beta_1 f_n + ... + beta_p-1 f_n-p+2)
 ///
-/// rk4 makes the first p - 2 steps, Newton each other (lab/implicit.h). am2 is the trapezoidal rule: stable
-/// at any step, |R| = 1 without damping. am3 and am4 grow slowly without damping; on a decay they are stable
-/// for |lambda| h <= 6 and 3. Moulton 1926; Hairer, Norsett, Wanner I, III.1.
+/// rk4 makes the first p - 2 steps, Newton each other (lab/methods/implicit.h). am2 is the trapezoidal rule:
+/// stable at any step, |R| = 1 without damping. am3 and am4 grow slowly without damping; on a decay they are
+/// stable for |lambda| h <= 6 and 3. Moulton 1926; Hairer, Norsett, Wanner I, III.1.
 void step_adams_moulton_of(std::span<const double> beta, const System& f, double t, double h, State& y,
                            Workspace& work) {
   work.history.insert(work.history.begin(), f(t, y));

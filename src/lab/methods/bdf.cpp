@@ -1,4 +1,4 @@
-#include "lab/implicit.h"
+#include "lab/methods/implicit.h"
 #include "lab/methods/methods.h"
 
 namespace hooke::lab {
@@ -14,8 +14,8 @@ constexpr double kBdf4[] = {25.0 / 12, -4, 3, -4.0 / 3, 1.0 / 4};
 ///
 ///     alpha_0 y' + alpha_1 y_n + ... + alpha_p y_n-p+1 = h f(t + h, y')
 ///
-/// rk4 makes the first p - 1 steps, Newton each other (lab/implicit.h). For stiff and damped motion: bdf2 is
-/// stable at any step; bdf3 and bdf4 let undamped oscillations of middling omega h grow. Order 1 is
+/// rk4 makes the first p - 1 steps, Newton each other (lab/methods/implicit.h). For stiff and damped motion:
+/// bdf2 is stable at any step; bdf3 and bdf4 let undamped oscillations of middling omega h grow. Order 1 is
 /// implicit_euler. Curtiss, Hirschfelder 1952; Hairer, Wanner II, V.1.
 void step_bdf_of(std::span<const double> alpha, const System& f, double t, double h, State& y,
                  Workspace& work) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lab/growth.h"
-#include "lab/method.h"
+#include "lab/methods/growth.h"
+#include "lab/methods/method.h"
 
 /// \file
 /// Every method: its step, and its growth on an oscillator. One file each, to be read side by side, simplest

@@ -1,0 +1,330 @@
+#include "hooke/drawing/figure.h"
+
+#include "hooke/scene_path.h"
+
+#include "render/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace hooke::app {
+
+namespace {
+
+/// Thinner springs than these are drawn as lines: round ones cost a hundred triangles each.
+constexpr std::size_t kMostRoundSprings = 3000;
+constexpr float kLeastRopeRadius = 1.2F;  ///< [px], half the least width of a rope.
+/// [px]: larger spheres are drawn by the finest level, smaller ones by the next; below the second by the
+/// coarsest. None is more than half a pixel off.
+constexpr std::array<float, 2> kLevelRadius = {40, 10};
+constexpr float kSlabWidth = 20;       ///< Slabs are wider than so many times their thickness.
+constexpr float kIronDensity = 7800;   ///< [kg/m^3]
+constexpr float kHookRadius = 0.008F;  ///< Of a distance as it is drawn [m].
+const render::Color kIron = {0.30F, 0.31F, 0.33F};
+
+float srgb_of(float linear) {
+  const float x = std::clamp(linear, 0.0F, 1.0F);
+  return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
+}
+
+render::Color color_of(const std::array<float, 3>& linear) {
+  return {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])};
+}
+
+/// What an object without a material looks like.
+render::Color usual_color(SceneObject::Kind kind) {
+  switch (kind) {
+    case SceneObject::Kind::kRope:
+    case SceneObject::Kind::kHook:
+      return {0.80F, 0.68F, 0.48F};
+    case SceneObject::Kind::kCloth:
+      return {0.30F, 0.50F, 0.72F};
+    case SceneObject::Kind::kSolid:
+      return {0.78F, 0.32F, 0.38F};
+    case SceneObject::Kind::kParticles:
+      return {0.90F, 0.55F, 0.25F};
+    default:
+      return {0.66F, 0.67F, 0.66F};
+  }
+}
+
+Finish finish_of(const Scene& scene, const SceneMaterial& look, const TextureLoader& textures) {
+  Finish finish = {color_of(look.color), nullptr, look.opacity, look.shininess};
+  if (look.texture.empty()) return finish;
+  finish.texture = textures((std::filesystem::path(scene.path).parent_path() / look.texture).string());
+  return finish;
+}
+
+std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& textures) {
+  std::vector<PaintedRange> ranges;
+  for (const ModelPart& part : model.parts) {
+    const ModelMaterial& material = model.materials[part.material];
+    Finish finish = {color_of(material.color), nullptr, material.opacity, material.shininess};
+    if (!material.texture.empty()) finish.texture = textures(material.texture);
+    if (part.count > 0) ranges.push_back({part.first, part.count, finish});
+  }
+  return ranges;
+}
+
+/// What the ranges of an object, or of a part of it, depend on.
+struct Look {
+  SceneObject::Kind kind;
+  const std::string& material;  ///< Empty: a model's own materials, or the usual color.
+  const SceneMaterial& look;
+  const Model* model;
+};
+
+std::vector<PaintedRange> ranges_of(const Scene& scene, const Look& look, const TextureLoader& textures) {
+  if (!look.material.empty()) return {{0, 0, finish_of(scene, look.look, textures)}};
+  std::vector<PaintedRange> ranges;
+  if (look.model != nullptr) ranges = model_ranges(*look.model, textures);
+  if (ranges.empty()) ranges.push_back({0, 0, {.color = usual_color(look.kind)}});
+  return ranges;
+}
+
+/// The ball of iron of that mass.
+float load_radius(Real mass) {
+  return std::cbrt(3 * static_cast<float>(mass) / (4 * std::numbers::pi_v<float> * kIronDensity));
+}
+
+void add_loads(const std::vector<SceneLoad>& loads, std::size_t points, Figure& figure) {
+  for (const SceneLoad& load : loads) {
+    const float radius = load_radius(load.mass);
+    const std::size_t point = load.point.last && points > 0 ? points - 1 : load.point.index;
+    if (radius > 1.2F * figure.radius) figure.loads.push_back({point, radius});
+  }
+}
+
+/// A hull has faces of its own, and no materials.
+const Model* drawn_materials(const Shape& shape, const std::shared_ptr<const Model>& model) {
+  return shape.kind == ShapeKind::kMesh ? model.get() : nullptr;
+}
+
+/// Ground: what it would shade lies below it, and its shadow would take the whole shadow map.
+bool is_slab(const Shape& shape) {
+  const Vec3 half = shape.half_extents;
+  return shape.kind == ShapeKind::kBox && std::min(half.x, half.z) > kSlabWidth * half.y;
+}
+
+std::vector<FigureSolid> solids_of(const Scene& scene, const SceneObject& object,
+                                   const TextureLoader& textures, BodyGeometries& geometries) {
+  if (object.shape.kind != ShapeKind::kCompound) {
+    const Look look = {object.kind, object.material, object.look,
+                       drawn_materials(object.shape, object.model)};
+    return {{.geometry = geometries.find(object.shape, object.model),
+             .ranges = ranges_of(scene, look, textures),
+             .casts_shadow = !is_slab(object.shape)}};
+  }
+  std::vector<FigureSolid> solids;
+  for (const SceneObject::Part& part : object.parts) {
+    const Look look = {object.kind, part.material, part.look, drawn_materials(part.shape, part.model)};
+    solids.push_back({.geometry = geometries.find(part.shape, part.model),
+                      .position = part.position,
+                      .rotation = part.rotation,
+                      .ranges = ranges_of(scene, look, textures)});
+  }
+  return solids;
+}
+
+void prepare_cloth(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  if (object.model != nullptr) {
+    figure.surface = make_model_surface(*object.model);
+  } else if (object.columns > 1 && object.rows > 1) {
+    figure.surface =
+        make_grid_surface(object.columns, object.rows, simulation.world().triangles(object.cloth));
+  }
+}
+
+void prepare_solid(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  if (object.model != nullptr) {
+    figure.surface = make_model_surface(*object.model);
+    return;
+  }
+  const std::vector<DVec3> places = simulation.world().surface(object.solid);
+  std::vector<Vec3> points;
+  for (const DVec3& place : places) points.push_back(vector_cast<float>(place - places.front()));
+  figure.surface = make_solid_surface(points, simulation.world().triangles(object.solid));
+}
+
+void prepare_points(const Simulation& simulation, const SceneObject& object, Figure& figure) {
+  std::size_t row = 0;
+  const SceneObjects& objects = objects_of(simulation.scene(), object.path, row);
+  if (object.kind == SceneObject::Kind::kRope && row < objects.ropes.size()) {
+    add_loads(objects.ropes[row].loads, simulation.world().positions(object.rope).size(), figure);
+  }
+  if (object.kind == SceneObject::Kind::kCloth && row < objects.cloths.size()) {
+    add_loads(objects.cloths[row].loads, simulation.world().positions(object.cloth).size(), figure);
+  }
+  if (object.kind == SceneObject::Kind::kParticles && row < objects.particles.size()) {
+    const ParticlesDesc& desc = objects.particles[row].desc;
+    for (const ParticleDesc& particle : desc.particles) {
+      figure.radii.push_back(static_cast<float>(particle.radius));
+    }
+    figure.springs = desc.springs;
+  }
+}
+
+/// Shiny surfaces reflect more of the sun, in a smaller spot.
+float specular_of(float shininess) {
+  return std::clamp(0.03F + 0.004F * shininess, 0.03F, 0.45F);
+}
+
+/// A mesh to be drawn with one finish.
+render::DrawMesh painted(const PaintedRange& range) {
+  const Finish& finish = range.finish;
+  render::DrawMesh mesh;
+  mesh.first_index = range.first;
+  mesh.index_count = range.count;
+  mesh.texture = finish.texture;
+  mesh.color = finish.color;
+  mesh.opacity = finish.opacity;
+  mesh.shininess = finish.shininess;
+  mesh.specular = specular_of(finish.shininess);
+  const bool holed = finish.texture != nullptr && finish.texture->channels == 4;
+  mesh.alpha = holed ? render::AlphaMode::kCutout : render::AlphaMode::kOpaque;
+  return mesh;
+}
+
+bool add_ground(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  const Vec3 up = rotate(place.rotation, Vec3{0, 1, 0});
+  if (list.ground.has_value() || up.y < 0.9999F) return false;
+  render::Ground ground;
+  const Finish& finish = figure.solids.front().ranges.front().finish;
+  ground.height = place.position.y;
+  ground.color = finish.color;
+  ground.line_color = {0.78F * finish.color.r, 0.78F * finish.color.g, 0.78F * finish.color.b};
+  ground.grid_spacing = 1;
+  ground.grid_x = place.position.x;
+  ground.grid_z = place.position.z;
+  list.ground = ground;
+  return true;
+}
+
+void add_body(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  if (figure.half_space && add_ground(figure, place, list)) return;
+  const float distance = length(place.position - place.eye);
+  const Mat4 body = make_transform(place.position, place.rotation, Vec3{1, 1, 1});
+  for (const FigureSolid& solid : figure.solids) {
+    const float radius = solid.geometry.scale.x / std::max(place.pixel * distance, 1e-9F);
+    const std::size_t level = radius > kLevelRadius[0] ? 0 : radius > kLevelRadius[1] ? 1 : 2;
+    if (solid.geometry.levels[level] == nullptr) continue;
+    for (const PaintedRange& range : solid.ranges) {
+      render::DrawMesh mesh = painted(range);
+      mesh.geometry = solid.geometry.levels[level];
+      mesh.transform = body * transform_of(solid);
+      mesh.casts_shadow = solid.casts_shadow;
+      list.meshes.push_back(std::move(mesh));
+    }
+  }
+}
+
+void add_cloth(Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  if (!figure.surface) return;
+  update_surface(*figure.surface, place.points);
+  for (const PaintedRange& range : figure.ranges) {
+    render::DrawMesh mesh = painted(range);
+    mesh.geometry = figure.surface->geometry;
+    mesh.transform = affine(Mat3{}, Vec3{});
+    mesh.two_sided = true;
+    list.meshes.push_back(std::move(mesh));
+  }
+}
+
+float visible_radius(float radius, Vec3 point, const FigurePlace& place) {
+  return std::max(radius, kLeastRopeRadius * place.pixel * length(point - place.eye));
+}
+
+void add_rope(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  if (place.points.empty()) return;
+  const Finish& finish = figure.ranges.front().finish;
+  const float radius = visible_radius(figure.radius, place.points[place.points.size() / 2], place);
+  list.ropes.push_back({{place.points.begin(), place.points.end()},
+                        radius,
+                        finish.color,
+                        finish.shininess,
+                        specular_of(finish.shininess)});
+}
+
+void add_loads(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  for (const FigureLoad& load : figure.loads) {
+    if (load.point < place.points.size())
+      list.spheres.push_back({place.points[load.point], load.radius, kIron});
+  }
+}
+
+void add_springs(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  const Finish& finish = figure.ranges.front().finish;
+  const bool round = figure.springs.size() <= kMostRoundSprings;
+  for (const SpringDesc& spring : figure.springs) {
+    if (spring.a >= place.points.size() || spring.b >= place.points.size()) continue;
+    const Vec3 from = place.points[spring.a];
+    const Vec3 to = place.points[spring.b];
+    if (round) {
+      const float radius =
+          visible_radius(0.3F * std::min(figure.radii[spring.a], figure.radii[spring.b]), from, place);
+      list.ropes.push_back({{from, to}, radius, finish.color, finish.shininess, 0.1F});
+    } else {
+      list.lines.push_back({from, to, finish.color, 1, 1.5F});
+    }
+  }
+}
+
+void add_particles(const Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  add_springs(figure, place, list);
+  const std::size_t count = std::min(place.points.size(), figure.radii.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    list.spheres.push_back({place.points[i], figure.radii[i], figure.ranges.front().finish.color});
+  }
+}
+
+}  // namespace
+
+Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
+                   BodyGeometries& geometries) {
+  Figure figure;
+  figure.kind = object.kind;
+  figure.radius = object.kind == SceneObject::Kind::kHook ? kHookRadius : static_cast<float>(object.radius);
+  if (object.kind == SceneObject::Kind::kBody) {
+    figure.solids = solids_of(simulation.scene(), object, textures, geometries);
+    figure.half_space = object.shape.kind == ShapeKind::kHalfSpace;
+    return figure;
+  }
+  const Look look = {object.kind, object.material, object.look, object.model.get()};
+  figure.ranges = ranges_of(simulation.scene(), look, textures);
+  if (object.kind == SceneObject::Kind::kCloth) prepare_cloth(simulation, object, figure);
+  if (object.kind == SceneObject::Kind::kSolid) prepare_solid(simulation, object, figure);
+  prepare_points(simulation, object, figure);
+  return figure;
+}
+
+Mat4 transform_of(const FigureSolid& solid) {
+  const Vec3 position = solid.position + rotate(solid.rotation, solid.geometry.shift);
+  return make_transform(position, solid.rotation, solid.geometry.scale);
+}
+
+void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list) {
+  switch (figure.kind) {
+    case SceneObject::Kind::kBody:
+      add_body(figure, place, list);
+      break;
+    case SceneObject::Kind::kRope:
+    case SceneObject::Kind::kHook:
+      add_rope(figure, place, list);
+      break;
+    case SceneObject::Kind::kCloth:
+    case SceneObject::Kind::kSolid:
+      add_cloth(figure, place, list);
+      break;
+    case SceneObject::Kind::kParticles:
+      add_particles(figure, place, list);
+      break;
+    case SceneObject::Kind::kField:
+      break;
+  }
+  add_loads(figure, place, list);
+}
+
+}  // namespace hooke::app

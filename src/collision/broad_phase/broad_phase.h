@@ -1,0 +1,155 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "collision/broad_phase/broad_phase_tree.h"
+#include "geometry/box.h"
+#include "geometry/ray_slabs.h"
+#include "parallel/thread_pool.h"
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace hooke::collision {
+
+/// Two colliders, first < second.
+struct ColliderPair {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+
+  // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
+  friend constexpr auto operator<=>(const ColliderPair&, const ColliderPair&) = default;
+};
+
+/// Finds overlapping boxes: two trees of eight-wide nodes, one for what stands and one for what moves. The
+/// boxes of movers are fattened in the tree, and the pairs whose fat boxes overlap are remembered as
+/// candidates, so that a step searches only for those that left their fat box and filters the rest.
+///
+/// What it finds depends on the boxes set alone, never on the history of the trees: a pair is reported when
+/// its *tight* boxes overlap, so that a restored world finds the same pairs with a new tree.
+///
+/// Boxes may be infinite or beyond kHuge; those are kept outside the trees and cost every mover a look. No
+/// box is empty and no coordinate NaN. Collider numbers are below 2^31; memory goes with the largest.
+class BroadPhase {
+ public:
+  /// Coordinates beyond this are as good as infinite: surfaces of boxes could overflow a float [m].
+  static constexpr Real kHuge = Real(1e18);
+
+  /// Adds or moves a collider's box. Cheap while the box stays within its fat one. Two colliders that do not
+  /// move are never a pair, nor two of the same company, which a collider joins when it is added (0: none).
+  void set(std::uint32_t collider, const geometry::Box& box, bool moves, std::int32_t company = 0);
+  /// Does nothing for a collider that has no box.
+  void remove(std::uint32_t collider);
+  /// As if new, but for its memory.
+  void clear();
+
+  /// Brings the trees up to date. find_pairs does it too; queries are right without it, but slower after many
+  /// colliders were added.
+  void update();
+
+  /// Replaces `pairs` by all pairs of overlapping boxes of which one moves, sorted, each once.
+  void find_pairs(parallel::ThreadPool& pool, std::vector<ColliderPair>& pairs);
+  /// The same of those only of which one is asked for (`asked`: by collider, 1 or 0; all without any):
+  /// between two whose boxes are as they were, there is what there was.
+  void find_pairs_of(parallel::ThreadPool& pool, std::span<const std::uint8_t> asked,
+                     std::vector<ColliderPair>& pairs);
+
+  /// Replaces `found` by the colliders whose boxes overlap `box`, in ascending order.
+  void query(const geometry::Box& box, std::vector<std::uint32_t>& found) const;
+  /// The same without those of the company that `collider` is of.
+  void query_for(std::uint32_t collider, const geometry::Box& box, std::vector<std::uint32_t>& found) const;
+
+  /// Replaces `found` by the colliders whose boxes, grown by `radius` on every side, the segment from
+  /// `origin` over `motion` passes (all finite, may be zero); in ascending order.
+  void query_sweep(DVec3 origin, DVec3 motion, Real radius, std::vector<std::uint32_t>& found) const;
+
+  /// Calls `visit(collider)` for the colliders that query_sweep would find, roughly from near to far. `visit`
+  /// returns the fraction of `motion` beyond which nothing matters any more.
+  template <class Visit>
+  void visit_sweep(DVec3 origin, DVec3 motion, Real radius, Visit&& visit) const;
+
+  /// Calls `visit(collider)` for the colliders whose boxes are at most `reach` from `point` [m], roughly from
+  /// near to far. `visit` returns the distance beyond which nothing matters any more.
+  template <class Visit>
+  void visit_near(DVec3 point, double reach, Visit&& visit) const;
+
+ private:
+  /// Where a collider's box is kept.
+  enum class Home : std::uint8_t { kNone, kStanding, kMoving, kUnbounded };
+  struct Entry {
+    Home home = Home::kNone;
+    bool moves = false;
+    bool changed = false;  // since the last find_pairs: its candidates are void
+    std::uint16_t company = 0;
+  };
+
+  /// Both trees and what is outside of them; see BroadPhaseTree::visit_near.
+  template <class Bound, class Visit>
+  void visit_bounded(double limit, const Bound& bound, Visit&& visit) const;
+
+  [[nodiscard]] std::uint16_t number_of(std::int32_t company);
+  void query_without(std::uint16_t company, const geometry::Box& box,
+                     std::vector<std::uint32_t>& found) const;
+  void enter_home(std::uint32_t collider);
+  void leave_home(std::uint32_t collider);
+  void mark_changed(std::uint32_t collider);
+  [[nodiscard]] bool is_candidate(std::uint32_t changed, std::uint32_t other) const;
+  void find_candidates_of(std::uint32_t collider, std::vector<ColliderPair>& found) const;
+  void find_new_candidates(parallel::ThreadPool& pool);
+  template <class IsAsked>
+  void filter_candidates(parallel::ThreadPool& pool, IsAsked&& is_asked, std::vector<ColliderPair>& pairs);
+  void merge_candidates();
+
+  // Of each collider.
+  std::vector<Entry> entries_;
+  std::vector<geometry::Box> tight_;
+  std::vector<geometry::Box> fat_;
+
+  // Of each company, from 1. More than there are numbers for are found as if they were none.
+  std::map<std::int32_t, std::uint16_t> companies_;
+
+  BroadPhaseTree standing_;
+  BroadPhaseTree moving_;
+  std::vector<std::uint32_t> unbounded_;
+  std::vector<std::uint32_t> changed_;    // those with Entry::changed
+  std::vector<ColliderPair> candidates_;  // all pairs whose fat boxes overlap, sorted
+
+  // Scratch, kept for its memory.
+  std::vector<std::vector<ColliderPair>> found_;  // by each block of searches
+  std::vector<ColliderPair> fresh_;
+  std::vector<ColliderPair> sorted_;
+  std::vector<std::size_t> ends_;  // of what is kept of each block of candidates
+};
+
+template <class Visit>
+void BroadPhase::visit_sweep(DVec3 origin, DVec3 motion, Real radius, Visit&& visit) const {
+  const auto ray = geometry::RaySlabs::of(origin, motion);
+  const auto grown = static_cast<double>(radius);
+  visit_bounded(
+      1.0, [&](const geometry::Box& box) { return ray.enter(box, grown); }, visit);
+}
+
+template <class Visit>
+void BroadPhase::visit_near(DVec3 point, double reach, Visit&& visit) const {
+  const auto distance = [point](const geometry::Box& box) {
+    const geometry::Box3<double> b = {vector_cast<double>(box.lower), vector_cast<double>(box.upper)};
+    return std::sqrt(geometry::distance_squared(b, point));
+  };
+  visit_bounded(reach, distance, visit);
+}
+
+template <class Bound, class Visit>
+void BroadPhase::visit_bounded(double limit, const Bound& bound, Visit&& visit) const {
+  const auto visit_tight = [&](std::uint32_t collider) {
+    if (bound(tight_[collider]) <= limit) limit = visit(collider);
+    return limit;
+  };
+  for (const std::uint32_t collider : unbounded_) visit_tight(collider);
+  standing_.visit_near(limit, bound, visit_tight);
+  moving_.visit_near(limit, bound, visit_tight);
+}
+
+}  // namespace hooke::collision

@@ -1,0 +1,102 @@
+#include "collision/deformable/contact_frames.h"
+
+#include "collision/distance/shape_gap.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::collision {
+
+namespace {
+
+constexpr Real kBoxRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
+
+}  // namespace
+
+Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
+  const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);
+  const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
+  const std::uint32_t row = t.colliders.body[collider];
+  const geometry::Box& bounds = t.colliders.bounds[collider];
+  const Vec3 rounding = {kBoxRounding, kBoxRounding, kBoxRounding};
+  return {.shape = &t.colliders.shape[collider],
+          .rotation = body.rotation * t.colliders.rotation[collider],
+          .offset = vector_cast<Real>(body.position + arm - object.origin),
+          .center = vector_cast<Real>(body.position - object.origin),
+          .belt_velocity = rotate(body.rotation, t.colliders.surface[collider].surface_velocity),
+          .speed = length(t.bodies.motion[row].v) +
+                   length(t.bodies.angular_velocity[row]) * t.bodies.traits[row].radius,
+          .box = {vector_cast<Real>(vector_cast<double>(bounds.lower) - object.origin) - rounding,
+                  vector_cast<Real>(vector_cast<double>(bounds.upper) - object.origin) + rounding}};
+}
+
+Real distance_to(const Frame& frame, Vec3 place, Real reach) {
+  const Vec3 x = frame.to_shape(place);
+  const bool mesh = frame.shape->shape.kind == ShapeKind::kMesh;
+  return mesh ? distance_to_mesh(*frame.shape->mesh, x, reach) : gap_to_shape(*frame.shape, x).distance;
+}
+
+bool is_solid(const state::Tables& t, std::uint32_t body) {
+  return t.bodies.traits[body].collides && !t.bodies.traits[body].sensor;
+}
+
+void list_solid_colliders(const state::Tables& t, std::vector<std::uint32_t>& rows) {
+  rows.clear();
+  if (t.objects.empty()) return;
+  for (std::uint32_t c = 0; c < t.colliders.body.size(); ++c) {
+    const std::uint32_t body = t.colliders.body[c];
+    if (body != state::Colliders::kNoBody && is_solid(t, body)) rows.push_back(c);
+  }
+}
+
+void list_near_colliders(const state::Tables& t, std::span<const std::uint32_t> colliders,
+                         const state::Deformable& object, Real reach, std::vector<std::uint32_t>& near) {
+  DVec3 lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  DVec3 upper = -lower;
+  for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+    const DVec3 x = vector_cast<double>(t.particles.position[p].x);
+    lower = geometry::min_of(lower, x);
+    upper = geometry::max_of(upper, x);
+  }
+  const auto margin = static_cast<double>(reach);
+  const geometry::Box3<double> box = {object.origin + lower - DVec3{margin, margin, margin},
+                                      object.origin + upper + DVec3{margin, margin, margin}};
+  near.clear();
+  for (const std::uint32_t c : colliders) {
+    const geometry::Box& bounds = t.colliders.bounds[c];
+    if (overlap(box, {vector_cast<double>(bounds.lower), vector_cast<double>(bounds.upper)}))
+      near.push_back(c);
+  }
+}
+
+void make_frames(const state::Tables& t, std::span<const std::uint32_t> colliders,
+                 const state::Deformable& object, std::vector<Frame>& frames) {
+  frames.clear();
+  for (const std::uint32_t c : colliders) frames.push_back(frame_of(t, c, object));
+}
+
+void list_hooked(const state::Tables& t, std::vector<Hooked>& hooked) {
+  hooked.clear();
+  if (t.objects.empty()) return;
+  const auto add = [&](const state::Hook& hook, const state::HookPlace& point, std::uint32_t body) {
+    if (!point.is_point() || body == state::HookPlace::kWorld) return;
+    for (std::uint32_t i = 0; i < point.particle_count; ++i) hooked.emplace_back(point.particle[i], body);
+    const state::Rows object = t.objects[point.object].particles;
+    for (const std::uint32_t i : hook.inside) hooked.emplace_back(object.first + i, body);
+    if (hook.kind != HookKind::kRopeSlide) return;
+    for (std::uint32_t p = object.first; p < object.end(); ++p) hooked.emplace_back(p, body);
+  };
+  for (const state::Hook& hook : t.hooks) {
+    if (hook.collide) continue;
+    add(hook, hook.a, hook.b.body);
+    add(hook, hook.b, hook.a.body);
+  }
+  std::sort(hooked.begin(), hooked.end());
+}
+
+bool is_hooked(const std::vector<Hooked>& hooked, std::uint32_t particle, std::uint32_t body) {
+  return std::binary_search(hooked.begin(), hooked.end(), Hooked{particle, body});
+}
+
+}  // namespace hooke::collision

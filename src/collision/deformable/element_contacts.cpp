@@ -1,0 +1,640 @@
+#include "collision/deformable/element_contacts.h"
+
+#include "collision/distance/distance.h"
+#include "collision/distance/protrusion_gap.h"
+#include "collision/distance/shape_gap.h"
+#include "geometry/closest.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace hooke::collision {
+
+namespace {
+
+using state::InnerContact;
+
+constexpr Real kSearchShare =
+    Real(0.5);  ///< Of what an edge is thinner in its middle: what protrudes so far.
+/// The depth of a gentle curve in a chord between two points, over their radius, that is not looked at: of
+/// ropes the line from node to node stays outside, of cloths it is held off by the points all the same.
+constexpr Real kRopeGentleDepth = Real(0.8);
+constexpr Real kClothGentleDepth = Real(0.4);
+constexpr Real kLeastFreeShare = Real(0.25);  ///< Of an element's points: what is pinned does not give way.
+constexpr int kMostNear = 12;                 ///< Elements under a body that is narrow.
+constexpr int kFewContacts = 12;              ///< With bodies: more take too long to be solved as one.
+constexpr int kCarryingPoints = 3;            ///< A wide body that lies on so many is carried by them.
+constexpr Real kLeastApart = Real(0.5);       ///< Overlap, over the radius, with which a contact may begin.
+constexpr Real kSameSide =
+    Real(0.9);  ///< Cosine of what a normal turns in a substep without losing its force.
+constexpr Real kNearShare = Real(0.01);  ///< Of the thickness: so near is met.
+constexpr Real kPushedApart = Real(1);   ///< Speed at which overlaps are undone in place, at most [m/s].
+
+/// A segment of a rope, or a triangle of a cloth or one of its edges.
+struct Element {
+  std::uint32_t row = 0;
+  std::uint32_t count = 0;
+  std::array<std::uint32_t, 3> particle = {};
+  std::uint32_t edge = 0;  ///< As of InnerContact.
+};
+
+Element triangle_at(const state::Tables& t, std::uint32_t row) {
+  const auto [a, b, c] = t.triangles.corners[row];
+  const auto [least, most] = std::minmax({a, b, c});
+  return {row, 3, {least, a ^ b ^ c ^ least ^ most, most}};
+}
+
+template <class Visit>
+void for_each_element(const state::Tables& t, const state::Deformable& object, Visit&& visit) {
+  for (std::uint32_t i = 0; i < object.segments.count; ++i) {
+    const std::uint32_t p = object.particles.first + i;
+    visit(Element{object.segments.first + i, 2, {p, p + 1, p + 1}});
+  }
+  for (std::uint32_t row = object.triangles.first; row < object.triangles.end(); ++row)
+    visit(triangle_at(t, row));
+}
+
+/// A triangle's edges that count as its own; of a segment itself.
+template <class Visit>
+void for_each_edge(const state::Tables& t, const Element& e, Visit&& visit) {
+  if (e.count == 2) return visit(e);
+  const auto [a, b, c] = t.triangles.corners[e.row];
+  const std::array<std::uint32_t, 4> around = {a, b, c, a};
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if ((t.triangles.own_edges[e.row] >> k & 1U) == 0) continue;
+    const auto [low, high] = std::minmax(around[k], around[k + 1]);
+    visit(Element{e.row, 2, {low, high, high}, k + 1});
+  }
+}
+
+Real thinning_of(const state::Deformable& object) {
+  return object.kind == PointRef::Kind::kRope ? kRopeThinning : kClothThinning;
+}
+
+/// By how much an element is thinner at a place than at its points, over their radius.
+Real thinning_at(const state::Deformable& object, const std::array<Real, 3>& weight) {
+  Real between = Real(1);
+  for (const Real w : weight) between -= w * w;
+  return Real(2) * thinning_of(object) * between;
+}
+
+Vec3 place_of(const state::Tables& t, std::uint32_t particle) {
+  return t.particles.position[particle].x;
+}
+
+/// The longest edge of the object's elements, squared.
+Real longest_edge_squared(const state::Tables& t, const state::Deformable& object) {
+  Real longest = Real(0);
+  for_each_element(t, object, [&](const Element& e) {
+    const Vec3 a = place_of(t, e.particle[0]);
+    const Vec3 b = place_of(t, e.particle[1]);
+    const Vec3 c = place_of(t, e.particle[2]);
+    longest = std::max({longest, length_squared(b - a), length_squared(c - b), length_squared(a - c)});
+  });
+  return longest;
+}
+
+/// A half-space has nothing that could pass between points; compounds stand as their parts.
+bool can_protrude(const state::ColliderShape& shape) {
+  if (shape.shape.kind == ShapeKind::kMesh) return !shape.mesh->protrusions.ends.empty();
+  return shape.shape.kind != ShapeKind::kHalfSpace && shape.shape.kind != ShapeKind::kCompound;
+}
+
+/// Radius of curvature of the shape where it is most bent; 0 of an edge.
+Real least_radius(const Shape& shape) {
+  const bool is_round = shape.kind == ShapeKind::kSphere || shape.kind == ShapeKind::kCapsule;
+  return is_round ? shape.radius : Real(0);
+}
+
+using Gaps = std::array<const InnerContactFinder::PointGap*, 3>;
+
+/// No place of the element is nearer to the shape than this: by the gradient at one of its points, or the
+/// mean of those at all.
+Real least_distance(const Gaps& gaps, std::uint32_t count, std::size_t when) {
+  const auto at = [&](std::uint32_t of, std::uint32_t where) {
+    return gaps[of]->distance[when] + dot(gaps[of]->normal[when], gaps[where]->x[when] - gaps[of]->x[when]);
+  };
+  constexpr Real kFar = std::numeric_limits<Real>::infinity();
+  Real best = -kFar;
+  Real mean = kFar;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Real least = kFar;
+    Real sum = Real(0);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      least = std::min(least, at(i, k));
+      sum += at(k, i);
+    }
+    best = std::max(best, least);
+    mean = std::min(mean, sum / static_cast<Real>(count));
+  }
+  return std::max(best, mean);
+}
+
+/// Finds the rows of one object and one shape.
+class PairSearch {
+ public:
+  PairSearch(const state::Tables& tables, const InnerContactQuery& query, std::size_t index,
+             Real longest_edge, InnerContactFinder& finder)
+      : t_(tables),
+        query_(query),
+        object_(tables.objects[query.object]),
+        collider_(query.colliders[index]),
+        body_(tables.colliders.body[collider_]),
+        frame_(query.frames[index]),
+        longest_edge_(longest_edge),
+        finder_(finder) {}
+
+  void run() {
+    ++finder_.pass;
+    fall_ = length(t_.desc.gravity) * query_.step * query_.step;
+    const Real reach = query_.reach + frame_.speed * query_.step;
+    held_ = was_held();
+    near_ = {frame_.box.lower - Vec3{reach, reach, reach}, frame_.box.upper + Vec3{reach, reach, reach}};
+    const auto first = static_cast<std::ptrdiff_t>(finder_.contacts.size());
+    for_each_element(t_, object_, [&](const Element& e) { look_at(e); });
+    if (is_carried()) finder_.contacts.erase(finder_.contacts.begin() + first, finder_.contacts.end());
+  }
+
+ private:
+  /// Whether an element held the shape in the step before.
+  [[nodiscard]] bool was_held() const {
+    const auto pair_of = [](const InnerContact& row) { return std::pair(row.object, row.collider); };
+    const std::pair pair = {query_.object, collider_};
+    const std::vector<InnerContact>& rows = t_.inner_contacts;
+    auto row = std::lower_bound(rows.begin(), rows.end(), pair,
+                                [&](const InnerContact& r, const auto& p) { return pair_of(r) < p; });
+    while (row != rows.end() && pair_of(*row) == pair && !row->joined) ++row;
+    return row != rows.end() && pair_of(*row) == pair;
+  }
+
+  /// Whether points alone hold the body, as it is wide against the cloth's meshes, or near to many. Elements
+  /// that hold a body do not let go because it comes near to more of them: it would be through the cloth when
+  /// they come back.
+  [[nodiscard]] bool is_carried() const {
+    if (object_.triangles.count == 0 || !is_dynamic(t_.bodies, body_)) return false;
+    const bool is_wide = t_.bodies.traits[body_].radius > longest_edge_;
+    return (is_wide && near_points_ >= kCarryingPoints) || (!held_ && near_elements_ > kMostNear);
+  }
+
+  void look_at(Element e) {
+    if (is_carried()) return;
+    const geometry::Box box = geometry::box_of(place_of(t_, e.particle[0]), place_of(t_, e.particle[1]),
+                                               place_of(t_, e.particle[2]));
+    if (!overlap(near_, box)) return;
+    Real radius = std::numeric_limits<Real>::infinity();
+    Real way = Real(0);
+    bool any_free = is_dynamic(t_.bodies, body_);
+    for (std::uint32_t i = 0; i < e.count; ++i) {
+      const state::VelocityLine& line = t_.particles.velocity[e.particle[i]];
+      radius = std::min(radius, t_.particles.position[e.particle[i]].radius);
+      way = std::max(way, Real(2) * length(line.v) * query_.step + fall_);
+      any_free = any_free || line.inverse_mass > Real(0);
+    }
+    const Real reach = radius + way + frame_.speed * query_.step + kParticleMargin;
+    const Vec3 all = {reach, reach, reach};
+    if (!overlap(frame_.box, geometry::Box{box.lower - all, box.upper + all}) || !any_free) return;
+    if (frame_.shape->shape.kind == ShapeKind::kMesh) {
+      look_at_mesh(e, radius, reach);
+    } else {
+      look_at_shape(e, radius, reach);
+    }
+  }
+
+  void look_at_shape(const Element& e, Real radius, Real reach) {
+    Gaps gaps = {};
+    for (std::uint32_t i = 0; i < e.count; ++i) gaps[i] = &gap_of(e.particle[i]);
+    const Real distance = least_distance(gaps, e.count, 0);
+    if (distance > reach) return;
+    const Real most = kSearchShare * thinning_of(object_) * radius;
+    if (!protrudes(gaps, e.count, 0, most) && !protrudes(gaps, e.count, 1, most)) return;
+    if (is_hooked_to(e)) return;
+    near_elements_ += distance < radius + kParticleMargin ? 1 : 0;
+    add_row(e, 0);
+  }
+
+  /// A mesh knows no bounds from gradients: what its ridges and peaks protrude is seen where they are.
+  void look_at_mesh(const Element& e, Real radius, Real reach) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    const auto corner = [&](std::uint32_t i) { return frame_.to_shape(place_of(t_, e.particle[i])); };
+    const geometry::Box box = geometry::box_of(corner(0), corner(1), corner(2));
+    const Vec3 all = {reach, reach, reach};
+    geometry::find_triangles(mesh.bvh, {box.lower - all, box.upper + all}, finder_.triangles);
+    if (e.count == 3) look_at_protrusions(e, radius, reach);
+    for_each_edge(t_, e, [&](const Element& edge) { look_at_protrusions(edge, radius, reach); });
+  }
+
+  void look_at_protrusions(const Element& e, Real radius, Real reach) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    std::array<Vec3, 3> corner = {};
+    Real way = Real(0);
+    for (std::uint32_t i = 0; i < e.count; ++i) {
+      const Vec3 x = place_of(t_, e.particle[i]);
+      const Vec3 surface = state::velocity_at(t_.bodies, body_, x - frame_.center);
+      corner[i] = frame_.to_shape(x);
+      way = std::max(way, query_.step * length(t_.particles.velocity[e.particle[i]].v - surface));
+    }
+    const bool is_fast = way > kSearchShare * thinning_of(object_) * radius;
+    Real nearest = Real(-1);
+    for (const std::uint32_t triangle : finder_.triangles) {
+      const std::uint32_t end = mesh.protrusions.triangle_begin[triangle + 1];
+      for (std::uint32_t i = mesh.protrusions.triangle_begin[triangle]; i < end; ++i) {
+        if (e.count == 3 && !mesh.protrusions.is_peak(i)) continue;
+        const ProtrusionSearch found = find_protrusion_gap(mesh, i, std::span(corner).first(e.count));
+        if (found.clearance > reach) continue;
+        if (!is_fast) {
+          if (!found.gap) continue;
+          if (nearest < Real(0)) nearest = nearest_point(e, corner, reach);
+          const Real most = kSearchShare * thinning_at(object_, found.gap->weight) * radius - way;
+          if (!(nearest - found.gap->distance > most)) continue;
+        }
+        if (is_hooked_to(e)) return;
+        add_row(e, i);
+      }
+    }
+  }
+
+  /// How far the nearest of an element's points is from the mesh, or `reach`.
+  [[nodiscard]] Real nearest_point(const Element& e, const std::array<Vec3, 3>& corner, Real reach) const {
+    Real least = reach;
+    for (std::uint32_t i = 0; i < e.count; ++i)
+      least = std::min(least, distance_to_mesh(*frame_.shape->mesh, corner[i], reach));
+    return least;
+  }
+
+  [[nodiscard]] bool is_hooked_to(const Element& e) const {
+    return std::any_of(e.particle.begin(), e.particle.begin() + e.count,
+                       [&](std::uint32_t p) { return is_hooked(query_.hooked, p, body_); });
+  }
+
+  void add_row(const Element& e, std::uint32_t feature) {
+    finder_.contacts.push_back(
+        {.object = query_.object,
+         .collider = collider_,
+         .element = e.row,
+         .edge = e.edge,
+         .feature = feature,
+         .body = body_,
+         .count = e.count,
+         .particle = e.particle,
+         .friction = std::sqrt(object_.friction * t_.colliders.surface[collider_].friction)});
+  }
+
+  /// By more than `most` nearer than the nearest point.
+  [[nodiscard]] bool protrudes(const Gaps& gaps, std::uint32_t count, std::size_t when, Real most) const {
+    Real nearest = gaps[0]->distance[when];
+    Vec3 sum = gaps[0]->x[when];
+    for (std::uint32_t i = 1; i < count; ++i) {
+      nearest = std::min(nearest, gaps[i]->distance[when]);
+      sum += gaps[i]->x[when];
+    }
+    if (!(nearest - least_distance(gaps, count, when) > most)) return false;
+    // Over a curve the gradients at the points tell twice what protrudes.
+    const Vec3 middle = (Real(1) / static_cast<Real>(count)) * sum;
+    const Gap gap = gap_to_shape(*frame_.shape, middle);
+    Real least = std::numeric_limits<Real>::infinity();
+    for (std::uint32_t i = 0; i < count; ++i)
+      least = std::min(least, gap.distance + dot(gap.normal, gaps[i]->x[when] - middle));
+    return nearest - least > most;
+  }
+
+  /// A point that would come into the shape is taken to slide along it.
+  const InnerContactFinder::PointGap& gap_of(std::uint32_t particle) {
+    InnerContactFinder::PointGap& of = finder_.gaps[particle - object_.particles.first];
+    if (of.pass == finder_.pass) return of;
+    of.pass = finder_.pass;
+    const state::PositionLine& at = t_.particles.position[particle];
+    const Vec3 surface = state::velocity_at(t_.bodies, body_, at.x - frame_.center);
+    Vec3 way = query_.step * frame_.to_shape_direction(t_.particles.velocity[particle].v - surface);
+    of.x[0] = frame_.to_shape(at.x);
+    const Gap now = gap_to_shape(*frame_.shape, of.x[0]);
+    const Real free_way = std::max(now.distance - at.radius, Real(0));
+    const Real into = -dot(now.normal, way) - free_way;
+    if (into > Real(0)) way += into * now.normal;
+    of.x[1] = of.x[0] + way;
+    const Gap then = gap_to_shape(*frame_.shape, of.x[1]);
+    of.distance = {now.distance, then.distance};
+    of.normal = {now.normal, then.normal};
+    near_points_ += std::min(now.distance, then.distance) < Real(2) * at.radius ? 1 : 0;
+    return of;
+  }
+
+  const state::Tables& t_;
+  const InnerContactQuery& query_;
+  const state::Deformable& object_;
+  std::uint32_t collider_, body_;
+  const Frame& frame_;
+  Real longest_edge_;  ///< Of the object [m].
+  InnerContactFinder& finder_;
+  Real fall_ = Real(0);
+  geometry::Box near_ = {};  ///< Elements outside stay away from the shape.
+  bool held_ = false;        ///< By an element, in the step before.
+  int near_elements_ = 0;    ///< Of those that have rows.
+  int near_points_ = 0;      ///< That touch now or at the end of the step, or nearly.
+};
+
+/// Marks the rows of the last object, from `first` on.
+void mark_few(const state::Tables& t, std::size_t first, std::vector<InnerContact>& contacts) {
+  const std::span<InnerContact> rows = std::span(contacts).subspan(first);
+  const auto pressed = std::count_if(rows.begin(), rows.end(),
+                                     [&](const InnerContact& row) { return is_dynamic(t.bodies, row.body); });
+  for (InnerContact& row : rows) row.few = pressed <= kFewContacts;
+}
+
+auto key_of(const InnerContact& row) {
+  return std::tie(row.object, row.collider, row.element, row.edge, row.feature);
+}
+
+void leave(InnerContact& row) {
+  row.separation = kNoContact;
+  row.normal_force = Real(0);
+  row.friction_force = {};
+}
+
+/// Ways of an element's points against the body within a substep [m].
+struct Ways {
+  std::array<Vec3, 3> way = {};
+  Real longest = Real(0);
+};
+
+Ways ways_of(const state::Tables& t, const InnerContact& row, Vec3 center, Real h) {
+  Ways ways;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t p = row.particle[std::min(i, row.count - 1)];
+    const Vec3 surface = state::velocity_now(t.bodies, row.body, place_of(t, p) - center);
+    ways.way[i] = h * (t.particles.velocity[p].v - surface);
+    ways.longest = std::max(ways.longest, length(ways.way[i]));
+  }
+  return ways;
+}
+
+/// Whether the two cannot have met, nor will within `h`, since their distance was found.
+bool stay_apart(const state::Tables& t, Real h, InnerContact& row) {
+  if (!(row.clearance > Real(0))) return false;
+  const Vec3 center =
+      vector_cast<Real>(state::pose_now(t.bodies, row.body).position - t.objects[row.object].origin);
+  const Real way = Real(2) * ways_of(t, row, center, h).longest + kPushedApart * h;
+  row.clearance -= way;
+  return row.clearance > way;
+}
+
+/// One row while it is updated. Positions are offsets from the element's first point.
+class RowUpdate {
+ public:
+  RowUpdate(state::Tables& tables, InnerContact& row, Real h)
+      : t_(tables),
+        row_(row),
+        frame_(frame_of(tables, row.collider, tables.objects[row.object])),
+        origin_(place_of(tables, row.particle[0])),
+        shape_{.shape = frame_.shape->shape,
+               .center = frame_.offset - origin_,
+               .axes = matrix_of(normalize(frame_.rotation)),
+               .hull = frame_.shape->hull.get()} {
+    const Ways ways = ways_of(t_, row, frame_.center, h);
+    way_ = ways.way;
+    longest_way_ = ways.longest;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t p = row.particle[std::min(i, row.count - 1)];
+      corner_[i] = place_of(t_, p) - origin_;
+      radius_ = std::min(radius_, t_.particles.position[p].radius);
+    }
+  }
+
+  void run() {
+    const Vec3 before = row_.normal;
+    const bool known = before != Vec3{};
+    if (find(Real(0))) {
+      advance();
+      if (!known && body_is_dynamic() && row_.separation < -kLeastApart * radius_) forget();
+    } else if (overlap_ && (known || !body_is_dynamic())) {
+      find_deepest(known);
+    } else {
+      leave(row_);
+    }
+    const bool turned = dot(row_.normal, before) < kSameSide;
+    if (turned) row_.normal_force = Real(0);
+    if (turned) row_.friction_force = {};
+    if (row_.separation < kNoContact && !gives_way()) leave(row_);
+    row_.joined = row_.joined || row_.separation < kNoContact;
+    set_surface();
+  }
+
+ private:
+  /// Of the element at the row's place.
+  [[nodiscard]] Real thickness() const {
+    return (Real(1) - thinning_at(t_.objects[row_.object], row_.weight)) * radius_;
+  }
+
+  /// A body that overlaps from the start has no side yet on which it belongs.
+  void forget() {
+    leave(row_);
+    row_.normal = {};
+  }
+
+  [[nodiscard]] Convex element_at(Real share) const {
+    Convex element = {.shape = {.kind = ShapeKind::kMesh}};
+    for (std::size_t i = 0; i < 3; ++i) element.corners[i] = corner_[i] + share * way_[i];
+    return element;
+  }
+
+  /// Place, normal and separation after a share of the way. False if the two are too far apart to meet, or
+  /// overlap.
+  bool find(Real share) {
+    if (frame_.shape->shape.kind == ShapeKind::kMesh) return find_at_protrusion(share);
+    const Convex element = element_at(share);
+    const Real enough = radius_ + Real(2) * longest_way_;
+    const Distance found = distance_between(element, shape_, enough + kParticleMargin);
+    overlap_ = found.cores_overlap && !any_point_inside();
+    row_.clearance = found.cores_overlap ? Real(0) : found.distance - radius_;
+    if (found.cores_overlap || found.normal == Vec3{} || found.distance > enough) return false;
+    row_.normal = -found.normal;
+    const auto& [a, b, c] = element.corners;
+    if (row_.count == 2) {
+      const Real along = geometry::closest_on_segment(found.point_a, a, b).fraction;
+      row_.weight = {Real(1) - along, along, Real(0)};
+    } else {
+      const Vec3 w = geometry::closest_on_triangle(found.point_a, a, b, c).weights;
+      row_.weight = {w.x, w.y, w.z};
+    }
+    row_.separation = found.distance - thickness();
+    return true;
+  }
+
+  /// The same at a ridge or a peak of a mesh. Behind it lies what has just come there, or is about as deep as
+  /// the skin: farther in the other sides of the mesh are nearer.
+  bool find_at_protrusion(Real share) {
+    const state::Mesh& mesh = *frame_.shape->mesh;
+    std::array<Vec3, 3> corner = {};
+    for (std::size_t i = 0; i < row_.count; ++i)
+      corner[i] = frame_.to_shape(origin_ + corner_[i] + share * way_[i]);
+    auto [gap, clearance] =
+        find_protrusion_gap(mesh, row_.feature, std::span<const Vec3>(corner).first(row_.count));
+    row_.clearance = clearance - radius_;
+    if (!gap || gap->distance > radius_ + Real(2) * longest_way_) return false;
+    Vec3 normal = frame_.to_world(gap->normal);
+    const bool acts = row_.separation < kNoContact && row_.normal != Vec3{};
+    const bool flips = acts && dot(normal, row_.normal) < -kSameSide;  // around the end of a surface
+    if (flips) normal = -normal;
+    if (flips) gap->distance = -gap->distance;
+    const bool is_deep = gap->distance < -kLeastApart * radius_;
+    if (is_deep && !(acts && dot(normal, row_.normal) > kSameSide)) return false;
+    if (gap->distance < Real(0) && !flips && !(distance_to_mesh(mesh, gap->place, radius_) < Real(0)))
+      return false;
+    row_.normal = normal;
+    row_.weight = gap->weight;
+    row_.separation = gap->distance - thickness();
+    return true;
+  }
+
+  /// To where they meet, as gap_on_way does for particles (particle_contacts.cpp).
+  void advance() {
+    constexpr int kRounds = 4;
+    Real share = Real(0);
+    for (int i = 0; i < kRounds && share < Real(1); ++i) {
+      Real approach = Real(0);
+      for (const Vec3 way : way_) approach = std::max(approach, -dot(row_.normal, way));
+      const bool is_met = !(row_.separation > kNearShare * radius_);
+      if (is_met || !(approach * (Real(1) - share) > row_.separation)) break;
+      share = std::min(share + row_.separation / approach, Real(1));
+      const InnerContact before = row_;
+      if (find(share)) continue;
+      row_ = before;
+      break;
+    }
+    if (share == Real(0)) return;
+    for (std::size_t i = 0; i < row_.count; ++i)
+      row_.separation -= share * row_.weight[i] * dot(row_.normal, way_[i]);
+  }
+
+  /// A point that is inside is pushed out by itself.
+  [[nodiscard]] bool any_point_inside() const {
+    for (std::uint32_t i = 0; i < row_.count; ++i) {
+      const Vec3 x = frame_.to_shape(origin_ + corner_[i]);
+      if (gap_to_shape(*frame_.shape, x).distance < Real(0)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] Gap gap_at(Real b, Real c) const {
+    const Vec3 x = corner_[0] + b * (corner_[1] - corner_[0]) + c * (corner_[2] - corner_[0]);
+    return gap_to_shape(*frame_.shape, frame_.to_shape(origin_ + x));
+  }
+
+  /// Where `value`, which is convex, is least between 0 and `end`: by thirds, to 1e-3 of the way.
+  template <class Value>
+  static Real least_of(Real end, const Value& value) {
+    constexpr int kRounds = 17;
+    Real low = Real(0);
+    Real high = end;
+    for (int i = 0; i < kRounds; ++i) {
+      const Real third = (high - low) / Real(3);
+      if (value(low + third) <= value(high - third)) {
+        high -= third;
+      } else {
+        low += third;
+      }
+    }
+    return Real(0.5) * (low + high);
+  }
+
+  /// Of a shape that crosses the element: its deepest place, and the way out by which it came, or the nearest
+  /// if that is not `known`.
+  void find_deepest(bool known) {
+    const auto along = [&](Real b) {
+      return row_.count == 2 ? Real(0) : least_of(Real(1) - b, [&](Real c) { return gap_at(b, c).distance; });
+    };
+    const Real b = least_of(Real(1), [&](Real at) { return gap_at(at, along(at)).distance; });
+    const Real c = along(b);
+    row_.weight = {Real(1) - b - c, b, c};
+    if (!known) row_.normal = frame_.to_world(gap_at(b, c).normal);
+    row_.separation = separation_along(element_at(Real(0)), shape_, -row_.normal) - thickness();
+  }
+
+  /// Asleep too: as it lies so it stays, and what it overlaps does not throw it.
+  [[nodiscard]] bool body_is_dynamic() const { return is_dynamic(t_.bodies, row_.body); }
+  [[nodiscard]] bool pushes_body() const { return state::gives_way(t_.bodies, row_.body); }
+
+  [[nodiscard]] bool gives_way() const {
+    if (pushes_body()) return true;
+    Real share = Real(0);
+    for (std::uint32_t i = 0; i < row_.count; ++i) {
+      if (t_.particles.velocity[row_.particle[i]].inverse_mass > Real(0)) share += row_.weight[i];
+    }
+    return share >= kLeastFreeShare;
+  }
+
+  void set_surface() {
+    Vec3 place = origin_;
+    for (std::uint32_t i = 0; i < row_.count; ++i) place += row_.weight[i] * corner_[i];
+    const Vec3 belt = frame_.belt_velocity;
+    row_.lever = place - frame_.center;
+    row_.belt_velocity = belt - dot(belt, row_.normal) * row_.normal;
+    row_.surface_velocity = state::velocity_now(t_.bodies, row_.body, row_.lever) + row_.belt_velocity;
+  }
+
+  state::Tables& t_;
+  InnerContact& row_;
+  Frame frame_;
+  Vec3 origin_;
+  Convex shape_;
+  std::array<Vec3, 3> corner_ = {};
+  std::array<Vec3, 3> way_ = {};  ///< Against the body, within the substep [m].
+  Real longest_way_ = Real(0);
+  Real radius_ = std::numeric_limits<Real>::infinity();
+  bool overlap_ = false;  ///< The shape crosses the element, and no point is inside.
+};
+
+}  // namespace
+
+void find_inner_contacts(const state::Tables& t, const InnerContactQuery& query, InnerContactFinder& finder) {
+  const state::Deformable& object = t.objects[query.object];
+  if (object.segments.count + object.triangles.count == 0) return;
+  const std::size_t first = finder.contacts.size();
+  Real longest = Real(-1);
+  for (std::size_t i = 0; i < query.colliders.size(); ++i) {
+    const Shape& shape = query.frames[i].shape->shape;
+    if (!can_protrude(*query.frames[i].shape)) continue;
+    if (longest < Real(0)) {
+      longest = longest_edge_squared(t, object);
+      // Pass 0 is none; when the count comes round to it, gaps of long ago must not count as new.
+      if (finder.pass > 0xF0000000) finder.gaps.clear(), finder.pass = 0;
+      if (finder.gaps.size() < object.particles.count) finder.gaps.resize(object.particles.count);
+    }
+    // An edge inscribed into a ball of radius R is l^2 / 8 R deep in it, an even triangle 4/3 of that, which
+    // is also by how much more it is thinner.
+    const Real radius = t.particles.position[object.particles.first].radius;
+    const Real most = (object.segments.count > 0 ? kRopeGentleDepth : kClothGentleDepth) * radius;
+    if (longest < Real(8) * least_radius(shape) * most) continue;
+    PairSearch(t, query, i, std::sqrt(longest), finder).run();
+  }
+  mark_few(t, first, finder.contacts);
+}
+
+void carry_inner_forces(std::span<const InnerContact> from, std::span<InnerContact> to) {
+  auto old = from.begin();
+  for (InnerContact& row : to) {
+    while (old != from.end() && key_of(*old) < key_of(row)) ++old;
+    if (old == from.end()) return;
+    if (key_of(*old) != key_of(row)) continue;
+    row.weight = old->weight;
+    row.normal = old->normal;
+    row.separation = old->separation;
+    row.normal_force = old->normal_force;
+    row.friction_force = old->friction_force;
+    row.joined = row.joined || old->separation < kNoContact;
+  }
+}
+
+void update_inner_contacts(parallel::Range range, Real h, state::Tables& t) {
+  for (InnerContact& row : std::span(t.inner_contacts).subspan(range.begin, range.count())) {
+    if (stay_apart(t, h, row)) {
+      leave(row);
+    } else {
+      RowUpdate(t, row, h).run();
+    }
+  }
+}
+
+}  // namespace hooke::collision

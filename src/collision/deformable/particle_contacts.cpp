@@ -1,0 +1,330 @@
+#include "collision/deformable/particle_contacts.h"
+
+#include "base/sort_unique.h"
+#include "base/take_turns.h"
+#include "collision/deformable/contact_frames.h"
+#include "collision/deformable/element_contacts.h"
+#include "collision/distance/protrusion_gap.h"
+#include "collision/distance/shape_gap.h"
+#include "geometry/box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace hooke::collision {
+
+namespace {
+
+struct Key {
+  std::uint32_t particle, collider, feature;
+
+  // NOLINTNEXTLINE(modernize-use-nullptr): version 14 takes the comparison with 0 for a pointer's
+  friend auto operator<=>(const Key&, const Key&) = default;
+};
+
+Key key_of(const state::Contacts& contacts, std::size_t row) {
+  return {contacts.particle[row], contacts.collider[row], contacts.feature[row]};
+}
+
+void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint32_t body, Real friction) {
+  contacts.particle.push_back(key.particle);
+  contacts.collider.push_back(key.collider);
+  contacts.feature.push_back(key.feature);
+  contacts.object.push_back(object);
+  contacts.body.push_back(body);
+  contacts.friction.push_back(friction);
+  contacts.normal.push_back({});
+  contacts.separation.push_back(Real(0));
+  contacts.lever.push_back({});
+  contacts.belt_velocity.push_back({});
+  contacts.surface_velocity.push_back({});
+  contacts.normal_force.push_back(Real(0));
+  contacts.friction_force.push_back({});
+}
+
+}  // namespace
+
+struct ParticleContactScratch::Buffers {
+  std::vector<std::uint32_t> colliders;  // that particles may touch
+  std::vector<Hooked> hooked;
+  std::vector<std::uint32_t> near;       // colliders, of one object
+  std::vector<Frame> frames;             // of those
+  std::vector<std::uint32_t> triangles;  // of one query
+  state::Contacts contacts;              // those found; then those of the step before
+  std::vector<TriangleGap> gaps;         // of each contact with a mesh
+  InnerContactFinder inner;
+};
+
+namespace {
+
+using Finder = ParticleContactScratch::Buffers;
+
+/// Appends the rows of one particle against one shape.
+void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame, Real way,
+               Real step, Finder& finder) {
+  const state::ColliderShape& shape = *frame.shape;
+  const std::uint32_t body = t.colliders.body[pair.collider];
+  const Vec3 place = t.particles.position[pair.particle].x;
+  const Real reach = t.particles.position[pair.particle].radius + way + frame.speed * step + kParticleMargin;
+  const Vec3 reach_to_all = {reach, reach, reach};
+  if (!overlap(frame.box, geometry::Box{place - reach_to_all, place + reach_to_all})) return;
+  if (is_hooked(finder.hooked, pair.particle, body)) return;
+  const Vec3 x = frame.to_shape(place);
+  const Real friction =
+      std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
+  if (shape.shape.kind != ShapeKind::kMesh) {
+    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, body, friction);
+    return;
+  }
+  find_triangles_near(*shape.mesh, x, reach, finder.triangles);
+  const auto append_feature = [&](std::uint32_t feature) {
+    append(finder.contacts, {pair.particle, pair.collider, feature}, object_row, body, friction);
+  };
+  for (const std::uint32_t triangle : finder.triangles) append_feature(triangle);
+  const geometry::Protrusions& protrusions = shape.mesh->protrusions;
+  const auto faces = static_cast<std::uint32_t>(shape.mesh->desc.triangles.size());
+  for (const std::uint32_t triangle : finder.triangles) {
+    const std::uint32_t end = protrusions.triangle_begin[triangle + 1];
+    for (std::uint32_t i = protrusions.triangle_begin[triangle]; i < end; ++i) {
+      if (find_protrusion_gap(*shape.mesh, i, std::span(&x, 1)).clearance <= reach) append_feature(faces + i);
+    }
+  }
+}
+
+/// Rows of both tables stand in order of their keys: one walk carries the forces over.
+void carry_forces(const state::Contacts& from, state::Contacts& to) {
+  std::size_t old = 0;
+  for (std::size_t row = 0; row < to.particle.size(); ++row) {
+    const Key key = key_of(to, row);
+    while (old < from.particle.size() && key_of(from, old) < key) ++old;
+    if (old == from.particle.size()) return;
+    if (key_of(from, old) != key) continue;
+    to.normal_force[row] = from.normal_force[old];
+    to.friction_force[row] = from.friction_force[old];
+  }
+}
+
+/// Both get room for as many rows as either has had: they take turns.
+void take_turns(state::Contacts& found, state::Contacts& before) {
+  std::size_t room = 0;
+  const auto measure = [&](const auto& column) { room = std::max(room, column.capacity()); };
+  const auto reserve = [&](auto& column) { column.reserve(room); };
+  state::Contacts::for_each_column(found, measure);
+  state::Contacts::for_each_column(before, measure);
+  state::Contacts::for_each_column(found, reserve);
+  state::Contacts::for_each_column(before, reserve);
+  std::swap(found, before);
+}
+
+void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap gap, Real radius) {
+  contacts.normal[row] = frame.to_world(gap.normal);
+  contacts.separation[row] = gap.distance - radius;
+}
+
+/// The gap at x, or if a sphere there would meet the shape on its `way`, the gap where it does, less that
+/// part of the way: a plane that is right when it is touched. By conservative advancement; rounds are
+/// bounded, and what has not met the shape by then is taken where it is.
+Gap gap_on_way(const state::ColliderShape& shape, Vec3 x, Vec3 way, Real radius) {
+  constexpr int kRounds = 8;
+  Gap gap = gap_to_shape(shape, x);
+  const Real length_of_way = length(way);
+  const Real near = Real(0.01) * radius;
+  if (!(gap.distance - radius > near) || !(-dot(gap.normal, way) > gap.distance - radius)) return gap;
+  Real share = Real(0);
+  for (int i = 0; i < kRounds && gap.distance - radius > near && share < Real(1); ++i) {
+    share = std::min(share + (gap.distance - radius) / length_of_way, Real(1));
+    gap = gap_to_shape(shape, x + share * way);
+  }
+  gap.distance -= share * dot(gap.normal, way);
+  return gap;
+}
+
+/// Where forces between the two act and how the body moves there, `velocity`. That is at the particle's
+/// center, `arm` from the body's: a particle has no rotation that could take the torque of friction at its
+/// surface.
+void set_surface(state::Contacts& contacts, std::size_t row, Vec3 arm, Vec3 velocity, Vec3 belt_velocity) {
+  const Vec3 n = contacts.normal[row];
+  contacts.lever[row] = arm;
+  contacts.belt_velocity[row] = belt_velocity - dot(belt_velocity, n) * n;
+  contacts.surface_velocity[row] = velocity + contacts.belt_velocity[row];
+}
+
+/// The face of a triangle, or what comes behind the triangles: a ridge or a peak. That holds a point that is
+/// in front, and to which no place of the mesh around is nearer.
+TriangleGap gap_to_feature(const state::Mesh& mesh, std::uint32_t feature, Vec3 x) {
+  const auto faces = static_cast<std::uint32_t>(mesh.desc.triangles.size());
+  if (feature < faces) return gap_to_triangle(mesh, feature, x);
+  constexpr Real kNotNearest = std::numeric_limits<Real>::infinity();  // a triangle beside it is as near
+  const auto found = find_protrusion_gap(mesh, feature - faces, std::span(&x, 1)).gap;
+  if (!found || !(found->distance > Real(0))) return {{}, false, kNotNearest};
+  return {{found->distance, found->normal}, true, kNotNearest};
+}
+
+/// Forces of the rows from `first` to `end` that do not hold any more go over to the nearest that does: the
+/// particle has moved on from triangle to triangle.
+void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) {
+  std::size_t heir = first;
+  for (std::size_t i = first; i < end; ++i) {
+    if (contacts.separation[i] < contacts.separation[heir]) heir = i;
+  }
+  for (std::size_t i = first; i < end; ++i) {
+    if (contacts.separation[i] < kNoContact) continue;
+    const Real normal_force = std::exchange(contacts.normal_force[i], Real(0));
+    const Vec3 friction_force = std::exchange(contacts.friction_force[i], {});
+    if (!(contacts.separation[heir] < kNoContact)) continue;
+    contacts.normal_force[heir] += normal_force;
+    contacts.friction_force[heir] += friction_force;
+  }
+}
+
+/// Rows from `first` on are features of one mesh near one particle, `gaps` away from it. The nearest triangle
+/// tells whether the particle is inside: then it alone pushes out. Outside, every place holds that is nearer
+/// than those around it: then nothing of the mesh is ever met too late, and sliding over the edges between
+/// triangles of a flat mesh is not felt. Right above such an edge the nearest triangle holds. A mesh that
+/// knows whether it holds the particle says so in `known`.
+void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
+                      std::optional<bool> known, const Frame& frame, Real radius) {
+  std::size_t nearest = 0;
+  Real least = std::numeric_limits<Real>::infinity();
+  bool any_holds = false;
+  bool inside = false;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
+    any_holds = any_holds || (g.over_face && g.gap.distance >= Real(0));
+    // Of equally near triangles one that is below the particle counts, not one beside it.
+    const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
+    nearest = better ? i : nearest;
+    least = better ? g.unsigned_distance : least;
+    inside = better ? g.gap.distance < Real(0) : inside;
+  }
+  inside = known.value_or(inside);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const TriangleGap& g = gaps[i];
+    const bool holds = g.over_face ? g.gap.distance >= Real(0) : !any_holds && i == nearest;
+    const bool active = inside ? i == nearest : holds;
+    set_row(contacts, first + i, frame, gap_on_side(g, known), radius);
+    if (!active) contacts.separation[first + i] = kNoContact;
+  }
+  move_forces(contacts, first, first + gaps.size());
+}
+
+}  // namespace
+
+ParticleContactScratch::ParticleContactScratch() : buffers_(std::make_unique<Buffers>()) {}
+ParticleContactScratch::~ParticleContactScratch() = default;
+ParticleContactScratch::ParticleContactScratch(ParticleContactScratch&&) noexcept = default;
+ParticleContactScratch& ParticleContactScratch::operator=(ParticleContactScratch&&) noexcept = default;
+
+std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t object_row,
+                                         std::uint32_t body) {
+  const state::Deformable& object = t.objects[object_row];
+  std::vector<std::uint32_t> inside;
+  if (!is_solid(t, body)) return inside;
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) {
+    const Frame frame = frame_of(t, c, object);
+    for (std::uint32_t i = 0; i < object.particles.count; ++i) {
+      const state::PositionLine& at = t.particles.position[object.particles.first + i];
+      if (distance_to(frame, at.x, at.radius) < Real(0.5) * at.radius) inside.push_back(i);
+    }
+  }
+  base::sort_unique(inside);
+  return inside;
+}
+
+void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t) {
+  const auto step = static_cast<Real>(dt);
+  const Real fall = length(t.desc.gravity) * step * step;
+  const auto way_of = [&](std::uint32_t p) {
+    return Real(2) * length(t.particles.velocity[p].v) * step + fall;
+  };
+  Finder& finder = scratch.buffers();
+  auto& [colliders, hooked, near, frames, triangles, contacts, gaps, inner] = finder;
+  list_solid_colliders(t, colliders);
+  list_hooked(t, hooked);
+  state::Contacts::for_each_column(contacts, [](auto& column) { column.clear(); });
+  inner.contacts.clear();
+  for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
+    const state::Rows particles = t.objects[o].particles;
+    Real reach = Real(0);
+    for (std::uint32_t p = particles.first; p < particles.end(); ++p)
+      reach = std::max(reach, t.particles.position[p].radius + way_of(p) + kParticleMargin);
+    list_near_colliders(t, colliders, t.objects[o], reach, near);
+    make_frames(t, near, t.objects[o], frames);
+    for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
+      const Real way = way_of(p);
+      for (std::size_t i = 0; i < near.size(); ++i)
+        find_pair(t, {p, near[i], 0}, o, frames[i], way, step, finder);
+    }
+    if (!near.empty()) find_inner_contacts(t, {o, near, frames, hooked, step, reach}, inner);
+  }
+  carry_inner_forces(t.inner_contacts, inner.contacts);
+  base::take_turns(t.inner_contacts, inner.contacts);
+  carry_forces(t.contacts, contacts);
+  take_turns(contacts, t.contacts);
+  gaps.resize(t.contacts.particle.size());
+}
+
+void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& t) {
+  state::Contacts& contacts = t.contacts;
+  const std::size_t count = contacts.particle.size();
+  const auto same_pair = [&](std::size_t a, std::size_t b) {
+    return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
+  };
+  auto row = static_cast<std::size_t>(range.begin);
+  while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
+  Frame frame;
+  std::size_t made_for = count;  // this row was `frame` made for; most of an object touch one shape
+  while (row < static_cast<std::size_t>(range.end)) {
+    const std::size_t first = row;
+    while (row < count && same_pair(row, first)) ++row;
+    const std::uint32_t particle = contacts.particle[first];
+    if (made_for == count || contacts.collider[made_for] != contacts.collider[first] ||
+        contacts.object[made_for] != contacts.object[first])
+      frame = frame_of(t, contacts.collider[first], t.objects[contacts.object[first]]);
+    made_for = first;
+    const state::ColliderShape& shape = *frame.shape;
+    const Vec3 place = t.particles.position[particle].x;
+    const Vec3 x = frame.to_shape(place);
+    const Real radius = t.particles.position[particle].radius;
+    const Vec3 arm = place - frame.center;
+    const Vec3 velocity = state::velocity_now(t.bodies, contacts.body[first], arm);
+    if (shape.shape.kind != ShapeKind::kMesh) {
+      const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - velocity);
+      set_row(contacts, first, frame, gap_on_way(shape, x, way, radius), radius);
+    } else {
+      const std::span<TriangleGap> gaps = std::span(scratch.buffers().gaps).subspan(first, row - first);
+      for (std::size_t i = first; i < row; ++i)
+        gaps[i - first] = gap_to_feature(*shape.mesh, contacts.feature[i], x);
+      update_mesh_rows(contacts, first, gaps, is_inside(*shape.mesh, x), frame, radius);
+    }
+    for (std::size_t i = first; i < row; ++i) set_surface(contacts, i, arm, velocity, frame.belt_velocity);
+  }
+}
+
+double largest_penetration(const state::Tables& t) {
+  double deepest = 0;
+  std::vector<std::uint32_t> colliders;
+  std::vector<Hooked> hooked;
+  std::vector<Frame> frames;
+  list_solid_colliders(t, colliders);
+  list_hooked(t, hooked);
+  for (const state::Deformable& object : t.objects) {
+    make_frames(t, colliders, object, frames);
+    for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
+      const Real radius = t.particles.position[p].radius;
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (is_hooked(hooked, p, t.colliders.body[colliders[i]])) continue;
+        const Real distance = distance_to(frames[i], t.particles.position[p].x, radius);
+        deepest = std::max(deepest, static_cast<double>(radius - distance));
+      }
+    }
+  }
+  return deepest;
+}
+
+}  // namespace hooke::collision

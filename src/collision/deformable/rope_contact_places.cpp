@@ -1,0 +1,116 @@
+#include "collision/deformable/rope_contact_places.h"
+
+#include "collision/deformable/contact_frames.h"
+#include "collision/deformable/rope_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::collision {
+
+namespace {
+
+using state::RopeContact;
+
+constexpr Real kEnd = Real(1e-5);            ///< A fraction that far from 0 or 1 is there.
+constexpr Real kClearlyNearer = Real(1e-3);  ///< Sine of the slope towards a neighbor that is nearer.
+constexpr Real kSkin = Real(0.03);           ///< By which a row is thinner where a neighbor is nearer.
+constexpr Real kAside = Real(0.25);          ///< Share of the way that other forces may turn into approach.
+constexpr Real kAhead = Real(0.1);           ///< A gap within which a row holds, over the thickness.
+constexpr Real kApartSpeed = Real(1);        ///< Overlaps are undone slower than that [m/s].
+
+void leave(RopeContact& row) {
+  row.separation = kNoContact;
+  row.heir = RopeContact::kNone;
+}
+
+/// One row while its places are found.
+class Placing {
+ public:
+  Placing(const state::Tables& tables, Real h, RopeContact& row)
+      : t_(tables), row_(row), h_(h), pair_(tables, h, row), longest_way_(pair_.longest_way()) {}
+
+  void run() {
+    if (row_.kin || stay_apart()) return leave(row_);
+    const Vec3 before = row_.normal;
+    at_ = pair_.nearest(Real(0));
+    row_.clearance = at_.distance - row_.thickness;
+    if (row_.clearance > pair_.approach(at_.normal) + kAside * longest_way_ + kAhead * row_.thickness)
+      return leave(row_);
+    if (at_.normal == Vec3{}) at_.normal = before == Vec3{} ? Vec3{Real(0), Real(1), Real(0)} : before;
+    at_ = pair_.advance(at_, row_.thickness);
+    row_.normal = at_.normal;
+    row_.separation = pair_.gap_at_start(at_) - row_.thickness;
+    row_.weight = at_.weights();
+    row_.heir = neighbor_that_holds();
+    if (row_.heir != RopeContact::kNone) {
+      row_.normal = before;
+      row_.separation = kNoContact;
+      return;
+    }
+    row_.joined = true;
+    if (dot(row_.normal, before) < kRopeSameSide) {
+      row_.normal_force = Real(0);
+      row_.friction_force = {};
+    }
+  }
+
+ private:
+  /// Whether the two cannot have met, nor will within h, since their distance was found.
+  bool stay_apart() {
+    if (!(row_.clearance > Real(0))) return false;
+    const Real way = Real(2) * longest_way_ + kApartSpeed * h_;
+    row_.clearance -= way;
+    return row_.clearance > way + kAhead * row_.thickness;
+  }
+
+  /// By how much a step along the next segment, or back along the one before, changes the distance, over the
+  /// length of that segment. Side 0 is of a, 1 of b.
+  [[nodiscard]] Real slope(std::size_t side, bool onward) const {
+    const std::uint32_t end = row_.particle[2 * side + (onward ? 1 : 0)];
+    const std::uint32_t next = onward ? end + 1 : end - 1;
+    const Vec3 moved = h_ * (t_.particles.velocity[next].v - t_.particles.velocity[end].v);
+    const Vec3 along = t_.particles.position[next].x - t_.particles.position[end].x + at_.share * moved;
+    const Real size = length(along);
+    const Real rise = (side == 0 ? Real(1) : Real(-1)) * dot(along, row_.normal);
+    return size > Real(0) ? rise / size : Real(0);
+  }
+
+  /// Where a segment's end is nearest, the next one may be nearer still. Then a row only holds what is a
+  /// little thinner: ropes that lie side by side touch all along. At a joint that is nearest itself only the
+  /// first of the two holds, unless it is not clear which.
+  [[nodiscard]] std::uint32_t neighbor_that_holds() {
+    std::uint32_t nearer = RopeContact::kNone;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::uint32_t behind = row_.neighbor[2 * side + 1];
+      const std::uint32_t ahead = row_.neighbor[2 * side];
+      if (at_.fraction[side] >= Real(1) - kEnd && behind != RopeContact::kNone) {
+        if (slope(side, true) < -kClearlyNearer) nearer = behind;
+      } else if (at_.fraction[side] <= kEnd && ahead != RopeContact::kNone) {
+        const Real rise = slope(side, false);
+        if (rise > kClearlyNearer) return ahead;
+        if (rise < -kClearlyNearer) nearer = ahead;
+      }
+    }
+    if (nearer == RopeContact::kNone) return nearer;
+    const Real thinner = row_.separation + kSkin * row_.thickness;
+    if (std::min(thinner, thinner + pair_.gap_growth(at_)) > Real(0)) return nearer;
+    row_.separation = thinner;
+    return RopeContact::kNone;
+  }
+
+  const state::Tables& t_;
+  RopeContact& row_;
+  Real h_;
+  RopePair pair_;
+  Real longest_way_;
+  RopePair::Nearest at_;
+};
+
+}  // namespace
+
+void place_rope_contact(const state::Tables& tables, Real h, RopeContact& row) {
+  Placing(tables, h, row).run();
+}
+
+}  // namespace hooke::collision

@@ -1,0 +1,63 @@
+#include "collision/manifold/manifold_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::collision {
+
+Real preference(Real full, const Convex& a, const Convex& b) {
+  return std::min(full, Real(0.05) * std::min(thinness_of(a), thinness_of(b)));
+}
+
+Real axis_tolerance(const Convex& a, const Convex& b) {
+  return Real(2e-5) * (length(middle_of(b) - middle_of(a)) + thinness_of(a) + thinness_of(b));
+}
+
+Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axis) {
+  constexpr int kMaxPushes = 8;
+  // Far enough apart that rounding does not turn the direction, near enough that it is the surface's.
+  const Real clearance = Real(0.25) * std::max(thinness_of(a), thinness_of(b)) + Real(16) * tolerance;
+  Nearest nearest;
+  for (int i = 0; i < kMaxPushes; ++i) {
+    const Real core_separation = axis.separation + skin_of(a) + skin_of(b);
+    // Where the cores are apart anyway the first direction is the right one.
+    const bool apart = core_separation > Real(16) * tolerance;
+    const Vec3 push = (apart ? Real(0) : clearance - core_separation) * axis.n;
+    Convex pushed = b;
+    pushed.center += push;
+    for (Vec3& corner : pushed.corners) corner += push;
+    const Distance d = distance_between(a, pushed);
+    if (d.cores_overlap) break;
+    const Real separation = separation_along(a, b, d.normal);
+    const bool gains = separation > axis.separation + tolerance;
+    // The push moves the points against each other, unless it is along the direction between them.
+    if (gains || !nearest.known || dot(d.normal, axis.n) > Real(0.999)) {
+      nearest = {d.point_a, d.point_b - push, true};
+    }
+    if (!gains) break;
+    axis = {d.normal, separation, kFreeAxis};
+  }
+  return nearest;
+}
+
+Nearest improve_axis(const Convex& a, const Convex& b, const Distance& apart, Real tolerance, Axis& axis) {
+  const bool tells_direction = apart.distance + skin_of(a) + skin_of(b) > Real(16) * tolerance;
+  if (apart.cores_overlap || !tells_direction) return improve_axis(a, b, tolerance, axis);
+  const Real separation = separation_along(a, b, apart.normal);
+  if (separation > axis.separation + tolerance) axis = {apart.normal, separation, kFreeAxis};
+  return {apart.point_a, apart.point_b, true};
+}
+
+void complete_points(const Nearest& nearest, Real tolerance, Meeting& meeting) {
+  const auto begin = meeting.point.begin();
+  const auto end = std::remove_if(begin, begin + meeting.count, [&](const MeetingPoint& p) {
+    return p.separation < meeting.separation - tolerance;
+  });
+  meeting.count = static_cast<int>(end - begin);
+  if (deepest_of(meeting) <= meeting.separation + tolerance || !nearest.known) return;
+  const Vec3 middle = Real(0.5) * (nearest.on_a + nearest.on_b);
+  const Vec3 half = Real(0.5) * meeting.separation * meeting.normal;
+  meeting.add({middle - half, middle + half, meeting.separation, kNearest});
+}
+
+}  // namespace hooke::collision

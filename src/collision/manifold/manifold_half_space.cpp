@@ -1,0 +1,64 @@
+#include "collision/manifold/manifold_features.h"
+#include "collision/manifold/manifold_points.h"
+
+#include <limits>
+
+namespace hooke::collision {
+
+namespace {
+
+struct Plane {
+  Vec3 origin = {};
+  Vec3 normal = {};
+
+  [[nodiscard]] Real height_of(Vec3 p) const { return dot(normal, p - origin); }
+};
+
+/// A polyhedron rests on its lowest corners, whatever faces and edges they belong to.
+void add_corners(const Plane& plane, const Convex& b, Real margin, Meeting& meeting) {
+  const auto add = [&](Vec3 p, std::uint32_t vertex) {
+    const Real height = plane.height_of(p);
+    if (height <= margin) meeting.add({p - height * plane.normal, p, height, kVertexOfB | vertex});
+  };
+  if (b.shape.kind == ShapeKind::kBox) {
+    for (const int face : {0, 1}) {
+      const Feature f = face_of_box(b, face);
+      for (std::size_t i = 0; i < 4; ++i) add(f.point[i], f.vertex[i]);
+    }
+    return;
+  }
+  const auto& vertices = b.hull->vertices;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    add(b.center + b.axes * vertices[i], static_cast<std::uint32_t>(i));
+  }
+}
+
+}  // namespace
+
+void meet_half_space(Vec3 origin, Vec3 normal, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+  const Plane plane = {origin, normal};
+  const Real skin = skin_of(b);
+  meeting.normal = normal;
+  meeting.separation = plane.height_of(support_of(b, -normal)) - skin;
+  if (meeting.separation > query.margin) return;
+  if (b.shape.kind == ShapeKind::kBox || b.shape.kind == ShapeKind::kHull) {
+    // Of a hull with very many corners so near, the lowest ones.
+    Real reach = query.margin;
+    add_corners(plane, b, reach, meeting);
+    while (meeting.count == Meeting::kMaxPoints && reach > meeting.separation + Real(1e-4)) {
+      reach = Real(0.5) * (reach + meeting.separation);
+      meeting.count = 0;
+      add_corners(plane, b, reach, meeting);
+    }
+    return;
+  }
+  const Feature f = feature_along(b, -normal);
+  for (int i = 0; i < f.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Real height = plane.height_of(f.point[k]);
+    meeting.add(
+        {f.point[k] - height * normal, f.point[k] - skin * normal, height - skin, kVertexOfB | f.vertex[k]});
+  }
+}
+
+}  // namespace hooke::collision

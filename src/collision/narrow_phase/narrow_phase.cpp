@@ -1,0 +1,783 @@
+#include "collision/narrow_phase/narrow_phase.h"
+
+#include "base/assert.h"
+#include "base/take_turns.h"
+#include "collision/continuous/continuous_sweep.h"
+#include "collision/distance/distance.h"
+#include "collision/distance/pair_surface.h"
+#include "collision/manifold/manifold_ghosts.h"
+#include "collision/manifold/manifold_match.h"
+#include "collision/manifold/manifold_mesh.h"
+#include "collision/manifold/manifold_points.h"
+#include "collision/manifold/shape_placement.h"
+#include "collision/narrow_phase/cached_manifolds.h"
+#include "state/sleeping_pairs.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace hooke::collision {
+
+namespace {
+
+using parallel::for_items;
+using parallel::for_ranges;
+using parallel::Range;
+using state::Manifold;
+using state::Pair;
+
+constexpr Real kMargin = Real(0.02);           // from which points are kept, at rest [m]
+constexpr Real kForeseenOverlap = Real(1e-4);  // at which fast shapes are looked at [m]
+constexpr int kChunk = 128;                    // pairs of one buffer
+constexpr int kColliderGrain = 512;
+constexpr int kChunkGrain = 1;
+
+/// All that a step's pairs read.
+struct Scene {
+  const state::Bodies& bodies;
+  const state::Colliders& colliders;
+  std::span<const MaterialPairDesc> materials;
+  Real dt;  ///< Of what is looked ahead: a step, or a substep.
+  int substeps = 1;
+  std::span<const Convex> placed = {};  ///< Of colliders in pairs that do not rest, from their body's center.
+  std::span<const Manifold> old = {};
+  std::span<const SmallMotion> motions = {};    ///< Of each body, since the last step.
+  std::span<const std::uint32_t> company = {};  ///< Of each body; see find_company.
+};
+
+/// What the pairs of a chunk produced, in their order.
+struct Chunk {
+  std::vector<Manifold> manifolds = {};
+  NarrowPhaseCounts counts = {};
+  // Of the pair at hand.
+  Real margin = Real(0);
+  bool is_whole = true;  // the margin is margin_of, for all of the way
+  Real time = Real(0);   // part of the step after which it is looked at
+  Meeting meeting = {};
+  MeshScratch mesh = {};
+  SweepScratch sweep = {};
+
+  /// As if new, but for its memory.
+  void clear() {
+    manifolds.clear();
+    manifolds.reserve(kChunk);
+    counts = {};
+    meeting = {};
+    sweep.meeting = {};
+  }
+};
+
+/// 2 cm and the way two points of the bodies can come together in a step.
+Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  const state::Bodies& bodies = scene.bodies;
+  // No point of a body turns farther than its diameter.
+  const auto turn = [&](std::uint32_t body) {
+    return std::min(scene.dt * length(bodies.angular_velocity[body]), Real(2)) * bodies.traits[body].radius;
+  };
+  return kMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
+}
+
+Vec3 turned(Quat rotation, Vec3 v) {
+  return v == Vec3{} ? v : rotate(rotation, v);
+}
+
+/// Fills in all but the points.
+void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifold& m) {
+  const ContactDesc& a = scene.colliders.surface[pair.collider_a];
+  const ContactDesc& b = scene.colliders.surface[pair.collider_b];
+  const PairSurface surface = surface_of(a, b, scene.materials);
+  m.collider_a = pair.collider_a;
+  m.collider_b = pair.collider_b;
+  m.body_a = scene.colliders.body[pair.collider_a];
+  m.body_b = scene.colliders.body[pair.collider_b];
+  m.patch = patch;
+  m.friction = surface.friction;
+  m.static_friction = surface.static_friction;
+  m.restitution = surface.restitution;
+  m.rolling_friction = std::max(a.rolling_friction, b.rolling_friction);
+  m.spinning_friction = std::max(a.spinning_friction, b.spinning_friction);
+  m.surface_velocity = turned(scene.bodies.rotation[m.body_b], b.surface_velocity) -
+                       turned(scene.bodies.rotation[m.body_a], a.surface_velocity);
+}
+
+/// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
+/// that are near: when that changes, the normal tells.
+const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t patch, Vec3 normal) {
+  const Manifold* best = nullptr;
+  Real closest = Real(0.99);
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    const Manifold& old = scene.old[i];
+    if (old.patch == patch) return &old;
+    const Real cosine = dot(old.normal, normal);
+    best = cosine > closest ? &old : best;
+    closest = std::max(closest, cosine);
+  }
+  return best;
+}
+
+/// From separations at `time` to those at the start of the step, from which rows go on evenly: they are what
+/// they should be at `time`. Points that part have no such past; what rolls only seems to, by rounding.
+void bring_to_start(const Scene& scene, Real time, Manifold& m) {
+  const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
+  const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
+  constexpr Real kParting = Real(1e-4);  // [m]
+  std::int32_t kept = 0;
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
+    const Vec3 way = b.way + cross(b.turn, p.anchor_b) - a.way - cross(a.turn, p.anchor_a);
+    const Real before = p.separation - time * dot(m.normal, way);
+    if (before < -kParting && p.separation > Real(0)) continue;
+    p.separation = before < Real(0) ? std::max(before, p.separation) : before;
+    m.point[static_cast<std::size_t>(kept++)] = p;
+  }
+  m.point_count = kept;
+}
+
+void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
+            Meeting& meeting, Chunk& chunk) {
+  if (meeting.count == 0) return;
+  Manifold& m = chunk.manifolds.emplace_back();
+  make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
+  describe(scene, pair, patch, m);
+  if (chunk.time > Real(0)) bring_to_start(scene, chunk.time, m);
+  if (m.point_count == 0) chunk.manifolds.pop_back();
+}
+
+/// Manifolds that a lively pair has at least: one for each patch that it may come upon.
+constexpr std::uint32_t kLivelyPatches = 4;
+
+/// Manifolds without points, for those that a lively pair will have within the step.
+void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bool mesh, Chunk& chunk) {
+  const std::uint32_t wanted = mesh ? kLivelyPatches : 1;
+  while (chunk.manifolds.size() < begin + wanted) {
+    Manifold& m = chunk.manifolds.emplace_back();
+    describe(scene, pair, Manifold::kNoPatch, m);
+    m.normal = {Real(0), Real(1), Real(0)};
+  }
+  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i) chunk.manifolds[i].lively = true;
+}
+
+/// The shapes of a pair, each from the center of mass of its body.
+struct View {
+  const Convex& a;
+  const Convex& b;
+  DVec3 center_a;
+  DVec3 center_b;
+
+  [[nodiscard]] Vec3 apart() const { return vector_cast<Real>(center_b - center_a); }
+};
+
+/// Two convex shapes, in the neighborhood of A.
+void test_convex(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const Vec3 apart = view.apart();
+  Convex b = view.b;
+  b.center += apart;
+  meet(view.a, b, {chunk.margin, pair.axis}, chunk.meeting);
+  append(scene, pair, 0, {{}, apart}, chunk.meeting, chunk);
+}
+
+/// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
+/// over it is asked, in double.
+void test_half_space(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const bool is_a = view.a.shape.kind == ShapeKind::kHalfSpace;
+  const Convex& plane = is_a ? view.a : view.b;
+  const DVec3 from_plane = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
+  const Vec3 n = plane.axes.y;
+  const Real height = height_over(plane, from_plane);
+  meet_half_space(-height * n, n, is_a ? view.b : view.a, {chunk.margin, pair.axis}, chunk.meeting);
+  if (!is_a) swap_sides(chunk.meeting);
+  append(scene, pair, 0, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
+         chunk.meeting, chunk);
+}
+
+/// A mesh and a convex shape, in the neighborhood of the shape.
+void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const bool is_a = view.a.shape.kind == ShapeKind::kMesh;
+  const state::ColliderShape& mesh = scene.colliders.shape[is_a ? pair.collider_a : pair.collider_b];
+  const DVec3 from_mesh = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
+  const PlacedMesh placed = place_mesh(mesh, is_a ? view.a : view.b, from_mesh);
+  const auto v = [&](std::uint32_t collider) {
+    return scene.bodies.motion[scene.colliders.body[collider]].v;
+  };
+  const Vec3 way = scene.dt * (v(pair.collider_b) - v(pair.collider_a));
+  const MeshReach reach =
+      chunk.is_whole ? MeshReach(chunk.margin, is_a ? way : -way) : MeshReach(chunk.margin);
+  chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, reach, chunk.mesh);
+  for (PatchMeeting& patch : chunk.mesh.patches) {
+    if (!is_a) swap_sides(patch.meeting);
+    append(scene, pair, patch.patch, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
+           patch.meeting, chunk);
+  }
+}
+
+void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
+  const auto either = [&](ShapeKind kind) { return view.a.shape.kind == kind || view.b.shape.kind == kind; };
+  Meeting& meeting = chunk.meeting;
+  meeting.count = 0;
+  if (either(ShapeKind::kMesh)) {
+    test_mesh(scene, view, pair, chunk);
+  } else if (either(ShapeKind::kHalfSpace)) {
+    test_half_space(scene, view, pair, chunk);
+  } else {
+    test_convex(scene, view, pair, chunk);
+  }
+  pair.gap = meeting.separation;
+  pair.axis = meeting.axis;
+}
+
+/// Whether what is near at the start of the step may say nothing of where the shapes will meet: they come or
+/// turn farther than they are thick. Half-spaces have the same normal everywhere; that of two balls turns
+/// with every way aside, and to look ahead is cheap for them.
+bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape_a, const Convex& shape_b) {
+  const bool flat =
+      shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
+  const bool balls = shape_a.shape.kind == ShapeKind::kSphere && shape_b.shape.kind == ShapeKind::kSphere;
+  const Real thick = balls ? Real(0) : thinness_of(shape_a) + thinness_of(shape_b);
+  const Real way = flat ? Real(0) : length(b.path.way - a.path.way);
+  return way + turning_reach(a) + turning_reach(b) > kMargin + thick;
+}
+
+/// Whether a body turns farther than `angle` [rad] in the step.
+bool turns(const Path& path, Real angle) {
+  return length_squared(path.turn) > angle * angle;
+}
+
+/// From here on the levers of the step's start are not those of the whole.
+constexpr Real kSpinning = Real(0.2);  // [rad]
+/// From here on it is looked for again what something round rolls on.
+constexpr Real kRolling = Real(0.02);  // [rad]
+
+/// Whether the pair had contacts whose places hardly come nearer or part: a tip that spins, a wheel that
+/// rolls.
+bool goes_on_touching(const Scene& scene, const Pair& pair) {
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    const Manifold& m = scene.old[i];
+    for (std::int32_t k = 0; k < m.point_count; ++k) {
+      const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
+      const Vec3 v =
+          velocity_at(scene.bodies, m.body_b, p.anchor_b) - velocity_at(scene.bodies, m.body_a, p.anchor_a);
+      if (std::fabs(dot(m.normal, v)) * scene.dt > kMargin) return false;
+    }
+  }
+  return pair.manifold_count > 0;
+}
+
+constexpr Real kMiddle = Real(0.5);  // of the step
+
+Real restitution_of(const Scene& scene, const Pair& pair) {
+  return surface_of(scene.colliders.surface[pair.collider_a], scene.colliders.surface[pair.collider_b],
+                    scene.materials)
+      .restitution;
+}
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kSeveral = 0xFFFFFFFE;
+constexpr std::uint32_t kStandingCollider = 0x80000000;
+
+bool is_moved(const Scene& scene, std::uint32_t collider) {
+  return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
+}
+
+/// What each body that moves is near to: one other body, one collider of what nothing moves, or several, as
+/// those of `in_company` always are, and those that sleep, whose other pairs may be parked.
+void find_company(const Scene& scene, std::span<const Pair> pairs, std::span<const std::uint8_t> in_company,
+                  std::vector<std::uint32_t>& company) {
+  company.assign(scene.bodies.traits.size(), kNone);
+  for (std::size_t body = 0; body < in_company.size(); ++body) {
+    if (in_company[body] != 0) company[body] = kSeveral;
+  }
+  const auto meet = [&](std::uint32_t collider, std::uint32_t other) {
+    if (!is_moved(scene, collider)) return;
+    const std::uint32_t one =
+        is_moved(scene, other) ? scene.colliders.body[other] : other | kStandingCollider;
+    const std::uint32_t body = scene.colliders.body[collider];
+    std::uint32_t& known = company[body];
+    known = scene.bodies.asleep[body] == 0 && (known == kNone || known == one) ? one : kSeveral;
+  };
+  for (const Pair& pair : pairs) {
+    meet(pair.collider_a, pair.collider_b);
+    meet(pair.collider_b, pair.collider_a);
+  }
+}
+
+/// Whether each of the pair's bodies is near to nothing but the other.
+bool is_alone(const Scene& scene, const Pair& pair) {
+  return scene.company[scene.colliders.body[pair.collider_a]] != kSeveral &&
+         scene.company[scene.colliders.body[pair.collider_b]] != kSeveral;
+}
+
+/// Whether the place where it touches something wanders as it turns.
+bool is_round(ShapeKind kind) {
+  return kind == ShapeKind::kSphere || kind == ShapeKind::kCapsule || kind == ShapeKind::kCylinder ||
+         kind == ShapeKind::kCone;
+}
+
+/// Whether rows of the step's start would be wrong before its end; see update_manifolds. Not if a substep is
+/// too long for them as well: then the pair is held where it is now, or where it will be hit. Not in a crowd
+/// either, where it would cost most and help least; and where several colliders hold one, nobody looks in the
+/// middle of the step which of them cover which.
+bool is_lively(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair, Chunk& chunk) {
+  constexpr Real kTouching = Real(5e-3);  // [m]
+  constexpr Real kStill = Real(1e-3);     // a turn by which the surface hardly moves [m]
+  if (!is_alone(scene, pair)) return false;
+  const Convex& shape_a = scene.placed[a.row];
+  const Convex& shape_b = scene.placed[b.row];
+  const Real thin_a = thinness_of(shape_a);
+  const Real thin_b = thinness_of(shape_b);
+  const Real turn_a = turning_reach(a);
+  const Real turn_b = turning_reach(b);
+  const Real way = length(b.path.way - a.path.way);
+  if (way + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
+    return false;
+  const Real far = is_round(shape_a.shape.kind) || is_round(shape_b.shape.kind) ? kRolling : kSpinning;
+  const bool rolls = (turns(a.path, far) && turn_a > kStill) || (turns(b.path, far) && turn_b > kStill);
+  const bool flat =
+      shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
+  if (!rolls && (flat || way < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
+  if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know the step's start only
+  if (rolls) return true;
+  const std::size_t before = chunk.manifolds.size();
+  test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
+  const bool touches =
+      std::any_of(chunk.manifolds.begin() + static_cast<std::ptrdiff_t>(before), chunk.manifolds.end(),
+                  [](const Manifold& m) {
+                    return std::any_of(m.point.begin(), m.point.begin() + m.point_count,
+                                       [](const state::ContactPoint& p) { return p.separation < kTouching; });
+                  });
+  chunk.manifolds.resize(before);
+  return touches;
+}
+
+/// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
+void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const Convex& now_a = scene.placed[pair.collider_a];
+  const Convex& now_b = scene.placed[pair.collider_b];
+  const Path path_a = path_ahead(scene.bodies, scene.colliders.body[pair.collider_a], scene.dt);
+  const Path path_b = path_ahead(scene.bodies, scene.colliders.body[pair.collider_b], scene.dt);
+  const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
+  const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
+  chunk.time = Real(0);
+  chunk.is_whole = true;
+  pair.lively = is_lively(scene, a, b, pair, chunk);
+  if (!pair.lively && is_fast(a, b, now_a, now_b)) {
+    chunk.is_whole = false;
+    const auto impact =
+        find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
+    chunk.time = impact ? impact->time : Real(0);
+    const Real beyond =
+        std::min((Real(1) - chunk.time) * (chunk.margin - kMargin), thinness_of(now_a) + thinness_of(now_b));
+    chunk.margin = impact ? kMargin + beyond : kMargin;
+  }
+  pair.time = chunk.time;
+  if (!pair.lively && chunk.time < kMiddle && (turns(path_a, kSpinning) || turns(path_b, kSpinning)) &&
+      goes_on_touching(scene, pair)) {
+    chunk.time = kMiddle;
+    chunk.is_whole = false;
+    pair.time = Real(0);
+  }
+  if (!(chunk.time > Real(0))) {
+    test_view(scene, {now_a, now_b, path_a.center, path_b.center}, pair, chunk);
+    return;
+  }
+  const Pose pose_a = pose_at(path_a, chunk.time);
+  const Pose pose_b = pose_at(path_b, chunk.time);
+  const Convex then_a = place(scene.colliders, pair.collider_a, pose_a.rotation);
+  const Convex then_b = place(scene.colliders, pair.collider_b, pose_b.rotation);
+  test_view(scene, {then_a, then_b, pose_a.position, pose_b.position}, pair, chunk);
+}
+
+bool is_mesh(const Scene& scene, std::uint32_t collider) {
+  return scene.placed[collider].shape.kind == ShapeKind::kMesh;
+}
+
+/// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
+/// the last test, and will not come as far as to points that were too far apart to be kept.
+bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
+  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.lively) return false;
+  if (margin > Real(1.5) * kMargin) return false;
+  const auto tolerance = [&scene](std::uint32_t body) {
+    return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
+  };
+  return largest_drift(scene.motions[a], scene.motions[b], pair.drift) < std::min(tolerance(a), tolerance(b));
+}
+
+void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+    Manifold& manifold = chunk.manifolds.emplace_back(scene.old[i]);
+    carry_along(scene.motions[a], scene.motions[b], is_dynamic(scene.bodies, b), manifold);
+    describe(scene, pair, manifold.patch, manifold);
+  }
+}
+
+/// Makes the pair's manifolds at the end of the chunk's; `first_manifold` counts from the chunk's begin.
+void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
+  add_drift(scene.motions[a], scene.motions[b], pair.drift);
+  if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
+    // Nothing pushes here; who overlaps is found at the end of the step.
+  } else if (state::rests(scene.bodies, scene.colliders, pair)) {
+    ++chunk.counts.skipped;
+    const auto old = scene.old.begin() + pair.first_manifold;
+    chunk.manifolds.insert(chunk.manifolds.end(), old, old + pair.manifold_count);
+  } else {
+    const Real margin = margin_of(scene, a, b);
+    pair.gap = gap_after(scene.motions[a], scene.motions[b], pair.gap);
+    if (pair.tested && pair.manifold_count == 0 && pair.gap > margin) {
+      ++chunk.counts.skipped;
+    } else if (holds(scene, pair, a, b, margin)) {
+      ++chunk.counts.kept;
+      keep_manifolds(scene, pair, chunk);
+    } else {
+      ++chunk.counts.tested;
+      chunk.margin = margin;
+      test_pair(scene, pair, chunk);
+      if (pair.lively)
+        append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
+                      chunk);
+      pair.drift = {};
+      pair.tested = true;
+    }
+  }
+  pair.first_manifold = begin;
+  pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
+}
+
+constexpr std::size_t kLivelyChunk = 8;    // lively pairs of one buffer
+constexpr std::uint32_t kMostPlaces = 64;  // manifolds of a lively pair: more patches than a mesh makes
+
+/// The manifold that a new one replaces: the one of the same patch, or else of the most similar normal; or
+/// else one that is free. `taken` are those that have been replaced, not all.
+std::uint32_t find_place(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
+                         std::uint64_t taken) {
+  const std::uint32_t count = std::min(pair.manifold_count, kMostPlaces);
+  std::uint32_t best = 0;
+  Real closest = Real(-2);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((taken >> i & 1u) != 0) continue;
+    const Manifold& old = manifolds[pair.first_manifold + i];
+    if (old.point_count > 0 && old.patch == m.patch) return i;
+    const Real likeness = old.point_count > 0 ? dot(old.normal, m.normal) : Real(0.99);
+    if (!(likeness > closest)) continue;
+    best = i;
+    closest = likeness;
+  }
+  return best;
+}
+
+/// Halfway between the surfaces.
+void center_anchors(Manifold& m) {
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
+    const Vec3 half = (Real(0.5) * p.separation) * m.normal;
+    p.anchor_a += half;
+    p.anchor_b -= half;
+  }
+}
+
+/// When the first of a manifold's points meets at the velocities of now [s], and how far apart it is [m].
+struct Prospect {
+  Real time = std::numeric_limits<Real>::infinity();
+  Real separation = std::numeric_limits<Real>::infinity();
+
+  friend bool operator<(const Prospect& p, const Prospect& q) {
+    return p.time != q.time ? p.time < q.time : p.separation < q.separation;
+  }
+};
+
+Prospect prospect_of(const state::Bodies& bodies, const Manifold& m) {
+  Prospect first;
+  for (std::int32_t i = 0; i < m.point_count; ++i) {
+    const state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
+    const Real parting = dot(m.normal, state::velocity_now(bodies, m.body_b, p.anchor_b) -
+                                           state::velocity_now(bodies, m.body_a, p.anchor_a));
+    Prospect of_point = {.separation = p.separation};
+    if (!(p.separation > Real(0)))
+      of_point.time = Real(0);
+    else if (parting < Real(0))
+      of_point.time = p.separation / -parting;
+    first = std::min(first, of_point);
+  }
+  return first;
+}
+
+/// Where there are more manifolds than the pair has places, leaves those that meet first: who is fast sees
+/// far, and what is behind it must not take the place of what it hits.
+void keep_first(const state::Bodies& bodies, std::size_t count, std::vector<Manifold>& manifolds) {
+  while (manifolds.size() > count) {
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < manifolds.size(); ++i) {
+      if (!(prospect_of(bodies, manifolds[i]) < prospect_of(bodies, manifolds[last]))) last = i;
+    }
+    manifolds.erase(manifolds.begin() + static_cast<std::ptrdiff_t>(last));
+  }
+}
+
+/// Replaces the manifolds of the pair, in place, by those of other poses.
+void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair& pair, Chunk& chunk,
+                std::vector<Manifold>& manifolds) {
+  const std::uint32_t a = scene.colliders.body[pair.collider_a];
+  const std::uint32_t b = scene.colliders.body[pair.collider_b];
+  const Convex shape_a = place(scene.colliders, pair.collider_a, pose_a.rotation);
+  const Convex shape_b = place(scene.colliders, pair.collider_b, pose_b.rotation);
+  chunk.manifolds.clear();
+  chunk.margin = margin_of(scene, a, b);
+  chunk.is_whole = true;
+  chunk.time = Real(0);
+  test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
+  keep_first(scene.bodies, std::min(pair.manifold_count, kMostPlaces), chunk.manifolds);
+  std::uint64_t taken = 0;
+  // All are matched with the old ones before those are replaced.
+  std::array<std::uint32_t, kMostPlaces> place_of = {};
+  for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
+    place_of[i] = find_place(pair, chunk.manifolds[i], manifolds, taken);
+    taken |= std::uint64_t{1} << place_of[i];
+  }
+  for (std::uint32_t i = 0; i < pair.manifold_count; ++i) {
+    Manifold& m = manifolds[pair.first_manifold + i];
+    m.point_count = 0;
+    m.friction_impulse = {};
+    m.twist_impulse = Real(0);
+  }
+  for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
+    Manifold& m = manifolds[pair.first_manifold + place_of[i]];
+    const Real largest = m.largest_impulse;
+    const bool borne = m.borne;
+    m = chunk.manifolds[i];
+    m.largest_impulse = largest;
+    m.lively = pair.lively;
+    m.borne = borne;
+    center_anchors(m);
+  }
+}
+
+/// A manifold with something that nothing moves, seen from the collider that it holds.
+struct Support {
+  std::uint32_t held = 0;  ///< Collider.
+  std::uint32_t manifold = 0;
+};
+
+/// Not those of later in the step: only places of one time can be compared. Nor those that rest: they were
+/// looked at before.
+void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Support>& supports) {
+  supports.clear();
+  for (const Pair& pair : pairs.pair) {
+    const bool a_moved = is_moved(scene, pair.collider_a);
+    if (pair.time > Real(0) || a_moved == is_moved(scene, pair.collider_b)) continue;
+    if (state::rests(scene.bodies, scene.colliders, pair)) continue;
+    for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
+      if (pairs.manifold[i].point_count > 0)
+        supports.push_back({a_moved ? pair.collider_a : pair.collider_b, i});
+  }
+  std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
+    return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
+  });
+}
+
+/// Memory for empty_ghosts.
+struct GhostScratch {
+  std::vector<Support> supports = {};
+  std::vector<SurfaceContact> contacts = {};
+  Ghosts found = {};
+  std::vector<std::uint32_t> ghosts = {};  // rows of manifolds
+};
+
+/// The manifold as a contact with a piece of surface, in the neighborhood of the held body.
+SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& support) {
+  const bool a_held = support.held == m.collider_a;
+  const std::uint32_t piece = a_held ? m.collider_b : m.collider_a;
+  const std::uint32_t body = a_held ? m.body_a : m.body_b;
+  const DVec3 piece_from = scene.bodies.center[scene.colliders.body[piece]] - scene.bodies.center[body];
+  SurfaceContact contact = {scene.placed[piece], support.manifold, a_held ? -m.normal : m.normal};
+  if (contact.piece.shape.kind == ShapeKind::kMesh) {
+    contact.piece = place_mesh(scene.colliders.shape[piece], contact.piece, -piece_from).triangle(m.patch);
+  } else {
+    contact.piece.center += vector_cast<Real>(piece_from);
+  }
+  const auto* deepest = std::min_element(
+      m.point.data(), m.point.data() + m.point_count,
+      [](const state::ContactPoint& p, const state::ContactPoint& q) { return p.separation < q.separation; });
+  contact.place = (a_held ? deepest->anchor_a : deepest->anchor_b) - deepest->separation * contact.normal;
+  const Convex& held = scene.placed[support.held];
+  contact.separation = dot(contact.normal, support_of(held, -contact.normal) - contact.place) - skin_of(held);
+  return contact;
+}
+
+/// Removes the manifolds that others of the same collider cover. Returns how many.
+std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
+  auto& [supports, contacts, found, ghosts] = scratch;
+  find_supports(scene, pairs, supports);
+  ghosts.clear();
+  for (std::size_t begin = 0, end = 0; begin < supports.size(); begin = end) {
+    while (end < supports.size() && supports[end].held == supports[begin].held) ++end;
+    if (end - begin < 2) continue;
+    contacts.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      contacts.push_back(contact_of(scene, pairs.manifold[supports[i].manifold], supports[i]));
+    }
+    find_ghosts(contacts, Pieces::kOfMany, found);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (found.is_ghost[i] != 0) ghosts.push_back(contacts[i].index);
+    }
+  }
+  for (const std::uint32_t i : ghosts) pairs.manifold[i].point_count = 0;
+  if (!ghosts.empty()) remove_empty(pairs);
+  return static_cast<std::uint32_t>(ghosts.size());
+}
+
+/// Colliders of pairs that do not rest.
+void find_tested(const state::Bodies& bodies, const state::Colliders& colliders, std::span<const Pair> pairs,
+                 std::vector<std::uint8_t>& tested) {
+  tested.assign(colliders.body.size(), 0);
+  for (const Pair& pair : pairs) {
+    if (!state::rests(bodies, colliders, pair)) tested[pair.collider_a] = tested[pair.collider_b] = 1;
+  }
+}
+
+void place_tested(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
+                  std::span<const std::uint8_t> tested, std::vector<Convex>& placed) {
+  placed.resize(colliders.body.size());
+  for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      if (tested[row] != 0)
+        placed[row] = place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
+    }
+  });
+}
+
+Range pairs_of(std::size_t chunk, std::size_t pair_count) {
+  const int begin = static_cast<int>(chunk) * kChunk;
+  return {begin, std::min(begin + kChunk, static_cast<int>(pair_count))};
+}
+
+/// Puts the chunks' manifolds behind each other. Returns the sum of their counts.
+NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks,
+                       std::vector<std::size_t>& first, state::Pairs& pairs) {
+  NarrowPhaseCounts counts;
+  first.assign(1, 0);
+  for (const Chunk& chunk : chunks) {
+    first.push_back(first.back() + chunk.manifolds.size());
+    counts.tested += chunk.counts.tested;
+    counts.kept += chunk.counts.kept;
+    counts.skipped += chunk.counts.skipped;
+  }
+  pairs.manifold.resize(first.back());
+  for_ranges(pool, static_cast<int>(chunks.size()), kChunkGrain, [&](Range range) {
+    for (auto c = static_cast<std::size_t>(range.begin); c < static_cast<std::size_t>(range.end); ++c) {
+      std::copy(chunks[c].manifolds.begin(), chunks[c].manifolds.end(),
+                pairs.manifold.begin() + static_cast<std::ptrdiff_t>(first[c]));
+      const Range of = pairs_of(c, pairs.pair.size());
+      for (int i = of.begin; i < of.end; ++i) {
+        pairs.pair[static_cast<std::size_t>(i)].first_manifold += static_cast<std::uint32_t>(first[c]);
+      }
+    }
+  });
+  return counts;
+}
+
+}  // namespace
+
+struct NarrowPhase::Buffers {
+  std::vector<std::uint8_t> tested = {};
+  std::vector<Convex> placed = {};
+  std::vector<Manifold> old = {};
+  SmallMotions motions = {};
+  std::vector<std::uint32_t> all_bodies = {};  ///< Rows, where it is not said who was stirred.
+  std::vector<std::uint32_t> company = {};
+  std::vector<Chunk> chunks = {};
+  std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
+  GhostScratch ghosts = {};
+  std::vector<std::uint32_t> lively = {};  ///< Rows of lively pairs, ascending.
+  std::vector<Chunk> lively_chunks = {};
+  Chunk look = {};  ///< Of look_at.
+};
+
+NarrowPhase::NarrowPhase() : buffers_(std::make_unique<Buffers>()) {}
+NarrowPhase::~NarrowPhase() = default;
+NarrowPhase::NarrowPhase(NarrowPhase&&) noexcept = default;
+NarrowPhase& NarrowPhase::operator=(NarrowPhase&&) noexcept = default;
+
+NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                                const state::Colliders& colliders,
+                                                std::span<const MaterialPairDesc> materials,
+                                                const NarrowPhaseStep& step, state::Pairs& pairs) {
+  auto& [tested, placed, old, motions, all_bodies, company, all_chunks, first_manifold, ghosts, lively,
+         lively_chunks, look] = *buffers_;
+  if (!step.stirred) {
+    all_bodies.resize(bodies.traits.size());
+    std::iota(all_bodies.begin(), all_bodies.end(), std::uint32_t{0});
+  }
+  find_tested(bodies, colliders, pairs.pair, tested);
+  place_tested(pool, bodies, colliders, tested, placed);
+  motions.find(pool, bodies, step.stirred.value_or(all_bodies), pairs.seen);
+  base::take_turns(pairs.manifold, old);
+  Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions.of_bodies()};
+  find_company(scene, pairs.pair, step.in_company, company);
+  scene.company = company;
+  const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
+  if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);
+  const std::span<Chunk> chunks = std::span(all_chunks).first(chunk_count);
+  // Pairs of a mesh stand next to each other, and cost more than others.
+  for_items(pool, static_cast<int>(chunks.size()), [&](int item) {
+    Chunk& chunk = chunks[static_cast<std::size_t>(item)];
+    const Range of = pairs_of(static_cast<std::size_t>(item), pairs.pair.size());
+    chunk.clear();
+    for (int i = of.begin; i < of.end; ++i)
+      update_pair(scene, pairs.pair[static_cast<std::size_t>(i)], chunk);
+  });
+  NarrowPhaseCounts counts = join(pool, chunks, first_manifold, pairs);
+  counts.ghosts = empty_ghosts(scene, ghosts, pairs);
+  return counts;
+}
+
+void NarrowPhase::list_lively(const state::Pairs& pairs) {
+  std::vector<std::uint32_t>& lively = buffers_->lively;
+  lively.clear();
+  for (std::uint32_t i = 0; i < pairs.pair.size(); ++i) {
+    if (pairs.pair[i].lively && pairs.pair[i].manifold_count > 0) lively.push_back(i);
+  }
+}
+
+void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                          const state::Colliders& colliders,
+                                          std::span<const MaterialPairDesc> materials, Real h,
+                                          state::Pairs& pairs) {
+  const std::vector<std::uint32_t>& rows = buffers_->lively;
+  std::vector<Chunk>& chunks = buffers_->lively_chunks;
+  const Scene scene = {
+      .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
+  const std::size_t count = (rows.size() + kLivelyChunk - 1) / kLivelyChunk;
+  if (chunks.size() < count) chunks.resize(count);
+  for_items(pool, static_cast<int>(count), [&](int item) {
+    const std::size_t begin = static_cast<std::size_t>(item) * kLivelyChunk;
+    for (std::size_t i = begin; i < std::min(begin + kLivelyChunk, rows.size()); ++i) {
+      HOOKE_ASSERT(rows[i] < pairs.pair.size());
+      Pair& pair = pairs.pair[rows[i]];
+      HOOKE_ASSERT(pair.lively && pair.manifold_count > 0);
+      HOOKE_ASSERT(pair.first_manifold + pair.manifold_count <= pairs.manifold.size());
+      if (pairs.manifold[pair.first_manifold].borne) continue;  // rows of the step's start
+      const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
+      const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
+      look_again(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);
+    }
+  });
+}
+
+void NarrowPhase::look_at(const state::Bodies& bodies, const state::Colliders& colliders,
+                          std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
+                          std::uint32_t pair, state::Pairs& pairs) {
+  const Scene scene = {
+      .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
+  look_again(scene, a, b, pairs.pair[pair], buffers_->look, pairs.manifold);
+}
+
+}  // namespace hooke::collision

@@ -1,0 +1,95 @@
+#include "hooke/model_io.h"
+
+#include "base/float_environment.h"
+#include "io/model/model_flat.h"
+#include "io/model/model_write.h"
+#include "process/new_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <system_error>
+
+namespace hooke {
+
+namespace io {
+
+std::string image_name(const ModelMaterial& material) {
+  const auto separator = material.texture.find_last_of("/\\");
+  const std::string name = material.texture.substr(separator == std::string::npos ? 0 : separator + 1);
+  return is_bare_file_name(name) ? name : std::string();
+}
+
+std::vector<std::string> plain_material_names(const Model& model, std::size_t size) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  for (const ModelMaterial& material : model.materials) {
+    std::string base = material.name.empty() ? "material" : material.name;
+    for (char& c : base) c = c > ' ' && c < 0x7F && c != '#' ? c : '_';
+    std::string name = base.substr(0, size);
+    for (std::size_t number = 2; !taken.insert(lower(name)).second; ++number) {
+      std::string ending = ".";
+      ending += std::to_string(number);
+      name = base.substr(0, size - ending.size()) + ending;
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+float srgb_of_linear(float value) {
+  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+}
+
+bool has_uvs(const Model& model) {
+  return std::any_of(model.vertices.begin(), model.vertices.end(),
+                     [](const ModelVertex& vertex) { return vertex.uv != std::array<float, 2>{}; });
+}
+
+}  // namespace io
+
+namespace {
+
+Result<void> export_checked(const Model& model, const std::string& path) {
+  if (path.empty() || path.find('\0') != std::string::npos) {
+    return Error{ErrorCode::kFileNotWritable, path, "not a file name"};
+  }
+  if (const auto sound = io::check_model(model); !sound) {
+    return Error{sound.error().code, path, "the model cannot be written: " + sound.error().message};
+  }
+  const std::filesystem::path file(path);
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".stl") return process::write_file(path, io::write_stl(model));
+  if (ending == ".glb") return process::write_file(path, io::write_glb(model));
+  if (ending == ".3ds") return process::write_file(path, io::write_3ds(model));
+  if (ending != ".obj") return Error{ErrorCode::kOutOfRange, path, "not one of .obj .stl .glb .3ds"};
+  std::filesystem::path library = file;
+  library.replace_extension(".mtl");
+  const io::ObjText text = io::write_obj(model, library.filename().string());
+  // The materials first: an .obj that is there finds its .mtl.
+  if (auto written = process::write_file(library.string(), text.mtl); !written) return written;
+  return process::write_file(path, text.obj);
+}
+
+}  // namespace
+
+Result<void> export_model(const Model& model, const std::string& path) {
+  const base::FloatEnvironment environment;
+  try {
+    return export_checked(model, path);
+  } catch (const std::exception&) {
+    return Error{ErrorCode::kLimitExceeded, path, "not enough memory to write this model"};
+  }
+}
+
+}  // namespace hooke

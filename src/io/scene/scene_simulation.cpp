@@ -1,0 +1,316 @@
+#include "hooke/scene_io.h"
+
+#include "base/float_environment.h"
+#include "io/scene/scene_check.h"
+#include "io/scene/scene_data.h"
+#include "io/scene/scene_source.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hooke {
+
+namespace {
+
+void evaluate_due(SimulationData& data) {
+  for (std::size_t i = 0; i < data.scene.expect.size(); ++i) {
+    if (io::due_step(data.scene, data.scene.expect[i]) != data.world.step_count()) continue;
+    data.verdicts.push_back(io::measure_expectation(data, i));
+  }
+}
+
+void record(SimulationData& data, std::size_t event, const Result<void>& done) {
+  if (done || data.errors.size() >= io::kMostErrors) return;
+  data.errors.push_back(io::scene_error(data.scene, io::indexed("timeline", event), done.error()));
+}
+
+/// The object of this name, or all copies of an array.
+Result<void> remove_objects(SimulationData& data, const std::string& name) {
+  const auto named = [&](const SceneObject& object) {
+    if (!object.name.starts_with(name)) return false;
+    const std::optional<io::CopyName> copy = io::take_copy_name(object.name);
+    return object.name == name || (copy && copy->array == name);
+  };
+  std::vector<std::string> names = {};
+  std::vector<BodyId> bodies = {};
+  for (const SceneObject& object : data.objects) {
+    if (!named(object)) continue;
+    names.push_back(object.name);
+    // Ids of other kinds are null, and removing nothing does nothing.
+    bodies.push_back(object.body);
+    data.world.remove(object.rope);
+    data.world.remove(object.cloth);
+    data.world.remove(object.solid);
+    data.world.remove(object.particles);
+    data.world.remove(object.field);
+    data.world.remove(object.hook);
+  }
+  data.world.remove(bodies);
+  std::sort(names.begin(), names.end());
+  const auto gone = [&](const std::string& held) {
+    return std::binary_search(names.begin(), names.end(), held);
+  };
+  const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
+    // The hooks of an object go with it.
+    return named(object) || gone(object.hooked[0]) || gone(object.hooked[1]);
+  });
+  if (removed == 0) {
+    return Error{ErrorCode::kStaleId, "", "there is no object " + io::in_quotes(name) + " any more"};
+  }
+  io::index_objects(data);
+  std::erase_if(data.forces,
+                [&](const ActiveForce& force) { return data.timeline[force.event].object == name; });
+  return {};
+}
+
+Result<void> act_on_body(World& world, BodyId body, const SceneEvent& event) {
+  using EventKind = SceneEvent::Kind;
+  switch (event.kind) {
+    case EventKind::kMotion:
+      return world.set_motion(body, event.motion);
+    case EventKind::kImpulse:
+      return event.at ? world.apply_impulse(body, event.vector, *event.at)
+                      : world.apply_impulse(body, event.vector);
+    case EventKind::kVelocity: {
+      Result<void> done;
+      if (event.velocity) done = world.set_velocity(body, *event.velocity);
+      if (done && event.angular_velocity) done = world.set_angular_velocity(body, *event.angular_velocity);
+      return done;
+    }
+    default:
+      return event.at ? world.apply_force(body, event.vector, *event.at)
+                      : world.apply_force(body, event.vector);
+  }
+}
+
+Result<void> act_on_hook(World& world, HookId hook, const SceneEvent& event) {
+  switch (event.kind) {
+    case SceneEvent::Kind::kMotor:
+      return world.set_motor(hook, event.motor);
+    case SceneEvent::Kind::kSpring:
+      return world.set_spring(hook, event.spring);
+    default:
+      return world.set_steering(hook, event.angle);
+  }
+}
+
+Result<void> act_on_object(SimulationData& data, const SceneEvent& event) {
+  const auto found = data.row_of.find(event.object);
+  if (found == data.row_of.end()) {
+    return Error{ErrorCode::kStaleId, "",
+                 "there is no object " + io::in_quotes(event.object) + " at this step"};
+  }
+  const SceneObject& object = data.objects[found->second];
+  if (object.kind == SceneObject::Kind::kBody) return act_on_body(data.world, object.body, event);
+  if (object.kind == SceneObject::Kind::kHook) return act_on_hook(data.world, object.hook, event);
+  const PointRef point = io::point_of(data.world, object, event.point.value_or(ScenePoint{}));
+  switch (event.kind) {
+    case SceneEvent::Kind::kMotion:
+      return data.world.pin(point, event.motion);
+    case SceneEvent::Kind::kUnpin:
+      return data.world.unpin(point);
+    case SceneEvent::Kind::kImpulse:
+      return data.world.apply_impulse(point, event.vector);
+    case SceneEvent::Kind::kVelocity:
+      return data.world.set_velocity(point, event.velocity.value_or(Vec3{}));
+    default:
+      return data.world.apply_force(point, event.vector);
+  }
+}
+
+Result<void> apply_event(SimulationData& data, std::size_t index) {
+  const SceneEvent& event = data.timeline[index];
+  switch (event.kind) {
+    case SceneEvent::Kind::kNone:
+      return {};
+    case SceneEvent::Kind::kAdd:
+      io::build_objects(event.add, io::indexed("timeline", index) + ".add.", data, data.errors);
+      return {};
+    case SceneEvent::Kind::kRemove:
+      return remove_objects(data, event.object);
+    case SceneEvent::Kind::kForce:
+      data.forces.push_back({.event = index, .steps_left = event.steps});
+      return {};
+    case SceneEvent::Kind::kWind:
+      return data.world.set_wind(event.wind);
+    case SceneEvent::Kind::kGravity:
+      return data.world.set_gravity(event.vector);
+    default:
+      return act_on_object(data, event);
+  }
+}
+
+void apply_due_events(SimulationData& data) {
+  const std::uint64_t step = data.world.step_count();
+  for (; data.next_event < data.events.size(); ++data.next_event) {
+    const std::size_t event = data.events[data.next_event];
+    if (data.timeline[event].at_step > step) break;
+    record(data, event, apply_event(data, event));
+  }
+  for (ActiveForce& force : data.forces) {
+    record(data, force.event, act_on_object(data, data.timeline[force.event]));
+    --force.steps_left;
+  }
+  std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
+}
+
+/// What a reader would have refused: a scene may also be made or changed in code.
+std::vector<Error> check(const Scene& scene) {
+  const io::JsonDocument nothing;
+  std::vector<io::JsonError> found;
+  std::vector<io::JsonError> ignored;  // was said when the file was read
+  io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found, ignored);
+  std::vector<Error> errors;
+  errors.reserve(found.size());
+  for (io::JsonError& one : found) {
+    errors.push_back(
+        io::error_at(scene.source.get(), one.error.where, one.error.code, std::move(one.error.message)));
+  }
+  return errors;
+}
+
+/// Places and directions of an event, in the world. What it adds is placed when it is built.
+void place(SceneEvent& event, const Placement& at) {
+  if (event.at) event.at = at.point(*event.at);
+  event.motion = placed(event.motion, at);
+  event.vector = at.direction(event.vector);
+  if (event.velocity) event.velocity = at.direction(*event.velocity);
+  if (event.angular_velocity) event.angular_velocity = at.direction(*event.angular_velocity);
+  event.wind = placed(event.wind, at);
+}
+
+std::vector<SceneEvent> placed_timeline(const Scene& scene, const Placement& at) {
+  std::vector<SceneEvent> timeline = scene.timeline;
+  if (at == Placement{}) return timeline;
+  for (SceneEvent& event : timeline) place(event, at);
+  return timeline;
+}
+
+Loaded<std::unique_ptr<SimulationData>> build(Scene scene, const Placement& placement) {
+  std::vector<Error> errors = check(scene);
+  if (!errors.empty()) return {.errors = std::move(errors)};
+  Result<World> world = World::create(placed(io::world_of(scene), placement));
+  if (!world) return {.errors = {io::scene_error(scene, "world", world.error())}};
+  auto data = std::make_unique<SimulationData>(
+      SimulationData{.scene = std::move(scene), .world = std::move(world).value(), .placement = placement});
+  for (std::size_t i = 0; i < data->scene.materials.size(); ++i) {
+    data->material_of[data->scene.materials[i].name] = i;
+  }
+  io::build_meshes(*data, errors);
+  if (errors.empty()) io::build_objects(data->scene.objects, "", *data, errors);
+  if (!errors.empty()) return {.errors = std::move(errors)};
+  data->timeline = placed_timeline(data->scene, placement);
+  data->events.resize(data->timeline.size());
+  std::iota(data->events.begin(), data->events.end(), std::size_t{0});
+  std::stable_sort(data->events.begin(), data->events.end(), [&](std::size_t a, std::size_t b) {
+    return data->timeline[a].at_step < data->timeline[b].at_step;
+  });
+  evaluate_due(*data);
+  return {.value = std::move(data)};
+}
+
+void note_broken_hooks(SimulationData& data) {
+  const std::vector<BreakEvent>& breaks = data.world.events().breaks;
+  if (breaks.empty()) return;
+  for (SceneObject& object : data.objects) {
+    const auto event = std::find_if(breaks.begin(), breaks.end(),
+                                    [&](const BreakEvent& one) { return one.hook == object.hook; });
+    if (event == breaks.end()) continue;
+    object.broken = true;
+    object.broke = *event;
+  }
+}
+
+std::string verdict_line(const Scene& scene, const SceneVerdict& verdict) {
+  const std::string path = io::indexed("expect", verdict.index);
+  const Error error = io::error_at(scene.source.get(), path, ErrorCode::kOutOfRange, verdict.text);
+  return (verdict.passed ? "pass " : "FAIL ") + to_line(error) + "\n";
+}
+
+}  // namespace
+
+Simulation::Simulation(std::unique_ptr<SimulationData> data) : data_(std::move(data)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Loaded<Simulation> Simulation::create(Scene scene, const Placement& placement) {
+  const base::FloatEnvironment environment;
+  try {
+    Loaded<std::unique_ptr<SimulationData>> built = build(std::move(scene), placement);
+    Loaded<Simulation> loaded = {.errors = std::move(built.errors), .warnings = std::move(built.warnings)};
+    if (built) loaded.value = Simulation(std::move(*built.value));
+    return loaded;
+  } catch (const std::bad_alloc&) {
+    return {.errors = {{ErrorCode::kLimitExceeded, "", "not enough memory for this scene"}}};
+  }
+}
+
+StepReport Simulation::step() {
+  const base::FloatEnvironment environment;
+  apply_due_events(*data_);
+  const StepReport report = data_->world.step(data_->scene.dt);
+  note_broken_hooks(*data_);
+  data_->contacts = report.contacts;
+  if (report.moved) evaluate_due(*data_);
+  return report;
+}
+
+StepReport Simulation::run() {
+  const base::FloatEnvironment environment;
+  StepReport report;
+  while (data_->world.step_count() < data_->scene.step_count()) {
+    report = step();
+    if (!report.moved) break;
+  }
+  return report;
+}
+
+World& Simulation::world() {
+  return data_->world;
+}
+const World& Simulation::world() const {
+  return data_->world;
+}
+const Scene& Simulation::scene() const {
+  return data_->scene;
+}
+std::span<const SceneObject> Simulation::objects() const {
+  return data_->objects;
+}
+
+const SceneObject* Simulation::find(std::string_view name) const {
+  const auto found = data_->row_of.find(std::string(name));
+  return found == data_->row_of.end() ? nullptr : &data_->objects[found->second];
+}
+
+SceneVerdict Simulation::check(std::size_t expectation) const {
+  const base::FloatEnvironment environment;
+  if (expectation >= data_->scene.expect.size()) return {.index = expectation};
+  return io::measure_expectation(*data_, expectation);
+}
+
+std::span<const SceneVerdict> Simulation::verdicts() const {
+  return data_->verdicts;
+}
+std::span<const Error> Simulation::errors() const {
+  return data_->errors;
+}
+
+bool Simulation::passed() const {
+  const bool all_due = data_->verdicts.size() == data_->scene.expect.size();
+  const bool all_good = std::all_of(data_->verdicts.begin(), data_->verdicts.end(),
+                                    [](const SceneVerdict& verdict) { return verdict.passed; });
+  return all_due && all_good && data_->errors.empty();
+}
+
+std::string Simulation::report() const {
+  std::string text;
+  for (const Error& error : data_->errors) text += "FAIL " + to_line(error) + "\n";
+  for (const SceneVerdict& verdict : data_->verdicts) text += verdict_line(data_->scene, verdict);
+  const std::size_t open = data_->scene.expect.size() - data_->verdicts.size();
+  if (open > 0) text += std::to_string(open) + " expectations are not due yet\n";
+  return text;
+}
+
+}  // namespace hooke

@@ -1,0 +1,221 @@
+/// Tables of rigid bodies: shapes, parts, filters, the body itself.
+
+#include "io/scene/scene_table.h"
+#include "io/scene/scene_table_tags.h"
+
+namespace hooke::io {
+
+namespace {
+
+/// The tables of shapes for an Owner whose Shape is at the path `Members...`.
+template <class Owner, auto... Members>
+struct ShapeTables {
+  static const Kind& half_space() {
+    static const Kind kind = {.name = "half_space",
+                              .help = "Solid below the plane y = 0 of the frame. Has no keys.",
+                              .fields = {},
+                              .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  static const Kind& sphere() {
+    static const Kind kind = {
+        .name = "sphere",
+        .help = "A ball about the origin of the frame.",
+        .fields = {field<Members..., &Shape::radius>("radius", "m", kPositive, "Of the ball.")},
+        .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  static const Kind& box() {
+    static const Kind kind = {.name = "box",
+                              .help = "A box about the origin of the frame.",
+                              .fields = {field<Members..., &Shape::half_extents>(
+                                  "half_extents", "m", kPositive, "Half the length of each side.")},
+                              .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  /// Capsules, cylinders and cones have the same keys.
+  static std::vector<Field> round_rows() {
+    return {field<Members..., &Shape::radius>("radius", "m", kPositive, "Of the round part."),
+            field<Members..., &Shape::half_height>(
+                "half_height", "m", kPositive, "Half its height along y; of a capsule without its ends.")};
+  }
+
+  static const Kind& capsule() {
+    static const Kind kind = {
+        .name = "capsule",
+        .help = "Along y, about the origin of the frame: a cylinder between half spheres.",
+        .fields = round_rows(),
+        .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  static const Kind& cylinder() {
+    static const Kind kind = {.name = "cylinder",
+                              .help = "Along y, about the origin of the frame.",
+                              .fields = round_rows(),
+                              .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  static const Kind& cone() {
+    static const Kind kind = {.name = "cone",
+                              .help = "Along y, the tip up, the origin halfway up.",
+                              .fields = round_rows(),
+                              .defaults = defaults_of<Owner>};
+    return kind;
+  }
+
+  template <ShapeKind Choice>
+  static Field of(Field row) {
+    return choice<Choice, Members..., &Shape::kind>(std::move(row));
+  }
+
+  static std::vector<Field> rows() {
+    return {of<ShapeKind::kHalfSpace>(group("half_space", half_space, "Ground without end.")),
+            of<ShapeKind::kSphere>(group("sphere", sphere, "A ball.")),
+            of<ShapeKind::kBox>(group("box", box, "A box.")),
+            of<ShapeKind::kCapsule>(group("capsule", capsule, "A rod with round ends.")),
+            of<ShapeKind::kCylinder>(group("cylinder", cylinder, "A drum.")),
+            of<ShapeKind::kCone>(group("cone", cone, "A cone.")),
+            of<ShapeKind::kMesh>(field<&Owner::mesh>("mesh", "", kNotEmpty,
+                                                     "Triangles: a name in `meshes`. Of a dynamic body a "
+                                                     "closed surface, which collides by its convex parts.")),
+            of<ShapeKind::kHull>(field<&Owner::mesh>("hull", "", kNotEmpty,
+                                                     "The convex hull of a mesh: a name in `meshes`."))};
+  }
+};
+
+using BodyShape = ShapeTables<SceneBody, &SceneBody::desc, &BodyDesc::shape>;
+using PartShape = ShapeTables<ScenePart, &ScenePart::desc, &PartDesc::shape>;
+
+const Kind& shape_kind() {
+  static const Kind kind = [] {
+    Kind made = {.name = "shape",
+                 .help = "What a body is. One of the keys.",
+                 .fields = BodyShape::rows(),
+                 .defaults = defaults_of<SceneBody>};
+    made.fields.push_back(BodyShape::of<ShapeKind::kCompound>(
+        field<&SceneBody::parts>("parts", "", kNotEmpty, "Several shapes that move as one.")));
+    return made;
+  }();
+  return kind;
+}
+
+const Kind& part_shape_kind() {
+  static const Kind kind = {.name = "part_shape",
+                            .help = "What a part of a body is. One of the keys.",
+                            .fields = PartShape::rows(),
+                            .defaults = defaults_of<ScenePart>};
+  return kind;
+}
+
+std::vector<Field> body_rows() {
+  constexpr auto desc = &SceneBody::desc;
+  return {
+      required(group("shape", shape_kind, "What it is.")),
+      field<desc, &BodyDesc::kind>("kind", "", kAny,
+                                   "Stands still; moves as told; or moves by what acts on it."),
+      field<desc, &BodyDesc::position>("position", "m", kAny, "Origin of its frame."),
+      field<desc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
+      field<desc, &BodyDesc::velocity>("velocity", "m/s", kAny, "Of the center of mass at the start."),
+      field<desc, &BodyDesc::angular_velocity>("angular_velocity", "rad/s", kAny,
+                                               "At the start, in the world's axes."),
+      field<desc, &BodyDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+      field<desc, &BodyDesc::mass>("mass", "kg", kPositive, "Scales the density to give this mass."),
+      field<desc, &BodyDesc::linear_damping>("linear_damping", "1/s", kNotNegative,
+                                             "Rate at which the velocity decays."),
+      field<desc, &BodyDesc::angular_damping>("angular_damping", "1/s", kNotNegative,
+                                              "Rate at which the spin decays."),
+      field<desc, &BodyDesc::gravity_scale>("gravity_scale", "", kAny, "Factor on gravity."),
+      field<desc, &BodyDesc::drag_coefficient>("drag_coefficient", "", between(0, 1e6),
+                                               "C_d in air, of the area it shows to the flow."),
+      field<desc, &BodyDesc::magnus_coefficient>(
+          "magnus_coefficient", "", between(-1e6, 1e6),
+          "C of the lift C rho V omega x v in air, V its volume; of a ball 0.75 (Rubinow and Keller)."),
+      field<desc, &BodyDesc::dipole_moment>(
+          "dipole_moment", "A m^2", kAny,
+          "Magnetic, in the body's frame: magnetic fields and other dipoles turn and pull it."),
+      field<desc, &BodyDesc::contact, &ContactDesc::surface_velocity>(
+          "surface_velocity", "m/s", kAny, "Of a conveyor belt, in the body's frame."),
+      field<desc, &BodyDesc::filter, &FilterDesc::category>("category", "", kAny, "Bits of its categories."),
+      field<desc, &BodyDesc::filter, &FilterDesc::mask>("mask", "", kAny,
+                                                        "Bits of the categories it collides with."),
+      field<desc, &BodyDesc::filter, &FilterDesc::group>(
+          "group", "", kAny, "Bodies of one negative group never collide, of one positive group always."),
+      field<desc, &BodyDesc::motion>("motion", "", kAny, "Path of a kinematic body."),
+      field<desc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn."),
+      field<desc, &BodyDesc::sensor>("sensor", "", kAny, "Reports what overlaps it and pushes nothing."),
+      field<desc, &BodyDesc::bullet>("bullet", "", kAny, "Swept against moving bodies too."),
+      field<desc, &BodyDesc::can_sleep>("can_sleep", "", kAny, "May rest until something wakes it.")};
+}
+
+}  // namespace
+
+template <>
+const Kind& kind_of<ScenePart>() {
+  constexpr auto desc = &ScenePart::desc;
+  static const Kind kind = {
+      .name = "part",
+      .help = "One shape of a body that has several.",
+      .fields = {required(group("shape", part_shape_kind, "What it is.")),
+                 field<desc, &PartDesc::position>("position", "m", kAny, "Of its frame in the body's."),
+                 field<desc, &PartDesc::rotation>("rotation", "", kAny, "Of its frame in the body's."),
+                 field<desc, &PartDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+                 field<&ScenePart::material>("material", "", kNotEmpty,
+                                             "A name in `materials`; the body's by default.")},
+      .defaults = defaults_of<ScenePart>};
+  return kind;
+}
+
+template <>
+const Kind& kind_of<SceneBody>() {
+  static const Kind kind = [] {
+    Kind made = {.name = "body",
+                 .help = "A rigid body: ground, walls, and what falls on them.",
+                 .fields = body_rows(),
+                 .defaults = defaults_of<SceneBody>,
+                 .check = check_tagged<SceneBody>};
+    add_tag_rows<SceneBody>(made.fields);
+    return made;
+  }();
+  return kind;
+}
+
+template <>
+const Kind& kind_of<ScenePair>() {
+  constexpr auto desc = &ScenePair::desc;
+  static const Kind kind = {
+      .name = "material_pair",
+      .help = "What two materials do to each other, in place of what their own numbers would give.",
+      .fields = {required(field<&ScenePair::a>("a", "", kNotEmpty, "A name in `materials`.")),
+                 required(
+                     field<&ScenePair::b>("b", "", kNotEmpty, "A name in `materials`; may be the same.")),
+                 field<desc, &MaterialPairDesc::friction>("friction", "", between(0, 100), "While sliding."),
+                 field<desc, &MaterialPairDesc::static_friction>("static_friction", "", between(0, 100),
+                                                                 "While at rest; not below `friction`."),
+                 field<desc, &MaterialPairDesc::restitution>("restitution", "", between(0, 1),
+                                                             "Speed after over speed before.")},
+      .defaults = defaults_of<ScenePair>};
+  return kind;
+}
+
+std::span<const Kind* const> body_kinds() {
+  static const Kind* const kinds[] = {&kind_of<SceneBody>(),  &shape_kind(),        &BodyShape::half_space(),
+                                      &BodyShape::sphere(),   &BodyShape::box(),    &BodyShape::capsule(),
+                                      &BodyShape::cylinder(), &BodyShape::cone(),   &kind_of<ScenePart>(),
+                                      &part_shape_kind(),     &kind_of<ScenePair>()};
+  return kinds;
+}
+
+template <>
+std::span<const EnumName> names_of<BodyKind>() {
+  static constexpr EnumName names[] = {{"static", static_cast<int>(BodyKind::kStatic)},
+                                       {"kinematic", static_cast<int>(BodyKind::kKinematic)},
+                                       {"dynamic", static_cast<int>(BodyKind::kDynamic)}};
+  return names;
+}
+
+}  // namespace hooke::io

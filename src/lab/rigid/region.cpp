@@ -1,0 +1,268 @@
+#include "lab/rigid/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hooke::lab {
+
+namespace {
+
+using Search = CollisionOptions::Search;
+using Sweep = CollisionOptions::Sweep;
+
+constexpr int kManyEvents =
+    1000;                        ///< Hits and limits of one region in one output step, before it is hurried.
+constexpr double kDone = 1e-12;  ///< Share of an output step that is nothing.
+
+}  // namespace
+
+Region::Region(const CollisionSetting& setting, const std::vector<RigidBody>& bodies,
+               std::vector<std::uint32_t> members, const std::vector<std::uint32_t>& others,
+               std::vector<Part>& parts, CollisionReport& report)
+    : setting_(setting),
+      bodies_(bodies),
+      members_(std::move(members)),
+      others_(others),
+      parts_(parts),
+      report_(report),
+      swept_(members_.size()) {}
+
+Part& Region::part(std::uint32_t body) {
+  return parts_[static_cast<std::size_t>(bodies_[body].part)];
+}
+
+/// Listing 11. What is left of the step is tried; a try that ends too deep is canceled, and a shorter one
+/// made; one that ends in a hit, or clear, stays.
+Result<void> Region::advance(double t, double dt) {
+  time_ = t;
+  resting_.clear();
+  double left = dt;
+  int events = 0;
+  double h = dt;
+  for (bool first = true; left > kDone * dt; first = false) {
+    Attempt attempt = {.h = h};
+    carry(h);
+    if (const auto moved = step_all(attempt); !moved) return moved.error();
+    find_pairs(attempt);
+    if (first && respond(0)) {  // what touches at the start is known only now, and had no say in the step
+      forget();
+      continue;
+    }
+    judge(attempt);
+    if (attempt.deep) {
+      forget();
+      ++report_.rollbacks;
+      report_.resimulated_seconds += h * static_cast<double>(members_.size());
+      if (++tries_ < setting_.options.iteration_limit) {
+        h = shorter_step(attempt);
+        continue;
+      }
+      give_up(attempt);
+      ++events;
+    } else {
+      accept(attempt);
+      left -= h;
+      known_ = std::max(0.0, known_ - h);
+      respond(attempt.h);
+      if (attempt.touches) {
+        known_ = 0;
+        tries_ = 0;
+        ++events;
+      }
+    }
+    h = known_ > kDone * dt ? std::min(left, longer_step(attempt)) : left;
+    if (events == kManyEvents && patient_) {
+      ++report_.zeno;
+      patient_ = false;  // from now on nothing bounces
+    }
+    if (events == 2 * kManyEvents) break;  // and here it stands until the step is over
+  }
+  time_ = t + dt;
+  tries_ = 0;
+  known_ = 0;
+  patient_ = true;
+  return {};
+}
+
+Result<void> Region::step_all(Attempt& attempt) {
+  attempt.ends.clear();
+  for (const std::uint32_t body : members_) {
+    Part& own = part(body);
+    State y = own.y;
+    if (const auto moved = take_steps(own, time_, attempt.h, y); !moved) return moved.error();
+    attempt.ends.push_back(std::move(y));
+  }
+  attempt.motions.clear();
+  std::size_t member = 0;
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+    if (member < members_.size() && members_[member] == body) {
+      const Part& own = part(body);
+      attempt.motions.emplace_back(own.system, time_, attempt.h, own.y, attempt.ends[member++]);
+    } else {
+      attempt.motions.emplace_back(bodies_[body].still);
+    }
+  }
+  return {};
+}
+
+/// The next try after one that was canceled [s].
+double Region::shorter_step(const Attempt& attempt) {
+  const double h = attempt.h;
+  const double half = 0.5 * h;
+  const Search search = setting_.options.search;
+  known_ = h * attempt.first_share;
+  depth_known_ = std::max(0.0, attempt.depth);
+  pair_known_ = attempt.pair;
+  if (search == Search::kHalving) return half;
+  double step = 0;
+  if (attempt.first_share < 1) {
+    step = known_;  // where the way saw them touch
+  } else if (search == Search::kBackward) {
+    if (tries_ == 1) report_.backward_error = std::max(report_.backward_error, backward_error(attempt));
+    step = h - attempt.depth / attempt.approach;
+  } else if (tries_ % 3 == 0) {
+    step = half;
+  } else if (tries_ == 1 || search == Search::kAdvancement) {
+    const double epsilon = setting_.options.epsilon;
+    const DensePair pair = dense(attempt, attempt.pair);
+    const auto share =
+        search == Search::kEvent ? contact_root(pair, epsilon) : first_contact(pair, epsilon / 2);
+    step = h * share.value_or(0.5);
+  } else {
+    const double gap = dense(attempt, attempt.pair).gap(0).distance;
+    step = gap > 0 ? h * gap / (gap + attempt.depth) : half;
+  }
+  return step > 0.001 * h && step < 0.999999 * h ? step : half;
+}
+
+/// The next try after a clear one, short of a collision that is known [s].
+double Region::longer_step(const Attempt& attempt) {
+  if (setting_.options.search == Search::kHalving) return setting_.dt;
+  ++tries_;
+  const double gap =
+      gap_between(bodies_[pair_known_.a], now(pair_known_.a), bodies_[pair_known_.b], now(pair_known_.b),
+                  Look(setting_.options), setting_.options.epsilon + attempt.h)
+          .distance;
+  if (!(gap > 0) || tries_ % 3 == 0) return 0.5 * known_;
+  if (!(depth_known_ > 0)) return known_;
+  return known_ * std::max(0.01, gap / (gap + depth_known_));
+}
+
+/// The paper's backward step (4.5.1), from the overlap by its depth over its speed: how far from where the
+/// method was at that time it leaves the bodies [m]. Only methods that are symmetric in time come back.
+double Region::backward_error(const Attempt& attempt) {
+  const double back = attempt.depth / attempt.approach;
+  if (!(back > 0 && back < attempt.h)) return 0;
+  double error = 0;
+  for (const std::uint32_t body : {attempt.pair.a, attempt.pair.b}) {
+    const auto member = std::find(members_.begin(), members_.end(), body);
+    if (member == members_.end()) continue;
+    Part& own = part(body);
+    State before = own.y;
+    State after = attempt.ends[static_cast<std::size_t>(member - members_.begin())];
+    const double t = time_ + attempt.h - back;
+    if (!take_steps(own, time_ + attempt.h, -back, after)) continue;
+    if (!take_steps(own, time_, attempt.h - back, before)) continue;
+    error = std::max(error, length(own.system.body(t, after).center - own.system.body(t, before).center));
+  }
+  return error;
+}
+
+/// What methods keep from step to step is of another motion.
+void Region::forget() {
+  for (const std::uint32_t body : members_) part(body).work.forget();
+}
+
+void Region::accept(const Attempt& attempt) {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Part& own = part(members_[i]);
+    own.y = attempt.ends[i];
+    ++own.steps;
+    if (own.y.size() > 0 && own.system.lay_chart(own.y)) own.work.forget();
+    swept_[i] = merge(swept_[i], swept_bounds(bodies_[members_[i]], attempt.motions[members_[i]]));
+  }
+  time_ += attempt.h;
+  for (const Overlap& overlap : attempt.overlaps) {
+    report_.deepest = std::max(report_.deepest, -overlap.distance);
+    project(overlap.pair, overlap.distance, overlap.normal);
+  }
+}
+
+/// The limit of tries: the bodies are clear, and take their hit where they are, moved together.
+void Region::give_up(const Attempt& attempt) {
+  ++report_.limit_reached;
+  tries_ = 0;
+  known_ = 0;
+  const auto [a, b] = attempt.pair;
+  const BodyGap gap =
+      gap_between(bodies_[a], now(a), bodies_[b], now(b), Look(setting_.options),
+                  setting_.options.epsilon + dense(attempt, attempt.pair).closing({}) * attempt.h);
+  project(attempt.pair, gap.distance, gap.normal);
+  respond(0);
+}
+
+/// Moves two bodies along n until they touch, shared by their inverse masses; what has an axle turns.
+void Region::project(BodyPair pair, double distance, DVec3 normal) {
+  if (bodies_[pair.a].axle || bodies_[pair.b].axle) {
+    project_by_turning(pair);
+    return;
+  }
+  const auto inverse = [&](std::uint32_t body) {
+    return bodies_[body].is_free ? 1 / bodies_[body].mass : 0.0;
+  };
+  const double of_a = inverse(pair.a);
+  const double sum = of_a + inverse(pair.b);
+  if (!(sum > 0)) return;
+  if (of_a > 0) part(pair.a).system.move_center(part(pair.a).y, (distance * of_a / sum) * normal);
+  if (sum > of_a) part(pair.b).system.move_center(part(pair.b).y, (-distance * (sum - of_a) / sum) * normal);
+}
+
+/// Where they are deepest. A body is moved as an impulse there would change its velocity, but that what has
+/// no axle does not turn.
+void Region::project_by_turning(BodyPair pair) {
+  const std::vector<Contact> contacts = contacts_of(pair, now(pair.a), now(pair.b));
+  const auto deepest =
+      std::min_element(contacts.begin(), contacts.end(),
+                       [](const Contact& x, const Contact& y) { return x.distance < y.distance; });
+  if (deepest == contacts.end()) return;
+  /// Of its answers to a push of 1 along n: the turn about its axle, and the way along n.
+  struct Answer {
+    double turn = 0, way = 0;
+  };
+  const auto answer = [&](std::uint32_t body) -> Answer {
+    const RigidBody& own = bodies_[body];
+    if (!own.is_free) return {};
+    if (!own.axle) return {0, 1 / own.mass};
+    const double lever = dot(own.axle->axis, cross(deepest->point - now(body).center, deepest->normal));
+    return {lever / own.axle->inertia, lever * lever / own.axle->inertia};
+  };
+  const Answer of_a = answer(pair.a), of_b = answer(pair.b);
+  if (!(of_a.way + of_b.way > 0)) return;
+  const double push = deepest->distance / (of_a.way + of_b.way);
+  const auto move = [&](std::uint32_t body, const Answer& own, double size) {
+    if (!(own.way > 0)) return;
+    const System& system = part(body).system;
+    if (bodies_[body].axle) {
+      system.turn_by(part(body).y, (size * own.turn) * bodies_[body].axle->axis);
+    } else {
+      system.move_center(part(body).y, (size * own.way) * deepest->normal);
+    }
+  };
+  move(pair.a, of_a, push);
+  move(pair.b, of_b, -push);
+}
+
+BodyMotion Region::now(std::uint32_t body) const {
+  const int index = bodies_[body].part;
+  if (index < 0) return bodies_[body].still;
+  const Part& own = parts_[static_cast<std::size_t>(index)];
+  return own.system.body(time_, own.y);
+}
+
+DensePair Region::dense(const Attempt& attempt, BodyPair pair) const {
+  return {bodies_[pair.a], attempt.motions[pair.a], bodies_[pair.b], attempt.motions[pair.b],
+          Look(setting_.options)};
+}
+
+}  // namespace hooke::lab

@@ -1,0 +1,125 @@
+#pragma once
+
+#include "lab/methods/part.h"
+#include "lab/rigid/body_preselection.h"
+#include "lab/rigid/dense.h"
+#include "lab/rigid/impulses.h"
+#include "lab/rigid/rigid_body.h"
+
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Rollback of bodies that may meet (the paper's 4.3.2, listing 11), with what the listing lacks: time that
+/// is processed counts, a resting contact is no collision, the limit has an outcome, and the way is looked at
+/// as well as its end.
+
+namespace hooke::lab {
+
+/// Two bodies, as indices into Region's list; the first is the lower row.
+struct BodyPair {
+  std::uint32_t a = 0, b = 0;
+  friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
+};
+
+/// What the collider needs to know beside the bodies.
+struct CollisionSetting {
+  CollisionOptions options = {};
+  std::vector<MaterialPairDesc> materials = {};
+  double dt = 0;                          ///< Of an output step [s].
+  std::vector<BodyVolumes> volumes = {};  ///< By body.
+};
+
+/// Bodies that take their steps together.
+class Region {
+ public:
+  /// `bodies` are all bodies; `members` those of the region that move, `others` those that stand. `parts` are
+  /// all that move, by RigidBody::part.
+  Region(const CollisionSetting& setting, const std::vector<RigidBody>& bodies,
+         std::vector<std::uint32_t> members, const std::vector<std::uint32_t>& others,
+         std::vector<Part>& parts, CollisionReport& report);
+
+  /// Moves its parts from `t` by `dt`. Errors: a method's.
+  Result<void> advance(double t, double dt);
+
+  /// Boxes around all that the members, in their order, swept in advance().
+  [[nodiscard]] const std::vector<Box>& swept() const { return swept_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& members() const { return members_; }
+
+ private:
+  struct Overlap {
+    BodyPair pair = {};
+    double distance = 0;
+    DVec3 normal = {};
+  };
+  /// A step that was tried.
+  struct Attempt {
+    double h = 0;
+    std::vector<State> ends = {};           ///< Of the members.
+    std::vector<DenseMotion> motions = {};  ///< By body.
+    std::vector<Overlap> overlaps = {};     ///< At the end.
+    bool deep = false;                      ///< Deeper than allowed, there or on the way.
+    bool touches = false;
+    BodyPair pair = {};      ///< The deepest.
+    double depth = 0;        ///< Of it at the end [m]; 0 where only the way saw it.
+    double approach = 0;     ///< Its speed there [m/s].
+    double first_share = 1;  ///< When the way saw it.
+  };
+  struct Pull {
+    DVec3 linear = {}, angular = {};  ///< [m/s^2], [rad/s^2]
+  };
+
+  Result<void> step_all(Attempt& attempt);
+  double shorter_step(const Attempt& attempt);
+  double longer_step(const Attempt& attempt);
+  double backward_error(const Attempt& attempt);
+  void forget();
+  void accept(const Attempt& attempt);
+  void give_up(const Attempt& attempt);
+  void project(BodyPair pair, double distance, DVec3 normal);
+  void project_by_turning(BodyPair pair);
+
+  // region_judge.cpp
+  void find_pairs(const Attempt& attempt);
+  void judge(Attempt& attempt);
+  void judge_end(Attempt& attempt, BodyPair pair);
+  void judge_way(Attempt& attempt);
+
+  // region_respond.cpp
+  bool respond(double h);
+  void write_velocities(const std::vector<ImpulseBody>& bodies);
+  void carry(double h);
+  std::vector<Pull> pulls();
+  [[nodiscard]] std::vector<ImpulseBody> impulse_bodies() const;
+  [[nodiscard]] std::vector<Contact> contacts_of(BodyPair pair, const BodyMotion& a,
+                                                 const BodyMotion& b) const;
+  [[nodiscard]] bool is_resting(BodyPair pair) const;
+  [[nodiscard]] bool rested(BodyPair pair, const Contact& contact, double approach, double h) const;
+
+  [[nodiscard]] BodyMotion now(std::uint32_t body) const;
+  [[nodiscard]] DensePair dense(const Attempt& attempt, BodyPair pair) const;
+  [[nodiscard]] Part& part(std::uint32_t body);
+
+  const CollisionSetting& setting_;
+  const std::vector<RigidBody>& bodies_;
+  std::vector<std::uint32_t> members_;
+  const std::vector<std::uint32_t>& others_;
+  std::vector<Part>& parts_;
+  CollisionReport& report_;
+  std::vector<Box> swept_;
+  std::vector<BodyPair> pairs_;        ///< Candidates of the last try.
+  std::vector<ImpulsePoint> resting_;  ///< Of the last clear state: points that no speed parts.
+  std::vector<Pull> pulls_;            ///< Likewise, by body.
+  double time_ = 0;                    ///< Of the last clear state [s].
+  double known_ = 0;                   ///< From it to a collision that is known [s]; 0: none.
+  double depth_known_ = 0;             ///< Of the overlap there [m].
+  BodyPair pair_known_ = {};
+  int tries_ = 0;        ///< In a row that were canceled.
+  bool patient_ = true;  ///< False when hits come without end.
+};
+
+/// Around all that a body sweeps over.
+[[nodiscard]] Box swept_bounds(const RigidBody& body, const DenseMotion& motion);
+
+}  // namespace hooke::lab

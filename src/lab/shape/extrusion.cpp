@@ -1,0 +1,90 @@
+#include "lab/shape/extrusion.h"
+
+#include "geometry/closest.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::geometry {
+
+namespace {
+
+double farthest_along(const ConvexSolid& solid, DVec3 n) {
+  double farthest = dot(n, solid.vertices[0]);
+  for (const DVec3 v : solid.vertices) farthest = std::max(farthest, dot(n, v));
+  return farthest;
+}
+
+/// A segment along `edge` shifted by `way`: a plate with its rims; a longer segment where they are parallel.
+ConvexSolid plate_of(const ConvexSolid& segment, DVec3 way) {
+  const DVec3 a = segment.vertices[0], b = segment.vertices[1];
+  const DVec3 along = direction_or(b - a, {});
+  const DVec3 ahead = direction_or(way, {});
+  const DVec3 n = cross(along, ahead);
+  if (length(n) < 1e-9) {
+    const DVec3 far = dot(along, way) > 0 ? b + way : a + way;
+    const DVec3 back = dot(along, way) > 0 ? a : b;
+    return {.vertices = {back, far}, .edges = {{0, 1}}, .directions = {{0, 1}}, .skin = segment.skin};
+  }
+  ConvexSolid plate = solid_triangle(a, b, b + way);
+  plate.vertices.push_back(a + way);
+  plate.edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+  plate.directions = {{0, 1}, {1, 2}};
+  const DVec3 up = normalize(n);
+  plate.faces = {{up, dot(up, a), {0, 1, 2, 3}}, {-up, -dot(up, a), {0, 3, 2, 1}}};
+  for (const auto [from, to] : plate.edges) {
+    const DVec3 side = normalize(cross(plate.vertices[to] - plate.vertices[from], up));
+    plate.faces.push_back({side, farthest_along(plate, side)});
+  }
+  plate.skin = segment.skin;
+  return plate;
+}
+
+}  // namespace
+
+ConvexSolid extruded(const ConvexSolid& solid, DVec3 way) {
+  if (way == DVec3{}) return solid;
+  const auto count = static_cast<std::uint32_t>(solid.vertices.size());
+  if (count == 1) {
+    return {.vertices = {solid.vertices[0], solid.vertices[0] + way},
+            .edges = {{0, 1}},
+            .directions = {{0, 1}},
+            .skin = solid.skin};
+  }
+  if (count == 2) return plate_of(solid, way);
+  ConvexSolid result = solid;
+  for (std::uint32_t i = 0; i < count; ++i) result.vertices.push_back(solid.vertices[i] + way);
+  // Faces that look ahead are those of the moved copy.
+  const auto looks_ahead = [&](const ConvexSolid::Face& face) { return dot(face.normal, way) > 0; };
+  for (ConvexSolid::Face& face : result.faces) {
+    if (!looks_ahead(face)) continue;
+    face.offset += dot(face.normal, way);
+    for (std::uint32_t& corner : face.loop) corner += count;
+  }
+  // Each edge of the silhouette has a face on either side: it is in the loop of one that looks ahead, and
+  // backwards in the loop of one that does not.
+  for (const ConvexSolid::Face& face : solid.faces) {
+    if (!looks_ahead(face)) continue;
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const std::uint32_t from = face.loop[i];
+      const std::uint32_t to = face.loop[(i + 1) % face.loop.size()];
+      const bool inner = std::any_of(solid.faces.begin(), solid.faces.end(), [&](const auto& other) {
+        if (!looks_ahead(other)) return false;
+        for (std::size_t j = 0; j < other.loop.size(); ++j) {
+          if (other.loop[j] == to && other.loop[(j + 1) % other.loop.size()] == from) return true;
+        }
+        return false;
+      });
+      if (inner) continue;
+      const DVec3 n = direction_or(cross(solid.vertices[to] - solid.vertices[from], way), {});
+      if (n == DVec3{}) continue;
+      result.faces.push_back({n, farthest_along(result, n), {from + count, from, to, to + count}});
+    }
+  }
+  for (const auto [from, to] : solid.edges) result.edges.push_back({from + count, to + count});
+  for (std::uint32_t i = 0; i < count; ++i) result.edges.push_back({i, i + count});
+  result.directions.push_back({0, count});
+  return result;
+}
+
+}  // namespace hooke::geometry

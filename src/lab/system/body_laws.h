@@ -1,0 +1,76 @@
+#pragma once
+
+#include "lab/system/system.h"
+#include "world/access.h"
+
+#include <algorithm>
+
+namespace hooke::lab {
+
+/// The user's force laws over bodies and what they are shown: all bodies that forces move, in a world of
+/// their own, in the World's precision. The one that is asked for stands where it is now; the others where
+/// they were when `place` was called for them last, at the start of the step: bodies are integrated one by
+/// one.
+class BodyLaws {
+ public:
+  /// Null when there is no such law.
+  static std::shared_ptr<BodyLaws> create(const state::Tables& tables) {
+    const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };
+    const bool any = std::any_of(tables.force_laws.begin(), tables.force_laws.end(), asks);
+    return any ? std::make_shared<BodyLaws>(tables) : nullptr;
+  }
+
+  explicit BodyLaws(const state::Tables& tables) {
+    world_.tables = tables;
+    for (const std::uint32_t row : tables.moving_bodies) {
+      if (is_dynamic(tables.bodies, row)) world_.law_bodies.push_back(row);
+    }
+  }
+
+  [[nodiscard]] std::size_t body_count() const { return world_.law_bodies.size(); }
+
+  void place(std::uint32_t row, const BodyMotion& motion) {
+    state::Bodies& bodies = world_.tables.bodies;
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Quaternion<double>& q = motion.rotation;
+    const Quat axes = {real(q.x), real(q.y), real(q.z), real(q.w)};
+    bodies.center[row] = motion.center;
+    bodies.rotation[row] = normalize(axes * conjugate(bodies.mass[row].principal));
+    bodies.scale[row] = math::Symmetric3<Real>::diagonal(Real(1));
+    state::MotionLine& line = bodies.motion[row];
+    line = {.inverse_mass = line.inverse_mass};
+    line.v = vector_cast<Real>(motion.velocity);
+    line.omega_scaled = vector_cast<Real>(motion.spin);
+  }
+
+  struct Load {
+    DVec3 force = {};   ///< [N]
+    DVec3 torque = {};  ///< About the center, in world axes [N m].
+  };
+
+  /// What all laws do to the body of `row`.
+  Load load(std::uint32_t row, double time, const BodyMotion& now) {
+    state::Bodies& bodies = world_.tables.bodies;
+    const DVec3 center = bodies.center[row];
+    const Quat rotation = bodies.rotation[row];
+    const state::MotionLine line = bodies.motion[row];
+    place(row, now);
+    for (const std::uint32_t body : world_.law_bodies) {
+      bodies.force[body] = {};
+      bodies.torque[body] = {};
+    }
+    BodyForceView view = ForceViewAccess::make(world_, time);
+    for (const state::ForceLawEntry& entry : world_.tables.force_laws) {
+      if (entry.body_law) entry.body_law(view);
+    }
+    bodies.center[row] = center;
+    bodies.rotation[row] = rotation;
+    bodies.motion[row] = line;
+    return {vector_cast<double>(bodies.force[row]), vector_cast<double>(bodies.torque[row])};
+  }
+
+ private:
+  WorldData world_;
+};
+
+}  // namespace hooke::lab

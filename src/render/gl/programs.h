@@ -1,0 +1,28 @@
+#pragma once
+
+#include "render/gl/gl_objects.h"
+
+namespace hooke::render {
+
+/// All compiled shaders. Samplers are bound to units once: 0 is the surface or picture, 1 the shadow map.
+struct Programs {
+  GlName mesh;
+  GLint mesh_has_texture = -1;
+  GLint mesh_alpha_mode = -1;
+  GlName shadow;
+  GlName cutout_shadow;
+  GlName ground;
+  GLint ground_plane = -1;
+  GLint ground_color = -1;
+  GLint ground_grid_color = -1;
+  GLint ground_grid_origin = -1;
+  GlName sky;
+  GlName line;
+  GlName text;
+  GlName present;
+};
+
+/// The first error of the driver's compiler, if any.
+Result<Programs> make_programs();
+
+}  // namespace hooke::render

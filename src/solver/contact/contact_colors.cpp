@@ -1,0 +1,102 @@
+#include "solver/contact/contact_colors.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Manifold;
+
+constexpr int kPairColors = 56;
+constexpr int kColors = 64;  // bits of a mask; what finds none free is numbered from here on
+
+void find_moving(const state::Bodies& bodies, std::vector<std::uint8_t>& moves) {
+  moves.resize(bodies.motion.size());
+  for (std::uint32_t i = 0; i < moves.size(); ++i) moves[i] = is_moved(bodies, i) ? 1 : 0;
+}
+
+/// The color of one manifold, marked as used by its bodies that move; kColors if none is free.
+int take_color(const Manifold& m, ContactColors& colors) {
+  const bool moves_a = colors.moves[m.body_a] != 0;
+  const bool moves_b = colors.moves[m.body_b] != 0;
+  std::uint64_t& a = colors.used[moves_a ? m.body_a : m.body_b];
+  std::uint64_t& b = colors.used[moves_b ? m.body_b : m.body_a];
+  const std::uint64_t free = ~(a | b);
+  int color = kColors;
+  if (moves_a && moves_b) {
+    const int lowest = std::countr_zero(free);
+    color = lowest < kPairColors ? lowest : kColors;
+  } else if (free != 0) {
+    color = kColors - 1 - std::countl_zero(free);
+  }
+  if (color == kColors) return color;
+  const std::uint64_t bit = std::uint64_t{1} << color;
+  a |= bit;
+  b |= bit;
+  return color;
+}
+
+}  // namespace
+
+bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
+  return bodies.motion[row].inverse_mass > Real(0) && bodies.asleep[row] == 0;
+}
+
+bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
+  if (m.borne) return false;
+  if ((m.point_count == 0 && !m.lively) || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor)
+    return false;
+  return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
+}
+
+void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies& bodies,
+                    ContactColors& colors) {
+  find_moving(bodies, colors.moves);
+  colors.used.assign(bodies.motion.size(), 0);
+  colors.color.resize(manifolds.size());
+  int lone = 0;
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    colors.color[i] = has_contact_rows(manifolds[i], bodies) ? take_color(manifolds[i], colors) : -1;
+    if (colors.color[i] == kColors) colors.color[i] += lone++;
+  }
+
+  // A counting sort by color, with the lone ones between the two kinds; then as `members` says.
+  const auto is_anchored = [&](const Manifold& m) {
+    return colors.moves[m.body_a] == 0 || colors.moves[m.body_b] == 0;
+  };
+  const auto rank = [&](std::size_t i) {
+    const int color = colors.color[i];
+    if (color < kPairColors) return color;
+    return color < kColors ? color + lone : color - kColors + kPairColors;
+  };
+  const auto is_hard = [&](const Manifold& m) {
+    if (colors.hard.empty() || (colors.hard[m.body_a] == 0 && colors.hard[m.body_b] == 0)) return false;
+    return is_anchored(m) || colors.hard[m.body_a] == colors.hard[m.body_b];
+  };
+  constexpr int kKinds = 4 * Manifold::kMaxPoints;
+  const auto key = [&](std::size_t i) {
+    const Manifold& m = manifolds[i];
+    const int kind = (is_hard(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
+    return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - std::max(m.point_count, 1);
+  };
+  colors.place.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (colors.color[i] >= 0) ++colors.place[key(i) + 1];
+  }
+  std::partial_sum(colors.place.begin(), colors.place.end(), colors.place.begin());
+  colors.begin = {0};
+  for (int rank_end = kKinds; rank_end < static_cast<int>(colors.place.size()); rank_end += kKinds) {
+    if (colors.place[rank_end] > colors.begin.back()) colors.begin.push_back(colors.place[rank_end]);
+  }
+  colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (colors.color[i] < 0) continue;
+    const Manifold& m = manifolds[i];
+    colors.members[colors.place[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(m), is_hard(m)};
+  }
+}
+
+}  // namespace hooke::solver

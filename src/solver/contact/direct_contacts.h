@@ -1,0 +1,116 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "solver/body/body_motion.h"
+#include "solver/contact/body_contacts.h"
+#include "solver/linear/block_matrix.h"
+#include "state/bodies.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+/// \file
+/// The contacts of one island of bodies, solved as a whole: rigid, with friction, in double.
+
+namespace hooke::solver {
+
+/// What a row does to the velocities of one body, or to those of a node: in the scaled coordinates of
+/// state/bodies.h with v / sqrt(w) in place of v, so that masses are one.
+using HardLever = std::array<double, 6>;
+
+struct HardRow {
+  HardLever a = {};        ///< Signed: the rate of the row is a.u_a + b.u_b + drift.
+  HardLever b = {};        ///< Of what does not move: for its v and omega as they are.
+  double mass = 0;         ///< Effective [kg or kg m^2].
+  double stiffness = 0;    ///< D: impulse per rate [kg or kg m^2].
+  double separation = 0;   ///< Of a point, at the start of the step [m].
+  double twist_lever = 0;  ///< Of a point: largest twist impulse per impulse [m].
+  double drift = 0;        ///< Rate by what does not move, conveyors, and gaps that may close [m/s].
+  double before = 0;       ///< Impulse the solution starts from [N s].
+  double impulse = 0;      ///< [N s]
+  double rate = 0;         ///< At the present velocities.
+  double slope = 0;        ///< Its change along the present direction of search.
+  bool touches = false;    ///< Of a point: no gap.
+  bool holds = false;      ///< Its impulse follows its rate: it is at no bound.
+};
+
+/// A manifold of the island: rows of its points, then two of friction, then twist.
+struct HardContact {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  int block = 0, lane = 0;         ///< Its lane of BodyContacts.
+  std::uint32_t a = 0, b = kNone;  ///< Nodes; b is kNone where only A moves.
+  int first = 0;                   ///< Of its rows.
+  int points = 0;
+  double slop = 0;         ///< Overlap, or gap, that counts as none [m].
+  double friction = 0;     ///< Coefficient, of rest or of sliding.
+  double limit = 0;        ///< Largest impulse of friction [N s].
+  double twist_limit = 0;  ///< [N m s]
+  // Blocks of the matrix, by their first number.
+  std::uint32_t diagonal_a = 0, diagonal_b = 0, between = 0;
+  bool b_is_row = false;  ///< Of the block between: b comes after a in the order of elimination.
+};
+
+/// Bodies and who touches whom.
+struct HardGraph {
+  std::vector<std::uint32_t> bodies;                           ///< Rows, ascending: the nodes.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< Of nodes, ascending.
+
+  friend bool operator==(const HardGraph&, const HardGraph&) = default;
+};
+
+/// The node of a body that is among `bodies`.
+[[nodiscard]] std::uint32_t node_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body);
+
+/// Bodies that contacts join to each other, and all their contacts.
+///
+/// With u the velocities of a substep and u_0 those without the contacts, the solution is the least of
+///
+///   |u - u_0|^2 / 2 + sum of phi over all rows,    impulse = -phi'
+///   point      impulse = max(0, before - D (rate + s/h if apart, s > slop))
+///   friction   impulse = before - D rate, cut to the disc of radius mu N
+///   twist      the same, cut to an interval
+///
+/// by Newton steps with exact search along them. D is large (kHardStiffness effective masses) and `before`
+/// the impulse of the last substep, so that D is no compliance at rest: what stands, stands still. N is the
+/// load of the solution before; where something slides it is solved again with the new one. The matrix
+/// 1 + J^T D J is positive definite whatever touches what.
+///
+/// Rates alone let errors of position stay. Once a step the bodies are put where overlaps beyond a tiny slop
+/// are half as deep, by the same matrix: no velocity comes of it.
+///
+/// Sources: Newton for piecewise quadratic energies of contact, e.g. Todorov 2014, "Convex and analytically
+/// invertible dynamics"; multipliers kept from step to step: Hestenes 1969, "Multiplier and gradient
+/// methods".
+struct HardIsland {
+  HardGraph graph;
+  BlockPattern pattern;
+  std::vector<std::uint32_t> place;  ///< Of each node in the order of elimination.
+
+  // Lives for one step.
+  std::vector<HardContact> contacts;
+  std::vector<HardRow> rows;
+  // Lives for one substep. Six numbers a node, in the order of elimination.
+  std::vector<double> free;       ///< u_0
+  std::vector<double> velocity;   ///< u
+  std::vector<double> direction;  ///< Of search; gradient before that.
+  std::vector<double> factors;
+  std::vector<double> factor_scratch;
+  double stiffness = 0;
+  std::vector<std::uint8_t> kept;  ///< Which rows hold in kept_factors.
+  std::vector<double> kept_factors;
+  double kept_stiffness = 0;
+};
+
+/// Start of a step, after prepare_body_contacts: the rows of the island's contacts.
+void prepare_hard_rows(const BodyContacts& contacts, const state::Bodies& bodies, HardIsland& island);
+
+/// Velocities of the island's bodies for a substep, and the impulses of its contacts; in the first substep of
+/// a step their overlaps too, at most 5 cm.
+void solve_hard_island(const BodyStep& step, HardIsland& island, BodyContacts& contacts,
+                       state::Bodies& bodies);
+
+}  // namespace hooke::solver

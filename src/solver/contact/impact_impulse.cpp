@@ -1,0 +1,324 @@
+#include "solver/contact/impact_impulse.h"
+
+#include "math/rotation.h"
+#include "solver/body/body_motion.h"
+#include "solver/joint_rows/joint_rows.h"
+#include "state/body_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Bodies;
+using state::Manifold;
+using state::MotionLine;
+
+constexpr std::size_t kMostPoints = 32;   // of an impact
+constexpr double kTogether = 1e-4;        // points that are nearer meet at once [m]
+constexpr double kLeastResponse = 1e-12;  // 1/kg; what both together give way is no less
+
+/// How long an impact is iterated, and to what share of its fastest speed.
+struct Effort {
+  int sweeps = 60;
+  int friction_rounds = 8;
+  double converged = 1e-9;
+};
+constexpr Effort kFull = {};
+constexpr Effort kInCrowd = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
+
+/// A body in an impact.
+struct Struck {
+  JointBody body;  ///< Its mass and inertia.
+  DVec3 v = {};
+  DVec3 omega = {};
+  DVec3 v_before = {};
+  DVec3 omega_before = {};
+  DVec3 backed = {};  ///< Direction along which it does not give way; zero: it gives way in all, and turns.
+
+  [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(omega, lever); }
+  [[nodiscard]] DVec3 velocity_before_at(DVec3 lever) const { return v_before + cross(omega_before, lever); }
+
+  /// Change of the velocity at `lever` by an impulse there.
+  [[nodiscard]] DVec3 response(DVec3 lever, DVec3 impulse) const {
+    if (!(body.inverse_mass > 0)) return {};
+    if (!(backed == DVec3{})) return body.inverse_mass * (impulse - dot(backed, impulse) * backed);
+    return body.inverse_mass * impulse + cross(body.scale * (body.scale * cross(lever, impulse)), lever);
+  }
+
+  void push(DVec3 impulse, DVec3 lever) {
+    if (!(body.inverse_mass > 0)) return;
+    if (!(backed == DVec3{})) {
+      v += response(lever, impulse);
+      return;
+    }
+    v += body.inverse_mass * impulse;
+    omega += body.scale * (body.scale * cross(lever, impulse));
+  }
+};
+
+/// The body `time` from now. One that tumbles has the inertia and the angular velocity of that time, not the
+/// mean of the substep: with those of another the impact would change its energy.
+Struck struck(const Bodies& bodies, std::uint32_t row, Real time) {
+  JointBody now = joint_body_now(bodies, row);
+  if (!is_moved(bodies, row)) now.inverse_mass = 0;
+  const state::FreeLine motion = state::motion_before_contacts(bodies, row);
+  const DVec3 v = vector_cast<double>(motion.v);
+  DVec3 omega = vector_cast<double>(bodies.scale[row] * motion.omega_scaled);
+  if (now.inverse_mass > 0 && state::tumbles_now(bodies, row)) {
+    const Quat then = state::pose_after(bodies, row, time).rotation;
+    now.scale = math::in_double(inertia_scale(bodies.mass[row], then));
+    omega = now.scale * (now.scale * vector_cast<double>(bodies.angular_momentum[row]));
+  }
+  return {.body = now, .v = v, .omega = omega, .v_before = v, .omega_before = omega};
+}
+
+/// From the centers of mass to a place [m].
+struct Levers {
+  DVec3 a = {};
+  DVec3 b = {};
+};
+
+struct Point {
+  Levers at = {};
+  DVec3 n = {};
+  std::size_t lane = 0;
+  double lag = 0;       ///< Speed at the time of the hit less that of now [m/s].
+  double approach = 0;  ///< Speed before, at that time; negative [m/s].
+  double target = 0;    ///< Speed of now after it [m/s].
+  double mass = 0;      ///< Effective [kg].
+  double impulse = 0;   ///< [N s]
+};
+
+/// Friction of a lane's points, at their middle.
+struct Grip {
+  std::size_t lane = 0;
+  Levers at = {};
+  DVec3 n = {};
+  DVec3 surface = {};                  ///< Velocity of B's against A's [m/s].
+  math::Symmetric3<double> mass = {};  ///< Effective, across the normal [kg].
+  DVec3 before = {};                   ///< Sliding velocity [m/s].
+  DVec3 impulse = {};                  ///< On B [N s].
+  double friction = 0;
+  double static_friction = 0;
+};
+
+DVec3 across(DVec3 n, DVec3 v) {
+  return v - dot(n, v) * n;
+}
+
+/// Two bodies while they hit each other.
+struct Impact {
+  Struck a;
+  Struck b;
+  std::array<Point, kMostPoints> point_memory = {};
+  std::array<Grip, kMostPoints> grip_memory = {};
+  std::size_t point_count = 0;
+  std::size_t grip_count = 0;
+  Effort effort;
+  double fastest = 0;  ///< Of the points' approaches [m/s].
+
+  [[nodiscard]] std::span<Point> points() { return std::span(point_memory).first(point_count); }
+  [[nodiscard]] std::span<Grip> grips() { return std::span(grip_memory).first(grip_count); }
+
+  [[nodiscard]] DVec3 velocity(const Levers& at) const { return b.velocity_at(at.b) - a.velocity_at(at.a); }
+
+  /// Change of the relative velocity at a place by an impulse there.
+  [[nodiscard]] DVec3 response(const Levers& at, DVec3 impulse) const {
+    return b.response(at.b, impulse) + a.response(at.a, impulse);
+  }
+
+  void push(DVec3 impulse, const Levers& at) {
+    a.push(-impulse, at.a);
+    b.push(impulse, at.b);
+  }
+
+  [[nodiscard]] DVec3 sliding(const Grip& grip) const {
+    return across(grip.n, velocity(grip.at) + grip.surface);
+  }
+  [[nodiscard]] DVec3 sliding_before(const Grip& grip) const {
+    return across(grip.n, b.velocity_before_at(grip.at.b) - a.velocity_before_at(grip.at.a) + grip.surface);
+  }
+};
+
+/// The points of a lane's manifold that meet.
+void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact) {
+  const DVec3 n = vector_cast<double>(m.normal);
+  for (int k = 0; k < m.point_count && impact.point_count < kMostPoints; ++k) {
+    const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
+    const Levers at = {vector_cast<double>(p.anchor_a), vector_cast<double>(p.anchor_b)};
+    const double approach = dot(n, impact.velocity(at)) + lag;
+    if (static_cast<double>(p.separation) > kTogether || !(approach < 0)) continue;
+    impact.point_memory[impact.point_count++] = {
+        .at = at,
+        .n = n,
+        .lane = lane,
+        .lag = lag,
+        .approach = approach,
+        .target = -static_cast<double>(m.restitution) * approach - lag,
+        .mass = 1 / std::max(kLeastResponse, dot(n, impact.response(at, n)))};
+    impact.fastest = std::min(impact.fastest, approach);
+  }
+}
+
+/// Gauss and Seidel's iteration: the velocities it ends with are unique, though impulses may not be.
+void push_points(Impact& impact) {
+  const double enough = impact.effort.converged * -impact.fastest;
+  double change = -impact.fastest;
+  for (int sweep = 0; sweep < impact.effort.sweeps && change > enough; ++sweep) {
+    change = 0;
+    for (Point& p : impact.points()) {
+      const double lacks = p.target - dot(p.n, impact.velocity(p.at));
+      const double after = std::max(0.0, p.impulse + p.mass * lacks);
+      impact.push((after - p.impulse) * p.n, p.at);
+      change = std::max(change, std::abs(after - p.impulse) / p.mass);
+      p.impulse = after;
+    }
+  }
+}
+
+double load_of(std::size_t lane, Impact& impact) {
+  double load = 0;
+  for (const Point& p : impact.points()) load += p.lane == lane ? p.impulse : 0;
+  return load;
+}
+
+/// The matrix of response(), and 1 along the normal, inverted.
+math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& impact) {
+  const auto column = [&](DVec3 axis) {
+    return across(n, impact.response(at, across(n, axis))) + dot(n, axis) * n;
+  };
+  const DVec3 x = column({1, 0, 0});
+  const DVec3 y = column({0, 1, 0});
+  const DVec3 z = column({0, 0, 1});
+  return math::inverse(math::Symmetric3<double>{x.x, x.y, x.z, y.y, y.z, z.z});
+}
+
+void add_grip(const Manifold& m, std::size_t lane, Impact& impact) {
+  const double load = load_of(lane, impact);
+  if (!(load > 0) || !(std::max(m.static_friction, m.friction) > Real(0))) return;
+  Grip grip = {.lane = lane,
+               .n = vector_cast<double>(m.normal),
+               .surface = vector_cast<double>(m.surface_velocity),
+               .friction = static_cast<double>(m.friction),
+               .static_friction = static_cast<double>(m.static_friction)};
+  for (const Point& p : impact.points()) {
+    if (p.lane != lane) continue;
+    grip.at.a += (p.impulse / load) * p.at.a;
+    grip.at.b += (p.impulse / load) * p.at.b;
+  }
+  grip.mass = mass_across(grip.at, grip.n, impact);
+  grip.before = impact.sliding_before(grip);
+  impact.grip_memory[impact.grip_count++] = grip;
+}
+
+void hold(Grip& grip, Impact& impact) {
+  const double load = load_of(grip.lane, impact);
+  DVec3 after = grip.impulse - grip.mass * impact.sliding(grip);
+  after = across(grip.n, after);
+  const double size = length(after);
+  if (size > grip.static_friction * load) after = (grip.friction * load / size) * after;
+  impact.push(after - grip.impulse, grip.at);
+  grip.impulse = after;
+}
+
+/// Whether impulses do more work than rounding explains; conveyors aside.
+bool gains_energy(Impact& impact) {
+  double gain = 0;
+  double exchanged = 0;
+  for (const Point& p : impact.points()) {
+    gain += p.impulse * (p.approach + dot(p.n, impact.velocity(p.at)) + p.lag);
+    exchanged -= p.impulse * p.approach;
+  }
+  for (const Grip& grip : impact.grips()) gain += dot(grip.impulse, grip.before + impact.sliding(grip));
+  return gain > 1e-9 * exchanged;
+}
+
+/// Adds friction, a share of what it may be. True if that gains energy.
+bool rub(double share, Impact& impact) {
+  for (Grip& grip : impact.grips()) {
+    grip.friction *= share;
+    grip.static_friction *= share;
+  }
+  for (int round = 0; impact.grip_count > 0 && share > 0 && round < impact.effort.friction_rounds; ++round) {
+    for (Grip& grip : impact.grips()) hold(grip, impact);
+    push_points(impact);
+  }
+  return gains_energy(impact);
+}
+
+/// Changes the body's velocities, and its line as if it had changed them after `time` only. What tumbles goes
+/// on from there as a free body does, to the substep's end `rest` later; its rotation becomes the one from
+/// which a steady turn leads to both.
+void set_struck(const Struck& after, std::uint32_t row, Real time, Real rest, Bodies& bodies) {
+  if (!(after.body.inverse_mass > 0)) return;
+  MotionLine& m = bodies.motion[row];
+  state::FreeLine& free = bodies.free_motion[row];
+  const math::Symmetric3<double> root = math::inverse(after.body.scale);  // of the inertia
+  const DVec3 turned = after.omega - after.omega_before;
+  const Vec3 v = vector_cast<Real>(after.v - after.v_before);
+  Vec3 turn = vector_cast<Real>(turned);
+  bodies.angular_momentum[row] += vector_cast<Real>(root * (root * turned));
+  if (state::tumbles_now(bodies, row)) {
+    const Quat then = state::pose_after(bodies, row, time).rotation;
+    const Vec3 omega = mean_velocity(bodies.mass[row], then, bodies.angular_momentum[row], rest);
+    turn = omega - bodies.scale[row] * free.omega_scaled;
+    bodies.rotation[row] = normalize(math::quaternion_of(-time * omega) * then);
+  }
+  const Vec3 omega_scaled = math::inverse(bodies.scale[row]) * turn;
+  m.v += v;
+  free.v += v;
+  m.omega_scaled += omega_scaled;
+  free.omega_scaled += omega_scaled;
+  m.dx -= time * v;
+  m.theta_scaled -= time * omega_scaled;
+}
+
+}  // namespace
+
+bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real time,
+            const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
+  const std::span<const ContactLane> lanes = pair.lanes;
+  const Manifold& first = manifolds[lanes.front().manifold];
+  Impact impact = {.a = struck(bodies, first.body_a, time),
+                   .b = struck(bodies, first.body_b, time),
+                   .effort = pair.in_crowd ? kInCrowd : kFull};
+  // One of them has to give way: what is backed does not only where the other does.
+  // Its direction is a unit vector in double, lest a heavy partner give way less than rounding takes back.
+  const DVec3 n = normalize(vector_cast<double>(first.normal));
+  const bool a_gives_way = impact.a.body.inverse_mass > 0 && !pair.a_is_backed;
+  const bool b_gives_way = impact.b.body.inverse_mass > 0 && !pair.b_is_backed;
+  if (pair.a_is_backed && b_gives_way) impact.a.backed = n;
+  if (pair.b_is_backed && a_gives_way) impact.b.backed = n;
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    const Manifold& m = manifolds[lanes[i].manifold];
+    const Vec3 pull =
+        free_acceleration(bodies, m.body_b, step.gravity) - free_acceleration(bodies, m.body_a, step.gravity);
+    const Real lag = dot(m.normal, pull) * (time - Real(0.5) * step.h);
+    add_points(m, i, static_cast<double>(lag), impact);
+  }
+  if (!(impact.fastest < -static_cast<double>(pair.in_crowd ? kLeastHitInCrowd : kLeastHit))) return false;
+  push_points(impact);
+  for (std::size_t i = 0; i < lanes.size() && impact.grip_count < kMostPoints; ++i)
+    add_grip(manifolds[lanes[i].manifold], i, impact);
+  const Impact smooth = impact;
+  bool gains = rub(1, impact);
+  for (const double share : {0.5, 0.25, 0.0}) {
+    if (!gains) break;
+    impact = smooth;
+    gains = rub(share, impact);
+  }
+  const Real rest = std::max(Real(0), step.h - time);
+  set_struck(impact.a, first.body_a, time, rest, bodies);
+  set_struck(impact.b, first.body_b, time, rest, bodies);
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    Real& pushed = contacts.blocks[static_cast<std::size_t>(lanes[i].block)].pushed[lanes[i].lane];
+    pushed = std::max(pushed, static_cast<Real>(load_of(i, impact)));
+  }
+  return true;
+}
+
+}  // namespace hooke::solver

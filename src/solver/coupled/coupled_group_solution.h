@@ -1,0 +1,159 @@
+#pragma once
+
+#include "solver/coupled/coupled_groups.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+/// \file
+/// A bundle in the middle of its solution. Only bundles.cpp and bundles_matrix.cpp know it.
+
+namespace hooke::solver {
+
+inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
+
+/// What a contact did in the last substep [N].
+struct TouchForce {
+  DVec3 n;  ///< Along which `normal` pushes.
+  double normal = 0;
+  DVec3 friction;
+  bool slides = false;
+  double fast = std::numeric_limits<double>::infinity();  ///< From this speed on it slides at first [m/s].
+};
+
+class BundleSolution {
+ public:
+  BundleSolution(double h, Bundle& bundle, state::Tables& tables) : h_(h), b_(bundle), t_(tables) {}
+
+  void load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains);
+  void run(std::vector<Chain>& chains);
+  /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything is to be loaded and run again.
+  [[nodiscard]] bool gives_way(int round);
+  void store(const std::vector<Chain>& chains);
+
+ private:
+  /// Largest relative length error left in any rope.
+  double check_ropes(bool& limits_changed);
+  [[nodiscard]] bool gains_energy() const;
+  // Loading and checking.
+  void load_points();
+  void load_hooks();
+  bool stiffen();
+  void solve_with_bounds();
+  bool revise_bounds(bool release);
+  void read_solution();
+  void move_nodes();
+  [[nodiscard]] bool is_sound() const;
+  /// Whether its matrix may be factored once more in this substep; notes in the bundle that it may not.
+  bool within_budget();
+  void push_out_points();
+
+  // Contacts between points: bundles_inner.cpp.
+  void load_inner();
+  void load_inner_touch(std::size_t index);
+  void load_rope_touch(std::size_t index);
+  [[nodiscard]] const state::RopeContact& rope_contact(std::size_t index) const;
+  void load_borne_touch(std::size_t index);
+  [[nodiscard]] DVec3 velocity_of(std::uint32_t body, DVec3 lever) const;
+  void make_touch_rows(std::size_t index, const TouchForce& last);
+  void note_rope_in_contact(std::uint32_t node);
+  void set_inner_rows(std::size_t index);
+  void revise_inner();
+  bool update_inner_friction(std::size_t index, bool may_stick);
+  [[nodiscard]] Unsettled update_borne_touch(std::size_t index, bool only_join);
+  [[nodiscard]] Unsettled update_inner_touch(std::size_t index, bool let_go);
+  [[nodiscard]] Unsettled update_inner(bool let_go);
+  bool let_inner_slide();
+  void store_inner();
+  [[nodiscard]] bool has_inner(std::size_t node) const;
+  [[nodiscard]] double heaviest_inner(std::size_t node) const;
+  [[nodiscard]] double gap_speed(const InnerTouch& touch) const;
+  [[nodiscard]] DVec3 velocity_at(std::size_t index, bool before) const;
+  [[nodiscard]] DVec3 sliding_of(std::size_t index, bool before) const;
+  [[nodiscard]] int least_solves_of_inner() const;
+
+  // The matrix and its right side.
+  void assemble();
+  void resize_rope_touches();
+  void assemble_pair(const Bundle::Incident& a, const Bundle::Incident& b, std::uint32_t block,
+                     const RopeNode& node);
+  void assemble_pairs();
+  void assemble_hooks();
+  void assemble_bodies();
+  void assemble_touches();
+  void assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node);
+  void assemble_point(int body, std::span<const RopeTouch> at_node);
+  void fill_right_side();
+  void start_bodies();
+  void give_impulses();
+
+  [[nodiscard]] BodyRow hook_row(const JointRow& row, int end, const JointBody& body) const {
+    const double sign = end == 1 ? 1 : -1;
+    return {(sign * std::sqrt(body.inverse_mass)) * row.n, sign * (end == 1 ? row.j_b : row.j_a)};
+  }
+  /// Calls visit(hook, row, k) for each row; k counts within the hook. Inner contacts count on after hooks.
+  template <class Visit>
+  void for_each_row(Visit&& visit) const {
+    for (std::uint32_t i = 0; i < b_.ends.size(); ++i) {
+      for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row)
+        visit(i, row, static_cast<int>(row - b_.first_row[i]));
+    }
+  }
+
+  [[nodiscard]] std::uint32_t segment_count() const {
+    return static_cast<std::uint32_t>(b_.ropes.segments.size());
+  }
+  [[nodiscard]] std::uint32_t bend_block(std::uint32_t bend) const { return segment_count() + bend; }
+  /// Blocks before those of hooks: vectors, along the axes of the world.
+  [[nodiscard]] std::uint32_t vector_count() const {
+    return segment_count() + static_cast<std::uint32_t>(b_.ropes.bends.size());
+  }
+  [[nodiscard]] const DVec3& vector_impulse(std::uint32_t block) const {
+    return block < segment_count() ? b_.ropes.segments[block].q
+                                   : b_.ropes.bends[block - segment_count()].impulse;
+  }
+  [[nodiscard]] std::uint32_t hook_block(std::uint32_t hook) const { return vector_count() + hook; }
+  [[nodiscard]] std::uint32_t body_block(int body) const {
+    return hook_block(static_cast<std::uint32_t>(b_.ends.size())) + static_cast<std::uint32_t>(body);
+  }
+  [[nodiscard]] std::span<const Bundle::Incident> incidents_of(std::size_t node) const {
+    return std::span(b_.incidents)
+        .subspan(b_.first_incident[node], b_.first_incident[node + 1] - b_.first_incident[node]);
+  }
+  [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.place[block]]; }
+  /// Direction k of a row block; zero of a row that is at a bound.
+  [[nodiscard]] DVec3 direction(std::uint32_t block, int k) const {
+    if (block < vector_count()) return kAxes[static_cast<std::size_t>(k)];
+    const std::uint32_t row = b_.first_row[block - vector_count()] + static_cast<std::uint32_t>(k);
+    return b_.bound[row] == 0 ? b_.rows[row].n : DVec3{};
+  }
+  /// Numbers (i, k) of a block; of the lower half of the matrix, which alone is kept.
+  struct Numbers {
+    double* first;
+    int down, across;
+    double& operator()(int i, int k) const { return first[i * down + k * across]; }
+  };
+  /// Where block `a` meets `b`, row i of `a` and column k of `b`.
+  Numbers numbers(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t row = b_.place[a];
+    const std::uint32_t column = b_.place[b];
+    const std::uint32_t block = find_block(b_.pattern, std::max(row, column), std::min(row, column));
+    const BlockPattern::Block& at = b_.pattern.block[block];
+    const int width = b_.pattern.size[at.column];
+    double* first = b_.numbers.data() + at.offset;
+    return row >= column ? Numbers{first, width, 1} : Numbers{first, 1, width};
+  }
+  double& right_side(std::uint32_t block, int i) {
+    return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.place[block]] + i)];
+  }
+
+  double h_;
+  Bundle& b_;
+  state::Tables& t_;
+};
+
+}  // namespace hooke::solver

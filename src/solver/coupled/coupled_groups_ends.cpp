@@ -1,0 +1,151 @@
+/// Ends of hooks at points: where they are, and where along a rope they slide.
+
+#include "solver/coupled/coupled_groups.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::Hook;
+using state::HookPlace;
+using state::Tables;
+
+DVec3 offset_of(const Tables& t, std::uint32_t particle) {
+  return vector_cast<double>(t.particles.position[particle].x);
+}
+
+/// A rope as a line through its points, near where a hook slides.
+struct Line {
+  const Tables& t;
+  const state::Deformable& rope;
+
+  [[nodiscard]] DVec3 at(std::uint32_t node) const { return offset_of(t, rope.particles.first + node); }
+  /// Share of segment `i` that lies before the point of its line that is nearest to x.
+  [[nodiscard]] double share(std::uint32_t i, DVec3 x) const {
+    const DVec3 d = at(i + 1) - at(i);
+    const double square = length_squared(d);
+    return square > 0 ? dot(x - at(i), d) / square : 0;
+  }
+  /// Half the way from the node before to the one behind; the ends have one neighbor only.
+  [[nodiscard]] DVec3 tangent(std::uint32_t node) const {
+    const std::uint32_t last = rope.particles.count - 1;
+    return normalize(at(std::min(node + 1, last)) - at(node > 0 ? node - 1 : 0));
+  }
+};
+
+/// The segment whose line has x beside it, from segment `i` on towards where it is.
+std::uint32_t find_segment(const Line& line, std::uint32_t i, DVec3 x) {
+  const std::uint32_t last = line.rope.segments.count - 1;
+  const bool onward = line.share(i, x) > 1;
+  if (onward) {
+    while (i < last && line.share(i, x) > 1) ++i;
+  } else {
+    while (i > 0 && line.share(i, x) < 0) --i;
+  }
+  return i;
+}
+
+/// How far the hook may go along the rope, as limits of its way.
+HookLimits limits_along(const Tables& t, const state::Deformable& rope, std::uint32_t segment, double share) {
+  double before = 0;
+  double behind = 0;
+  for (std::uint32_t i = 0; i < rope.segments.count; ++i) {
+    const auto rest = static_cast<double>(t.segments.rest_length[rope.segments.first + i]);
+    if (i < segment) before += rest;
+    if (i > segment) behind += rest;
+    if (i == segment) {
+      before += share * rest;
+      behind += (1 - share) * rest;
+    }
+  }
+  return {static_cast<Real>(-before), static_cast<Real>(behind)};
+}
+
+void slide(const Tables& t, Hook& hook) {
+  const state::Deformable& rope = t.objects[hook.a.object];
+  const Line line = {t, rope};
+  const JointBody b = joint_end(t, hook.b);
+  const DVec3 x = b.center + rotate(b.rotation, hook.b.anchor) - rope.origin;
+  const std::uint32_t segment = find_segment(line, hook.a.particle[0] - rope.particles.first, x);
+  const double share = std::clamp(line.share(segment, x), 0.0, 1.0);
+  hook.a.particle[0] = rope.particles.first + segment;
+  hook.a.particle[1] = hook.a.particle[0] + 1;
+  hook.a.weight[0] = static_cast<Real>(1 - share);
+  hook.a.weight[1] = static_cast<Real>(share);
+  hook.freedom[0].limits = limits_along(t, rope, segment, share);
+}
+
+/// The least share of its own inverse mass that a hooked point keeps: what is tied to something that does not
+/// give way must still show how it was pulled.
+constexpr Real kLeastShare = Real(1e-3);
+
+/// 1 / mass of what holds the other end, on average over directions, if it has `shares` such hooks [1/kg].
+Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
+  const JointBody body = joint_end(t, end);
+  double sum = 3 * body.inverse_mass;
+  if (!end.is_point() && body.inverse_mass > 0) {
+    const DVec3 lever = rotate(body.rotation, end.anchor);
+    for (const DVec3& axis : {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}})
+      sum += length_squared(body.scale * cross(lever, axis));
+  }
+  return static_cast<Real>(shares * sum / 3);
+}
+
+}  // namespace
+
+void weigh_points(Bundles& bundles, Tables& t, std::vector<HookedPoint>& points) {
+  points.clear();
+  std::vector<int>& shares = bundles.scratch.counts;
+  for (const Bundle& bundle : bundles.live()) {
+    shares.assign(bundle.bodies.size() + 1, 0);
+    const auto shares_of = [&](std::uint32_t body) -> int& { return shares[bundle.body_of(body) + 1]; };
+    for (const std::uint32_t row : bundle.hooks) {
+      for (const HookPlace& end : {t.hooks[row].a, t.hooks[row].b}) ++shares_of(end.body);
+    }
+    for (const std::uint32_t row : bundle.hooks) {
+      const Hook& hook = t.hooks[row];
+      if (hook.kind != HookKind::kBall || hook.broken) continue;
+      for (const HookPlace* end : {&hook.a, &hook.b}) {
+        const HookPlace& other = end == &hook.a ? hook.b : hook.a;
+        // Of several points that share a place, each moves freely against the others.
+        if (end->particle_count != 1 || t.objects[end->object].kind == PointRef::Kind::kRope) continue;
+        state::VelocityLine& line = t.particles.velocity[end->particle[0]];
+        if (!(line.inverse_mass > Real(0)) || other.is_point()) continue;
+        points.push_back({end->particle[0], line.inverse_mass, line.v});
+        const Real held_by = inverse_mass_of(t, other, shares_of(other.body));
+        const Real merged = line.inverse_mass * held_by / (line.inverse_mass + held_by);
+        line.inverse_mass = std::max(merged, kLeastShare * line.inverse_mass);
+      }
+    }
+  }
+}
+
+void release_points(const std::vector<HookedPoint>& points, state::Particles& particles) {
+  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    state::VelocityLine& line = particles.velocity[point->particle];
+    line.v = point->velocity + (point->inverse_mass / line.inverse_mass) * (line.v - point->velocity);
+    line.inverse_mass = point->inverse_mass;
+  }
+}
+
+void slide_hooks(Tables& t) {
+  for (Hook& hook : t.hooks) {
+    if (hook.kind == HookKind::kRopeSlide) slide(t, hook);
+  }
+}
+
+Quaternion<double> turn_of_slide(const Tables& t, const Hook& hook) {
+  const state::Deformable& rope = t.objects[hook.a.object];
+  const Line line = {t, rope};
+  const std::uint32_t node = hook.a.particle[0] - rope.particles.first;
+  const DVec3 x = normalize(static_cast<double>(hook.a.weight[0]) * line.tangent(node) +
+                            static_cast<double>(hook.a.weight[1]) * line.tangent(node + 1));
+  // Half way between x and the x axis; of opposite ones, half a turn about y.
+  const Quaternion<double> turn = {0, -x.z, x.y, 1 + x.x};
+  return 1 + x.x > 1e-9 ? normalize(turn) : Quaternion<double>{0, 1, 0, 0};
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,267 @@
+/// The matrix of a bundle and its right side. Equations: bundles.h.
+
+#include "solver/coupled/coupled_group_solution.h"
+#include "solver/joint_rows/geometric_stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace hooke::solver {
+
+namespace {
+
+using math::Symmetric3;
+using Incident = Bundle::Incident;
+
+std::array<double, 9> entries_of(const Symmetric3<double>& m) {
+  return {m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz};
+}
+
+BodyRow row_along(DVec3 n, DVec3 lever, const JointBody& body) {
+  return {std::sqrt(body.inverse_mass) * n, body.scale * cross(lever, n)};
+}
+
+/// Column m of the Jacobian at `lever`: how V_m alone moves the place there.
+DVec3 column_at(int m, DVec3 lever, const JointBody& body) {
+  return {row_along(kAxes[0], lever, body).at(m), row_along(kAxes[1], lever, body).at(m),
+          row_along(kAxes[2], lever, body).at(m)};
+}
+
+/// The one body that active contacts of a node are with, if it is one.
+std::optional<int> only_body_of(std::span<const RopeTouch> at_node) {
+  std::optional<int> body;
+  for (const RopeTouch& touch : at_node) {
+    if (!touch.active || touch.body < 0) continue;
+    if (body && *body != touch.body) return std::nullopt;
+    body = touch.body;
+  }
+  return body;
+}
+
+}  // namespace
+
+void BundleSolution::assemble_pair(const Incident& a, const Incident& b, std::uint32_t block,
+                                   const RopeNode& node) {
+  const BlockPattern::Block& at = b_.pattern.block[block];
+  const bool a_is_row = b_.place[a.block] == at.row;
+  const Incident& row = a_is_row ? a : b;
+  const Incident& column = a_is_row ? b : a;
+  double* numbers = b_.numbers.data() + at.offset;
+  const double weight = row.weight * column.weight;
+  const Symmetric3<double>& w = node.inverse;
+  if (row.block < vector_count() && column.block < vector_count()) {
+    const std::array<double, 9> entries = entries_of(w);
+    for (int i = 0; i < 9; ++i) numbers[i] += weight * entries[i];
+    return;
+  }
+  const int width = b_.pattern.size[at.column];
+  for (int k = 0; k < width; ++k) {
+    const DVec3 moved_by = weight * (w * direction(column.block, k));
+    for (int i = 0; i < b_.pattern.size[at.row]; ++i)
+      numbers[i * width + k] += dot(direction(row.block, i), moved_by);
+  }
+}
+
+void BundleSolution::assemble_pairs() {
+  for (std::size_t node = 0; node < b_.ropes.nodes.size(); ++node) {
+    const RopeNode& of = b_.ropes.nodes[node];
+    if (!(of.w > 0)) continue;
+    const std::span<const Incident> at = incidents_of(node);
+    std::uint32_t pair = b_.first_pair[node];
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) assemble_pair(at[i], at[j], b_.pair_block[pair++], of);
+    }
+  }
+}
+
+void BundleSolution::assemble_hooks() {
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
+    const std::uint32_t block = hook_block(hook);
+    if (k >= size_of(block)) return;
+    double& diagonal = numbers(block, block)(k, k);
+    if (b_.bound[row] != 0) {
+      diagonal = 1;
+      return;
+    }
+    double mobility = diagonal;  // with what bodies add once they are eliminated
+    for (int end = 0; end < 2; ++end) {
+      const int body = b_.ends[hook][end];
+      if (body < 0) continue;
+      const BodyRow c = hook_row(b_.rows[row], end, b_.moving[body].body);
+      mobility += dot(c, c);
+      const Numbers coupled = numbers(block, body_block(body));
+      for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
+    }
+    const bool drives = b_.rows[row].role == RowRole::kMotor;
+    diagonal += b_.rows[row].gamma + (drives ? kMotorCompliance : kHookCompliance) * mobility;
+  });
+}
+
+void BundleSolution::assemble_bodies() {
+  for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
+    const std::array<double, 9> turn =
+        entries_of(Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, b_.moving[i].excess));
+    const Numbers own = numbers(body_block(i), body_block(i));
+    for (int k = 0; k < 3; ++k) {
+      own(k, k) -= 1;
+      for (int m = 0; m < 3; ++m) own(3 + k, 3 + m) -= turn[3 * k + m];
+    }
+  }
+}
+
+/// At a node without rows that touches one body: -J^T (P - P W P) J on the body's own block, where P is the
+/// grip of all that body's contacts there.
+void BundleSolution::assemble_point(int body, std::span<const RopeTouch> at_node) {
+  Symmetric3<double> grip;
+  DVec3 lever;  // the same of all: to the particle
+  for (const RopeTouch& touch : at_node) {
+    if (!touch.active || touch.body != body) continue;
+    grip = grip + grip_of(touch);
+    lever = touch.lever;
+  }
+  const Symmetric3<double>& inverse = b_.ropes.nodes[at_node.front().node].inverse;
+  const Symmetric3<double> held = grip + scaled(-1, symmetric_product(grip, inverse, grip));
+  std::array<DVec3, 6> columns;
+  for (int m = 0; m < 6; ++m) columns[m] = column_at(m, lever, b_.moving[body].body);
+  const Numbers own = numbers(body_block(body), body_block(body));
+  for (int m = 0; m < 6; ++m) {
+    const DVec3 moved = held * columns[m];
+    for (int k = 0; k < 6; ++k) own(k, m) -= dot(columns[k], moved);
+  }
+}
+
+/// R = P J couples the rows at the node to the body, the body to itself, and to others that touch the node.
+void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node) {
+  const RopeNode& node = b_.ropes.nodes[touch.node];
+  const Symmetric3<double> grip = grip_of(touch);
+  const JointBody& body = b_.moving[touch.body].body;
+  const std::uint32_t block = body_block(touch.body);
+  for (int m = 0; m < 6; ++m) {
+    const DVec3 r = grip * column_at(m, touch.lever, body);
+    const DVec3 moved_by = node.inverse * r;
+    for (const Incident& at : incidents_of(touch.node)) {
+      const Numbers coupled = numbers(at.block, block);
+      for (int k = 0; k < size_of(at.block); ++k)
+        coupled(k, m) += at.weight * dot(direction(at.block, k), moved_by);
+    }
+    const Numbers own = numbers(block, block);
+    for (int k = 0; k < 6; ++k) own(k, m) -= dot(column_at(k, touch.lever, body), r);
+    for (const RopeTouch& other : at_node) {
+      if (other.body < touch.body || !other.active) continue;
+      const JointBody& to = b_.moving[other.body].body;
+      const DVec3 gripped = grip_of(other) * moved_by;
+      const Numbers coupled = numbers(body_block(other.body), block);
+      for (int k = 0; k < 6; ++k) coupled(k, m) += dot(column_at(k, other.lever, to), gripped);
+    }
+  }
+}
+
+void BundleSolution::assemble_touches() {
+  for_each_touched(b_.ropes.touches, [&](std::span<const RopeTouch> at_node) {
+    if (incidents_of(at_node.front().node).empty()) {
+      if (const std::optional<int> body = only_body_of(at_node)) {
+        assemble_point(*body, at_node);
+        return;
+      }
+    }
+    for (const RopeTouch& touch : at_node) {
+      if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
+    }
+  });
+}
+
+/// Contacts of ropes that do not act have no rows in the matrix, and those without friction one: of those
+/// that may act most do not.
+void BundleSolution::resize_rope_touches() {
+  if (b_.rope_contacts.empty()) return;
+  b_.sizes.assign(b_.pattern.size.begin(), b_.pattern.size.end());
+  for (std::size_t i = b_.hooks.size() + b_.inner.size(); i < b_.ends.size(); ++i) {
+    const std::uint32_t first = b_.first_row[i];
+    const int held = b_.bound[first + 1] == 0 ? InnerTouch::kRows : 1;
+    b_.sizes[b_.place[hook_block(static_cast<std::uint32_t>(i))]] = b_.bound[first] == 0 ? held : 0;
+  }
+  resize_blocks(b_.sizes, b_.pattern);
+}
+
+void BundleSolution::assemble() {
+  b_.numbers.assign(b_.pattern.number_count, 0);
+  assemble_pairs();
+  for (std::uint32_t i = 0; i < segment_count(); ++i) {
+    const std::array<double, 9> e = entries_of(b_.ropes.segments[i].compliance);
+    const Numbers own = numbers(i, i);
+    for (int k = 0; k < 9; ++k) own(k / 3, k % 3) += e[k];
+  }
+  for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i) {
+    const Numbers own = numbers(bend_block(i), bend_block(i));
+    for (int k = 0; k < 3; ++k) own(k, k) += b_.ropes.bends[i].gamma;
+  }
+  assemble_hooks();
+  assemble_bodies();
+  assemble_touches();
+}
+
+/// V0 as geometric stiffness has it.
+void BundleSolution::start_bodies() {
+  b_.start.clear();
+  for (const BundleBody& m : b_.moving) {
+    b_.start.push_back({(1 / std::sqrt(m.body.inverse_mass)) * m.body.v,
+                        m.body.omega_scaled + m.excess * m.body.omega_scaled});
+  }
+}
+
+/// Rows at a bound give its impulse, like a force from outside.
+void BundleSolution::give_impulses() {
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
+    if (b_.bound[row] == 0 || b_.lambda[row] == 0) return;
+    for (int end = 0; end < 2; ++end) {
+      const int body = b_.ends[hook][end];
+      if (body >= 0) b_.start[body] += b_.lambda[row] * hook_row(b_.rows[row], end, b_.moving[body].body);
+    }
+  });
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    RopeNode& node = b_.ropes.nodes[n];
+    for (const Incident& at : incidents_of(n)) {
+      if (at.block < vector_count()) continue;
+      const std::uint32_t hook = at.block - vector_count();
+      for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row) {
+        if (b_.bound[row] != 0 && b_.lambda[row] != 0)
+          node.target += node.inverse * ((at.weight * b_.lambda[row]) * b_.rows[row].n);
+      }
+    }
+  }
+}
+
+void BundleSolution::fill_right_side() {
+  b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
+  start_bodies();
+  give_impulses();
+  for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
+    for (const Incident& at : incidents_of(n)) {
+      for (int k = 0; k < size_of(at.block); ++k)
+        right_side(at.block, k) -= at.weight * dot(direction(at.block, k), b_.ropes.nodes[n].target);
+    }
+  }
+  for (std::uint32_t i = 0; i < segment_count(); ++i) {
+    for (int k = 0; k < 3; ++k) right_side(i, k) -= dot(kAxes[k], b_.ropes.segments[i].offset);
+  }
+  for (std::uint32_t i = 0; i < b_.ropes.bends.size(); ++i) {
+    for (int k = 0; k < 3; ++k) right_side(bend_block(i), k) += dot(kAxes[k], b_.ropes.bends[i].target);
+  }
+  for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
+    if (b_.bound[row] == 0) right_side(hook_block(hook), k) += b_.rows[row].target;
+  });
+  for (const RopeTouch& touch : b_.ropes.touches) {
+    if (touch.body < 0 || !touch.active) continue;
+    const RopeNode& node = b_.ropes.nodes[touch.node];
+    const DVec3 on_node = push_of(touch, h_) + grip_of(touch) * (touch.belt - node.target);
+    const JointBody& body = b_.moving[touch.body].body;
+    b_.start[touch.body] +=
+        {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(touch.lever, on_node))};
+  }
+  for (int i = 0; i < static_cast<int>(b_.start.size()); ++i) {
+    for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -b_.start[i].at(m);
+  }
+}
+
+}  // namespace hooke::solver

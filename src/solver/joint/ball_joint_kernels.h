@@ -1,0 +1,33 @@
+#pragma once
+
+#include "solver/joint/ball_joints.h"
+#include "state/bodies.h"
+
+#include <span>
+
+/// \file
+/// Kernels over blocks of ball hooks; the formulas stand in solver/joint/ball_joints.h. As in wide.h, every
+/// instruction set gives the bits of the scalar twin, and wide::use_target chooses for these kernels too.
+
+namespace hooke::solver::wide {
+
+/// How strongly a pass takes errors back.
+struct BallPass {
+  Real rate = Real(0);           ///< beta [1/s]
+  Real mass_scale = Real(1);     ///< mu
+  Real impulse_scale = Real(0);  ///< gamma
+};
+
+/// The impulses carried over from the last step, for blocks of one color.
+void warm_start_balls(std::span<BallBlock> blocks, state::MotionLine* motion);
+/// One pass over blocks of one color, before the bodies move.
+void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion);
+/// And after.
+void relax_balls(std::span<BallBlock> blocks, state::MotionLine* motion);
+
+// The scalar twins.
+void warm_start_balls_scalar(std::span<BallBlock> blocks, state::MotionLine* motion);
+void solve_balls_scalar(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion);
+void relax_balls_scalar(std::span<BallBlock> blocks, state::MotionLine* motion);
+
+}  // namespace hooke::solver::wide

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "solver/joint/articulations.h"
+
+/// \file
+/// Joints take energy from one body and give it to another; only motors, ends that move as told and what
+/// springs hold add any. A solution is about straight lines and removes the errors that the last ones left,
+/// which adds some here and takes some there. Where a body turns far in a substep, as one of grams does that
+/// hangs between tons, it would add without end: errors grow with speed, and their removal is speed. So there
+/// is an account of what was added while one of the bodies of an articulation turns far, or the line between
+/// the ends of a hook that keeps a distance: a bead of grams on a rail that a ton on a rod swings past.
+
+namespace hooke::solver {
+
+/// From this turn in a substep on there is an account [rad].
+inline constexpr double kFarTurn = 0.3;
+
+/// So much of the kinetic energy may have been added at any time, and so fast may all bodies be for nothing.
+inline constexpr double kEnergySlack = 0.02;
+inline constexpr double kFreeSpeed = 1;  ///< [m/s]
+
+/// Sums over bodies that move.
+struct BodySums {
+  double energy = 0;            ///< Kinetic [J].
+  double mass = 0;              ///< [kg]
+  DVec3 place = {};             ///< The center of one of them [m].
+  DVec3 moment = {};            ///< Of masses about it [kg m].
+  DVec3 momentum = {};          ///< [kg m/s]
+  DVec3 angular_momentum = {};  ///< About it [kg m^2/s].
+};
+
+/// Those of the bodies of an articulation.
+[[nodiscard]] BodySums sum_bodies(const Articulation& articulation, const state::Bodies& bodies);
+
+/// What a solution says about the energy of a joint.
+struct JointWork {
+  double work = 0;  ///< Of motors and ends that move as told [J].
+  // What its springs hold if all move at a share s of the velocities found: held + first s + second s^2 [J].
+  double held = 0;
+  double first = 0;
+  double second = 0;
+
+  /// A spring of stiffness k [N/m or N m/rad] that goes from c to `next` [m or rad].
+  void add_spring(double k, double c, double next) {
+    held += 0.5 * k * c * c;
+    first += k * c * (next - c);
+    second += 0.5 * k * (next - c) * (next - c);
+  }
+  [[nodiscard]] double held_after(double share) const { return held + share * (first + share * second); }
+};
+
+/// Where nothing turns far, or others solve the articulation.
+void forget_energy(const Articulation& articulation, std::vector<state::Hook>& hooks);
+
+/// After a solution whose joints may add `work` [J]: takes what has been added in this substep and those
+/// before beyond the slack out of the motion of the bodies relative to the one that nothing moves, or to that
+/// of all together as it was before. Returns the share of that motion that is left.
+[[nodiscard]] double take_excess(const BodySums& before, double work, const Articulation& articulation,
+                                 JointTables tables);
+
+/// The same where `work_of(i)` gives the JointWork of joint i. All joints hold as they did, in proportion.
+/// Hooks remember what was added, and what their springs should hold by now (state::Hook).
+template <class WorkOf>
+void settle_energy(const BodySums& before, const Articulation& articulation, JointTables tables,
+                   WorkOf&& work_of) {
+  double work = 0;
+  for (std::size_t i = 0; i < articulation.joints.size(); ++i) {
+    if (articulation.joints[i].is_weld()) continue;
+    const JointWork joint = work_of(i);
+    const double held = tables.hooks[articulation.joints[i].hook].spring_energy;
+    work += joint.work + (held < 0 ? joint.held : held) - joint.held_after(1);
+  }
+  const double share = take_excess(before, work, articulation, tables);
+  for (std::size_t i = 0; i < articulation.joints.size(); ++i) {
+    if (articulation.joints[i].is_weld()) continue;
+    tables.hooks[articulation.joints[i].hook].spring_energy = work_of(i).held_after(share);
+  }
+}
+
+}  // namespace hooke::solver

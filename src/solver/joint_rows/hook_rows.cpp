@@ -1,0 +1,32 @@
+#include "solver/joint_rows/hook_rows.h"
+
+#include <cstdint>
+
+namespace hooke::solver {
+
+JointBody joint_end(const state::Tables& t, const state::HookPlace& place) {
+  if (!place.is_point()) return joint_body_now(t.bodies, place.body);
+  JointBody end;
+  end.scale = {};
+  end.center = t.objects[place.object].origin;
+  for (std::uint32_t i = 0; i < place.particle_count; ++i) {
+    const auto weight = static_cast<double>(place.weight[i]);
+    const state::VelocityLine& line = t.particles.velocity[place.particle[i]];
+    end.center += weight * vector_cast<double>(t.particles.position[place.particle[i]].x);
+    end.v += weight * vector_cast<double>(line.v);
+    end.inverse_mass += weight * weight * static_cast<double>(line.inverse_mass);
+  }
+  return end;
+}
+
+int make_rows(state::Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
+              std::span<JointRow, state::Hook::kMaxRows> rows) {
+  const int count = make_joint_rows(hook, a, b, h, rows);
+  for (JointRow& row : rows.first(static_cast<std::size_t>(count))) {
+    if (a_given) row.target += dot(row.n, a.v) + dot(row.j_a, a.omega_scaled);
+    if (b_given) row.target -= dot(row.n, b.v) + dot(row.j_b, b.omega_scaled);
+  }
+  return count;
+}
+
+}  // namespace hooke::solver

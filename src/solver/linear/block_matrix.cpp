@@ -1,0 +1,270 @@
+#include "solver/linear/block_matrix.h"
+
+#include "base/reset_lists.h"
+#include "base/sort_unique.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <limits>
+
+namespace hooke::solver {
+
+namespace {
+
+double cost_of(int own, double below) {
+  return own * own * own / 6.0 + own * own * below + 0.5 * own * below * below;
+}
+
+void list_updates(BlockPattern& p) {
+  p.update.clear();
+  p.update_begin.assign(1, 0);
+  for (std::uint32_t j = 0; j < p.order.size(); ++j) {
+    for (std::uint32_t left = p.column_begin[j] + 1; left < p.column_begin[j + 1]; ++left) {
+      for (std::uint32_t right = p.column_begin[j] + 1; right <= left; ++right) {
+        p.update.push_back({left, right, find_block(p, p.block[left].row, p.block[right].row)});
+      }
+    }
+    p.update_begin.push_back(static_cast<std::uint32_t>(p.update.size()));
+  }
+}
+
+/// L D L^T of one dense block in place.
+void factor_diagonal(double sign, double* a, int n) {
+  for (int j = 0; j < n; ++j) {
+    double pivot = a[j * n + j];
+    for (int k = 0; k < j; ++k) pivot -= a[j * n + k] * a[j * n + k] * a[k * n + k];
+    if (!(sign * pivot > 0)) pivot = sign * std::numeric_limits<double>::max();
+    a[j * n + j] = pivot;
+    for (int i = j + 1; i < n; ++i) {
+      double sum = a[i * n + j];
+      for (int k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k] * a[k * n + k];
+      a[i * n + j] = sum / pivot;
+    }
+  }
+}
+
+/// B := B L^-T D^-1 for a block of m rows below the diagonal block of n.
+void factor_below(const double* diagonal, int n, double* b, int m) {
+  for (int r = 0; r < m; ++r) {
+    double* x = b + static_cast<std::ptrdiff_t>(r) * n;
+    for (int j = 0; j < n; ++j) {
+      for (int k = 0; k < j; ++k) x[j] -= x[k] * diagonal[j * n + k];
+    }
+    for (int j = 0; j < n; ++j) x[j] /= diagonal[j * n + j];
+  }
+}
+
+/// What is below the diagonal in a column: its blocks stand one after the other.
+struct ColumnBelow {
+  const double* numbers;
+  std::size_t rows = 0;
+};
+
+ColumnBelow below_diagonal(const BlockPattern& p, int column, std::span<const double> numbers) {
+  const BlockPattern::Block& diagonal = p.block[p.column_begin[column]];
+  const auto n = static_cast<std::size_t>(p.size[column]);
+  std::size_t rows = 0;
+  for (std::uint32_t b = p.column_begin[column] + 1; b < p.column_begin[column + 1]; ++b)
+    rows += static_cast<std::size_t>(p.size[p.block[b].row]);
+  return {numbers.data() + diagonal.offset + n * n, rows};
+}
+
+/// D L^T of a column below its diagonal, by rows.
+void scale_transposed(const double* diagonal, std::size_t n, const ColumnBelow& below,
+                      std::vector<double>& scaled) {
+  scaled.resize(n * below.rows);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = diagonal[k * n + k];
+    for (std::size_t r = 0; r < below.rows; ++r) scaled[k * below.rows + r] = d * below.numbers[r * n + k];
+  }
+}
+
+/// Subtracts the product of a row of n numbers and n rows of kWidth, `stride` apart.
+template <int kWidth>
+void subtract_row(const double* x, std::size_t n, const double* y, std::size_t stride, double* target) {
+  double sum[kWidth];
+  for (int c = 0; c < kWidth; ++c) sum[c] = target[c];
+  for (std::size_t k = 0; k < n; ++k) {
+    for (int c = 0; c < kWidth; ++c) sum[c] -= x[k] * y[k * stride + static_cast<std::size_t>(c)];
+  }
+  for (int c = 0; c < kWidth; ++c) target[c] = sum[c];
+}
+
+/// Subtracts left D right^T from the target; `scaled` by scale_transposed. Several numbers are summed side by
+/// side, which compilers may not do with one sum.
+void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, const ColumnBelow& below,
+                      const std::vector<double>& scaled, std::span<double> numbers) {
+  const BlockPattern::Block& left = p.block[u.left];
+  const BlockPattern::Block& right = p.block[u.right];
+  const auto n = static_cast<std::size_t>(p.size[left.column]);
+  const auto rows = static_cast<std::size_t>(p.size[left.row]);
+  const auto columns = static_cast<std::size_t>(p.size[right.row]);
+  if (n == 0) return;
+  const double* x = numbers.data() + left.offset;
+  const double* y = scaled.data() + (numbers.data() + right.offset - below.numbers) / static_cast<int>(n);
+  double* target = numbers.data() + p.block[u.target].offset;
+  for (std::size_t r = 0; r < rows; ++r, x += n, target += columns) {
+    std::size_t c = 0;
+    for (; c + 4 <= columns; c += 4) subtract_row<4>(x, n, y + c, below.rows, target + c);
+    for (; c + 2 <= columns; c += 2) subtract_row<2>(x, n, y + c, below.rows, target + c);
+    for (; c < columns; ++c) subtract_row<1>(x, n, y + c, below.rows, target + c);
+  }
+}
+
+/// x := L^-1 x.
+void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = 0; j < p.node_count(); ++j) {
+    const int n = p.size[j];
+    double* own = x.data() + p.first[j];
+    const double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
+    for (int i = 1; i < n; ++i) {
+      for (int k = 0; k < i; ++k) own[i] -= diagonal[i * n + k] * own[k];
+    }
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      double* below = x.data() + p.first[p.block[b].row];
+      const double* l = numbers.data() + p.block[b].offset;
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
+      }
+    }
+  }
+}
+
+/// x := L^-T D^-1 x.
+void substitute_back(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  for (int j = p.node_count() - 1; j >= 0; --j) {
+    const int n = p.size[j];
+    double* own = x.data() + p.first[j];
+    const double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
+    for (int i = 0; i < n; ++i) own[i] /= diagonal[i * n + i];
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
+      const double* below = x.data() + p.first[p.block[b].row];
+      const double* l = numbers.data() + p.block[b].offset;
+      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
+        for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
+      }
+    }
+    for (int i = n - 1; i >= 0; --i) {
+      for (int k = i + 1; k < n; ++k) own[i] -= diagonal[k * n + i] * own[k];
+    }
+  }
+}
+
+}  // namespace
+
+void BlockGraph::reset(std::size_t count) {
+  count_ = count;
+  base::reset_lists(count, neighbors_);
+}
+
+void BlockGraph::sort() {
+  for (std::size_t i = 0; i < count_; ++i) base::sort_unique(neighbors_[i]);
+}
+
+/// Its neighbors become adjacent to each other.
+void BlockGraph::eliminate_node(std::uint32_t node) {
+  const std::vector<std::uint32_t>& clique = neighbors_[node];
+  for (const std::uint32_t i : clique) {
+    std::vector<std::uint32_t>& own = neighbors_[i];
+    joined_.clear();
+    std::set_union(own.begin(), own.end(), clique.begin(), clique.end(), std::back_inserter(joined_));
+    std::erase_if(joined_, [&](std::uint32_t k) { return k == i || k == node; });
+    own.assign(joined_.begin(), joined_.end());
+    queue_.emplace_back(own.size(), i);
+    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+  }
+}
+
+bool BlockGraph::eliminate(std::span<const int> sizes, double budget, BlockPattern& p) {
+  eliminated_.assign(count_, 0);
+  queue_.clear();
+  for (std::uint32_t i = 0; i < count_; ++i) queue_.emplace_back(neighbors_[i].size(), i);
+  std::make_heap(queue_.begin(), queue_.end(), std::greater<>());
+  p.order.clear();
+  p.operations = 0;
+  while (!queue_.empty()) {
+    const auto [degree, node] = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+    queue_.pop_back();
+    if (eliminated_[node] != 0 || degree != neighbors_[node].size()) continue;
+    eliminated_[node] = 1;
+    double below = 0;
+    for (const std::uint32_t i : neighbors_[node]) below += sizes[i];
+    p.operations += cost_of(sizes[node], below);
+    if (p.operations > budget) return false;
+    eliminate_node(node);
+    p.order.push_back(node);
+  }
+  return true;
+}
+
+void BlockGraph::list_blocks(BlockPattern& p) {
+  place_.resize(count_);
+  for (std::uint32_t i = 0; i < p.order.size(); ++i) place_[p.order[i]] = i;
+  p.block.clear();
+  p.column_begin.assign(1, 0);
+  for (std::uint32_t j = 0; j < p.order.size(); ++j) {
+    joined_.assign(1, j);
+    for (const std::uint32_t node : neighbors_[p.order[j]]) joined_.push_back(place_[node]);
+    std::sort(joined_.begin(), joined_.end());
+    for (const std::uint32_t i : joined_) p.block.push_back({i, j});
+    p.column_begin.push_back(static_cast<std::uint32_t>(p.block.size()));
+  }
+}
+
+bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double budget, BlockPattern& p) {
+  graph.sort();
+  if (!graph.eliminate(sizes, budget, p)) return false;
+  graph.list_blocks(p);
+  graph.sizes_in_order_.clear();
+  for (const std::uint32_t node : p.order) graph.sizes_in_order_.push_back(sizes[node]);
+  resize_blocks(graph.sizes_in_order_, p);
+  p.sign.assign(p.order.size(), 1);
+  list_updates(p);
+  return true;
+}
+
+void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
+  p.size.assign(sizes.begin(), sizes.end());
+  p.first.assign(1, 0);
+  for (const int size : sizes) p.first.push_back(p.first.back() + size);
+  p.number_count = 0;
+  for (BlockPattern::Block& block : p.block) {
+    block.offset = p.number_count;
+    p.number_count += static_cast<std::uint32_t>(p.size[block.row] * p.size[block.column]);
+  }
+}
+
+void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& p) {
+  for (std::size_t i = 0; i < p.order.size(); ++i) p.sign[i] = sign_of_node[p.order[i]];
+}
+
+std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
+  const auto begin = p.block.begin() + p.column_begin[column];
+  const auto end = p.block.begin() + p.column_begin[column + 1];
+  const auto found = std::lower_bound(
+      begin, end, row, [](const BlockPattern::Block& block, std::uint32_t r) { return block.row < r; });
+  return static_cast<std::uint32_t>(found - p.block.begin());
+}
+
+void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double>& scaled) {
+  for (int j = 0; j < p.node_count(); ++j) {
+    double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
+    factor_diagonal(p.sign[j], diagonal, p.size[j]);
+    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b)
+      factor_below(diagonal, p.size[j], numbers.data() + p.block[b].offset, p.size[p.block[b].row]);
+    const ColumnBelow below = below_diagonal(p, j, numbers);
+    scale_transposed(diagonal, static_cast<std::size_t>(p.size[j]), below, scaled);
+    for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u)
+      subtract_product(p, p.update[u], below, scaled, numbers);
+  }
+}
+
+void solve(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  substitute_forward(p, numbers, x);
+  substitute_back(p, numbers, x);
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,138 @@
+#pragma once
+
+#include "hooke/math.h"
+
+#include "solver/simd/lanes.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// Ropes of equally many nodes side by side, one in each lane, and the solution of a Newton step for all of
+/// them at once. The numbers are double in both precisions of the engine. Equations:
+/// solver/rope/rope_systems.h.
+
+namespace hooke::solver::wide {
+
+inline constexpr int kRopeLanes = kDoubleLanes;  ///< One rope in each.
+
+/// What stays of a segment, with the quotients that its equation takes.
+template <class Number>
+struct SegmentTraits {
+  Number rest, per_rest;          ///< L [m]; 1 / L
+  Number limit;                   ///< Largest length [m].
+  Number damping, per_stiffness;  ///< c; 1 / k, 0 if it is rigid.
+  Number bias, grip;              ///< b; 1 / gamma = h (c + h k), infinite if it is rigid.
+  Number lighter, per_lighter;    ///< m, mass of the lighter end that moves [kg]; 1 / m
+};
+
+/// Node i and the segment behind it, as RopeNode and SegmentTraits; the last node has no segment.
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeTraitLanes {
+  double mass[kCount], w[kCount];
+  double rest[kCount], per_rest[kCount], limit[kCount], damping[kCount], per_stiffness[kCount];
+  double bias[kCount], grip[kCount], lighter[kCount], per_lighter[kCount];
+};
+
+/// Bending at node i + 1, as RopeBend. Its compliance and target in one: `pull` is what it gives for each
+/// unit of the change of direction, `grip` for each unit of its rate. The change is that of `back` before
+/// [s].
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeBendLanes {
+  double before[kCount], behind[kCount];
+  double pull[kCount], grip[kCount], back[kCount], whipping_grip[kCount];
+};
+
+/// What stays of ropes from substep to substep.
+template <int kCount>
+struct RopeTraits {
+  std::vector<RopeTraitLanes<kCount>> rows;
+  std::vector<RopeBendLanes<kCount>> bends;  ///< Of inner nodes; none if no rope resists bending.
+  std::vector<char> pinned;                  ///< Of nodes, whether one does not move in any lane.
+  bool limits = false;                       ///< Whether any segment has a largest length.
+  double length[kCount];                     ///< Of the ropes, at rest [m].
+};
+
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeNodeLanes {
+  double v_free[3][kCount];  ///< As RopeNode.
+  double u[3][kCount];       ///< The result.
+
+  double inverse[6][kCount], impulse[3][kCount], along[3][kCount],
+      tau[kCount];  ///< Of rope_sweep.h: P, f, r.
+};
+
+/// Of the elimination of nodes with bends, as rope_sweep.h has it: F and c.
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeFillLanes {
+  double meets[3][3][kCount], outer[kCount];
+};
+
+/// What touches a node: grips, and impulse.
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeHoldLanes {
+  double mass[6][kCount], impulse[3][kCount];
+};
+
+/// The segment from node i to node i + 1, as SegmentState.
+template <int kCount>
+struct alignas(kCount * sizeof(double)) RopeSegmentLanes {
+  double line[3][kCount], before[3][kCount];
+  double tension_bound[kCount];                                              ///< T+
+  double limited[kCount];                                                    ///< 1 if it is at its limit.
+  double n[3][kCount], offset[3][kCount], n_offset[kCount], across[kCount];  ///< As SegmentRow.
+  double pull[kCount];                                                       ///< n.q
+};
+
+template <int kCount>
+struct RopeLanes {
+  std::vector<RopeNodeLanes<kCount>> nodes;
+  std::vector<RopeSegmentLanes<kCount>> segments;
+  std::vector<RopeFillLanes<kCount>> fills;  ///< None if no rope resists bending.
+  std::vector<RopeHoldLanes<kCount>> holds;  ///< Of nodes that `held` names.
+  std::vector<char> held;                    ///< Whether a node is touched in any lane.
+  // As RopeSetting; `first` is 1 or 0.
+  double compliance[kCount], turning[3][kCount], first[kCount];
+
+  // Results.
+  double error[kCount];           ///< Largest relative length error left.
+  double limits_changed[kCount];  ///< 1 if a segment went onto or off its limit.
+  double finite[kCount];          ///< 0 if every velocity is finite, else not a number.
+};
+
+/// Where ropes are in the tables. Positions and velocities are lines of four numbers, three of which are a
+/// vector.
+template <int kCount>
+struct RopePlaces {
+  std::uint32_t first_particle[kCount], first_segment[kCount];
+  const Real* position;
+  const Real* before;  ///< Velocities before this substep's forces.
+  Real* velocity;      ///< And after them; the fourth number is the inverse mass.
+  Real* tension;
+  Real* mean_tension;
+};
+
+/// Reads free velocities, how segments lie and went, and T+. No segment is at its limit.
+void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes);
+void load_ropes(const RopePlaces<1>& places, RopeLanes<1>& rope);
+
+/// A Newton step of substep length h [s]: linearizes all segments, finds velocities and impulses, raises T+,
+/// moves segments onto or off their limits.
+void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes);
+void solve_ropes(double h, const RopeTraits<1>& traits, RopeLanes<1>& rope);
+
+/// Writes velocities and tensions of the lanes that `chosen` names, after a substep of length h [s], and adds
+/// tensions to their sums.
+void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+                 const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes);
+void store_ropes(double h, const RopePlaces<1>& places, const RopeTraits<1>& traits, const bool (&chosen)[1],
+                 const RopeLanes<1>& rope);
+
+// The scalar twins, lane after lane.
+void load_ropes_scalar(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes);
+void solve_ropes_scalar(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes);
+void store_ropes_scalar(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+                        const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes);
+
+}  // namespace hooke::solver::wide

@@ -1,0 +1,463 @@
+#include "solver/rope/rope_rows.h"
+
+#include "solver/rope/rope_segments.h"
+#include "solver/soft/particle_contact_solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::solver {
+
+namespace {
+
+using V = DVec3;
+using M = math::Symmetric3<double>;
+
+constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
+constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
+constexpr double kTetherRecovery = 10;    ///< Share of what a tether is too long by, per second [1/s].
+constexpr double kTetherSpeed = 0.1;      ///< At most [m/s].
+constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
+
+V across(V n, V v) {
+  return v - dot(n, v) * n;
+}
+
+using Lane = wide::HWY_NAMESPACE::Triple<double>;
+
+Lane lane_of(V v) {
+  return {v.x, v.y, v.z};
+}
+V vector_of(const Lane& lane) {
+  return {lane.x, lane.y, lane.z};
+}
+
+wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const RopeNode& a,
+                                                   const RopeNode& b) {
+  return {lane_of(b.x - a.x), lane_of(b.u - a.u), lane_of(b.v_before - a.v_before), e.limited ? 1.0 : 0.0,
+          e.tension_bound};
+}
+
+/// How fast a contact would open, with its gap as speed.
+double approach_of(const RopeTouch& t, V u, double h) {
+  return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
+}
+
+/// What friction did while it slid: it drives where N was not right yet, or the way has turned.
+bool drives_by_friction(const RopeTouch& t, V sliding) {
+  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
+}
+
+/// Friction that a contact starts from: what it did in the last substep, of the size that N allows now.
+V carried_friction(const RopeTouch& t) {
+  const double most = t.friction * t.normal;
+  const double size = length(t.f0);
+  return size > most ? (most / size) * t.f0 : t.f0;
+}
+
+void slide(V trial, double size, RopeTouch& t) {
+  t.slides = true;
+  t.trial = size;
+  t.against = (1.0 / size) * trial;
+}
+
+/// Of a change of the trial force across its direction, what the friction of a node that slides gets.
+double turned_share(const RopeTouch& t) {
+  return t.trial > 0 ? t.friction * t.normal / t.trial : 0;
+}
+
+/// Friction of an active contact: holds with f0 - rho u_t up to mu N, and is mu N along that beyond: the
+/// nearest force that Coulomb's cone allows. What is `dragged` is so by mu N over its speed, which never
+/// drives, but takes many solutions to come to the force.
+void update_friction(RopeTouch& t, V sliding) {
+  const double most = t.friction * t.normal;
+  if (t.dragged) {
+    const double speed = length(sliding);
+    t.f = -t.drag * sliding;
+    t.drag = most < t.rho * speed ? most / speed : t.rho;
+    return;
+  }
+  t.f = carried_friction(t) - t.rho * sliding;
+  const double size = length(t.f);
+  t.slides = size > most;
+  if (!t.slides) return;
+  slide(t.f, size, t);
+  t.f = most * t.against;
+}
+
+/// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
+double drag_of(const RopeTouch& t, V u) {
+  if (!(t.normal > 0)) return 0;
+  const double speed = length(across(t.n, u - t.surface));
+  return speed * t.rho > t.friction * t.normal ? t.friction * t.normal / speed : t.rho;
+}
+
+/// True if it came into effect or out of it, or if its friction is not yet what its force allows.
+bool update_point_touch(double h, bool let_go, V u, RopeTouch& t) {
+  const bool was_active = t.active;
+  const double drag = t.drag;
+  const double approach = approach_of(t, u, h);
+  t.normal = t.active ? std::max(0.0, -t.rho * approach) : 0;
+  t.active = t.active ? t.normal > 0 : approach < 0 && !let_go;
+  t.drag = drag_of(t, u);
+  t.f = -drag * across(t.n, u - t.surface);
+  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kSettledDrag * drag);
+}
+
+wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
+  return {h,
+          1 / h,
+          setting.compliance,
+          1 / setting.compliance,
+          setting.first ? 1.0 : 0.0,
+          lane_of(setting.turning),
+          true};
+}
+
+/// A force across the normal of before, across the one of now: of the same size, as its node has gone round
+/// what it touches; but of a new place only what is across there too.
+V across_anew(V n, V force) {
+  constexpr double kSamePlace = 0.95;  // cosine of the turn
+  const V now = across(n, force);
+  const double size = length(now);
+  const double before = length(force);
+  return size > kSamePlace * before ? (before / size) * now : now;
+}
+
+RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
+  const state::Contacts& contacts = tables.contacts;
+  RopeTouch t;
+  t.row = static_cast<std::uint32_t>(row);
+  t.node = node;
+  t.rho = kContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
+  t.n = vector_cast<double>(contacts.normal[row]);
+  t.surface = vector_cast<double>(contacts.surface_velocity[row]);
+  t.lever = vector_cast<double>(contacts.lever[row]);
+  t.belt = vector_cast<double>(contacts.belt_velocity[row]);
+  t.separation = static_cast<double>(contacts.separation[row]);
+  t.friction = static_cast<double>(contacts.friction[row]);
+  t.n0 = h * static_cast<double>(contacts.normal_force[row]);
+  t.f0 = across_anew(t.n, h * vector_cast<double>(contacts.friction_force[row]));
+  t.active = t.n0 > 0 || t.separation <= 0;
+  const double size = length(t.f0);
+  t.normal = t.n0;
+  if (size > 0 && size >= kSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
+  // Held in the first solution, a whole rope would stop.
+  if (!(t.friction > 0)) t.slides = true;
+  return t;
+}
+
+/// A tether that is a spring row from a free particle to a pin.
+RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const state::Tables& tables) {
+  const state::Springs& springs = tables.springs;
+  const std::uint32_t particle = springs.particle_a[row];
+  const std::uint32_t pin = springs.particle_b[row];
+  const V way = vector_cast<double>(tables.particles.position[pin].x - tables.particles.position[particle].x);
+  const double distance = length(way);
+  RopeTouch t;
+  t.row = RopeTouch::kTether;
+  t.node = node;
+  t.n = distance > 0 ? (1.0 / distance) * way : V{0, 1, 0};
+  t.surface = vector_cast<double>(tables.particles.velocity[pin].v);
+  const double slack = static_cast<double>(springs.rest_length[row]) - distance;
+  t.active = slack <= 0;
+  // A heavy body drawn back at once would get energy by it.
+  t.separation = slack > 0 ? slack : h * std::max(slack * kTetherRecovery, -kTetherSpeed);
+  return t;
+}
+
+}  // namespace
+
+void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+               const state::Tables& tables, RopeScratch& s) {
+  const auto first = static_cast<std::uint32_t>(s.nodes.size());
+  for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+    const std::uint32_t row = chain.first_particle + i;
+    s.nodes.push_back(load_node(row, before[row].v, tables.particles));
+  }
+  for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
+    const std::size_t row = chain.first_segment + i;
+    const RopeNode& a = s.nodes[first + i];
+    const RopeNode& b = s.nodes[first + i + 1];
+    RopeSegment e;
+    e.a = first + i;
+    e.traits = segment_traits(row, lighter_end(a.mass, a.w, b.mass, b.w), h, tables.segments);
+    e.tension_bound = first_tension_bound(row, tables.segments);
+    e.limited = tables.segments.limited[row] != 0;
+    s.segments.push_back(e);
+  }
+  load_touches(chain, first, h, tables, s.touches);
+}
+
+wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
+                                           const state::Segments& segments) {
+  const auto rest = static_cast<double>(segments.rest_length[row]);
+  const auto limit = static_cast<double>(segments.length_limit[row]);
+  const auto k = static_cast<double>(segments.stiffness[row]);
+  const auto c = static_cast<double>(segments.damping[row]);
+  const double s = c + h * k;
+  const bool rigid = k > kLargestFinite;
+  return {.rest = rest,
+          .per_rest = 1 / rest,
+          .limit = limit,
+          .damping = c,
+          .per_stiffness = 1 / k,
+          .bias = rigid ? 1 / h : k / s,
+          .grip = h * s,
+          .lighter = lighter,
+          .per_lighter = 1 / lighter};
+}
+
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
+                  std::vector<RopeTouch>& touches) {
+  for (std::uint32_t row = chain.first_contact; row < chain.end_contact; ++row) {
+    const std::uint32_t particle = tables.contacts.particle[row];
+    if (tables.particles.velocity[particle].inverse_mass > Real(0))
+      touches.push_back(load_touch(row, first_node + particle - chain.first_particle, h, tables));
+  }
+}
+
+void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double heaviest, double h,
+                        const state::Tables& tables, std::vector<RopeTouch>& touches) {
+  const double own = node.mass;
+  heaviest = std::max(heaviest, own);
+  for (std::size_t row = first; row < end; ++row) {
+    const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
+    if (w > 0) heaviest = std::max(heaviest, 1 / w);
+  }
+  const std::size_t first_touch = touches.size();
+  for (std::size_t row = first; row < end; ++row) {
+    RopeTouch t = load_touch(row, index, h, tables);
+    t.separation = std::max(t.separation, 0.0);
+    t.n0 = 0;
+    t.f0 = {};
+    t.slides = false;
+    touches.push_back(t);
+  }
+  for (const std::uint32_t row : tethers) {
+    const bool still_pinned =
+        tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
+    if (still_pinned) touches.push_back(load_tether(row, index, h, tables));
+  }
+  for (RopeTouch& t : std::span(touches).subspan(first_touch)) {
+    t.of_point = true;
+    t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
+    t.drag = drag_of(t, node.v_free);
+  }
+}
+
+RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments) {
+  const auto before = static_cast<double>(segments.rest_length[row]);
+  const auto behind = static_cast<double>(segments.rest_length[row + 1]);
+  const double length =
+      0.5 * ((segments.clamped[row] != 0 ? 0 : before) + (segments.clamped[row + 1] != 0 ? 0 : behind));
+  RopeBend bend;
+  bend.before = 1 / before;
+  bend.behind = 1 / behind;
+  bend.stiffness = chain.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
+  bend.damping = chain.bend_damping * bend.stiffness;
+  return bend;
+}
+
+void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s) {
+  if (!(chain.bend_stiffness > 0)) return;
+  for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
+    RopeBend bend = load_bend(chain, chain.first_segment + i - 1, segments);
+    bend.node = static_cast<std::uint32_t>(first_node + i);
+    s.bends.push_back(bend);
+  }
+}
+
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend) {
+  const bool whips = !setting.first;
+  const double grip = bend.grip(h, whips);
+  const double back = whips ? 0 : kBendNewmark * h;
+  const RopeNode* node = &nodes[bend.node];
+  const auto line = [&](int i) {
+    return node[i + 1].x - node[i].x - back * (node[i + 1].v_before - node[i].v_before);
+  };
+  bend.gamma = 1 / (h * grip);
+  bend.target = (-bend.stiffness / grip) * (bend.behind * line(0) - bend.before * line(-1));
+}
+
+RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V line, V speed) {
+  if (std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; }))
+    return {.compliance = kComplianceInContact};
+  RopeSetting setting = {.compliance = kComplianceInAir};
+  // The line of a rope that is folded to less than a quarter of its length means nothing.
+  const double square = length_squared(line);
+  if (square >= rest * rest / 16) setting.turning = (1.0 / square) * cross(line, speed);
+  return setting;
+}
+
+RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std::size_t first_touch,
+                          const RopeScratch& s) {
+  double rest = 0;
+  for (std::size_t i = first_segment; i < s.segments.size(); ++i) rest += s.segments[i].traits.rest;
+  const RopeNode& first = s.nodes[first_node];
+  const RopeNode& last = s.nodes.back();
+  return first_setting(std::span(s.touches).subspan(first_touch), rest, last.x - first.x,
+                       last.v_before - first.v_before);
+}
+
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeSegment& e) {
+  const auto row = wide::HWY_NAMESPACE::linearized<double>(state_of(e, nodes[e.a], nodes[e.a + 1]), e.traits,
+                                                           terms_of(setting, h), setting.first);
+  e.n = vector_of(row.n);
+  e.offset = vector_of(row.offset);
+  e.along = row.along;
+  e.across = row.across;
+  e.compliance = math::axial(e.n, 1.0 / e.along, 1.0 / e.across);
+}
+
+/// What slides is free along its way. Beside it a change of velocity turns the force: mu N for each of the
+/// trial force.
+M grip_of(const RopeTouch& t) {
+  if (!t.slides || t.of_point || t.dragged)
+    return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho);
+  return math::axial(t.n, t.rho, 0.0) + math::axial(cross(t.n, t.against), t.rho * turned_share(t), 0.0);
+}
+
+V push_of(const RopeTouch& t, double h) {
+  const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
+  if (t.dragged) return normal;
+  const V held = carried_friction(t);
+  if (!t.slides) return normal + held;
+  const V beside = cross(t.n, t.against);
+  return normal + (t.friction * t.normal) * t.against + (turned_share(t) * dot(beside, held)) * beside;
+}
+
+NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h) {
+  NodeHold hold = {M::diagonal(node.mass), node.mass * node.v_free};
+  for (const RopeTouch& t : at_node) {
+    if (!t.active) continue;
+    const M grip = grip_of(t);
+    hold.mass = hold.mass + grip;
+    hold.impulse += push_of(t, h) + grip * (t.body < 0 ? t.surface : t.belt);
+  }
+  return hold;
+}
+
+void hold_nodes(double h, RopeScratch& s) {
+  for (RopeNode& node : s.nodes) {
+    node.inverse = M::diagonal(node.w);
+    node.target = node.v_free;
+  }
+  for_each_touched(s.touches, [&](std::span<RopeTouch> at_node) {
+    RopeNode& node = s.nodes[at_node.front().node];
+    const NodeHold hold = hold_of(at_node, node, h);
+    node.inverse = math::inverse(hold.mass);
+    node.target = node.inverse * hold.impulse;
+  });
+}
+
+Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& t) {
+  const double approach = approach_of(t, node.u, h);
+  const bool was_active = t.active;
+  const bool slid = t.slides;
+  Unsettled unsettled;
+  if (t.active) {
+    const double push = t.n0 - t.rho * approach;
+    const V sliding = across(t.n, node.u - t.surface);
+    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kContactStiffness);
+    const bool drags_on = drives_by_friction(t, sliding);
+    t.normal = std::max(0.0, push);
+    t.active = t.normal > 0;
+    t.let_go = let_go && pulls;
+    t.dragged = t.dragged || drags_on;
+    if (t.active) update_friction(t, sliding);
+    unsettled.pulls = pulls || drags_on;
+  } else {
+    t.normal = 0;
+    t.active = approach < 0 && !t.let_go;
+    unsettled.meets = t.active && approach < -kMeetingSpeed;
+  }
+  if (!t.active) t.f = {};
+  unsettled.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;
+  return unsettled;
+}
+
+Unsettled update_touches(double h, bool let_go, RopeScratch& s) {
+  Unsettled unsettled;
+  for (RopeTouch& t : s.touches) {
+    const RopeNode& node = s.nodes[t.node];
+    if (t.of_point) {
+      unsettled.points = update_point_touch(h, let_go, node.u, t) || unsettled.points;
+    } else {
+      unsettled.add(update_touch(h, let_go, node, t));
+    }
+  }
+  return unsettled;
+}
+
+double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+                      std::span<RopeSegment> segments, bool& limits_changed) {
+  const auto terms = terms_of(setting, h);
+  double worst = 0;
+  for (RopeSegment& e : segments) {
+    const RopeNode& a = nodes[e.a];
+    const RopeNode& b = nodes[e.a + 1];
+    const auto check = wide::HWY_NAMESPACE::checked<double>(state_of(e, a, b), e.traits, dot(e.n, e.q),
+                                                            dot(e.n, b.u - a.u), terms);
+    e.tension_bound = check.tension_bound;
+    if (!(a.w > 0) && !(b.w > 0)) continue;
+    e.limited = check.limited > 0;
+    limits_changed = limits_changed || check.limit_changed > 0;
+    worst = std::max(worst, check.error);
+  }
+  return worst;
+}
+
+int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled) {
+  if (unsettled.pulls) return 2 * kMostRopeSolves;
+  if (unsettled.meets) return kMostRopeSolves;
+  if (unsettled.ropes) return kSlidingSolves;
+  const bool active =
+      std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; });
+  return active ? kLeastContactSolves : 1;
+}
+
+bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches) {
+  if (solves != kMostRopeSolves) return solves < 2 * kMostRopeSolves;
+  if (error <= kReportedError || touches.empty()) return pulls;
+  for (RopeTouch& t : touches) {
+    t.friction = t.drag = 0;
+    t.f0 = t.f = {};
+    t.slides = true;
+  }
+  return true;
+}
+
+bool is_finite(const RopeScratch& s) {
+  return std::all_of(s.nodes.begin(), s.nodes.end(),
+                     [](const RopeNode& node) { return hooke::is_finite(node.u); });
+}
+
+void store_tension(std::size_t row, double tension, bool limited, state::Segments& segments) {
+  segments.tension[row] = static_cast<Real>(tension);
+  segments.mean_tension[row] += segments.tension[row];
+  segments.limited[row] = limited ? 1 : 0;
+}
+
+void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+                const RopeScratch& s, state::Tables& tables) {
+  for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+    const RopeNode& node = s.nodes[first_node + i];
+    if (node.w > 0) tables.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(node.u);
+  }
+  for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
+    const RopeSegment& e = s.segments[first_segment + i];
+    store_tension(chain.first_segment + i, dot(e.n, e.q) / h, e.limited, tables.segments);
+  }
+}
+
+void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts) {
+  for (const RopeTouch& t : touches) {
+    if (t.row == RopeTouch::kTether) continue;
+    contacts.normal_force[t.row] = static_cast<Real>(t.normal / h);
+    contacts.friction_force[t.row] = vector_cast<Real>((1.0 / h) * t.f);
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,273 @@
+#pragma once
+
+#include "math/symmetric.h"
+#include "solver/rope/rope_kernels.h"
+#include "solver/rope/rope_systems.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+/// \file
+/// Ropes in solver form: what solving them alone (chains.cpp) and with what they hang on (bundles.cpp) have
+/// in common. Equations: chains.h.
+
+namespace hooke::solver {
+
+inline constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
+inline constexpr double kComplianceInContact =
+    1e-5;  ///< Rigid segments between stuck nodes are undetermined.
+
+struct RopeNode {
+  DVec3 x, v_free, v_before;         ///< Position, velocity with forces, velocity before forces.
+  double mass = 0, w = 0;            ///< w = 0: held.
+  DVec3 u;                           ///< The result.
+  DVec3 target;                      ///< v*: free velocity with the contact's pull.
+  math::Symmetric3<double> inverse;  ///< W
+};
+
+struct RopeSegment {
+  std::uint32_t a = 0;  ///< Node; b is the next one.
+  DVec3 n, offset;
+  math::Symmetric3<double> compliance;  ///< E
+  DVec3 q;                              ///< Impulse.
+  wide::SegmentTraits<double> traits = {};
+  double tension_bound = 0;      ///< T+
+  double along = 0, across = 0;  ///< Of E^-1.
+  bool limited = false;
+};
+
+/// A bend's moment is that of the change c of direction at the substep's start, of the growth of its rate r
+/// since before the substep, and of a little of r itself: B (c + h beta (r - r0) + h delta r). Newmark's beta
+/// keeps the energy of any stiffness, delta takes that of what swings faster than substeps follow (Newmark
+/// 1959, "A method of computation for structural dynamics"). What whips, so that its segments are linearized
+/// anew, is bent with c of the substep's end, which takes more.
+inline constexpr double kBendNewmark = 0.25;
+inline constexpr double kBendDamping = 0.03;
+
+/// Resistance to bending at an inner node: the change of direction there, m_e - m_d of the two segments'
+/// vectors over their lengths, which is 2 sin(angle / 2).
+struct RopeBend {
+  std::uint32_t node = 0;
+  double before = 0, behind = 0;  ///< 1 / length of the segments [1/m].
+  double stiffness = 0;           ///< EI over the length that bends here [N m].
+  double damping = 0;             ///< [N m s]
+  double gamma = 0;
+  DVec3 target;   ///< Of the rate at which the change of direction grows.
+  DVec3 impulse;  ///< [N m s]
+
+  /// Moment per rate, over h, in a substep of length h [s].
+  [[nodiscard]] double grip(double h, bool whips) const {
+    return damping + (whips ? 1 : kBendNewmark + kBendDamping) * h * stiffness;
+  }
+};
+
+/// A contact of a node, or a tether: what holds a point within a distance of its pin holds it as a plane
+/// across its way would, without friction.
+struct RopeTouch {
+  static constexpr std::uint32_t kTether = 0xFFFFFFFF;
+
+  std::uint32_t row = 0, node = 0;
+  double rho = 0;  ///< How hard it holds [kg].
+  DVec3 n, f0, f;
+  DVec3 against;     ///< Direction of friction on a node that slides.
+  double trial = 0;  ///< Of such a one: size of what would have held it [N s].
+  DVec3 surface;     ///< Velocity of what is touched, at the contact [m/s].
+  int body = -1;     ///< Of a net, whose velocity is solved for; -1: `surface` is given.
+  DVec3 lever;       ///< From that body's center [m].
+  DVec3 belt;        ///< Velocity of the surface against that body [m/s].
+  double separation = 0, friction = 0, n0 = 0, normal = 0;
+  bool active = false, slides = false;
+  bool let_go = false;    ///< For the rest of the substep: it pulled too often.
+  bool dragged = false;   ///< The same of friction that drove.
+  bool of_point = false;  ///< Of a particle that is no rope's.
+  double drag = 0;  ///< Of such a one, or one that slides: rho across the normal, mu N over its speed [kg].
+};
+
+/// How a rope's segments are linearized.
+struct RopeSetting {
+  double compliance = kComplianceInAir;
+  DVec3 turning = {};  ///< Angular velocity of the line between the rope's ends [rad/s].
+  bool first = true;   ///< At the start of the substep; later about the last result.
+};
+
+/// Ropes in a row: the nodes and segments of one, then of the next.
+struct RopeScratch {
+  std::vector<RopeNode> nodes;
+  std::vector<RopeSegment> segments;
+  std::vector<RopeBend> bends;
+  std::vector<RopeTouch> touches;  ///< In order of nodes.
+
+  void clear() {
+    nodes.clear();
+    segments.clear();
+    bends.clear();
+    touches.clear();
+  }
+};
+
+inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that it holds.
+inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
+inline constexpr double kReportedError = 0.01;
+inline constexpr int kMostRopeSolves = 8;
+inline constexpr int kLeastContactSolves = 2;
+inline constexpr int kSlidingSolves = 4;
+inline constexpr double kSlidingShare =
+    0.9999;                                  ///< Of mu N: a node whose friction was this large was sliding.
+inline constexpr double kSettledDrag = 0.1;  ///< Share by which drag may still change.
+
+/// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
+void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+               const state::Tables& tables, RopeScratch& s);
+
+/// What stays of a segment; `lighter` is the mass of its lighter end [kg].
+[[nodiscard]] wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
+                                                         const state::Segments& segments);
+
+/// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
+void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
+                  std::vector<RopeTouch>& touches);
+
+/// Appends the contacts of one particle that is no rope's, `node` of the number `index`: rows [first, end),
+/// and the tethers that hold it, rows of springs. Overlap does not become speed
+/// (solver/soft/particle_contact_solve.h). `heaviest` is the mass of what else presses on it [kg].
+void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                        std::span<const std::uint32_t> tethers, double heaviest, double h,
+                        const state::Tables& tables, std::vector<RopeTouch>& touches);
+
+/// Bending between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only half a
+/// segment bends.
+[[nodiscard]] RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments);
+
+/// Mass of the lighter of two nodes that move; 1 if neither does [kg]. Inverse masses are 0 of what is held.
+[[nodiscard]] inline double lighter_end(double mass_a, double inverse_a, double mass_b, double inverse_b) {
+  constexpr double kHeld = std::numeric_limits<double>::infinity();
+  const double m = std::min(inverse_a > 0 ? mass_a : kHeld, inverse_b > 0 ? mass_b : kHeld);
+  return m < kHeld ? m : 1.0;
+}
+
+/// T+ at the start of a substep [N].
+[[nodiscard]] inline double first_tension_bound(std::size_t row, const state::Segments& segments) {
+  return std::max(0.0, static_cast<double>(segments.tension[row]));
+}
+
+/// One node, as load_rope makes it.
+[[nodiscard]] inline RopeNode load_node(std::uint32_t particle, Vec3 before,
+                                        const state::Particles& particles) {
+  return {.x = vector_cast<double>(particles.position[particle].x),
+          .v_free = vector_cast<double>(particles.velocity[particle].v),
+          .v_before = vector_cast<double>(before),
+          .mass = static_cast<double>(particles.mass[particle]),
+          .w = static_cast<double>(particles.velocity[particle].inverse_mass),
+          .u = {},
+          .target = {},
+          .inverse = {}};
+}
+
+/// How a rope of length `rest` [m] is linearized at the start of a substep; `line` and `speed` go from its
+/// first node to its last.
+[[nodiscard]] RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, DVec3 line,
+                                        DVec3 speed);
+/// The same for the rope that was loaded last.
+[[nodiscard]] RopeSetting first_setting(std::size_t first_node, std::size_t first_segment,
+                                        std::size_t first_touch, const RopeScratch& s);
+
+/// The segment's equation u_b - u_a = offset + compliance q.
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+               RopeSegment& segment);
+
+/// Bends of a rope whose nodes begin at `first_node`.
+void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s);
+/// The bend's equation r = target - gamma * impulse in a substep of length h [s].
+void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend);
+
+/// W and v* of every node, with what touches it.
+void hold_nodes(double h, RopeScratch& s);
+
+/// Calls visit(touches) for those of each node that has any; they are in order of nodes.
+template <class Visit>
+void for_each_touched(std::span<RopeTouch> touches, Visit&& visit) {
+  for (std::size_t first = 0; first < touches.size();) {
+    std::size_t end = first;
+    while (end < touches.size() && touches[end].node == touches[first].node) ++end;
+    visit(touches.subspan(first, end - first));
+    first = end;
+  }
+}
+
+/// A node with what touches it: its mass with their grips, and the impulse that makes it go v*.
+struct NodeHold {
+  math::Symmetric3<double> mass;
+  DVec3 impulse;
+};
+[[nodiscard]] NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h);
+
+/// The mass that a contact adds to its node: the change of the impulse on it per velocity.
+[[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch);
+
+/// The impulse of a contact on its node, less what `grip_of` says of velocities.
+[[nodiscard]] DVec3 push_of(const RopeTouch& touch, double h);
+
+/// What a solution has left to do with contacts. A rope's that came into effect or out of it, or slides
+/// otherwise, is mended in the next substep if it must be; but not what is met fast, or what drives it.
+struct Unsettled {
+  bool ropes = false, points = false;
+  bool meets = false;  ///< One of a rope, faster than kMeetingSpeed.
+  bool pulls = false;  ///< One of a rope, across a gap, or its friction drives: it makes energy.
+
+  void add(const Unsettled& other) {
+    ropes = ropes || other.ropes;
+    points = points || other.points;
+    meets = meets || other.meets;
+    pulls = pulls || other.pulls;
+  }
+};
+
+inline constexpr double kMeetingSpeed = 0.1;  ///< [m/s]
+
+/// Whether what a contact does to a mass counts: more than 1 cm/s of it. Where there is no gap a pull does
+/// none.
+[[nodiscard]] inline bool is_work(double energy, double mass) {
+  constexpr double kLeastEnergy = 0.5e-4;
+  return energy > kLeastEnergy * mass;
+}
+
+/// The contact's force that follows from u, of a rope. Where contacts may only `let_go`, none comes into
+/// effect any more, so that the last solution has none that pulls.
+Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& touch);
+
+/// The same for all, of points too.
+[[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
+
+/// Largest relative length error left in a rope; raises T+ and moves segments onto or off their limits.
+double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
+                      std::span<RopeSegment> segments, bool& limits_changed);
+
+/// How many solutions a substep takes at least, by what update_touches said.
+[[nodiscard]] int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled);
+
+/// Whether contacts that pull are let go for good.
+[[nodiscard]] inline bool lets_go(int solves) {
+  return solves >= kMostRopeSolves;
+}
+
+/// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its length
+/// because friction pushes nodes that no longer move against it, which makes energy: after kMostRopeSolves it
+/// is let go for this substep, and the rope gets as many solutions without.
+[[nodiscard]] bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches);
+
+[[nodiscard]] bool is_finite(const RopeScratch& s);
+
+/// Writes back the tension of a segment [N]; its mean is summed over the step.
+void store_tension(std::size_t row, double tension, bool limited, state::Segments& segments);
+
+/// Writes back one rope, which begins at node `first_node` and segment `first_segment`.
+void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+                const RopeScratch& s, state::Tables& tables);
+
+void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts);
+
+}  // namespace hooke::solver

@@ -1,0 +1,209 @@
+/// A rope's segment in numbers.h's Numbers: its equation, and what is left of it after a solution. Equations:
+/// solver/rope/rope_systems.h. Included anew for each instruction set.
+
+#if defined(HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H
+#undef HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H
+#else
+#define HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H
+#endif
+
+#include "solver/rope/rope_kernels.h"
+#include "solver/simd/numbers.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hooke::solver::wide::HWY_NAMESPACE {
+
+constexpr double kWaveDamping = 0.2;       ///< Share of the geometric stiffness that damps waves.
+constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
+constexpr double kLimitTolerance = 1e-4;
+constexpr double kFirmer = 1.0001;    ///< Than its stiffness says, by the most that `along` may be.
+constexpr double kNoLength = 1e-100;  ///< Shorter has no direction [m].
+
+template <class Number>
+struct SegmentState {
+  Triple<Number> line, relative, before;  ///< x_b - x_a, u_b - u_a, and that before this substep's forces.
+  Number limited, tension_bound;          ///< 1 or 0; T+, not negative.
+};
+
+/// q = K (u_b - u_a - offset), K = `along` n, `across` beside it: 1 / gamma and beta.
+template <class Number>
+struct SegmentRow {
+  Triple<Number> n, offset;
+  Number n_offset;  ///< n.offset
+  Number along, across;
+};
+
+/// What the segments of a rope have in common; h and 1 / h.
+template <class Number>
+struct RopeTerms {
+  Number h, per_h;
+  Number compliance, most_along;  ///< chi; `along` over the lighter mass, at most, 1 / chi.
+  Number first;                   ///< 1 or 0.
+  Triple<Number> turning;
+  bool limits;  ///< Whether any of them has a largest length.
+};
+
+/// 1 for yes, 0 for no.
+template <class Number>
+HWY_INLINE Number one_if_above(Number a, Number b) {
+  return choose(above(a, b), Number(1.0), Number(0.0));
+}
+
+template <class Number>
+HWY_INLINE Triple<Number> choose3(Number flag, const Triple<Number>& yes, const Triple<Number>& no) {
+  const auto condition = above(flag, Number(0.0));
+  return {choose(condition, yes.x, no.x), choose(condition, yes.y, no.y), choose(condition, yes.z, no.z)};
+}
+
+/// A vector's length and direction, and a quotient that shares the division for it.
+template <class Number>
+struct Direction {
+  Triple<Number> n;
+  Number length, quotient;  ///< The latter is 1 / divisor.
+};
+
+/// Down if there is none.
+template <class Number>
+HWY_INLINE Direction<Number> direction_of(const Triple<Number>& d, Number divisor) {
+  const Number none(kNoLength);
+  const Number length = root(dot(d, d));
+  const Number size = larger(length, none);
+  const Number per_both = quotient(Number(1.0), size * divisor);
+  Direction<Number> result = {scaled(per_both * divisor, d), length, per_both * size};
+  if (any(above(none, length))) {
+    const Number zero(0.0);
+    const Number is_none = one_if_above(none, length);
+    result.n = choose3(is_none, Triple<Number>{zero, Number(-1.0), zero}, result.n);
+  }
+  return result;
+}
+
+/// What a segment may not be firmer than: chi as a stiffness.
+template <class Number>
+HWY_INLINE Number most_along(const SegmentTraits<Number>& traits, const RopeTerms<Number>& terms) {
+  return terms.most_along * traits.lighter;
+}
+
+/// How long it should be without a force.
+template <class Number>
+HWY_INLINE Number target_length(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                const RopeTerms<Number>& terms) {
+  if (!terms.limits) return traits.rest;
+  return choose(above(at.limited, Number(0.0)), traits.limit, traits.rest);
+}
+
+/// The stiffness along, and b, of one that may be at its limit.
+template <class Number>
+HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                          const RopeTerms<Number>& terms, SegmentRow<Number>& row) {
+  const Number most = most_along(traits, terms);
+  row.along = smaller(traits.grip, most);
+  if (!terms.limits) return traits.bias;
+  const auto limited = above(at.limited, Number(0.0));
+  row.along = choose(limited, most, row.along);
+  return choose(limited, terms.per_h, traits.bias);
+}
+
+/// At the start of the substep.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
+                                               const SegmentTraits<Number>& traits,
+                                               const RopeTerms<Number>& terms) {
+  const Number pulled = terms.h * terms.h * at.tension_bound;
+  const Number g = pulled * traits.per_rest;
+  const Number held = g + Number(kTransverseFloor) * traits.lighter;
+  SegmentRow<Number> row;
+  row.across = held + Number(kWaveDamping) * g;
+  const Direction<Number> way = direction_of(at.line, row.across);
+  row.n = way.n;
+  const Number bias = stiffen(at, traits, terms, row);
+  const Number c = way.length - target_length(at, traits, terms);
+  const Number kept = held * way.quotient;
+  const Number turned = Number(kWaveDamping) * pulled * way.quotient;  // d g L / across
+  row.n_offset = Number(0.0) - bias * c;
+  const Number along = row.n_offset - kept * dot(row.n, at.before);
+  row.offset =
+      sum(sum(scaled(kept, at.before), scaled(turned, cross(terms.turning, row.n))), scaled(along, row.n));
+  return row;
+}
+
+/// About the last result.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
+                                               const SegmentTraits<Number>& traits,
+                                               const RopeTerms<Number>& terms) {
+  const Number g = terms.h * terms.h * at.tension_bound * traits.per_rest;
+  SegmentRow<Number> row;
+  row.across = g + Number(kTransverseFloor) * traits.lighter;
+  const Direction<Number> way = direction_of(sum(at.line, scaled(terms.h, at.relative)), Number(1.0));
+  row.n = way.n;
+  const Number bias = stiffen(at, traits, terms, row);
+  const Number c = way.length - target_length(at, traits, terms);
+  const Number speed = dot(row.n, at.relative);
+  row.n_offset = bias * (terms.h * speed - c);
+  row.offset = sum(at.relative, scaled(row.n_offset - speed, row.n));
+  return row;
+}
+
+/// Lanes that are at the start of the substep may stand beside others.
+template <class Number>
+HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                         const RopeTerms<Number>& terms, bool all_first) {
+  const SegmentRow<Number> row = linearized_first(at, traits, terms);
+  if (all_first) return row;
+  const SegmentRow<Number> again = linearized_again(at, traits, terms);
+  const auto first = above(terms.first, Number(0.0));
+  return {choose3(terms.first, row.n, again.n), choose3(terms.first, row.offset, again.offset),
+          choose(first, row.n_offset, again.n_offset), choose(first, row.along, again.along),
+          choose(first, row.across, again.across)};
+}
+
+template <class Number>
+struct SegmentCheck {
+  Number tension_bound, limited;
+  Number error, limit_changed;  ///< Of the length, relative; 1 or 0.
+};
+
+/// Onto its limit, or off it.
+template <class Number>
+HWY_INLINE void check_limit(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                            Number length, Number pull, const RopeTerms<Number>& terms,
+                            SegmentCheck<Number>& check) {
+  const Number zero(0.0);
+  const auto limited = above(at.limited, zero);
+  const Number over = choose(limited, zero, one_if_above(length, traits.limit * Number(1 + kLimitTolerance)));
+  const Number released = choose(
+      limited, one_if_above(terms.h * (traits.limit - traits.rest), pull * traits.per_stiffness), zero);
+  check.limit_changed = larger(over, released);
+  check.limited = choose(above(check.limit_changed, zero), over, at.limited);
+}
+
+/// After a solution, `at` with its velocities; `pull` is n.q, `opening` n.(u_b - u_a), with n as it was
+/// linearized.
+template <class Number>
+HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
+                                        Number pull, Number opening, const RopeTerms<Number>& terms) {
+  const Number zero(0.0);
+  const Triple<Number> d = sum(at.line, scaled(terms.h, at.relative));
+  const Number length = root(dot(d, d));
+  const Number tension = terms.per_h * pull;
+  const auto firm = above(traits.grip, Number(kFirmer) * most_along(traits, terms));
+  const Number by_most = terms.h * terms.compliance * traits.per_lighter * pull;
+  Number expected = choose(firm, by_most, (tension - traits.damping * opening) * traits.per_stiffness);
+  SegmentCheck<Number> result = {larger(at.tension_bound, tension), zero, zero, zero};
+  if (terms.limits) {
+    expected = choose(above(at.limited, zero), by_most, expected);
+    check_limit(at, traits, length, pull, terms, result);
+  }
+  const Number error = length - target_length(at, traits, terms) - expected;
+  result.error = larger(error, zero - error) * traits.per_rest;
+  return result;
+}
+
+}  // namespace hooke::solver::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

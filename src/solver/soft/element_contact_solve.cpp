@@ -1,0 +1,103 @@
+#include "solver/soft/element_contact_solve.h"
+
+#include "solver/body/body_motion.h"
+#include "solver/soft/particle_contact_solve.h"
+
+#include <algorithm>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::InnerContact;
+
+Real inverse_mass_of(const InnerContact& contact, const state::Particles& particles) {
+  Real sum = Real(0);
+  for (std::uint32_t i = 0; i < contact.count; ++i)
+    sum += contact.weight[i] * contact.weight[i] * particles.velocity[contact.particle[i]].inverse_mass;
+  return sum;
+}
+
+constexpr int kSweeps = 2;
+constexpr Real kFar = Real(1e6);  ///< Separation of a row that does not hold now, at least [m].
+
+void push(const InnerContact& contact, Vec3 impulse, state::Tables& t) {
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    state::VelocityLine& line = t.particles.velocity[contact.particle[i]];
+    line.v += (contact.weight[i] * line.inverse_mass) * impulse;
+  }
+  if (gives_way(t.bodies, contact.body)) push_body(contact.body, -impulse, contact.lever, t.bodies);
+}
+
+/// Velocity of the place against the surface.
+Vec3 velocity_of(const InnerContact& contact, const state::Tables& t) {
+  Vec3 v = -(state::velocity_now(t.bodies, contact.body, contact.lever) + contact.belt_velocity);
+  for (std::uint32_t i = 0; i < contact.count; ++i)
+    v += contact.weight[i] * t.particles.velocity[contact.particle[i]].v;
+  return v;
+}
+
+void solve_row(Real h, InnerContact& contact, state::Tables& t) {
+  const Real w = inverse_mass_of(contact, t.particles);
+  const auto resists = [&](Vec3 along) {
+    return gives_way(t.bodies, contact.body)
+               ? w + inverse_mass_at(t.bodies, contact.body, along, contact.lever)
+               : w;
+  };
+  const Vec3 n = contact.normal;
+  const Vec3 relative = velocity_of(contact, t);
+  const Real speed = dot(n, relative);
+  const Real change = -(speed + std::max(contact.separation, Real(0)) / h);
+  const Real w_normal = resists(n);
+  if (!(change > Real(0)) || !(w_normal > Real(0))) return;
+
+  const Real pushed = change / w_normal;
+  const Vec3 sliding = relative - speed * n;
+  const Real rate = length(sliding);
+  Vec3 impulse = pushed * n;
+  if (rate > Real(0)) {
+    const Vec3 along = (Real(1) / rate) * sliding;
+    impulse -= std::min(rate / resists(along), contact.friction * pushed) * along;
+  }
+  push(contact, impulse, t);
+  contact.normal_force += pushed / h;
+}
+
+}  // namespace
+
+bool is_tied(const state::Tables& t, const InnerContact& contact) {
+  if (!contact.joined) return false;
+  if (t.objects[contact.object].kind == PointRef::Kind::kRope) return true;
+  return contact.few && gives_way(t.bodies, contact.body);
+}
+
+bool is_near(const InnerContact& contact) {
+  return contact.separation < kFar;
+}
+
+void push_out(const InnerContact& contact, Real h, state::Particles& particles) {
+  const Real overlap = -contact.separation;
+  const Real w = inverse_mass_of(contact, particles);
+  if (!(overlap > Real(0)) || !(w > Real(0))) return;
+  const Vec3 way = (std::min(overlap, Real(kPushOutSpeed) * h) / w) * contact.normal;
+  for (std::uint32_t i = 0; i < contact.count; ++i) {
+    const std::uint32_t p = contact.particle[i];
+    particles.position[p].x += (contact.weight[i] * particles.velocity[p].inverse_mass) * way;
+  }
+}
+
+void solve_inner_contacts(Real h, state::Tables& t) {
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (InnerContact& contact : t.inner_contacts) {
+      if (is_tied(t, contact)) continue;
+      if (sweep == 0) {
+        contact.normal_force = Real(0);
+        contact.friction_force = {};
+        push_out(contact, h, t.particles);
+      }
+      solve_row(h, contact, t);
+    }
+  }
+}
+
+}  // namespace hooke::solver

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "solver/soft/spring_blocks.h"
+#include "state/particles.h"
+#include "state/springs.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// \file
+/// A hinge is an isometric bend with the spring along its edge and the one between its wings, if there are
+/// any: three rows over the same four particles, which are read and written once for all of them.
+
+namespace hooke::solver {
+
+/// 16 hinges of one color whose springs are of the same materials. The last block of a pass may hold fewer:
+/// copies of its last hinge fill it.
+struct alignas(64) HingeBlock {
+  std::uint32_t line[4][kLanes];  ///< Where the lines of a hinge's particles begin, as in BendBlock.
+  Real edge_length[kLanes];       ///< L of the spring along the edge [m].
+  Real wing_length[kLanes];       ///< L of the one between the wings [m].
+  Real weight[3][kLanes];         ///< K_1, K_2, K_3 of elements::isometric_bend; K_0 is minus their sum.
+  Real gamma[kLanes];             ///< 1 / (h^2 k) [1/kg]; written by prepare_hinges.
+};
+
+/// What all bends of a pass have in common, in a substep of h; written by prepare_hinges.
+struct HingeSoftness {
+  Real bias = Real(0);         ///< 1 / h [1/s]
+  Real damped_bias = Real(0);  ///< 1 / (tau + h) [1/s]; equal to `bias` without damping.
+  Real gamma_share = Real(1);  ///< h / (tau + h)
+
+  [[nodiscard]] bool is_damped() const { return damped_bias != bias; }
+};
+
+/// Blocks [first, end) hold hinges of one color: no two share a particle.
+struct HingePass {
+  std::uint32_t edge = 0;   ///< Material of the springs along edges; kNoSpring.
+  std::uint32_t wings = 0;  ///< Material of those between wings; kNoSpring.
+  Real damping = Real(0);   ///< tau of the bends [s].
+  Real stiffest = Real(0);  ///< Largest k sum |weight|^2 of its rows [N/m].
+  int first = 0;
+  int end = 0;
+  int last_count = kLanes;  ///< Hinges in the last block.
+  HingeSoftness softness = {};
+};
+
+/// The first material of all, that of springs that are not there.
+inline constexpr std::uint32_t kNoSpring = 0;
+
+struct HingeBlocks {
+  std::vector<HingeBlock> blocks;
+  std::vector<std::array<Real, kLanes>> stiffness;  ///< k of the bends [N/m], by block.
+  std::vector<SpringMaterial> materials;
+  std::vector<HingePass> passes;
+};
+
+/// Makes hinges of the isometric bends and of the springs that lie along their edges or between their wings.
+/// Returns, by row of `springs`, whether it is in a hinge.
+std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const state::Springs& springs,
+                                             int particle_count, HingeBlocks& hinges);
+
+/// The coefficients of every row for a substep of `h` [s].
+void prepare_hinges(HingeBlocks& hinges, Real h);
+
+/// Solves the rows of each hinge one after another, the bend first, the spring along the edge last. Springs
+/// as in solver/soft/spring_solve.h; the bend is an implicit Euler step of E = k |q|^2 / 2, q = sum K_i x_i,
+/// r = dq/dt:
+///
+///     lambda = -(r + q / h) / (sum w_i K_i^2 + 1 / (h^2 k)),  v_i += w_i K_i lambda
+///
+/// The friction k tau d|q|/dt acts along q only, where 1 / (tau + h) and 1 / (h (tau + h) k) stand for 1 / h
+/// and 1 / (h^2 k): friction of all of r would brake a bent cloth that turns as a whole. The step itself does
+/// so by a little: of a spin omega it takes 2 h E omega in each second.
+///
+/// `blocks` lies within one pass.
+void solve_hinges(const HingeBlocks& hinges, const HingePass& pass, parallel::Range blocks,
+                  state::Particles& particles);
+
+}  // namespace hooke::solver

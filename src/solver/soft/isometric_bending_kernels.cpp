@@ -1,0 +1,56 @@
+/// Hinges over lanes, then the dispatch. The arithmetic stands in hinge_rows.h.
+
+#include "solver/soft/isometric_bending_kernels.h"
+
+#ifndef HOOKE_DOUBLE_PRECISION
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "solver/soft/isometric_bending_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// After Highway, which includes this file anew for each instruction set; numbers before what uses them.
+// clang-format off
+#include "solver/simd/vectors.h"
+#include "solver/soft/isometric_bending_rows.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace hooke::solver::wide::HWY_NAMESPACE {
+
+void solve_hinges_here(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
+#if HWY_TARGET == HWY_SCALAR
+  solve_hinges_scalar(run, materials, particles);
+#else
+  solve_hinge_run<Wide>(run, materials, particles);
+#endif
+}
+
+}  // namespace hooke::solver::wide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hooke::solver::wide {
+
+HWY_EXPORT(solve_hinges_here);
+
+void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
+  if (run.blocks.empty()) return;
+  if (is_scalar()) return solve_hinges_scalar(run, materials, particles);
+  HWY_DYNAMIC_DISPATCH(solve_hinges_here)(run, materials, particles);
+}
+
+}  // namespace hooke::solver::wide
+#endif  // HWY_ONCE
+
+#else  // HOOKE_DOUBLE_PRECISION: the scalar twins are the kernels
+
+namespace hooke::solver::wide {
+
+void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
+  if (!run.blocks.empty()) solve_hinges_scalar(run, materials, particles);
+}
+
+}  // namespace hooke::solver::wide
+
+#endif  // HOOKE_DOUBLE_PRECISION

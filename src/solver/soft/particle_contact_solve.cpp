@@ -1,0 +1,77 @@
+#include "solver/soft/particle_contact_solve.h"
+
+#include <algorithm>
+
+namespace hooke::solver {
+
+namespace {
+
+void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::VelocityLine& particle) {
+  const Vec3 n = contacts.normal[row];
+  const Vec3 relative = particle.v - contacts.surface_velocity[row];
+  const Real speed = dot(n, relative);
+  const Real change = -(speed + std::max(contacts.separation[row], Real(0)) / h);
+  if (!(change > Real(0))) return;
+
+  particle.v += change * n;
+  const Vec3 sliding = relative - speed * n;
+  const Real rate = length(sliding);
+  if (rate > Real(0)) particle.v -= std::min(Real(1), contacts.friction[row] * change / rate) * sliding;
+  contacts.normal_force[row] += change / (h * particle.inverse_mass);
+}
+
+/// Calls solve(first, end) with the rows of each particle that belongs to the range, is no rope's, and is
+/// free.
+template <class Solve>
+void for_particles(const std::vector<state::Deformable>& objects, parallel::Range range,
+                   const state::Contacts& contacts, const state::Particles& particles, Solve&& solve) {
+  const auto& particle = contacts.particle;
+  auto row = static_cast<std::size_t>(range.begin);
+  while (row > 0 && row < particle.size() && particle[row] == particle[row - 1]) ++row;
+  while (row < static_cast<std::size_t>(range.end)) {
+    const std::size_t first = row;
+    while (row < particle.size() && particle[row] == particle[first]) ++row;
+    if (objects[contacts.object[first]].kind == PointRef::Kind::kRope) continue;
+    if (particles.velocity[particle[first]].inverse_mass > Real(0)) solve(first, row);
+  }
+}
+
+/// Rows [first, end) of one particle.
+void solve_rows(std::size_t first, std::size_t end, Real h, state::Contacts& contacts,
+                state::Particles& particles) {
+  for (std::size_t i = first; i < end; ++i) {
+    contacts.normal_force[i] = Real(0);
+    contacts.friction_force[i] = {};
+  }
+  const int sweeps = end - first > 1 ? 2 : 1;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (std::size_t i = first; i < end; ++i)
+      solve_row(i, h, contacts, particles.velocity[contacts.particle[first]]);
+  }
+  for (std::size_t i = first; i < end; ++i) push_out(i, h, contacts, particles);
+}
+
+}  // namespace
+
+void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
+  const Real overlap = -contacts.separation[row];
+  if (!(overlap > Real(0))) return;
+  particles.position[contacts.particle[row]].x +=
+      std::min(overlap, Real(kPushOutSpeed) * h) * contacts.normal[row];
+}
+
+bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,
+                            std::size_t end) {
+  return std::any_of(contacts.body.begin() + static_cast<std::ptrdiff_t>(first),
+                     contacts.body.begin() + static_cast<std::ptrdiff_t>(end),
+                     [&](std::uint32_t body) { return gives_way(bodies, body); });
+}
+
+void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
+                    const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
+  for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
+    if (!touches_what_gives_way(bodies, contacts, first, end)) solve_rows(first, end, h, contacts, particles);
+  });
+}
+
+}  // namespace hooke::solver

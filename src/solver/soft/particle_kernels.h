@@ -1,0 +1,45 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "solver/simd/dispatch.h"
+#include "solver/simd/lanes.h"
+#include "solver/soft/bending.h"
+#include "solver/soft/spring_blocks.h"
+#include "state/particles.h"
+
+#include <cstddef>
+#include <span>
+
+/// \file
+/// Kernels over many lanes. One source for all instruction sets (Highway), chosen at run time; every one
+/// gives the bits of its scalar twin, because each lane does the same operations in the same order, with no
+/// fused multiply-add and no approximate division. The double twin of the engine runs the scalar twins.
+
+namespace hooke::solver::wide {
+
+using SpringRun = Run<SpringBlock>;
+using BendRun = Run<BendBlock>;
+
+/// One pass over a run; the formula stands in solver/soft/spring_solve.h.
+void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
+                   state::VelocityLine* velocity);
+
+/// One pass over a run; the formula stands in solver/soft/bending.h.
+void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity);
+
+/// v += h a for particles that can move; components below 1e-20 m/s become zero, so that nothing decays into
+/// denormals.
+void accelerate(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
+
+/// x += h v.
+void move(Real h, parallel::Range rows, state::Particles& particles);
+
+// The scalar twins: the same bits, one row at a time.
+void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
+                          const state::PositionLine* position, state::VelocityLine* velocity);
+void solve_bends_scalar(const BendRun& run, const state::PositionLine* position,
+                        state::VelocityLine* velocity);
+void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
+void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
+
+}  // namespace hooke::solver::wide

@@ -1,0 +1,140 @@
+#include "solver/soft/spring_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+namespace hooke::solver {
+
+namespace {
+
+using state::SpringClass;
+
+/// Where a row goes: passes are sorted by class, then color, then material.
+struct Place {
+  SpringClass kind;
+  int color;
+  std::uint32_t material;
+  std::uint32_t row;
+
+  friend bool operator<(const Place& a, const Place& b) {
+    return std::tie(a.kind, a.color, a.material, a.row) < std::tie(b.kind, b.color, b.material, b.row);
+  }
+  [[nodiscard]] bool same_pass(const Place& other) const {
+    return kind == other.kind && color == other.color && material == other.material;
+  }
+};
+
+SpringMaterial material_of(const state::Springs& springs, std::size_t row) {
+  const SpringClass kind = springs.kind[row];
+  return {.stiffness = springs.stiffness[row],
+          .damping = springs.damping[row],
+          .damped_mass = springs.damped_mass[row],
+          .one_sided = kind == SpringClass::kTether || kind == SpringClass::kLimit,
+          .anchored = kind == SpringClass::kTether,
+          .form = springs.form[row],
+          .bias = Real(0),
+          .gamma = Real(0)};
+}
+
+/// Colors one class: rows of a color share no particle.
+void color_class(const state::Springs& springs, const state::Particles& particles,
+                 std::span<const std::uint8_t> taken, SpringClass kind,
+                 std::vector<SpringMaterial>& materials, std::vector<Place>& places) {
+  std::vector<std::uint64_t> used(static_cast<std::size_t>(particles.count()), 0);
+  int lone_color = 64;
+  for (std::size_t row = 0; row < springs.kind.size(); ++row) {
+    if (springs.kind[row] != kind || (!taken.empty() && taken[row] != 0)) continue;
+    const std::uint32_t ends[2] = {springs.particle_a[row], springs.particle_b[row]};
+    const bool anchored = kind == SpringClass::kTether;
+    if (anchored && particles.velocity[ends[1]].inverse_mass > Real(0)) continue;
+    int color = take_color(used, ends, anchored ? 1 : 2);
+    if (color >= 64) color = lone_color++;
+    const std::uint32_t material = find_or_add_material(springs, row, materials);
+    places.push_back({kind, color, material, static_cast<std::uint32_t>(row)});
+  }
+}
+
+/// Copies the last row into the lanes behind it.
+void fill_lanes(SpringBlock& block, int count) {
+  for (int lane = count; lane < kLanes; ++lane) {
+    block.line_a[lane] = block.line_a[count - 1];
+    block.line_b[lane] = block.line_b[count - 1];
+    block.rest_length[lane] = block.rest_length[count - 1];
+  }
+}
+
+}  // namespace
+
+std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
+                                   std::vector<SpringMaterial>& materials) {
+  const SpringMaterial material = material_of(springs, row);
+  const auto found = std::find(materials.rbegin(), materials.rend(), material);
+  if (found != materials.rend())
+    return static_cast<std::uint32_t>(std::distance(found, materials.rend()) - 1);
+  materials.push_back(material);
+  return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
+void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
+                         std::span<const std::uint8_t> taken, SpringBlocks& blocks) {
+  blocks = {};
+  std::vector<Place> places;
+  places.reserve(springs.kind.size());
+  for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kShear, SpringClass::kBend,
+                                 SpringClass::kTether, SpringClass::kLimit}) {
+    color_class(springs, particles, taken, kind, blocks.materials, places);
+  }
+  std::sort(places.begin(), places.end());
+
+  std::size_t i = 0;
+  while (i < places.size()) {
+    const Place& head = places[i];
+    SpringPass pass{
+        .material = head.material, .first = static_cast<int>(blocks.blocks.size()), .kind = head.kind};
+    for (; i < places.size() && places[i].same_pass(head);) {
+      SpringBlock block{};
+      int lane = 0;
+      for (; lane < kLanes && i < places.size() && places[i].same_pass(head); ++lane, ++i) {
+        const std::uint32_t row = places[i].row;
+        block.line_a[lane] = 4 * springs.particle_a[row];
+        block.line_b[lane] = 4 * springs.particle_b[row];
+        block.rest_length[lane] = springs.rest_length[row];
+      }
+      fill_lanes(block, lane);
+      blocks.blocks.push_back(block);
+      pass.last_count = lane;
+    }
+    pass.end = static_cast<int>(blocks.blocks.size());
+    blocks.passes.push_back(pass);
+  }
+}
+
+Softness softness(Real stiffness, Real damping, Real h) {
+  if (std::isinf(stiffness)) return {.bias = Real(1) / h, .gamma = Real(0)};
+  const Real s = damping + h * stiffness;
+  if (!(s > Real(0))) return {.bias = Real(0), .gamma = std::numeric_limits<Real>::infinity()};
+  return {.bias = stiffness / s, .gamma = Real(1) / (h * s)};
+}
+
+Real most_damping(Real mass, Real stiffness, Real h) {
+  constexpr Real kMostDamped = Real(0.5);
+  constexpr Real kMostOverdamped = Real(10);
+  return std::max(kMostDamped * mass / h, kMostOverdamped * h * stiffness);
+}
+
+void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
+  for (SpringMaterial& material : materials) {
+    const Real damping =
+        std::min(material.damping, most_damping(material.damped_mass, material.stiffness, h));
+    const Softness soft = softness(material.stiffness, damping, h);
+    material.bias = soft.bias;
+    material.gamma = soft.gamma;
+    const bool rigid = std::isinf(material.stiffness);
+    material.recovery = rigid ? h * kRecoverySpeed : SpringMaterial::kWhole;
+    material.recovery_time = rigid ? h : Real(0);
+  }
+}
+
+}  // namespace hooke::solver

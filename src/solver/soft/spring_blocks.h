@@ -1,0 +1,93 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "solver/linear/coloring.h"
+#include "solver/simd/lanes.h"
+#include "state/particles.h"
+#include "state/springs.h"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+/// \file
+/// Springs as the kernels want them: blocks of 16 rows that share no particle, blocks of one color after
+/// another.
+
+namespace hooke::solver {
+
+/// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
+/// fill it.
+struct SpringBlock {
+  std::uint32_t line_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
+  std::uint32_t line_b[kLanes];
+  Real rest_length[kLanes];
+};
+
+/// What all rows of a block have in common. The coefficients are those of one substep of length h.
+struct SpringMaterial {
+  Real stiffness = Real(0);
+  Real damping = Real(0);
+  Real damped_mass = std::numeric_limits<Real>::infinity();
+  bool one_sided = false;  ///< Only pulls.
+  bool anchored = false;   ///< Particle b is pinned and not written.
+  state::SpringForm form = state::SpringForm::kExplicit;
+  Real bias = Real(0);   ///< b = k / (c + h k) [1/s]; written by prepare_springs.
+  Real gamma = Real(0);  ///< 1 / (h (c + h k)) [1/kg]; written by prepare_springs.
+  /// What is rigid takes back no more than this [m] of its error in a substep, and no more of how fast that
+  /// grows than in `recovery_time` [s]. Written by prepare_springs.
+  Real recovery = kWhole;
+  Real recovery_time = Real(0);
+
+  static constexpr Real kWhole = Real(1e30);
+
+  [[nodiscard]] bool is_rigid() const { return recovery < kWhole; }
+
+  friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
+};
+
+inline constexpr Real kRecoverySpeed = Real(100);  ///< [m/s]; less lets through what flies into a net.
+
+/// What an implicit Euler step of h [s] makes of a stiffness k and a damping c, see
+/// solver/soft/spring_solve.h.
+struct Softness {
+  Real bias = Real(0);  ///< b = k / (c + h k) [1/s]; 1 / h where k is infinite, 0 where both are zero.
+  Real gamma =
+      Real(0);  ///< 1 / (h (c + h k)), in the units of an inverse mass; infinite where both are zero.
+};
+[[nodiscard]] Softness softness(Real stiffness, Real damping, Real h);
+
+/// Blocks [first, end) hold rows of one color and one material: no two rows share a particle that is written.
+struct SpringPass {
+  std::uint32_t material = 0;
+  int first = 0;
+  int end = 0;
+  int last_count = kLanes;  ///< Rows in the last block.
+  state::SpringClass kind = state::SpringClass::kStretch;
+};
+
+struct SpringBlocks {
+  std::vector<SpringBlock> blocks;
+  std::vector<SpringMaterial> materials;
+  std::vector<SpringPass> passes;  ///< In the order they are solved; passes of one color follow each other.
+};
+
+/// Colors the rows of each class greedily in the order of the table, 16 to a block. Left out are rows that
+/// `taken` marks, if it has any, and tethers whose anchor is not pinned.
+void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
+                         std::span<const std::uint8_t> taken, SpringBlocks& blocks);
+
+/// The material of a row, by its place in the list.
+std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
+                                   std::vector<SpringMaterial>& materials);
+
+/// Largest c of a damper beside a spring k that counts in one pass over a sheet of points of a mass, see
+/// solver/soft/spring_solve.h: m / 2 h or 10 h k, whichever is more. Of 1000 random sheets 8 pass any speed
+/// without it, 5 with ten times as much, none with twice as much.
+[[nodiscard]] Real most_damping(Real mass, Real stiffness, Real h);
+
+/// b and gamma of every material for a substep of `h` [s].
+void prepare_springs(std::vector<SpringMaterial>& materials, Real h);
+
+}  // namespace hooke::solver

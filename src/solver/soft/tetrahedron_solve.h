@@ -1,0 +1,104 @@
+#pragma once
+
+#include "parallel/range.h"
+#include "state/particles.h"
+#include "state/tetrahedra.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace hooke::solver {
+
+/// A tetrahedron as the kernel wants it. The coefficients are those of one substep.
+struct TetrahedronRow {
+  std::array<std::uint32_t, 4> particle = {};
+  std::array<Vec3, 3> b = {};   ///< Gradients of the shape functions of corners 1 to 3 [1/m].
+  Real shift = Real(0);         ///< 1 + mu / lambda; written by prepare_tetrahedra, as all below.
+  Real gamma_volume = Real(0);  ///< 1 / (h^2 lambda V).
+  Real gamma_shape = Real(0);   ///< 1 / (h^2 mu V).
+  Real gamma_trace =
+      Real(0);  ///< 1 / (h tau (lambda - mu) V): of the rate of volume; infinite without damping.
+  Real gamma_rate = Real(0);  ///< 1 / (h tau mu V): of the rates of strain; infinite without damping.
+};
+
+/// What prepare_tetrahedra makes the coefficients of a row from.
+struct TetrahedronLaw {
+  std::uint32_t row = 0;  ///< Of the table.
+  Real volume = Real(0);
+  Real shear_modulus = Real(0);
+  Real volume_modulus = Real(0);
+  Real damping_time = Real(0);
+  Real stiffest = Real(0);  ///< Largest h^2 mu that a substep carries [Pa s^2].
+};
+
+/// Rows of one color share no particle. Passes follow each other.
+struct TetrahedronPass {
+  int first = 0;
+  int end = 0;
+};
+
+struct TetrahedronRows {
+  std::vector<TetrahedronRow> rows;
+  std::vector<TetrahedronLaw> laws;  ///< One per row.
+  std::vector<TetrahedronPass> passes;
+  std::vector<Real> volume_at;  ///< Of the tetrahedra about each particle [m^3].
+  Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
+  bool any_damping = false;     ///< Some row is damped.
+};
+
+/// Colors the rows greedily in the order of the table.
+void build_tetrahedra(const state::Tetrahedra& tetrahedra, const state::Particles& particles,
+                      TetrahedronRows& rows);
+
+/// Takes the shape at rest of `row` from the table, and how stiff it may be.
+void take_shape(const state::Tetrahedra& tetrahedra, const state::Particles& particles, std::size_t row,
+                TetrahedronRows& rows);
+
+/// The coefficients of every row for a substep of `h` [s].
+///
+/// Shear is explicit below, and that is stable while h^2 w^2 < 4 for the fastest mode of shear. Where a
+/// tetrahedron is stiffer, its mu is lowered to what keeps it at 2; lambda, which is implicit, keeps its
+/// value. More substeps carry a stiffer jelly.
+void prepare_tetrahedra(TetrahedronRows& tetrahedra, Real h);
+/// Of one row.
+void prepare_tetrahedron(const TetrahedronLaw& law, Real h, TetrahedronRow& row);
+
+/// mu of a row in a substep of `h` [s], lowered or not [Pa].
+[[nodiscard]] Real shear_modulus_of(const TetrahedronLaw& law, Real h);
+
+/// Corrects velocities by the stress of each tetrahedron. One pass.
+///
+/// Constraints  C_H = det F - (1 + mu / lambda),  gradient G_H = cof F
+///              C_D = sqrt(tr F^T F),             gradient G_D = F / C_D
+/// with F at the start of the substep; the energy is V (lambda C_H^2 + mu C_D^2) / 2
+/// (elements/tetrahedron.h).
+///
+/// Impulse      of corner i: T b_i with T = L_H G_H + L_D G_D, where with B = sum w_i b_i b_i^T
+///
+///     (G_H : G_H B + gamma_H) L_H +  G_H : G_D B            L_D = -(G_H : F' + C_H / h)
+///      G_H : G_D B            L_H + (G_D : G_D B + gamma_D) L_D = -(G_D : F' + C_D / h)
+///
+/// and F' = sum v_i b_i^T. At rest the two answers cancel, which they do not one after the other: hence the
+/// coupled solution. No decomposition of F: C_H turns a tetrahedron back that is inside out. There det F
+/// counts as no less than min(0, 4 - 2/3 tr F^T F): by the full law a solid folded through itself keeps some
+/// tetrahedra inside out, pressed by their neighbors; so none is left of a mirrored solid, at any nu that is
+/// allowed. Both gradients are those of rotations about the present places, so that linear and angular
+/// momentum are kept to rounding. After Macklin and Müller 2021, but with directions at the start of the
+/// substep, as springs have (solver/soft/spring_solve.h): where the particles are about to be, a spinning
+/// solid would lose its spin.
+void solve_tetrahedra(const TetrahedronRows& tetrahedra, parallel::Range rows, state::Particles& particles);
+
+/// Takes out rates of strain E' = (F^T F' + F'^T F) / 2 by the stress tau times the rate of the elastic one
+/// at rest, 2 mu E' + (lambda - mu) tr(E') 1. One pass.
+///
+/// Seven rows, the trace and the six rates, one after the other, L = -E'_kl / (W_kl + gamma s^2): implicit,
+/// so that no row does more than stop its rate. s = max(1, tr(F^T F) / 3): what is torn out of all shape is
+/// not held there.
+///
+/// A pass of its own, before the substep's forces: what hangs still has no velocity then, and stays where the
+/// stress alone holds it. Within one pass it would sag by about tau / h times the error that the stress
+/// makes.
+void damp_tetrahedra(const TetrahedronRows& tetrahedra, parallel::Range rows, state::Particles& particles);
+
+}  // namespace hooke::solver

@@ -1,0 +1,279 @@
+#include "world/body_stages.h"
+
+#include "collision/continuous/shape_bounds.h"
+#include "state/sleeping_pairs.h"
+#include "solver/air/force_fields.h"
+#include "solver/contact/dense_pile_limit.h"
+#include "solver/coupled/coupled_articulations.h"
+#include "state/body_frames.h"
+#include "world/events.h"
+#include "world/hook_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::world {
+
+namespace {
+
+using state::BodyTraits;
+using state::Tables;
+
+bool moves(const BodyTraits& traits) {
+  return traits.kind != BodyKind::kStatic;
+}
+
+/// Who can push, and who is seen by sensors: all that moves, but no other sensor.
+bool may_meet(const BodyTraits& a, const BodyTraits& b) {
+  if (a.sensor && b.sensor) return false;
+  if (a.kind == BodyKind::kDynamic || b.kind == BodyKind::kDynamic) return true;
+  return (a.sensor && moves(b)) || (b.sensor && moves(a));
+}
+
+/// Bodies of a negative group never collide with each other: that is a company.
+void set_box(WorldData& world, std::uint32_t body, std::uint32_t collider, const geometry::Box& box) {
+  const BodyTraits& traits = world.tables.bodies.traits[body];
+  world.broad_phase.set(collider, box, moves(traits), std::min(traits.filter.group, 0));
+}
+
+/// What the colliders of a body can reach in this step.
+void update_bounds(Tables& t, std::uint32_t body, Real dt) {
+  for (const std::uint32_t c : colliders_of(t.bodies, body))
+    t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
+}
+
+template <class Visit>
+void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
+  for (std::uint32_t body = 0; body < bodies.traits.size(); ++body) {
+    if (bodies.traits[body].alive) visit(body);
+  }
+}
+
+/// All bodies that are not where they were in the last step, as far as pairs go.
+void list_stirred_bodies(WorldData& world) {
+  const Tables& t = world.tables;
+  world.stirred = world.awake;
+  world.stirred.insert(world.stirred.end(), world.bodies_placed.begin(), world.bodies_placed.end());
+  world.is_stirred.clear();
+  if (!any_sleeps(world)) return;
+  world.is_stirred.assign(t.colliders.body.size(), 0);
+  for (const std::uint32_t body : world.stirred)
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.is_stirred[c] = 1;
+}
+
+/// Bodies that were added, or put elsewhere by hand, since the last step.
+void refresh_broad_phase(WorldData& world, Real dt) {
+  Tables& t = world.tables;
+  if (world.broad_phase_stale) {
+    world.broad_phase.clear();
+    world.bodies_placed.clear();
+    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.bodies_placed.push_back(body); });
+    world.broad_phase_stale = false;
+  }
+  for (const std::uint32_t body : world.bodies_placed) {
+    if (!t.bodies.traits[body].alive) continue;
+    update_bounds(t, body, dt);
+    enter_broad_phase(world, body);
+  }
+  list_stirred_bodies(world);
+  world.bodies_placed.clear();
+}
+
+/// Where a kinematic body stands still, for one.
+bool is_parked(const Tables& t, collision::ColliderPair pair) {
+  if (t.pairs.parked.pair.empty()) return false;
+  const auto stands = [&](std::uint32_t collider) {
+    return state::stands(t.bodies, t.colliders.body[collider]);
+  };
+  if (!stands(pair.first) || !stands(pair.second)) return false;
+  return std::binary_search(t.pairs.parked.pair.begin(), t.pairs.parked.pair.end(),
+                            state::Pair{.collider_a = pair.first, .collider_b = pair.second},
+                            state::comes_before);
+}
+
+}  // namespace
+
+bool may_collide(const WorldData& world, collision::ColliderPair pair) {
+  const Tables& t = world.tables;
+  const std::uint32_t a = t.colliders.body[pair.first];
+  const std::uint32_t b = t.colliders.body[pair.second];
+  const BodyTraits& ta = t.bodies.traits[a];
+  const BodyTraits& tb = t.bodies.traits[b];
+  return a != b && may_meet(ta, tb) && ta.collides && tb.collides &&
+         state::filters_agree(ta.filter, tb.filter) && !are_hooked(world, a, b);
+}
+
+void enter_broad_phase(WorldData& world, std::uint32_t body) {
+  const Tables& t = world.tables;
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) set_box(world, body, c, t.colliders.bounds[c]);
+}
+
+const collision::BroadPhase& boxes_for_queries(WorldData& world) {
+  if (world.boxes_are_current.load(std::memory_order_acquire)) return world.broad_phase;
+  const std::lock_guard lock(world.boxes_mutex);
+  if (world.boxes_are_current.load(std::memory_order_relaxed)) return world.broad_phase;
+  const Tables& t = world.tables;
+  // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
+  const auto enter = [&](std::uint32_t body) {
+    for (const std::uint32_t c : colliders_of(t.bodies, body))
+      set_box(world, body, c, collision::reach_of(t.bodies, t.colliders, c, Real(0)));
+  };
+  if (world.broad_phase_stale) {
+    world.broad_phase.clear();
+    for_all_bodies(t.bodies, enter);
+  } else {
+    for (const std::uint32_t body : world.bodies_placed) enter(body);
+    for (const std::uint32_t body : t.moving_bodies) {
+      if (t.bodies.asleep[body] == 0) enter(body);
+    }
+  }
+  world.broad_phase.update();
+  world.boxes_are_current.store(true, std::memory_order_release);
+  return world.broad_phase;
+}
+
+void list_awake_bodies(WorldData& world) {
+  const state::Bodies& bodies = world.tables.bodies;
+  world.awake.clear();
+  for (const std::uint32_t body : world.tables.moving_bodies) {
+    if (bodies.asleep[body] == 0) world.awake.push_back(body);
+  }
+}
+
+void find_body_contacts(WorldData& world, Real dt) {
+  Tables& t = world.tables;
+  world.boxes_are_current = false;  // from now on they are those of the step
+  refresh_broad_phase(world, dt);
+  for_bodies(world, [&](auto rows) {
+    for (const std::uint32_t body : rows) update_bounds(t, body, dt);
+  });
+  for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
+  world.broad_phase.find_pairs_of(*world.pool, world.is_stirred, world.pairs_found);
+  state::unpark_pairs(world.awake, t.bodies, t.colliders, t.pairs, world.parking);
+  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) {
+    return !may_collide(world, pair) || is_parked(t, pair);
+  });
+  world.crowds.thin_out(t.bodies, t.colliders, world.pairs_found);
+  world.narrow_phase.merge_pairs(world.pairs_found, world.is_stirred, t.pairs);
+  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
+                                      {.dt = dt,
+                                       .substeps = t.desc.substeps,
+                                       .in_company = world.joints.in_ragdoll,
+                                       .stirred = world.stirred},
+                                      t.pairs);
+  world.crowds.thin_out(t.bodies, t.pairs);
+  if (t.desc.sleeping) state::reserve_parking(t.pairs, world.parking);
+  if (any_sleeps(world)) state::park_pairs(t.bodies, t.colliders, t.pairs, world.parking);
+}
+
+void prepare_body_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  world.narrow_phase.list_lively(t.pairs);  // no pair changes its row any more in this step
+  const WorldDesc& desc = t.desc;
+  const auto before = static_cast<Real>(t.body_substep);
+  world.contact_step = {.gravity = desc.gravity,
+                        .h = h,
+                        .hz = desc.contact_hz,
+                        .damping_ratio = desc.contact_damping_ratio,
+                        .sweeps = desc.bias_sweeps,
+                        .impulse_scale = before > Real(0) ? h / before : Real(1)};
+  t.body_substep = static_cast<double>(h);
+  solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
+                              world.hooked, world.holders, t.bodies, t.hooks, t.pairs, world.borne);
+  solver::couple_articulations(world.joints, world.touched, t);
+  solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.borne.footing, t.bodies,
+                            world.body_contacts, world.hard_islands);
+  solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
+                                world.body_contacts);
+  solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);
+  solver::list_hits(t.pairs, t.bodies, world.hooked, world.body_contacts, world.hits);
+  note_approaches(world, h * static_cast<Real>(desc.substeps));
+}
+
+void resolve_hits(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  solver::BodyContacts& contacts = world.body_contacts;
+  if (!solver::foresee_hits(world.contact_step, contacts, t.bodies, world.hits)) return;
+  while (const std::optional<solver::Hit> hit = solver::next_hit(world.hits)) {
+    const solver::HitPair& pair = world.hits.pairs[hit->index];
+    solver::store_lanes(solver::lanes_of(pair, world.hits), contacts, t.pairs.manifold);
+    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
+                               state::pose_after(t.bodies, pair.a, hit->time),
+                               state::pose_after(t.bodies, pair.b, hit->time), pair.pair, t.pairs);
+    solver::take_hit(*hit, world.contact_step, t.pairs, contacts, t.bodies, world.hits);
+  }
+  solver::put_back_on_hooks(t.hooks, h, t.bodies, world.hits);
+}
+
+namespace {
+
+void renew_borne_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  solver::store_borne_contacts(h, t.pairs);
+  for (const state::BorneContact& contact : t.pairs.borne) {
+    if (contact.point > 0) continue;
+    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
+                               state::pose_now(t.bodies, contact.body_a),
+                               state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
+  }
+  solver::place_borne_contacts(Real(1) / h, t.bodies, t.pairs);
+}
+
+}  // namespace
+
+void renew_lively_contacts(WorldData& world, Real h) {
+  Tables& t = world.tables;
+  if (!t.pairs.borne.empty()) renew_borne_contacts(world, h);
+  if (world.body_contacts.lively.empty()) return;
+  solver::BodyContacts& contacts = world.body_contacts;
+  solver::store_lanes(contacts.lively, contacts, t.pairs.manifold);
+  world.narrow_phase.update_lively_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
+                                             t.pairs);
+  solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
+}
+
+void slow_crowds(WorldData& world) {
+  const std::span<const std::uint32_t> begins = world.crowds.begins();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const auto crowd = world.crowds.members().subspan(begins[i], begins[i + 1] - begins[i]);
+    solver::slow_crowd(crowd, world.tables.bodies);
+  }
+}
+
+void finish_body_contacts(WorldData& world) {
+  Tables& t = world.tables;
+  parallel::for_ranges(*world.pool, static_cast<int>(world.body_contacts.blocks.size()), kContactBlockGrain,
+                       [&](parallel::Range blocks) {
+                         solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
+                       });
+  solver::store_borne_contacts(world.contact_step.h, t.pairs);
+  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.borne.footing,
+                         world.hard_islands, t.bodies);
+}
+
+void drive_kinematic_bodies(WorldData& world, double time, Real h) {
+  state::Bodies& b = world.tables.bodies;
+  for (const std::uint32_t body : world.awake) {
+    if (b.traits[body].kind != BodyKind::kKinematic) continue;
+    if (b.path[body].kind == MotionDesc::Kind::kStill) continue;
+    const DVec3 goal = b.path_start[body] + solver::motion_offset(b.path[body], time - b.path_time[body]);
+    const DVec3 now = b.center[body] + vector_cast<double>(b.motion[body].dx);
+    b.motion[body].v = vector_cast<Real>((1.0 / static_cast<double>(h)) * (goal - now));
+  }
+}
+
+std::uint32_t quarantine_bodies(WorldData& world) {
+  state::Bodies& b = world.tables.bodies;
+  std::uint32_t count = 0;
+  for (const std::uint32_t body : world.awake) {
+    const state::MotionLine& m = b.motion[body];
+    if (is_finite(m.v) && is_finite(m.omega_scaled) && is_finite(m.dx) && is_finite(m.theta_scaled)) continue;
+    b.motion[body] = {.inverse_mass = m.inverse_mass};
+    b.angular_momentum[body] = {};
+    b.free_motion[body] = {};
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace hooke::world

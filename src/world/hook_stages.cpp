@@ -1,0 +1,120 @@
+#include "world/hook_stages.h"
+
+#include "world/object_edits.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Hook;
+using state::HookPlace;
+
+std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
+void refresh_hooks(WorldData& world) {
+  const state::Tables& t = world.tables;
+  world.hooked.resize(t.bodies.motion.size());
+  world.holders.holding.resize(t.bodies.motion.size());
+  world.holders.burden.resize(t.bodies.motion.size());
+  if (world.joints_revision == t.hook_revision) return;
+  world.joints_revision = t.hook_revision;
+  solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
+  solver::find_holders(world.joints, t.bodies, t.hooks, world.holders);
+  std::fill(world.hooked.begin(), world.hooked.end(), std::uint8_t{0});
+  world.hooked_pairs.clear();
+  for (const Hook& hook : t.hooks) {
+    for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+      if (body != HookPlace::kWorld) world.hooked[body] = 1;
+    }
+    if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
+  }
+  std::sort(world.hooked_pairs.begin(), world.hooked_pairs.end());
+  world.hooked_begin.assign(t.bodies.motion.size() + 1, 0);
+  for (const auto& [body, other] : world.hooked_pairs) {
+    if (body != HookPlace::kWorld) ++world.hooked_begin[body + 1];
+  }
+  std::partial_sum(world.hooked_begin.begin(), world.hooked_begin.end(), world.hooked_begin.begin());
+}
+
+bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b) {
+  const auto pair = pair_of(body_a, body_b);
+  if (pair.first + 1 >= world.hooked_begin.size()) return false;
+  const auto begin = world.hooked_pairs.begin();
+  return std::binary_search(begin + world.hooked_begin[pair.first],
+                            begin + world.hooked_begin[pair.first + 1], pair);
+}
+
+void drop_broken_hooks(WorldData& world) {
+  state::Tables& t = world.tables;
+  std::vector<BreakEvent>& breaks = world.events.breaks;
+  world.broken_hooks.clear();
+  breaks.clear();
+  for (const Hook& hook : t.hooks) {
+    if (!hook.broken) continue;
+    world.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
+    breaks.push_back({world.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
+  }
+  // Few; a stable sort would allocate.
+  for (auto at = breaks.begin(); at != breaks.end(); ++at) {
+    const auto place = std::upper_bound(breaks.begin(), at, at->time,
+                                        [](double time, const BreakEvent& e) { return time < e.time; });
+    std::rotate(place, at, at + 1);
+  }
+  for (const HookId id : world.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
+  if (!world.broken_hooks.empty()) ++t.hook_revision;
+}
+
+namespace {
+
+/// Those with an end for which `holds` is true; the others close up, in their order.
+template <class Holds>
+void remove_hooks(state::Tables& t, Holds&& holds) {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
+    Hook& hook = t.hooks[i];
+    if (holds(hook.a) || holds(hook.b)) {
+      wake_ends(hook, t.bodies);
+      t.hook_slots.move(hook.slot, t.hook_slots.kNone);
+      continue;
+    }
+    if (kept != i) {
+      t.hook_slots.move(hook.slot, kept);
+      t.hooks[kept] = std::move(hook);
+    }
+    ++kept;
+  }
+  if (kept == t.hooks.size()) return;
+  t.hooks.resize(kept);
+  ++t.hook_revision;
+}
+
+}  // namespace
+
+void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& t) {
+  remove_hooks(t, [&](const HookPlace& end) { return end.body != HookPlace::kWorld && goes[end.body] != 0; });
+}
+
+void remove_hooks_of_object(std::uint32_t object, state::Tables& t) {
+  remove_hooks(t, [&](const HookPlace& end) { return end.is_point() && end.object == object; });
+}
+
+void wake_ends(const Hook& hook, state::Bodies& bodies) {
+  for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+    if (body != HookPlace::kWorld) state::wake(bodies, body);
+  }
+}
+
+double gap_of(const Hook& hook, const state::Tables& t) {
+  solver::JointBody a = solver::joint_end(t, hook.a);
+  if (hook.kind == HookKind::kRopeSlide) a.rotation = solver::turn_of_slide(t, hook);
+  return solver::joint_gap(hook, a, solver::joint_end(t, hook.b));
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,271 @@
+#include "world/impact_clamp.h"
+
+#include "collision/continuous/continuous.h"
+#include "collision/continuous/shape_bounds.h"
+#include "math/rotation.h"
+#include "solver/body/body_motion.h"
+#include "state/body_frames.h"
+#include "world/body_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hooke::world {
+
+namespace {
+
+using collision::ColliderPair;
+using collision::Path;
+using collision::Stoppable;
+using state::Bodies;
+using state::MotionLine;
+
+/// By how much a body turned in this step, as far as its line tells [rad].
+Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
+  const MotionLine& m = bodies.motion[body];
+  return m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled;
+}
+
+/// The way that the solver has found for a body in this step.
+Path path_of(const WorldData& world, std::uint32_t body) {
+  const Bodies& bodies = world.tables.bodies;
+  const MotionLine& m = bodies.motion[body];
+  Path path = collision::path_ahead(bodies, body, Real(0));
+  path.way = m.dx;
+  path.turn = turn_of(bodies, body);
+  if (m.inverse_mass > Real(0) && state::tumbles_now(bodies, body)) {
+    path.rotation = world.start_rotation[body];
+    path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
+  }
+  return path;
+}
+
+/// Whether the body goes or turns far for its thickness.
+bool is_fast(const Bodies& bodies, std::uint32_t body) {
+  const state::BodyTraits& traits = bodies.traits[body];
+  if (!traits.collides || traits.sensor) return false;
+  const Real way = length(bodies.motion[body].dx) + length(turn_of(bodies, body)) * traits.radius;
+  return way > collision::kUnseenWay * traits.inner_radius;
+}
+
+/// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
+bool may_be_stopped(const WorldData& world, std::uint32_t body) {
+  return world.hooked[body] == 0 && state::gives_way(world.tables.bodies, body);
+}
+
+Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
+  if (!may_be_stopped(world, body)) return Stoppable::kNever;
+  return fast ? Stoppable::kAlways : Stoppable::kSlow;
+}
+
+/// Whether the body may turn so far in the step that its inertia in world axes changes by a large part: it
+/// does, or will be hit fast enough (`foreseen`, or faster than its size). A top does not, whose axis stays.
+/// Rows know only one inertia, and would make energy with that of another time.
+bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt) {
+  constexpr Real kFar = Real(0.25);        // [rad]
+  constexpr Real kLargePart = Real(0.25);  // of the largest entry
+  if (!state::gives_way(bodies, body)) return false;
+  if (!state::tumbles(bodies.mass[body])) return false;
+  if (foreseen || dt * length(bodies.motion[body].v) > bodies.traits[body].radius) return true;
+  const Vec3 turn = dt * bodies.angular_velocity[body];
+  if (!(length(turn) > kFar)) return false;
+  const auto now = solver::inertia_scale(bodies.mass[body], bodies.rotation[body]);
+  // Two looks: after half a turn things may be as they were.
+  for (const Real part : {Real(0.37), Real(1)}) {
+    const auto then =
+        solver::inertia_scale(bodies.mass[body], math::quaternion_of(part * turn) * bodies.rotation[body]);
+    const Real change =
+        std::max({std::abs(then.xx - now.xx), std::abs(then.yy - now.yy), std::abs(then.zz - now.zz),
+                  std::abs(then.xy - now.xy), std::abs(then.xz - now.xz), std::abs(then.yz - now.yz)});
+    if (change > kLargePart * std::max({now.xx, now.yy, now.zz})) return true;
+  }
+  return false;
+}
+
+/// Marks the bodies that go or turn far for their thickness; false if none do, or none may be stopped.
+bool find_fast_bodies(WorldData& world) {
+  const Bodies& bodies = world.tables.bodies;
+  world.fast.assign(bodies.motion.size(), 0);
+  bool any_is_fast = false;
+  bool any_gives_way = false;
+  for (const std::uint32_t body : world.awake) {
+    world.fast[body] = is_fast(bodies, body) ? 1 : 0;
+    any_is_fast |= world.fast[body] != 0;
+    any_gives_way |= may_be_stopped(world, body);
+  }
+  return any_is_fast && any_gives_way;
+}
+
+bool is_one_fast(const WorldData& world, ColliderPair pair) {
+  const std::vector<std::uint32_t>& body = world.tables.colliders.body;
+  return world.fast[body[pair.first]] != 0 || world.fast[body[pair.second]] != 0;
+}
+
+bool is_solid(const WorldData& world, std::uint32_t collider) {
+  return !world.tables.bodies.traits[world.tables.colliders.body[collider]].sensor;
+}
+
+/// Whether the body goes where detect did not think it could: then what is in its way is not among the pairs
+/// of the step.
+bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
+  const state::Colliders& colliders = world.tables.colliders;
+  constexpr Vec3 kMargin = {collision::kReachMargin, collision::kReachMargin, collision::kReachMargin};
+  for (const std::uint32_t c : colliders_of(world.tables.bodies, body)) {
+    const geometry::Box foreseen = {colliders.bounds[c].lower - kMargin, colliders.bounds[c].upper + kMargin};
+    if (!contains(foreseen, collision::reach_of(colliders, c, path))) return true;
+  }
+  return false;
+}
+
+/// Puts what does not move among the swept bodies, if the collider is of such a body: there is too much of it
+/// to do so for all.
+void enter_standing(WorldData& world, std::uint32_t collider) {
+  const Bodies& bodies = world.tables.bodies;
+  collision::SweptBodies& swept = world.swept;
+  const std::uint32_t body = world.tables.colliders.body[collider];
+  if (bodies.traits[body].kind != BodyKind::kStatic && bodies.asleep[body] == 0) return;
+  swept.path[body] = collision::path_ahead(bodies, body, Real(0));
+  swept.stoppable[body] = Stoppable::kNever;
+  swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
+  swept.bends[body] = {};
+}
+
+/// How awake bodies go, and which of them go astray.
+void find_ways(WorldData& world) {
+  const Bodies& bodies = world.tables.bodies;
+  collision::SweptBodies& swept = world.swept;
+  const std::size_t count = bodies.motion.size();
+  swept.path.resize(count);
+  swept.stoppable.resize(count);
+  swept.inverse_mass.resize(count);
+  swept.bends.resize(count);
+  world.astray.assign(count, 0);
+  for_bodies(world, [&](auto rows) {
+    for (const std::uint32_t body : rows) {
+      swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
+      swept.bends[body] = {};
+      swept.path[body] = path_of(world, body);
+      swept.stoppable[body] = stoppable(world, body, world.fast[body] != 0);
+      world.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
+    }
+  });
+}
+
+/// Puts boxes around where the body goes.
+void enter_way(WorldData& world, std::uint32_t body) {
+  state::Tables& t = world.tables;
+  for (const std::uint32_t c : colliders_of(t.bodies, body))
+    t.colliders.bounds[c] = collision::reach_of(t.colliders, c, world.swept.path[body]);
+  enter_broad_phase(world, body);
+}
+
+/// What a body's colliders may run into.
+void find_in_the_way(WorldData& world, std::uint32_t body, collision::WayScratch& scratch) {
+  const state::Tables& t = world.tables;
+  scratch.pairs.clear();
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) {
+    world.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
+    for (const std::uint32_t other : scratch.near) {
+      const ColliderPair pair = {std::min(c, other), std::max(c, other)};
+      if (!is_solid(world, other) || !may_collide(world, pair)) continue;
+      scratch.pairs.push_back(pair);
+      enter_standing(world, other);
+    }
+  }
+}
+
+/// The pairs of solid colliders that may run into each other, one of them fast.
+void list_encounters(WorldData& world, std::vector<collision::Encounter>& encounters) {
+  const state::Pairs& pairs = world.tables.pairs;
+  encounters.clear();
+  for (const state::Pair& p : pairs.pair) {
+    const ColliderPair pair = {p.collider_a, p.collider_b};
+    if (!is_one_fast(world, pair) || !is_solid(world, pair.first) || !is_solid(world, pair.second)) continue;
+    encounters.push_back({pair, p.manifold_count > 0 ? pairs.manifold[p.first_manifold].normal : Vec3{}});
+    for (const std::uint32_t collider : {p.collider_a, p.collider_b}) enter_standing(world, collider);
+  }
+  const std::size_t foreseen = encounters.size();
+  const auto for_each_astray = [&](auto&& visit) {
+    for (const std::uint32_t body : world.awake) {
+      if (world.astray[body] != 0 && !world.tables.bodies.traits[body].sensor) visit(body);
+    }
+  };
+  for_each_astray([&](std::uint32_t body) { enter_way(world, body); });
+  world.broad_phase.update();
+  for_each_astray([&](std::uint32_t body) {
+    find_in_the_way(world, body, world.way);
+    for (const ColliderPair pair : world.way.pairs) {
+      if (is_one_fast(world, pair)) encounters.push_back({.pair = pair});
+    }
+  });
+  if (encounters.size() == foreseen) return;
+  std::sort(encounters.begin(), encounters.end(), [](const auto& p, const auto& q) {
+    return p.pair != q.pair ? p.pair < q.pair : p.apart != Vec3{} && q.apart == Vec3{};
+  });
+  const auto same = [](const auto& p, const auto& q) { return p.pair == q.pair; };
+  encounters.erase(std::unique(encounters.begin(), encounters.end(), same), encounters.end());
+}
+
+/// Lets the body be where its path ends.
+void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
+  MotionLine& m = bodies.motion[body];
+  const Pose end = collision::pose_at(path, Real(1));
+  m.dx = vector_cast<Real>(end.position - bodies.center[body]);
+  m.theta_scaled = turned * m.theta_scaled;
+  if (state::tumbles_now(bodies, body)) solver::turn_back(body, end.rotation, bodies);
+}
+
+}  // namespace
+
+void begin_motion(WorldData& world, Real dt) {
+  Bodies& bodies = world.tables.bodies;
+  const Real h = dt / static_cast<Real>(world.tables.desc.substeps);
+  world.start_rotation.resize(bodies.rotation.size());
+  for (const std::uint32_t body : world.awake) {
+    world.start_rotation[body] = bodies.rotation[body];
+    bodies.steady_turn[body] = {};
+    if (world.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
+      bodies.steady_turn[body] = {.on = true, .hooked = true};
+  }
+  for (const state::Pair& pair : world.tables.pairs.pair) {
+    if (pair.manifold_count == 0) continue;
+    for (const std::uint32_t collider : {pair.collider_a, pair.collider_b}) {
+      const std::uint32_t body = world.tables.colliders.body[collider];
+      state::SteadyTurn& steady = bodies.steady_turn[body];
+      const Vec3 turn = pair.time * dt * bodies.angular_velocity[body];
+      steady.touches = state::gives_way(bodies, body) && state::tumbles(bodies.mass[body]);
+      if (steady.on) {
+        if (length_squared(turn) < length_squared(steady.until_impact)) steady.until_impact = turn;
+      } else if (turns_over(bodies, body, pair.time > Real(0), dt)) {
+        steady.on = true;
+        steady.until_impact = turn;
+      }
+    }
+  }
+}
+
+void keep_inertia(WorldData& world, Real h, bool moved) {
+  for_bodies(world, [&](auto rows) {
+    solver::keep_inertia(rows, world.start_rotation, h, moved, world.tables.bodies);
+  });
+}
+
+void give_way_at_impacts(WorldData& world) {
+  Bodies& bodies = world.tables.bodies;
+  if (!find_fast_bodies(world)) return;
+  find_ways(world);
+  list_encounters(world, world.encounters);
+  const auto find_pairs = [&world](std::uint32_t body, collision::WayScratch& scratch) {
+    enter_way(world, body);
+    find_in_the_way(world, body, scratch);
+  };
+  collision::SweptBodies& swept = world.swept;
+  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, world.encounters, find_pairs,
+                                     world.continuous, swept) == 0)
+    return;
+  for (const std::uint32_t body : world.awake) {
+    if (swept.bends[body].count > 0) follow(swept.path[body], swept.bends[body].first, body, bodies);
+  }
+}
+
+}  // namespace hooke::world

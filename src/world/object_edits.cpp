@@ -1,0 +1,200 @@
+#include "world/object_edits.h"
+
+#include "build/checks.h"
+#include "state/sleeping_pairs.h"
+#include "world/hook_stages.h"
+
+#include <algorithm>
+#include <array>
+
+namespace hooke::world {
+
+namespace {
+
+using state::Deformable;
+using state::Rows;
+using state::Tables;
+
+template <class Table>
+void erase_rows(Table& table, Rows rows) {
+  Table::for_each_column(
+      table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
+}
+
+/// Subtracts the removed particles from every row number behind them.
+void renumber_particles(Tables& t, Rows removed) {
+  const auto moved = [&](std::uint32_t& p) {
+    if (p >= removed.end()) p -= removed.count;
+  };
+  std::for_each(t.springs.particle_a.begin(), t.springs.particle_a.end(), moved);
+  std::for_each(t.springs.particle_b.begin(), t.springs.particle_b.end(), moved);
+  for (state::Bends::Stencil& s : t.bends.stencil) {
+    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) moved(*p);
+  }
+  for (state::Triangles::Corners& c : t.triangles.corners) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) moved(*p);
+  }
+  for (state::Tetrahedra::Corners& c : t.tetrahedra.corners) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) moved(*p);
+  }
+  for (state::Pin& pin : t.pins) moved(pin.particle);
+  for (state::Hook& hook : t.hooks) {
+    for (state::HookPlace* end : {&hook.a, &hook.b}) {
+      for (std::uint32_t i = 0; i < end->particle_count; ++i) moved(end->particle[i]);
+    }
+  }
+}
+
+/// Objects behind `removed` have moved up by one row.
+void renumber_hooked_objects(Tables& t, std::uint32_t removed) {
+  for (state::Hook& hook : t.hooks) {
+    for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > removed;
+  }
+}
+
+void move_slot(Tables& t, const Deformable& object, std::uint32_t row) {
+  if (object.kind == PointRef::Kind::kRope) t.rope_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kCloth) t.cloth_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kSolid) t.solid_slots.move(object.slot, row);
+  if (object.kind == PointRef::Kind::kParticles) t.particles_slots.move(object.slot, row);
+}
+
+}  // namespace
+
+Error stale(const char* what) {
+  return {ErrorCode::kStaleId, what, "refers to nothing that is in the world"};
+}
+
+Result<void> check_force(const char* what, Vec3 force, Vec3 sum) {
+  return build::Checks("")
+      .within(what, force, limits::kForce, " N")
+      .within(what, sum, limits::kForce, " N with what was given before")
+      .result();
+}
+
+std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
+  const std::uint32_t row = state::object_row(tables, point);
+  if (row == state::SlotTable<RopeId>::kNone) return std::nullopt;
+  const Deformable& object = tables.objects[row];
+  if (point.index >= object.particles.count) return std::nullopt;
+  const std::uint32_t first = object.particles.first;
+  return ParticleRow{first + tables.particles.row_of[first + point.index], row};
+}
+
+void remove_object(Tables& t, std::uint32_t row) {
+  remove_hooks_of_object(row, t);
+  renumber_hooked_objects(t, row);
+  const Deformable gone = t.objects[row];
+  erase_rows(t.particles, gone.particles);
+  erase_rows(t.springs, gone.springs);
+  erase_rows(t.bends, gone.bends);
+  erase_rows(t.triangles, gone.triangles);
+  erase_rows(t.segments, gone.segments);
+  erase_rows(t.tetrahedra, gone.tetrahedra);
+  std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.object == row; });
+  for (state::Pin& pin : t.pins) pin.object -= pin.object > row ? 1 : 0;
+  std::erase_if(t.twists, [&](const state::TwistSpan& span) { return span.object == row; });
+  for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
+  renumber_particles(t, gone.particles);
+  t.contacts = {};  // detect finds them again
+  t.inner_contacts.clear();
+  t.rope_contacts.clear();
+
+  move_slot(t, gone, state::SlotTable<RopeId>::kNone);
+  t.objects.erase(t.objects.begin() + row);
+  for (std::uint32_t i = row; i < t.objects.size(); ++i) {
+    Deformable& object = t.objects[i];
+    object.particles.first -= gone.particles.count;
+    object.springs.first -= gone.springs.count;
+    object.bends.first -= gone.bends.count;
+    object.triangles.first -= gone.triangles.count;
+    object.segments.first -= gone.segments.count;
+    object.tetrahedra.first -= gone.tetrahedra.count;
+    move_slot(t, object, i);
+  }
+  ++t.revision;
+}
+
+void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
+  const Vec3 x = t.particles.position[row.particle].x;
+  const DVec3 place = t.objects[row.object].origin + vector_cast<double>(x);
+  const state::Pin pin = {row.object, row.particle, place, t.time, motion};
+  const auto at =
+      std::lower_bound(t.pins.begin(), t.pins.end(), row.particle,
+                       [](const state::Pin& p, std::uint32_t particle) { return p.particle < particle; });
+  if (at != t.pins.end() && at->particle == row.particle) {
+    *at = pin;
+  } else {
+    t.pins.insert(at, pin);
+  }
+  t.particles.velocity[row.particle] = {};
+  ++t.revision;
+}
+
+void unpin_particle(Tables& t, ParticleRow row) {
+  const auto removed =
+      std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.particle == row.particle; });
+  if (removed == 0) return;
+  t.particles.velocity[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
+  ++t.revision;
+}
+
+BodyId id_of(const Tables& t, std::uint32_t body) {
+  return t.body_slots.id_of(t.bodies.slot[body]);
+}
+
+BodyPart part_of(const Tables& t, std::uint32_t collider) {
+  const std::uint32_t body = t.colliders.body[collider];
+  return {id_of(t, body), collider - t.bodies.first_collider[body]};
+}
+
+bool is_swapped(const Tables& t, const state::Manifold& m) {
+  return t.bodies.slot[m.body_b] < t.bodies.slot[m.body_a];
+}
+
+void wake_all(Tables& t) {
+  for (const std::uint32_t body : t.moving_bodies) state::wake(t.bodies, body);
+}
+
+namespace {
+
+template <class Visit>
+void for_each_slots(Tables& t, Visit&& visit) {
+  const auto each = [&](auto&... slots) { (visit(slots), ...); };
+  each(t.mesh_slots, t.body_slots, t.rope_slots, t.cloth_slots, t.particles_slots, t.field_slots,
+       t.force_law_slots, t.hook_slots, t.solid_slots);
+}
+
+}  // namespace
+
+void mark_ids(std::uint32_t mark, Tables& t) {
+  for_each_slots(t, [&](auto& slots) { slots.set_world(mark); });
+}
+
+void restore_tables(const Tables& from, Tables& to) {
+  const int workers = to.desc.workers;
+  const std::uint64_t revision = std::max(from.revision, to.revision) + 1;
+  const std::uint64_t hook_revision = std::max(from.hook_revision, to.hook_revision) + 1;
+  const std::uint32_t mark = to.body_slots.world();
+  std::array<std::uint32_t, 9> generations = {};
+  std::size_t i = 0;
+  for_each_slots(to, [&](const auto& slots) { generations[i++] = slots.generation() + 1; });
+  const auto go_on = [&] {
+    to.desc.workers = workers;
+    to.revision = revision;
+    to.hook_revision = hook_revision;
+    i = 0;
+    for_each_slots(to, [&](auto& slots) { slots.set_generation(generations[i++]); });
+    mark_ids(mark, to);
+  };
+  try {
+    to = from;  // where there is room already, nothing is allocated
+  } catch (...) {
+    to = Tables();
+    go_on();
+    throw;
+  }
+  go_on();
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,455 @@
+#include "world/particle_stages.h"
+
+#include "solver/air/force_fields.h"
+#include "solver/air/wind.h"
+#include "solver/soft/shape_matching.h"
+#include "solver/soft/spring_solve.h"
+#include "state/check_tables.h"
+#include "world/access.h"
+#include "world/force_stages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace hooke::world {
+
+namespace {
+
+using parallel::for_ranges;
+using parallel::Range;
+
+constexpr int kParticleGrain = 1024;
+constexpr int kTriangleGrain = 512;
+constexpr int kTetrahedronGrain = 64;
+constexpr int kBlockGrain = 16;
+
+/// An object is moved back to its origin when its first particle is farther than this from it [m].
+constexpr Real kFarFromOrigin = Real(64);
+
+bool air_moves(const state::Tables& tables, const state::Deformable& object) {
+  return tables.desc.wind.air_density > Real(0) &&
+         (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
+}
+
+/// Of consecutive numbers. Their products with zero are zero or not a number; eight sums, for vectors.
+bool all_finite(const Real* numbers, std::size_t count) {
+  constexpr std::size_t kSums = 8;
+  Real sums[kSums] = {};
+  std::size_t i = 0;
+  for (; i + kSums <= count; i += kSums) {
+    for (std::size_t k = 0; k < kSums; ++k) sums[k] += Real(0) * numbers[i + k];
+  }
+  for (; i < count; ++i) sums[0] += Real(0) * numbers[i];
+  return std::all_of(std::begin(sums), std::end(sums), [](Real sum) { return sum == Real(0); });
+}
+
+bool all_finite(const state::Particles& particles) {
+  const std::size_t count = 4 * particles.position.size();
+  return all_finite(reinterpret_cast<const Real*>(particles.position.data()), count) &&
+         all_finite(reinterpret_cast<const Real*>(particles.velocity.data()), count);
+}
+
+bool all_finite(const std::vector<Real>& numbers) {
+  return all_finite(numbers.data(), numbers.size());
+}
+
+/// Calls `work` with ranges that cover the rows [first, end) of a table.
+template <class Work>
+void for_rows(const WorldData& world, int first, int end, int grain, Work work) {
+  for_ranges(*world.pool, end - first, grain, [&](Range range) {
+    work(Range{first + range.begin, first + range.end});
+  });
+}
+
+/// The same, with an object's particles.
+template <class Work>
+void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
+  for_rows(world, static_cast<int>(object.particles.first), static_cast<int>(object.particles.end()),
+           kParticleGrain, work);
+}
+
+void read_wind(WorldData& world, double time) {
+  const state::Tables& tables = world.tables;
+  const bool even = !solver::has_gusts(tables.desc.wind);
+  for (const state::Deformable& object : tables.objects) {
+    if (!object.feels_air()) continue;
+    if (even) {
+      const auto first = world.wind.begin() + object.particles.first;
+      std::fill(first, first + object.particles.count, solver::AirLine{tables.desc.wind.velocity, Real(0)});
+      continue;
+    }
+    for_particles(world, object, [&](Range rows) {
+      for (int p = rows.begin; p < rows.end; ++p) {
+        const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
+        world.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
+      }
+    });
+  }
+}
+
+/// Tetrahedra of one color share no particle; colors follow one another.
+template <class Kernel>
+void for_tetrahedra(WorldData& world, Kernel kernel) {
+  for (const solver::TetrahedronPass& pass : world.tetrahedra.passes) {
+    for_rows(world, pass.first, pass.end, kTetrahedronGrain,
+             [&](Range rows) { kernel(world.tetrahedra, rows, world.tables.particles); });
+  }
+}
+
+/// Solids that are matched to their forms at rest, one after the other in each part of the range.
+template <class Kernel>
+void for_matched(WorldData& world, Real h, Kernel kernel) {
+  state::Tables& tables = world.tables;
+  for_ranges(*world.pool, static_cast<int>(world.matched_objects.size()), 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i)
+      kernel(tables.objects[world.matched_objects[i]], static_cast<double>(h), tables.particles);
+  });
+}
+
+/// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
+/// more slowly than stretched cloth swings, which is what these are for.
+void weigh_triangles(WorldData& world, const state::Deformable& object, Real h) {
+  state::Tables& tables = world.tables;
+  const auto count = static_cast<Real>(tables.desc.particle_substeps);
+  const solver::Air air = {world.wind, tables.desc.wind.air_density, count * h};
+  for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
+    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.air_loads);
+  });
+  for_particles(world, object, [&](Range rows) {
+    solver::gather_loads(tables.particles, Real(1) / count, rows, world.air_loads);
+  });
+}
+
+/// Bodies have had the gravity of all particle substeps at once. Those that hang on ropes get it as the ropes
+/// do, share by share: the ropes would feel it all in the first substep and none in the others.
+void share_out_gravity(WorldData& world, Real h, bool first) {
+  state::Tables& tables = world.tables;
+  const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
+  if (others == Real(0)) return;
+  const Real time = first ? -others * h : h;
+  for (const solver::Bundle& bundle : world.bundles.live()) {
+    for (const std::uint32_t body : bundle.bodies) {
+      const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
+      tables.bodies.motion[body].v += change;
+      tables.bodies.free_motion[body].v += change;
+    }
+  }
+}
+
+/// Marks the bodies that contacts between bodies push in this step.
+void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::vector<std::uint8_t>& pushed) {
+  pushed.assign(count, 0);
+  for (const solver::ContactBlock& block : contacts.blocks) {
+    for (int lane = 0; lane < block.count; ++lane) {
+      pushed[block.line_a[lane] / 16] = 1;
+      if (!block.anchored) pushed[block.line_b[lane] / 16] = 1;
+    }
+  }
+}
+
+/// So with what contacts did to them: what stands with a load tied to it would rise and fall in each substep.
+/// Shares go to the bodies that gave them, also if they leave their bundle meanwhile.
+void share_out_contacts(WorldData& world, bool first) {
+  state::Bodies& bodies = world.tables.bodies;
+  const auto count = static_cast<Real>(world.tables.desc.particle_substeps);
+  if (count == Real(1)) return;
+  const auto give = [&bodies](const ContactShare& share, Real times) {
+    bodies.motion[share.body].v += times * share.v;
+    bodies.motion[share.body].omega_scaled += times * share.omega_scaled;
+  };
+  if (!first) {
+    for (const ContactShare& share : world.contact_shares) give(share, Real(1));
+    return;
+  }
+  world.contact_shares.clear();
+  find_pushed(world.body_contacts, bodies.motion.size(), world.touched);
+  for (const solver::Bundle& bundle : world.bundles.live()) {
+    for (const std::uint32_t body : bundle.bodies) {
+      if (world.touched[body] == 0) continue;
+      const state::MotionLine& m = bodies.motion[body];
+      const state::FreeLine& free = bodies.free_motion[body];
+      world.contact_shares.push_back(
+          {.body = body,
+           .v = (Real(1) / count) * (m.v - free.v),
+           .omega_scaled = (Real(1) / count) * (m.omega_scaled - free.omega_scaled)});
+      give(world.contact_shares.back(), Real(1) - count);
+    }
+  }
+}
+
+void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
+  state::Tables& t = world.tables;
+  for (const state::Field& field : t.fields) {
+    if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
+    const solver::LiquidSurface surface(field.desc, t.desc.gravity);
+    solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
+                              world.liquid_loads);
+    solver::apply_liquid(field.desc, surface, object, world.liquid_loads, h, t.particles);
+  }
+}
+
+/// Pins and hooks say where ropes are held against bending and twist.
+void refresh_clamps(WorldData& world) {
+  const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
+  if (world.clamps_revision == revision) return;
+  world.clamps_revision = revision;
+  const std::vector<solver::Holder> holders = solver::list_holders(world.tables);
+  solver::note_clamps(holders, world.tables);
+  solver::find_twist_spans(holders, world.tables);
+}
+
+}  // namespace
+
+void refresh_derived(WorldData& world) {
+  state::Tables& tables = world.tables;
+  refresh_clamps(world);
+  if (world.derived_revision == tables.revision) return;
+  world.derived_revision = tables.revision;
+  const std::vector<std::uint8_t> in_hinges =
+      solver::build_hinge_blocks(tables.bends, tables.springs, tables.particles.count(), world.hinge_blocks);
+  solver::build_spring_blocks(tables.springs, tables.particles, in_hinges, world.spring_blocks);
+  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
+  solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
+  solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
+  solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
+  world.gas_objects.clear();
+  world.matched_objects.clear();
+  for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
+    if (tables.objects[i].gas > 0) world.gas_objects.push_back(i);
+    if (tables.objects[i].rest_shape) world.matched_objects.push_back(i);
+  }
+  world.gas_volumes.resize(world.gas_objects.size());
+  world.chains.clear();
+  for (const state::Deformable& object : tables.objects) {
+    if (object.kind != PointRef::Kind::kRope) continue;
+    world.chains.push_back({.first_particle = object.particles.first,
+                            .node_count = object.particles.count,
+                            .first_segment = object.segments.first,
+                            .bend_stiffness = static_cast<double>(object.bend_stiffness),
+                            .bend_damping = static_cast<double>(object.bend_damping)});
+  }
+  const auto count = static_cast<std::size_t>(tables.particles.count());
+  world.velocity_before.assign(count, state::VelocityLine{});
+  world.wind.assign(count, solver::AirLine{});
+  world.law_force.assign(count, Vec3{});
+}
+
+void prepare_rows(WorldData& world, Real h) {
+  state::check_tables(world.tables);  // after all contacts were found
+  solver::prepare_springs(world.spring_blocks.materials, h);
+  solver::prepare_hinges(world.hinge_blocks, h);
+  solver::prepare_bends(world.bend_blocks, h);
+  solver::prepare_tetrahedra(world.tetrahedra, h);
+}
+
+void begin_step(WorldData& world, double dt) {
+  state::Tables& tables = world.tables;
+  read_wind(world, tables.time + 0.5 * dt);
+  begin_body_forces(world);
+
+  std::fill(tables.segments.mean_tension.begin(), tables.segments.mean_tension.end(), Real(0));
+  for (state::TwistSpan& span : tables.twists) span.mean_torque = Real(0);
+  std::size_t row = 0;
+  const state::Contacts& contacts = tables.contacts;
+  for (solver::Chain& chain : world.chains) {
+    const auto begins = [&](std::uint32_t particle) {
+      return row < contacts.particle.size() && contacts.particle[row] < particle;
+    };
+    while (begins(chain.first_particle)) ++row;
+    chain.first_contact = static_cast<std::uint32_t>(row);
+    while (begins(chain.first_particle + chain.node_count)) ++row;
+    chain.end_contact = static_cast<std::uint32_t>(row);
+    chain.solves = 0;
+    chain.unconverged = false;
+  }
+}
+
+void begin_particle_substep(WorldData& world, Real h) {
+  if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
+  for_matched(world, h, solver::damp_shape);
+  for (const solver::Chain& chain : world.chains) {
+    const auto first = world.tables.particles.velocity.begin() + chain.first_particle;
+    std::copy(first, first + chain.node_count, world.velocity_before.begin() + chain.first_particle);
+  }
+}
+
+void apply_forces(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
+                                      tables.any_force};
+  for (const state::Deformable& object : tables.objects) {
+    if (tables.fields.empty() && !tables.any_force && !object.points_drag) continue;
+    for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
+               [&](Range range) { solver::apply_forces(object, inputs, h, range, tables.particles); });
+    apply_liquids(world, object, h);
+  }
+}
+
+void apply_wind(WorldData& world, Real h, bool first) {
+  state::Tables& tables = world.tables;
+  for (const state::Deformable& object : tables.objects) {
+    if (!air_moves(tables, object)) continue;
+    if (object.segments.count > 0) {
+      const solver::Air air = {world.wind, tables.desc.wind.air_density, h};
+      solver::push_segments(object, tables.segments, air, tables.particles);
+    }
+    if (object.triangles.count == 0) continue;
+    if (first) weigh_triangles(world, object, h);
+    for_particles(world, object,
+                  [&](Range rows) { solver::push_particles(world.air_loads, rows, tables.particles); });
+  }
+}
+
+void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
+  for (const solver::SpringPass& pass : world.spring_blocks.passes) {
+    if (pass.kind < first || pass.kind > last) continue;
+    for_rows(world, pass.first, pass.end, kBlockGrain, [&](Range blocks) {
+      solver::solve_springs(world.spring_blocks, pass, blocks, h, world.tables.particles);
+    });
+  }
+}
+
+void solve_bends(WorldData& world) {
+  const auto solve = [&world](const auto& rows, auto solve_pass) {
+    for (const auto& pass : rows.passes) {
+      for_rows(world, pass.first, pass.end, kBlockGrain,
+               [&](Range blocks) { solve_pass(rows, pass, blocks, world.tables.particles); });
+    }
+  };
+  solve(world.bend_blocks, solver::solve_bends);
+  solve(world.hinge_blocks, solver::solve_hinges);
+}
+
+void call_force_laws(WorldData& world, double time, Real h) {
+  state::Tables& tables = world.tables;
+  if (tables.force_laws.empty()) return;
+  std::fill(world.law_force.begin(), world.law_force.end(), Vec3{});
+  for (const state::ForceLawEntry& entry : tables.force_laws) {
+    if (!entry.law) continue;
+    for (const state::Deformable& object : tables.objects) {
+      ForceView view = ForceViewAccess::make(tables, object, time, world.law_force.data());
+      entry.law(view);
+    }
+  }
+  for (std::size_t p = 0; p < world.law_force.size(); ++p) {
+    tables.particles.velocity[p].v += (h * tables.particles.velocity[p].inverse_mass) * world.law_force[p];
+  }
+}
+
+std::uint32_t quarantine_non_finite(WorldData& world) {
+  state::Particles& particles = world.tables.particles;
+  if (all_finite(particles) && all_finite(world.tables.segments.tension)) return 0;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    if (is_finite(particles.position[i].x) && is_finite(particles.velocity[i].v)) continue;
+    particles.position[i].x = world.start_position[i].x;
+    particles.velocity[i].v = {};
+    ++count;
+  }
+  for (Real& tension : world.tables.segments.tension) tension = std::isfinite(tension) ? tension : Real(0);
+  return count;
+}
+
+void rebase_origins(WorldData& world) {
+  state::Particles& particles = world.tables.particles;
+  for (state::Deformable& object : world.tables.objects) {
+    const Vec3 first = particles.position[object.particles.first].x;
+    const Real size = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
+    if (size <= kFarFromOrigin) continue;
+    const Vec3 shift = {std::floor(first.x + Real(0.5)), std::floor(first.y + Real(0.5)),
+                        std::floor(first.z + Real(0.5))};
+    object.origin += vector_cast<double>(shift);
+    for (std::uint32_t i = object.particles.first; i < object.particles.end(); ++i)
+      particles.position[i].x -= shift;
+  }
+}
+
+void solve_solids(WorldData& world, Real h) {
+  for_tetrahedra(world, solver::solve_tetrahedra);
+  state::Tables& tables = world.tables;
+  for_matched(world, h, solver::match_shape);
+  for_ranges(*world.pool, static_cast<int>(world.gas_objects.size()), 1, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, tables.contacts,
+                        tables.bodies, static_cast<double>(h), world.gas_volumes[i], tables.particles);
+    }
+  });
+}
+
+void flow_solids(WorldData& world, Real h) {
+  for_ranges(
+      *world.pool, static_cast<int>(world.yields.tetrahedra.size()), kTetrahedronGrain,
+      [&](Range rows) { solver::flow_tetrahedra(world.yields, rows, h, world.tables, world.tetrahedra); });
+}
+
+void flow_cloths(WorldData& world) {
+  for_ranges(*world.pool, static_cast<int>(world.yields.bends.size()), kTriangleGrain,
+             [&](Range rows) { solver::flow_bends(world.yields, rows, world.tables, world.bend_blocks); });
+}
+
+void begin_ties(WorldData& world, Real h, bool first) {
+  if (world.tables.objects.empty() && world.tables.pairs.borne.empty() && world.bundles.count == 0) return;
+  if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
+  solver::slide_hooks(world.tables);
+  solver::build_bundles(world.tables, world.chains, world.bundles);
+  share_out_contacts(world, first);
+  share_out_gravity(world, h, first);
+  solver::weigh_points(world.bundles, world.tables, world.hooked_points);
+}
+
+void solve_ropes(WorldData& world, Real h) {
+  state::Tables& tables = world.tables;
+  solver::release_points(world.hooked_points, tables.particles);
+  solver::twist_nodes(world.twist_rows, tables);
+  world.chain_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
+  for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows, int part) {
+    solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.bundles.anchors,
+                         world.velocity_before, h, world.chain_scratch[part], tables);
+  });
+  for_ranges(*world.pool, static_cast<int>(world.bundles.count), 1, [&](Range rows) {
+    for (int i = rows.begin; i < rows.end; ++i) {
+      solver::solve_bundle(world.velocity_before, h, world.bundles.bundles[i], world.chains, tables);
+    }
+  });
+  solver::note_twist_rates(static_cast<double>(h), world.twist_rows, tables);
+}
+
+void end_step(WorldData& world, double dt, StepReport& report) {
+  state::Tables& tables = world.tables;
+  const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
+  const Real share = Real(1) / static_cast<Real>(substeps);
+  for (Real& tension : tables.segments.mean_tension) tension *= share;
+  for (state::TwistSpan& span : tables.twists) span.mean_torque *= share;
+  for (const solver::Chain& chain : world.chains) {
+    report.chain_solves += chain.solves;
+    report.chains_unconverged += chain.unconverged ? 1 : 0;
+  }
+  report.islands_refused = world.hard_islands.refused;
+  report.contacts_refused = world.borne.refused;
+  for (const solver::Bundle& bundle : world.bundles.live()) report.contacts_refused += bundle.refused;
+  for (solver::Bundle& bundle : world.bundles.bundles)
+    report.bundles_cut_short += std::exchange(bundle.cut_short, false) ? 1 : 0;
+  report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
+                                                             tables.contacts.normal_force.end(),
+                                                             [](Real n) { return n > Real(0); }));
+  for (const state::InnerContact& inner : tables.inner_contacts)
+    report.contacts += inner.normal_force > Real(0) ? 1 : 0;
+  for (const state::RopeContact& contact : tables.rope_contacts)
+    report.contacts += contact.normal_force > Real(0) ? 1 : 0;
+  report.contacts += tables.pairs.parked.contacts;
+  for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
+  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.parked.pair.size());
+  report.pairs_left_out = world.crowds.left_out();
+  report.bodies_awake = static_cast<std::uint32_t>(
+      std::count_if(world.awake.begin(), world.awake.end(),
+                    [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
+  if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
+  tables.any_force = false;
+  tables.time += dt;
+  tables.substep = dt / substeps;
+  ++tables.step_count;
+  report.moved = true;
+}
+
+}  // namespace hooke::world
