@@ -61,10 +61,10 @@ inline ClothList cloth_100(int side = 100) {
 inline state::Bends wave_cloth(ClothList& list, bool isometric, int side = 100) {
   state::Bends bends;
   const auto point = [side](int column, int row) { return static_cast<std::uint32_t>(row * side + column); };
-  const std::vector<state::PositionLine> flat = list.particles.position;
-  for (auto& line : list.particles.position) {
-    const auto row = static_cast<int>(&line - list.particles.position.data()) * 7 / 3 % 5;
-    line.x.z = Real(0.005) * static_cast<Real>(row);
+  const std::vector<state::PositionRecord> flat = list.particles.position;
+  for (auto& record : list.particles.position) {
+    const auto row = static_cast<int>(&record - list.particles.position.data()) * 7 / 3 % 5;
+    record.x.z = Real(0.005) * static_cast<Real>(row);
   }
   const auto add = [&](std::uint32_t edge_a, std::uint32_t edge_b, std::uint32_t wing_a,
                        std::uint32_t wing_b) {

@@ -104,12 +104,12 @@ void run_bullet(int iterations) {
   const bench::ClothList list = bench::cloth_100(kSide);
   std::vector<btVector3> points;
   std::vector<btScalar> masses;
-  for (const auto& line : list.particles.position) {
-    points.emplace_back(static_cast<btScalar>(line.x.x), static_cast<btScalar>(line.x.y),
-                        static_cast<btScalar>(line.x.z));
+  for (const auto& record : list.particles.position) {
+    points.emplace_back(static_cast<btScalar>(record.x.x), static_cast<btScalar>(record.x.y),
+                        static_cast<btScalar>(record.x.z));
   }
-  for (const auto& line : list.particles.velocity) {
-    masses.push_back(line.inverse_mass > Real(0) ? btScalar(1) : btScalar(0));
+  for (const auto& record : list.particles.velocity) {
+    masses.push_back(record.inverse_mass > Real(0) ? btScalar(1) : btScalar(0));
   }
   auto* cloth = new btSoftBody(&world.getWorldInfo(), kSide * kSide, points.data(), masses.data());
   btSoftBody::Material* rigid = cloth->appendMaterial();

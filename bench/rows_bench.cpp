@@ -57,15 +57,15 @@ void bends(benchmark::State& state) {
   count_rows(state, blocks, list.count());
 }
 
-void hinges(benchmark::State& state) {
+void isometric_bends(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   const state::Bends list = bench::wave_cloth(cloth, true);
-  solver::HingeBlocks blocks;
-  solver::build_hinge_blocks(list, cloth.springs, cloth.particles.count(), blocks);
-  solver::prepare_hinges(blocks, kSubstep);
+  solver::IsometricBendBlocks blocks;
+  solver::build_isometric_bend_blocks(list, cloth.springs, cloth.particles.count(), blocks);
+  solver::prepare_isometric_bends(blocks, kSubstep);
   for (auto _ : state) {
-    for (const solver::HingePass& pass : blocks.passes) {
-      solver::solve_hinges(blocks, pass, {pass.first, pass.end}, cloth.particles);
+    for (const solver::IsometricBendPass& pass : blocks.passes) {
+      solver::solve_isometric_bends(blocks, pass, {pass.first, pass.end}, cloth.particles);
     }
     benchmark::ClobberMemory();
   }
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
   for (const std::string& target : hooke::solver::wide::targets()) {
     add_benchmark("springs", target, springs);
     add_benchmark("bends", target, bends);
-    add_benchmark("hinges", target, hinges);
+    add_benchmark("hinges", target, isometric_bends);
   }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

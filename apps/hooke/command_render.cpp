@@ -1,8 +1,8 @@
 #include "hooke/command_line.h"
 #include "hooke/compare/stage.h"
 #include "hooke/drawing/drawing_style.h"
-#include "hooke/progress.h"
 #include "hooke/drawing/scene_drawing.h"
+#include "hooke/progress.h"
 
 #include "render/renderer.h"
 #include "render/video.h"

@@ -41,7 +41,7 @@ struct Count {
 constexpr std::array kCounts = {
     Count{&StepReport::rows_quarantined, "particles were put back because their state was not finite",
           "less extreme masses, stiffnesses or forces, or more substeps"},
-    Count{&StepReport::chains_unconverged,
+    Count{&StepReport::ropes_unconverged,
           "ropes stayed more than 1 % off their length: Newton's steps did not converge",
           "more particle_substeps, or a load that is not as heavy", true},
     Count{&StepReport::pairs_left_out,
@@ -52,7 +52,7 @@ constexpr std::array kCounts = {
     Count{&StepReport::contacts_refused,
           "contacts were too many to be solved with hooks and ropes, and may sink",
           "fewer bodies on what hangs, masses that differ less, or more substeps"},
-    Count{&StepReport::bundles_cut_short,
+    Count{&StepReport::coupled_groups_cut_short,
           "groups of ropes and what they hold took too much work to be solved to the end",
           "fewer points, or fewer ropes that touch each other"},
 };

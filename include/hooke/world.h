@@ -85,16 +85,16 @@ struct StepReport {
   std::uint32_t pairs = 0;           ///< Shapes of bodies that are near each other.
   std::uint32_t pairs_left_out = 0;  ///< Of bodies deep in several others: all but those with the 8 nearest.
   std::uint32_t bodies_awake = 0;
-  std::uint32_t rows_quarantined = 0;    ///< Particles reset because their state was NaN or infinite.
-  std::uint32_t chain_solves = 0;        ///< Newton steps over ropes.
-  std::uint32_t chains_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
+  std::uint32_t rows_quarantined = 0;   ///< Particles reset because their state was NaN or infinite.
+  std::uint32_t rope_solves = 0;        ///< Newton steps over ropes.
+  std::uint32_t ropes_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
   /// Stacks that need a direct solution and are beyond its budget: they sink.
   std::uint32_t islands_refused = 0;
   /// Contacts that need to be solved with the hooks of what they press on and are beyond their number, and
   /// those of ropes that touch each other in more places than can be solved.
   std::uint32_t contacts_refused = 0;
   /// Groups of ropes, of what hangs on them and touches them, whose solution ended by its budget of work.
-  std::uint32_t bundles_cut_short = 0;
+  std::uint32_t coupled_groups_cut_short = 0;
   double detect_ms = 0;
   double prepare_ms = 0;
   double substep_ms = 0;
@@ -153,7 +153,7 @@ class ForceView {
   friend struct ForceViewAccess;
   PointView positions_;
   PointView velocities_;
-  const std::byte* lines_ = nullptr;
+  const std::byte* records_ = nullptr;
   Vec3* forces_ = nullptr;
   const std::uint32_t* row_of_ = nullptr;
   PointRef::Kind kind_ = PointRef::Kind::kNone;

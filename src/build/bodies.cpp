@@ -4,9 +4,9 @@
 #include "build/build.h"
 #include "build/checks.h"
 #include "build/connection_points.h"
-#include "state/sleeping_pairs.h"
 #include "geometry/convex/mass_properties.h"
 #include "state/body_frames.h"
+#include "state/sleeping_pairs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -380,7 +380,7 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
   b.angular_momentum[row] = state::angular_momentum_of(mass, rotation, desc.angular_velocity);
   b.angular_velocity[row] = moves ? desc.angular_velocity : Vec3{};
   b.traits[row] = traits_of(desc, parts, mass.center);
-  b.hardness[row] = desc.kind == BodyKind::kDynamic ? state::Bodies::kNew : std::int8_t{0};
+  b.direct_state[row] = desc.kind == BodyKind::kDynamic ? state::Bodies::kNew : std::int8_t{0};
   b.path[row] = std::move(path);
   b.path_start[row] = b.center[row];
   b.path_time[row] = t.time;

@@ -404,10 +404,10 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables) {
   append_triangles(surface, mass / area, tables);
   append_tethers(surface, desc, tables);
   if (surface.is_grid) {
-    append_connection_points(
-        desc.connection_points, {},
-        places_of_grid(static_cast<std::uint32_t>(surface.columns), static_cast<std::uint32_t>(surface.rows)),
-        tables);
+    append_connection_points(desc.connection_points, {},
+                             connection_points_of_grid(static_cast<std::uint32_t>(surface.columns),
+                                                       static_cast<std::uint32_t>(surface.rows)),
+                             tables);
   } else {
     append_connection_points(desc.connection_points, {desc.position, desc.rotation}, {}, tables);
   }

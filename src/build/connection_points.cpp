@@ -58,7 +58,7 @@ std::vector<Side> corners(int axes) {
 
 /// What lies at a side of a lattice of so many points along its axes, the first fastest: a point, or the
 /// middle between two or four.
-NamedPlace lattice_place(std::array<std::uint32_t, 3> counts, const Side& side) {
+NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) {
   NamedPlace place = {.name = name_of(side)};
   std::array<std::vector<std::uint32_t>, 3> along;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -158,8 +158,8 @@ std::shared_ptr<const NamedPlaces> connection_points_of(const std::vector<Connec
   return places;
 }
 
-void append_connection_points(const std::vector<ConnectionPointDesc>& given, const PlaceFrame& frame,
-                              const NamedPlaces& of_its_kind, Tables& t) {
+void append_connection_points(const std::vector<ConnectionPointDesc>& given,
+                              const ConnectionPointFrame& frame, const NamedPlaces& of_its_kind, Tables& t) {
   state::Deformable& object = t.objects.back();
   auto places = std::make_shared<NamedPlaces>();
   const Quaternion<double> turn =
@@ -179,10 +179,10 @@ NamedPlace named_point(const char* name, std::uint32_t point) {
   return {.name = name, .points = {point}, .weights = {Real(1)}};
 }
 
-NamedPlaces places_of_grid(std::uint32_t columns, std::uint32_t rows) {
+NamedPlaces connection_points_of_grid(std::uint32_t columns, std::uint32_t rows) {
   NamedPlaces places;
   const auto add = [&](Side side) {
-    NamedPlace place = lattice_place({columns, rows, 1}, side);
+    NamedPlace place = lattice_point({columns, rows, 1}, side);
     side.end[1] = -side.end[1];  // rows count downward
     place.name = name_of(side);
     places.push_back(place);
@@ -193,15 +193,15 @@ NamedPlaces places_of_grid(std::uint32_t columns, std::uint32_t rows) {
   return places;
 }
 
-NamedPlaces places_of_box(std::array<std::int32_t, 3> cells) {
+NamedPlaces connection_points_of_box(std::array<std::int32_t, 3> cells) {
   std::array<std::uint32_t, 3> counts = {};
   for (std::size_t axis = 0; axis < 3; ++axis) counts[axis] = static_cast<std::uint32_t>(cells[axis]) + 1;
   NamedPlaces places;
-  for (const Side& side : faces(3)) places.push_back(lattice_place(counts, side));
-  for (const Side& side : corners(3)) places.push_back(lattice_place(counts, side));
+  for (const Side& side : faces(3)) places.push_back(lattice_point(counts, side));
+  for (const Side& side : corners(3)) places.push_back(lattice_point(counts, side));
   const bool in_a_cell = cells[0] % 2 != 0 && cells[1] % 2 != 0 && cells[2] % 2 != 0;
   if (!in_a_cell) {
-    places.push_back(lattice_place(counts, {}));
+    places.push_back(lattice_point(counts, {}));
     return places;
   }
   std::uint32_t cell = 0;
@@ -211,7 +211,7 @@ NamedPlaces places_of_box(std::array<std::int32_t, 3> cells) {
   return places;
 }
 
-NamedPlaces places_of_body(std::uint32_t body, const Tables& t) {
+NamedPlaces connection_points_of_body(std::uint32_t body, const Tables& t) {
   NamedPlaces places;
   if (t.bodies.connection_points[body]) places = *t.bodies.connection_points[body];
   NamedPlaces of_its_kind = {{.name = "center"}, {.name = "origin", .position = -t.bodies.mass[body].center}};
@@ -231,7 +231,8 @@ NamedPlaces places_of_body(std::uint32_t body, const Tables& t) {
   return places;
 }
 
-Result<NamedPlace> find_named_place(const NamedPlaces& places, const std::string& name, const char* where) {
+Result<NamedPlace> find_connection_point(const NamedPlaces& places, const std::string& name,
+                                         const char* where) {
   std::vector<std::string> names;
   for (const NamedPlace& place : places) {
     if (place.name == name) return place;

@@ -23,27 +23,28 @@ void check_connection_points(Checks& checks, const std::vector<ConnectionPointDe
     const std::vector<ConnectionPointDesc>& given, Vec3 center);
 
 /// The frame that the places of an object are given in.
-struct PlaceFrame {
+struct ConnectionPointFrame {
   DVec3 position = {};  ///< [m]
   Quat rotation = {};
 };
 
 /// Gives the last object the places that its maker names and, under other names, those of its kind.
-void append_connection_points(const std::vector<ConnectionPointDesc>& given, const PlaceFrame& frame,
-                              const state::NamedPlaces& of_its_kind, state::Tables& tables);
+void append_connection_points(const std::vector<ConnectionPointDesc>& given,
+                              const ConnectionPointFrame& frame, const state::NamedPlaces& of_its_kind,
+                              state::Tables& tables);
 
 /// One point of a deformable under a name.
 [[nodiscard]] state::NamedPlace named_point(const char* name, std::uint32_t point);
 /// Corners, edges and center of a grid of columns and rows.
-[[nodiscard]] state::NamedPlaces places_of_grid(std::uint32_t columns, std::uint32_t rows);
+[[nodiscard]] state::NamedPlaces connection_points_of_grid(std::uint32_t columns, std::uint32_t rows);
 /// Corners, faces and center of a box of cells: its corners first, then the centers of its cells.
-[[nodiscard]] state::NamedPlaces places_of_box(std::array<std::int32_t, 3> cells);
+[[nodiscard]] state::NamedPlaces connection_points_of_box(std::array<std::int32_t, 3> cells);
 
 /// All places of a body: its own, then those of its kind.
-[[nodiscard]] state::NamedPlaces places_of_body(std::uint32_t body, const state::Tables& tables);
+[[nodiscard]] state::NamedPlaces connection_points_of_body(std::uint32_t body, const state::Tables& tables);
 
 /// The place of this name; an error at `where` that lists the names there are.
-[[nodiscard]] Result<state::NamedPlace> find_named_place(const state::NamedPlaces& places,
-                                                         const std::string& name, const char* where);
+[[nodiscard]] Result<state::NamedPlace> find_connection_point(const state::NamedPlaces& places,
+                                                              const std::string& name, const char* where);
 
 }  // namespace hooke::build

@@ -109,7 +109,7 @@ Result<FoundEnd> find_point(const HookEnd& end, DVec3 anchor, const char* where,
   FoundEnd found = {.is_given = true, .position = object.origin};
   if (!end.connection_point.empty()) {
     const Result<state::NamedPlace> named =
-        find_named_place(*object.connection_points, end.connection_point, where);
+        find_connection_point(*object.connection_points, end.connection_point, where);
     if (!named) return named.error();
     found.place = rows_of(named.value(), object, t);
   } else if (point.index == PointRef::kNearest) {
@@ -138,7 +138,7 @@ Result<FoundEnd> find_body(const HookEnd& end, const char* where, const Tables& 
   found.place.body = body;
   if (end.connection_point.empty()) return found;
   const Result<state::NamedPlace> named =
-      find_named_place(places_of_body(body, t), end.connection_point, where);
+      find_connection_point(connection_points_of_body(body, t), end.connection_point, where);
   if (!named) return named.error();
   found.is_given = true;
   found.position =

@@ -18,29 +18,29 @@ using DQuat = Quaternion<double>;
 
 constexpr double kPi = 3.14159265358979323846;
 
-double number(Real value) {
+double to_double(Real value) {
   return static_cast<double>(value);
 }
 
 void check_limits(const HookLimits& limits, const std::string& field, Checks& checks) {
   checks.require(limits.lower <= limits.upper, field, "must have lower not above upper")
-      .require(number(limits.lower) < HUGE_VAL && number(limits.upper) > -HUGE_VAL, field,
+      .require(to_double(limits.lower) < HUGE_VAL && to_double(limits.upper) > -HUGE_VAL, field,
                "must leave some value in between");
   for (const Real bound : {limits.lower, limits.upper}) {
-    const bool good = std::isinf(bound) || std::abs(number(bound)) <= limits::kPlace;
-    checks.require(good, field, number(bound), "must be within 1e9, or infinite");
+    const bool good = std::isinf(bound) || std::abs(to_double(bound)) <= limits::kPlace;
+    checks.require(good, field, to_double(bound), "must be within 1e9, or infinite");
   }
 }
 
 void check_spring(const HookSpring& spring, const std::string& field, Checks& checks) {
-  checks.up_to(field + "stiffness", number(spring.stiffness), limits::kStiffness)
-      .up_to(field + "damping", number(spring.damping), limits::kResistance)
-      .in_range(field + "target", number(spring.target), -limits::kPlace, limits::kPlace);
+  checks.up_to(field + "stiffness", to_double(spring.stiffness), limits::kStiffness)
+      .up_to(field + "damping", to_double(spring.damping), limits::kResistance)
+      .in_range(field + "target", to_double(spring.target), -limits::kPlace, limits::kPlace);
 }
 
 void check_motor(const HookMotor& motor, const std::string& field, Checks& checks) {
-  checks.in_range(field + "speed", number(motor.speed), -limits::kSpeed, limits::kSpeed)
-      .not_negative(field + "max_force", number(motor.max_force));
+  checks.in_range(field + "speed", to_double(motor.speed), -limits::kSpeed, limits::kSpeed)
+      .not_negative(field + "max_force", to_double(motor.max_force));
 }
 
 void check_freedom(const HookFreedom& freedom, const std::string& field, Checks& checks) {
@@ -205,7 +205,7 @@ Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
 }
 
 /// Where an end begins to look for the nearest place: at the other end, if that is named, or at the anchor.
-Result<DVec3> place_to_look_from(const HookEnd& other, DVec3 anchor, const char* where, const Tables& t) {
+Result<DVec3> search_start(const HookEnd& other, DVec3 anchor, const char* where, const Tables& t) {
   if (other.connection_point.empty()) return anchor;
   const Result<FoundEnd> found = find_end(other, anchor, where, t);
   if (!found) return found.error();
@@ -260,15 +260,15 @@ Result<void> validate(const HookDesc& desc) {
   check_limits(desc.limits, "limits", checks);
   check_spring(desc.spring, "spring.", checks);
   check_motor(desc.motor, "motor.", checks);
-  if (desc.cone) checks.in_range("cone", number(*desc.cone), 1e-6, kPi + 1e-6);
+  if (desc.cone) checks.in_range("cone", to_double(*desc.cone), 1e-6, kPi + 1e-6);
   check_freedom(desc.steering, "steering", checks);
   for (std::size_t i = 0; i < desc.freedoms.size(); ++i)
     check_freedom(desc.freedoms[i], indexed("freedoms", i), checks);
   if (desc.kind == HookKind::kDistance) {
     checks.require(desc.limits.upper > Real(0), "limits", "must allow some distance");
   }
-  checks.require(desc.break_force > Real(0), "break_force", number(desc.break_force), "must be positive")
-      .require(desc.break_torque > Real(0), "break_torque", number(desc.break_torque), "must be positive");
+  checks.require(desc.break_force > Real(0), "break_force", to_double(desc.break_force), "must be positive")
+      .require(desc.break_torque > Real(0), "break_torque", to_double(desc.break_torque), "must be positive");
   return checks.result();
 }
 
@@ -302,11 +302,11 @@ void append_hook(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b, Tab
 Result<void> add_hook(const HookDesc& desc, Tables& t) {
   const Result<void> good = validate(desc);
   if (!good) return good.error();
-  const Result<DVec3> near_a = place_to_look_from(desc.b, desc.anchor, "hook.b", t);
+  const Result<DVec3> near_a = search_start(desc.b, desc.anchor, "hook.b", t);
   if (!near_a) return near_a.error();
   const Result<FoundEnd> a = find_end(desc.a, near_a.value(), "hook.a", t);
   if (!a) return a.error();
-  const Result<DVec3> near_b = place_to_look_from(desc.a, wanted_anchor_b(desc), "hook.a", t);
+  const Result<DVec3> near_b = search_start(desc.a, wanted_anchor_b(desc), "hook.a", t);
   if (!near_b) return near_b.error();
   const Result<FoundEnd> b = find_end(desc.b, near_b.value(), "hook.b", t);
   if (!b) return b.error();

@@ -56,7 +56,7 @@ state::SpringForm form_of(const ParticlesDesc& desc) {
   return predicted ? state::SpringForm::kPredicted : state::SpringForm::kExplicit;
 }
 
-state::NamedPlaces standard_places(const ParticlesDesc& desc) {
+state::NamedPlaces standard_connection_points(const ParticlesDesc& desc) {
   if (desc.particles.size() == 1) return {named_point("center", 0)};
   if (desc.springs.empty()) return {};
   return {named_point("start", desc.springs.front().a), named_point("end", desc.springs.back().b)};
@@ -92,7 +92,7 @@ Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables) {
                    .form = form_of(desc)},
                   tables);
   }
-  append_connection_points(desc.connection_points, {}, standard_places(desc), tables);
+  append_connection_points(desc.connection_points, {}, standard_connection_points(desc), tables);
   return {};
 }
 

@@ -62,8 +62,9 @@ std::vector<DVec3> node_positions(const RopeDesc& desc) {
   if (!desc.points.empty()) return desc.points;
   std::vector<DVec3> points;
   points.reserve(static_cast<std::size_t>(desc.masses));
-  const DVec3 way = static_cast<double>(desc.length_at_rest) * normalize(vector_cast<double>(desc.direction));
-  for (int i = 0; i < desc.masses; ++i) points.push_back(desc.hook_point + (i / (desc.masses - 1.0)) * way);
+  const DVec3 span =
+      static_cast<double>(desc.length_at_rest) * normalize(vector_cast<double>(desc.direction));
+  for (int i = 0; i < desc.masses; ++i) points.push_back(desc.hook_point + (i / (desc.masses - 1.0)) * span);
   return points;
 }
 
@@ -102,7 +103,7 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
   }
 }
 
-state::NamedPlaces standard_places(std::size_t count) {
+state::NamedPlaces standard_connection_points(std::size_t count) {
   const auto last = static_cast<std::uint32_t>(count) - 1;
   const std::uint32_t half = last / 2;
   state::NamedPlace middle = named_point("middle", half);
@@ -153,7 +154,8 @@ Result<void> add_rope(const RopeDesc& given, state::Tables& tables) {
   object.twist_rate = static_cast<Real>(static_cast<double>(desc.twist) / total);
   object.drag_coefficient = desc.drag_coefficient;
   append_segments(desc, lengths, total, tables);
-  append_connection_points(desc.connection_points, {}, standard_places(points.position.size()), tables);
+  append_connection_points(desc.connection_points, {}, standard_connection_points(points.position.size()),
+                           tables);
   return {};
 }
 

@@ -160,8 +160,8 @@ HookPlace place_at(const Thread& thread, double share) {
   constexpr double kAtPoint = 1e-4;  // of the segment: what rounding may put beside a point
   const auto after = std::upper_bound(thread.share.begin() + 1, thread.share.end() - 1, share);
   const auto last = static_cast<std::size_t>(after - thread.share.begin());
-  const double way = thread.share[last] - thread.share[last - 1];
-  const double along = way > 0 ? std::clamp((share - thread.share[last - 1]) / way, 0.0, 1.0) : 0.0;
+  const double span = thread.share[last] - thread.share[last - 1];
+  const double along = span > 0 ? std::clamp((share - thread.share[last - 1]) / span, 0.0, 1.0) : 0.0;
   HookPlace place = {.object = thread.object, .particle_count = 1};
   if (along < kAtPoint || along > 1 - kAtPoint) {
     place.particle[0] = thread.rows[along < 0.5 ? last - 1 : last];
@@ -177,8 +177,8 @@ HookPlace place_at(const Thread& thread, double share) {
 DVec3 position_at(const Thread& thread, double share) {
   const auto after = std::upper_bound(thread.share.begin() + 1, thread.share.end() - 1, share);
   const auto last = static_cast<std::size_t>(after - thread.share.begin());
-  const double way = thread.share[last] - thread.share[last - 1];
-  const double along = way > 0 ? (share - thread.share[last - 1]) / way : 0.0;
+  const double span = thread.share[last] - thread.share[last - 1];
+  const double along = span > 0 ? (share - thread.share[last - 1]) / span : 0.0;
   return thread.places[last - 1] + along * (thread.places[last] - thread.places[last - 1]);
 }
 
@@ -193,16 +193,16 @@ Thread reversed(Thread thread) {
 
 /// A closed thread, begun at another of its points.
 Thread begun_at(const Thread& thread, std::size_t first) {
-  Thread turned = {.object = thread.object, .length = thread.length};
+  Thread backward = {.object = thread.object, .length = thread.length};
   const std::size_t count = thread.segments();
   for (std::size_t i = 0; i <= count; ++i) {
     const std::size_t from = (first + i) % count;
     const double share = thread.share[from] - thread.share[first] + (first + i >= count ? 1 : 0);
-    turned.rows.push_back(thread.rows[from]);
-    turned.places.push_back(thread.places[from]);
-    turned.share.push_back(i == count ? 1.0 : share);
+    backward.rows.push_back(thread.rows[from]);
+    backward.places.push_back(thread.places[from]);
+    backward.share.push_back(i == count ? 1.0 : share);
   }
-  return turned;
+  return backward;
 }
 
 /// How far the threads are apart [m^2]: at their ends, or at quarters of their lengths.

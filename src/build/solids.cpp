@@ -265,9 +265,9 @@ Result<SolidBody> make_body(const SolidDesc& desc, const state::Tables& tables) 
   Result<SolidBody> found = find_body(desc, tables);
   if (!found) return found;
   SolidBody body = std::move(found).value();
-  const Quaternion<double> turn =
+  const Quaternion<double> rotation =
       normalize(Quaternion<double>{desc.rotation.x, desc.rotation.y, desc.rotation.z, desc.rotation.w});
-  for (DVec3& p : body.mesh.points) p = desc.position + rotate(turn, p);
+  for (DVec3& p : body.mesh.points) p = desc.position + rotate(rotation, p);
   return body;
 }
 
@@ -383,7 +383,8 @@ Result<void> add_solid(const SolidDesc& desc, state::Tables& tables) {
   object.skin = body.value().skin;
   append_tetrahedra(mesh, desc, tables);
   append_connection_points(desc.connection_points, {desc.position, desc.rotation},
-                           is_box(desc) ? places_of_box(desc.cells) : state::NamedPlaces{}, tables);
+                           is_box(desc) ? connection_points_of_box(desc.cells) : state::NamedPlaces{},
+                           tables);
   return {};
 }
 

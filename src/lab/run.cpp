@@ -91,7 +91,7 @@ Result<Part> make_part(Result<System> system, Bodies bodies, double start_time, 
 /// Undoes one output step that was made.
 void take_back(Part& part, const State& y) {
   part.y = y;
-  part.work.forget();
+  part.work.reset();
   part.steps -= static_cast<std::uint64_t>(part.steps_per_output);
   --part.outputs;
 }
@@ -187,7 +187,7 @@ Result<void> Run::Data::advance_bodies(double t) {
   }
   if (!moved) {
     bodies = before;
-    for (Part& part : bodies) part.work.forget();  // what SUNDIALS keeps is shared by copies
+    for (Part& part : bodies) part.work.reset();  // what SUNDIALS keeps is shared by copies
   }
   return moved;
 }

@@ -23,7 +23,7 @@ namespace hooke::state {
 /// rotation since the start of the step. Then a row with direction n at lever r has the angular Jacobian
 /// j = S (r x n), an impulse lambda changes omega_scaled by lambda j, and the effective mass needs only
 /// |j|^2. (docs/notation.md)
-struct alignas(16 * sizeof(Real)) MotionLine {
+struct alignas(16 * sizeof(Real)) MotionRecord {
   Vec3 v = {};                  ///< Velocity of the center of mass [m/s].
   Vec3 omega_scaled = {};       ///< [sqrt(J)]
   Vec3 dx = {};                 ///< Of the center of mass, since the start of the step [m].
@@ -43,7 +43,7 @@ struct BodyMass {
 
 /// The velocities a body would have, had the contact rows of this substep done nothing. The difference to its
 /// line is what they did, and the warm start of the next substep. Laid out as the first half of a MotionLine.
-struct alignas(8 * sizeof(Real)) FreeLine {
+struct alignas(8 * sizeof(Real)) FreeMotionRecord {
   Vec3 v = {};             ///< [m/s]
   Vec3 omega_scaled = {};  ///< [sqrt(J)]
   Real padding[2] = {};
@@ -54,7 +54,7 @@ struct alignas(8 * sizeof(Real)) FreeLine {
 /// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum. One that
 /// touches something and was not foreseen to turn so far, does so from the substep on in which it has. One
 /// that spins so far on hooks keeps its angular velocity too, but for what rows do.
-struct SteadyTurn {
+struct FrozenInertia {
   bool on = false;
   bool touches = false;    ///< It tumbles, and has contacts in this step.
   bool hooked = false;     ///< It spins on hooks: with the mean inertia of its turn.
@@ -86,24 +86,24 @@ struct BodyTraits {
 struct Bodies {
   static constexpr std::int8_t kNew = 127;  ///< A hardness.
 
-  std::vector<MotionLine> motion;
+  std::vector<MotionRecord> motion;
   std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
   std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
                                        ///< that tumble, now (solver/body/body_motion.h).
   std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
   std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
-  std::vector<SteadyTurn> steady_turn;        ///< Written by detect, and by keep_inertia.
+  std::vector<FrozenInertia> frozen_inertia;  ///< Written by detect, and by keep_inertia.
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
-  std::vector<Vec3> force;            ///< External, for the current step [N]; cleared by finish.
-  std::vector<Vec3> torque;           ///< External, for the current step [N m]; cleared by finish.
-  std::vector<FreeLine> free_motion;  ///< Lives for one substep; written by the solver.
-  std::vector<Real> rest_time;        ///< Time spent slower than the sleep threshold [s].
+  std::vector<Vec3> force;                    ///< External, for the current step [N]; cleared by finish.
+  std::vector<Vec3> torque;                   ///< External, for the current step [N m]; cleared by finish.
+  std::vector<FreeMotionRecord> free_motion;  ///< Lives for one substep; written by the solver.
+  std::vector<Real> rest_time;                ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
-  std::vector<std::uint8_t> slept;    ///< `asleep` at the end of the last step; written by gather_events.
-  std::vector<std::int8_t> hardness;  ///< Whether its contacts are solved directly, and since when
-                                      ///< (solver/coupled/direct_islands.h); kNew before its first step.
+  std::vector<std::uint8_t> slept;        ///< `asleep` at the end of the last step; written by gather_events.
+  std::vector<std::int8_t> direct_state;  ///< Whether its contacts are solved directly, and since when
+                                          ///< (solver/coupled/direct_islands.h); kNew before its first step.
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
   std::vector<std::uint32_t> slot;  ///< Of its id.
@@ -122,7 +122,7 @@ struct Bodies {
     visit(self.angular_momentum);
     visit(self.angular_velocity);
     visit(self.scale);
-    visit(self.steady_turn);
+    visit(self.frozen_inertia);
     visit(self.mass);
     visit(self.traits);
     visit(self.force);
@@ -131,7 +131,7 @@ struct Bodies {
     visit(self.rest_time);
     visit(self.asleep);
     visit(self.slept);
-    visit(self.hardness);
+    visit(self.direct_state);
     visit(self.first_collider);
     visit(self.collider_count);
     visit(self.slot);
@@ -154,8 +154,8 @@ inline bool gives_way(const Bodies& bodies, std::uint32_t body) {
 
 /// How a body moves after accelerate_bodies but for what that repeats of the contacts of the last substep,
 /// which the solver may yet take back.
-inline FreeLine motion_before_contacts(const Bodies& bodies, std::uint32_t body) {
-  const MotionLine& m = bodies.motion[body];
+inline FreeMotionRecord motion_before_contacts(const Bodies& bodies, std::uint32_t body) {
+  const MotionRecord& m = bodies.motion[body];
   if (gives_way(bodies, body)) return bodies.free_motion[body];
   return {.v = m.v, .omega_scaled = m.omega_scaled};
 }
@@ -190,7 +190,7 @@ inline Vec3 velocity_at(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
 
 /// The same in the middle of a step.
 inline Vec3 velocity_now(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
-  const MotionLine& m = bodies.motion[body];
+  const MotionRecord& m = bodies.motion[body];
   return m.v + cross(bodies.scale[body] * m.omega_scaled, anchor);
 }
 

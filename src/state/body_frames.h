@@ -31,44 +31,45 @@ inline Pose frame_of_collider(const Bodies& bodies, const Colliders& colliders, 
 }
 
 /// Whether the axis of a free body's rotation visibly moves.
-inline bool tumbles(const BodyMass& mass) {
+inline bool is_gyroscopic(const BodyMass& mass) {
   const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
   return most > Real(1.02) * least;
 }
 
 /// Whether the body tumbles in this step. In the middle of a step the column of rotations is up to date for
 /// such bodies; others turn at its end.
-inline bool tumbles_now(const Bodies& bodies, std::uint32_t row) {
-  return tumbles(bodies.mass[row]) && !bodies.steady_turn[row].on;
+inline bool is_gyroscopic_now(const Bodies& bodies, std::uint32_t row) {
+  return is_gyroscopic(bodies.mass[row]) && !bodies.frozen_inertia[row].on;
 }
 
 /// Center of mass and rotation in the middle of a step.
 inline Pose pose_now(const Bodies& bodies, std::uint32_t row) {
-  const MotionLine& m = bodies.motion[row];
+  const MotionRecord& m = bodies.motion[row];
   const DVec3 center = bodies.center[row] + vector_cast<double>(m.dx);
-  const bool turned = m.inverse_mass > Real(0) && tumbles_now(bodies, row);
+  const bool turned = m.inverse_mass > Real(0) && is_gyroscopic_now(bodies, row);
   if (turned || m.theta_scaled == Vec3{}) return {center, bodies.rotation[row]};
   return {center, math::quaternion_of(bodies.scale[row] * m.theta_scaled) * bodies.rotation[row]};
 }
 
 /// The same after `time` [s] more of motion_before_contacts.
 inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
-  const FreeLine motion = motion_before_contacts(bodies, row);
+  const FreeMotionRecord motion = motion_before_contacts(bodies, row);
   const Pose now = pose_now(bodies, row);
   return {now.position + vector_cast<double>(time * motion.v),
           math::quaternion_of(bodies.scale[row] * (time * motion.omega_scaled)) * now.rotation};
 }
 
 /// How far a place on a body has gone since the start of the step, along the body's line.
-inline Vec3 way_of(const Bodies& bodies, std::uint32_t row, Vec3 lever) {
-  const MotionLine& m = bodies.motion[row];
+inline Vec3 displacement_of(const Bodies& bodies, std::uint32_t row, Vec3 lever) {
+  const MotionRecord& m = bodies.motion[row];
   const Vec3 turn = m.inverse_mass > Real(0) ? bodies.scale[row] * m.theta_scaled : m.theta_scaled;
   return m.dx + cross(turn, lever);
 }
 
 /// Of B's place against A's, at a point of a manifold.
-inline Vec3 way_between(const Bodies& bodies, const Manifold& m, const ContactPoint& point) {
-  return way_of(bodies, m.body_b, point.anchor_b) - way_of(bodies, m.body_a, point.anchor_a);
+inline Vec3 displacement_between(const Bodies& bodies, const Manifold& m, const ContactPoint& point) {
+  return displacement_of(bodies, m.body_b, point.anchor_b) -
+         displacement_of(bodies, m.body_a, point.anchor_a);
 }
 
 /// L = R I R^T omega, of a body whose frame is turned by `rotation`.

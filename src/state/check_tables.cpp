@@ -201,7 +201,7 @@ const char* find_in_contacts(const Tables& t) {
     if (t.contacts.collider[i] >= t.colliders.body.size() || t.contacts.body[i] >= t.bodies.traits.size())
       return "collider of a contact";
   }
-  for (const InnerContact& inner : t.inner_contacts) {
+  for (const ElementContact& inner : t.element_contacts) {
     if (inner.object >= t.objects.size() || inner.count > inner.particle.size())
       return "object of an inner contact";
     const Deformable& o = t.objects[inner.object];
@@ -222,7 +222,7 @@ const char* find_in_contacts(const Tables& t) {
     for (const std::uint32_t row : contact.neighbor) {
       if (row != RopeContact::kNone && row >= t.rope_contacts.size()) return "neighbor of a contact of ropes";
     }
-    if (contact.heir != RopeContact::kNone && contact.heir >= t.rope_contacts.size())
+    if (contact.successor != RopeContact::kNone && contact.successor >= t.rope_contacts.size())
       return "heir of a contact of ropes";
   }
   return nullptr;
@@ -237,7 +237,7 @@ const char* find_disagreement(const Tables& t) {
   if (const char* what = find_in_bodies(t)) return what;
   if (const char* what = find_in_hooks(t)) return what;
   if (const char* what = find_in_pairs(t, t.pairs.pair, t.pairs.manifold)) return what;
-  if (const char* what = find_in_pairs(t, t.pairs.parked.pair, t.pairs.parked.manifold)) return what;
+  if (const char* what = find_in_pairs(t, t.pairs.sleeping.pair, t.pairs.sleeping.manifold)) return what;
   return find_in_contacts(t);
 }
 

@@ -51,7 +51,7 @@ struct Contacts {
 /// A shape inside a segment of a rope or a triangle of a cloth: between its points, where none of them
 /// touches. The place is sum weight x of the points, and what acts there acts on them in these shares. Rows
 /// stand in order of object, collider and element.
-struct InnerContact {
+struct ElementContact {
   std::uint32_t object = 0;  ///< Row of the deformable.
   std::uint32_t collider = 0;
   std::uint32_t element = 0;  ///< Row of the segment or the triangle.
@@ -91,7 +91,7 @@ struct RopeContact {
   /// Rows of the segments before and behind a with b, then of a with those before and behind b; or kNone.
   std::array<std::uint32_t, 4> neighbor = {kNone, kNone, kNone, kNone};
   Real least = Real(0);  ///< So near the lines in their middles never come [m].
-  bool kin =
+  bool adjacent =
       false;  ///< Neighbors along a rope: they do not touch, but do not pass through each other either.
   bool joined = false;  ///< As of InnerContact.
   // Written by update_rope_contacts.
@@ -101,7 +101,7 @@ struct RopeContact {
   Real normal_force = Real(0);      ///< [N], 0 or more; carried from substep to substep.
   Vec3 friction_force = {};         ///< On a [N]; carried from substep to substep.
   Real clearance = Real(0);         ///< By how much the two are apart, at least; 0 where it is not known [m].
-  std::uint32_t heir = kNone;       ///< Row of the neighbor that is nearer, and holds in its place; or kNone.
+  std::uint32_t successor = kNone;  ///< Row of the neighbor that is nearer, and holds in its place; or kNone.
 };
 
 }  // namespace hooke::state

@@ -76,7 +76,7 @@ struct Hook {
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
   [[nodiscard]] bool can_break() const { return break_force < kRigid || break_torque < kRigid; }
   /// Whether it is solved in a bundle.
-  [[nodiscard]] bool is_bundled() const { return coupled || holds_point(); }
+  [[nodiscard]] bool is_in_coupled_group() const { return coupled || holds_point(); }
   /// Of such a hook, the end at particles, the first if both are, and the other one.
   [[nodiscard]] const HookPlace& point_end() const { return a.is_point() ? a : b; }
   [[nodiscard]] const HookPlace& other_end() const { return a.is_point() ? b : a; }

@@ -47,8 +47,8 @@ struct Manifold {
   Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
   Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
-  bool lively = false;               ///< Looked at anew in each substep: may have no points now.
-  bool borne = false;                ///< Its points have places in Pairs::borne in this step.
+  bool refreshed = false;            ///< Looked at anew in each substep: may have no points now.
+  bool load_bearing = false;         ///< Its points have places in Pairs::borne in this step.
 };
 
 /// Number of points that pushed in the last substep.
@@ -68,7 +68,7 @@ inline Real normal_impulse(const Manifold& m) {
 
 /// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
 /// rows that others have (solver/coupled/load_bearing_contacts.h).
-struct BorneContact {
+struct LoadBearingContact {
   std::uint32_t pair = 0;      ///< Row.
   std::uint32_t manifold = 0;  ///< Row: the only one of the pair.
   std::int32_t point = 0;      ///< Of Manifold::kMaxPoints; the manifold may have fewer now.
@@ -84,8 +84,8 @@ struct BorneContact {
 
 /// How two bodies moved since something was looked at.
 struct Drift {
-  Vec3 way = {};      ///< Of B's center against A's [m].
-  Vec3 angle_a = {};  ///< [rad]
+  Vec3 displacement = {};  ///< Of B's center against A's [m].
+  Vec3 angle_a = {};       ///< [rad]
   Vec3 angle_b = {};
 };
 
@@ -102,7 +102,7 @@ struct Pair {
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
   Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
-  bool lively =
+  bool refreshed =
       false;  ///< Its manifolds are made anew in each substep (collision/narrow_phase/narrow_phase.h).
 };
 
@@ -113,7 +113,7 @@ struct SeenPose {
 };
 
 /// Pairs whose bodies all rest; see state/sleeping_pairs.h.
-struct ParkedPairs {
+struct SleepingPairs {
   std::vector<Pair> pair;              ///< In order of colliders; first_manifold counts in `manifold`.
   std::vector<Manifold> manifold;      ///< In order of pair, then patch; some may belong to no pair any more.
   std::vector<std::uint32_t> of_body;  ///< Number of pairs, by row of body; may be too short for new ones.
@@ -123,10 +123,10 @@ struct ParkedPairs {
 
 struct Pairs {
   std::vector<Pair> pair;
-  std::vector<Manifold> manifold;   ///< In order of pair, then patch.
-  std::vector<BorneContact> borne;  ///< In order of manifold and point; of this step only.
-  std::vector<SeenPose> seen;       ///< Of each body.
-  ParkedPairs parked;               ///< Not among those above.
+  std::vector<Manifold> manifold;                ///< In order of pair, then patch.
+  std::vector<LoadBearingContact> load_bearing;  ///< In order of manifold and point; of this step only.
+  std::vector<SeenPose> seen;                    ///< Of each body.
+  SleepingPairs sleeping;                        ///< Not among those above.
 };
 
 }  // namespace hooke::state

@@ -11,22 +11,22 @@
 namespace hooke::state {
 
 /// Where a particle is, in one load.
-struct alignas(4 * sizeof(Real)) PositionLine {
+struct alignas(4 * sizeof(Real)) PositionRecord {
   Vec3 x = {};            ///< Position [m], an offset from the origin of the owning object.
   Real radius = Real(0);  ///< Contact radius [m].
 };
 
 /// How it moves, in one load and store. The inverse mass stands beside the velocity that it turns impulses
 /// into: of positions the solver then needs only differences (docs/decisions/0003-spring-kernel.md).
-struct alignas(4 * sizeof(Real)) VelocityLine {
+struct alignas(4 * sizeof(Real)) VelocityRecord {
   Vec3 v = {};                  ///< Velocity [m/s].
   Real inverse_mass = Real(0);  ///< w [1/kg]; 0 holds the particle still.
 };
 
 /// Columns of equal length; row i describes particle i. An object owns one contiguous range of rows.
 struct Particles {
-  std::vector<PositionLine> position;
-  std::vector<VelocityLine> velocity;
+  std::vector<PositionRecord> position;
+  std::vector<VelocityRecord> velocity;
   std::vector<Real> mass;          ///< [kg], also of pinned particles.
   std::vector<Real> charge;        ///< [C]
   std::vector<Real> viscous_drag;  ///< Share of the object's air friction [N s/m].

@@ -9,7 +9,7 @@ namespace hooke::state {
 namespace {
 
 /// Resting pairs that are parked at once, in parts of those that are.
-constexpr std::size_t kParkedShare = 8;
+constexpr std::size_t kSleepingShare = 8;
 
 struct PairTable {
   const std::vector<Pair>& pair;
@@ -58,18 +58,18 @@ void split(Goes&& goes, std::vector<Pair>& pairs, std::vector<Pair>& moved) {
 }
 
 /// What leaves a table, or enters it, by body and by point.
-void count_parked(std::span<const Pair> moved, const std::vector<Manifold>& manifolds, bool enters,
-                  const Colliders& colliders, ParkedPairs& parked) {
+void count_sleeping(std::span<const Pair> moved, const std::vector<Manifold>& manifolds, bool enters,
+                    const Colliders& colliders, SleepingPairs& sleeping) {
   for (const Pair& pair : moved) {
     const std::uint32_t points = pushing_points(pair, manifolds);
-    parked.contacts = enters ? parked.contacts + points : parked.contacts - points;
+    sleeping.contacts = enters ? sleeping.contacts + points : sleeping.contacts - points;
     for (const std::uint32_t body : bodies_of(colliders, pair))
-      parked.of_body[body] = enters ? parked.of_body[body] + 1 : parked.of_body[body] - 1;
+      sleeping.of_body[body] = enters ? sleeping.of_body[body] + 1 : sleeping.of_body[body] - 1;
   }
 }
 
 /// Leaves no gaps where pairs were.
-void close_gaps(Pairs& pairs, ParkingScratch& scratch) {
+void close_gaps(Pairs& pairs, SleepingPairScratch& scratch) {
   const std::vector<Pair> no_pairs;
   merge({pairs.pair, pairs.manifold}, {no_pairs, pairs.manifold}, scratch.pair, scratch.manifold);
   base::take_turns(scratch.pair, pairs.pair);
@@ -89,49 +89,50 @@ bool rests(const Bodies& bodies, const Colliders& colliders, const Pair& pair) {
   return pair.tested && stands(bodies, a) && stands(bodies, b);
 }
 
-void reserve_parking(Pairs& pairs, ParkingScratch& scratch) {
-  for (std::vector<Pair>* table : {&pairs.parked.pair, &scratch.moved, &scratch.pair})
+void reserve_sleeping_pairs(Pairs& pairs, SleepingPairScratch& scratch) {
+  for (std::vector<Pair>* table : {&pairs.sleeping.pair, &scratch.moved, &scratch.pair})
     table->reserve(pairs.pair.capacity());
-  for (std::vector<Manifold>* table : {&pairs.parked.manifold, &scratch.manifold})
+  for (std::vector<Manifold>* table : {&pairs.sleeping.manifold, &scratch.manifold})
     table->reserve(pairs.manifold.capacity());
-  pairs.parked.of_body.reserve(pairs.seen.capacity());
+  pairs.sleeping.of_body.reserve(pairs.seen.capacity());
 }
 
-void park_pairs(const Bodies& bodies, const Colliders& colliders, Pairs& pairs, ParkingScratch& scratch) {
-  const auto may_be_parked = [&](const Pair& pair) {
+void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs& pairs,
+                        SleepingPairScratch& scratch) {
+  const auto may_sleep = [&](const Pair& pair) {
     const auto [a, b] = bodies_of(colliders, pair);
     return rests(bodies, colliders, pair) && !bodies.traits[a].sensor && !bodies.traits[b].sensor;
   };
   const auto resting =
-      static_cast<std::size_t>(std::count_if(pairs.pair.begin(), pairs.pair.end(), may_be_parked));
-  ParkedPairs& parked = pairs.parked;
-  const bool is_worth_it = resting == parked.waiting || kParkedShare * resting >= parked.pair.size();
-  parked.waiting = is_worth_it ? 0 : resting;
+      static_cast<std::size_t>(std::count_if(pairs.pair.begin(), pairs.pair.end(), may_sleep));
+  SleepingPairs& sleeping = pairs.sleeping;
+  const bool is_worth_it = resting == sleeping.waiting || kSleepingShare * resting >= sleeping.pair.size();
+  sleeping.waiting = is_worth_it ? 0 : resting;
   if (resting == 0 || !is_worth_it) return;
-  parked.of_body.resize(bodies.traits.size());
-  split(may_be_parked, pairs.pair, scratch.moved);
+  sleeping.of_body.resize(bodies.traits.size());
+  split(may_sleep, pairs.pair, scratch.moved);
   for (const Pair& pair : scratch.moved) {
     // Marks of the step are taken off by who made them, who will not find these.
     for (std::uint32_t i = 0; i < pair.manifold_count; ++i)
-      pairs.manifold[pair.first_manifold + i].borne = false;
+      pairs.manifold[pair.first_manifold + i].load_bearing = false;
   }
-  count_parked(scratch.moved, pairs.manifold, true, colliders, parked);
-  merge({parked.pair, parked.manifold}, {scratch.moved, pairs.manifold}, scratch.pair, scratch.manifold);
-  base::take_turns(scratch.pair, parked.pair);
-  base::take_turns(scratch.manifold, parked.manifold);
+  count_sleeping(scratch.moved, pairs.manifold, true, colliders, sleeping);
+  merge({sleeping.pair, sleeping.manifold}, {scratch.moved, pairs.manifold}, scratch.pair, scratch.manifold);
+  base::take_turns(scratch.pair, sleeping.pair);
+  base::take_turns(scratch.manifold, sleeping.manifold);
   close_gaps(pairs, scratch);
 }
 
-bool unpark_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, const Colliders& colliders,
-                  Pairs& pairs, ParkingScratch& scratch) {
-  ParkedPairs& parked = pairs.parked;
+bool wake_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, const Colliders& colliders,
+                Pairs& pairs, SleepingPairScratch& scratch) {
+  SleepingPairs& sleeping = pairs.sleeping;
   const bool any = std::any_of(moving.begin(), moving.end(), [&](std::uint32_t body) {
-    return body < parked.of_body.size() && parked.of_body[body] > 0 && !stands(bodies, body);
+    return body < sleeping.of_body.size() && sleeping.of_body[body] > 0 && !stands(bodies, body);
   });
   if (!any) return false;
-  split([&](const Pair& pair) { return !rests(bodies, colliders, pair); }, parked.pair, scratch.moved);
-  count_parked(scratch.moved, parked.manifold, false, colliders, parked);
-  merge({pairs.pair, pairs.manifold}, {scratch.moved, parked.manifold}, scratch.pair, scratch.manifold);
+  split([&](const Pair& pair) { return !rests(bodies, colliders, pair); }, sleeping.pair, scratch.moved);
+  count_sleeping(scratch.moved, sleeping.manifold, false, colliders, sleeping);
+  merge({pairs.pair, pairs.manifold}, {scratch.moved, sleeping.manifold}, scratch.pair, scratch.manifold);
   base::take_turns(scratch.pair, pairs.pair);
   base::take_turns(scratch.manifold, pairs.manifold);
   return true;
@@ -144,8 +145,8 @@ void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders
   };
   std::erase_if(pairs.pair, is_one_gone);
   std::vector<Pair> gone;
-  split(is_one_gone, pairs.parked.pair, gone);
-  count_parked(gone, pairs.parked.manifold, false, colliders, pairs.parked);
+  split(is_one_gone, pairs.sleeping.pair, gone);
+  count_sleeping(gone, pairs.sleeping.manifold, false, colliders, pairs.sleeping);
 }
 
 }  // namespace hooke::state

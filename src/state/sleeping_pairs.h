@@ -31,24 +31,25 @@ namespace hooke::state {
 }
 
 /// Memory for those below.
-struct ParkingScratch {
+struct SleepingPairScratch {
   std::vector<Pair> moved = {};
   std::vector<Pair> pair = {};
   std::vector<Manifold> manifold = {};
 };
 
 /// Makes room for all pairs of a step to be parked in one to come.
-void reserve_parking(Pairs& pairs, ParkingScratch& scratch);
+void reserve_sleeping_pairs(Pairs& pairs, SleepingPairScratch& scratch);
 
 /// Parks pairs that rest: all of them where there are as many as in the last step, or else when there are
 /// many for those that are parked already, which have to be copied. Not those of sensors, which remember in
 /// them who is inside.
-void park_pairs(const Bodies& bodies, const Colliders& colliders, Pairs& pairs, ParkingScratch& scratch);
+void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs& pairs,
+                        SleepingPairScratch& scratch);
 
 /// Takes back the pairs that do not rest any more, if they belong to a body of `moving`. Rows of pairs and
 /// manifolds change. Returns whether there were any.
-bool unpark_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, const Colliders& colliders,
-                  Pairs& pairs, ParkingScratch& scratch);
+bool wake_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, const Colliders& colliders,
+                Pairs& pairs, SleepingPairScratch& scratch);
 
 /// Removes the pairs with a body that goes; `goes` by row of body.
 void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders, Pairs& pairs);
@@ -59,13 +60,13 @@ void for_each_manifold(const Pairs& pairs, Visit&& visit) {
   const auto visit_pair = [&visit](const Pair& pair, const std::vector<Manifold>& manifolds) {
     for (std::size_t i = 0; i < pair.manifold_count; ++i) visit(manifolds[pair.first_manifold + i]);
   };
-  auto parked = pairs.parked.pair.begin();
-  const auto visit_parked = [&] { visit_pair(*parked++, pairs.parked.manifold); };
+  auto sleeping = pairs.sleeping.pair.begin();
+  const auto visit_sleeping = [&] { visit_pair(*sleeping++, pairs.sleeping.manifold); };
   for (const Pair& pair : pairs.pair) {
-    while (parked != pairs.parked.pair.end() && comes_before(*parked, pair)) visit_parked();
+    while (sleeping != pairs.sleeping.pair.end() && comes_before(*sleeping, pair)) visit_sleeping();
     visit_pair(pair, pairs.manifold);
   }
-  while (parked != pairs.parked.pair.end()) visit_parked();
+  while (sleeping != pairs.sleeping.pair.end()) visit_sleeping();
 }
 
 }  // namespace hooke::state

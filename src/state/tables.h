@@ -43,7 +43,7 @@ struct Tables {
   Tetrahedra tetrahedra;
   std::vector<TwistSpan> twists;  ///< In order of ropes, and along each.
   Contacts contacts;
-  std::vector<InnerContact> inner_contacts;
+  std::vector<ElementContact> element_contacts;
   std::vector<RopeContact> rope_contacts;
   std::vector<Pin> pins;  ///< In order of particle.
   Bodies bodies;

@@ -26,9 +26,10 @@ struct ForceViewAccess {
     const std::uint32_t* row_of = p.row_of.data() + first;
     ForceView view;
     view.positions_ =
-        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionLine), row_of);
-    view.velocities_ = PointView({}, velocities, object.particles.count, sizeof(state::VelocityLine), row_of);
-    view.lines_ = velocities;
+        PointView(object.origin, positions, object.particles.count, sizeof(state::PositionRecord), row_of);
+    view.velocities_ =
+        PointView({}, velocities, object.particles.count, sizeof(state::VelocityRecord), row_of);
+    view.records_ = velocities;
     view.forces_ = forces + first;
     view.row_of_ = row_of;
     view.kind_ = object.kind;

@@ -1,11 +1,11 @@
 #include "world/body_stages.h"
 
 #include "collision/continuous/shape_bounds.h"
-#include "state/sleeping_pairs.h"
 #include "solver/air/force_fields.h"
 #include "solver/contact/dense_pile_limit.h"
 #include "solver/coupled/coupled_articulations.h"
 #include "state/body_frames.h"
+#include "state/sleeping_pairs.h"
 #include "world/events.h"
 #include "world/hook_stages.h"
 
@@ -50,15 +50,15 @@ void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
 }
 
 /// All bodies that are not where they were in the last step, as far as pairs go.
-void list_stirred_bodies(WorldData& world) {
+void list_moved_set(WorldData& world) {
   const Tables& t = world.tables;
-  world.stirred = world.awake;
-  world.stirred.insert(world.stirred.end(), world.bodies_placed.begin(), world.bodies_placed.end());
-  world.is_stirred.clear();
+  world.moved_set = world.awake;
+  world.moved_set.insert(world.moved_set.end(), world.placed_bodies.begin(), world.placed_bodies.end());
+  world.in_moved_set.clear();
   if (!any_sleeps(world)) return;
-  world.is_stirred.assign(t.colliders.body.size(), 0);
-  for (const std::uint32_t body : world.stirred)
-    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.is_stirred[c] = 1;
+  world.in_moved_set.assign(t.colliders.body.size(), 0);
+  for (const std::uint32_t body : world.moved_set)
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.in_moved_set[c] = 1;
 }
 
 /// Bodies that were added, or put elsewhere by hand, since the last step.
@@ -66,27 +66,27 @@ void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
   if (world.broad_phase_stale) {
     world.broad_phase.clear();
-    world.bodies_placed.clear();
-    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.bodies_placed.push_back(body); });
+    world.placed_bodies.clear();
+    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.placed_bodies.push_back(body); });
     world.broad_phase_stale = false;
   }
-  for (const std::uint32_t body : world.bodies_placed) {
+  for (const std::uint32_t body : world.placed_bodies) {
     if (!t.bodies.traits[body].alive) continue;
     update_bounds(t, body, dt);
     enter_broad_phase(world, body);
   }
-  list_stirred_bodies(world);
-  world.bodies_placed.clear();
+  list_moved_set(world);
+  world.placed_bodies.clear();
 }
 
 /// Where a kinematic body stands still, for one.
-bool is_parked(const Tables& t, collision::ColliderPair pair) {
-  if (t.pairs.parked.pair.empty()) return false;
+bool is_sleeping(const Tables& t, collision::ColliderPair pair) {
+  if (t.pairs.sleeping.pair.empty()) return false;
   const auto stands = [&](std::uint32_t collider) {
     return state::stands(t.bodies, t.colliders.body[collider]);
   };
   if (!stands(pair.first) || !stands(pair.second)) return false;
-  return std::binary_search(t.pairs.parked.pair.begin(), t.pairs.parked.pair.end(),
+  return std::binary_search(t.pairs.sleeping.pair.begin(), t.pairs.sleeping.pair.end(),
                             state::Pair{.collider_a = pair.first, .collider_b = pair.second},
                             state::comes_before);
 }
@@ -122,7 +122,7 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
     world.broad_phase.clear();
     for_all_bodies(t.bodies, enter);
   } else {
-    for (const std::uint32_t body : world.bodies_placed) enter(body);
+    for (const std::uint32_t body : world.placed_bodies) enter(body);
     for (const std::uint32_t body : t.moving_bodies) {
       if (t.bodies.asleep[body] == 0) enter(body);
     }
@@ -148,27 +148,28 @@ void find_body_contacts(WorldData& world, Real dt) {
     for (const std::uint32_t body : rows) update_bounds(t, body, dt);
   });
   for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
-  world.broad_phase.find_pairs_of(*world.pool, world.is_stirred, world.pairs_found);
-  state::unpark_pairs(world.awake, t.bodies, t.colliders, t.pairs, world.parking);
+  world.broad_phase.find_pairs_of(*world.pool, world.in_moved_set, world.pairs_found);
+  state::wake_pairs(world.awake, t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
   std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) {
-    return !may_collide(world, pair) || is_parked(t, pair);
+    return !may_collide(world, pair) || is_sleeping(t, pair);
   });
-  world.crowds.thin_out(t.bodies, t.colliders, world.pairs_found);
-  world.narrow_phase.merge_pairs(world.pairs_found, world.is_stirred, t.pairs);
+  world.dense_piles.thin_out(t.bodies, t.colliders, world.pairs_found);
+  world.narrow_phase.merge_pairs(world.pairs_found, world.in_moved_set, t.pairs);
   world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
                                       {.dt = dt,
                                        .substeps = t.desc.substeps,
-                                       .in_company = world.joints.in_ragdoll,
-                                       .stirred = world.stirred},
+                                       .has_several_neighbors = world.joints.in_ragdoll,
+                                       .moved_set = world.moved_set},
                                       t.pairs);
-  world.crowds.thin_out(t.bodies, t.pairs);
-  if (t.desc.sleeping) state::reserve_parking(t.pairs, world.parking);
-  if (any_sleeps(world)) state::park_pairs(t.bodies, t.colliders, t.pairs, world.parking);
+  world.dense_piles.thin_out(t.bodies, t.pairs);
+  if (t.desc.sleeping) state::reserve_sleeping_pairs(t.pairs, world.sleeping_pair_scratch);
+  if (any_sleeps(world))
+    state::put_pairs_to_sleep(t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  world.narrow_phase.list_lively(t.pairs);  // no pair changes its row any more in this step
+  world.narrow_phase.list_refreshed(t.pairs);  // no pair changes its row any more in this step
   const WorldDesc& desc = t.desc;
   const auto before = static_cast<Real>(t.body_substep);
   world.contact_step = {.gravity = desc.gravity,
@@ -178,65 +179,65 @@ void prepare_body_contacts(WorldData& world, Real h) {
                         .sweeps = desc.bias_sweeps,
                         .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
-  solver::find_borne_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0), world.joints,
-                              world.hooked, world.holders, t.bodies, t.hooks, t.pairs, world.borne);
-  solver::couple_articulations(world.joints, world.touched, t);
-  solver::find_hard_islands(world.awake, world.contact_step, t.pairs.manifold, world.borne.footing, t.bodies,
-                            world.body_contacts, world.hard_islands);
+  solver::find_load_bearing_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0),
+                                     world.joints, world.hooked, world.supports, t.bodies, t.hooks, t.pairs,
+                                     world.load_bearing);
+  solver::couple_articulations(world.joints, world.body_marks, t);
+  solver::find_direct_islands(world.awake, world.contact_step, t.pairs.manifold, world.load_bearing.footing,
+                              t.bodies, world.body_contacts, world.direct_islands);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
                                 world.body_contacts);
-  solver::prepare_hard_islands(*world.pool, world.body_contacts, t.bodies, world.hard_islands);
-  solver::list_hits(t.pairs, t.bodies, world.hooked, world.body_contacts, world.hits);
-  note_approaches(world, h * static_cast<Real>(desc.substeps));
+  solver::prepare_direct_islands(*world.pool, world.body_contacts, t.bodies, world.direct_islands);
+  solver::list_impact_pairs(t.pairs, t.bodies, world.hooked, world.body_contacts, world.impacts);
+  note_closing_pairs(world, h * static_cast<Real>(desc.substeps));
 }
 
-void resolve_hits(WorldData& world, Real h) {
+void resolve_impacts(WorldData& world, Real h) {
   Tables& t = world.tables;
   solver::BodyContacts& contacts = world.body_contacts;
-  if (!solver::foresee_hits(world.contact_step, contacts, t.bodies, world.hits)) return;
-  while (const std::optional<solver::Hit> hit = solver::next_hit(world.hits)) {
-    const solver::HitPair& pair = world.hits.pairs[hit->index];
-    solver::store_lanes(solver::lanes_of(pair, world.hits), contacts, t.pairs.manifold);
-    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
-                               state::pose_after(t.bodies, pair.a, hit->time),
-                               state::pose_after(t.bodies, pair.b, hit->time), pair.pair, t.pairs);
-    solver::take_hit(*hit, world.contact_step, t.pairs, contacts, t.bodies, world.hits);
+  if (!solver::predict_impacts(world.contact_step, contacts, t.bodies, world.impacts)) return;
+  while (const std::optional<solver::NextImpact> impact = solver::next_impact(world.impacts)) {
+    const solver::ImpactPair& pair = world.impacts.pairs[impact->index];
+    solver::store_lanes(solver::lanes_of(pair, world.impacts), contacts, t.pairs.manifold);
+    world.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
+                                  state::pose_after(t.bodies, pair.a, impact->time),
+                                  state::pose_after(t.bodies, pair.b, impact->time), pair.pair, t.pairs);
+    solver::resolve_impact(*impact, world.contact_step, t.pairs, contacts, t.bodies, world.impacts);
   }
-  solver::put_back_on_hooks(t.hooks, h, t.bodies, world.hits);
+  solver::reset_hooked_bodies(t.hooks, h, t.bodies, world.impacts);
 }
 
 namespace {
 
-void renew_borne_contacts(WorldData& world, Real h) {
+void refresh_load_bearing_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  solver::store_borne_contacts(h, t.pairs);
-  for (const state::BorneContact& contact : t.pairs.borne) {
+  solver::store_load_bearing_contacts(h, t.pairs);
+  for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (contact.point > 0) continue;
-    world.narrow_phase.look_at(t.bodies, t.colliders, t.desc.materials, h,
-                               state::pose_now(t.bodies, contact.body_a),
-                               state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
+    world.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
+                                  state::pose_now(t.bodies, contact.body_a),
+                                  state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
   }
-  solver::place_borne_contacts(Real(1) / h, t.bodies, t.pairs);
+  solver::update_load_bearing_contacts(Real(1) / h, t.bodies, t.pairs);
 }
 
 }  // namespace
 
-void renew_lively_contacts(WorldData& world, Real h) {
+void refresh_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  if (!t.pairs.borne.empty()) renew_borne_contacts(world, h);
-  if (world.body_contacts.lively.empty()) return;
+  if (!t.pairs.load_bearing.empty()) refresh_load_bearing_contacts(world, h);
+  if (world.body_contacts.refreshed.empty()) return;
   solver::BodyContacts& contacts = world.body_contacts;
-  solver::store_lanes(contacts.lively, contacts, t.pairs.manifold);
-  world.narrow_phase.update_lively_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
-                                             t.pairs);
-  solver::refill_lanes(contacts.lively, t.pairs.manifold, Real(0), t.bodies, contacts);
+  solver::store_lanes(contacts.refreshed, contacts, t.pairs.manifold);
+  world.narrow_phase.refresh_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h, t.pairs);
+  solver::refill_lanes(contacts.refreshed, t.pairs.manifold, Real(0), t.bodies, contacts);
 }
 
-void slow_crowds(WorldData& world) {
-  const std::span<const std::uint32_t> begins = world.crowds.begins();
+void limit_dense_piles(WorldData& world) {
+  const std::span<const std::uint32_t> begins = world.dense_piles.begins();
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
-    const auto crowd = world.crowds.members().subspan(begins[i], begins[i + 1] - begins[i]);
-    solver::slow_crowd(crowd, world.tables.bodies);
+    const auto pile = world.dense_piles.members().subspan(begins[i], begins[i + 1] - begins[i]);
+    solver::limit_dense_pile(pile, world.tables.bodies);
   }
 }
 
@@ -246,9 +247,9 @@ void finish_body_contacts(WorldData& world) {
                        [&](parallel::Range blocks) {
                          solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
                        });
-  solver::store_borne_contacts(world.contact_step.h, t.pairs);
-  solver::judge_hardness(world.awake, world.contact_step, world.body_contacts, world.borne.footing,
-                         world.hard_islands, t.bodies);
+  solver::store_load_bearing_contacts(world.contact_step.h, t.pairs);
+  solver::evaluate_direct_islands(world.awake, world.contact_step, world.body_contacts,
+                                  world.load_bearing.footing, world.direct_islands, t.bodies);
 }
 
 void drive_kinematic_bodies(WorldData& world, double time, Real h) {
@@ -266,7 +267,7 @@ std::uint32_t quarantine_bodies(WorldData& world) {
   state::Bodies& b = world.tables.bodies;
   std::uint32_t count = 0;
   for (const std::uint32_t body : world.awake) {
-    const state::MotionLine& m = b.motion[body];
+    const state::MotionRecord& m = b.motion[body];
     if (is_finite(m.v) && is_finite(m.omega_scaled) && is_finite(m.dx) && is_finite(m.theta_scaled)) continue;
     b.motion[body] = {.inverse_mass = m.inverse_mass};
     b.angular_momentum[body] = {};

@@ -62,13 +62,13 @@ void find_body_contacts(WorldData& world, Real dt);
 void prepare_body_contacts(WorldData& world, Real h);
 
 /// Hits that bounce within the substep of length `h` that begins, in the order of their times.
-void resolve_hits(WorldData& world, Real h);
+void resolve_impacts(WorldData& world, Real h);
 
 /// After contacts have pushed: what they did in crowds is bounded.
-void slow_crowds(WorldData& world);
+void limit_dense_piles(WorldData& world);
 
 /// After bodies have moved by a substep of length `h`: rows of lively contacts from where bodies are now.
-void renew_lively_contacts(WorldData& world, Real h);
+void refresh_contacts(WorldData& world, Real h);
 
 /// After the last substep: what contacts did, for the next step and for those who ask.
 void finish_body_contacts(WorldData& world);

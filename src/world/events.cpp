@@ -1,9 +1,9 @@
 #include "world/events.h"
 
 #include "base/take_turns.h"
-#include "state/sleeping_pairs.h"
 #include "collision/query/queries.h"
 #include "state/body_frames.h"
+#include "state/sleeping_pairs.h"
 #include "world/object_edits.h"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ ContactEvent parts_of(const Tables& t, const Manifold& m) {
 
 void gather_contacts(WorldData& world) {
   Tables& t = world.tables;
-  std::vector<ContactEvent>& now = world.touches_now;
+  std::vector<ContactEvent>& now = world.contacts_now;
   now.clear();
   const auto asks = [&](std::uint32_t body) { return t.bodies.traits[body].reports_contacts; };
   state::for_each_manifold(t.pairs, [&](const Manifold& m) {
@@ -78,12 +78,12 @@ void gather_contacts(WorldData& world) {
 void gather_hits(const WorldData& world, Events& events) {
   const Tables& t = world.tables;
   events.hits.clear();
-  for (const Approach& approach : world.approaches) {
-    const Manifold& m = t.pairs.manifold[approach.manifold];
+  for (const ClosingPair& closing_pair : world.closing_pairs) {
+    const Manifold& m = t.pairs.manifold[closing_pair.manifold];
     if (!m.touching) continue;
     const auto [a, b] = parts_of(t, m);
     const Vec3 normal = is_swapped(t, m) ? -m.normal : m.normal;
-    events.hits.push_back({a, b, approach.point, normal, approach.speed, m.largest_impulse});
+    events.hits.push_back({a, b, closing_pair.point, normal, closing_pair.speed, m.largest_impulse});
   }
   sort_events(events.hits);
 }
@@ -151,11 +151,11 @@ Real pull_of(const Tables& t, const Manifold& m) {
 ///
 /// With the closing speed v and the closing acceleration g, both now, a gap s is closed with
 /// sqrt(v^2 + 2 g s); the semi-implicit step of gravity is half a substep ahead.
-Approach fastest_of(const Tables& t, std::uint32_t row, Real dt) {
+ClosingPair fastest_of(const Tables& t, std::uint32_t row, Real dt) {
   const Manifold& m = t.pairs.manifold[row];
   const Real pull = pull_of(t, m);
   const Real ahead = Real(0.5) * pull * dt / static_cast<Real>(t.desc.substeps);
-  Approach fastest = {.manifold = row};
+  ClosingPair fastest = {.manifold = row};
   for (int i = 0; i < m.point_count; ++i) {
     const state::ContactPoint& p = m.point[i];
     const Real v_a = dot(m.normal, velocity_at(t.bodies, m.body_a, p.anchor_a));
@@ -178,16 +178,16 @@ Approach fastest_of(const Tables& t, std::uint32_t row, Real dt) {
 
 }  // namespace
 
-void note_approaches(WorldData& world, Real dt) {
+void note_closing_pairs(WorldData& world, Real dt) {
   const Tables& t = world.tables;
-  world.approaches.clear();
+  world.closing_pairs.clear();
   if (!t.any_reports) return;
   for (std::uint32_t row = 0; row < t.pairs.manifold.size(); ++row) {
     const Manifold& m = t.pairs.manifold[row];
     const Real least = std::min(t.bodies.traits[m.body_a].hit_speed, t.bodies.traits[m.body_b].hit_speed);
     if (!std::isfinite(least)) continue;
-    const Approach approach = fastest_of(t, row, dt);
-    if (approach.speed > least) world.approaches.push_back(approach);
+    const ClosingPair closing_pair = fastest_of(t, row, dt);
+    if (closing_pair.speed > least) world.closing_pairs.push_back(closing_pair);
   }
 }
 

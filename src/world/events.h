@@ -8,7 +8,7 @@
 namespace hooke::world {
 
 /// Before contacts are solved: how fast the bodies that ask for hits come together, where they are near.
-void note_approaches(WorldData& world, Real dt);
+void note_closing_pairs(WorldData& world, Real dt);
 
 /// Fills `events`, once everything has moved; writes `touches`, `visits` and the bodies' `slept`.
 void gather_events(WorldData& world);

@@ -21,12 +21,12 @@ std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b
 void refresh_hooks(WorldData& world) {
   const state::Tables& t = world.tables;
   world.hooked.resize(t.bodies.motion.size());
-  world.holders.holding.resize(t.bodies.motion.size());
-  world.holders.burden.resize(t.bodies.motion.size());
+  world.supports.support_role.resize(t.bodies.motion.size());
+  world.supports.ground_load.resize(t.bodies.motion.size());
   if (world.joints_revision == t.hook_revision) return;
   world.joints_revision = t.hook_revision;
   solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
-  solver::find_holders(world.joints, t.bodies, t.hooks, world.holders);
+  solver::find_supporting_bodies(world.joints, t.bodies, t.hooks, world.supports);
   std::fill(world.hooked.begin(), world.hooked.end(), std::uint8_t{0});
   world.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {
@@ -113,7 +113,7 @@ void wake_ends(const Hook& hook, state::Bodies& bodies) {
 
 double gap_of(const Hook& hook, const state::Tables& t) {
   solver::JointBody a = solver::joint_end(t, hook.a);
-  if (hook.kind == HookKind::kRopeSlide) a.rotation = solver::turn_of_slide(t, hook);
+  if (hook.kind == HookKind::kRopeSlide) a.rotation = solver::slide_rotation(t, hook);
   return solver::joint_gap(hook, a, solver::joint_end(t, hook.b));
 }
 

@@ -18,22 +18,22 @@ using collision::ColliderPair;
 using collision::Path;
 using collision::Stoppable;
 using state::Bodies;
-using state::MotionLine;
+using state::MotionRecord;
 
 /// By how much a body turned in this step, as far as its line tells [rad].
-Vec3 turn_of(const Bodies& bodies, std::uint32_t body) {
-  const MotionLine& m = bodies.motion[body];
+Vec3 rotation_of(const Bodies& bodies, std::uint32_t body) {
+  const MotionRecord& m = bodies.motion[body];
   return m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled;
 }
 
 /// The way that the solver has found for a body in this step.
 Path path_of(const WorldData& world, std::uint32_t body) {
   const Bodies& bodies = world.tables.bodies;
-  const MotionLine& m = bodies.motion[body];
+  const MotionRecord& m = bodies.motion[body];
   Path path = collision::path_ahead(bodies, body, Real(0));
-  path.way = m.dx;
-  path.turn = turn_of(bodies, body);
-  if (m.inverse_mass > Real(0) && state::tumbles_now(bodies, body)) {
+  path.displacement = m.dx;
+  path.turn = rotation_of(bodies, body);
+  if (m.inverse_mass > Real(0) && state::is_gyroscopic_now(bodies, body)) {
     path.rotation = world.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
   }
@@ -44,8 +44,9 @@ Path path_of(const WorldData& world, std::uint32_t body) {
 bool is_fast(const Bodies& bodies, std::uint32_t body) {
   const state::BodyTraits& traits = bodies.traits[body];
   if (!traits.collides || traits.sensor) return false;
-  const Real way = length(bodies.motion[body].dx) + length(turn_of(bodies, body)) * traits.radius;
-  return way > collision::kUnseenWay * traits.inner_radius;
+  const Real displacement =
+      length(bodies.motion[body].dx) + length(rotation_of(bodies, body)) * traits.radius;
+  return displacement > collision::kUnseenDisplacement * traits.inner_radius;
 }
 
 /// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
@@ -61,11 +62,11 @@ Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
 /// Whether the body may turn so far in the step that its inertia in world axes changes by a large part: it
 /// does, or will be hit fast enough (`foreseen`, or faster than its size). A top does not, whose axis stays.
 /// Rows know only one inertia, and would make energy with that of another time.
-bool turns_over(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt) {
+bool changes_inertia(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt) {
   constexpr Real kFar = Real(0.25);        // [rad]
   constexpr Real kLargePart = Real(0.25);  // of the largest entry
   if (!state::gives_way(bodies, body)) return false;
-  if (!state::tumbles(bodies.mass[body])) return false;
+  if (!state::is_gyroscopic(bodies.mass[body])) return false;
   if (foreseen || dt * length(bodies.motion[body].v) > bodies.traits[body].radius) return true;
   const Vec3 turn = dt * bodies.angular_velocity[body];
   if (!(length(turn) > kFar)) return false;
@@ -127,23 +128,23 @@ void enter_standing(WorldData& world, std::uint32_t collider) {
   swept.path[body] = collision::path_ahead(bodies, body, Real(0));
   swept.stoppable[body] = Stoppable::kNever;
   swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
-  swept.bends[body] = {};
+  swept.clamps[body] = {};
 }
 
 /// How awake bodies go, and which of them go astray.
-void find_ways(WorldData& world) {
+void find_paths(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.swept;
   const std::size_t count = bodies.motion.size();
   swept.path.resize(count);
   swept.stoppable.resize(count);
   swept.inverse_mass.resize(count);
-  swept.bends.resize(count);
+  swept.clamps.resize(count);
   world.astray.assign(count, 0);
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
       swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
-      swept.bends[body] = {};
+      swept.clamps[body] = {};
       swept.path[body] = path_of(world, body);
       swept.stoppable[body] = stoppable(world, body, world.fast[body] != 0);
       world.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
@@ -152,7 +153,7 @@ void find_ways(WorldData& world) {
 }
 
 /// Puts boxes around where the body goes.
-void enter_way(WorldData& world, std::uint32_t body) {
+void enter_path(WorldData& world, std::uint32_t body) {
   state::Tables& t = world.tables;
   for (const std::uint32_t c : colliders_of(t.bodies, body))
     t.colliders.bounds[c] = collision::reach_of(t.colliders, c, world.swept.path[body]);
@@ -160,7 +161,7 @@ void enter_way(WorldData& world, std::uint32_t body) {
 }
 
 /// What a body's colliders may run into.
-void find_in_the_way(WorldData& world, std::uint32_t body, collision::WayScratch& scratch) {
+void find_in_path(WorldData& world, std::uint32_t body, collision::PathScratch& scratch) {
   const state::Tables& t = world.tables;
   scratch.pairs.clear();
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
@@ -175,44 +176,46 @@ void find_in_the_way(WorldData& world, std::uint32_t body, collision::WayScratch
 }
 
 /// The pairs of solid colliders that may run into each other, one of them fast.
-void list_encounters(WorldData& world, std::vector<collision::Encounter>& encounters) {
+void list_impact_candidates(WorldData& world, std::vector<collision::ImpactCandidate>& impact_candidates) {
   const state::Pairs& pairs = world.tables.pairs;
-  encounters.clear();
+  impact_candidates.clear();
   for (const state::Pair& p : pairs.pair) {
     const ColliderPair pair = {p.collider_a, p.collider_b};
     if (!is_one_fast(world, pair) || !is_solid(world, pair.first) || !is_solid(world, pair.second)) continue;
-    encounters.push_back({pair, p.manifold_count > 0 ? pairs.manifold[p.first_manifold].normal : Vec3{}});
+    impact_candidates.push_back(
+        {pair, p.manifold_count > 0 ? pairs.manifold[p.first_manifold].normal : Vec3{}});
     for (const std::uint32_t collider : {p.collider_a, p.collider_b}) enter_standing(world, collider);
   }
-  const std::size_t foreseen = encounters.size();
+  const std::size_t foreseen = impact_candidates.size();
   const auto for_each_astray = [&](auto&& visit) {
     for (const std::uint32_t body : world.awake) {
       if (world.astray[body] != 0 && !world.tables.bodies.traits[body].sensor) visit(body);
     }
   };
-  for_each_astray([&](std::uint32_t body) { enter_way(world, body); });
+  for_each_astray([&](std::uint32_t body) { enter_path(world, body); });
   world.broad_phase.update();
   for_each_astray([&](std::uint32_t body) {
-    find_in_the_way(world, body, world.way);
-    for (const ColliderPair pair : world.way.pairs) {
-      if (is_one_fast(world, pair)) encounters.push_back({.pair = pair});
+    find_in_path(world, body, world.path_scratch);
+    for (const ColliderPair pair : world.path_scratch.pairs) {
+      if (is_one_fast(world, pair)) impact_candidates.push_back({.pair = pair});
     }
   });
-  if (encounters.size() == foreseen) return;
-  std::sort(encounters.begin(), encounters.end(), [](const auto& p, const auto& q) {
+  if (impact_candidates.size() == foreseen) return;
+  std::sort(impact_candidates.begin(), impact_candidates.end(), [](const auto& p, const auto& q) {
     return p.pair != q.pair ? p.pair < q.pair : p.apart != Vec3{} && q.apart == Vec3{};
   });
   const auto same = [](const auto& p, const auto& q) { return p.pair == q.pair; };
-  encounters.erase(std::unique(encounters.begin(), encounters.end(), same), encounters.end());
+  impact_candidates.erase(std::unique(impact_candidates.begin(), impact_candidates.end(), same),
+                          impact_candidates.end());
 }
 
 /// Lets the body be where its path ends.
 void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
-  MotionLine& m = bodies.motion[body];
+  MotionRecord& m = bodies.motion[body];
   const Pose end = collision::pose_at(path, Real(1));
   m.dx = vector_cast<Real>(end.position - bodies.center[body]);
   m.theta_scaled = turned * m.theta_scaled;
-  if (state::tumbles_now(bodies, body)) solver::turn_back(body, end.rotation, bodies);
+  if (state::is_gyroscopic_now(bodies, body)) solver::stop_rotation(body, end.rotation, bodies);
 }
 
 }  // namespace
@@ -223,48 +226,48 @@ void begin_motion(WorldData& world, Real dt) {
   world.start_rotation.resize(bodies.rotation.size());
   for (const std::uint32_t body : world.awake) {
     world.start_rotation[body] = bodies.rotation[body];
-    bodies.steady_turn[body] = {};
+    bodies.frozen_inertia[body] = {};
     if (world.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
-      bodies.steady_turn[body] = {.on = true, .hooked = true};
+      bodies.frozen_inertia[body] = {.on = true, .hooked = true};
   }
   for (const state::Pair& pair : world.tables.pairs.pair) {
     if (pair.manifold_count == 0) continue;
     for (const std::uint32_t collider : {pair.collider_a, pair.collider_b}) {
       const std::uint32_t body = world.tables.colliders.body[collider];
-      state::SteadyTurn& steady = bodies.steady_turn[body];
+      state::FrozenInertia& frozen = bodies.frozen_inertia[body];
       const Vec3 turn = pair.time * dt * bodies.angular_velocity[body];
-      steady.touches = state::gives_way(bodies, body) && state::tumbles(bodies.mass[body]);
-      if (steady.on) {
-        if (length_squared(turn) < length_squared(steady.until_impact)) steady.until_impact = turn;
-      } else if (turns_over(bodies, body, pair.time > Real(0), dt)) {
-        steady.on = true;
-        steady.until_impact = turn;
+      frozen.touches = state::gives_way(bodies, body) && state::is_gyroscopic(bodies.mass[body]);
+      if (frozen.on) {
+        if (length_squared(turn) < length_squared(frozen.until_impact)) frozen.until_impact = turn;
+      } else if (changes_inertia(bodies, body, pair.time > Real(0), dt)) {
+        frozen.on = true;
+        frozen.until_impact = turn;
       }
     }
   }
 }
 
-void keep_inertia(WorldData& world, Real h, bool moved) {
+void freeze_inertia(WorldData& world, Real h, bool moved) {
   for_bodies(world, [&](auto rows) {
-    solver::keep_inertia(rows, world.start_rotation, h, moved, world.tables.bodies);
+    solver::freeze_inertia(rows, world.start_rotation, h, moved, world.tables.bodies);
   });
 }
 
-void give_way_at_impacts(WorldData& world) {
+void clamp_to_impact_times(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
   if (!find_fast_bodies(world)) return;
-  find_ways(world);
-  list_encounters(world, world.encounters);
-  const auto find_pairs = [&world](std::uint32_t body, collision::WayScratch& scratch) {
-    enter_way(world, body);
-    find_in_the_way(world, body, scratch);
+  find_paths(world);
+  list_impact_candidates(world, world.impact_candidates);
+  const auto find_pairs = [&world](std::uint32_t body, collision::PathScratch& scratch) {
+    enter_path(world, body);
+    find_in_path(world, body, scratch);
   };
   collision::SweptBodies& swept = world.swept;
-  if (collision::give_way_at_impacts(*world.pool, world.tables.colliders, world.encounters, find_pairs,
-                                     world.continuous, swept) == 0)
+  if (collision::clamp_to_impact_times(*world.pool, world.tables.colliders, world.impact_candidates,
+                                       find_pairs, world.continuous, swept) == 0)
     return;
   for (const std::uint32_t body : world.awake) {
-    if (swept.bends[body].count > 0) follow(swept.path[body], swept.bends[body].first, body, bodies);
+    if (swept.clamps[body].count > 0) follow(swept.path[body], swept.clamps[body].first, body, bodies);
   }
 }
 

@@ -97,7 +97,7 @@ void remove_object(Tables& t, std::uint32_t row) {
   for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
   renumber_particles(t, gone.particles);
   t.contacts = {};  // detect finds them again
-  t.inner_contacts.clear();
+  t.element_contacts.clear();
   t.rope_contacts.clear();
 
   move_slot(t, gone, state::SlotTable<RopeId>::kNone);

@@ -48,7 +48,7 @@ void restore_tables(const state::Tables& from, state::Tables& to);
 /// Wakes every body that is near one for which `is(row)`, before that goes or is moved by hand.
 template <class Is>
 void wake_neighbors(state::Tables& t, Is&& is) {
-  for (const std::vector<state::Pair>* pairs : {&t.pairs.pair, &t.pairs.parked.pair}) {
+  for (const std::vector<state::Pair>* pairs : {&t.pairs.pair, &t.pairs.sleeping.pair}) {
     for (const state::Pair& pair : *pairs) {
       const std::uint32_t a = t.colliders.body[pair.collider_a];
       const std::uint32_t b = t.colliders.body[pair.collider_b];

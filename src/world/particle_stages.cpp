@@ -76,7 +76,7 @@ void read_wind(WorldData& world, double time) {
     if (!object.feels_air()) continue;
     if (even) {
       const auto first = world.wind.begin() + object.particles.first;
-      std::fill(first, first + object.particles.count, solver::AirLine{tables.desc.wind.velocity, Real(0)});
+      std::fill(first, first + object.particles.count, solver::AirRecord{tables.desc.wind.velocity, Real(0)});
       continue;
     }
     for_particles(world, object, [&](Range rows) {
@@ -109,7 +109,7 @@ void for_matched(WorldData& world, Real h, Kernel kernel) {
 
 /// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
 /// more slowly than stretched cloth swings, which is what these are for.
-void weigh_triangles(WorldData& world, const state::Deformable& object, Real h) {
+void compute_air_loads(WorldData& world, const state::Deformable& object, Real h) {
   state::Tables& tables = world.tables;
   const auto count = static_cast<Real>(tables.desc.particle_substeps);
   const solver::Air air = {world.wind, tables.desc.wind.air_density, count * h};
@@ -128,8 +128,8 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
   if (others == Real(0)) return;
   const Real time = first ? -others * h : h;
-  for (const solver::Bundle& bundle : world.bundles.live()) {
-    for (const std::uint32_t body : bundle.bodies) {
+  for (const solver::CoupledGroup& group : world.coupled_groups.live()) {
+    for (const std::uint32_t body : group.bodies) {
       const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
       tables.bodies.motion[body].v += change;
       tables.bodies.free_motion[body].v += change;
@@ -142,8 +142,8 @@ void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::v
   pushed.assign(count, 0);
   for (const solver::ContactBlock& block : contacts.blocks) {
     for (int lane = 0; lane < block.count; ++lane) {
-      pushed[block.line_a[lane] / 16] = 1;
-      if (!block.anchored) pushed[block.line_b[lane] / 16] = 1;
+      pushed[block.record_a[lane] / 16] = 1;
+      if (!block.anchored) pushed[block.record_b[lane] / 16] = 1;
     }
   }
 }
@@ -163,12 +163,12 @@ void share_out_contacts(WorldData& world, bool first) {
     return;
   }
   world.contact_shares.clear();
-  find_pushed(world.body_contacts, bodies.motion.size(), world.touched);
-  for (const solver::Bundle& bundle : world.bundles.live()) {
-    for (const std::uint32_t body : bundle.bodies) {
-      if (world.touched[body] == 0) continue;
-      const state::MotionLine& m = bodies.motion[body];
-      const state::FreeLine& free = bodies.free_motion[body];
+  find_pushed(world.body_contacts, bodies.motion.size(), world.body_marks);
+  for (const solver::CoupledGroup& group : world.coupled_groups.live()) {
+    for (const std::uint32_t body : group.bodies) {
+      if (world.body_marks[body] == 0) continue;
+      const state::MotionRecord& m = bodies.motion[body];
+      const state::FreeMotionRecord& free = bodies.free_motion[body];
       world.contact_shares.push_back(
           {.body = body,
            .v = (Real(1) / count) * (m.v - free.v),
@@ -194,9 +194,9 @@ void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
   if (world.clamps_revision == revision) return;
   world.clamps_revision = revision;
-  const std::vector<solver::Holder> holders = solver::list_holders(world.tables);
-  solver::note_clamps(holders, world.tables);
-  solver::find_twist_spans(holders, world.tables);
+  const std::vector<solver::Holder> supports = solver::list_holders(world.tables);
+  solver::note_clamps(supports, world.tables);
+  solver::find_twist_spans(supports, world.tables);
 }
 
 }  // namespace
@@ -206,9 +206,9 @@ void refresh_derived(WorldData& world) {
   refresh_clamps(world);
   if (world.derived_revision == tables.revision) return;
   world.derived_revision = tables.revision;
-  const std::vector<std::uint8_t> in_hinges =
-      solver::build_hinge_blocks(tables.bends, tables.springs, tables.particles.count(), world.hinge_blocks);
-  solver::build_spring_blocks(tables.springs, tables.particles, in_hinges, world.spring_blocks);
+  const std::vector<std::uint8_t> in_isometric_bends = solver::build_isometric_bend_blocks(
+      tables.bends, tables.springs, tables.particles.count(), world.isometric_bend_blocks);
+  solver::build_spring_blocks(tables.springs, tables.particles, in_isometric_bends, world.spring_blocks);
   solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
   solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
   solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
@@ -220,25 +220,25 @@ void refresh_derived(WorldData& world) {
     if (tables.objects[i].rest_shape) world.matched_objects.push_back(i);
   }
   world.gas_volumes.resize(world.gas_objects.size());
-  world.chains.clear();
+  world.rope_systems.clear();
   for (const state::Deformable& object : tables.objects) {
     if (object.kind != PointRef::Kind::kRope) continue;
-    world.chains.push_back({.first_particle = object.particles.first,
-                            .node_count = object.particles.count,
-                            .first_segment = object.segments.first,
-                            .bend_stiffness = static_cast<double>(object.bend_stiffness),
-                            .bend_damping = static_cast<double>(object.bend_damping)});
+    world.rope_systems.push_back({.first_particle = object.particles.first,
+                                  .node_count = object.particles.count,
+                                  .first_segment = object.segments.first,
+                                  .bend_stiffness = static_cast<double>(object.bend_stiffness),
+                                  .bend_damping = static_cast<double>(object.bend_damping)});
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
-  world.velocity_before.assign(count, state::VelocityLine{});
-  world.wind.assign(count, solver::AirLine{});
+  world.velocity_before.assign(count, state::VelocityRecord{});
+  world.wind.assign(count, solver::AirRecord{});
   world.law_force.assign(count, Vec3{});
 }
 
 void prepare_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // after all contacts were found
   solver::prepare_springs(world.spring_blocks.materials, h);
-  solver::prepare_hinges(world.hinge_blocks, h);
+  solver::prepare_isometric_bends(world.isometric_bend_blocks, h);
   solver::prepare_bends(world.bend_blocks, h);
   solver::prepare_tetrahedra(world.tetrahedra, h);
 }
@@ -252,25 +252,26 @@ void begin_step(WorldData& world, double dt) {
   for (state::TwistSpan& span : tables.twists) span.mean_torque = Real(0);
   std::size_t row = 0;
   const state::Contacts& contacts = tables.contacts;
-  for (solver::Chain& chain : world.chains) {
+  for (solver::RopeSystem& rope_system : world.rope_systems) {
     const auto begins = [&](std::uint32_t particle) {
       return row < contacts.particle.size() && contacts.particle[row] < particle;
     };
-    while (begins(chain.first_particle)) ++row;
-    chain.first_contact = static_cast<std::uint32_t>(row);
-    while (begins(chain.first_particle + chain.node_count)) ++row;
-    chain.end_contact = static_cast<std::uint32_t>(row);
-    chain.solves = 0;
-    chain.unconverged = false;
+    while (begins(rope_system.first_particle)) ++row;
+    rope_system.first_contact = static_cast<std::uint32_t>(row);
+    while (begins(rope_system.first_particle + rope_system.node_count)) ++row;
+    rope_system.end_contact = static_cast<std::uint32_t>(row);
+    rope_system.solves = 0;
+    rope_system.unconverged = false;
   }
 }
 
 void begin_particle_substep(WorldData& world, Real h) {
   if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
   for_matched(world, h, solver::damp_shape);
-  for (const solver::Chain& chain : world.chains) {
-    const auto first = world.tables.particles.velocity.begin() + chain.first_particle;
-    std::copy(first, first + chain.node_count, world.velocity_before.begin() + chain.first_particle);
+  for (const solver::RopeSystem& rope_system : world.rope_systems) {
+    const auto first = world.tables.particles.velocity.begin() + rope_system.first_particle;
+    std::copy(first, first + rope_system.node_count,
+              world.velocity_before.begin() + rope_system.first_particle);
   }
 }
 
@@ -295,7 +296,7 @@ void apply_wind(WorldData& world, Real h, bool first) {
       solver::push_segments(object, tables.segments, air, tables.particles);
     }
     if (object.triangles.count == 0) continue;
-    if (first) weigh_triangles(world, object, h);
+    if (first) compute_air_loads(world, object, h);
     for_particles(world, object,
                   [&](Range rows) { solver::push_particles(world.air_loads, rows, tables.particles); });
   }
@@ -318,7 +319,7 @@ void solve_bends(WorldData& world) {
     }
   };
   solve(world.bend_blocks, solver::solve_bends);
-  solve(world.hinge_blocks, solver::solve_hinges);
+  solve(world.isometric_bend_blocks, solver::solve_isometric_bends);
 }
 
 void call_force_laws(WorldData& world, double time, Real h) {
@@ -388,28 +389,32 @@ void flow_cloths(WorldData& world) {
              [&](Range rows) { solver::flow_bends(world.yields, rows, world.tables, world.bend_blocks); });
 }
 
-void begin_ties(WorldData& world, Real h, bool first) {
-  if (world.tables.objects.empty() && world.tables.pairs.borne.empty() && world.bundles.count == 0) return;
+void begin_coupled_groups(WorldData& world, Real h, bool first) {
+  if (world.tables.objects.empty() && world.tables.pairs.load_bearing.empty() &&
+      world.coupled_groups.count == 0)
+    return;
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
   solver::slide_hooks(world.tables);
-  solver::build_bundles(world.tables, world.chains, world.bundles);
+  solver::build_coupled_groups(world.tables, world.rope_systems, world.coupled_groups);
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
-  solver::weigh_points(world.bundles, world.tables, world.hooked_points);
+  solver::apply_mass_shares(world.coupled_groups, world.tables, world.hooked_points);
 }
 
 void solve_ropes(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  solver::release_points(world.hooked_points, tables.particles);
+  solver::remove_mass_shares(world.hooked_points, tables.particles);
   solver::twist_nodes(world.twist_rows, tables);
-  world.chain_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
-  for_ranges(*world.pool, static_cast<int>(world.chains.size()), 1, [&](Range rows, int part) {
-    solver::solve_chains(std::span(world.chains).subspan(rows.begin, rows.count()), world.bundles.anchors,
-                         world.velocity_before, h, world.chain_scratch[part], tables);
+  world.rope_system_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
+  for_ranges(*world.pool, static_cast<int>(world.rope_systems.size()), 1, [&](Range rows, int part) {
+    solver::solve_rope_systems(std::span(world.rope_systems).subspan(rows.begin, rows.count()),
+                               world.coupled_groups.anchors, world.velocity_before, h,
+                               world.rope_system_scratch[part], tables);
   });
-  for_ranges(*world.pool, static_cast<int>(world.bundles.count), 1, [&](Range rows) {
+  for_ranges(*world.pool, static_cast<int>(world.coupled_groups.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
-      solver::solve_bundle(world.velocity_before, h, world.bundles.bundles[i], world.chains, tables);
+      solver::solve_coupled_group(world.velocity_before, h, world.coupled_groups.groups[i],
+                                  world.rope_systems, tables);
     }
   });
   solver::note_twist_rates(static_cast<double>(h), world.twist_rows, tables);
@@ -421,26 +426,27 @@ void end_step(WorldData& world, double dt, StepReport& report) {
   const Real share = Real(1) / static_cast<Real>(substeps);
   for (Real& tension : tables.segments.mean_tension) tension *= share;
   for (state::TwistSpan& span : tables.twists) span.mean_torque *= share;
-  for (const solver::Chain& chain : world.chains) {
-    report.chain_solves += chain.solves;
-    report.chains_unconverged += chain.unconverged ? 1 : 0;
+  for (const solver::RopeSystem& rope_system : world.rope_systems) {
+    report.rope_solves += rope_system.solves;
+    report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
   }
-  report.islands_refused = world.hard_islands.refused;
-  report.contacts_refused = world.borne.refused;
-  for (const solver::Bundle& bundle : world.bundles.live()) report.contacts_refused += bundle.refused;
-  for (solver::Bundle& bundle : world.bundles.bundles)
-    report.bundles_cut_short += std::exchange(bundle.cut_short, false) ? 1 : 0;
+  report.islands_refused = world.direct_islands.refused;
+  report.contacts_refused = world.load_bearing.refused;
+  for (const solver::CoupledGroup& group : world.coupled_groups.live())
+    report.contacts_refused += group.refused;
+  for (solver::CoupledGroup& group : world.coupled_groups.groups)
+    report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
   report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
                                                              tables.contacts.normal_force.end(),
                                                              [](Real n) { return n > Real(0); }));
-  for (const state::InnerContact& inner : tables.inner_contacts)
-    report.contacts += inner.normal_force > Real(0) ? 1 : 0;
+  for (const state::ElementContact& element_contact : tables.element_contacts)
+    report.contacts += element_contact.normal_force > Real(0) ? 1 : 0;
   for (const state::RopeContact& contact : tables.rope_contacts)
     report.contacts += contact.normal_force > Real(0) ? 1 : 0;
-  report.contacts += tables.pairs.parked.contacts;
+  report.contacts += tables.pairs.sleeping.contacts;
   for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
-  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.parked.pair.size());
-  report.pairs_left_out = world.crowds.left_out();
+  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.sleeping.pair.size());
+  report.pairs_left_out = world.dense_piles.left_out();
   report.bodies_awake = static_cast<std::uint32_t>(
       std::count_if(world.awake.begin(), world.awake.end(),
                     [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));

@@ -34,7 +34,7 @@ void solve_springs(WorldData& world, Real h, state::SpringClass first, state::Sp
 void solve_bends(WorldData& world);
 
 /// What is tied to what, in a substep of length h [s], the `first` of those that bodies share.
-void begin_ties(WorldData& world, Real h, bool first);
+void begin_coupled_groups(WorldData& world, Real h, bool first);
 /// Ropes and what they are tied to.
 void solve_ropes(WorldData& world, Real h);
 

@@ -27,7 +27,7 @@ bool touches(const Manifold& manifold) {
 
 /// Will overlap within `dt` at the bodies' present speeds: a sleeper that is hit must be awake in that step,
 /// or it takes the hit like a wall.
-bool meets(const Bodies& bodies, const Manifold& manifold, Real dt) {
+bool will_touch(const Bodies& bodies, const Manifold& manifold, Real dt) {
   const auto speed = [&](std::uint32_t body, Vec3 anchor) {
     return dot(manifold.normal, state::velocity_at(bodies, body, anchor));
   };
@@ -56,19 +56,20 @@ bool disturbs(const Bodies& bodies, std::uint32_t body) {
 constexpr Real kWakingSpeed = Real(0.2);
 
 /// Particles that meet sleepers: the cloth that lies on one does not wake it.
-bool wake_struck(WorldData& world) {
+bool wake_by_particles(WorldData& world) {
   state::Tables& t = world.tables;
   bool any = false;
-  const auto strike = [&](std::uint32_t body, Real force, std::uint32_t particle) {
+  const auto wake_if_hit = [&](std::uint32_t body, Real force, std::uint32_t particle) {
     if (!is_dynamic(t.bodies, body) || t.bodies.asleep[body] == 0 || !(force > Real(0))) return;
     if (!(length(t.particles.velocity[particle].v) > kWakingSpeed)) return;
     state::wake(t.bodies, body);
     any = true;
   };
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row)
-    strike(t.contacts.body[row], t.contacts.normal_force[row], t.contacts.particle[row]);
-  for (const state::InnerContact& inner : t.inner_contacts) {
-    for (std::uint32_t i = 0; i < inner.count; ++i) strike(inner.body, inner.normal_force, inner.particle[i]);
+    wake_if_hit(t.contacts.body[row], t.contacts.normal_force[row], t.contacts.particle[row]);
+  for (const state::ElementContact& element_contact : t.element_contacts) {
+    for (std::uint32_t i = 0; i < element_contact.count; ++i)
+      wake_if_hit(element_contact.body, element_contact.normal_force, element_contact.particle[i]);
   }
   return any;
 }
@@ -76,14 +77,14 @@ bool wake_struck(WorldData& world) {
 /// Of bodies that woke.
 void take_pairs_back(WorldData& world) {
   state::Tables& t = world.tables;
-  state::unpark_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.parking);
+  state::wake_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
 }
 
 /// What is pressed into another leaves it more slowly than what rests may move
 /// (solver/coupled/load_bearing_contacts.h).
 void keep_rising_awake(state::Tables& t) {
   constexpr Real kSunk = Real(1e-3);  // [m]
-  for (const state::BorneContact& contact : t.pairs.borne) {
+  for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (!(contact.separation < -kSunk)) continue;
     t.bodies.rest_time[contact.body_a] = t.bodies.rest_time[contact.body_b] = Real(0);
   }
@@ -106,7 +107,7 @@ void find_rest_of_islands(WorldData& world) {
 bool wake_touched(WorldData& world, Real dt) {
   if (!any_sleeps(world)) return false;
   Bodies& bodies = world.tables.bodies;
-  bool any = wake_struck(world);
+  bool any = wake_by_particles(world);
   if (world.awake.empty() && !any) return false;
   for (bool changed = true; changed;) {
     changed = false;
@@ -114,7 +115,7 @@ bool wake_touched(WorldData& world, Real dt) {
     for (const Manifold& m : world.tables.pairs.manifold) {
       const bool sleeper_a = bodies.asleep[m.body_a] != 0;
       const bool sleeper_b = bodies.asleep[m.body_b] != 0;
-      if (sleeper_a == sleeper_b || !(touches(m) || meets(bodies, m, dt))) continue;
+      if (sleeper_a == sleeper_b || !(touches(m) || will_touch(bodies, m, dt))) continue;
       if (!disturbs(bodies, sleeper_a ? m.body_b : m.body_a)) continue;
       state::wake(bodies, sleeper_a ? m.body_a : m.body_b);
       changed = any = true;
@@ -161,7 +162,7 @@ void put_to_sleep(WorldData& world, Real dt) {
   for (const std::uint32_t body : world.awake) {
     if (!is_dynamic(bodies, body) || world.island_rest[islands.root(body)] < kRestTime) continue;
     bodies.asleep[body] = 1;
-    world.bodies_placed.push_back(body);  // its box is still that of its last way
+    world.placed_bodies.push_back(body);  // its box is still that of its last way
     bodies.motion[body].v = {};
     bodies.angular_momentum[body] = {};
     bodies.angular_velocity[body] = {};
@@ -184,9 +185,9 @@ void wake_near_points(const state::Deformable& object, state::Tables& t) {
   constexpr Real kNear = Real(0.01);  // what bears something touches it [m]
   geometry::Box3<double> around;
   for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
-    const state::PositionLine& line = t.particles.position[p];
-    const auto size = static_cast<double>(line.radius + kNear);
-    const DVec3 place = object.origin + vector_cast<double>(line.x);
+    const state::PositionRecord& record = t.particles.position[p];
+    const auto size = static_cast<double>(record.radius + kNear);
+    const DVec3 place = object.origin + vector_cast<double>(record.x);
     const DVec3 half = {size, size, size};
     around = merge(around, geometry::Box3<double>{place - half, place + half});
   }

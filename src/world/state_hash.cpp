@@ -101,14 +101,15 @@ void add_objects(StateHash& hash, const Tables& t) {
 void add_point_contacts(StateHash& hash, const Tables& t) {
   const state::Contacts& c = t.contacts;
   add(hash, c.particle, c.collider, c.feature, c.normal_force, c.friction_force);
-  hash.add(t.inner_contacts.size());
-  for (const state::InnerContact& inner : t.inner_contacts) {
-    add(hash, inner.collider, inner.element, inner.edge, inner.feature, inner.particle, inner.joined,
-        inner.normal, inner.normal_force, inner.friction_force, inner.clearance);
+  hash.add(t.element_contacts.size());
+  for (const state::ElementContact& element_contact : t.element_contacts) {
+    add(hash, element_contact.collider, element_contact.element, element_contact.edge,
+        element_contact.feature, element_contact.particle, element_contact.joined, element_contact.normal,
+        element_contact.normal_force, element_contact.friction_force, element_contact.clearance);
   }
   hash.add(t.rope_contacts.size());
   for (const state::RopeContact& contact : t.rope_contacts) {
-    add(hash, contact.segment_a, contact.segment_b, contact.kin, contact.joined, contact.normal,
+    add(hash, contact.segment_a, contact.segment_b, contact.adjacent, contact.joined, contact.normal,
         contact.normal_force, contact.friction_force, contact.clearance);
   }
 }
@@ -122,7 +123,7 @@ void add_traits(StateHash& hash, const state::BodyTraits& t) {
 void add_bodies(StateHash& hash, const Tables& t) {
   const state::Bodies& b = t.bodies;
   add(hash, b.center, b.rotation, b.angular_momentum, b.angular_velocity, b.force, b.torque, b.rest_time,
-      b.asleep, b.hardness, b.first_collider, b.collider_count, b.path_start, b.path_time, t.free_bodies);
+      b.asleep, b.direct_state, b.first_collider, b.collider_count, b.path_start, b.path_time, t.free_bodies);
   for (std::size_t i = 0; i < b.traits.size(); ++i) {
     add(hash, b.motion[i].v, b.motion[i].inverse_mass);
     const state::BodyMass& mass = b.mass[i];
@@ -157,16 +158,16 @@ void add_manifold(StateHash& hash, const state::Manifold& m) {
 }
 
 void add_pairs(StateHash& hash, const state::Pairs& pairs) {
-  for (const auto* list : {&pairs.pair, &pairs.parked.pair}) {
+  for (const auto* list : {&pairs.pair, &pairs.sleeping.pair}) {
     hash.add(list->size());
     for (const state::Pair& pair : *list) {
-      add(hash, pair.collider_a, pair.collider_b, pair.gap, pair.drift.way, pair.drift.angle_a,
+      add(hash, pair.collider_a, pair.collider_b, pair.gap, pair.drift.displacement, pair.drift.angle_a,
           pair.drift.angle_b, pair.axis, pair.tested);
     }
   }
   for (const state::SeenPose& seen : pairs.seen) add(hash, seen.center, seen.rotation);
   for (const state::Manifold& m : pairs.manifold) add_manifold(hash, m);
-  for (const state::Manifold& m : pairs.parked.manifold) add_manifold(hash, m);
+  for (const state::Manifold& m : pairs.sleeping.manifold) add_manifold(hash, m);
 }
 
 void add_place(StateHash& hash, const state::HookPlace& end) {

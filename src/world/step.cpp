@@ -52,14 +52,14 @@ using world::for_contact_colors;
 // Sizes below which a job stays on one thread.
 constexpr int kParticleGrain = 2048;
 constexpr int kContactGrain = 256;
-constexpr int kInnerContactGrain = 32;
+constexpr int kElementContactGrain = 32;
 
 void detect(WorldData& w, double dt) {
   world::refresh_derived(w);
   world::refresh_hooks(w);
   world::set_off_explosions(w, dt);
   world::list_awake_bodies(w);
-  solver::judge_ragdolls(*w.pool, w.tables.hooks, w.tables.bodies, w.joints);
+  solver::evaluate_ragdolls(*w.pool, w.tables.hooks, w.tables.bodies, w.joints);
   world::find_body_contacts(w, static_cast<Real>(dt));
   if (world::wake_touched(w, static_cast<Real>(dt))) world::list_awake_bodies(w);
   collision::find_contacts(dt, w.particle_contacts, w.tables);
@@ -96,17 +96,17 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
   apply_forces(w, time, h, first);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain,
              [&](Range rows) { collision::update_contacts(rows, h, w.particle_contacts, t); });
-  for_ranges(*w.pool, static_cast<int>(t.inner_contacts.size()), kInnerContactGrain,
-             [&](Range rows) { collision::update_inner_contacts(rows, h, t); });
+  for_ranges(*w.pool, static_cast<int>(t.element_contacts.size()), kElementContactGrain,
+             [&](Range rows) { collision::update_element_contacts(rows, h, t); });
   collision::update_rope_contacts(*w.pool, h, w.rope_contacts, t);
-  world::begin_ties(w, h, first);
+  world::begin_coupled_groups(w, h, first);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
   world::solve_ropes(w, h);
   collision::stop_rope_passes(*w.pool, h, w.rope_contacts, t);
-  solver::solve_inner_contacts(h, t);
+  solver::solve_element_contacts(h, t);
   for_ranges(*w.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
@@ -126,33 +126,33 @@ void substep(WorldData& w, int i, double time, Real h) {
   world::force_bodies(w, time, h);
   const solver::BodyStep step = {.gravity = w.tables.desc.gravity, .h = h, .first = i == 0};
   for_bodies(w, [&](auto rows) { solver::accelerate_bodies(rows, step, bodies); });
-  world::keep_inertia(w, h, false);
-  world::resolve_hits(w, h);
+  world::freeze_inertia(w, h, false);
+  world::resolve_impacts(w, h);
   for (int sweep = 0; sweep < w.tables.desc.bias_sweeps; ++sweep) {
     for_contact_colors(w, [&](Range blocks) {
       solver::solve_body_contacts(blocks, w.contact_step, w.body_contacts, bodies);
     });
   }
-  solver::solve_hard_islands(*w.pool, step, w.hard_islands, w.body_contacts, bodies);
-  world::slow_crowds(w);
+  solver::solve_direct_islands(*w.pool, step, w.direct_islands, w.body_contacts, bodies);
+  world::limit_dense_piles(w);
   solver::solve_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
-  solver::lead_from_hits(bodies, w.hits);
+  solver::propagate_impacts(bodies, w.impacts);
   for (int k = 1; k <= particle_substeps; ++k) {
     substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
     for_bodies(w, [&](auto rows) { solver::move_bodies(rows, particle_h, bodies); });
   }
-  world::keep_inertia(w, h, true);
-  world::renew_lively_contacts(w, h);
+  world::freeze_inertia(w, h, true);
+  world::refresh_contacts(w, h);
   solver::relax_joints(*w.pool, h, w.tables.hooks, bodies, w.joints);
   for_contact_colors(
       w, [&](Range blocks) { solver::relax_body_contacts(blocks, w.contact_step, w.body_contacts, bodies); });
-  world::slow_crowds(w);
+  world::limit_dense_piles(w);
 }
 
 void finish_bodies(WorldData& w, double dt) {
   state::Bodies& bodies = w.tables.bodies;
   world::finish_body_contacts(w);
-  world::give_way_at_impacts(w);
+  world::clamp_to_impact_times(w);
   for_bodies(w, [&](auto rows) { solver::finish_bodies(rows, bodies); });
   solver::finish_joints(*w.pool, static_cast<Real>(dt), w.tables.desc.substeps, bodies, w.joints,
                         w.tables.hooks);

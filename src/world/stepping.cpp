@@ -37,7 +37,7 @@ void put_bodies_back(WorldData& world) {
     // Those that slept are where they were, and stood still.
     b.motion[row] = {.inverse_mass = b.motion[row].inverse_mass};
     b.free_motion[row] = {};
-    b.steady_turn[row] = {};
+    b.frozen_inertia[row] = {};
     b.angular_momentum[row] = b.angular_velocity[row] = {};
     b.asleep[row] = 1;
   }
@@ -63,11 +63,11 @@ void put_points_back(WorldData& world) {
 }
 
 /// All that is found or derived anew from where things are; it may have been left half done.
-void forget_contacts(WorldData& world) {
+void reset_contacts(WorldData& world) {
   state::Tables& t = world.tables;
   t.pairs = {};
   t.contacts = {};
-  t.inner_contacts.clear();
+  t.element_contacts.clear();
   t.rope_contacts.clear();
   for (state::Hook& hook : t.hooks) {
     hook.broken = false;
@@ -76,7 +76,7 @@ void forget_contacts(WorldData& world) {
   ++t.revision;
   ++t.hook_revision;
   world.broad_phase_stale = true;
-  world.bodies_placed.clear();
+  world.placed_bodies.clear();
   world.boxes_are_current = false;
   clear_events(world.events);
 }
@@ -99,7 +99,7 @@ Stepping::~Stepping() {
   if (ended_) return;
   put_bodies_back(world_);
   put_points_back(world_);
-  forget_contacts(world_);
+  reset_contacts(world_);
 }
 
 }  // namespace hooke::world

@@ -9,7 +9,6 @@
 #include "collision/deformable/rope_contacts.h"
 #include "collision/narrow_phase/dense_piles.h"
 #include "collision/narrow_phase/narrow_phase.h"
-#include "state/sleeping_pairs.h"
 #include "parallel/thread_pool.h"
 #include "solver/air/air.h"
 #include "solver/air/liquids.h"
@@ -29,6 +28,7 @@
 #include "solver/soft/plastic_flow.h"
 #include "solver/soft/spring_blocks.h"
 #include "solver/soft/tetrahedron_solve.h"
+#include "state/sleeping_pairs.h"
 #include "state/tables.h"
 
 #include <atomic>
@@ -41,7 +41,7 @@
 namespace hooke {
 
 /// Bodies about to meet faster than one of them asked for; see world::note_approaches.
-struct Approach {
+struct ClosingPair {
   std::uint32_t manifold = 0;
   Real speed = Real(0);  ///< [m/s]
   DVec3 point = {};      ///< Where they will meet [m].
@@ -75,26 +75,26 @@ struct WorldData {
   std::uint64_t derived_revision = ~std::uint64_t{0};
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
-  solver::HingeBlocks hinge_blocks;
+  solver::IsometricBendBlocks isometric_bend_blocks;
   solver::TetrahedronRows tetrahedra;
   solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
   std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are matched to their forms at rest.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;
-  std::vector<solver::Chain> chains;                ///< One per rope, in order of creation.
-  std::vector<solver::ChainScratch> chain_scratch;  ///< One per part of a parallel loop.
-  solver::Bundles bundles;                          ///< Of ropes with what they are tied to.
-  std::vector<ContactShare> contact_shares;         ///< Lives for one substep.
-  std::vector<solver::HookedPoint> hooked_points;   ///< Lives for one substep.
-  std::uint64_t clamps_revision = 0;                ///< Sum of both revisions, which only grow.
-  std::vector<solver::TwistRow> twist_rows;         ///< Lives for one substep.
+  std::vector<solver::RopeSystem> rope_systems;                ///< One per rope, in order of creation.
+  std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
+  solver::CoupledGroups coupled_groups;                        ///< Of ropes with what they are tied to.
+  std::vector<ContactShare> contact_shares;                    ///< Lives for one substep.
+  std::vector<solver::HookedPoint> hooked_points;              ///< Lives for one substep.
+  std::uint64_t clamps_revision = 0;                           ///< Sum of both revisions, which only grow.
+  std::vector<solver::TwistRow> twist_rows;                    ///< Lives for one substep.
 
   // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
   solver::Joints joints;
   std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
-  solver::Holders holders;
+  solver::Supports supports;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
   std::vector<std::uint32_t>
       hooked_begin;                  ///< Of the pairs of each body that is the first; one more at the end.
@@ -103,56 +103,58 @@ struct WorldData {
   // Bodies. Derived from the tables; what it holds does not change what a step does.
   collision::BroadPhase broad_phase;
   bool broad_phase_stale = true;                ///< Everything must be put into it anew.
-  std::vector<std::uint32_t> bodies_placed;     ///< Added, moved by hand or asleep since the last step.
+  std::vector<std::uint32_t> placed_bodies;     ///< Added, moved by hand or asleep since the last step.
   std::atomic<bool> boxes_are_current = false;  ///< Of all bodies, where they are now; see boxes_for_queries.
   std::mutex boxes_mutex;
 
   Events events;  ///< Of the last step.
 
   // Lives for one step.
-  std::vector<std::uint32_t> awake;    ///< Rows of bodies that move in this step, in ascending order.
-  std::vector<std::uint32_t> stirred;  ///< Rows of those, and of bodies placed: all that may meet others now.
-  std::vector<std::uint8_t> is_stirred;  ///< By collider; none where nobody sleeps, all being stirred.
+  std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
+  std::vector<std::uint32_t>
+      moved_set;  ///< Rows of those, and of bodies placed: all that may meet others now.
+  std::vector<std::uint8_t> in_moved_set;  ///< By collider; none where nobody sleeps, all being stirred.
   std::vector<collision::ColliderPair> pairs_found;
-  collision::Crowds crowds;
+  collision::DensePiles dense_piles;
   collision::NarrowPhase narrow_phase;
-  state::ParkingScratch parking;
+  state::SleepingPairScratch sleeping_pair_scratch;
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
   solver::Repulsion repulsion;
-  std::vector<Approach> approaches;       ///< In order of manifolds.
-  std::vector<ContactEvent> touches_now;  ///< Of those that ask.
+  std::vector<ClosingPair> closing_pairs;  ///< In order of manifolds.
+  std::vector<ContactEvent> contacts_now;  ///< Of those that ask.
   std::vector<SensorEvent> visits_now;
   base::DisjointSets islands;        ///< Of bodies that may fall asleep together.
   std::vector<Real> island_rest;     ///< For how long each has been at rest, at its root [s].
   std::vector<std::uint8_t> fast;    ///< Of bodies: may pass through others.
   std::vector<std::uint8_t> astray;  ///< Of bodies: goes where detect did not think it could.
-  std::vector<collision::Encounter> encounters;
-  collision::WayScratch way;
+  std::vector<collision::ImpactCandidate> impact_candidates;
+  collision::PathScratch path_scratch;
   collision::SweptBodies swept;
   collision::ContinuousScratch continuous;
   std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
-  solver::Hits hits;
-  solver::HardIslands hard_islands;
-  solver::BorneScratch borne;
-  std::vector<std::uint8_t> touched;  ///< Of bodies: scratch of couple_articulations and share_out_contacts.
-  std::vector<state::PositionLine>
+  solver::Impacts impacts;
+  solver::DirectIslands direct_islands;
+  solver::LoadBearingScratch load_bearing;
+  std::vector<std::uint8_t>
+      body_marks;  ///< Of bodies: scratch of couple_articulations and share_out_contacts.
+  std::vector<state::PositionRecord>
       start_position;  ///< At the start of the step: where quarantine puts rows back.
-  std::vector<state::VelocityLine> start_velocity;
+  std::vector<state::VelocityRecord> start_velocity;
   std::vector<DVec3> start_origin;
-  std::vector<StartOfBody> start_bodies;             ///< Those awake; see world::Stepping.
-  std::vector<state::VelocityLine> velocity_before;  ///< Of rope nodes, before the substep's forces.
-  std::vector<solver::AirLine> wind;                 ///< At each particle [m/s].
-  std::vector<solver::LiquidLoad> liquid_loads;      ///< Of the object at hand.
-  std::vector<Vec3> law_force;                       ///< What force laws ask for [N].
-  std::vector<std::uint32_t> law_bodies;             ///< What force laws see: rows in ascending order.
-  std::vector<std::uint32_t> dipole_bodies;          ///< Those with a dipole moment: rows in ascending order.
-  std::vector<solver::Dipole> dipoles;               ///< Where they are in this substep, and those of fields.
-  bool bodies_surrounded = false;                    ///< Something besides laws pushes them in each substep.
-  std::vector<Vec3> given_force;                     ///< On bodies, without fields and force laws [N].
-  std::vector<Vec3> given_torque;                    ///< [N m]
+  std::vector<StartOfBody> start_bodies;               ///< Those awake; see world::Stepping.
+  std::vector<state::VelocityRecord> velocity_before;  ///< Of rope nodes, before the substep's forces.
+  std::vector<solver::AirRecord> wind;                 ///< At each particle [m/s].
+  std::vector<solver::LiquidLoad> liquid_loads;        ///< Of the object at hand.
+  std::vector<Vec3> law_force;                         ///< What force laws ask for [N].
+  std::vector<std::uint32_t> law_bodies;               ///< What force laws see: rows in ascending order.
+  std::vector<std::uint32_t> dipole_bodies;  ///< Those with a dipole moment: rows in ascending order.
+  std::vector<solver::Dipole> dipoles;       ///< Where they are in this substep, and those of fields.
+  bool bodies_surrounded = false;            ///< Something besides laws pushes them in each substep.
+  std::vector<Vec3> given_force;             ///< On bodies, without fields and force laws [N].
+  std::vector<Vec3> given_torque;            ///< [N m]
 
   std::unique_ptr<parallel::ThreadPool> pool;
   bool stepping = false;

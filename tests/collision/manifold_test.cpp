@@ -16,10 +16,10 @@ using hooke::Real;
 using hooke::Shape;
 using hooke::ShapeKind;
 using hooke::Vec3;
+using hooke::collision::ContactResult;
+using hooke::collision::ContactResultPoint;
 using hooke::collision::Convex;
 using hooke::collision::Distance;
-using hooke::collision::Meeting;
-using hooke::collision::MeetingPoint;
 using hooke::collision::separation_along;
 using hooke::geometry::ConvexHull;
 using hooke::test::meeting_of;
@@ -59,13 +59,13 @@ Body random_body(ShapeKind kind, Vec3 center, std::mt19937& random) {
 /// Moves b along `direction` until a meeting finds it at the given separation, roughly.
 void bring_to(const Convex& a, Convex& b, Vec3 direction, Real separation) {
   for (int i = 0; i < 12; ++i) {
-    const Meeting m = meeting_of(a, b, Real(10));
+    const ContactResult m = meeting_of(a, b, Real(10));
     b.center += Real(0.9) * (separation - m.separation) * direction;
   }
 }
 
-const MeetingPoint& point(const Meeting& meeting, int i) {
-  return meeting.point[static_cast<std::size_t>(i)];
+const ContactResultPoint& point(const ContactResult& result, int i) {
+  return result.point[static_cast<std::size_t>(i)];
 }
 
 Real distance_to(const Convex& shape, Vec3 p) {
@@ -82,14 +82,14 @@ Real allowed_loss(const Convex& a, const Convex& b) {
 }
 
 /// What holds for the meeting of any two shapes.
-void check_meeting(const Convex& a, const Convex& b, const Meeting& m) {
+void check_meeting(const Convex& a, const Convex& b, const ContactResult& m) {
   CHECK(std::fabs(length(m.normal) - Real(1)) < Real(1e-5));
   // The shapes are held apart by what the meeting says, and no axis holds them farther apart.
   CHECK(std::fabs(separation_along(a, b, m.normal) - m.separation) < Real(1e-5));
   CHECK(sampled_separation(a, b) - m.separation < allowed_loss(a, b));
   REQUIRE(m.count > 0);
   for (int i = 0; i < m.count; ++i) {
-    const MeetingPoint& p = point(m, i);
+    const ContactResultPoint& p = point(m, i);
     CHECK(std::fabs(dot(m.normal, p.on_b - p.on_a) - p.separation) < Real(1e-5));
     CHECK(p.separation > m.separation - Real(1e-3));
     CHECK(distance_to(a, p.on_a) < Real(1e-2));
@@ -97,7 +97,7 @@ void check_meeting(const Convex& a, const Convex& b, const Meeting& m) {
   }
 }
 
-Meeting ball_meets(const Convex& shape, Vec3 place, Real radius) {
+ContactResult ball_meets(const Convex& shape, Vec3 place, Real radius) {
   return meeting_of(shape, placed(Shape::sphere(radius), place, {}));
 }
 
@@ -116,11 +116,11 @@ TEST_SUITE("collision/manifolds") {
             const Vec3 direction = random_unit(random);
             Body b = random_body(kind_b, Real(2) * direction, random);
             bring_to(a.convex, b.convex, direction, separation);
-            const Meeting m = meeting_of(a.convex, b.convex, Real(0.05));
+            const ContactResult m = meeting_of(a.convex, b.convex, Real(0.05));
             if (std::fabs(m.separation - separation) > Real(0.01)) continue;
             if (m.separation > Real(0) && m.count == 0) continue;  // faces that pass each other
             check_meeting(a.convex, b.convex, m);
-            const Meeting mirrored = meeting_of(b.convex, a.convex, Real(0.05));
+            const ContactResult mirrored = meeting_of(b.convex, a.convex, Real(0.05));
             CHECK(std::fabs(mirrored.separation - m.separation) < allowed_loss(a.convex, b.convex));
           }
         }
@@ -143,8 +143,8 @@ TEST_SUITE("collision/manifolds") {
           c.axes = matrix_of(turn) * c.axes;
           return c;
         };
-        const Meeting m = meeting_of(a.convex, b.convex);
-        const Meeting other = meeting_of(moved(a.convex), moved(b.convex));
+        const ContactResult m = meeting_of(a.convex, b.convex);
+        const ContactResult other = meeting_of(moved(a.convex), moved(b.convex));
         CHECK(std::fabs(m.separation - other.separation) < Real(2e-4));
         if (m.axis == other.axis) CHECK(length(rotate(turn, m.normal) - other.normal) < Real(0.02));
       }
@@ -159,7 +159,7 @@ TEST_SUITE("collision/manifolds") {
       const Vec3 place = uniform(random, 0.5, 2.5) * random_unit(random);
       const Convex b = placed(random_shape(ShapeKind::kBox, random), place, random_turn(random));
       const Distance d = hooke::collision::distance_between(a, b);
-      const Meeting m = meeting_of(a, b, Real(10));
+      const ContactResult m = meeting_of(a, b, Real(10));
       overlapping += d.cores_overlap ? 1 : 0;
       bool ok = std::isfinite(m.separation) && is_finite(m.normal);
       if (d.cores_overlap) {
@@ -192,13 +192,13 @@ TEST_SUITE("collision/manifolds") {
       const Vec3 direction = random_unit(random);
       Body b = random_body(walk % 4 < 2 ? ShapeKind::kBox : ShapeKind::kHull, Real(2) * direction, random);
       bring_to(a.convex, b.convex, direction, Real(-0.1));
-      Meeting m;
+      ContactResult m;
       for (int step = 0; step < 100; ++step) {
         b.convex.center += Real(0.005) * random_unit(random);
         b.convex.axes = matrix_of(hooke::quaternion_about(random_unit(random), Real(0.01))) * b.convex.axes;
         const std::uint32_t last_axis = m.axis;
         m.count = 0;
-        meet_hulls(a.convex, b.convex, {.margin = Real(0.02), .last_axis = last_axis}, m);
+        collide_hulls(a.convex, b.convex, {.margin = Real(0.02), .last_axis = last_axis}, m);
         if (!(m.separation < Real(-0.01))) continue;
         ++deep;
         CHECK(deepest_of(m) < m.separation + Real(0.0025));
@@ -214,10 +214,10 @@ TEST_SUITE("collision/manifolds") {
       const Vec3 place = uniform(random, 0.1, 1.6) * random_unit(random);
       const Body a = random_body(ShapeKind::kBox, {}, random);
       const Body b = random_body(ShapeKind::kBox, place, random);
-      Meeting boxes;
-      Meeting hulls;
-      meet_boxes(a.convex, b.convex, {.margin = Real(0.02)}, boxes);
-      meet_hulls(a.convex, b.convex, {.margin = Real(0.02)}, hulls);
+      ContactResult boxes;
+      ContactResult hulls;
+      collide_boxes(a.convex, b.convex, {.margin = Real(0.02)}, boxes);
+      collide_hulls(a.convex, b.convex, {.margin = Real(0.02)}, hulls);
       if (boxes.separation > Real(0.02) && hulls.separation > Real(0.02)) continue;
       CHECK(std::fabs(boxes.separation - hulls.separation) < Real(1e-5));
       CHECK(length(boxes.normal - hulls.normal) < Real(1e-5));
@@ -228,7 +228,7 @@ TEST_SUITE("collision/manifolds") {
   TEST_CASE("cubes face to face have four corners, aligned, shifted or turned") {
     const Shape cube = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
     const auto check = [&](Vec3 place, Quat turn, double area) {
-      Meeting m = meeting_of(placed(cube, {}, {}), placed(cube, place, turn));
+      ContactResult m = meeting_of(placed(cube, {}, {}), placed(cube, place, turn));
       hooke::collision::reduce_points(m, Real(0.02), {});
       CHECK(m.normal == Vec3{Real(0), Real(1), Real(0)});
       REQUIRE(m.count == 4);
@@ -256,7 +256,7 @@ TEST_SUITE("collision/manifolds") {
     const Quat across = hooke::quaternion_about(Vec3{Real(0), Real(1), Real(0)}, Real(1.2));
     const Convex lower = placed(beam, {}, eighth);
     const Convex upper = placed(beam, {Real(0), Real(2 * root - 0.001), Real(0)}, across * eighth * on_edge);
-    const Meeting m = meeting_of(lower, upper);
+    const ContactResult m = meeting_of(lower, upper);
     CHECK(m.axis >= 7);
     REQUIRE(m.count == 1);
     CHECK(m.normal.y > Real(0.99999));
@@ -266,7 +266,8 @@ TEST_SUITE("collision/manifolds") {
 
   TEST_CASE("thin plates one inside the other separate across their thickness") {
     const Shape plate = Shape::box({Real(1), Real(0.005), Real(1)});
-    const Meeting m = meeting_of(placed(plate, {}, {}), placed(plate, {Real(0.3), Real(0.004), Real(0)}, {}));
+    const ContactResult m =
+        meeting_of(placed(plate, {}, {}), placed(plate, {Real(0.3), Real(0.004), Real(0)}, {}));
     CHECK(m.normal == Vec3{Real(0), Real(1), Real(0)});
     CHECK(double(m.separation) == doctest::Approx(-0.006).epsilon(1e-4).scale(0));
     CHECK(m.count >= 4);
@@ -274,15 +275,15 @@ TEST_SUITE("collision/manifolds") {
 
   TEST_CASE("concentric spheres separate upward, crossing capsules across both") {
     const Convex ball = placed(Shape::sphere(Real(0.5)), {}, {});
-    const Meeting balls = meeting_of(ball, ball);
+    const ContactResult balls = meeting_of(ball, ball);
     CHECK(std::fabs(balls.normal.y) == Real(1));
     CHECK(double(balls.separation) == doctest::Approx(-1));
     const Shape capsule = Shape::capsule(Real(0.2), Real(1));
-    const Meeting crossing = meeting_of(placed(capsule, {}, {}), placed(capsule, {}, kQuarterAboutX));
+    const ContactResult crossing = meeting_of(placed(capsule, {}, {}), placed(capsule, {}, kQuarterAboutX));
     CHECK(std::fabs(crossing.normal.x) == doctest::Approx(1));
     CHECK(double(crossing.separation) == doctest::Approx(-0.4));
     CHECK(crossing.count >= 1);
-    const Meeting same = meeting_of(placed(capsule, {}, {}), placed(capsule, {}, {}));
+    const ContactResult same = meeting_of(placed(capsule, {}, {}), placed(capsule, {}, {}));
     CHECK(std::fabs(length(same.normal) - Real(1)) < Real(1e-6));
     CHECK(std::fabs(same.normal.y) < Real(1e-6));
   }
@@ -293,14 +294,14 @@ TEST_SUITE("collision/manifolds") {
     CHECK(double(ball_meets(cylinder, {Real(0.75), Real(0.2), Real(0)}, r).separation) == doctest::Approx(0));
     CHECK(double(ball_meets(cylinder, {Real(0.1), Real(1.2), Real(0)}, r).separation) ==
           doctest::Approx(-0.05));
-    const Meeting rim = ball_meets(cylinder, {Real(0.65), Real(1.15), Real(0)}, r);
+    const ContactResult rim = ball_meets(cylinder, {Real(0.65), Real(1.15), Real(0)}, r);
     CHECK(double(rim.separation) == doctest::Approx(0.15 * std::sqrt(2.0) - 0.25));
     CHECK(double(rim.normal.x) == doctest::Approx(std::sqrt(0.5)));
     CHECK(double(ball_meets(cylinder, {Real(0.4), Real(0), Real(0)}, r).separation) ==
           doctest::Approx(-0.35));
     const Convex cone = placed(Shape::cone(Real(1), Real(0.5)), {}, {});
     CHECK(double(ball_meets(cone, {Real(0), Real(0.7), Real(0)}, r).separation) == doctest::Approx(-0.05));
-    const Meeting side = ball_meets(cone, {Real(0.5) + r, r, Real(0)}, r);
+    const ContactResult side = ball_meets(cone, {Real(0.5) + r, r, Real(0)}, r);
     CHECK(double(side.separation) == doctest::Approx(r * (std::sqrt(2.0) - 1)));
     CHECK(double(side.normal.x) == doctest::Approx(std::sqrt(0.5)));
     CHECK(double(ball_meets(cone, {Real(0.1), Real(-0.7), Real(0)}, r).separation) == doctest::Approx(-0.05));
@@ -313,7 +314,7 @@ TEST_SUITE("collision/manifolds") {
     for (int i = 0; i < 100; ++i) {
       const Quat roll = hooke::quaternion_about(Vec3{Real(0), Real(1), Real(0)}, Real(0.13 * i));
       const Quat yaw = hooke::quaternion_about(Vec3{Real(0), Real(1), Real(0)}, Real(0.0713 * i));
-      const Meeting m =
+      const ContactResult m =
           meeting_of(floor, placed(roller, {Real(0), Real(0.2999), Real(0)}, yaw * kQuarterAboutX * roll));
       CHECK(m.normal == Vec3{Real(0), Real(1), Real(0)});
       REQUIRE(m.count == 2);
@@ -327,7 +328,7 @@ TEST_SUITE("collision/manifolds") {
   TEST_CASE("a standing cylinder has four points on its rim, on a box, a cylinder and in overlap") {
     const Shape can = Shape::cylinder(Real(0.3), Real(0.5));
     const Convex upper = placed(can, {Real(0), Real(0.999), Real(0)}, {});
-    Meeting m = meeting_of(placed(Shape::box({Real(1), Real(0.5), Real(1)}), {}, {}), upper);
+    ContactResult m = meeting_of(placed(Shape::box({Real(1), Real(0.5), Real(1)}), {}, {}), upper);
     CHECK(m.normal == Vec3{Real(0), Real(1), Real(0)});
     REQUIRE(m.count == 4);
     for (int i = 0; i < 4; ++i) {
@@ -358,8 +359,8 @@ TEST_SUITE("collision/manifolds") {
         const Body body = random_body(kind, {Real(3), Real(0), Real(1)}, random);
         const Vec3 n = rotate(tilt, Vec3{Real(0), Real(1), Real(0)});
         const Vec3 low = support_of(body.convex, -n) - skin_of(body.convex) * n;
-        Meeting m;
-        meet_half_space(low + Real(0.002) * n, n, body.convex, {.margin = Real(0.02)}, m);
+        ContactResult m;
+        collide_half_space(low + Real(0.002) * n, n, body.convex, {.margin = Real(0.02)}, m);
         CHECK(m.normal == n);
         CHECK(std::fabs(m.separation + Real(0.002)) < Real(1e-5));
         REQUIRE(m.count > 0);
@@ -374,7 +375,7 @@ TEST_SUITE("collision/manifolds") {
 
   TEST_CASE(
       "four points are kept: the deepest, and the widest; and the same ones when all are nearly alike") {
-    Meeting m;
+    ContactResult m;
     m.normal = {Real(0), Real(1), Real(0)};
     for (unsigned i = 0; i < 16; ++i) {
       const double angle = i * 0.392699;
@@ -382,7 +383,7 @@ TEST_SUITE("collision/manifolds") {
       const Real depth = i == 5 ? Real(-0.01) : Real(-0.001) + Real(1e-5) * Real(i % 3);
       m.add({place, place, depth, 100 + i});
     }
-    Meeting first = m;
+    ContactResult first = m;
     hooke::collision::reduce_points(first, Real(0.02), {});
     REQUIRE(first.count == 4);
     std::array<std::uint32_t, 4> keys = {};
@@ -412,8 +413,8 @@ TEST_SUITE("collision/manifolds") {
           Convex aligned = b.convex;
           aligned.axes = a.convex.axes;
           for (const Convex& other : {b.convex, aligned}) {
-            const Meeting m = meeting_of(a.convex, other);
-            bool finite = std::isfinite(m.separation) && m.count <= Meeting::kMaxPoints;
+            const ContactResult m = meeting_of(a.convex, other);
+            bool finite = std::isfinite(m.separation) && m.count <= ContactResult::kMaxPoints;
             for (int i = 0; i < m.count; ++i) {
               finite = finite && is_finite(point(m, i).on_a) && is_finite(point(m, i).on_b);
             }

@@ -20,10 +20,10 @@ namespace {
 const Shape kCube = Shape::box({Real(0.5), Real(0.5), Real(0.5)});
 
 /// Manifolds that were carried along, and those of a new test: each with `count` points.
-void check_same_points(const PairScene& kept, const PairScene& made, int count) {
-  REQUIRE(made.pairs.manifold.size() == kept.pairs.manifold.size());
+void check_same_points(const PairScene& cached, const PairScene& made, int count) {
+  REQUIRE(made.pairs.manifold.size() == cached.pairs.manifold.size());
   for (std::size_t i = 0; i < made.pairs.manifold.size(); ++i) {
-    const Manifold& a = kept.pairs.manifold[i];
+    const Manifold& a = cached.pairs.manifold[i];
     const Manifold& b = made.pairs.manifold[i];
     REQUIRE(a.point_count == count);
     REQUIRE(b.point_count == count);
@@ -42,18 +42,18 @@ void check_same_points(const PairScene& kept, const PairScene& made, int count) 
 /// Moves what `build` built by little, eight times: all of so many pairs are carried along, to the points of
 /// a new test.
 template <class Build>
-void check_carried(const Build& build, std::uint32_t pairs, int points, PairScene& kept) {
+void check_carried(const Build& build, std::uint32_t pairs, int points, PairScene& cached) {
   const Vec3 axis = hooke::normalize(Vec3{Real(0.3), Real(0.4), Real(-0.8)});
   for (int step = 1; step <= 8; ++step) {
     PairScene made;
     build(made, DVec3{1e-5 * step, -2e-6 * step, 4e-6 * step},
           hooke::quaternion_about(axis, Real(1e-5) * Real(step)));
     made.update();
-    kept.bodies.center = made.bodies.center;
-    kept.bodies.rotation = made.bodies.rotation;
-    kept.update();
-    REQUIRE(kept.counts.kept == pairs);
-    check_same_points(kept, made, points);
+    cached.bodies.center = made.bodies.center;
+    cached.bodies.rotation = made.bodies.rotation;
+    cached.update();
+    REQUIRE(cached.counts.cached == pairs);
+    check_same_points(cached, made, points);
   }
 }
 
@@ -105,15 +105,15 @@ TEST_SUITE("collision/narrow_phase") {
       scene.add_dynamic(kCube, 0.5 * way, turn);
       scene.add_dynamic(kCube, DVec3{0.2, 0.9995, 0.1} + way, turn);
     };
-    PairScene kept;
-    build(kept, {}, {});
-    kept.update();
-    REQUIRE(kept.counts.tested == 3);
-    check_carried(build, 2, 4, kept);
-    kept.move(2, {1e-3, 0, 0});
-    kept.update();
-    CHECK(kept.counts.tested == 1);
-    CHECK(kept.counts.kept == 1);
+    PairScene cached;
+    build(cached, {}, {});
+    cached.update();
+    REQUIRE(cached.counts.tested == 3);
+    check_carried(build, 2, 4, cached);
+    cached.move(2, {1e-3, 0, 0});
+    cached.update();
+    CHECK(cached.counts.tested == 1);
+    CHECK(cached.counts.cached == 1);
   }
 
   TEST_CASE("manifolds on a mesh are carried along too") {
@@ -126,14 +126,14 @@ TEST_SUITE("collision/narrow_phase") {
       scene.add_mesh(valley);
       scene.add_dynamic(kCube, start + way, turn);
     };
-    PairScene kept;
-    build(kept, {}, {});
-    kept.update();
-    REQUIRE(kept.pairs.manifold.size() == 2);
-    check_carried(build, 1, 2, kept);
-    kept.move(1, {1e-2, 0, 0});
-    kept.update();
-    CHECK(kept.counts.tested == 1);
+    PairScene cached;
+    build(cached, {}, {});
+    cached.update();
+    REQUIRE(cached.pairs.manifold.size() == 2);
+    check_carried(build, 1, 2, cached);
+    cached.move(1, {1e-2, 0, 0});
+    cached.update();
+    CHECK(cached.counts.tested == 1);
   }
 
   TEST_CASE("where all bodies rest nothing is looked at, and what is gone leaves no manifold") {
@@ -195,12 +195,12 @@ TEST_SUITE("collision/narrow_phase") {
   TEST_CASE(
       "calm bodies of an island that is too large keep their manifold for 1.5 cm, others for half a "
       "millimeter") {
-    const auto first_test_after = [](std::int8_t hardness, Real speed) {
+    const auto first_test_after = [](std::int8_t direct_state, Real speed) {
       PairScene scene;
       const std::uint32_t lower = scene.add_dynamic(kCube, {0, 0, 0});
       const std::uint32_t upper = scene.add_dynamic(kCube, {0, 0.9999, 0});
       for (const std::uint32_t body : {lower, upper}) {
-        scene.bodies.hardness[body] = hardness;
+        scene.bodies.direct_state[body] = direct_state;
         scene.bodies.motion[body].v = {speed, Real(0), Real(0)};
       }
       scene.update();
@@ -211,9 +211,9 @@ TEST_SUITE("collision/narrow_phase") {
         way += 1e-4;
         const Vec3 normal = scene.pairs.manifold[0].normal;
         scene.update();
-        const bool calm = hardness < 0 && speed < Real(0.2);
-        if (calm && scene.counts.kept == 1) CHECK(scene.pairs.manifold[0].normal == normal);
-      } while (scene.counts.kept == 1 && way < 1);
+        const bool calm = direct_state < 0 && speed < Real(0.2);
+        if (calm && scene.counts.cached == 1) CHECK(scene.pairs.manifold[0].normal == normal);
+      } while (scene.counts.cached == 1 && way < 1);
       return way;
     };
     CHECK(std::fabs(first_test_after(-60, Real(0.1)) - 0.015) < 3e-4);
@@ -302,7 +302,7 @@ TEST_SUITE("collision/narrow_phase") {
     CHECK(scene.pairs.manifold[0].point[2].normal_impulse == Real(7));
     scene.bodies.asleep[cube] = 0;
     scene.update();
-    CHECK(scene.counts.kept == 1);
+    CHECK(scene.counts.cached == 1);
   }
 
   TEST_CASE("points are kept as far apart as the bodies' speeds can close in a step") {

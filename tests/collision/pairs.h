@@ -65,11 +65,11 @@ inline Real sampled_separation(const collision::Convex& a, const collision::Conv
   return best;
 }
 
-inline collision::Meeting meeting_of(const collision::Convex& a, const collision::Convex& b,
-                                     Real margin = Real(0.02)) {
-  collision::Meeting meeting;
-  collision::meet(a, b, {.margin = margin}, meeting);
-  return meeting;
+inline collision::ContactResult meeting_of(const collision::Convex& a, const collision::Convex& b,
+                                           Real margin = Real(0.02)) {
+  collision::ContactResult result;
+  collision::collide(a, b, {.margin = margin}, result);
+  return result;
 }
 
 }  // namespace hooke::test

@@ -211,25 +211,25 @@ TEST_SUITE("geometry/bounding") {
     const OrientedBox unit = {.half_extents = {1, 1, 1}};
     const double turn = std::acos(-1.0) / 4;
     const auto about = [&](DVec3 axis) { return hooke::quaternion_about(axis, turn); };
-    CHECK(may_touch(unit, unit, {{2, 0, 0}, {}}, 0));
-    CHECK_FALSE(may_touch(unit, unit, {{2.001, 0, 0}, {}}, 0));
-    CHECK(may_touch(unit, unit, {{2.001, 0, 0}, {}}, 0.002));
+    CHECK(may_overlap(unit, unit, {{2, 0, 0}, {}}, 0));
+    CHECK_FALSE(may_overlap(unit, unit, {{2.001, 0, 0}, {}}, 0));
+    CHECK(may_overlap(unit, unit, {{2.001, 0, 0}, {}}, 0.002));
     // On its edge it reaches sqrt(2).
-    CHECK(may_touch(unit, unit, {{2.41, 0, 0}, about({0, 0, 1})}, 0));
-    CHECK_FALSE(may_touch(unit, unit, {{2.42, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK(may_overlap(unit, unit, {{2.41, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK_FALSE(may_overlap(unit, unit, {{2.42, 0, 0}, about({0, 0, 1})}, 0));
     // Edge against edge: no face separates them, the axis across both edges does.
     OrientedBox on_edge = unit;
     on_edge.axes = matrix_of(about({0, 1, 0}));
-    CHECK(may_touch(on_edge, unit, {{2.82, 0, 0}, about({0, 0, 1})}, 0));
-    CHECK_FALSE(may_touch(on_edge, unit, {{2.84, 0, 0}, about({0, 0, 1})}, 0));
-    CHECK_FALSE(may_touch(unit, OrientedBox{}, {}, 0));
-    CHECK_FALSE(may_touch(DBox{}, DBox{{0, 0, 0}, {1, 1, 1}}, {}, 0));
-    CHECK_FALSE(may_touch(BoundingSphere{}, BoundingSphere{{}, 1}, {}, 0));
-    CHECK(may_touch(BoundingSphere{{}, 1}, BoundingSphere{{}, 1}, {{0, 2, 0}, {}}, 0));
-    CHECK_FALSE(may_touch(BoundingSphere{{}, 1}, BoundingSphere{{}, 1}, {{0, 2.001, 0}, {}}, 0));
+    CHECK(may_overlap(on_edge, unit, {{2.82, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK_FALSE(may_overlap(on_edge, unit, {{2.84, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK_FALSE(may_overlap(unit, OrientedBox{}, {}, 0));
+    CHECK_FALSE(may_overlap(DBox{}, DBox{{0, 0, 0}, {1, 1, 1}}, {}, 0));
+    CHECK_FALSE(may_overlap(BoundingSphere{}, BoundingSphere{{}, 1}, {}, 0));
+    CHECK(may_overlap(BoundingSphere{{}, 1}, BoundingSphere{{}, 1}, {{0, 2, 0}, {}}, 0));
+    CHECK_FALSE(may_overlap(BoundingSphere{{}, 1}, BoundingSphere{{}, 1}, {{0, 2.001, 0}, {}}, 0));
     const DBox box = {{-1, -1, -1}, {1, 1, 1}};
-    CHECK(may_touch(box, box, {{2.41, 0, 0}, about({0, 0, 1})}, 0));
-    CHECK_FALSE(may_touch(box, box, {{2.42, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK(may_overlap(box, box, {{2.41, 0, 0}, about({0, 0, 1})}, 0));
+    CHECK_FALSE(may_overlap(box, box, {{2.42, 0, 0}, about({0, 0, 1})}, 0));
   }
 
   TEST_CASE("every node of every tree holds its triangles, also after the vertices moved") {

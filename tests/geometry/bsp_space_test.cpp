@@ -39,7 +39,7 @@ TEST_SUITE("geometry/bsp_space") {
     const auto a = space.add_plane({6, 0, 0}, {1, 1, 1}).plane;
     const auto b = space.add_plane({0, 0, 0}, {1, -1, 0}).plane;
     const auto c = space.add_plane({0, -1, 0}, {0, 1, -2}).plane;
-    const DVec3 p = space.point(space.add_meeting(a, b, c)).place;
+    const DVec3 p = space.point(space.add_intersection(a, b, c)).place;
     CHECK(p.x == doctest::Approx(2.2).epsilon(1e-15));
     CHECK(p.y == doctest::Approx(2.2).epsilon(1e-15));
     CHECK(p.z == doctest::Approx(1.6).epsilon(1e-15));
@@ -52,7 +52,7 @@ TEST_SUITE("geometry/bsp_space") {
     const auto b = space.add_plane({0, 0, 0}, {kFar - 1, kFar - 2, 0}).plane;
     const auto z = space.add_plane({0, 0, 0}, {0, 0, 1}).plane;
     const auto x = space.add_plane({kFar - 1, 0, 0}, {1, 0, 0}).plane;
-    const auto on_a = space.add_meeting(a, z, x);  // y = -kFar: exactly a lattice point
+    const auto on_a = space.add_intersection(a, z, x);  // y = -kFar: exactly a lattice point
     CHECK(space.point(on_a).place.y == static_cast<double>(-kFar));
     CHECK(space.side_of(a, on_a) == 0);
     // b there: (kFar - 1)^2 - (kFar - 2) kFar = 1, over a normal of 6e9.
@@ -64,7 +64,7 @@ TEST_SUITE("geometry/bsp_space") {
     const auto tilted = space.add_plane({0, 0, 1}, {0, kFar - 1, 1}).plane;  // y (kFar - 1) + z = 1
     const auto zero = space.add_plane({0, 0, 0}, {1, 0, 0}).plane;
     const auto two = space.add_plane({0, 0, 2}, {0, 0, 1}).plane;
-    const auto near = space.add_meeting(tilted, zero, two);
+    const auto near = space.add_intersection(tilted, zero, two);
     const auto ground = space.add_plane({0, 0, 0}, {0, 1, 0}).plane;
     CHECK(std::fabs(space.point(near).place.y) < 1e-9);
     CHECK(space.side_of(ground, near) == -1);
@@ -77,14 +77,14 @@ TEST_SUITE("geometry/bsp_space") {
     const auto z = space.add_plane({0, 0, 1}, {0, 0, 1}).plane;
     const auto diagonal = space.add_plane({0, 0, 0}, {1, -1, 0}).plane;
     const auto other = space.add_plane({0, 0, 0}, {1, 0, -1}).plane;
-    const auto p = space.add_meeting(x, y, z);
-    const auto q = space.add_meeting(diagonal, other, y);
+    const auto p = space.add_intersection(x, y, z);
+    const auto q = space.add_intersection(diagonal, other, y);
     CHECK(space.compare(p, q) == 0);
     // kFar (x - 1) + z = 0 at z = -1 is 1 / kFar beyond x = 1: 2^-32 steps, less than doubles are sure of.
     const auto almost = space.add_plane({1, 0, 0}, {kFar, 0, 1}).plane;
     const auto bottom = space.add_plane({0, 0, -1}, {0, 0, 1}).plane;
-    const auto r = space.add_meeting(almost, y, bottom);
-    const auto s = space.add_meeting(x, y, bottom);
+    const auto r = space.add_intersection(almost, y, bottom);
+    const auto s = space.add_intersection(x, y, bottom);
     CHECK(space.compare(r, s) == 1);
     CHECK(space.compare(s, r) == -1);
     CHECK(space.compare(s, p) == -1);

@@ -72,7 +72,7 @@ TEST_SUITE("lab/bodies") {
   TEST_CASE("coordinates of a turn, its rate and its spin agree with quaternions") {
     const DVec3 p = {0.4, -0.7, 0.2};
     const DVec3 omega = {1.5, 0.3, -2};
-    const DVec3 rate = lab::turn_rate(p, omega);
+    const DVec3 rate = lab::rotation_rate(p, omega);
     CHECK(length(lab::spin_of(p, rate) - omega) < 1e-15);
     // 2 tan(angle / 2) along the axis.
     const double angle = 2 * std::atan(length(p) / 2);

@@ -73,7 +73,8 @@ TEST_SUITE("lab/preselection") {
       for (const Preselection kind : kPreselections) {
         const lab::BodyVolumes volumes_a = make_body_volumes(a, kind);
         const lab::BodyVolumes volumes_b = make_body_volumes(b, kind);
-        const bool may = lab::may_meet(kind, {volumes_a, of_a, a.radius}, {volumes_b, of_b, b.radius}, 0.01);
+        const bool may =
+            lab::may_collide(kind, {volumes_a, of_a, a.radius}, {volumes_b, of_b, b.radius}, 0.01);
         CAPTURE(name_of(kind));
         REQUIRE((may || least > 0.01));
         left[kind] += may;
@@ -94,7 +95,7 @@ TEST_SUITE("lab/preselection") {
       const auto meet = [&](double apart) {
         const DenseMotion here(BodyMotion{});
         const DenseMotion there(BodyMotion{.center = {0, apart, 0}});
-        return lab::may_meet(kind, {volumes, here, ball.radius}, {volumes, there, ball.radius}, 0.125);
+        return lab::may_collide(kind, {volumes, here, ball.radius}, {volumes, there, ball.radius}, 0.125);
       };
       CAPTURE(name_of(kind));
       CHECK(meet(0.624));
@@ -112,7 +113,7 @@ TEST_SUITE("lab/preselection") {
       CAPTURE(name_of(kind));
       for (const DVec3 place : {DVec3{0, 0.9, 0}, DVec3{-0.9 * std::sin(1), 0.9 * std::cos(1), 0}}) {
         const DenseMotion stands(BodyMotion{.center = place});
-        CHECK(lab::may_meet(kind, {of_rod, turns, rod.radius}, {of_ball, stands, ball.radius}, 0));
+        CHECK(lab::may_collide(kind, {of_rod, turns, rod.radius}, {of_ball, stands, ball.radius}, 0));
       }
     }
   }
@@ -126,7 +127,7 @@ TEST_SUITE("lab/preselection") {
       const lab::BodyVolumes of_ball = make_body_volumes(ball, kind);
       const DenseMotion here(BodyMotion{});
       const DenseMotion there(BodyMotion{.center = {0, 1000, 0}});
-      CHECK(lab::may_meet(kind, {of_ground, here, 0}, {of_ball, there, ball.radius}, 0));
+      CHECK(lab::may_collide(kind, {of_ground, here, 0}, {of_ball, there, ball.radius}, 0));
     }
   }
 }

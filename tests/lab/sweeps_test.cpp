@@ -87,7 +87,7 @@ void judge(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const
   const auto share = lab::first_contact(pair, kAllowance);
   outcome.met += share ? 1 : 0;
   if (exact && !(share && *share <= *exact)) ++outcome.late;
-  if (exact && !lab::may_meet(pair, 0)) ++outcome.late;
+  if (exact && !lab::may_collide(pair, 0)) ++outcome.late;
   if (share && pair.gap(*share).distance > 0) ++outcome.premature;
 }
 
@@ -182,7 +182,7 @@ Outcome turning_bodies(int count) {
     outcome.met += share ? 1 : 0;
     if (share && pair.gap(*share).distance > 0) ++outcome.premature;
     if (!is_proved_apart(pair, 0, share.value_or(1), kAllowance)) ++outcome.late;
-    if (!lab::may_meet(pair, 0) && !is_proved_apart(pair, 0, 1, kAllowance)) ++outcome.late;
+    if (!lab::may_collide(pair, 0) && !is_proved_apart(pair, 0, 1, kAllowance)) ++outcome.late;
   }
   return outcome;
 }

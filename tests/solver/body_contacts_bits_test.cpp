@@ -92,7 +92,7 @@ Outcome outcome_of(const BodyScene& scene) {
   Outcome outcome;
   outcome.center = scene.bodies.center;
   outcome.momentum = scene.bodies.angular_momentum;
-  for (const state::MotionLine& line : scene.bodies.motion) outcome.velocity.push_back(line.v);
+  for (const state::MotionRecord& record : scene.bodies.motion) outcome.velocity.push_back(record.v);
   for (const Manifold& m : scene.manifolds) {
     for (const Vec3 v : {m.friction_impulse, m.rolling_impulse})
       outcome.impulses.insert(outcome.impulses.end(), {v.x, v.y, v.z});
@@ -231,7 +231,7 @@ TEST_SUITE("solver/body_contacts_bits") {
     scene.bodies.motion[5].v = {};
     scene.bodies.angular_momentum[5] = {};
     std::erase(scene.awake, 5U);
-    const std::vector<state::MotionLine> before = scene.bodies.motion;
+    const std::vector<state::MotionRecord> before = scene.bodies.motion;
     scene.step();
     for (std::uint32_t i = 0; i < before.size(); ++i) {
       if (i == 5 || !(before[i].inverse_mass > Real(0))) CHECK(scene.velocity(i) == before[i].v);

@@ -73,7 +73,7 @@ struct JointRig {
     built = t.hook_revision;
     const Real h = dt / static_cast<Real>(substeps);
     prepare_bodies(rows, t.bodies);
-    judge_ragdolls(pool, t.hooks, t.bodies, joints);
+    evaluate_ragdolls(pool, t.hooks, t.bodies, joints);
     prepare_joints(pool, h, t.hooks, t.bodies, joints);
     for (int i = 0; i < substeps; ++i) {
       accelerate_bodies(rows, {.gravity = gravity, .h = h, .first = i == 0}, t.bodies);

@@ -1,7 +1,7 @@
 #include "constants.h"
-#include "validation/planar_mechanism.h"
 #include "solver/joint/joints.h"
 #include "solver/joint_rig.h"
+#include "validation/planar_mechanism.h"
 
 #include <cmath>
 #include <doctest/doctest.h>

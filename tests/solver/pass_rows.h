@@ -19,7 +19,7 @@ std::size_t count_rows_apart(const Blocks& blocks, std::size_t particles) {
       const int count = i + 1 == pass.end ? pass.last_count : kLanes;
       rows += static_cast<std::size_t>(count);
       for (int lane = 0; lane < count; ++lane) {
-        for (const auto& line : blocks.blocks[i].line) CHECK(++uses[line[lane] / 4] == 1);
+        for (const auto& record : blocks.blocks[i].record) CHECK(++uses[record[lane] / 4] == 1);
       }
     }
   }

@@ -13,12 +13,12 @@ namespace hooke::solver {
 /// and checks that their velocities are finite and have the bits of the scalar twins.
 template <class Net, class Step>
 void check_bits_of_targets(const Net& start, Step step) {
-  std::vector<state::VelocityLine> scalar;
+  std::vector<state::VelocityRecord> scalar;
   for (const std::string& target : wide::targets()) {
     REQUIRE(wide::use_target(target));
     Net net = start;
     for (int i = 0; i < 3; ++i) step(net);
-    for (const auto& line : net.particles.velocity) CHECK(is_finite(line.v));
+    for (const auto& record : net.particles.velocity) CHECK(is_finite(record.v));
     if (scalar.empty()) scalar = net.particles.velocity;
     const std::size_t bytes = scalar.size() * sizeof(scalar[0]);
     CHECK_MESSAGE(std::memcmp(scalar.data(), net.particles.velocity.data(), bytes) == 0, target);

@@ -416,7 +416,7 @@ TEST_CASE("rope contacts: three long ropes that rush into each other take no mor
   for (int i = 0; i < 40; ++i) {
     const StepReport report = world.step(Real(1) / Real(60));
     REQUIRE(report.healthy());
-    cut_short += report.bundles_cut_short;
+    cut_short += report.coupled_groups_cut_short;
   }
   CHECK(cut_short > 0);
   // And what was cut short holds nonetheless.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "hooke/drawing/body_geometry.h"
-#include "hooke/geometry.h"
 #include "hooke/drawing/scene_camera.h"
+#include "hooke/geometry.h"
 #include "hooke/scene_io.h"
 
 #include "render/draw_list.h"

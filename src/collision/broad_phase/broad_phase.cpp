@@ -41,10 +41,10 @@ Box grown(const Box& box, Real margin) {
 }
 
 /// The box with its margin, and drawn out along its `way` of one step.
-Box fattened(const Box& box, Vec3 way) {
+Box fattened(const Box& box, Vec3 displacement) {
   const Real side = mean_side(box);
   const Vec3 longest = {kMaxForesight * side, kMaxForesight * side, kMaxForesight * side};
-  const Vec3 drawn = geometry::max_of(-longest, geometry::min_of(longest, kForesight * way));
+  const Vec3 drawn = geometry::max_of(-longest, geometry::min_of(longest, kForesight * displacement));
   const Box fat = grown(box, kMargin * side);
   return {fat.lower + geometry::min_of(Vec3{}, drawn), fat.upper + geometry::max_of(Vec3{}, drawn)};
 }
@@ -121,7 +121,7 @@ void for_blocks(parallel::ThreadPool& pool, std::size_t count, int size, Kernel&
 
 }  // namespace
 
-void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves, std::int32_t company) {
+void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves, std::int32_t group) {
   HOOKE_ASSERT(is_in_order(box));
   if (collider >= entries_.size()) {
     entries_.resize(collider + std::size_t{1});
@@ -143,7 +143,7 @@ void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves, std::in
     return;
   }
   leave_home(collider);
-  if (entry.home == Home::kNone) entry.company = number_of(company);
+  if (entry.home == Home::kNone) entry.group = number_of(group);
   entry.home = home;
   entry.moves = moves;
   enter_home(collider);
@@ -160,7 +160,7 @@ void BroadPhase::clear() {
   entries_.clear();
   tight_.clear();
   fat_.clear();
-  companies_.clear();
+  groups_.clear();
   standing_.clear();
   moving_.clear();
   unbounded_.clear();
@@ -197,14 +197,14 @@ void BroadPhase::filter_candidates(parallel::ThreadPool& pool, IsAsked&& is_aske
   ends_.resize(blocks_of(candidates_.size(), kCandidatesPerBlock));
   for_blocks(pool, candidates_.size(), kCandidatesPerBlock,
              [&](std::size_t block, std::size_t begin, std::size_t end) {
-               std::size_t kept = begin;
+               std::size_t passed = begin;
                for (std::size_t i = begin; i < end; ++i) {
                  const ColliderPair pair = candidates_[i];
                  if (!is_asked(pair)) continue;
-                 pairs[kept] = pair;
-                 kept += overlap_unpredictably(tight_[pair.first], tight_[pair.second]) ? 1 : 0;
+                 pairs[passed] = pair;
+                 passed += overlap_unpredictably(tight_[pair.first], tight_[pair.second]) ? 1 : 0;
                }
-               ends_[block] = kept;
+               ends_[block] = passed;
              });
   auto out = pairs.begin();
   for (std::size_t block = 0; block < ends_.size(); ++block) {
@@ -219,19 +219,18 @@ void BroadPhase::query(const Box& box, std::vector<std::uint32_t>& found) const 
 }
 
 void BroadPhase::query_for(std::uint32_t collider, const Box& box, std::vector<std::uint32_t>& found) const {
-  query_without(entries_[collider].company, box, found);
+  query_without(entries_[collider].group, box, found);
 }
 
-void BroadPhase::query_without(std::uint16_t company, const Box& box,
-                               std::vector<std::uint32_t>& found) const {
+void BroadPhase::query_without(std::uint16_t group, const Box& box, std::vector<std::uint32_t>& found) const {
   found.clear();
   const auto visit = [&](std::uint32_t collider) {
     if (overlap(tight_[collider], box)) found.push_back(collider);
   };
-  standing_.visit_overlaps(box, company, visit);
-  moving_.visit_overlaps(box, company, visit);
+  standing_.visit_overlaps(box, group, visit);
+  moving_.visit_overlaps(box, group, visit);
   for (const std::uint32_t collider : unbounded_) {
-    if (company == 0 || entries_[collider].company != company) visit(collider);
+    if (group == 0 || entries_[collider].group != group) visit(collider);
   }
   std::sort(found.begin(), found.end());
 }
@@ -246,20 +245,20 @@ void BroadPhase::query_sweep(DVec3 origin, DVec3 motion, Real radius,
   std::sort(found.begin(), found.end());
 }
 
-std::uint16_t BroadPhase::number_of(std::int32_t company) {
-  if (company == 0) return 0;
-  const std::size_t next = companies_.size() + 1;
+std::uint16_t BroadPhase::number_of(std::int32_t group) {
+  if (group == 0) return 0;
+  const std::size_t next = groups_.size() + 1;
   if (next > std::numeric_limits<std::uint16_t>::max()) {
-    const auto known = companies_.find(company);
-    return known == companies_.end() ? std::uint16_t{0} : known->second;
+    const auto known = groups_.find(group);
+    return known == groups_.end() ? std::uint16_t{0} : known->second;
   }
-  return companies_.try_emplace(company, static_cast<std::uint16_t>(next)).first->second;
+  return groups_.try_emplace(group, static_cast<std::uint16_t>(next)).first->second;
 }
 
 void BroadPhase::enter_home(std::uint32_t collider) {
-  const auto& [home, moves, changed, company] = entries_[collider];
-  if (home == Home::kStanding) standing_.insert({fat_[collider], collider, company});
-  if (home == Home::kMoving) moving_.insert({fat_[collider], collider, company});
+  const auto& [home, moves, changed, group] = entries_[collider];
+  if (home == Home::kStanding) standing_.insert({fat_[collider], collider, group});
+  if (home == Home::kMoving) moving_.insert({fat_[collider], collider, group});
   if (home == Home::kUnbounded) unbounded_.push_back(collider);
 }
 
@@ -281,8 +280,8 @@ void BroadPhase::mark_changed(std::uint32_t collider) {
 bool BroadPhase::is_candidate(std::uint32_t changed, std::uint32_t other) const {
   const Entry& a = entries_[changed];
   const Entry& b = entries_[other];
-  const bool may_meet = (a.moves || b.moves) && (a.company == 0 || a.company != b.company);
-  return may_meet && other != changed && !(b.changed && other < changed);
+  const bool may_collide = (a.moves || b.moves) && (a.group == 0 || a.group != b.group);
+  return may_collide && other != changed && !(b.changed && other < changed);
 }
 
 void BroadPhase::find_candidates_of(std::uint32_t collider, std::vector<ColliderPair>& found) const {
@@ -293,8 +292,8 @@ void BroadPhase::find_candidates_of(std::uint32_t collider, std::vector<Collider
     if (is_candidate(collider, other))
       found.push_back({std::min(collider, other), std::max(collider, other)});
   };
-  moving_.visit_overlaps(box, entry.company, visit);
-  if (entry.moves) standing_.visit_overlaps(box, entry.company, visit);
+  moving_.visit_overlaps(box, entry.group, visit);
+  if (entry.moves) standing_.visit_overlaps(box, entry.group, visit);
   for (const std::uint32_t other : unbounded_) {
     if (overlap(fat_[other], box)) visit(other);
   }

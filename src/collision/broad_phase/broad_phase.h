@@ -40,7 +40,7 @@ class BroadPhase {
 
   /// Adds or moves a collider's box. Cheap while the box stays within its fat one. Two colliders that do not
   /// move are never a pair, nor two of the same company, which a collider joins when it is added (0: none).
-  void set(std::uint32_t collider, const geometry::Box& box, bool moves, std::int32_t company = 0);
+  void set(std::uint32_t collider, const geometry::Box& box, bool moves, std::int32_t group = 0);
   /// Does nothing for a collider that has no box.
   void remove(std::uint32_t collider);
   /// As if new, but for its memory.
@@ -83,16 +83,15 @@ class BroadPhase {
     Home home = Home::kNone;
     bool moves = false;
     bool changed = false;  // since the last find_pairs: its candidates are void
-    std::uint16_t company = 0;
+    std::uint16_t group = 0;
   };
 
   /// Both trees and what is outside of them; see BroadPhaseTree::visit_near.
   template <class Bound, class Visit>
   void visit_bounded(double limit, const Bound& bound, Visit&& visit) const;
 
-  [[nodiscard]] std::uint16_t number_of(std::int32_t company);
-  void query_without(std::uint16_t company, const geometry::Box& box,
-                     std::vector<std::uint32_t>& found) const;
+  [[nodiscard]] std::uint16_t number_of(std::int32_t group);
+  void query_without(std::uint16_t group, const geometry::Box& box, std::vector<std::uint32_t>& found) const;
   void enter_home(std::uint32_t collider);
   void leave_home(std::uint32_t collider);
   void mark_changed(std::uint32_t collider);
@@ -109,7 +108,7 @@ class BroadPhase {
   std::vector<geometry::Box> fat_;
 
   // Of each company, from 1. More than there are numbers for are found as if they were none.
-  std::map<std::int32_t, std::uint16_t> companies_;
+  std::map<std::int32_t, std::uint16_t> groups_;
 
   BroadPhaseTree standing_;
   BroadPhaseTree moving_;

@@ -23,7 +23,7 @@ double surface_of(const Box& box) {
 
 }  // namespace
 
-BroadPhaseTree::Node::Node() : child{}, company{} {
+BroadPhaseTree::Node::Node() : child{}, group{} {
   for (int lane = 0; lane < kLanes; ++lane) set_box(lane, {});
 }
 
@@ -48,55 +48,55 @@ Box BroadPhaseTree::Node::bounds() const {
   return whole;
 }
 
-std::uint16_t BroadPhaseTree::Node::common_company() const {
-  const auto end = company.begin() + count;
-  return std::all_of(company.begin(), end, [&](std::uint16_t c) { return c == company[0]; }) ? company[0] : 0;
+std::uint16_t BroadPhaseTree::Node::common_group() const {
+  const auto end = group.begin() + count;
+  return std::all_of(group.begin(), end, [&](std::uint16_t c) { return c == group[0]; }) ? group[0] : 0;
 }
 
 void BroadPhaseTree::insert(const Leaf& leaf) {
   HOOKE_ASSERT(leaf.value < kLeafBit);
-  if (leaf.value >= place_.size()) place_.resize(leaf.value + std::size_t{1}, kNone);
-  HOOKE_ASSERT(place_[leaf.value] == kNone);
-  place_[leaf.value] = kLooseBit | static_cast<std::uint32_t>(loose_.size());
+  if (leaf.value >= slot_.size()) slot_.resize(leaf.value + std::size_t{1}, kNone);
+  HOOKE_ASSERT(slot_[leaf.value] == kNone);
+  slot_[leaf.value] = kLooseBit | static_cast<std::uint32_t>(loose_.size());
   loose_.push_back(leaf);
   ++leaf_count_;
 }
 
 void BroadPhaseTree::erase(std::uint32_t value) {
-  const std::uint32_t place = place_[value];
-  HOOKE_ASSERT(place != kNone);
-  place_[value] = kNone;
+  const std::uint32_t slot = slot_[value];
+  HOOKE_ASSERT(slot != kNone);
+  slot_[value] = kNone;
   --leaf_count_;
-  if ((place & kLooseBit) == 0) {
-    remove_lane(place / kLanes, static_cast<int>(place % kLanes));
+  if ((slot & kLooseBit) == 0) {
+    remove_lane(slot / kLanes, static_cast<int>(slot % kLanes));
     ++change_count_;
     return;
   }
-  const std::uint32_t row = place & ~kLooseBit;
+  const std::uint32_t row = slot & ~kLooseBit;
   if (row + std::size_t{1} < loose_.size()) {
     loose_[row] = loose_.back();
-    place_[loose_[row].value] = place;
+    slot_[loose_[row].value] = slot;
   }
   loose_.pop_back();
 }
 
 void BroadPhaseTree::move(std::uint32_t value, const Box& box) {
-  const std::uint32_t place = place_[value];
-  HOOKE_ASSERT(place != kNone);
-  if ((place & kLooseBit) != 0) {
-    loose_[place & ~kLooseBit].box = box;
+  const std::uint32_t slot = slot_[value];
+  HOOKE_ASSERT(slot != kNone);
+  if ((slot & kLooseBit) != 0) {
+    loose_[slot & ~kLooseBit].box = box;
     return;
   }
-  Node& node = nodes_[place / kLanes];
-  node.set_box(static_cast<int>(place % kLanes), box);
-  grow_ancestors(place / kLanes, box, node.company[place % kLanes]);
+  Node& node = nodes_[slot / kLanes];
+  node.set_box(static_cast<int>(slot % kLanes), box);
+  grow_ancestors(slot / kLanes, box, node.group[slot % kLanes]);
   ++change_count_;
 }
 
 void BroadPhaseTree::clear() {
   nodes_.assign(1, {});
   loose_.clear();
-  place_.clear();
+  slot_.clear();
   leaf_count_ = 0;
   change_count_ = 0;
   built_cost_ = 0;
@@ -129,14 +129,14 @@ double BroadPhaseTree::cost() const {
 
 void BroadPhaseTree::set_child(std::uint32_t node, int lane, const Child& child) {
   const auto i = static_cast<std::size_t>(lane);
-  const std::uint32_t place = node * kLanes + static_cast<std::uint32_t>(lane);
+  const std::uint32_t slot = node * kLanes + static_cast<std::uint32_t>(lane);
   nodes_[node].set_box(lane, child.box);
   nodes_[node].child[i] = child.child;
-  nodes_[node].company[i] = child.company;
+  nodes_[node].group[i] = child.group;
   if ((child.child & kLeafBit) != 0) {
-    place_[child.child & ~kLeafBit] = place;
+    slot_[child.child & ~kLeafBit] = slot;
   } else {
-    nodes_[child.child].parent = place;
+    nodes_[child.child].parent = slot;
   }
 }
 
@@ -146,7 +146,7 @@ void BroadPhaseTree::add_lane(std::uint32_t node, const Child& child) {
 
 BroadPhaseTree::Child BroadPhaseTree::lane_of(std::uint32_t node, int lane) const {
   const auto i = static_cast<std::size_t>(lane);
-  return {nodes_[node].child[i], nodes_[node].box(lane), nodes_[node].company[i]};
+  return {nodes_[node].child[i], nodes_[node].box(lane), nodes_[node].group[i]};
 }
 
 void BroadPhaseTree::remove_lane(std::uint32_t node, int lane) {
@@ -158,15 +158,15 @@ void BroadPhaseTree::remove_lane(std::uint32_t node, int lane) {
   if (last == 0 && parent != kNone) remove_lane(parent / kLanes, static_cast<int>(parent % kLanes));
 }
 
-void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box, std::uint16_t company) {
-  for (std::uint32_t place = nodes_[node].parent; place != kNone; place = nodes_[node].parent) {
-    node = place / kLanes;
-    const int lane = static_cast<int>(place % kLanes);
+void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box, std::uint16_t group) {
+  for (std::uint32_t slot = nodes_[node].parent; slot != kNone; slot = nodes_[node].parent) {
+    node = slot / kLanes;
+    const int lane = static_cast<int>(slot % kLanes);
     const Box old = nodes_[node].box(lane);
-    std::uint16_t& common = nodes_[node].company[static_cast<std::size_t>(lane)];
-    const bool in_company = common == 0 || common == company;
-    if (contains(old, box) && in_company) return;
-    if (!in_company) common = 0;
+    std::uint16_t& common = nodes_[node].group[static_cast<std::size_t>(lane)];
+    const bool is_common = common == 0 || common == group;
+    if (contains(old, box) && is_common) return;
+    if (!is_common) common = 0;
     nodes_[node].set_box(lane, merge(old, box));
   }
 }
@@ -178,7 +178,7 @@ bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
   for (int depth = 0; depth < kMaxDepth; ++depth) {
     if (nodes_[node].count < kLanes) {
       add_lane(node, child_of(leaf));
-      grow_ancestors(node, leaf.box, leaf.company);
+      grow_ancestors(node, leaf.box, leaf.group);
       return true;
     }
     int best = 0;
@@ -194,7 +194,7 @@ bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
       const Child old = lane_of(node, best);
       const auto fresh = static_cast<std::uint32_t>(nodes_.size());
       nodes_.emplace_back();
-      set_child(node, best, {fresh, old.box, old.company});
+      set_child(node, best, {fresh, old.box, old.group});
       add_lane(fresh, old);
       node = fresh;
     } else {
@@ -206,11 +206,11 @@ bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
 
 void BroadPhaseTree::fit() {
   for (std::size_t node = nodes_.size(); node-- > 1;) {
-    const std::uint32_t place = nodes_[node].parent;
+    const std::uint32_t slot = nodes_[node].parent;
     if (nodes_[node].count == 0) continue;
-    Node& parent = nodes_[place / kLanes];
-    parent.set_box(static_cast<int>(place % kLanes), nodes_[node].bounds());
-    parent.company[place % kLanes] = nodes_[node].common_company();
+    Node& parent = nodes_[slot / kLanes];
+    parent.set_box(static_cast<int>(slot % kLanes), nodes_[node].bounds());
+    parent.group[slot % kLanes] = nodes_[node].common_group();
   }
   change_count_ = 0;
 }
@@ -219,8 +219,7 @@ void BroadPhaseTree::rebuild() {
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
     for (int lane = 0; lane < nodes_[node].count; ++lane) {
       const Child child = lane_of(node, lane);
-      if ((child.child & kLeafBit) != 0)
-        loose_.push_back({child.box, child.child & ~kLeafBit, child.company});
+      if ((child.child & kLeafBit) != 0) loose_.push_back({child.box, child.child & ~kLeafBit, child.group});
     }
   }
   HOOKE_ASSERT(loose_.size() == leaf_count_);

@@ -25,7 +25,7 @@ class BroadPhaseTree {
   struct Leaf {
     geometry::Box box = {};
     std::uint32_t value = 0;
-    std::uint16_t company = 0;
+    std::uint16_t group = 0;
   };
 
   /// The value must not be in the tree.
@@ -49,7 +49,7 @@ class BroadPhaseTree {
   /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order, but not for those
   /// of `company` unless that is 0.
   template <class Visit>
-  void visit_overlaps(const geometry::Box& box, std::uint16_t company, Visit&& visit) const;
+  void visit_overlaps(const geometry::Box& box, std::uint16_t group, Visit&& visit) const;
 
   /// Calls `visit(value)` for each leaf with a `bound(box)` of at most `limit`, nodes from near to far. A box
   /// inside another has no lower bound. `visit` returns the new limit, at most the old one.
@@ -69,9 +69,9 @@ class BroadPhaseTree {
   struct alignas(64) Node {
     std::array<Real, kLanes> lower_x, lower_y, lower_z;
     std::array<Real, kLanes> upper_x, upper_y, upper_z;
-    std::array<std::uint32_t, kLanes> child;    // a node, or kLeafBit and a value
-    std::array<std::uint16_t, kLanes> company;  // of all leaves below; 0: of none, or not of one
-    std::uint32_t parent = kNone;               // node * kLanes + lane; kNone for the root
+    std::array<std::uint32_t, kLanes> child;  // a node, or kLeafBit and a value
+    std::array<std::uint16_t, kLanes> group;  // of all leaves below; 0: of none, or not of one
+    std::uint32_t parent = kNone;             // node * kLanes + lane; kNone for the root
     std::int32_t count = 0;
 
     Node();
@@ -80,7 +80,7 @@ class BroadPhaseTree {
     /// The smallest box around all children.
     [[nodiscard]] geometry::Box bounds() const;
     /// The company of all children, if it is one.
-    [[nodiscard]] std::uint16_t common_company() const;
+    [[nodiscard]] std::uint16_t common_group() const;
     /// Bit i is set if child i overlaps `box` and is not of the company `own`.
     [[nodiscard]] unsigned overlaps(const geometry::Box& box, std::uint16_t own) const;
   };
@@ -100,15 +100,15 @@ class BroadPhaseTree {
   struct Child {
     std::uint32_t child = 0;
     geometry::Box box = {};
-    std::uint16_t company = 0;
+    std::uint16_t group = 0;
   };
-  static Child child_of(const Leaf& leaf) { return {kLeafBit | leaf.value, leaf.box, leaf.company}; }
+  static Child child_of(const Leaf& leaf) { return {kLeafBit | leaf.value, leaf.box, leaf.group}; }
   void set_child(std::uint32_t node, int lane, const Child& child);
   void add_lane(std::uint32_t node, const Child& child);
   [[nodiscard]] Child lane_of(std::uint32_t node, int lane) const;
   void remove_lane(std::uint32_t node, int lane);
   /// Boxes and companies above a leaf that was put into `node`, or moved there.
-  void grow_ancestors(std::uint32_t node, const geometry::Box& box, std::uint16_t company);
+  void grow_ancestors(std::uint32_t node, const geometry::Box& box, std::uint16_t group);
   bool insert_into_nodes(const Leaf& leaf);
   void fit();
   void rebuild();
@@ -117,8 +117,8 @@ class BroadPhaseTree {
 
   std::vector<Node> nodes_ = std::vector<Node>(1);  // the root is always there
   std::vector<Leaf> loose_;
-  std::vector<Task> tasks_;           // of build
-  std::vector<std::uint32_t> place_;  // of each value: node * kLanes + lane, or kLooseBit and a row, or kNone
+  std::vector<Task> tasks_;          // of build
+  std::vector<std::uint32_t> slot_;  // of each value: node * kLanes + lane, or kLooseBit and a row, or kNone
   std::size_t leaf_count_ = 0;
   std::size_t change_count_ = 0;  // since the nodes were fitted
   double built_cost_ = 0;
@@ -140,22 +140,22 @@ inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box, std::ui
   for (std::size_t i = 0; i < kLanes; ++i) mask |= gap[i] <= Real(0) ? 1u << i : 0u;
   mask &= (1u << count) - 1;  // an infinite box overlaps empty lanes too
   if (own == 0) return mask;
-  for (std::size_t i = 0; i < kLanes; ++i) mask &= ~(company[i] == own ? 1u << i : 0u);
+  for (std::size_t i = 0; i < kLanes; ++i) mask &= ~(group[i] == own ? 1u << i : 0u);
   return mask;
 }
 
 template <class Visit>
-void BroadPhaseTree::visit_overlaps(const geometry::Box& box, std::uint16_t company, Visit&& visit) const {
+void BroadPhaseTree::visit_overlaps(const geometry::Box& box, std::uint16_t group, Visit&& visit) const {
   for (const Leaf& leaf : loose_) {
-    const bool is_friend = company != 0 && leaf.company == company;
-    if (!is_friend && geometry::overlap(leaf.box, box)) visit(leaf.value);
+    const bool is_same_group = group != 0 && leaf.group == group;
+    if (!is_same_group && geometry::overlap(leaf.box, box)) visit(leaf.value);
   }
   std::uint32_t stack[kStackSize];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
-    for (unsigned mask = node.overlaps(box, company); mask != 0; mask &= mask - 1) {
+    for (unsigned mask = node.overlaps(box, group); mask != 0; mask &= mask - 1) {
       const std::uint32_t child = node.child[static_cast<std::size_t>(std::countr_zero(mask))];
       if ((child & kLeafBit) != 0) {
         visit(child & ~kLeafBit);

@@ -26,8 +26,8 @@ struct Extent {
   Real size = Real(0);
 
   [[nodiscard]] int bin(const BroadPhaseTree::Leaf& leaf) const {
-    const Real place = (component(center_of(leaf), axis) - lower) / size;
-    return std::min(kBinCount - 1, static_cast<int>(place * Real(kBinCount)));
+    const Real share = (component(center_of(leaf), axis) - lower) / size;
+    return std::min(kBinCount - 1, static_cast<int>(share * Real(kBinCount)));
   }
 };
 
@@ -123,10 +123,10 @@ void BroadPhaseTree::build_node(const Task& task) {
       add_lane(task.node, child_of(part[0]));
       continue;
     }
-    Child child = {static_cast<std::uint32_t>(nodes_.size()), {}, part[0].company};
+    Child child = {static_cast<std::uint32_t>(nodes_.size()), {}, part[0].group};
     for (const Leaf& leaf : part) {
       child.box = merge(child.box, leaf.box);
-      if (leaf.company != child.company) child.company = 0;
+      if (leaf.group != child.group) child.group = 0;
     }
     nodes_.emplace_back();
     add_lane(task.node, child);

@@ -19,7 +19,7 @@
 namespace hooke::collision {
 
 /// How far bodies may move unseen, in half thicknesses.
-inline constexpr Real kUnseenWay = Real(0.5);
+inline constexpr Real kUnseenDisplacement = Real(0.5);
 
 /// What a sweep may do to a body.
 enum class Stoppable : std::uint8_t {
@@ -31,7 +31,7 @@ enum class Stoppable : std::uint8_t {
 
 /// Bodies in motion, by row.
 struct SweptBodies {
-  struct Bends {
+  struct Clamps {
     int count = 0;
     Real first = Real(1);  ///< When it gave way first; from then on it does not turn.
   };
@@ -39,24 +39,24 @@ struct SweptBodies {
   std::vector<Path> path = {};
   std::vector<Stoppable> stoppable = {};
   std::vector<Real> inverse_mass = {};  ///< [1/kg]; zero of what moves as told.
-  std::vector<Bends> bends = {};
+  std::vector<Clamps> clamps = {};
 };
 
 /// Two colliders that may run into each other.
-struct Encounter {
+struct ImpactCandidate {
   ColliderPair pair = {};
   Vec3 apart = {};  ///< From the first to the second: may hold them apart; zero if none is known.
 };
 
 /// What is in the way of a body.
-struct WayScratch {
+struct PathScratch {
   std::vector<ColliderPair> pairs = {};
   std::vector<std::uint32_t> near = {};  ///< Colliders; for FindPairs to use.
 };
 
 /// Replaces `scratch.pairs` by the pairs of a body's colliders with all that may be in their way, now that
 /// the body has given way; those that gave way before are in each other's way where they go now.
-using FindPairs = std::function<void(std::uint32_t body, WayScratch& scratch)>;
+using FindPairs = std::function<void(std::uint32_t body, PathScratch& scratch)>;
 
 /// Memory of give_way_at_impacts.
 class ContinuousScratch {
@@ -82,8 +82,8 @@ class ContinuousScratch {
 /// other (so that it never leaves the ball of half its way around it); before one that nothing stops, and
 /// that is no lighter, it goes as that one does. What comes together slowly for its thickness is left to
 /// contacts. Returns how often bodies gave way. The result does not depend on the pool's number of threads.
-std::uint32_t give_way_at_impacts(parallel::ThreadPool& pool, const state::Colliders& colliders,
-                                  std::span<const Encounter> encounters, const FindPairs& find_pairs,
-                                  ContinuousScratch& scratch, SweptBodies& bodies);
+std::uint32_t clamp_to_impact_times(parallel::ThreadPool& pool, const state::Colliders& colliders,
+                                    std::span<const ImpactCandidate> candidates, const FindPairs& find_pairs,
+                                    ContinuousScratch& scratch, SweptBodies& bodies);
 
 }  // namespace hooke::collision

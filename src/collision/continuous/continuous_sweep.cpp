@@ -55,30 +55,30 @@ struct Closing {
 };
 
 /// How far two shapes are held apart, and by which direction.
-struct Hold {
+struct SeparatingGap {
   Real gap = Real(0);
   Vec3 n = {};  // from A to B
 };
 
-void take_better(Hold other, Hold& hold) {
-  if (other.gap > hold.gap) hold = other;
+void take_better(SeparatingGap other, SeparatingGap& separating) {
+  if (other.gap > separating.gap) separating = other;
 }
 
 /// By the nearest points, if those tell the direction well; false if not.
-bool hold_by_distance(const Convex& a, const Convex& b, Hold& hold) {
+bool separate_by_distance(const Convex& a, const Convex& b, SeparatingGap& separating) {
   const Distance d = distance_between(a, b);
   if (d.cores_overlap) return false;
-  take_better({separation_along(a, b, d.normal), d.normal}, hold);
+  take_better({separation_along(a, b, d.normal), d.normal}, separating);
   return d.distance + skin_of(a) + skin_of(b) > Real(16) * axis_tolerance(a, b);
 }
 
-Hold hold_convex(const Convex& a, const Convex& b, Meeting& meeting) {
-  Hold hold = {-std::numeric_limits<Real>::infinity(), {}};
-  if (hold_by_distance(a, b, hold)) return hold;
-  meeting.count = 0;
-  meet(a, b, {.margin = std::numeric_limits<Real>::infinity()}, meeting);
-  take_better({meeting.separation, meeting.normal}, hold);
-  return hold;
+SeparatingGap separate_convex(const Convex& a, const Convex& b, ContactResult& result) {
+  SeparatingGap separating = {-std::numeric_limits<Real>::infinity(), {}};
+  if (separate_by_distance(a, b, separating)) return separating;
+  result.count = 0;
+  collide(a, b, {.margin = std::numeric_limits<Real>::infinity()}, result);
+  take_better({result.separation, result.normal}, separating);
+  return separating;
 }
 
 Vec3 front_of_triangle(const Convex& triangle) {
@@ -86,14 +86,14 @@ Vec3 front_of_triangle(const Convex& triangle) {
   return normalize(cross(q - p, r - p));
 }
 
-Hold hold_triangle(const Convex& triangle, const Convex& b) {
-  Hold hold = {-std::numeric_limits<Real>::infinity(), {}};
-  if (hold_by_distance(triangle, b, hold)) return hold;
+SeparatingGap separate_from_triangle(const Convex& triangle, const Convex& b) {
+  SeparatingGap separating = {-std::numeric_limits<Real>::infinity(), {}};
+  if (separate_by_distance(triangle, b, separating)) return separating;
   const Vec3 front = front_of_triangle(triangle);
   Axis axis = {front, separation_along(triangle, b, front), kAxisOfA};
   improve_axis(triangle, b, axis_tolerance(triangle, b), axis);
-  take_better({axis.separation, axis.n}, hold);
-  return hold;
+  take_better({axis.separation, axis.n}, separating);
+  return separating;
 }
 
 /// How near to the allowed overlap an advance ends.
@@ -102,23 +102,24 @@ Real advance_tolerance(Real allowance) {
 }
 
 /// Advances from `begin` to `end`.
-template <class Look>
-std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin, Real end, Look&& look) {
+template <class Evaluate>
+std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin, Real end,
+                              Evaluate&& evaluate) {
   const Real tolerance = advance_tolerance(allowance);
   Real target = -allowance;
   Real time = begin;
-  Hold hold;
+  SeparatingGap separating;
   for (int round = 0; round < kMaxRounds; ++round) {
-    hold = look(time);
-    if (round == 0) target = std::min(target, hold.gap - Real(2) * tolerance);
-    const Real slack = hold.gap - target;
-    const Real rate = closing.along(hold.n);
+    separating = evaluate(time);
+    if (round == 0) target = std::min(target, separating.gap - Real(2) * tolerance);
+    const Real slack = separating.gap - target;
+    const Real rate = closing.along(separating.n);
     // Whoever slides along the other at that depth does not meet it.
     if (!(rate * (end - time) > std::max(slack, tolerance))) return std::nullopt;
     if (!(slack > tolerance)) break;
     time += slack / rate;
   }
-  return Impact{time, hold.n};
+  return Impact{time, separating.n};
 }
 
 ShapeKind kind_of(const SweptCollider& c) {
@@ -143,15 +144,16 @@ class PairSweep {
 
   std::optional<Impact> run(Real begin) {
     constexpr Real end = Real(1);
-    const Closing closing = {b_.path.way - a_.path.way, spin_of(a_), spin_of(b_)};
+    const Closing closing = {b_.path.displacement - a_.path.displacement, spin_of(a_), spin_of(b_)};
     const ShapeKind kind = kind_of(a_);
     if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, end);
     if (kind == ShapeKind::kHalfSpace) {
-      return advance(closing, allowance_, begin, end, [this](Real time) { return hold_half_space(time); });
+      return advance(closing, allowance_, begin, end,
+                     [this](Real time) { return separate_from_half_space(time); });
     }
     return advance(closing, allowance_, begin, end, [this](Real time) {
       const auto [a, b] = convex_pair_at(a_, b_, time);
-      return hold_convex(a, b, scratch_.meeting);
+      return separate_convex(a, b, scratch_.result);
     });
   }
 
@@ -160,7 +162,7 @@ class PairSweep {
     return {pose_at(a_.path, time), pose_at(b_.path, time)};
   }
 
-  [[nodiscard]] Hold hold_half_space(Real time) const {
+  [[nodiscard]] SeparatingGap separate_from_half_space(Real time) const {
     const auto [pose_a, pose_b] = poses(time);
     const Convex plane = place(a_.colliders, a_.row, pose_a.rotation);
     const Convex b = place(b_.colliders, b_.row, pose_b.rotation);
@@ -182,9 +184,9 @@ class PairSweep {
   /// it can reach in a stretch are swept, each only up to the earliest impact so far.
   std::optional<Impact> sweep_mesh(const Closing& closing, Real begin, Real end) {
     constexpr Real kParts = Real(16);
-    const Real way = closing.fastest() * (end - begin);
-    const Real reach = std::max(b_.path.radius, way / kParts);
-    const Real stretch = way > reach ? (end - begin) * (reach / way) : end - begin;
+    const Real displacement = closing.fastest() * (end - begin);
+    const Real reach = std::max(b_.path.radius, displacement / kParts);
+    const Real stretch = displacement > reach ? (end - begin) * (reach / displacement) : end - begin;
     for (Real time = begin; time < end; time += stretch) {
       const Real until = std::min(time + stretch, end);
       if (const auto impact = sweep_triangles(closing, time, until, reach)) return impact;
@@ -200,10 +202,11 @@ class PairSweep {
     for (const std::uint32_t index : scratch_.triangles) {
       const Real until = first ? first->time : end;
       if (stays_beside_plane(closing, mesh.triangle(index), shape, until - begin)) continue;
-      const auto met = advance(closing, allowance_, begin, until,
-                               [&](Real time) { return hold_in_mesh(mesh_at(time), index, shape_at(time)); });
-      if (!met) continue;
-      const auto impact = from_front(*met, index, begin);
+      const auto touched = advance(closing, allowance_, begin, until, [&](Real time) {
+        return separate_in_mesh(mesh_at(time), index, shape_at(time));
+      });
+      if (!touched) continue;
+      const auto impact = from_front(*touched, index, begin);
       if (impact && (!first || impact->time < first->time)) first = impact;
     }
     return first;
@@ -217,18 +220,18 @@ class PairSweep {
     const Vec3 n = front_of_triangle(triangle);
     const Real least = Real(2) * advance_tolerance(allowance_) - allowance_;
     if (separation_along(triangle, b, n) - duration * closing.along(n) > least) return true;
-    if (!(a_.path.way == Vec3{}) || !(a_.path.turn == Vec3{})) return false;
+    if (!(a_.path.displacement == Vec3{}) || !(a_.path.turn == Vec3{})) return false;
     const Real rise = dot(n, closing.parting) + closing.b.reach * length(closing.b.turn);
     return dot(n, middle_of(b) - triangle.corners[0]) + duration * std::max(Real(0), rise) < Real(0);
   }
 
   /// What overlaps a wall is not held apart from it by going on through the next one.
-  Hold hold_in_mesh(const PlacedMesh& mesh, std::uint32_t index, const Convex& b) {
+  SeparatingGap separate_in_mesh(const PlacedMesh& mesh, std::uint32_t index, const Convex& b) {
     const Convex triangle = mesh.triangle(index);
-    const Hold hold = hold_triangle(triangle, b);
-    if (hold.gap >= Real(0)) return hold;
-    const Vec3 n = way_out_of_surface(mesh, index, b, hold.n, scratch_.near);
-    return n == hold.n ? hold : Hold{separation_along(triangle, b, n), n};
+    const SeparatingGap separating = separate_from_triangle(triangle, b);
+    if (separating.gap >= Real(0)) return separating;
+    const Vec3 n = exit_direction(mesh, index, b, separating.n, scratch_.near);
+    return n == separating.n ? separating : SeparatingGap{separation_along(triangle, b, n), n};
   }
 
   /// Of the shape over the triangle's plane [m].
@@ -272,18 +275,18 @@ bool is_wide(ShapeKind kind) {
 Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt) {
   return {.center = bodies.center[body],
           .rotation = bodies.rotation[body],
-          .way = dt * bodies.motion[body].v,
+          .displacement = dt * bodies.motion[body].v,
           .turn = dt * bodies.angular_velocity[body],
           .radius = bodies.traits[body].radius,
           .inner = bodies.traits[body].inner_radius};
 }
 
-Real relative_way(const Path& a, const Path& b) {
+Real relative_displacement(const Path& a, const Path& b) {
   const bool a_is_small = a.radius <= b.radius;
   const Path& small = a_is_small ? a : b;
   const Path& large = a_is_small ? b : a;
   const Vec3 lever = vector_cast<Real>(small.center - large.center);
-  const Vec3 center = small.way - large.way - cross(large.turn, lever);
+  const Vec3 center = small.displacement - large.displacement - cross(large.turn, lever);
   // A point that turns by an angle leaves its tangent by up to half of the angle's square.
   const Real bend = Real(0.5) * length_squared(large.turn) * (length(lever) + small.radius);
   return length(center) + length(small.turn - large.turn) * small.radius + bend;
@@ -291,12 +294,12 @@ Real relative_way(const Path& a, const Path& b) {
 
 Pose pose_at(const Path& path, Real time) {
   const Real moving = time - path.since;
-  return {path.center + vector_cast<double>(moving * path.way),
+  return {path.center + vector_cast<double>(moving * path.displacement),
           path.turn == Vec3{} ? path.rotation
                               : normalize(math::quaternion_of(moving * path.turn) * path.rotation)};
 }
 
-Real turning_reach(const SweptCollider& collider) {
+Real rotation_reach(const SweptCollider& collider) {
   const Spin spin = spin_of(collider);
   return std::min(spin.largest_rate(), Real(2) * spin.reach);
 }
@@ -311,14 +314,14 @@ Real overlap_allowance(const SweptCollider& a, const SweptCollider& b) {
   return std::min(Real(0.25) * (of_a + of_b), std::max(kAllowance, Real(0.1) * std::min(of_a, of_b)));
 }
 
-bool are_held_apart(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance, Real begin) {
+bool are_separated(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance, Real begin) {
   if (is_wide(kind_of(a)) || is_wide(kind_of(b))) return false;
-  const Closing closing = {b.path.way - a.path.way, spin_of(a), spin_of(b)};
+  const Closing closing = {b.path.displacement - a.path.displacement, spin_of(a), spin_of(b)};
   const auto [shape_a, shape_b] = convex_pair_at(a, b, begin);
   if (n == Vec3{}) n = normalize(middle_of(shape_b) - middle_of(shape_a));
   if (n == Vec3{}) return false;
-  const Real approach = std::max(Real(0), closing.along(n) * (Real(1) - begin));
-  return approach <= separation_along(shape_a, shape_b, n) + allowance;
+  const Real closing_distance = std::max(Real(0), closing.along(n) * (Real(1) - begin));
+  return closing_distance <= separation_along(shape_a, shape_b, n) + allowance;
 }
 
 std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b, Real allowance, Real begin,

@@ -18,12 +18,12 @@ namespace hooke::collision {
 
 /// How a body moves through the rest of a step, evenly.
 struct Path {
-  DVec3 center = {};      ///< Of mass, at `since` [m].
-  Quat rotation = {};     ///< At `since`.
-  Vec3 way = {};          ///< Of the center, in a whole step [m].
-  Vec3 turn = {};         ///< In a whole step, in world axes [rad].
-  Real radius = Real(0);  ///< Around the center of mass, of all its shapes [m].
-  Real inner = Real(0);   ///< Of a ball within its largest shape [m].
+  DVec3 center = {};       ///< Of mass, at `since` [m].
+  Quat rotation = {};      ///< At `since`.
+  Vec3 displacement = {};  ///< Of the center, in a whole step [m].
+  Vec3 turn = {};          ///< In a whole step, in world axes [rad].
+  Real radius = Real(0);   ///< Around the center of mass, of all its shapes [m].
+  Real inner = Real(0);    ///< Of a ball within its largest shape [m].
   Real since = Real(0);
 };
 
@@ -32,7 +32,7 @@ struct Path {
 
 /// How far a point of the smaller body can get in a step as seen from the larger one, at most [m]: little for
 /// those that fall, or ride, together.
-[[nodiscard]] Real relative_way(const Path& a, const Path& b);
+[[nodiscard]] Real relative_displacement(const Path& a, const Path& b);
 
 /// Where the center of mass is, and how the body is turned. Not before `since`.
 [[nodiscard]] Pose pose_at(const Path& path, Real time);
@@ -46,7 +46,7 @@ struct SweptCollider {
 
 /// How far a point of the collider's core can get in a step by turning, at most [m]: none for a ball about
 /// the center of mass, whatever its spin.
-[[nodiscard]] Real turning_reach(const SweptCollider& collider);
+[[nodiscard]] Real rotation_reach(const SweptCollider& collider);
 
 struct Impact {
   Real time = Real(0);
@@ -57,7 +57,7 @@ struct Impact {
 struct SweepScratch {
   std::vector<std::uint32_t> triangles = {};
   std::vector<std::uint32_t> near = {};  ///< Triangles at a place.
-  Meeting meeting = {};
+  ContactResult result = {};
 };
 
 /// How deep two shapes may overlap before a sweep says that they have met [m]: less than what would let them
@@ -68,8 +68,8 @@ struct SweepScratch {
 /// Whether one look shows that convex shapes cannot overlap by more than `allowance` [m] until the step's
 /// end: along n, a unit vector from A to B, they are too far apart for how fast they come together. If n is
 /// zero, along the line of their middles. False for other shapes.
-[[nodiscard]] bool are_held_apart(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance,
-                                  Real begin);
+[[nodiscard]] bool are_separated(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance,
+                                 Real begin);
 
 /// When the shapes first overlap by more than `allowance` [m], positive, or by more than they do at `begin`,
 /// which is not before their paths'.

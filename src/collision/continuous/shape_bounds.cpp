@@ -15,7 +15,7 @@ Vec3 absolute(Vec3 v) {
 }
 
 /// Half sizes of the world box around a box of `half_extents` turned by `rotation`.
-Vec3 turned_extents(Quat rotation, Vec3 half_extents) {
+Vec3 rotated_extents(Quat rotation, Vec3 half_extents) {
   const Mat3 r = matrix_of(rotation);
   return half_extents.x * absolute(r.x) + half_extents.y * absolute(r.y) + half_extents.z * absolute(r.z);
 }
@@ -42,7 +42,7 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
     case ShapeKind::kCapsule:
       return around({}, s.shape.half_height * absolute(axis) + Vec3{r, r, r});
     case ShapeKind::kBox:
-      return around({}, turned_extents(rotation, s.shape.half_extents));
+      return around({}, rotated_extents(rotation, s.shape.half_extents));
     case ShapeKind::kCylinder:
       return around({}, s.shape.half_height * absolute(axis) + disc_extents(axis, r));
     case ShapeKind::kCone: {
@@ -60,7 +60,7 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
     case ShapeKind::kMesh: {
       const geometry::BvhNode& root = s.mesh->bvh.nodes.front();
       const Vec3 center = rotate(rotation, Real(0.5) * (root.lower + root.upper));
-      return around(center, turned_extents(rotation, Real(0.5) * (root.upper - root.lower)));
+      return around(center, rotated_extents(rotation, Real(0.5) * (root.upper - root.lower)));
     }
     case ShapeKind::kCompound:
       break;
@@ -101,8 +101,8 @@ Box reach_of(const state::Colliders& colliders, std::uint32_t collider, const Pa
   // No point of the body turns farther than its diameter.
   const Real turn = std::min(length(path.turn), Real(2)) * path.radius;
   const Vec3 pad = {kReachMargin + turn, kReachMargin + turn, kReachMargin + turn};
-  return {geometry::min_of(now.lower, now.lower + path.way) - pad,
-          geometry::max_of(now.upper, now.upper + path.way) + pad};
+  return {geometry::min_of(now.lower, now.lower + path.displacement) - pad,
+          geometry::max_of(now.upper, now.upper + path.displacement) + pad};
 }
 
 }  // namespace hooke::collision

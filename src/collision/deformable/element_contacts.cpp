@@ -15,7 +15,7 @@ namespace hooke::collision {
 
 namespace {
 
-using state::InnerContact;
+using state::ElementContact;
 
 constexpr Real kSearchShare =
     Real(0.5);  ///< Of what an edge is thinner in its middle: what protrudes so far.
@@ -26,7 +26,7 @@ constexpr Real kClothGentleDepth = Real(0.4);
 constexpr Real kLeastFreeShare = Real(0.25);  ///< Of an element's points: what is pinned does not give way.
 constexpr int kMostNear = 12;                 ///< Elements under a body that is narrow.
 constexpr int kFewContacts = 12;              ///< With bodies: more take too long to be solved as one.
-constexpr int kCarryingPoints = 3;            ///< A wide body that lies on so many is carried by them.
+constexpr int kSupportingPoints = 3;          ///< A wide body that lies on so many is carried by them.
 constexpr Real kLeastApart = Real(0.5);       ///< Overlap, over the radius, with which a contact may begin.
 constexpr Real kSameSide =
     Real(0.9);  ///< Cosine of what a normal turns in a substep without losing its force.
@@ -81,7 +81,7 @@ Real thinning_at(const state::Deformable& object, const std::array<Real, 3>& wei
   return Real(2) * thinning_of(object) * between;
 }
 
-Vec3 place_of(const state::Tables& t, std::uint32_t particle) {
+Vec3 position_of(const state::Tables& t, std::uint32_t particle) {
   return t.particles.position[particle].x;
 }
 
@@ -89,9 +89,9 @@ Vec3 place_of(const state::Tables& t, std::uint32_t particle) {
 Real longest_edge_squared(const state::Tables& t, const state::Deformable& object) {
   Real longest = Real(0);
   for_each_element(t, object, [&](const Element& e) {
-    const Vec3 a = place_of(t, e.particle[0]);
-    const Vec3 b = place_of(t, e.particle[1]);
-    const Vec3 c = place_of(t, e.particle[2]);
+    const Vec3 a = position_of(t, e.particle[0]);
+    const Vec3 b = position_of(t, e.particle[1]);
+    const Vec3 c = position_of(t, e.particle[2]);
     longest = std::max({longest, length_squared(b - a), length_squared(c - b), length_squared(a - c)});
   });
   return longest;
@@ -109,7 +109,7 @@ Real least_radius(const Shape& shape) {
   return is_round ? shape.radius : Real(0);
 }
 
-using Gaps = std::array<const InnerContactFinder::PointGap*, 3>;
+using Gaps = std::array<const ElementContactFinder::PointGap*, 3>;
 
 /// No place of the element is nearer to the shape than this: by the gradient at one of its points, or the
 /// mean of those at all.
@@ -136,8 +136,8 @@ Real least_distance(const Gaps& gaps, std::uint32_t count, std::size_t when) {
 /// Finds the rows of one object and one shape.
 class PairSearch {
  public:
-  PairSearch(const state::Tables& tables, const InnerContactQuery& query, std::size_t index,
-             Real longest_edge, InnerContactFinder& finder)
+  PairSearch(const state::Tables& tables, const ElementContactQuery& query, std::size_t index,
+             Real longest_edge, ElementContactFinder& finder)
       : t_(tables),
         query_(query),
         object_(tables.objects[query.object]),
@@ -154,18 +154,19 @@ class PairSearch {
     held_ = was_held();
     near_ = {frame_.box.lower - Vec3{reach, reach, reach}, frame_.box.upper + Vec3{reach, reach, reach}};
     const auto first = static_cast<std::ptrdiff_t>(finder_.contacts.size());
-    for_each_element(t_, object_, [&](const Element& e) { look_at(e); });
-    if (is_carried()) finder_.contacts.erase(finder_.contacts.begin() + first, finder_.contacts.end());
+    for_each_element(t_, object_, [&](const Element& e) { search_element(e); });
+    if (is_supported_by_points())
+      finder_.contacts.erase(finder_.contacts.begin() + first, finder_.contacts.end());
   }
 
  private:
   /// Whether an element held the shape in the step before.
   [[nodiscard]] bool was_held() const {
-    const auto pair_of = [](const InnerContact& row) { return std::pair(row.object, row.collider); };
+    const auto pair_of = [](const ElementContact& row) { return std::pair(row.object, row.collider); };
     const std::pair pair = {query_.object, collider_};
-    const std::vector<InnerContact>& rows = t_.inner_contacts;
+    const std::vector<ElementContact>& rows = t_.element_contacts;
     auto row = std::lower_bound(rows.begin(), rows.end(), pair,
-                                [&](const InnerContact& r, const auto& p) { return pair_of(r) < p; });
+                                [&](const ElementContact& r, const auto& p) { return pair_of(r) < p; });
     while (row != rows.end() && pair_of(*row) == pair && !row->joined) ++row;
     return row != rows.end() && pair_of(*row) == pair;
   }
@@ -173,37 +174,37 @@ class PairSearch {
   /// Whether points alone hold the body, as it is wide against the cloth's meshes, or near to many. Elements
   /// that hold a body do not let go because it comes near to more of them: it would be through the cloth when
   /// they come back.
-  [[nodiscard]] bool is_carried() const {
+  [[nodiscard]] bool is_supported_by_points() const {
     if (object_.triangles.count == 0 || !is_dynamic(t_.bodies, body_)) return false;
     const bool is_wide = t_.bodies.traits[body_].radius > longest_edge_;
-    return (is_wide && near_points_ >= kCarryingPoints) || (!held_ && near_elements_ > kMostNear);
+    return (is_wide && near_points_ >= kSupportingPoints) || (!held_ && near_elements_ > kMostNear);
   }
 
-  void look_at(Element e) {
-    if (is_carried()) return;
-    const geometry::Box box = geometry::box_of(place_of(t_, e.particle[0]), place_of(t_, e.particle[1]),
-                                               place_of(t_, e.particle[2]));
+  void search_element(Element e) {
+    if (is_supported_by_points()) return;
+    const geometry::Box box = geometry::box_of(position_of(t_, e.particle[0]), position_of(t_, e.particle[1]),
+                                               position_of(t_, e.particle[2]));
     if (!overlap(near_, box)) return;
     Real radius = std::numeric_limits<Real>::infinity();
-    Real way = Real(0);
+    Real displacement = Real(0);
     bool any_free = is_dynamic(t_.bodies, body_);
     for (std::uint32_t i = 0; i < e.count; ++i) {
-      const state::VelocityLine& line = t_.particles.velocity[e.particle[i]];
+      const state::VelocityRecord& record = t_.particles.velocity[e.particle[i]];
       radius = std::min(radius, t_.particles.position[e.particle[i]].radius);
-      way = std::max(way, Real(2) * length(line.v) * query_.step + fall_);
-      any_free = any_free || line.inverse_mass > Real(0);
+      displacement = std::max(displacement, Real(2) * length(record.v) * query_.step + fall_);
+      any_free = any_free || record.inverse_mass > Real(0);
     }
-    const Real reach = radius + way + frame_.speed * query_.step + kParticleMargin;
+    const Real reach = radius + displacement + frame_.speed * query_.step + kParticleMargin;
     const Vec3 all = {reach, reach, reach};
     if (!overlap(frame_.box, geometry::Box{box.lower - all, box.upper + all}) || !any_free) return;
     if (frame_.shape->shape.kind == ShapeKind::kMesh) {
-      look_at_mesh(e, radius, reach);
+      search_mesh(e, radius, reach);
     } else {
-      look_at_shape(e, radius, reach);
+      search_shape(e, radius, reach);
     }
   }
 
-  void look_at_shape(const Element& e, Real radius, Real reach) {
+  void search_shape(const Element& e, Real radius, Real reach) {
     Gaps gaps = {};
     for (std::uint32_t i = 0; i < e.count; ++i) gaps[i] = &gap_of(e.particle[i]);
     const Real distance = least_distance(gaps, e.count, 0);
@@ -216,27 +217,28 @@ class PairSearch {
   }
 
   /// A mesh knows no bounds from gradients: what its ridges and peaks protrude is seen where they are.
-  void look_at_mesh(const Element& e, Real radius, Real reach) {
+  void search_mesh(const Element& e, Real radius, Real reach) {
     const state::Mesh& mesh = *frame_.shape->mesh;
-    const auto corner = [&](std::uint32_t i) { return frame_.to_shape(place_of(t_, e.particle[i])); };
+    const auto corner = [&](std::uint32_t i) { return frame_.to_shape(position_of(t_, e.particle[i])); };
     const geometry::Box box = geometry::box_of(corner(0), corner(1), corner(2));
     const Vec3 all = {reach, reach, reach};
     geometry::find_triangles(mesh.bvh, {box.lower - all, box.upper + all}, finder_.triangles);
-    if (e.count == 3) look_at_protrusions(e, radius, reach);
-    for_each_edge(t_, e, [&](const Element& edge) { look_at_protrusions(edge, radius, reach); });
+    if (e.count == 3) search_protrusions(e, radius, reach);
+    for_each_edge(t_, e, [&](const Element& edge) { search_protrusions(edge, radius, reach); });
   }
 
-  void look_at_protrusions(const Element& e, Real radius, Real reach) {
+  void search_protrusions(const Element& e, Real radius, Real reach) {
     const state::Mesh& mesh = *frame_.shape->mesh;
     std::array<Vec3, 3> corner = {};
-    Real way = Real(0);
+    Real displacement = Real(0);
     for (std::uint32_t i = 0; i < e.count; ++i) {
-      const Vec3 x = place_of(t_, e.particle[i]);
+      const Vec3 x = position_of(t_, e.particle[i]);
       const Vec3 surface = state::velocity_at(t_.bodies, body_, x - frame_.center);
       corner[i] = frame_.to_shape(x);
-      way = std::max(way, query_.step * length(t_.particles.velocity[e.particle[i]].v - surface));
+      displacement =
+          std::max(displacement, query_.step * length(t_.particles.velocity[e.particle[i]].v - surface));
     }
-    const bool is_fast = way > kSearchShare * thinning_of(object_) * radius;
+    const bool is_fast = displacement > kSearchShare * thinning_of(object_) * radius;
     Real nearest = Real(-1);
     for (const std::uint32_t triangle : finder_.triangles) {
       const std::uint32_t end = mesh.protrusions.triangle_begin[triangle + 1];
@@ -247,7 +249,7 @@ class PairSearch {
         if (!is_fast) {
           if (!found.gap) continue;
           if (nearest < Real(0)) nearest = nearest_point(e, corner, reach);
-          const Real most = kSearchShare * thinning_at(object_, found.gap->weight) * radius - way;
+          const Real most = kSearchShare * thinning_at(object_, found.gap->weight) * radius - displacement;
           if (!(nearest - found.gap->distance > most)) continue;
         }
         if (is_hooked_to(e)) return;
@@ -301,19 +303,19 @@ class PairSearch {
   }
 
   /// A point that would come into the shape is taken to slide along it.
-  const InnerContactFinder::PointGap& gap_of(std::uint32_t particle) {
-    InnerContactFinder::PointGap& of = finder_.gaps[particle - object_.particles.first];
+  const ElementContactFinder::PointGap& gap_of(std::uint32_t particle) {
+    ElementContactFinder::PointGap& of = finder_.gaps[particle - object_.particles.first];
     if (of.pass == finder_.pass) return of;
     of.pass = finder_.pass;
-    const state::PositionLine& at = t_.particles.position[particle];
+    const state::PositionRecord& at = t_.particles.position[particle];
     const Vec3 surface = state::velocity_at(t_.bodies, body_, at.x - frame_.center);
-    Vec3 way = query_.step * frame_.to_shape_direction(t_.particles.velocity[particle].v - surface);
+    Vec3 displacement = query_.step * frame_.to_shape_direction(t_.particles.velocity[particle].v - surface);
     of.x[0] = frame_.to_shape(at.x);
     const Gap now = gap_to_shape(*frame_.shape, of.x[0]);
-    const Real free_way = std::max(now.distance - at.radius, Real(0));
-    const Real into = -dot(now.normal, way) - free_way;
-    if (into > Real(0)) way += into * now.normal;
-    of.x[1] = of.x[0] + way;
+    const Real free_distance = std::max(now.distance - at.radius, Real(0));
+    const Real into = -dot(now.normal, displacement) - free_distance;
+    if (into > Real(0)) displacement += into * now.normal;
+    of.x[1] = of.x[0] + displacement;
     const Gap then = gap_to_shape(*frame_.shape, of.x[1]);
     of.distance = {now.distance, then.distance};
     of.normal = {now.normal, then.normal};
@@ -322,12 +324,12 @@ class PairSearch {
   }
 
   const state::Tables& t_;
-  const InnerContactQuery& query_;
+  const ElementContactQuery& query_;
   const state::Deformable& object_;
   std::uint32_t collider_, body_;
   const Frame& frame_;
   Real longest_edge_;  ///< Of the object [m].
-  InnerContactFinder& finder_;
+  ElementContactFinder& finder_;
   Real fall_ = Real(0);
   geometry::Box near_ = {};  ///< Elements outside stay away from the shape.
   bool held_ = false;        ///< By an element, in the step before.
@@ -336,68 +338,68 @@ class PairSearch {
 };
 
 /// Marks the rows of the last object, from `first` on.
-void mark_few(const state::Tables& t, std::size_t first, std::vector<InnerContact>& contacts) {
-  const std::span<InnerContact> rows = std::span(contacts).subspan(first);
-  const auto pressed = std::count_if(rows.begin(), rows.end(),
-                                     [&](const InnerContact& row) { return is_dynamic(t.bodies, row.body); });
-  for (InnerContact& row : rows) row.few = pressed <= kFewContacts;
+void mark_few(const state::Tables& t, std::size_t first, std::vector<ElementContact>& contacts) {
+  const std::span<ElementContact> rows = std::span(contacts).subspan(first);
+  const auto pressed = std::count_if(
+      rows.begin(), rows.end(), [&](const ElementContact& row) { return is_dynamic(t.bodies, row.body); });
+  for (ElementContact& row : rows) row.few = pressed <= kFewContacts;
 }
 
-auto key_of(const InnerContact& row) {
+auto key_of(const ElementContact& row) {
   return std::tie(row.object, row.collider, row.element, row.edge, row.feature);
 }
 
-void leave(InnerContact& row) {
+void leave(ElementContact& row) {
   row.separation = kNoContact;
   row.normal_force = Real(0);
   row.friction_force = {};
 }
 
 /// Ways of an element's points against the body within a substep [m].
-struct Ways {
-  std::array<Vec3, 3> way = {};
+struct Displacements {
+  std::array<Vec3, 3> displacement = {};
   Real longest = Real(0);
 };
 
-Ways ways_of(const state::Tables& t, const InnerContact& row, Vec3 center, Real h) {
-  Ways ways;
+Displacements displacements_of(const state::Tables& t, const ElementContact& row, Vec3 center, Real h) {
+  Displacements displacements;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const std::uint32_t p = row.particle[std::min(i, row.count - 1)];
-    const Vec3 surface = state::velocity_now(t.bodies, row.body, place_of(t, p) - center);
-    ways.way[i] = h * (t.particles.velocity[p].v - surface);
-    ways.longest = std::max(ways.longest, length(ways.way[i]));
+    const Vec3 surface = state::velocity_now(t.bodies, row.body, position_of(t, p) - center);
+    displacements.displacement[i] = h * (t.particles.velocity[p].v - surface);
+    displacements.longest = std::max(displacements.longest, length(displacements.displacement[i]));
   }
-  return ways;
+  return displacements;
 }
 
 /// Whether the two cannot have met, nor will within `h`, since their distance was found.
-bool stay_apart(const state::Tables& t, Real h, InnerContact& row) {
+bool stay_apart(const state::Tables& t, Real h, ElementContact& row) {
   if (!(row.clearance > Real(0))) return false;
   const Vec3 center =
       vector_cast<Real>(state::pose_now(t.bodies, row.body).position - t.objects[row.object].origin);
-  const Real way = Real(2) * ways_of(t, row, center, h).longest + kPushedApart * h;
-  row.clearance -= way;
-  return row.clearance > way;
+  const Real displacement = Real(2) * displacements_of(t, row, center, h).longest + kPushedApart * h;
+  row.clearance -= displacement;
+  return row.clearance > displacement;
 }
 
 /// One row while it is updated. Positions are offsets from the element's first point.
 class RowUpdate {
  public:
-  RowUpdate(state::Tables& tables, InnerContact& row, Real h)
+  RowUpdate(state::Tables& tables, ElementContact& row, Real h)
       : t_(tables),
         row_(row),
         frame_(frame_of(tables, row.collider, tables.objects[row.object])),
-        origin_(place_of(tables, row.particle[0])),
+        origin_(position_of(tables, row.particle[0])),
         shape_{.shape = frame_.shape->shape,
                .center = frame_.offset - origin_,
                .axes = matrix_of(normalize(frame_.rotation)),
                .hull = frame_.shape->hull.get()} {
-    const Ways ways = ways_of(t_, row, frame_.center, h);
-    way_ = ways.way;
-    longest_way_ = ways.longest;
+    const Displacements displacements = displacements_of(t_, row, frame_.center, h);
+    displacement_ = displacements.displacement;
+    longest_displacement_ = displacements.longest;
     for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t p = row.particle[std::min(i, row.count - 1)];
-      corner_[i] = place_of(t_, p) - origin_;
+      corner_[i] = position_of(t_, p) - origin_;
       radius_ = std::min(radius_, t_.particles.position[p].radius);
     }
   }
@@ -407,15 +409,15 @@ class RowUpdate {
     const bool known = before != Vec3{};
     if (find(Real(0))) {
       advance();
-      if (!known && body_is_dynamic() && row_.separation < -kLeastApart * radius_) forget();
+      if (!known && body_is_dynamic() && row_.separation < -kLeastApart * radius_) reset();
     } else if (overlap_ && (known || !body_is_dynamic())) {
       find_deepest(known);
     } else {
       leave(row_);
     }
-    const bool turned = dot(row_.normal, before) < kSameSide;
-    if (turned) row_.normal_force = Real(0);
-    if (turned) row_.friction_force = {};
+    const bool changed_direction = dot(row_.normal, before) < kSameSide;
+    if (changed_direction) row_.normal_force = Real(0);
+    if (changed_direction) row_.friction_force = {};
     if (row_.separation < kNoContact && !gives_way()) leave(row_);
     row_.joined = row_.joined || row_.separation < kNoContact;
     set_surface();
@@ -428,14 +430,14 @@ class RowUpdate {
   }
 
   /// A body that overlaps from the start has no side yet on which it belongs.
-  void forget() {
+  void reset() {
     leave(row_);
     row_.normal = {};
   }
 
   [[nodiscard]] Convex element_at(Real share) const {
     Convex element = {.shape = {.kind = ShapeKind::kMesh}};
-    for (std::size_t i = 0; i < 3; ++i) element.corners[i] = corner_[i] + share * way_[i];
+    for (std::size_t i = 0; i < 3; ++i) element.corners[i] = corner_[i] + share * displacement_[i];
     return element;
   }
 
@@ -444,7 +446,7 @@ class RowUpdate {
   bool find(Real share) {
     if (frame_.shape->shape.kind == ShapeKind::kMesh) return find_at_protrusion(share);
     const Convex element = element_at(share);
-    const Real enough = radius_ + Real(2) * longest_way_;
+    const Real enough = radius_ + Real(2) * longest_displacement_;
     const Distance found = distance_between(element, shape_, enough + kParticleMargin);
     overlap_ = found.cores_overlap && !any_point_inside();
     row_.clearance = found.cores_overlap ? Real(0) : found.distance - radius_;
@@ -468,11 +470,11 @@ class RowUpdate {
     const state::Mesh& mesh = *frame_.shape->mesh;
     std::array<Vec3, 3> corner = {};
     for (std::size_t i = 0; i < row_.count; ++i)
-      corner[i] = frame_.to_shape(origin_ + corner_[i] + share * way_[i]);
+      corner[i] = frame_.to_shape(origin_ + corner_[i] + share * displacement_[i]);
     auto [gap, clearance] =
         find_protrusion_gap(mesh, row_.feature, std::span<const Vec3>(corner).first(row_.count));
     row_.clearance = clearance - radius_;
-    if (!gap || gap->distance > radius_ + Real(2) * longest_way_) return false;
+    if (!gap || gap->distance > radius_ + Real(2) * longest_displacement_) return false;
     Vec3 normal = frame_.to_world(gap->normal);
     const bool acts = row_.separation < kNoContact && row_.normal != Vec3{};
     const bool flips = acts && dot(normal, row_.normal) < -kSameSide;  // around the end of a surface
@@ -493,19 +495,20 @@ class RowUpdate {
     constexpr int kRounds = 4;
     Real share = Real(0);
     for (int i = 0; i < kRounds && share < Real(1); ++i) {
-      Real approach = Real(0);
-      for (const Vec3 way : way_) approach = std::max(approach, -dot(row_.normal, way));
-      const bool is_met = !(row_.separation > kNearShare * radius_);
-      if (is_met || !(approach * (Real(1) - share) > row_.separation)) break;
-      share = std::min(share + row_.separation / approach, Real(1));
-      const InnerContact before = row_;
+      Real closing_distance = Real(0);
+      for (const Vec3 displacement : displacement_)
+        closing_distance = std::max(closing_distance, -dot(row_.normal, displacement));
+      const bool in_contact = !(row_.separation > kNearShare * radius_);
+      if (in_contact || !(closing_distance * (Real(1) - share) > row_.separation)) break;
+      share = std::min(share + row_.separation / closing_distance, Real(1));
+      const ElementContact before = row_;
       if (find(share)) continue;
       row_ = before;
       break;
     }
     if (share == Real(0)) return;
     for (std::size_t i = 0; i < row_.count; ++i)
-      row_.separation -= share * row_.weight[i] * dot(row_.normal, way_[i]);
+      row_.separation -= share * row_.weight[i] * dot(row_.normal, displacement_[i]);
   }
 
   /// A point that is inside is pushed out by itself.
@@ -575,20 +578,21 @@ class RowUpdate {
   }
 
   state::Tables& t_;
-  InnerContact& row_;
+  ElementContact& row_;
   Frame frame_;
   Vec3 origin_;
   Convex shape_;
   std::array<Vec3, 3> corner_ = {};
-  std::array<Vec3, 3> way_ = {};  ///< Against the body, within the substep [m].
-  Real longest_way_ = Real(0);
+  std::array<Vec3, 3> displacement_ = {};  ///< Against the body, within the substep [m].
+  Real longest_displacement_ = Real(0);
   Real radius_ = std::numeric_limits<Real>::infinity();
   bool overlap_ = false;  ///< The shape crosses the element, and no point is inside.
 };
 
 }  // namespace
 
-void find_inner_contacts(const state::Tables& t, const InnerContactQuery& query, InnerContactFinder& finder) {
+void find_element_contacts(const state::Tables& t, const ElementContactQuery& query,
+                           ElementContactFinder& finder) {
   const state::Deformable& object = t.objects[query.object];
   if (object.segments.count + object.triangles.count == 0) return;
   const std::size_t first = finder.contacts.size();
@@ -612,9 +616,9 @@ void find_inner_contacts(const state::Tables& t, const InnerContactQuery& query,
   mark_few(t, first, finder.contacts);
 }
 
-void carry_inner_forces(std::span<const InnerContact> from, std::span<InnerContact> to) {
+void carry_element_forces(std::span<const ElementContact> from, std::span<ElementContact> to) {
   auto old = from.begin();
-  for (InnerContact& row : to) {
+  for (ElementContact& row : to) {
     while (old != from.end() && key_of(*old) < key_of(row)) ++old;
     if (old == from.end()) return;
     if (key_of(*old) != key_of(row)) continue;
@@ -627,8 +631,8 @@ void carry_inner_forces(std::span<const InnerContact> from, std::span<InnerConta
   }
 }
 
-void update_inner_contacts(parallel::Range range, Real h, state::Tables& t) {
-  for (InnerContact& row : std::span(t.inner_contacts).subspan(range.begin, range.count())) {
+void update_element_contacts(parallel::Range range, Real h, state::Tables& t) {
+  for (ElementContact& row : std::span(t.element_contacts).subspan(range.begin, range.count())) {
     if (stay_apart(t, h, row)) {
       leave(row);
     } else {

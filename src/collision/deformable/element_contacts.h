@@ -26,7 +26,7 @@ inline constexpr Real kRopeThinning = Real(0.2);
 inline constexpr Real kClothThinning = Real(0.5);
 
 /// Memory of find_inner_contacts.
-struct InnerContactFinder {
+struct ElementContactFinder {
   /// How far a point is from the shape that is looked at, now and at the end of the step.
   struct PointGap {
     std::uint32_t pass = 0;  ///< Of which shape, counted by `pass`.
@@ -34,14 +34,14 @@ struct InnerContactFinder {
     std::array<Vec3, 2> normal = {};
     std::array<Vec3, 2> x = {};  ///< In the shape's frame.
   };
-  std::vector<state::InnerContact> contacts;  ///< Those found; then those of the step before.
-  std::vector<PointGap> gaps;                 ///< Of the object's particles.
-  std::vector<std::uint32_t> triangles;       ///< Of a mesh, near one element.
+  std::vector<state::ElementContact> contacts;  ///< Those found; then those of the step before.
+  std::vector<PointGap> gaps;                   ///< Of the object's particles.
+  std::vector<std::uint32_t> triangles;         ///< Of a mesh, near one element.
   std::uint32_t pass = 0;
 };
 
 /// An object and the shapes that its points may touch.
-struct InnerContactQuery {
+struct ElementContactQuery {
   std::uint32_t object = 0;
   std::span<const std::uint32_t> colliders;
   std::span<const Frame> frames;  ///< Of those.
@@ -62,15 +62,15 @@ struct InnerContactQuery {
 /// A body that forces move, that is wider than a cloth's meshes and that touches three of its points or more,
 /// or will within the step, is carried by these and has no such rows; nor has one that is near to more than
 /// twelve such elements, unless one of them held it in the step before.
-void find_inner_contacts(const state::Tables& tables, const InnerContactQuery& query,
-                         InnerContactFinder& finder);
+void find_element_contacts(const state::Tables& tables, const ElementContactQuery& query,
+                           ElementContactFinder& finder);
 
 /// Rows of both tables stand in order: one walk carries forces, normals and weights over.
-void carry_inner_forces(std::span<const state::InnerContact> from, std::span<state::InnerContact> to);
+void carry_element_forces(std::span<const state::ElementContact> from, std::span<state::ElementContact> to);
 
 /// Place, normal, separation and surface of each row, where element and body are now; where they meet within
 /// the next `h` [s], those of then. A shape in which a point of the element is belongs to that point; one
 /// that only crosses the element keeps the normal by which it came.
-void update_inner_contacts(parallel::Range range, Real h, state::Tables& tables);
+void update_element_contacts(parallel::Range range, Real h, state::Tables& tables);
 
 }  // namespace hooke::collision

@@ -57,7 +57,7 @@ struct ParticleContactScratch::Buffers {
   std::vector<std::uint32_t> triangles;  // of one query
   state::Contacts contacts;              // those found; then those of the step before
   std::vector<TriangleGap> gaps;         // of each contact with a mesh
-  InnerContactFinder inner;
+  ElementContactFinder element_finder;
 };
 
 namespace {
@@ -65,12 +65,13 @@ namespace {
 using Finder = ParticleContactScratch::Buffers;
 
 /// Appends the rows of one particle against one shape.
-void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame, Real way,
-               Real step, Finder& finder) {
+void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame,
+               Real displacement, Real step, Finder& finder) {
   const state::ColliderShape& shape = *frame.shape;
   const std::uint32_t body = t.colliders.body[pair.collider];
   const Vec3 place = t.particles.position[pair.particle].x;
-  const Real reach = t.particles.position[pair.particle].radius + way + frame.speed * step + kParticleMargin;
+  const Real reach =
+      t.particles.position[pair.particle].radius + displacement + frame.speed * step + kParticleMargin;
   const Vec3 reach_to_all = {reach, reach, reach};
   if (!overlap(frame.box, geometry::Box{place - reach_to_all, place + reach_to_all})) return;
   if (is_hooked(finder.hooked, pair.particle, body)) return;
@@ -129,18 +130,19 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
 /// The gap at x, or if a sphere there would meet the shape on its `way`, the gap where it does, less that
 /// part of the way: a plane that is right when it is touched. By conservative advancement; rounds are
 /// bounded, and what has not met the shape by then is taken where it is.
-Gap gap_on_way(const state::ColliderShape& shape, Vec3 x, Vec3 way, Real radius) {
+Gap gap_along_displacement(const state::ColliderShape& shape, Vec3 x, Vec3 displacement, Real radius) {
   constexpr int kRounds = 8;
   Gap gap = gap_to_shape(shape, x);
-  const Real length_of_way = length(way);
+  const Real displacement_length = length(displacement);
   const Real near = Real(0.01) * radius;
-  if (!(gap.distance - radius > near) || !(-dot(gap.normal, way) > gap.distance - radius)) return gap;
+  if (!(gap.distance - radius > near) || !(-dot(gap.normal, displacement) > gap.distance - radius))
+    return gap;
   Real share = Real(0);
   for (int i = 0; i < kRounds && gap.distance - radius > near && share < Real(1); ++i) {
-    share = std::min(share + (gap.distance - radius) / length_of_way, Real(1));
-    gap = gap_to_shape(shape, x + share * way);
+    share = std::min(share + (gap.distance - radius) / displacement_length, Real(1));
+    gap = gap_to_shape(shape, x + share * displacement);
   }
-  gap.distance -= share * dot(gap.normal, way);
+  gap.distance -= share * dot(gap.normal, displacement);
   return gap;
 }
 
@@ -168,17 +170,17 @@ TriangleGap gap_to_feature(const state::Mesh& mesh, std::uint32_t feature, Vec3 
 /// Forces of the rows from `first` to `end` that do not hold any more go over to the nearest that does: the
 /// particle has moved on from triangle to triangle.
 void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) {
-  std::size_t heir = first;
+  std::size_t successor = first;
   for (std::size_t i = first; i < end; ++i) {
-    if (contacts.separation[i] < contacts.separation[heir]) heir = i;
+    if (contacts.separation[i] < contacts.separation[successor]) successor = i;
   }
   for (std::size_t i = first; i < end; ++i) {
     if (contacts.separation[i] < kNoContact) continue;
     const Real normal_force = std::exchange(contacts.normal_force[i], Real(0));
     const Vec3 friction_force = std::exchange(contacts.friction_force[i], {});
-    if (!(contacts.separation[heir] < kNoContact)) continue;
-    contacts.normal_force[heir] += normal_force;
-    contacts.friction_force[heir] += friction_force;
+    if (!(contacts.separation[successor] < kNoContact)) continue;
+    contacts.normal_force[successor] += normal_force;
+    contacts.friction_force[successor] += friction_force;
   }
 }
 
@@ -228,7 +230,7 @@ std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t o
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
     const Frame frame = frame_of(t, c, object);
     for (std::uint32_t i = 0; i < object.particles.count; ++i) {
-      const state::PositionLine& at = t.particles.position[object.particles.first + i];
+      const state::PositionRecord& at = t.particles.position[object.particles.first + i];
       if (distance_to(frame, at.x, at.radius) < Real(0.5) * at.radius) inside.push_back(i);
     }
   }
@@ -239,31 +241,31 @@ std::vector<std::uint32_t> points_inside(const state::Tables& t, std::uint32_t o
 void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t) {
   const auto step = static_cast<Real>(dt);
   const Real fall = length(t.desc.gravity) * step * step;
-  const auto way_of = [&](std::uint32_t p) {
+  const auto displacement_of = [&](std::uint32_t p) {
     return Real(2) * length(t.particles.velocity[p].v) * step + fall;
   };
   Finder& finder = scratch.buffers();
-  auto& [colliders, hooked, near, frames, triangles, contacts, gaps, inner] = finder;
+  auto& [colliders, hooked, near, frames, triangles, contacts, gaps, element_finder] = finder;
   list_solid_colliders(t, colliders);
   list_hooked(t, hooked);
   state::Contacts::for_each_column(contacts, [](auto& column) { column.clear(); });
-  inner.contacts.clear();
+  element_finder.contacts.clear();
   for (std::uint32_t o = 0; !colliders.empty() && o < t.objects.size(); ++o) {
     const state::Rows particles = t.objects[o].particles;
     Real reach = Real(0);
     for (std::uint32_t p = particles.first; p < particles.end(); ++p)
-      reach = std::max(reach, t.particles.position[p].radius + way_of(p) + kParticleMargin);
+      reach = std::max(reach, t.particles.position[p].radius + displacement_of(p) + kParticleMargin);
     list_near_colliders(t, colliders, t.objects[o], reach, near);
     make_frames(t, near, t.objects[o], frames);
     for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
-      const Real way = way_of(p);
+      const Real displacement = displacement_of(p);
       for (std::size_t i = 0; i < near.size(); ++i)
-        find_pair(t, {p, near[i], 0}, o, frames[i], way, step, finder);
+        find_pair(t, {p, near[i], 0}, o, frames[i], displacement, step, finder);
     }
-    if (!near.empty()) find_inner_contacts(t, {o, near, frames, hooked, step, reach}, inner);
+    if (!near.empty()) find_element_contacts(t, {o, near, frames, hooked, step, reach}, element_finder);
   }
-  carry_inner_forces(t.inner_contacts, inner.contacts);
-  base::take_turns(t.inner_contacts, inner.contacts);
+  carry_element_forces(t.element_contacts, element_finder.contacts);
+  base::take_turns(t.element_contacts, element_finder.contacts);
   carry_forces(t.contacts, contacts);
   take_turns(contacts, t.contacts);
   gaps.resize(t.contacts.particle.size());
@@ -294,8 +296,8 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
     const Vec3 arm = place - frame.center;
     const Vec3 velocity = state::velocity_now(t.bodies, contacts.body[first], arm);
     if (shape.shape.kind != ShapeKind::kMesh) {
-      const Vec3 way = h * frame.to_shape_direction(t.particles.velocity[particle].v - velocity);
-      set_row(contacts, first, frame, gap_on_way(shape, x, way, radius), radius);
+      const Vec3 displacement = h * frame.to_shape_direction(t.particles.velocity[particle].v - velocity);
+      set_row(contacts, first, frame, gap_along_displacement(shape, x, displacement, radius), radius);
     } else {
       const std::span<TriangleGap> gaps = std::span(scratch.buffers().gaps).subspan(first, row - first);
       for (std::size_t i = first; i < row; ++i)

@@ -21,29 +21,34 @@ constexpr Real kApartSpeed = Real(1);        ///< Overlaps are undone slower tha
 
 void leave(RopeContact& row) {
   row.separation = kNoContact;
-  row.heir = RopeContact::kNone;
+  row.successor = RopeContact::kNone;
 }
 
 /// One row while its places are found.
-class Placing {
+class RopeRowUpdate {
  public:
-  Placing(const state::Tables& tables, Real h, RopeContact& row)
-      : t_(tables), row_(row), h_(h), pair_(tables, h, row), longest_way_(pair_.longest_way()) {}
+  RopeRowUpdate(const state::Tables& tables, Real h, RopeContact& row)
+      : t_(tables),
+        row_(row),
+        h_(h),
+        pair_(tables, h, row),
+        longest_displacement_(pair_.longest_displacement()) {}
 
   void run() {
-    if (row_.kin || stay_apart()) return leave(row_);
+    if (row_.adjacent || stay_apart()) return leave(row_);
     const Vec3 before = row_.normal;
     at_ = pair_.nearest(Real(0));
     row_.clearance = at_.distance - row_.thickness;
-    if (row_.clearance > pair_.approach(at_.normal) + kAside * longest_way_ + kAhead * row_.thickness)
+    if (row_.clearance >
+        pair_.closing_distance(at_.normal) + kAside * longest_displacement_ + kAhead * row_.thickness)
       return leave(row_);
     if (at_.normal == Vec3{}) at_.normal = before == Vec3{} ? Vec3{Real(0), Real(1), Real(0)} : before;
     at_ = pair_.advance(at_, row_.thickness);
     row_.normal = at_.normal;
     row_.separation = pair_.gap_at_start(at_) - row_.thickness;
     row_.weight = at_.weights();
-    row_.heir = neighbor_that_holds();
-    if (row_.heir != RopeContact::kNone) {
+    row_.successor = nearer_neighbor();
+    if (row_.successor != RopeContact::kNone) {
       row_.normal = before;
       row_.separation = kNoContact;
       return;
@@ -59,9 +64,9 @@ class Placing {
   /// Whether the two cannot have met, nor will within h, since their distance was found.
   bool stay_apart() {
     if (!(row_.clearance > Real(0))) return false;
-    const Real way = Real(2) * longest_way_ + kApartSpeed * h_;
-    row_.clearance -= way;
-    return row_.clearance > way + kAhead * row_.thickness;
+    const Real displacement = Real(2) * longest_displacement_ + kApartSpeed * h_;
+    row_.clearance -= displacement;
+    return row_.clearance > displacement + kAhead * row_.thickness;
   }
 
   /// By how much a step along the next segment, or back along the one before, changes the distance, over the
@@ -79,7 +84,7 @@ class Placing {
   /// Where a segment's end is nearest, the next one may be nearer still. Then a row only holds what is a
   /// little thinner: ropes that lie side by side touch all along. At a joint that is nearest itself only the
   /// first of the two holds, unless it is not clear which.
-  [[nodiscard]] std::uint32_t neighbor_that_holds() {
+  [[nodiscard]] std::uint32_t nearer_neighbor() {
     std::uint32_t nearer = RopeContact::kNone;
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint32_t behind = row_.neighbor[2 * side + 1];
@@ -103,14 +108,14 @@ class Placing {
   RopeContact& row_;
   Real h_;
   RopePair pair_;
-  Real longest_way_;
+  Real longest_displacement_;
   RopePair::Nearest at_;
 };
 
 }  // namespace
 
-void place_rope_contact(const state::Tables& tables, Real h, RopeContact& row) {
-  Placing(tables, h, row).run();
+void update_rope_row(const state::Tables& tables, Real h, RopeContact& row) {
+  RopeRowUpdate(tables, h, row).run();
 }
 
 }  // namespace hooke::collision

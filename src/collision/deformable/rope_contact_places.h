@@ -9,6 +9,6 @@ inline constexpr Real kRopeSameSide = Real(0.9);
 
 /// Nearest places, normal and gap of one row, see update_rope_contacts. One that does not hold keeps its
 /// normal and forces, for its heir.
-void place_rope_contact(const state::Tables& tables, Real h, state::RopeContact& row);
+void update_rope_row(const state::Tables& tables, Real h, state::RopeContact& row);
 
 }  // namespace hooke::collision

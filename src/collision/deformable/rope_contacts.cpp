@@ -49,7 +49,7 @@ void set_boxes(const Tables& t, std::uint32_t object, DVec3 origin, Real dt, Rop
   const Vec3 offset = vector_cast<Real>(rope.origin - origin);
   const Real fall = length(t.desc.gravity) * dt * dt;
   for (std::uint32_t p = rope.particles.first; p < rope.particles.end(); ++p) {
-    const state::PositionLine& at = t.particles.position[p];
+    const state::PositionRecord& at = t.particles.position[p];
     finder.start[p] = at.x;
     finder.margin[p] = at.radius + fall + dt * length(t.particles.velocity[p].v - finder.drift);
   }
@@ -90,7 +90,7 @@ void add_row(const Tables& t, ColliderPair pair, RopeContactFinder& finder) {
     const Real between =
         finder.arc[row.segment_b] - finder.arc[row.segment_a] - t.segments.rest_length[row.segment_a];
     if (row.segment_b == row.segment_a + 1) return;
-    row.kin = between < std::numbers::pi_v<Real> * radius;
+    row.adjacent = between < std::numbers::pi_v<Real> * radius;
     row.least = std::min(row.least, kLeastShare * between);
   }
   row.friction = std::sqrt(a.friction * b.friction);
@@ -105,7 +105,7 @@ void find_neighbors(std::vector<RopeContact>& rows) {
                            return std::pair(row.segment_a, row.segment_b) < key;
                          });
     const bool found = at != rows.end() && at->segment_a == a && at->segment_b == b &&
-                       at->object_a == of.object_a && at->object_b == of.object_b && !at->kin;
+                       at->object_a == of.object_a && at->object_b == of.object_b && !at->adjacent;
     return found ? static_cast<std::uint32_t>(at - rows.begin()) : RopeContact::kNone;
   };
   for (RopeContact& row : rows) {
@@ -169,11 +169,11 @@ bool left_margin(const Tables& t, Real h, const RopeContactFinder& finder) {
 }
 
 /// The row that holds in place of one that does not, or kNone.
-std::uint32_t heir_of(const std::vector<RopeContact>& rows, std::uint32_t row) {
+std::uint32_t successor_of(const std::vector<RopeContact>& rows, std::uint32_t row) {
   constexpr int kMostSteps = 4;
   for (int i = 0; i < kMostSteps && row != RopeContact::kNone; ++i) {
     if (rows[row].separation < kNoContact) return row;
-    row = rows[row].heir;
+    row = rows[row].successor;
   }
   return RopeContact::kNone;
 }
@@ -182,10 +182,10 @@ std::uint32_t heir_of(const std::vector<RopeContact>& rows, std::uint32_t row) {
 void hand_over(std::vector<RopeContact>& rows) {
   for (RopeContact& row : rows) {
     if (row.separation < kNoContact || row.normal == Vec3{}) continue;
-    const std::uint32_t heir = heir_of(rows, row.heir);
-    if (heir != RopeContact::kNone && dot(rows[heir].normal, row.normal) > kRopeSameSide) {
-      rows[heir].normal_force += row.normal_force;
-      rows[heir].friction_force += row.friction_force;
+    const std::uint32_t successor = successor_of(rows, row.successor);
+    if (successor != RopeContact::kNone && dot(rows[successor].normal, row.normal) > kRopeSameSide) {
+      rows[successor].normal_force += row.normal_force;
+      rows[successor].friction_force += row.friction_force;
     }
     row.normal = {};
     row.normal_force = Real(0);
@@ -214,7 +214,7 @@ void update_rope_contacts(parallel::ThreadPool& pool, Real h, RopeContactFinder&
   parallel::for_ranges(pool, static_cast<int>(t.rope_contacts.size()), kRopeContactGrain,
                        [&](parallel::Range range) {
                          for (int i = range.begin; i < range.end; ++i)
-                           place_rope_contact(t, h, t.rope_contacts[i]);
+                           update_rope_row(t, h, t.rope_contacts[i]);
                        });
   hand_over(t.rope_contacts);
 }

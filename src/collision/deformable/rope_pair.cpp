@@ -9,7 +9,7 @@ namespace hooke::collision {
 namespace {
 
 constexpr int kMostRounds = 24;
-constexpr Real kMetShare = Real(0.01);  ///< Of the distance: so near is met.
+constexpr Real kContactShare = Real(0.01);  ///< Of the distance: so near is met.
 
 Vec3 sum_of(const std::array<Real, 4>& weight, const std::array<Vec3, 4>& of) {
   Vec3 sum;
@@ -25,12 +25,12 @@ RopePair::RopePair(const state::Tables& t, Real h, const state::RopeContact& row
   for (std::size_t i = 0; i < 4; ++i) {
     corner_[i] = t.particles.position[row.particle[i]].x - origin;
     if (i >= 2) corner_[i] += offset;
-    way_[i] = h * t.particles.velocity[row.particle[i]].v;
+    displacement_[i] = h * t.particles.velocity[row.particle[i]].v;
   }
 }
 
 RopePair::Nearest RopePair::nearest(Real share) const {
-  const auto at = [&](std::size_t i) { return corner_[i] + share * way_[i]; };
+  const auto at = [&](std::size_t i) { return corner_[i] + share * displacement_[i]; };
   const auto found = geometry::closest_between_segments<Real>({at(0), at(1)}, {at(2), at(3)});
   const Vec3 apart = found.point_a - found.point_b;
   const Real distance = length(apart);
@@ -40,18 +40,20 @@ RopePair::Nearest RopePair::nearest(Real share) const {
           .fraction = {found.fraction_a, found.fraction_b}};
 }
 
-Real RopePair::longest_way() const {
+Real RopePair::longest_displacement() const {
   Real most = Real(0);
   for (const std::size_t a : {0, 1}) {
-    for (const std::size_t b : {2, 3}) most = std::max(most, length_squared(way_[a] - way_[b]));
+    for (const std::size_t b : {2, 3})
+      most = std::max(most, length_squared(displacement_[a] - displacement_[b]));
   }
   return std::sqrt(most);
 }
 
-Real RopePair::approach(Vec3 normal) const {
+Real RopePair::closing_distance(Vec3 normal) const {
   Real most = Real(0);
   for (const std::size_t a : {0, 1}) {
-    for (const std::size_t b : {2, 3}) most = std::max(most, -dot(normal, way_[a] - way_[b]));
+    for (const std::size_t b : {2, 3})
+      most = std::max(most, -dot(normal, displacement_[a] - displacement_[b]));
   }
   return most;
 }
@@ -60,8 +62,8 @@ RopePair::Nearest RopePair::advance(Nearest from, Real distance) const {
   Nearest at = from;
   for (int i = 0; i < kMostRounds && at.share < Real(1); ++i) {
     const Real gap = at.distance - distance;
-    const Real most = approach(at.normal);
-    if (!(gap > kMetShare * distance) || !(most * (Real(1) - at.share) > gap)) break;
+    const Real most = closing_distance(at.normal);
+    if (!(gap > kContactShare * distance) || !(most * (Real(1) - at.share) > gap)) break;
     at = nearest(std::min(at.share + gap / most, Real(1)));
   }
   return at;
@@ -72,7 +74,7 @@ Real RopePair::gap_at_start(const Nearest& at) const {
 }
 
 Real RopePair::gap_growth(const Nearest& at) const {
-  return dot(at.normal, sum_of(at.weights(), way_));
+  return dot(at.normal, sum_of(at.weights(), displacement_));
 }
 
 }  // namespace hooke::collision

@@ -29,9 +29,9 @@ class RopePair {
 
   [[nodiscard]] Nearest nearest(Real share) const;
   /// The farthest that an end of one goes against an end of the other [m].
-  [[nodiscard]] Real longest_way() const;
+  [[nodiscard]] Real longest_displacement() const;
   /// By how much the gap along a normal falls at most on the whole way [m].
-  [[nodiscard]] Real approach(Vec3 normal) const;
+  [[nodiscard]] Real closing_distance(Vec3 normal) const;
   /// The first place on the way, after that given, where the two are about `distance` apart; where they do
   /// not come so near, the last that was looked at. By conservative advancement along the normal.
   [[nodiscard]] Nearest advance(Nearest from, Real distance) const;
@@ -42,7 +42,7 @@ class RopePair {
 
  private:
   std::array<Vec3, 4> corner_ = {};
-  std::array<Vec3, 4> way_ = {};
+  std::array<Vec3, 4> displacement_ = {};
 };
 
 }  // namespace hooke::collision

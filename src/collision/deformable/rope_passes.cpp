@@ -28,7 +28,7 @@ std::optional<Pass> find_pass(const Tables& t, Real h, const RopeContact& row, R
   const RopePair pair(t, h, row);
   const RopePair::Nearest now = pair.nearest(Real(0));
   const Real least = share * std::min(row.least, now.distance);
-  if (now.distance - least > pair.longest_way()) return std::nullopt;
+  if (now.distance - least > pair.longest_displacement()) return std::nullopt;
   const RopePair::Nearest at = pair.advance(now, kLookedFor * least);
   const Real nearer = least - (pair.gap_at_start(at) + pair.gap_growth(at));
   if (!(nearer > kCloser * least)) return std::nullopt;
@@ -42,8 +42,8 @@ bool stop(const RopeContact& row, const Pass& pass, Tables& t) {
     mobility += weight[i] * weight[i] * t.particles.velocity[row.particle[i]].inverse_mass;
   if (!(mobility > Real(0))) return false;
   for (std::size_t i = 0; i < 4; ++i) {
-    state::VelocityLine& line = t.particles.velocity[row.particle[i]];
-    line.v += (weight[i] * line.inverse_mass * (pass.speed / mobility)) * pass.at.normal;
+    state::VelocityRecord& record = t.particles.velocity[row.particle[i]];
+    record.v += (weight[i] * record.inverse_mass * (pass.speed / mobility)) * pass.at.normal;
   }
   return true;
 }
@@ -68,20 +68,20 @@ void move_zones(RopeContactFinder& finder, Tables& t) {
     }
   };
   for_each_point([&](std::uint32_t p, RopeContactFinder::Zone& zone) {
-    const state::VelocityLine& line = t.particles.velocity[p];
-    const bool is_held = !(line.inverse_mass > Real(0));
+    const state::VelocityRecord& record = t.particles.velocity[p];
+    const bool is_held = !(record.inverse_mass > Real(0));
     const double mass = is_held ? 1 : static_cast<double>(t.particles.mass[p]);
     ++zone.count;
     if (zone.held) return;
     if (is_held) zone.momentum = {};
     zone.mass = is_held ? mass : zone.mass + mass;
-    zone.momentum += mass * vector_cast<double>(line.v);
+    zone.momentum += mass * vector_cast<double>(record.v);
     zone.held = is_held;
   });
   for_each_point([&](std::uint32_t p, const RopeContactFinder::Zone& zone) {
-    state::VelocityLine& line = t.particles.velocity[p];
-    if (zone.count > 1 && line.inverse_mass > Real(0))
-      line.v = vector_cast<Real>((1 / zone.mass) * zone.momentum);
+    state::VelocityRecord& record = t.particles.velocity[p];
+    if (zone.count > 1 && record.inverse_mass > Real(0))
+      record.v = vector_cast<Real>((1 / zone.mass) * zone.momentum);
   });
 }
 

@@ -158,7 +158,7 @@ Vec3 first_direction(const Convex& a, const Convex& b) {
 }
 
 /// Of the nearest places of the cores, which are apart.
-Distance between_places(const Convex& a, const Convex& b, DVec3 on_a, DVec3 on_b) {
+Distance between_points(const Convex& a, const Convex& b, DVec3 on_a, DVec3 on_b) {
   Distance result;
   result.normal = vector_cast<Real>(geometry::direction_or(on_b - on_a, DVec3{}));
   result.distance = static_cast<Real>(length(on_b - on_a)) - skin_of(a) - skin_of(b);
@@ -193,27 +193,27 @@ Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
     if (length_squared(nearer.w) >= size * size) break;
     nearest = nearer;
   }
-  return between_places(a, b, nearest.on_a, nearest.on_b);
+  return between_points(a, b, nearest.on_a, nearest.on_b);
 }
 
 /// The pair of places that are nearest of those offered.
-struct NearestPlaces {
+struct NearestPoints {
   DVec3 on_a = {};
   DVec3 on_b = {};
   double squared = std::numeric_limits<double>::infinity();
 
-  void offer(DVec3 place_a, DVec3 place_b) {
-    const double size = length_squared(place_b - place_a);
+  void offer(DVec3 candidate_a, DVec3 candidate_b) {
+    const double size = length_squared(candidate_b - candidate_a);
     if (!(size < squared)) return;
-    on_a = place_a;
-    on_b = place_b;
+    on_a = candidate_a;
+    on_b = candidate_b;
     squared = size;
   }
 };
 
 /// Where the lines of two segments are nearest, if that is inside both.
 void offer_inside(const geometry::Segment<double>& a, const geometry::Segment<double>& b,
-                  NearestPlaces& nearest) {
+                  NearestPoints& nearest) {
   const DVec3 along_a = a.end - a.start;
   const DVec3 along_b = b.end - b.start;
   const DVec3 normal = cross(along_a, along_b);
@@ -244,7 +244,7 @@ Distance between_triangle_and_capsule(const Convex& a, const Convex& b) {
   std::array<DVec3, 3> corners;
   for (std::size_t i = 0; i < 3; ++i) corners[i] = vector_cast<double>(a.corners[i]);
   const auto& [p, q, r] = corners;
-  NearestPlaces nearest;
+  NearestPoints nearest;
   for (const DVec3 end : {axis.start, axis.end})
     nearest.offer(geometry::closest_on_triangle(end, p, q, r).point, end);
   for (const DVec3 corner : corners)
@@ -255,7 +255,7 @@ Distance between_triangle_and_capsule(const Convex& a, const Convex& b) {
   const double touching = kRounding * std::max(length(nearest.on_a), length(nearest.on_b));
   if (!(nearest.squared > touching * touching) || passes_through(axis, corners))
     return {.distance = -skin_of(b), .cores_overlap = true};
-  return between_places(a, b, nearest.on_a, nearest.on_b);
+  return between_points(a, b, nearest.on_a, nearest.on_b);
 }
 
 }  // namespace

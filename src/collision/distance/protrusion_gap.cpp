@@ -21,13 +21,13 @@ class GapSearch {
 
   ProtrusionSearch run() {
     if (corners_.size() == 1) {
-      meet_point();
+      offer_point();
     } else if (corners_.size() == 3) {
-      meet_inside();
+      offer_inside();
     } else if (mesh_.protrusions.is_peak(protrusion_)) {
-      meet_peak();
+      offer_peak();
     } else {
-      meet_ridge();
+      offer_ridge();
     }
     return result_;
   }
@@ -48,7 +48,7 @@ class GapSearch {
   }
 
   /// `across` is a direction across both, of any sign, for places that are too near to tell one.
-  void meet(Vec3 on_element, Vec3 on_mesh, Vec3 across, std::array<Real, 3> weight) {
+  void offer(Vec3 on_element, Vec3 on_mesh, Vec3 across, std::array<Real, 3> weight) {
     const Vec3 apart = on_element - on_mesh;
     const Real distance = length(apart);
     result_.clearance = distance;
@@ -62,31 +62,31 @@ class GapSearch {
     }
   }
 
-  void meet_point() {
+  void offer_point() {
     const auto found = geometry::closest_on_segment(corners_[0], start_, vertex(1));
     const bool is_peak = mesh_.protrusions.is_peak(protrusion_);
     result_.clearance = std::sqrt(found.distance_squared);
     const bool is_between = found.fraction > Real(0) && found.fraction < Real(1);
-    if (is_peak || is_between) meet(corners_[0], found.point, {}, {Real(1), Real(0), Real(0)});
+    if (is_peak || is_between) offer(corners_[0], found.point, {}, {Real(1), Real(0), Real(0)});
   }
 
-  void meet_inside() {
+  void offer_inside() {
     const auto [a, b, c] = std::array{corners_[0], corners_[1], corners_[2]};
     const auto found = geometry::closest_on_triangle(start_, a, b, c);
     const auto [x, y, z] = found.weights;
     result_.clearance = std::sqrt(found.distance_squared);
-    if (x > Real(0) && y > Real(0) && z > Real(0)) meet(found.point, start_, cross(b - a, c - a), {x, y, z});
+    if (x > Real(0) && y > Real(0) && z > Real(0)) offer(found.point, start_, cross(b - a, c - a), {x, y, z});
   }
 
-  void meet_peak() {
+  void offer_peak() {
     const auto found = geometry::closest_on_segment(start_, corners_[0], corners_[1]);
     const Real share = found.fraction;
     result_.clearance = std::sqrt(found.distance_squared);
-    if (share > Real(0) && share < Real(1)) meet(found.point, start_, {}, {Real(1) - share, share, Real(0)});
+    if (share > Real(0) && share < Real(1)) offer(found.point, start_, {}, {Real(1) - share, share, Real(0)});
   }
 
   /// Where the two cross; elsewhere peaks and points meet.
-  void meet_ridge() {
+  void offer_ridge() {
     const Vec3 along = corners_[1] - corners_[0];
     const Vec3 ridge = vertex(1) - start_;
     const Vec3 offset = corners_[0] - start_;
@@ -102,8 +102,8 @@ class GapSearch {
       return;
     }
     const Real share = on_element / whole;
-    meet(corners_[0] + share * along, start_ + (on_ridge / whole) * ridge, across,
-         {Real(1) - share, share, Real(0)});
+    offer(corners_[0] + share * along, start_ + (on_ridge / whole) * ridge, across,
+          {Real(1) - share, share, Real(0)});
   }
 
   const state::Mesh& mesh_;

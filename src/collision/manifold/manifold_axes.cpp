@@ -48,16 +48,16 @@ Nearest improve_axis(const Convex& a, const Convex& b, const Distance& apart, Re
   return {apart.point_a, apart.point_b, true};
 }
 
-void complete_points(const Nearest& nearest, Real tolerance, Meeting& meeting) {
-  const auto begin = meeting.point.begin();
-  const auto end = std::remove_if(begin, begin + meeting.count, [&](const MeetingPoint& p) {
-    return p.separation < meeting.separation - tolerance;
+void complete_points(const Nearest& nearest, Real tolerance, ContactResult& result) {
+  const auto begin = result.point.begin();
+  const auto end = std::remove_if(begin, begin + result.count, [&](const ContactResultPoint& p) {
+    return p.separation < result.separation - tolerance;
   });
-  meeting.count = static_cast<int>(end - begin);
-  if (deepest_of(meeting) <= meeting.separation + tolerance || !nearest.known) return;
+  result.count = static_cast<int>(end - begin);
+  if (deepest_of(result) <= result.separation + tolerance || !nearest.known) return;
   const Vec3 middle = Real(0.5) * (nearest.on_a + nearest.on_b);
-  const Vec3 half = Real(0.5) * meeting.separation * meeting.normal;
-  meeting.add({middle - half, middle + half, meeting.separation, kNearest});
+  const Vec3 half = Real(0.5) * result.separation * result.normal;
+  result.add({middle - half, middle + half, result.separation, kNearest});
 }
 
 }  // namespace hooke::collision

@@ -50,6 +50,6 @@ Nearest improve_axis(const Convex& a, const Convex& b, const Distance& apart, Re
 
 /// Drops points that are deeper than the shapes are (beside the end of a feature), and adds `nearest` if none
 /// is as deep as the meeting's separation says.
-void complete_points(const Nearest& nearest, Real tolerance, Meeting& meeting);
+void complete_points(const Nearest& nearest, Real tolerance, ContactResult& result);
 
 }  // namespace hooke::collision

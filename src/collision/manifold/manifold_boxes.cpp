@@ -139,8 +139,8 @@ CutPolygon face_over(const FacePlane& plane, const Convex& box, Vec3 from_plane)
 }
 
 /// A face of `reference` against the face of `other` that looks at it. `on_a`: the reference is A.
-void meet_faces(const Convex& reference, int axis, const Convex& other, bool on_a, Meeting& meeting) {
-  const FacePlane plane(reference, axis, on_a ? meeting.normal : -meeting.normal);
+void collide_faces(const Convex& reference, int axis, const Convex& other, bool on_a, ContactResult& result) {
+  const FacePlane plane(reference, axis, on_a ? result.normal : -result.normal);
   CutPolygon polygon = face_over(plane, other, other.center - reference.center);
   const Flat corners[4] = {{-plane.half_u, -plane.half_v},
                            {plane.half_u, -plane.half_v},
@@ -153,7 +153,7 @@ void meet_faces(const Convex& reference, int axis, const Convex& other, bool on_
     const Vec3 foot = reference.center + cut.at.u * plane.u + cut.at.v * plane.v;
     const Vec3 on_face = foot + plane.half_normal * plane.normal;
     const Vec3 on_other = foot + cut.height * plane.normal;
-    meeting.add(
+    result.add(
         {on_a ? on_face : on_other, on_a ? on_other : on_face, cut.height - plane.half_normal, cut.key});
   }
 }
@@ -170,43 +170,43 @@ Feature edge_along(const Convex& box, int i, Vec3 n) {
   return f;
 }
 
-void meet_edges(const Convex& a, const Convex& b, int edge, Meeting& meeting) {
-  const Feature edge_a = edge_along(a, edge / 3, meeting.normal);
-  const Feature edge_b = edge_along(b, edge % 3, -meeting.normal);
-  overlap_features(edge_a, edge_b, Real(0), Real(0), meeting);
+void collide_edges(const Convex& a, const Convex& b, int edge, ContactResult& result) {
+  const Feature edge_a = edge_along(a, edge / 3, result.normal);
+  const Feature edge_b = edge_along(b, edge % 3, -result.normal);
+  overlap_features(edge_a, edge_b, Real(0), Real(0), result);
   // One point, where the edges cross.
   const auto key_of = [](const Feature& f) {
     return static_cast<std::uint32_t>(f.vertex[0]) << 3 | f.vertex[1];
   };
-  if (meeting.count > 0) meeting.point[0].key = kCrossing | 1u << 29 | key_of(edge_a) << 6 | key_of(edge_b);
+  if (result.count > 0) result.point[0].key = kCrossing | 1u << 29 | key_of(edge_a) << 6 | key_of(edge_b);
 }
 
 }  // namespace
 
-void meet_boxes(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_boxes(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   const BoxPair pair(a, b);
   Choice choice = {query.last_axis, preference(kKeepAxis, a, b)};
   offer_faces(pair, choice);
-  meeting.separation = choice.separation;
-  meeting.axis = choice.code;
+  result.separation = choice.separation;
+  result.axis = choice.code;
   if (choice.separation > query.margin) return;
   offer_edges(pair, preference(kPreferFaces, a, b), choice);
-  meeting.separation = choice.separation;
-  meeting.axis = choice.code;
+  result.separation = choice.separation;
+  result.axis = choice.code;
   if (choice.separation > query.margin) return;
   const int axis = static_cast<int>(choice.code) - 1;
   const Vec3 n = axis < 3   ? axis_of(a, axis)
                  : axis < 6 ? axis_of(b, axis - 3)
                             : normalize(cross(axis_of(a, (axis - 6) / 3), axis_of(b, (axis - 6) % 3)));
-  meeting.normal = dot(n, b.center - a.center) < Real(0) ? -n : n;
-  if (axis >= 6) return meet_edges(a, b, axis - 6, meeting);
-  if (axis < 3) meet_faces(a, axis, b, true, meeting);
-  if (axis >= 3) meet_faces(b, axis - 3, a, false, meeting);
-  if (meeting.count > 0 || meeting.separation > Real(0)) return;
+  result.normal = dot(n, b.center - a.center) < Real(0) ? -n : n;
+  if (axis >= 6) return collide_edges(a, b, axis - 6, result);
+  if (axis < 3) collide_faces(a, axis, b, true, result);
+  if (axis >= 3) collide_faces(b, axis - 3, a, false, result);
+  if (result.count > 0 || result.separation > Real(0)) return;
   // Two faces that miss each other although the boxes overlap: a corner is inside.
-  const Vec3 on_a = support_of(a, meeting.normal);
-  const Vec3 on_b = support_of(b, -meeting.normal);
-  complete_points({axis < 3 ? on_b : on_a, axis < 3 ? on_b : on_a, true}, Real(0), meeting);
+  const Vec3 on_a = support_of(a, result.normal);
+  const Vec3 on_b = support_of(b, -result.normal);
+  complete_points({axis < 3 ? on_b : on_a, axis < 3 ? on_b : on_a, true}, Real(0), result);
 }
 
 }  // namespace hooke::collision

@@ -115,15 +115,15 @@ void offer_shafts(BestAxis& best) {
 
 }  // namespace
 
-void meet_convex(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_convex(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   BestAxis best = {a, b, query.last_axis, preference(kKeepAxis, a, b)};
   best.offer(geometry::direction_or(middle_of(b) - middle_of(a), {Real(0), Real(1), Real(0)}), kFreeAxis);
   offer_faces(a, b, kAxisOfA, best);
   offer_faces(b, a, kAxisOfB, best);
   offer_shafts(best);
   Axis axis = best.axis;
-  meeting.separation = axis.separation;
-  meeting.axis = axis.code;
+  result.separation = axis.separation;
+  result.axis = axis.code;
   if (axis.separation > query.margin) return;
   const Real tolerance = axis_tolerance(a, b);
   Nearest nearest = improve_axis(a, b, tolerance, axis);
@@ -138,12 +138,12 @@ void meet_convex(const Convex& a, const Convex& b, const MeetingQuery& query, Me
       nearest = other;
     }
   }
-  meeting.normal = axis.n;
-  meeting.separation = axis.separation;
-  meeting.axis = axis.code;
+  result.normal = axis.n;
+  result.separation = axis.separation;
+  result.axis = axis.code;
   if (axis.separation > query.margin) return;
-  overlap_features(feature_along(a, axis.n), feature_along(b, -axis.n), skin_of(a), skin_of(b), meeting);
-  complete_points(nearest, Real(4) * tolerance, meeting);
+  overlap_features(feature_along(a, axis.n), feature_along(b, -axis.n), skin_of(a), skin_of(b), result);
+  complete_points(nearest, Real(4) * tolerance, result);
 }
 
 }  // namespace hooke::collision

@@ -175,12 +175,12 @@ struct Collector {
   const Seen& a;
   const Seen& b;
   Real skin_a, skin_b;
-  Meeting& meeting;
+  ContactResult& result;
 
   void add(Flat p, std::uint32_t key) const {
     const Real height_a = a.height_at(p) + skin_a;
     const Real height_b = b.height_at(p) - skin_b;
-    meeting.add({projection.lift(p, height_a), projection.lift(p, height_b), height_b - height_a, key});
+    result.add({projection.lift(p, height_a), projection.lift(p, height_b), height_b - height_a, key});
   }
 };
 
@@ -244,10 +244,10 @@ void overlap_segments(const Seen& a, const Seen& b, const Collector& out) {
   const Flat along_a = a.at[1] - a.at[0];
   const Flat along_b = b.at[1] - b.at[0];
   const Real size_a = dot(along_a, along_a);
-  const Real turn = cross(along_a, along_b);
+  const Real cross_product = cross(along_a, along_b);
   // Up to about a degree the sides lie along each other.
-  if (turn * turn > Real(4e-4) * size_a * dot(along_b, along_b)) {
-    const Real t = cross(b.at[0] - a.at[0], along_b) / turn;
+  if (cross_product * cross_product > Real(4e-4) * size_a * dot(along_b, along_b)) {
+    const Real t = cross(b.at[0] - a.at[0], along_b) / cross_product;
     out.add(mix(a.at[0], a.at[1], std::clamp(t, Real(0), Real(1))), kCrossing);
     return;
   }
@@ -289,9 +289,9 @@ void add_rim_crossings(const Seen& disc, Flat p, Flat q, std::uint32_t key, cons
   const Real half = dot(d, f);
   const Real root = half * half - size * (dot(f, f) - radius * radius);
   if (!(root > Real(0)) || !(size > Real(0))) return;
-  const Real way = std::sqrt(root);
-  const Real first = (-half - way) / size;
-  const Real last = (-half + way) / size;
+  const Real half_chord = std::sqrt(root);
+  const Real first = (-half - half_chord) / size;
+  const Real last = (-half + half_chord) / size;
   if (first >= Real(0) && first <= Real(1)) out.add(mix(p, q, first), key);
   if (last >= Real(0) && last <= Real(1)) out.add(mix(p, q, last), key | 1u << 15);
 }
@@ -420,12 +420,12 @@ Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine) {
   return point_feature(convex.center, 0);
 }
 
-void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, Meeting& meeting) {
+void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, ContactResult& result) {
   using Kind = Feature::Kind;
-  const Projection projection(meeting.normal);
+  const Projection projection(result.normal);
   const Seen seen_a = projection.see(a);
   const Seen seen_b = projection.see(b);
-  const Collector out = {projection, seen_a, seen_b, skin_a, skin_b, meeting};
+  const Collector out = {projection, seen_a, seen_b, skin_a, skin_b, result};
   // The higher kind clips the lower one.
   const bool a_first = a.kind >= b.kind;
   const Seen& high = a_first ? seen_a : seen_b;

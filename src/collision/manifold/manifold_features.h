@@ -53,6 +53,6 @@ inline constexpr Real kSteep = Real(0.2);  ///< Where it is a face of the other 
 /// Adds the points where the two features lie over each other as seen along meeting.normal, from A to B: the
 /// corners of what their projections have in common. None for points and edges that miss each other, and for
 /// a point with anything but a face. `skin_a`, `skin_b` [m].
-void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, Meeting& meeting);
+void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, ContactResult& result);
 
 }  // namespace hooke::collision

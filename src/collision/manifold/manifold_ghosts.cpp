@@ -8,7 +8,7 @@ namespace hooke::collision {
 namespace {
 
 /// Heights below this are rounding [m].
-constexpr Real kRoundingOfPlace = Real(2e-6);
+constexpr Real kPositionRounding = Real(2e-6);
 
 /// How far the piece stands out over a plane [m].
 Real height_over_plane(const Convex& piece, Vec3 place, Vec3 normal) {
@@ -24,8 +24,8 @@ bool covers(const SurfaceContact& other, const SurfaceContact& contact, Pieces p
   const Real other_height = height_over_plane(other.piece, contact.place, contact.normal);
   if (!(other_height <= kFlush)) return true;
   if (pieces == Pieces::kOfOneMesh) {
-    if (Real(2) * std::max(height, kRoundingOfPlace) < other_height) return true;
-    if (Real(2) * std::max(other_height, kRoundingOfPlace) < height) return false;
+    if (Real(2) * std::max(height, kPositionRounding) < other_height) return true;
+    if (Real(2) * std::max(other_height, kPositionRounding) < height) return false;
   }
   if (other.separation != contact.separation) return other.separation > contact.separation;
   return other.index < contact.index;

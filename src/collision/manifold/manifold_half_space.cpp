@@ -15,10 +15,10 @@ struct Plane {
 };
 
 /// A polyhedron rests on its lowest corners, whatever faces and edges they belong to.
-void add_corners(const Plane& plane, const Convex& b, Real margin, Meeting& meeting) {
+void add_corners(const Plane& plane, const Convex& b, Real margin, ContactResult& result) {
   const auto add = [&](Vec3 p, std::uint32_t vertex) {
     const Real height = plane.height_of(p);
-    if (height <= margin) meeting.add({p - height * plane.normal, p, height, kVertexOfB | vertex});
+    if (height <= margin) result.add({p - height * plane.normal, p, height, kVertexOfB | vertex});
   };
   if (b.shape.kind == ShapeKind::kBox) {
     for (const int face : {0, 1}) {
@@ -35,20 +35,21 @@ void add_corners(const Plane& plane, const Convex& b, Real margin, Meeting& meet
 
 }  // namespace
 
-void meet_half_space(Vec3 origin, Vec3 normal, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_half_space(Vec3 origin, Vec3 normal, const Convex& b, const ContactQuery& query,
+                        ContactResult& result) {
   const Plane plane = {origin, normal};
   const Real skin = skin_of(b);
-  meeting.normal = normal;
-  meeting.separation = plane.height_of(support_of(b, -normal)) - skin;
-  if (meeting.separation > query.margin) return;
+  result.normal = normal;
+  result.separation = plane.height_of(support_of(b, -normal)) - skin;
+  if (result.separation > query.margin) return;
   if (b.shape.kind == ShapeKind::kBox || b.shape.kind == ShapeKind::kHull) {
     // Of a hull with very many corners so near, the lowest ones.
     Real reach = query.margin;
-    add_corners(plane, b, reach, meeting);
-    while (meeting.count == Meeting::kMaxPoints && reach > meeting.separation + Real(1e-4)) {
-      reach = Real(0.5) * (reach + meeting.separation);
-      meeting.count = 0;
-      add_corners(plane, b, reach, meeting);
+    add_corners(plane, b, reach, result);
+    while (result.count == ContactResult::kMaxPoints && reach > result.separation + Real(1e-4)) {
+      reach = Real(0.5) * (reach + result.separation);
+      result.count = 0;
+      add_corners(plane, b, reach, result);
     }
     return;
   }
@@ -56,7 +57,7 @@ void meet_half_space(Vec3 origin, Vec3 normal, const Convex& b, const MeetingQue
   for (int i = 0; i < f.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Real height = plane.height_of(f.point[k]);
-    meeting.add(
+    result.add(
         {f.point[k] - height * normal, f.point[k] - skin * normal, height - skin, kVertexOfB | f.vertex[k]});
   }
 }

@@ -67,12 +67,12 @@ void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, Hul
 }
 
 /// An edge in place, with the normals of its faces.
-struct PlacedEdge {
+struct WorldEdge {
   Vec3 start, along, normal_a, normal_b;
   std::uint32_t index;
 };
 
-PlacedEdge place_edge(const Convex& c, std::size_t i) {
+WorldEdge world_edge(const Convex& c, std::size_t i) {
   const ConvexHull::Edge& e = c.hull->edges[i];
   const Vec3 start = vertex_of(c, e.vertex_a);
   return {start, vertex_of(c, e.vertex_b) - start, c.axes * c.hull->faces[e.face_a].normal,
@@ -83,17 +83,17 @@ PlacedEdge place_edge(const Convex& c, std::size_t i) {
 /// have few.
 class EdgeList {
  public:
-  void add(const PlacedEdge& edge) {
+  void add(const WorldEdge& edge) {
     HOOKE_ASSERT(count_ < kMost);
-    ::new (memory_ + count_++ * sizeof(PlacedEdge)) PlacedEdge(edge);
+    ::new (memory_ + count_++ * sizeof(WorldEdge)) WorldEdge(edge);
   }
-  [[nodiscard]] std::span<const PlacedEdge> edges() const {
-    return {std::launder(reinterpret_cast<const PlacedEdge*>(memory_)), count_};
+  [[nodiscard]] std::span<const WorldEdge> edges() const {
+    return {std::launder(reinterpret_cast<const WorldEdge*>(memory_)), count_};
   }
 
  private:
   static constexpr std::size_t kMost = ConvexHull::kMaxEdges;
-  alignas(PlacedEdge) std::byte memory_[kMost * sizeof(PlacedEdge)];
+  alignas(WorldEdge) std::byte memory_[kMost * sizeof(WorldEdge)];
   std::size_t count_ = 0;
 };
 
@@ -104,7 +104,7 @@ struct EdgeLanes {
   using Vectors = std::array<Lanes, 3>;
   Vectors along, normal_a, normal_b;
 
-  void set(std::size_t lane, const PlacedEdge& edge) {
+  void set(std::size_t lane, const WorldEdge& edge) {
     const auto put = [lane](Vec3 v, Vectors& to) {
       to[0][lane] = v.x;
       to[1][lane] = v.y;
@@ -118,7 +118,7 @@ struct EdgeLanes {
   /// Whether the normals of edge p of A and the opposite ones of edges of B cross on the sphere of
   /// directions: only then the two edges span a face of the difference of the hulls (Gregorius, 2013, The
   /// separating axis test between convex polyhedra). Of each lane negative where they do.
-  void cross_arcs(const PlacedEdge& p, Lanes& result) const {
+  void cross_arcs(const WorldEdge& p, Lanes& result) const {
     for (std::size_t i = 0; i < kLanes; ++i) {
       const auto dot_lane = [i](const Vectors& v, Vec3 w) {
         return v[0][i] * w.x + v[1][i] * w.y + v[2][i] * w.z;
@@ -140,7 +140,7 @@ void find_edges_toward(const Convex& own, const Convex& other, Real least, EdgeL
   const Vec3 middle = transpose(own.axes) * (middle_of(other) - own.center);
   const Real reach = other.hull->inner_radius + least;
   if (reach < Real(0)) {
-    for (std::size_t i = 0; i < hull.edges.size(); ++i) edges.add(place_edge(own, i));
+    for (std::size_t i = 0; i < hull.edges.size(); ++i) edges.add(world_edge(own, i));
     return;
   }
   std::array<bool, ConvexHull::kMaxFaces> is_in_front;
@@ -151,11 +151,11 @@ void find_edges_toward(const Convex& own, const Convex& other, Real least, EdgeL
     if (!is_in_front[e.face_a] && !is_in_front[e.face_b]) continue;
     const Vec3 d = middle - hull.vertices[e.vertex_a];
     const Real along = dot(d, e.direction);
-    if (length_squared(d) - along * along > reach * reach) edges.add(place_edge(own, i));
+    if (length_squared(d) - along * along > reach * reach) edges.add(world_edge(own, i));
   }
 }
 
-bool arcs_cross(const PlacedEdge& p, const PlacedEdge& q) {
+bool arcs_cross(const WorldEdge& p, const WorldEdge& q) {
   EdgeLanes lanes = {};
   EdgeLanes::Lanes crossed;
   lanes.set(0, q);
@@ -163,7 +163,7 @@ bool arcs_cross(const PlacedEdge& p, const PlacedEdge& q) {
   return crossed[0] < Real(0);
 }
 
-void offer_edge_pair(const PlacedEdge& p, const PlacedEdge& q, Vec3 middle, HullPair& pair) {
+void offer_edge_pair(const WorldEdge& p, const WorldEdge& q, Vec3 middle, HullPair& pair) {
   const Vec3 across = cross(p.along, q.along);
   const Real squared = length_squared(across);
   if (squared < kParallelEdges * length_squared(p.along) * length_squared(q.along)) return;
@@ -181,13 +181,13 @@ void offer_edges(HullPair& pair) {
   EdgeList list_b;
   find_edges_toward(pair.a, pair.b, least, list_a);
   find_edges_toward(pair.b, pair.a, least, list_b);
-  const std::span<const PlacedEdge> edges_b = list_b.edges();
+  const std::span<const WorldEdge> edges_b = list_b.edges();
   std::array<EdgeLanes, (ConvexHull::kMaxEdges + kLanes - 1) / kLanes> lanes;
   const std::size_t room = (edges_b.size() + kLanes - 1) / kLanes * kLanes;
   for (std::size_t i = 0; i < room; ++i)
     lanes[i / kLanes].set(i % kLanes, edges_b[std::min(i, edges_b.size() - 1)]);
   const Vec3 middle = middle_of(pair.a);
-  for (const PlacedEdge& p : list_a.edges()) {
+  for (const WorldEdge& p : list_a.edges()) {
     for (std::size_t first = 0; first < edges_b.size(); first += kLanes) {
       EdgeLanes::Lanes crossed;
       lanes[first / kLanes].cross_arcs(p, crossed);
@@ -209,8 +209,8 @@ void offer_last(Real margin, HullPair& pair) {
     const std::size_t edge_a = code >> kEdgeBits & ((1u << kEdgeBits) - 1);
     const std::size_t edge_b = code & ((1u << kEdgeBits) - 1);
     if (edge_a >= pair.a.hull->edges.size() || edge_b >= pair.b.hull->edges.size()) return;
-    const PlacedEdge p = place_edge(pair.a, edge_a);
-    const PlacedEdge q = place_edge(pair.b, edge_b);
+    const WorldEdge p = world_edge(pair.a, edge_a);
+    const WorldEdge q = world_edge(pair.b, edge_b);
     const Vec3 unit = normalize(cross(p.along, q.along));
     const Vec3 n = dot(unit, p.start - middle_of(pair.a)) < Real(0) ? -unit : unit;
     const Real separation = dot(n, farthest_vertex(pair.b, -n) - farthest_vertex(pair.a, n));
@@ -233,47 +233,46 @@ Feature edge_feature(const Convex& c, std::size_t index) {
 }
 
 /// What the best axis says, and the points of its features.
-void add_points(const HullPair& pair, Meeting& meeting) {
+void add_points(const HullPair& pair, ContactResult& result) {
   const std::uint32_t code = pair.best.code;
-  meeting.normal = pair.best.n;
-  meeting.separation = pair.best.separation;
-  meeting.axis = code;
-  meeting.count = 0;
+  result.normal = pair.best.n;
+  result.separation = pair.best.separation;
+  result.axis = code;
+  result.count = 0;
   if ((code & kAxisOfEdges) != 0) {
     const std::uint32_t mask = (1u << kEdgeBits) - 1;
     overlap_features(edge_feature(pair.a, code >> kEdgeBits & mask), edge_feature(pair.b, code & mask),
-                     Real(0), Real(0), meeting);
-    if (meeting.count > 0) meeting.point[0].key = kCrossing | (code & (kAxisOfEdges - 1));
+                     Real(0), Real(0), result);
+    if (result.count > 0) result.point[0].key = kCrossing | (code & (kAxisOfEdges - 1));
     return;
   }
   const std::size_t face = code & 0xFFFF;
   const bool of_a = (code & kAxisOfA) != 0;
-  const Feature a = of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, meeting.normal, kSteep);
-  const Feature b = of_a ? feature_of_hull(pair.b, -meeting.normal, kSteep) : face_of_hull(pair.b, face);
-  overlap_features(a, b, Real(0), Real(0), meeting);
+  const Feature a = of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, result.normal, kSteep);
+  const Feature b = of_a ? feature_of_hull(pair.b, -result.normal, kSteep) : face_of_hull(pair.b, face);
+  overlap_features(a, b, Real(0), Real(0), result);
 }
 
 /// Whether the hulls are apart, or a point is as deep as the axis says, but for `tolerance`.
-bool is_complete(const Meeting& meeting, Real tolerance) {
-  return meeting.separation > Real(0) || deepest_of(meeting) <= meeting.separation + tolerance;
+bool is_complete(const ContactResult& result, Real tolerance) {
+  return result.separation > Real(0) || deepest_of(result) <= result.separation + tolerance;
 }
 
 /// A corner that is inside, where no feature shows it.
-void add_corner(const HullPair& pair, Meeting& meeting) {
+void add_corner(const HullPair& pair, ContactResult& result) {
   const bool of_a = (pair.best.code & kAxisOfB) == 0;
-  const Vec3 corner =
-      of_a ? farthest_vertex(pair.b, -meeting.normal) : farthest_vertex(pair.a, meeting.normal);
-  complete_points({corner, corner, true}, pair.prefer_faces, meeting);
+  const Vec3 corner = of_a ? farthest_vertex(pair.b, -result.normal) : farthest_vertex(pair.a, result.normal);
+  complete_points({corner, corner, true}, pair.prefer_faces, result);
 }
 
 }  // namespace
 
-void meet_hulls(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_hulls(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   HullPair pair = {a, b, query.last_axis, preference(kKeepAxis, a, b), preference(kPreferFaces, a, b)};
   offer_last(query.margin, pair);
   const auto apart = [&] {
-    meeting.separation = pair.best.separation;
-    meeting.axis = pair.best.code;
+    result.separation = pair.best.separation;
+    result.axis = pair.best.code;
     return pair.best.separation > query.margin;
   };
   if (apart()) return;
@@ -282,17 +281,17 @@ void meet_hulls(const Convex& a, const Convex& b, const MeetingQuery& query, Mee
   if (apart()) return;
   offer_edges(pair);
   if (apart()) return;
-  add_points(pair, meeting);
+  add_points(pair, result);
   const Real tolerance = pair.prefer_faces;
-  if (is_complete(meeting, tolerance)) return;
+  if (is_complete(result, tolerance)) return;
   // The features of an axis that was kept or preferred need not lie over each other where the hulls are
   // deepest; those of the best do.
   HullPair best = {a, b, 0, Real(0), Real(0)};
   offer_faces(a, b, kAxisOfA, best);
   offer_faces(b, a, kAxisOfB, best);
   offer_edges(best);
-  add_points(best, meeting);
-  if (!is_complete(meeting, tolerance)) add_corner(best, meeting);
+  add_points(best, result);
+  if (!is_complete(result, tolerance)) add_corner(best, result);
 }
 
 }  // namespace hooke::collision

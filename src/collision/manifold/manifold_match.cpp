@@ -11,8 +11,8 @@ namespace {
 using state::ContactPoint;
 using state::Manifold;
 
-constexpr Real kSamePlace = Real(0.02);    // [m]
-constexpr Real kSameNormal = Real(0.866);  // cosine of 30 degrees
+constexpr Real kSamePosition = Real(0.02);  // [m]
+constexpr Real kSameNormal = Real(0.866);   // cosine of 30 degrees
 
 /// Impulses by key; the points that found none are left to match_by_place. Bit i: point i of the old
 /// manifold has been used, or of the new one has its impulse.
@@ -28,7 +28,7 @@ Real distance_squared(const ContactPoint& p, const ContactPoint& q) {
 /// Two edges that are nearly parallel cross now near one end, now near the other, and keep their key.
 bool is_same_point(const ContactPoint& p, const ContactPoint& q) {
   const bool crossing = (p.key & kNearest) == kCrossing;
-  return p.key == q.key && (!crossing || distance_squared(p, q) < kSamePlace * kSamePlace);
+  return p.key == q.key && (!crossing || distance_squared(p, q) < kSamePosition * kSamePosition);
 }
 
 Matched match_by_key(const Manifold& old, Manifold& manifold) {
@@ -46,9 +46,9 @@ Matched match_by_key(const Manifold& old, Manifold& manifold) {
 }
 
 /// A clip of aligned faces calls the same place now a vertex, now a crossing: the place decides.
-void match_by_place(const Manifold& old, Matched matched, Manifold& manifold) {
+void match_by_position(const Manifold& old, Matched matched, Manifold& manifold) {
   for (unsigned round = 0; round < static_cast<unsigned>(manifold.point_count); ++round) {
-    Real nearest = kSamePlace * kSamePlace;
+    Real nearest = kSamePosition * kSamePosition;
     unsigned best_new = Manifold::kMaxPoints;
     unsigned best_old = Manifold::kMaxPoints;
     for (unsigned i = 0; i < static_cast<unsigned>(manifold.point_count); ++i) {
@@ -70,16 +70,16 @@ void match_by_place(const Manifold& old, Matched matched, Manifold& manifold) {
 
 }  // namespace
 
-void make_points(Meeting& meeting, Real margin, const MeetingFrame& frame, const Manifold* old,
+void make_points(ContactResult& result, Real margin, const ContactFrame& frame, const Manifold* old,
                  Manifold& manifold) {
   std::array<std::uint32_t, Manifold::kMaxPoints> keys = {};
   const std::size_t key_count = old != nullptr ? static_cast<std::size_t>(old->point_count) : 0;
   for (std::size_t i = 0; i < key_count; ++i) keys[i] = old->point[i].key;
-  reduce_points(meeting, margin, std::span(keys.data(), key_count));
-  manifold.normal = meeting.normal;
-  manifold.point_count = meeting.count;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(meeting.count); ++i) {
-    const MeetingPoint& p = meeting.point[i];
+  reduce_points(result, margin, std::span(keys.data(), key_count));
+  manifold.normal = result.normal;
+  manifold.point_count = result.count;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(result.count); ++i) {
+    const ContactResultPoint& p = result.point[i];
     manifold.point[i] = {.anchor_a = p.on_a - frame.center_a,
                          .anchor_b = p.on_b - frame.center_b,
                          .separation = p.separation,
@@ -87,7 +87,7 @@ void make_points(Meeting& meeting, Real margin, const MeetingFrame& frame, const
   }
   if (old == nullptr || !(dot(old->normal, manifold.normal) > kSameNormal)) return;
   const Matched matched = match_by_key(*old, manifold);
-  if (matched.new_points != (1u << manifold.point_count) - 1) match_by_place(*old, matched, manifold);
+  if (matched.new_points != (1u << manifold.point_count) - 1) match_by_position(*old, matched, manifold);
   const Vec3 n = manifold.normal;
   manifold.friction_impulse = old->friction_impulse - dot(old->friction_impulse, n) * n;
   manifold.twist_impulse = old->twist_impulse;

@@ -34,17 +34,17 @@ Vec3 front_of(const Convex& triangle) {
 }
 
 /// Points of the shape over the face.
-void meet_face(const Convex& triangle, const Convex& b, Meeting& meeting) {
+void collide_face(const Convex& triangle, const Convex& b, ContactResult& result) {
   Feature face;
   face.kind = Feature::Kind::kPolygon;
-  face.normal = meeting.normal;
+  face.normal = result.normal;
   for (std::uint32_t i = 0; i < 3; ++i) face.add(triangle.corners[i], i, i);
-  overlap_features(face, feature_along(b, -meeting.normal, kSteep), Real(0), skin_of(b), meeting);
+  overlap_features(face, feature_along(b, -result.normal, kSteep), Real(0), skin_of(b), result);
 }
 
 /// A ball touches a triangle at the place nearest to its center, along the line between the two: along any
 /// other its spin would seem to bring them together.
-bool meet_ball(const Convex& triangle, const Convex& ball, Real margin, Meeting& meeting) {
+bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, ContactResult& result) {
   constexpr Real kFlat = Real(1e-4);  // [rad]
   const auto& [p, q, r] = triangle.corners;
   const Vec3 front = front_of(triangle);
@@ -56,13 +56,13 @@ bool meet_ball(const Convex& triangle, const Convex& ball, Real margin, Meeting&
   const bool over_face = length(out - height * front) <= kFlat * height;
   const Real distance = over_face ? height : length(out);
   if (!(distance - skin_of(ball) <= margin)) return false;
-  meeting.count = 0;
-  meeting.normal = over_face ? front : normalize(out);
-  meeting.separation = distance - skin_of(ball);
-  meeting.add({.on_a = place,
-               .on_b = ball.center - skin_of(ball) * meeting.normal,
-               .separation = meeting.separation,
-               .key = kVertexOfB});
+  result.count = 0;
+  result.normal = over_face ? front : normalize(out);
+  result.separation = distance - skin_of(ball);
+  result.add({.on_a = place,
+              .on_b = ball.center - skin_of(ball) * result.normal,
+              .separation = result.separation,
+              .key = kVertexOfB});
   return true;
 }
 
@@ -88,37 +88,36 @@ bool is_apart(const Convex& triangle, const Convex& b, const MeshReach& reach) {
 }
 
 /// False if they are too far apart to meet, or the shape is behind the triangle.
-bool meet_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, const MeshReach& reach,
-                   std::vector<std::uint32_t>& near, Meeting& meeting) {
+bool collide_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, const MeshReach& reach,
+                      std::vector<std::uint32_t>& near, ContactResult& result) {
   const Real margin = reach.margin();
   const Convex triangle = a.triangle(index);
-  if (b.shape.kind == ShapeKind::kSphere) return meet_ball(triangle, b, margin, meeting);
+  if (b.shape.kind == ShapeKind::kSphere) return collide_ball(triangle, b, margin, result);
   const Vec3 front = front_of(triangle);
-  meeting.count = 0;
-  meeting.normal = front;
-  meeting.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
+  result.count = 0;
+  result.normal = front;
+  result.separation = dot(front, support_of(b, -front) - triangle.corners[0]) - skin_of(b);
   const bool in_front = dot(front, middle_of(b) - triangle.corners[0]) > Real(0);
-  if (!in_front || !(meeting.separation <= reach.along(front)) || is_apart(triangle, b, reach)) return false;
+  if (!in_front || !(result.separation <= reach.along(front)) || is_apart(triangle, b, reach)) return false;
   const Real tolerance = axis_tolerance(triangle, b);
-  meet_face(triangle, b, meeting);
-  if (deepest_of(meeting) <= meeting.separation + Real(4) * tolerance) return true;
+  collide_face(triangle, b, result);
+  if (deepest_of(result) <= result.separation + Real(4) * tolerance) return true;
   // The shape is deepest beside the face.
-  Axis axis = {front, meeting.separation, kAxisOfA};
+  Axis axis = {front, result.separation, kAxisOfA};
   const Distance apart = distance_between(triangle, b, margin);
   if (apart.distance > margin) return false;
   const Nearest nearest = improve_axis(triangle, b, apart, tolerance, axis);
   if (!(axis.separation <= margin) || !(dot(axis.n, front) > Real(0))) return false;
-  if (axis.separation < Real(0) && !(way_out_of_surface(a, index, b, axis.n, near) == axis.n))
-    return meeting.count > 0;
+  if (axis.separation < Real(0) && !(exit_direction(a, index, b, axis.n, near) == axis.n))
+    return result.count > 0;
   if (axis.code == kFreeAxis) {
-    meeting.count = 0;
-    meeting.normal = axis.n;
-    meeting.separation = axis.separation;
-    overlap_features(feature_along(triangle, axis.n), feature_along(b, -axis.n), Real(0), skin_of(b),
-                     meeting);
+    result.count = 0;
+    result.normal = axis.n;
+    result.separation = axis.separation;
+    overlap_features(feature_along(triangle, axis.n), feature_along(b, -axis.n), Real(0), skin_of(b), result);
   }
-  complete_points(nearest, Real(4) * tolerance, meeting);
-  return meeting.count > 0;
+  complete_points(nearest, Real(4) * tolerance, result);
+  return result.count > 0;
 }
 
 /// Vertices of the shape keep their key from triangle to triangle, other places do not.
@@ -128,13 +127,13 @@ std::uint32_t key_on(std::uint32_t triangle, std::uint32_t key) {
   return kind | ((key + (triangle + 1) * 0x9E3779B1u) & ~kNearest);
 }
 
-void append_contact(const Convex& triangle, std::uint32_t index, const Meeting& meeting,
+void append_contact(const Convex& triangle, std::uint32_t index, const ContactResult& result,
                     MeshScratch& scratch) {
-  const auto points = std::span(meeting.point.data(), static_cast<std::size_t>(meeting.count));
+  const auto points = std::span(result.point.data(), static_cast<std::size_t>(result.count));
   const auto deepest = std::min_element(
       points.begin(), points.end(), [](const auto& p, const auto& q) { return p.separation < q.separation; });
-  scratch.contacts.push_back({triangle, index, meeting.normal, deepest->on_a, meeting.separation});
-  for (MeetingPoint p : points) {
+  scratch.contacts.push_back({triangle, index, result.normal, deepest->on_a, result.separation});
+  for (ContactResultPoint p : points) {
     p.key = key_on(index, p.key);
     scratch.points.push_back(p);
   }
@@ -142,20 +141,21 @@ void append_contact(const Convex& triangle, std::uint32_t index, const Meeting& 
 }
 
 /// The patch's points are cut down when there is no room for more: those farthest out stay.
-void add_point(const MeetingPoint& point, Meeting& meeting) {
-  const auto points = std::span(meeting.point.data(), static_cast<std::size_t>(meeting.count));
+void add_point(const ContactResultPoint& point, ContactResult& result) {
+  const auto points = std::span(result.point.data(), static_cast<std::size_t>(result.count));
   const bool known =
       (point.key & kNearest) == kVertexOfB &&
       std::any_of(points.begin(), points.end(), [&](const auto& p) { return p.key == point.key; });
   if (known) return;
-  if (meeting.count == Meeting::kMaxPoints) reduce_points(meeting, std::numeric_limits<Real>::infinity(), {});
-  meeting.add(point);
+  if (result.count == ContactResult::kMaxPoints)
+    reduce_points(result, std::numeric_limits<Real>::infinity(), {});
+  result.add(point);
 }
 
-void join(const Meeting& from, PatchMeeting& patch) {
-  Meeting& to = patch.meeting;
+void join(const ContactResult& from, PatchResult& patch) {
+  ContactResult& to = patch.result;
   for (int i = 0; i < from.count; ++i) {
-    MeetingPoint p = from.point[static_cast<std::size_t>(i)];
+    ContactResultPoint p = from.point[static_cast<std::size_t>(i)];
     p.separation = dot(to.normal, p.on_b - p.on_a);
     add_point(p, to);
   }
@@ -163,37 +163,37 @@ void join(const Meeting& from, PatchMeeting& patch) {
 }
 
 /// Puts a contact into the patch of its plane.
-void add_to_patches(const SurfaceContact& contact, std::span<const MeetingPoint> points,
-                    std::vector<PatchMeeting>& patches) {
-  const auto is_same_plane = [&](const PatchMeeting& patch) {
-    const MeetingPoint& p = patch.meeting.point[0];
-    return is_same_direction(patch.meeting.normal, contact.normal) &&
+void add_to_patches(const SurfaceContact& contact, std::span<const ContactResultPoint> points,
+                    std::vector<PatchResult>& patches) {
+  const auto is_same_plane = [&](const PatchResult& patch) {
+    const ContactResultPoint& p = patch.result.point[0];
+    return is_same_direction(patch.result.normal, contact.normal) &&
            std::fabs(dot(contact.normal, contact.place - p.on_a)) <= kFlush;
   };
   auto patch = std::find_if(patches.begin(), patches.end(), is_same_plane);
   if (patch == patches.end()) {
     patches.push_back({.patch = contact.index});
     patch = patches.end() - 1;
-    patch->meeting.normal = contact.normal;
-    patch->meeting.separation = contact.separation;
+    patch->result.normal = contact.normal;
+    patch->result.separation = contact.separation;
   }
-  for (const MeetingPoint& p : points) add_point(p, patch->meeting);
-  patch->meeting.separation = std::min(patch->meeting.separation, contact.separation);
+  for (const ContactResultPoint& p : points) add_point(p, patch->result);
+  patch->result.separation = std::min(patch->result.separation, contact.separation);
 }
 
 /// What of a covered triangle is deeper in the shape than the patch that looks most like it pushes that
 /// patch's way: else the shape would sink in there while it turns about what stays.
-void join_ghost(const SurfaceContact& ghost, std::span<const MeetingPoint> points,
-                std::vector<PatchMeeting>& patches) {
+void join_ghost(const SurfaceContact& ghost, std::span<const ContactResultPoint> points,
+                std::vector<PatchResult>& patches) {
   constexpr Real kLeastCosine = Real(0.5);
-  const auto likeness = [&](const PatchMeeting& p) { return dot(p.meeting.normal, ghost.normal); };
+  const auto likeness = [&](const PatchResult& p) { return dot(p.result.normal, ghost.normal); };
   const auto nearest = std::max_element(patches.begin(), patches.end(), [&](const auto& p, const auto& q) {
     return likeness(p) < likeness(q);
   });
   if (nearest == patches.end() || !(likeness(*nearest) > kLeastCosine)) return;
-  Meeting& to = nearest->meeting;
+  ContactResult& to = nearest->result;
   const Real deepest = std::min(deepest_of(to), Real(0)) - kFlush;
-  for (MeetingPoint p : points) {
+  for (ContactResultPoint p : points) {
     p.separation = dot(to.normal, p.on_b - p.on_a);
     if (p.separation < deepest) add_point(p, to);
   }
@@ -201,36 +201,36 @@ void join_ghost(const SurfaceContact& ghost, std::span<const MeetingPoint> point
 
 /// Joins patches whose normals are less than the angle with this cosine apart to the deepest of them.
 void join_patches(Real cosine, MeshScratch& scratch) {
-  std::vector<PatchMeeting>& patches = scratch.patches;
-  const std::vector<PatchMeeting>& unjoined = scratch.unjoined;
+  std::vector<PatchResult>& patches = scratch.patches;
+  const std::vector<PatchResult>& unjoined = scratch.unjoined;
   std::vector<std::uint32_t>& order = scratch.order;
   base::take_turns(patches, scratch.unjoined);
   order.resize(unjoined.size());
   std::iota(order.begin(), order.end(), std::uint32_t{0});
   std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
-    const Real gap_p = unjoined[p].meeting.separation;
-    const Real gap_q = unjoined[q].meeting.separation;
+    const Real gap_p = unjoined[p].result.separation;
+    const Real gap_q = unjoined[q].result.separation;
     return gap_p != gap_q ? gap_p < gap_q : p < q;
   });
   patches.clear();
   for (const std::uint32_t i : order) {
-    const PatchMeeting& patch = unjoined[i];
-    const auto near = std::find_if(patches.begin(), patches.end(), [&](const PatchMeeting& p) {
-      return dot(p.meeting.normal, patch.meeting.normal) >= cosine;
+    const PatchResult& patch = unjoined[i];
+    const auto near = std::find_if(patches.begin(), patches.end(), [&](const PatchResult& p) {
+      return dot(p.result.normal, patch.result.normal) >= cosine;
     });
     if (near == patches.end()) {
       patches.push_back(patch);
     } else {
       near->patch = std::min(near->patch, patch.patch);
-      join(patch.meeting, *near);
+      join(patch.result, *near);
     }
   }
 }
 
 }  // namespace
 
-Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
-                        std::vector<std::uint32_t>& near) {
+Vec3 exit_direction(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
+                    std::vector<std::uint32_t>& near) {
   const Convex own = a.triangle(triangle);
   const Vec3 front = front_of(own);
   if (is_same_direction(n, front)) return n;
@@ -267,16 +267,16 @@ void find_triangles_near(const PlacedMesh& a, const Convex& b, const MeshReach& 
   geometry::find_triangles(a.mesh.bvh, bounds_in(a, b, reach), found);
 }
 
-Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch) {
+Real collide_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch) {
   scratch.contacts.clear();
   scratch.points.clear();
   scratch.first_point.assign(1, 0);
   scratch.patches.clear();
   find_triangles_near(a, b, reach, scratch.triangles);
-  Meeting meeting;
+  ContactResult result;
   for (const std::uint32_t index : scratch.triangles) {
-    if (meet_triangle(a, index, b, reach, scratch.near, meeting))
-      append_contact(a.triangle(index), index, meeting, scratch);
+    if (collide_triangle(a, index, b, reach, scratch.near, result))
+      append_contact(a.triangle(index), index, result, scratch);
   }
   find_ghosts(scratch.contacts, Pieces::kOfOneMesh, scratch.ghosts);
   const auto points_of = [&scratch](std::size_t i) {
@@ -292,7 +292,7 @@ Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, Mes
     if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch);
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
-            [](const PatchMeeting& p, const PatchMeeting& q) { return p.patch < q.patch; });
+            [](const PatchResult& p, const PatchResult& q) { return p.patch < q.patch; });
   // Out of reach is not yet the whole margin apart, and the bodies may go another way later.
   if (scratch.triangles.empty()) find_triangles_near(a, b, MeshReach(reach.margin()), scratch.triangles);
   return scratch.triangles.empty() ? reach.margin() : Real(0);

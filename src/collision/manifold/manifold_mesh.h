@@ -30,16 +30,17 @@ class MeshReach {
   explicit MeshReach(Real margin) : margin_(margin), least_(margin) {}
   /// A part of the margin is for the way of the shape's center in the step, against the mesh [m]: what goes
   /// along a triangle, or away from it, needs none of that.
-  MeshReach(Real margin, Vec3 way) : margin_(margin), least_(margin - length(way)), way_(way) {}
+  MeshReach(Real margin, Vec3 displacement)
+      : margin_(margin), least_(margin - length(displacement)), displacement_(displacement) {}
 
   [[nodiscard]] Real margin() const { return margin_; }
   /// How far apart along the unit vector `n`, from the mesh to the shape, they may be and still meet.
-  [[nodiscard]] Real along(Vec3 n) const { return least_ - std::min(dot(n, way_), Real(0)); }
+  [[nodiscard]] Real along(Vec3 n) const { return least_ - std::min(dot(n, displacement_), Real(0)); }
 
  private:
   Real margin_;
   Real least_;  ///< In any direction.
-  Vec3 way_ = {};
+  Vec3 displacement_ = {};
 };
 
 /// Replaces `found` by the triangles whose boxes come within reach of the shape's, in ascending order.
@@ -50,13 +51,13 @@ void find_triangles_near(const PlacedMesh& a, const Convex& b, const MeshReach& 
 /// may lean over the rim, where the surface goes on: in a hollow it would lead through the next triangle.
 /// Then it is the front of one of those that meet there, along which the two overlap least. Overwrites
 /// `near`.
-[[nodiscard]] Vec3 way_out_of_surface(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
-                                      std::vector<std::uint32_t>& near);
+[[nodiscard]] Vec3 exit_direction(const PlacedMesh& a, std::uint32_t triangle, const Convex& b, Vec3 n,
+                                  std::vector<std::uint32_t>& near);
 
 /// Points of a mesh with one normal, and the lowest of their triangles.
-struct PatchMeeting {
+struct PatchResult {
   std::uint32_t patch = 0;
-  Meeting meeting = {};
+  ContactResult result = {};
 };
 
 /// Memory for meet_mesh.
@@ -64,12 +65,12 @@ struct MeshScratch {
   std::vector<std::uint32_t> triangles = {};
   std::vector<std::uint32_t> near = {};  // triangles at a place
   std::vector<SurfaceContact> contacts = {};
-  std::vector<MeetingPoint> points = {};      // of all contacts, one after the other
-  std::vector<std::size_t> first_point = {};  // of each contact, and the number of all
+  std::vector<ContactResultPoint> points = {};  // of all contacts, one after the other
+  std::vector<std::size_t> first_point = {};    // of each contact, and the number of all
   Ghosts ghosts = {};
-  std::vector<PatchMeeting> patches = {};
-  std::vector<PatchMeeting> unjoined = {};  // patches, before some are joined
-  std::vector<std::uint32_t> order = {};    // of those
+  std::vector<PatchResult> patches = {};
+  std::vector<PatchResult> unjoined = {};  // patches, before some are joined
+  std::vector<std::uint32_t> order = {};   // of those
 };
 
 /// A is a mesh, one-sided: only what is in front of a triangle meets it. Replaces scratch.patches, in
@@ -77,6 +78,6 @@ struct MeshScratch {
 /// directions are joined. Triangles that others cover (find_ghosts) are left out: a mesh
 /// feels the same however its faces are cut. Returns a distance that they are at least apart if there are no
 /// patches [m].
-Real meet_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch);
+Real collide_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, MeshScratch& scratch);
 
 }  // namespace hooke::collision

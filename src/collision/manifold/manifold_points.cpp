@@ -13,23 +13,25 @@ constexpr Real kSameDepth = Real(5e-4);  // [m]
 constexpr Real kKeepArea = Real(1.1);  // of points that span nearly the same, the one of the last step stays
 
 struct Candidates {
-  const Meeting& meeting;
+  const ContactResult& result;
   std::span<const std::uint32_t> old_keys;
 
-  [[nodiscard]] const MeetingPoint& at(int i) const { return meeting.point[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const ContactResultPoint& at(int i) const {
+    return result.point[static_cast<std::size_t>(i)];
+  }
   [[nodiscard]] bool is_old(int i) const {
     return std::find(old_keys.begin(), old_keys.end(), at(i).key) != old_keys.end();
   }
   /// Twice the signed area of three points, seen along the normal.
   [[nodiscard]] Real area(int i, int j, int k) const {
-    return dot(meeting.normal, cross(at(j).on_a - at(i).on_a, at(k).on_a - at(i).on_a));
+    return dot(result.normal, cross(at(j).on_a - at(i).on_a, at(k).on_a - at(i).on_a));
   }
   /// The point with the largest score.
   template <class Score>
   [[nodiscard]] int best(const Score& score) const {
     int found = 0;
     Real largest = -std::numeric_limits<Real>::infinity();
-    for (int i = 0; i < meeting.count; ++i) {
+    for (int i = 0; i < result.count; ++i) {
       const Real s = score(i);
       found = s > largest ? i : found;
       largest = s > largest ? s : largest;
@@ -40,10 +42,10 @@ struct Candidates {
   /// Of the points that are about as deep as the deepest the one farthest from the middle: a point in the
   /// middle of a side would leave a corner out.
   [[nodiscard]] int outermost_of_deepest() const {
-    const Real deepest = deepest_of(meeting);
+    const Real deepest = deepest_of(result);
     Vec3 middle = {};
-    for (int i = 0; i < meeting.count; ++i) {
-      middle += Real(1) / static_cast<Real>(meeting.count) * at(i).on_a;
+    for (int i = 0; i < result.count; ++i) {
+      middle += Real(1) / static_cast<Real>(result.count) * at(i).on_a;
     }
     return best([&](int i) {
       if (at(i).separation > deepest + kSameDepth) return -std::numeric_limits<Real>::infinity();
@@ -53,7 +55,7 @@ struct Candidates {
 };
 
 /// Whether `p` lies behind `q`: the body would have to turn by 45 degrees before `p` touches first.
-bool is_behind(const MeetingPoint& p, const MeetingPoint& q, Vec3 normal) {
+bool is_behind(const ContactResultPoint& p, const ContactResultPoint& q, Vec3 normal) {
   const Real behind = p.separation - q.separation;
   if (!(behind > Real(0))) return false;
   const Vec3 apart = p.on_a - q.on_a;
@@ -62,31 +64,31 @@ bool is_behind(const MeetingPoint& p, const MeetingPoint& q, Vec3 normal) {
 }
 
 /// The upper corners of a flat body, say: seen along the normal they are where the lower ones are.
-void remove_points_behind(Meeting& meeting) {
-  std::array<MeetingPoint, Meeting::kMaxPoints> all = meeting.point;
-  const int count = meeting.count;
-  const auto any_before = [&](const MeetingPoint& p) {
+void remove_points_behind(ContactResult& result) {
+  std::array<ContactResultPoint, ContactResult::kMaxPoints> all = result.point;
+  const int count = result.count;
+  const auto any_before = [&](const ContactResultPoint& p) {
     return std::any_of(all.begin(), all.begin() + count,
-                       [&](const MeetingPoint& q) { return is_behind(p, q, meeting.normal); });
+                       [&](const ContactResultPoint& q) { return is_behind(p, q, result.normal); });
   };
-  meeting.count = 0;
+  result.count = 0;
   for (int i = 0; i < count; ++i) {
-    const MeetingPoint& p = all[static_cast<std::size_t>(i)];
-    if (!any_before(p)) meeting.point[static_cast<std::size_t>(meeting.count++)] = p;
+    const ContactResultPoint& p = all[static_cast<std::size_t>(i)];
+    if (!any_before(p)) result.point[static_cast<std::size_t>(result.count++)] = p;
   }
 }
 
 }  // namespace
 
-void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t> old_keys) {
-  const auto end = meeting.point.begin() + meeting.count;
-  const auto kept = std::remove_if(meeting.point.begin(), end,
-                                   [margin](const MeetingPoint& p) { return !(p.separation <= margin); });
-  meeting.count = static_cast<int>(kept - meeting.point.begin());
-  if (meeting.count <= state::Manifold::kMaxPoints) return;
-  remove_points_behind(meeting);
-  if (meeting.count <= state::Manifold::kMaxPoints) return;
-  const Candidates c = {meeting, old_keys};
+void reduce_points(ContactResult& result, Real margin, std::span<const std::uint32_t> old_keys) {
+  const auto end = result.point.begin() + result.count;
+  const auto remaining = std::remove_if(
+      result.point.begin(), end, [margin](const ContactResultPoint& p) { return !(p.separation <= margin); });
+  result.count = static_cast<int>(remaining - result.point.begin());
+  if (result.count <= state::Manifold::kMaxPoints) return;
+  remove_points_behind(result);
+  if (result.count <= state::Manifold::kMaxPoints) return;
+  const Candidates c = {result, old_keys};
   const int first = c.outermost_of_deepest();
   const int second =
       c.best([&](int i) { return c.favor(i) * length_squared(c.at(i).on_a - c.at(first).on_a); });
@@ -101,40 +103,40 @@ void reduce_points(Meeting& meeting, Real margin, std::span<const std::uint32_t>
   });
   std::array<int, 4> chosen = {first, second, third, fourth};
   std::sort(chosen.begin(), chosen.end());
-  meeting.count = 0;
+  result.count = 0;
   int last = -1;
   for (const int i : chosen) {
-    if (i != last) meeting.point[static_cast<std::size_t>(meeting.count++)] = c.at(i);
+    if (i != last) result.point[static_cast<std::size_t>(result.count++)] = c.at(i);
     last = i;
   }
 }
 
-Real deepest_of(const Meeting& meeting) {
+Real deepest_of(const ContactResult& result) {
   Real deepest = std::numeric_limits<Real>::infinity();
-  for (int i = 0; i < meeting.count; ++i) {
-    deepest = std::min(deepest, meeting.point[static_cast<std::size_t>(i)].separation);
+  for (int i = 0; i < result.count; ++i) {
+    deepest = std::min(deepest, result.point[static_cast<std::size_t>(i)].separation);
   }
   return deepest;
 }
 
-void swap_sides(Meeting& meeting) {
-  meeting.normal = -meeting.normal;
-  for (int i = 0; i < meeting.count; ++i) {
-    MeetingPoint& p = meeting.point[static_cast<std::size_t>(i)];
+void swap_sides(ContactResult& result) {
+  result.normal = -result.normal;
+  for (int i = 0; i < result.count; ++i) {
+    ContactResultPoint& p = result.point[static_cast<std::size_t>(i)];
     std::swap(p.on_a, p.on_b);
   }
 }
 
-void meet(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   const ShapeKind kind_a = a.shape.kind;
   const ShapeKind kind_b = b.shape.kind;
-  if (is_round_pair(kind_a, kind_b)) return meet_round(a, b, query, meeting);
-  if (kind_a == ShapeKind::kBox && kind_b == ShapeKind::kBox) return meet_boxes(a, b, query, meeting);
+  if (is_round_pair(kind_a, kind_b)) return collide_round(a, b, query, result);
+  if (kind_a == ShapeKind::kBox && kind_b == ShapeKind::kBox) return collide_boxes(a, b, query, result);
   const auto is_polyhedron = [](const Convex& c) {
     return c.hull != nullptr && (c.shape.kind == ShapeKind::kHull || c.shape.kind == ShapeKind::kBox);
   };
-  if (is_polyhedron(a) && is_polyhedron(b)) return meet_hulls(a, b, query, meeting);
-  return meet_convex(a, b, query, meeting);
+  if (is_polyhedron(a) && is_polyhedron(b)) return collide_hulls(a, b, query, result);
+  return collide_convex(a, b, query, result);
 }
 
 }  // namespace hooke::collision

@@ -12,15 +12,15 @@ namespace hooke::collision {
 namespace {
 
 /// A sphere and a shape that has its own closed form.
-void meet_sphere(const Convex& sphere, const Convex& b, Meeting& meeting) {
+void collide_sphere(const Convex& sphere, const Convex& b, ContactResult& result) {
   const Vec3 d = sphere.center - b.center;
   const Gap gap = gap_to_shape(b.shape, {dot(b.axes.x, d), dot(b.axes.y, d), dot(b.axes.z, d)});
   const Vec3 outward = b.axes * gap.normal;
   const Real radius = sphere.shape.radius;
-  meeting.normal = -outward;
-  meeting.separation = gap.distance - radius;
-  meeting.add({sphere.center - radius * outward, sphere.center - gap.distance * outward, meeting.separation,
-               kNearest});
+  result.normal = -outward;
+  result.separation = gap.distance - radius;
+  result.add({sphere.center - radius * outward, sphere.center - gap.distance * outward, result.separation,
+              kNearest});
 }
 
 geometry::Segment<Real> core_of(const Convex& capsule) {
@@ -28,7 +28,7 @@ geometry::Segment<Real> core_of(const Convex& capsule) {
   return {capsule.center - end, capsule.center + end};
 }
 
-void meet_capsules(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_capsules(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   const auto pair = geometry::closest_between_segments(core_of(a), core_of(b));
   // Cores that cross separate across both; cores on one line across them, in some direction.
   const Vec3 across = cross(a.axes.y, b.axes.y);
@@ -36,14 +36,14 @@ void meet_capsules(const Convex& a, const Convex& b, const MeetingQuery& query, 
   const Vec3 otherwise = dot(sideways, b.center - a.center) < Real(0) ? -sideways : sideways;
   const Real size = std::sqrt(pair.distance_squared);
   const bool crossing = size <= Real(1e-6) * (a.shape.radius + b.shape.radius);
-  meeting.normal = crossing ? otherwise : geometry::direction_or(pair.point_b - pair.point_a, otherwise);
-  meeting.separation = size - a.shape.radius - b.shape.radius;
-  if (meeting.separation > query.margin) return;
-  overlap_features(feature_along(a, meeting.normal), feature_along(b, -meeting.normal), a.shape.radius,
-                   b.shape.radius, meeting);
-  const Nearest nearest = {pair.point_a + a.shape.radius * meeting.normal,
-                           pair.point_b - b.shape.radius * meeting.normal, true};
-  complete_points(nearest, axis_tolerance(a, b), meeting);
+  result.normal = crossing ? otherwise : geometry::direction_or(pair.point_b - pair.point_a, otherwise);
+  result.separation = size - a.shape.radius - b.shape.radius;
+  if (result.separation > query.margin) return;
+  overlap_features(feature_along(a, result.normal), feature_along(b, -result.normal), a.shape.radius,
+                   b.shape.radius, result);
+  const Nearest nearest = {pair.point_a + a.shape.radius * result.normal,
+                           pair.point_b - b.shape.radius * result.normal, true};
+  complete_points(nearest, axis_tolerance(a, b), result);
 }
 
 bool has_closed_form(ShapeKind kind) {
@@ -57,14 +57,14 @@ bool is_round_pair(ShapeKind a, ShapeKind b) {
          (a == ShapeKind::kCapsule && b == ShapeKind::kCapsule);
 }
 
-void meet_round(const Convex& a, const Convex& b, const MeetingQuery& query, Meeting& meeting) {
+void collide_round(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   if (a.shape.kind == ShapeKind::kCapsule && b.shape.kind == ShapeKind::kCapsule) {
-    meet_capsules(a, b, query, meeting);
+    collide_capsules(a, b, query, result);
   } else if (a.shape.kind == ShapeKind::kSphere) {
-    meet_sphere(a, b, meeting);
+    collide_sphere(a, b, result);
   } else {
-    meet_sphere(b, a, meeting);
-    swap_sides(meeting);
+    collide_sphere(b, a, result);
+    swap_sides(result);
   }
 }
 

@@ -12,14 +12,14 @@ namespace {
 constexpr Real kDriftShare = Real(5e-4);
 
 // The same for calm bodies of large islands; less than the margin within which points are kept.
-constexpr Real kCalmDriftShare = Real(0.03);
-constexpr Real kLargestCalmDrift = Real(0.015);  // [m]
-constexpr Real kCalmRate = Real(0.25);           // speed of all its points over its radius [1/s]
+constexpr Real kSlowDriftShare = Real(0.03);
+constexpr Real kLargestSlowDrift = Real(0.015);  // [m]
+constexpr Real kSlowRate = Real(0.25);           // speed of all its points over its radius [1/s]
 
 constexpr int kBodyGrain = 1024;
 
 /// The rotation less one: small turns keep their digits, which rotate(q, x) - x would lose.
-Mat3 displacement_of(Quat q) {
+Mat3 rotation_less_one(Quat q) {
   const Vec3 v = {q.x, q.y, q.z};
   const auto column = [&](Vec3 x) {
     const Vec3 t = Real(2) * cross(v, x);
@@ -30,27 +30,28 @@ Mat3 displacement_of(Quat q) {
 }
 
 /// Of an island that is too large to be solved directly (solver/coupled/direct_islands.h).
-bool is_calm(const state::Bodies& bodies, std::size_t row) {
+bool is_slow(const state::Bodies& bodies, std::size_t row) {
   const Real radius = bodies.traits[row].radius;
   const Real speed = length(bodies.motion[row].v) + length(bodies.angular_velocity[row]) * radius;
-  return bodies.hardness[row] < 0 && speed < kCalmRate * radius;
+  return bodies.direct_state[row] < 0 && speed < kSlowRate * radius;
 }
 
 void add_motion(const state::SeenPose& before, const state::SeenPose& now, SmallMotion& motion) {
   if (before.center == now.center && before.rotation == now.rotation) return;
-  const Quat turn = normalize(now.rotation * conjugate(before.rotation));
-  motion.way = vector_cast<Real>(now.center - before.center);
-  motion.turn = displacement_of(turn);
-  motion.angle = (turn.w < Real(0) ? Real(-2) : Real(2)) * Vec3{turn.x, turn.y, turn.z};
+  const Quat rotation_change = normalize(now.rotation * conjugate(before.rotation));
+  motion.displacement = vector_cast<Real>(now.center - before.center);
+  motion.rotation_change = rotation_less_one(rotation_change);
+  motion.angle = (rotation_change.w < Real(0) ? Real(-2) : Real(2)) *
+                 Vec3{rotation_change.x, rotation_change.y, rotation_change.z};
   // The chord of the turn, 2 sin(angle / 2) of a radius, is as long as its vector part twice.
   constexpr Real kRounding = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
-  motion.reach = kRounding * (length(motion.way) + length(motion.angle) * motion.radius);
+  motion.reach = kRounding * (length(motion.displacement) + length(motion.angle) * motion.radius);
 }
 
 }  // namespace
 
 void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                        std::span<const std::uint32_t> stirred, std::vector<state::SeenPose>& seen) {
+                        std::span<const std::uint32_t> moved_set, std::vector<state::SeenPose>& seen) {
   const auto count = static_cast<std::size_t>(bodies.count());
   if (count < motions_.size()) *this = {};  // it is another world
   motions_.resize(count);
@@ -63,7 +64,7 @@ void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
       is_listed_[row] = 1;
     }
   };
-  list(stirred);
+  list(moved_set);
   const auto new_ones = static_cast<std::ptrdiff_t>(rows_.size());
   list(before_);
   parallel::for_ranges(pool, static_cast<int>(rows_.size()), kBodyGrain, [&](parallel::Range range) {
@@ -71,10 +72,10 @@ void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
       const std::uint32_t row = rows_[static_cast<std::size_t>(i)];
       const state::SeenPose now = {bodies.center[row], bodies.rotation[row]};
       const Real radius = bodies.traits[row].radius;
-      const bool calm = is_calm(bodies, row);
+      const bool slow = is_slow(bodies, row);
       const Real tolerance =
-          calm ? std::min(kCalmDriftShare * radius, kLargestCalmDrift) : kDriftShare * radius;
-      motions_[row] = {.radius = radius, .tolerance = tolerance, .calm = calm};
+          slow ? std::min(kSlowDriftShare * radius, kLargestSlowDrift) : kDriftShare * radius;
+      motions_[row] = {.radius = radius, .tolerance = tolerance, .slow = slow};
       add_motion(seen[row], now, motions_[row]);
       seen[row] = now;
     }
@@ -83,13 +84,13 @@ void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
 }
 
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift) {
-  drift.way += b.way - a.way;
+  drift.displacement += b.displacement - a.displacement;
   drift.angle_a += a.angle;
   drift.angle_b += b.angle;
 }
 
 Real largest_drift(const SmallMotion& a, const SmallMotion& b, const state::Drift& drift) {
-  return length(drift.way) + length(drift.angle_a) * a.radius + length(drift.angle_b) * b.radius;
+  return length(drift.displacement) + length(drift.angle_a) * a.radius + length(drift.angle_b) * b.radius;
 }
 
 Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap) {
@@ -97,17 +98,17 @@ Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap) {
   return gap - (a.reach + b.reach) - kRoundOff * std::fabs(gap);
 }
 
-void carry_along(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& m) {
-  const bool stays = a.calm && b.calm;
-  const Vec3 apart = b.way - a.way;
+void move_cached_manifold(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& m) {
+  const bool stays = a.slow && b.slow;
+  const Vec3 apart = b.displacement - a.displacement;
   if (!stays) {
-    m.normal = normalize(m.normal + (fixed_is_a ? a.turn : b.turn) * m.normal);
+    m.normal = normalize(m.normal + (fixed_is_a ? a.rotation_change : b.rotation_change) * m.normal);
     m.friction_impulse -= dot(m.friction_impulse, m.normal) * m.normal;
   }
   for (int i = 0; i < m.point_count; ++i) {
     state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
-    const Vec3 of_a = a.turn * p.anchor_a;
-    const Vec3 of_b = b.turn * p.anchor_b;
+    const Vec3 of_a = a.rotation_change * p.anchor_a;
+    const Vec3 of_b = b.rotation_change * p.anchor_b;
     p.separation += dot(m.normal, apart + of_b - of_a);
     if (stays) continue;
     p.anchor_a += of_a;

@@ -20,20 +20,21 @@ namespace hooke::collision {
 
 /// How a body moved since the narrow phase last saw it.
 struct SmallMotion {
-  Vec3 way = {};             ///< Of the center of mass [m].
-  Vec3 angle = {};           ///< [rad]
-  Mat3 turn = {{}, {}, {}};  ///< How far points moved from their place about the center by turning.
+  Vec3 displacement = {};  ///< Of the center of mass [m].
+  Vec3 angle = {};         ///< [rad]
+  Mat3 rotation_change = {
+      {}, {}, {}};           ///< How far points moved from their place about the center by turning.
   Real radius = Real(0);     ///< Of the body, around its center of mass [m].
   Real reach = Real(0);      ///< No point of the body moved farther [m].
   Real tolerance = Real(0);  ///< What two bodies may move against each other before a new test [m].
-  bool calm = false;         ///< And of a large island.
+  bool slow = false;         ///< And of a large island.
 };
 
 /// How all bodies moved, from one narrow phase to the next.
 class SmallMotions {
  public:
   /// Since `seen`, which becomes what is seen now. Those not `stirred` (rows) are where they were.
-  void find(parallel::ThreadPool& pool, const state::Bodies& bodies, std::span<const std::uint32_t> stirred,
+  void find(parallel::ThreadPool& pool, const state::Bodies& bodies, std::span<const std::uint32_t> moved_set,
             std::vector<state::SeenPose>& seen);
 
   [[nodiscard]] std::span<const SmallMotion> of_bodies() const { return motions_; }
@@ -57,6 +58,7 @@ void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);
 
 /// Moves points and normals along with their bodies; the normal belongs to `fixed`, A or B. Separations
 /// follow to first order in what the bodies turned against each other. Between two calm bodies only they do.
-void carry_along(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& manifold);
+void move_cached_manifold(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a,
+                          state::Manifold& manifold);
 
 }  // namespace hooke::collision

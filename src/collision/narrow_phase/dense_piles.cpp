@@ -13,16 +13,16 @@ constexpr double kDeepCenters = 0.75;
 /// Of the smaller inner radius: the overlap from which on they are.
 constexpr Real kDeepOverlap = Real(0.5);
 
-CrowdKey key_of(std::uint32_t body, std::uint32_t other, double distance_squared) {
+PileNeighborKey key_of(std::uint32_t body, std::uint32_t other, double distance_squared) {
   return {distance_squared, body < other ? other - body : body - other, other};
 }
 
 }  // namespace
 
-void Crowds::Nearest::add(const CrowdKey& key) {
+void DensePiles::Nearest::add(const PileNeighborKey& key) {
   const auto end = keys.begin() + size;
   if (std::find(keys.begin(), end, key) != end) return;  // another shape of the same body
-  if (size < kMostInCrowd) {
+  if (size < kMostNeighborsInPile) {
     keys[size++] = key;
     std::push_heap(keys.begin(), keys.begin() + size);
   } else if (key < keys[0]) {
@@ -32,38 +32,39 @@ void Crowds::Nearest::add(const CrowdKey& key) {
   }
 }
 
-bool Crowds::Nearest::chooses(const CrowdKey& key) const {
-  return size < kMostInCrowd || !(keys[0] < key);
+bool DensePiles::Nearest::chooses(const PileNeighborKey& key) const {
+  return size < kMostNeighborsInPile || !(keys[0] < key);
 }
 
-void Crowds::note(const state::Bodies& bodies, const Deep& deep) {
+void DensePiles::note(const state::Bodies& bodies, const Deep& deep) {
   if (!gives_way(bodies, deep.a) || !gives_way(bodies, deep.b)) return;
   deep_.push_back(deep);
 }
 
 /// Of those noted. Fills `nearest_` if there are so many that some may be left out.
-void Crowds::find_members(std::size_t body_count) {
+void DensePiles::find_members(std::size_t body_count) {
   found_.clear();
   nearest_.clear();
-  if (deep_.size() < kLeastInCrowd) return;
+  if (deep_.size() < kLeastNeighborsInPile) return;
   count_.assign(body_count, 0);
   for (const Deep& deep : deep_) {
     ++count_[deep.a];
     ++count_[deep.b];
   }
   for (std::uint32_t body = 0; body < count_.size(); ++body) {
-    if (count_[body] >= kLeastInCrowd) found_.push_back(body);
+    if (count_[body] >= kLeastNeighborsInPile) found_.push_back(body);
   }
-  if (found_.size() <= kLeastInCrowd) return;  // they have several shapes, and not so many others
+  if (found_.size() <= kLeastNeighborsInPile) return;  // they have several shapes, and not so many others
   if (members_.empty()) sets_.reset(count_.size());
   for (const Deep& deep : deep_) sets_.merge(deep.a, deep.b);
   members_.insert(members_.end(), found_.begin(), found_.end());
-  if (found_.size() <= kMostInCrowd) return;
-  place_.resize(count_.size());
+  if (found_.size() <= kMostNeighborsInPile) return;
+  slot_.resize(count_.size());
   nearest_.resize(found_.size());
-  for (std::uint32_t i = 0; i < found_.size(); ++i) place_[found_[i]] = i;
+  for (std::uint32_t i = 0; i < found_.size(); ++i) slot_[found_[i]] = i;
   const auto add = [&](std::uint32_t body, std::uint32_t other, double distance_squared) {
-    if (count_[body] >= kLeastInCrowd) nearest_[place_[body]].add(key_of(body, other, distance_squared));
+    if (count_[body] >= kLeastNeighborsInPile)
+      nearest_[slot_[body]].add(key_of(body, other, distance_squared));
   };
   for (const Deep& deep : deep_) {
     add(deep.a, deep.b, deep.distance_squared);
@@ -72,11 +73,11 @@ void Crowds::find_members(std::size_t body_count) {
 }
 
 template <class Visit>
-void Crowds::for_each_left_out(Visit&& visit) {
+void DensePiles::for_each_left_out(Visit&& visit) {
   if (nearest_.empty()) return;
   const auto chooses = [&](std::uint32_t body, std::uint32_t other, double distance_squared) {
-    return count_[body] < kLeastInCrowd ||
-           nearest_[place_[body]].chooses(key_of(body, other, distance_squared));
+    return count_[body] < kLeastNeighborsInPile ||
+           nearest_[slot_[body]].chooses(key_of(body, other, distance_squared));
   };
   for (const Deep& deep : deep_) {
     if (chooses(deep.a, deep.b, deep.distance_squared) || chooses(deep.b, deep.a, deep.distance_squared))
@@ -86,8 +87,8 @@ void Crowds::for_each_left_out(Visit&& visit) {
   }
 }
 
-void Crowds::thin_out(const state::Bodies& bodies, const state::Colliders& colliders,
-                      std::vector<ColliderPair>& pairs) {
+void DensePiles::thin_out(const state::Bodies& bodies, const state::Colliders& colliders,
+                          std::vector<ColliderPair>& pairs) {
   members_.clear();
   begins_.clear();
   left_out_ = 0;
@@ -104,21 +105,21 @@ void Crowds::thin_out(const state::Bodies& bodies, const state::Colliders& colli
   goes_.assign(nearest_.empty() ? 0 : pairs.size(), 0);
   for_each_left_out([&](std::size_t row) { goes_[row] = 1; });
   if (left_out_ == 0) return;
-  std::size_t kept = 0;
+  std::size_t remaining = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (goes_[i] == 0) pairs[kept++] = pairs[i];
+    if (goes_[i] == 0) pairs[remaining++] = pairs[i];
   }
-  pairs.resize(kept);
+  pairs.resize(remaining);
 }
 
-void Crowds::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
+void DensePiles::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
   deep_.clear();
   for (std::size_t i = 0; i < pairs.manifold.size(); ++i) {
     const state::Manifold& m = pairs.manifold[i];
     Real overlap = Real(0);
     for (std::int32_t k = 0; k < m.point_count; ++k)
       overlap = std::max(overlap, -m.point[static_cast<std::size_t>(k)].separation);
-    if (!(overlap > Real(0)) || m.lively) continue;
+    if (!(overlap > Real(0)) || m.refreshed) continue;
     const Real thin = std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
     if (!(overlap > kDeepOverlap * thin)) continue;
     note(bodies, {i, m.body_a, m.body_b, length_squared(bodies.center[m.body_b] - bodies.center[m.body_a])});
@@ -131,7 +132,7 @@ void Crowds::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
 }
 
 /// Members into crowds.
-void Crowds::divide() {
+void DensePiles::divide() {
   if (members_.empty()) return;
   std::sort(members_.begin(), members_.end(), [&](std::uint32_t a, std::uint32_t b) {
     const auto root_a = sets_.root(a);

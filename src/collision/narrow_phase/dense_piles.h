@@ -19,22 +19,22 @@
 namespace hooke::collision {
 
 /// How many others a body of a crowd meets, and from how many on it is in one.
-inline constexpr std::uint32_t kMostInCrowd = 8;
-inline constexpr std::uint32_t kLeastInCrowd = 4;
+inline constexpr std::uint32_t kMostNeighborsInPile = 8;
+inline constexpr std::uint32_t kLeastNeighborsInPile = 4;
 
 /// Which others a body of a crowd meets: the nearest; of equally near ones those whose rows are nearest, so
 /// that not all choose the same.
-struct CrowdKey {
+struct PileNeighborKey {
   double distance_squared = 0;
   std::uint32_t row_distance = 0;
   std::uint32_t row = 0;
 
-  friend constexpr auto operator<=>(const CrowdKey&, const CrowdKey&) = default;
+  friend constexpr auto operator<=>(const PileNeighborKey&, const PileNeighborKey&) = default;
 };
 
 /// Leaves out pairs of two bodies of crowds of which neither is among the nearest of the other. Only bodies
 /// count that forces move and that are awake.
-class Crowds {
+class DensePiles {
  public:
   /// Before their shapes are looked at: bodies whose centers of mass are nearer than 0.75 of the sum of the
   /// radii of the largest spheres in both. Removes pairs.
@@ -56,10 +56,10 @@ class Crowds {
   /// The nearest of a body, a heap with the farthest first.
   struct Nearest {
     std::uint32_t size = 0;
-    std::array<CrowdKey, kMostInCrowd> keys = {};
+    std::array<PileNeighborKey, kMostNeighborsInPile> keys = {};
 
-    void add(const CrowdKey& key);
-    [[nodiscard]] bool chooses(const CrowdKey& key) const;
+    void add(const PileNeighborKey& key);
+    [[nodiscard]] bool chooses(const PileNeighborKey& key) const;
   };
   /// Two bodies that are deep in each other.
   struct Deep {
@@ -82,7 +82,7 @@ class Crowds {
   std::vector<Deep> deep_ = {};
   std::vector<std::uint32_t> count_ = {};  ///< Of these, by body row; a body of several shapes counts often.
   std::vector<std::uint32_t> found_ = {};  ///< Rows of bodies with kLeastInCrowd of them.
-  std::vector<std::uint32_t> place_ = {};  ///< In `found_`, by body row.
+  std::vector<std::uint32_t> slot_ = {};   ///< In `found_`, by body row.
   std::vector<Nearest> nearest_ = {};      ///< Of `found_`.
   std::vector<std::uint8_t> goes_ = {};    ///< By pair.
 };

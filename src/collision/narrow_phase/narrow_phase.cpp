@@ -11,8 +11,8 @@
 #include "collision/manifold/manifold_points.h"
 #include "collision/manifold/shape_placement.h"
 #include "collision/narrow_phase/cached_manifolds.h"
-#include "state/sleeping_pairs.h"
 #include "state/body_frames.h"
+#include "state/sleeping_pairs.h"
 
 #include <algorithm>
 #include <array>
@@ -44,10 +44,11 @@ struct Scene {
   std::span<const MaterialPairDesc> materials;
   Real dt;  ///< Of what is looked ahead: a step, or a substep.
   int substeps = 1;
-  std::span<const Convex> placed = {};  ///< Of colliders in pairs that do not rest, from their body's center.
+  std::span<const Convex> placed_shapes =
+      {};  ///< Of colliders in pairs that do not rest, from their body's center.
   std::span<const Manifold> old = {};
-  std::span<const SmallMotion> motions = {};    ///< Of each body, since the last step.
-  std::span<const std::uint32_t> company = {};  ///< Of each body; see find_company.
+  std::span<const SmallMotion> motions = {};          ///< Of each body, since the last step.
+  std::span<const std::uint32_t> sole_neighbor = {};  ///< Of each body; see find_company.
 };
 
 /// What the pairs of a chunk produced, in their order.
@@ -58,7 +59,7 @@ struct Chunk {
   Real margin = Real(0);
   bool is_whole = true;  // the margin is margin_of, for all of the way
   Real time = Real(0);   // part of the step after which it is looked at
-  Meeting meeting = {};
+  ContactResult result = {};
   MeshScratch mesh = {};
   SweepScratch sweep = {};
 
@@ -67,8 +68,8 @@ struct Chunk {
     manifolds.clear();
     manifolds.reserve(kChunk);
     counts = {};
-    meeting = {};
-    sweep.meeting = {};
+    result = {};
+    sweep.result = {};
   }
 };
 
@@ -82,7 +83,7 @@ Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   return kMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
 }
 
-Vec3 turned(Quat rotation, Vec3 v) {
+Vec3 rotated(Quat rotation, Vec3 v) {
   return v == Vec3{} ? v : rotate(rotation, v);
 }
 
@@ -101,8 +102,8 @@ void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifol
   m.restitution = surface.restitution;
   m.rolling_friction = std::max(a.rolling_friction, b.rolling_friction);
   m.spinning_friction = std::max(a.spinning_friction, b.spinning_friction);
-  m.surface_velocity = turned(scene.bodies.rotation[m.body_b], b.surface_velocity) -
-                       turned(scene.bodies.rotation[m.body_a], a.surface_velocity);
+  m.surface_velocity = rotated(scene.bodies.rotation[m.body_b], b.surface_velocity) -
+                       rotated(scene.bodies.rotation[m.body_a], a.surface_velocity);
 }
 
 /// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
@@ -126,40 +127,41 @@ void bring_to_start(const Scene& scene, Real time, Manifold& m) {
   const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
   const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
   constexpr Real kParting = Real(1e-4);  // [m]
-  std::int32_t kept = 0;
+  std::int32_t count = 0;
   for (std::int32_t i = 0; i < m.point_count; ++i) {
     state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
-    const Vec3 way = b.way + cross(b.turn, p.anchor_b) - a.way - cross(a.turn, p.anchor_a);
-    const Real before = p.separation - time * dot(m.normal, way);
+    const Vec3 displacement =
+        b.displacement + cross(b.turn, p.anchor_b) - a.displacement - cross(a.turn, p.anchor_a);
+    const Real before = p.separation - time * dot(m.normal, displacement);
     if (before < -kParting && p.separation > Real(0)) continue;
     p.separation = before < Real(0) ? std::max(before, p.separation) : before;
-    m.point[static_cast<std::size_t>(kept++)] = p;
+    m.point[static_cast<std::size_t>(count++)] = p;
   }
-  m.point_count = kept;
+  m.point_count = count;
 }
 
-void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const MeetingFrame& frame,
-            Meeting& meeting, Chunk& chunk) {
-  if (meeting.count == 0) return;
+void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const ContactFrame& frame,
+            ContactResult& result, Chunk& chunk) {
+  if (result.count == 0) return;
   Manifold& m = chunk.manifolds.emplace_back();
-  make_points(meeting, chunk.margin, frame, find_old(scene, pair, patch, meeting.normal), m);
+  make_points(result, chunk.margin, frame, find_old(scene, pair, patch, result.normal), m);
   describe(scene, pair, patch, m);
   if (chunk.time > Real(0)) bring_to_start(scene, chunk.time, m);
   if (m.point_count == 0) chunk.manifolds.pop_back();
 }
 
 /// Manifolds that a lively pair has at least: one for each patch that it may come upon.
-constexpr std::uint32_t kLivelyPatches = 4;
+constexpr std::uint32_t kRefreshedPatches = 4;
 
 /// Manifolds without points, for those that a lively pair will have within the step.
 void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bool mesh, Chunk& chunk) {
-  const std::uint32_t wanted = mesh ? kLivelyPatches : 1;
+  const std::uint32_t wanted = mesh ? kRefreshedPatches : 1;
   while (chunk.manifolds.size() < begin + wanted) {
     Manifold& m = chunk.manifolds.emplace_back();
     describe(scene, pair, Manifold::kNoPatch, m);
     m.normal = {Real(0), Real(1), Real(0)};
   }
-  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i) chunk.manifolds[i].lively = true;
+  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i) chunk.manifolds[i].refreshed = true;
 }
 
 /// The shapes of a pair, each from the center of mass of its body.
@@ -177,8 +179,8 @@ void test_convex(const Scene& scene, const View& view, Pair& pair, Chunk& chunk)
   const Vec3 apart = view.apart();
   Convex b = view.b;
   b.center += apart;
-  meet(view.a, b, {chunk.margin, pair.axis}, chunk.meeting);
-  append(scene, pair, 0, {{}, apart}, chunk.meeting, chunk);
+  collide(view.a, b, {chunk.margin, pair.axis}, chunk.result);
+  append(scene, pair, 0, {{}, apart}, chunk.result, chunk);
 }
 
 /// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
@@ -189,10 +191,10 @@ void test_half_space(const Scene& scene, const View& view, Pair& pair, Chunk& ch
   const DVec3 from_plane = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
   const Vec3 n = plane.axes.y;
   const Real height = height_over(plane, from_plane);
-  meet_half_space(-height * n, n, is_a ? view.b : view.a, {chunk.margin, pair.axis}, chunk.meeting);
-  if (!is_a) swap_sides(chunk.meeting);
-  append(scene, pair, 0, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
-         chunk.meeting, chunk);
+  collide_half_space(-height * n, n, is_a ? view.b : view.a, {chunk.margin, pair.axis}, chunk.result);
+  if (!is_a) swap_sides(chunk.result);
+  append(scene, pair, 0, is_a ? ContactFrame{-view.apart(), {}} : ContactFrame{{}, view.apart()},
+         chunk.result, chunk);
 }
 
 /// A mesh and a convex shape, in the neighborhood of the shape.
@@ -200,25 +202,25 @@ void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const bool is_a = view.a.shape.kind == ShapeKind::kMesh;
   const state::ColliderShape& mesh = scene.colliders.shape[is_a ? pair.collider_a : pair.collider_b];
   const DVec3 from_mesh = is_a ? view.center_b - view.center_a : view.center_a - view.center_b;
-  const PlacedMesh placed = place_mesh(mesh, is_a ? view.a : view.b, from_mesh);
+  const PlacedMesh mesh_in_place = place_mesh(mesh, is_a ? view.a : view.b, from_mesh);
   const auto v = [&](std::uint32_t collider) {
     return scene.bodies.motion[scene.colliders.body[collider]].v;
   };
-  const Vec3 way = scene.dt * (v(pair.collider_b) - v(pair.collider_a));
+  const Vec3 displacement = scene.dt * (v(pair.collider_b) - v(pair.collider_a));
   const MeshReach reach =
-      chunk.is_whole ? MeshReach(chunk.margin, is_a ? way : -way) : MeshReach(chunk.margin);
-  chunk.meeting.separation = meet_mesh(placed, is_a ? view.b : view.a, reach, chunk.mesh);
-  for (PatchMeeting& patch : chunk.mesh.patches) {
-    if (!is_a) swap_sides(patch.meeting);
-    append(scene, pair, patch.patch, is_a ? MeetingFrame{-view.apart(), {}} : MeetingFrame{{}, view.apart()},
-           patch.meeting, chunk);
+      chunk.is_whole ? MeshReach(chunk.margin, is_a ? displacement : -displacement) : MeshReach(chunk.margin);
+  chunk.result.separation = collide_mesh(mesh_in_place, is_a ? view.b : view.a, reach, chunk.mesh);
+  for (PatchResult& patch : chunk.mesh.patches) {
+    if (!is_a) swap_sides(patch.result);
+    append(scene, pair, patch.patch, is_a ? ContactFrame{-view.apart(), {}} : ContactFrame{{}, view.apart()},
+           patch.result, chunk);
   }
 }
 
 void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const auto either = [&](ShapeKind kind) { return view.a.shape.kind == kind || view.b.shape.kind == kind; };
-  Meeting& meeting = chunk.meeting;
-  meeting.count = 0;
+  ContactResult& result = chunk.result;
+  result.count = 0;
   if (either(ShapeKind::kMesh)) {
     test_mesh(scene, view, pair, chunk);
   } else if (either(ShapeKind::kHalfSpace)) {
@@ -226,8 +228,8 @@ void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   } else {
     test_convex(scene, view, pair, chunk);
   }
-  pair.gap = meeting.separation;
-  pair.axis = meeting.axis;
+  pair.gap = result.separation;
+  pair.axis = result.axis;
 }
 
 /// Whether what is near at the start of the step may say nothing of where the shapes will meet: they come or
@@ -238,12 +240,12 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
   const bool balls = shape_a.shape.kind == ShapeKind::kSphere && shape_b.shape.kind == ShapeKind::kSphere;
   const Real thick = balls ? Real(0) : thinness_of(shape_a) + thinness_of(shape_b);
-  const Real way = flat ? Real(0) : length(b.path.way - a.path.way);
-  return way + turning_reach(a) + turning_reach(b) > kMargin + thick;
+  const Real displacement = flat ? Real(0) : length(b.path.displacement - a.path.displacement);
+  return displacement + rotation_reach(a) + rotation_reach(b) > kMargin + thick;
 }
 
 /// Whether a body turns farther than `angle` [rad] in the step.
-bool turns(const Path& path, Real angle) {
+bool rotates_beyond(const Path& path, Real angle) {
   return length_squared(path.turn) > angle * angle;
 }
 
@@ -254,7 +256,7 @@ constexpr Real kRolling = Real(0.02);  // [rad]
 
 /// Whether the pair had contacts whose places hardly come nearer or part: a tip that spins, a wheel that
 /// rolls.
-bool goes_on_touching(const Scene& scene, const Pair& pair) {
+bool stays_in_contact(const Scene& scene, const Pair& pair) {
   for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
     const Manifold& m = scene.old[i];
     for (std::int32_t k = 0; k < m.point_count; ++k) {
@@ -285,30 +287,31 @@ bool is_moved(const Scene& scene, std::uint32_t collider) {
 
 /// What each body that moves is near to: one other body, one collider of what nothing moves, or several, as
 /// those of `in_company` always are, and those that sleep, whose other pairs may be parked.
-void find_company(const Scene& scene, std::span<const Pair> pairs, std::span<const std::uint8_t> in_company,
-                  std::vector<std::uint32_t>& company) {
-  company.assign(scene.bodies.traits.size(), kNone);
-  for (std::size_t body = 0; body < in_company.size(); ++body) {
-    if (in_company[body] != 0) company[body] = kSeveral;
+void find_sole_neighbors(const Scene& scene, std::span<const Pair> pairs,
+                         std::span<const std::uint8_t> has_several_neighbors,
+                         std::vector<std::uint32_t>& sole_neighbor) {
+  sole_neighbor.assign(scene.bodies.traits.size(), kNone);
+  for (std::size_t body = 0; body < has_several_neighbors.size(); ++body) {
+    if (has_several_neighbors[body] != 0) sole_neighbor[body] = kSeveral;
   }
-  const auto meet = [&](std::uint32_t collider, std::uint32_t other) {
+  const auto add_neighbor = [&](std::uint32_t collider, std::uint32_t other) {
     if (!is_moved(scene, collider)) return;
     const std::uint32_t one =
         is_moved(scene, other) ? scene.colliders.body[other] : other | kStandingCollider;
     const std::uint32_t body = scene.colliders.body[collider];
-    std::uint32_t& known = company[body];
+    std::uint32_t& known = sole_neighbor[body];
     known = scene.bodies.asleep[body] == 0 && (known == kNone || known == one) ? one : kSeveral;
   };
   for (const Pair& pair : pairs) {
-    meet(pair.collider_a, pair.collider_b);
-    meet(pair.collider_b, pair.collider_a);
+    add_neighbor(pair.collider_a, pair.collider_b);
+    add_neighbor(pair.collider_b, pair.collider_a);
   }
 }
 
 /// Whether each of the pair's bodies is near to nothing but the other.
 bool is_alone(const Scene& scene, const Pair& pair) {
-  return scene.company[scene.colliders.body[pair.collider_a]] != kSeveral &&
-         scene.company[scene.colliders.body[pair.collider_b]] != kSeveral;
+  return scene.sole_neighbor[scene.colliders.body[pair.collider_a]] != kSeveral &&
+         scene.sole_neighbor[scene.colliders.body[pair.collider_b]] != kSeveral;
 }
 
 /// Whether the place where it touches something wanders as it turns.
@@ -321,50 +324,52 @@ bool is_round(ShapeKind kind) {
 /// too long for them as well: then the pair is held where it is now, or where it will be hit. Not in a crowd
 /// either, where it would cost most and help least; and where several colliders hold one, nobody looks in the
 /// middle of the step which of them cover which.
-bool is_lively(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair, Chunk& chunk) {
+bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair,
+                       Chunk& chunk) {
   constexpr Real kTouching = Real(5e-3);  // [m]
   constexpr Real kStill = Real(1e-3);     // a turn by which the surface hardly moves [m]
   if (!is_alone(scene, pair)) return false;
-  const Convex& shape_a = scene.placed[a.row];
-  const Convex& shape_b = scene.placed[b.row];
+  const Convex& shape_a = scene.placed_shapes[a.row];
+  const Convex& shape_b = scene.placed_shapes[b.row];
   const Real thin_a = thinness_of(shape_a);
   const Real thin_b = thinness_of(shape_b);
-  const Real turn_a = turning_reach(a);
-  const Real turn_b = turning_reach(b);
-  const Real way = length(b.path.way - a.path.way);
-  if (way + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
+  const Real turn_a = rotation_reach(a);
+  const Real turn_b = rotation_reach(b);
+  const Real displacement = length(b.path.displacement - a.path.displacement);
+  if (displacement + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
     return false;
   const Real far = is_round(shape_a.shape.kind) || is_round(shape_b.shape.kind) ? kRolling : kSpinning;
-  const bool rolls = (turns(a.path, far) && turn_a > kStill) || (turns(b.path, far) && turn_b > kStill);
+  const bool rolls =
+      (rotates_beyond(a.path, far) && turn_a > kStill) || (rotates_beyond(b.path, far) && turn_b > kStill);
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
-  if (!rolls && (flat || way < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
+  if (!rolls && (flat || displacement < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
   if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know the step's start only
   if (rolls) return true;
   const std::size_t before = chunk.manifolds.size();
   test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
-  const bool touches =
+  const bool in_contact =
       std::any_of(chunk.manifolds.begin() + static_cast<std::ptrdiff_t>(before), chunk.manifolds.end(),
                   [](const Manifold& m) {
                     return std::any_of(m.point.begin(), m.point.begin() + m.point_count,
                                        [](const state::ContactPoint& p) { return p.separation < kTouching; });
                   });
   chunk.manifolds.resize(before);
-  return touches;
+  return in_contact;
 }
 
 /// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
 void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
-  const Convex& now_a = scene.placed[pair.collider_a];
-  const Convex& now_b = scene.placed[pair.collider_b];
+  const Convex& now_a = scene.placed_shapes[pair.collider_a];
+  const Convex& now_b = scene.placed_shapes[pair.collider_b];
   const Path path_a = path_ahead(scene.bodies, scene.colliders.body[pair.collider_a], scene.dt);
   const Path path_b = path_ahead(scene.bodies, scene.colliders.body[pair.collider_b], scene.dt);
   const SweptCollider a = {scene.colliders, pair.collider_a, path_a};
   const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
   chunk.time = Real(0);
   chunk.is_whole = true;
-  pair.lively = is_lively(scene, a, b, pair, chunk);
-  if (!pair.lively && is_fast(a, b, now_a, now_b)) {
+  pair.refreshed = must_be_refreshed(scene, a, b, pair, chunk);
+  if (!pair.refreshed && is_fast(a, b, now_a, now_b)) {
     chunk.is_whole = false;
     const auto impact =
         find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
@@ -374,8 +379,9 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (!pair.lively && chunk.time < kMiddle && (turns(path_a, kSpinning) || turns(path_b, kSpinning)) &&
-      goes_on_touching(scene, pair)) {
+  if (!pair.refreshed && chunk.time < kMiddle &&
+      (rotates_beyond(path_a, kSpinning) || rotates_beyond(path_b, kSpinning)) &&
+      stays_in_contact(scene, pair)) {
     chunk.time = kMiddle;
     chunk.is_whole = false;
     pair.time = Real(0);
@@ -392,13 +398,13 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
 }
 
 bool is_mesh(const Scene& scene, std::uint32_t collider) {
-  return scene.placed[collider].shape.kind == ShapeKind::kMesh;
+  return scene.placed_shapes[collider].shape.kind == ShapeKind::kMesh;
 }
 
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
 /// the last test, and will not come as far as to points that were too far apart to be kept.
-bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
-  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.lively) return false;
+bool can_reuse(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
+  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.refreshed) return false;
   if (margin > Real(1.5) * kMargin) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
     return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
@@ -406,12 +412,12 @@ bool holds(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t 
   return largest_drift(scene.motions[a], scene.motions[b], pair.drift) < std::min(tolerance(a), tolerance(b));
 }
 
-void keep_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
+void reuse_manifolds(const Scene& scene, const Pair& pair, Chunk& chunk) {
   const std::uint32_t a = scene.colliders.body[pair.collider_a];
   const std::uint32_t b = scene.colliders.body[pair.collider_b];
   for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
     Manifold& manifold = chunk.manifolds.emplace_back(scene.old[i]);
-    carry_along(scene.motions[a], scene.motions[b], is_dynamic(scene.bodies, b), manifold);
+    move_cached_manifold(scene.motions[a], scene.motions[b], is_dynamic(scene.bodies, b), manifold);
     describe(scene, pair, manifold.patch, manifold);
   }
 }
@@ -433,14 +439,14 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     pair.gap = gap_after(scene.motions[a], scene.motions[b], pair.gap);
     if (pair.tested && pair.manifold_count == 0 && pair.gap > margin) {
       ++chunk.counts.skipped;
-    } else if (holds(scene, pair, a, b, margin)) {
-      ++chunk.counts.kept;
-      keep_manifolds(scene, pair, chunk);
+    } else if (can_reuse(scene, pair, a, b, margin)) {
+      ++chunk.counts.cached;
+      reuse_manifolds(scene, pair, chunk);
     } else {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
-      if (pair.lively)
+      if (pair.refreshed)
         append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
                       chunk);
       pair.drift = {};
@@ -451,14 +457,14 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
 }
 
-constexpr std::size_t kLivelyChunk = 8;    // lively pairs of one buffer
-constexpr std::uint32_t kMostPlaces = 64;  // manifolds of a lively pair: more patches than a mesh makes
+constexpr std::size_t kRefreshedChunk = 8;  // lively pairs of one buffer
+constexpr std::uint32_t kMostSlots = 64;    // manifolds of a lively pair: more patches than a mesh makes
 
 /// The manifold that a new one replaces: the one of the same patch, or else of the most similar normal; or
 /// else one that is free. `taken` are those that have been replaced, not all.
-std::uint32_t find_place(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
-                         std::uint64_t taken) {
-  const std::uint32_t count = std::min(pair.manifold_count, kMostPlaces);
+std::uint32_t find_slot(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
+                        std::uint64_t taken) {
+  const std::uint32_t count = std::min(pair.manifold_count, kMostSlots);
   std::uint32_t best = 0;
   Real closest = Real(-2);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -511,7 +517,7 @@ Prospect prospect_of(const state::Bodies& bodies, const Manifold& m) {
 
 /// Where there are more manifolds than the pair has places, leaves those that meet first: who is fast sees
 /// far, and what is behind it must not take the place of what it hits.
-void keep_first(const state::Bodies& bodies, std::size_t count, std::vector<Manifold>& manifolds) {
+void keep_earliest(const state::Bodies& bodies, std::size_t count, std::vector<Manifold>& manifolds) {
   while (manifolds.size() > count) {
     std::size_t last = 0;
     for (std::size_t i = 1; i < manifolds.size(); ++i) {
@@ -522,8 +528,8 @@ void keep_first(const state::Bodies& bodies, std::size_t count, std::vector<Mani
 }
 
 /// Replaces the manifolds of the pair, in place, by those of other poses.
-void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair& pair, Chunk& chunk,
-                std::vector<Manifold>& manifolds) {
+void refresh_pair(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair& pair, Chunk& chunk,
+                  std::vector<Manifold>& manifolds) {
   const std::uint32_t a = scene.colliders.body[pair.collider_a];
   const std::uint32_t b = scene.colliders.body[pair.collider_b];
   const Convex shape_a = place(scene.colliders, pair.collider_a, pose_a.rotation);
@@ -533,13 +539,13 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
   chunk.is_whole = true;
   chunk.time = Real(0);
   test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
-  keep_first(scene.bodies, std::min(pair.manifold_count, kMostPlaces), chunk.manifolds);
+  keep_earliest(scene.bodies, std::min(pair.manifold_count, kMostSlots), chunk.manifolds);
   std::uint64_t taken = 0;
   // All are matched with the old ones before those are replaced.
-  std::array<std::uint32_t, kMostPlaces> place_of = {};
+  std::array<std::uint32_t, kMostSlots> slot_of = {};
   for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
-    place_of[i] = find_place(pair, chunk.manifolds[i], manifolds, taken);
-    taken |= std::uint64_t{1} << place_of[i];
+    slot_of[i] = find_slot(pair, chunk.manifolds[i], manifolds, taken);
+    taken |= std::uint64_t{1} << slot_of[i];
   }
   for (std::uint32_t i = 0; i < pair.manifold_count; ++i) {
     Manifold& m = manifolds[pair.first_manifold + i];
@@ -548,13 +554,13 @@ void look_again(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pair
     m.twist_impulse = Real(0);
   }
   for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
-    Manifold& m = manifolds[pair.first_manifold + place_of[i]];
+    Manifold& m = manifolds[pair.first_manifold + slot_of[i]];
     const Real largest = m.largest_impulse;
-    const bool borne = m.borne;
+    const bool load_bearing = m.load_bearing;
     m = chunk.manifolds[i];
     m.largest_impulse = largest;
-    m.lively = pair.lively;
-    m.borne = borne;
+    m.refreshed = pair.refreshed;
+    m.load_bearing = load_bearing;
     center_anchors(m);
   }
 }
@@ -596,7 +602,7 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   const std::uint32_t piece = a_held ? m.collider_b : m.collider_a;
   const std::uint32_t body = a_held ? m.body_a : m.body_b;
   const DVec3 piece_from = scene.bodies.center[scene.colliders.body[piece]] - scene.bodies.center[body];
-  SurfaceContact contact = {scene.placed[piece], support.manifold, a_held ? -m.normal : m.normal};
+  SurfaceContact contact = {scene.placed_shapes[piece], support.manifold, a_held ? -m.normal : m.normal};
   if (contact.piece.shape.kind == ShapeKind::kMesh) {
     contact.piece = place_mesh(scene.colliders.shape[piece], contact.piece, -piece_from).triangle(m.patch);
   } else {
@@ -606,7 +612,7 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
       m.point.data(), m.point.data() + m.point_count,
       [](const state::ContactPoint& p, const state::ContactPoint& q) { return p.separation < q.separation; });
   contact.place = (a_held ? deepest->anchor_a : deepest->anchor_b) - deepest->separation * contact.normal;
-  const Convex& held = scene.placed[support.held];
+  const Convex& held = scene.placed_shapes[support.held];
   contact.separation = dot(contact.normal, support_of(held, -contact.normal) - contact.place) - skin_of(held);
   return contact;
 }
@@ -642,14 +648,16 @@ void find_tested(const state::Bodies& bodies, const state::Colliders& colliders,
   }
 }
 
-void place_tested(parallel::ThreadPool& pool, const state::Bodies& bodies, const state::Colliders& colliders,
-                  std::span<const std::uint8_t> tested, std::vector<Convex>& placed) {
-  placed.resize(colliders.body.size());
+void place_tested_shapes(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                         const state::Colliders& colliders, std::span<const std::uint8_t> tested,
+                         std::vector<Convex>& placed_shapes) {
+  placed_shapes.resize(colliders.body.size());
   for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto row = static_cast<std::size_t>(i);
       if (tested[row] != 0)
-        placed[row] = place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
+        placed_shapes[row] =
+            place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
     }
   });
 }
@@ -667,7 +675,7 @@ NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks
   for (const Chunk& chunk : chunks) {
     first.push_back(first.back() + chunk.manifolds.size());
     counts.tested += chunk.counts.tested;
-    counts.kept += chunk.counts.kept;
+    counts.cached += chunk.counts.cached;
     counts.skipped += chunk.counts.skipped;
   }
   pairs.manifold.resize(first.back());
@@ -688,17 +696,17 @@ NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks
 
 struct NarrowPhase::Buffers {
   std::vector<std::uint8_t> tested = {};
-  std::vector<Convex> placed = {};
+  std::vector<Convex> placed_shapes = {};
   std::vector<Manifold> old = {};
   SmallMotions motions = {};
   std::vector<std::uint32_t> all_bodies = {};  ///< Rows, where it is not said who was stirred.
-  std::vector<std::uint32_t> company = {};
+  std::vector<std::uint32_t> sole_neighbor = {};
   std::vector<Chunk> chunks = {};
   std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
   GhostScratch ghosts = {};
-  std::vector<std::uint32_t> lively = {};  ///< Rows of lively pairs, ascending.
-  std::vector<Chunk> lively_chunks = {};
-  Chunk look = {};  ///< Of look_at.
+  std::vector<std::uint32_t> refreshed = {};  ///< Rows of lively pairs, ascending.
+  std::vector<Chunk> refreshed_chunks = {};
+  Chunk single_chunk = {};  ///< Of look_at.
 };
 
 NarrowPhase::NarrowPhase() : buffers_(std::make_unique<Buffers>()) {}
@@ -710,19 +718,20 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
                                                 const state::Colliders& colliders,
                                                 std::span<const MaterialPairDesc> materials,
                                                 const NarrowPhaseStep& step, state::Pairs& pairs) {
-  auto& [tested, placed, old, motions, all_bodies, company, all_chunks, first_manifold, ghosts, lively,
-         lively_chunks, look] = *buffers_;
-  if (!step.stirred) {
+  auto& [tested, placed_shapes, old, motions, all_bodies, sole_neighbor, all_chunks, first_manifold, ghosts,
+         refreshed, refreshed_chunks, single_chunk] = *buffers_;
+  if (!step.moved_set) {
     all_bodies.resize(bodies.traits.size());
     std::iota(all_bodies.begin(), all_bodies.end(), std::uint32_t{0});
   }
   find_tested(bodies, colliders, pairs.pair, tested);
-  place_tested(pool, bodies, colliders, tested, placed);
-  motions.find(pool, bodies, step.stirred.value_or(all_bodies), pairs.seen);
+  place_tested_shapes(pool, bodies, colliders, tested, placed_shapes);
+  motions.find(pool, bodies, step.moved_set.value_or(all_bodies), pairs.seen);
   base::take_turns(pairs.manifold, old);
-  Scene scene = {bodies, colliders, materials, step.dt, step.substeps, placed, old, motions.of_bodies()};
-  find_company(scene, pairs.pair, step.in_company, company);
-  scene.company = company;
+  Scene scene = {bodies,        colliders,     materials, step.dt,
+                 step.substeps, placed_shapes, old,       motions.of_bodies()};
+  find_sole_neighbors(scene, pairs.pair, step.has_several_neighbors, sole_neighbor);
+  scene.sole_neighbor = sole_neighbor;
   const std::size_t chunk_count = (pairs.pair.size() + kChunk - 1) / kChunk;
   if (all_chunks.size() < chunk_count) all_chunks.resize(chunk_count);
   const std::span<Chunk> chunks = std::span(all_chunks).first(chunk_count);
@@ -739,45 +748,45 @@ NarrowPhaseCounts NarrowPhase::update_manifolds(parallel::ThreadPool& pool, cons
   return counts;
 }
 
-void NarrowPhase::list_lively(const state::Pairs& pairs) {
-  std::vector<std::uint32_t>& lively = buffers_->lively;
-  lively.clear();
+void NarrowPhase::list_refreshed(const state::Pairs& pairs) {
+  std::vector<std::uint32_t>& refreshed = buffers_->refreshed;
+  refreshed.clear();
   for (std::uint32_t i = 0; i < pairs.pair.size(); ++i) {
-    if (pairs.pair[i].lively && pairs.pair[i].manifold_count > 0) lively.push_back(i);
+    if (pairs.pair[i].refreshed && pairs.pair[i].manifold_count > 0) refreshed.push_back(i);
   }
 }
 
-void NarrowPhase::update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                                          const state::Colliders& colliders,
-                                          std::span<const MaterialPairDesc> materials, Real h,
-                                          state::Pairs& pairs) {
-  const std::vector<std::uint32_t>& rows = buffers_->lively;
-  std::vector<Chunk>& chunks = buffers_->lively_chunks;
+void NarrowPhase::refresh_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                                    const state::Colliders& colliders,
+                                    std::span<const MaterialPairDesc> materials, Real h,
+                                    state::Pairs& pairs) {
+  const std::vector<std::uint32_t>& rows = buffers_->refreshed;
+  std::vector<Chunk>& chunks = buffers_->refreshed_chunks;
   const Scene scene = {
       .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
-  const std::size_t count = (rows.size() + kLivelyChunk - 1) / kLivelyChunk;
+  const std::size_t count = (rows.size() + kRefreshedChunk - 1) / kRefreshedChunk;
   if (chunks.size() < count) chunks.resize(count);
   for_items(pool, static_cast<int>(count), [&](int item) {
-    const std::size_t begin = static_cast<std::size_t>(item) * kLivelyChunk;
-    for (std::size_t i = begin; i < std::min(begin + kLivelyChunk, rows.size()); ++i) {
+    const std::size_t begin = static_cast<std::size_t>(item) * kRefreshedChunk;
+    for (std::size_t i = begin; i < std::min(begin + kRefreshedChunk, rows.size()); ++i) {
       HOOKE_ASSERT(rows[i] < pairs.pair.size());
       Pair& pair = pairs.pair[rows[i]];
-      HOOKE_ASSERT(pair.lively && pair.manifold_count > 0);
+      HOOKE_ASSERT(pair.refreshed && pair.manifold_count > 0);
       HOOKE_ASSERT(pair.first_manifold + pair.manifold_count <= pairs.manifold.size());
-      if (pairs.manifold[pair.first_manifold].borne) continue;  // rows of the step's start
+      if (pairs.manifold[pair.first_manifold].load_bearing) continue;  // rows of the step's start
       const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
       const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
-      look_again(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);
+      refresh_pair(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);
     }
   });
 }
 
-void NarrowPhase::look_at(const state::Bodies& bodies, const state::Colliders& colliders,
-                          std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
-                          std::uint32_t pair, state::Pairs& pairs) {
+void NarrowPhase::refresh_at(const state::Bodies& bodies, const state::Colliders& colliders,
+                             std::span<const MaterialPairDesc> materials, Real h, const Pose& a,
+                             const Pose& b, std::uint32_t pair, state::Pairs& pairs) {
   const Scene scene = {
       .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
-  look_again(scene, a, b, pairs.pair[pair], buffers_->look, pairs.manifold);
+  refresh_pair(scene, a, b, pairs.pair[pair], buffers_->single_chunk, pairs.manifold);
 }
 
 }  // namespace hooke::collision

@@ -20,7 +20,7 @@ namespace hooke::collision {
 /// What the narrow phase did in a step.
 struct NarrowPhaseCounts {
   std::uint32_t tested = 0;  ///< Pairs tested exactly.
-  std::uint32_t kept = 0;    ///< Pairs that hardly moved, whose manifolds were carried along.
+  std::uint32_t cached = 0;  ///< Pairs that hardly moved, whose manifolds were carried along.
   std::uint32_t skipped =
       0;  ///< Pairs at rest, and those that cannot have come together since their last test.
   std::uint32_t ghosts = 0;  ///< Manifolds that were left out because another surface covers them.
@@ -30,9 +30,10 @@ struct NarrowPhaseCounts {
 struct NarrowPhaseStep {
   Real dt = Real(0);  ///< [s]
   int substeps = 1;
-  std::span<const std::uint8_t> in_company = {};  ///< By body row: 1 for what counts as in a crowd anyway.
+  std::span<const std::uint8_t> has_several_neighbors =
+      {};  ///< By body row: 1 for what counts as in a crowd anyway.
   /// Rows of bodies: all others are where they were in the last step. Without a list it may be any.
-  std::optional<std::span<const std::uint32_t>> stirred = {};
+  std::optional<std::span<const std::uint32_t>> moved_set = {};
 };
 
 /// Makes manifolds of pairs; what it holds is memory to be used again.
@@ -76,22 +77,22 @@ class NarrowPhase {
   /// Which pairs update_lively_manifolds is for. To be called when no pair changes its row any more in this
   /// step: after update_manifolds, and after pairs were parked or taken back
   /// (state/sleeping_pairs.h).
-  void list_lively(const state::Pairs& pairs);
+  void list_refreshed(const state::Pairs& pairs);
 
   /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,
   /// with separations of now and the impulses of the points that are still there. Anchors of A and B are the
   /// same place but for their way along the normal, halfway between the surfaces: an impulse there keeps the
   /// angular momentum. Points farther apart than 2 cm and what the bodies can come together in `h` [s] are
   /// left out.
-  void update_lively_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
-                               const state::Colliders& colliders, std::span<const MaterialPairDesc> materials,
-                               Real h, state::Pairs& pairs);
+  void refresh_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
+                         const state::Colliders& colliders, std::span<const MaterialPairDesc> materials,
+                         Real h, state::Pairs& pairs);
 
   /// The same for one pair, lively or not, with its bodies in these poses, of their centers of mass. Not to
   /// be called by several threads at once.
-  void look_at(const state::Bodies& bodies, const state::Colliders& colliders,
-               std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
-               std::uint32_t pair, state::Pairs& pairs);
+  void refresh_at(const state::Bodies& bodies, const state::Colliders& colliders,
+                  std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
+                  std::uint32_t pair, state::Pairs& pairs);
 
  private:
   struct Buffers;  // narrow_phase.cpp

@@ -4,18 +4,18 @@
 namespace hooke::collision {
 
 void remove_empty(state::Pairs& pairs) {
-  std::uint32_t kept = 0;
+  std::uint32_t remaining = 0;
   for (state::Pair& pair : pairs.pair) {
     const std::uint32_t end = pair.first_manifold + pair.manifold_count;
-    const std::uint32_t first = kept;
+    const std::uint32_t first = remaining;
     for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
-      if (pairs.manifold[i].point_count == 0 && !pair.lively) continue;
-      pairs.manifold[kept++] = pairs.manifold[i];
+      if (pairs.manifold[i].point_count == 0 && !pair.refreshed) continue;
+      pairs.manifold[remaining++] = pairs.manifold[i];
     }
     pair.first_manifold = first;
-    pair.manifold_count = kept - first;
+    pair.manifold_count = remaining - first;
   }
-  pairs.manifold.resize(kept);
+  pairs.manifold.resize(remaining);
 }
 
 void NarrowPhase::merge_pairs(std::span<const ColliderPair> found, std::span<const std::uint8_t> asked,

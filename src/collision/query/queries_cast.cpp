@@ -20,7 +20,7 @@ constexpr double kRounding = static_cast<double>(std::numeric_limits<Real>::epsi
 constexpr int kMaxAdvances = 96;
 
 /// A shape in place. `convex` is about `place`, with its center or corners as offsets from there.
-struct Placed {
+struct PlacedConvex {
   Convex convex = {};
   DVec3 place = {};
   double size = 0;  // no point of it is farther from `place` [m]
@@ -31,7 +31,7 @@ bool is_convex(const state::ColliderShape& shape) {
   return kind != ShapeKind::kHalfSpace && kind != ShapeKind::kMesh && kind != ShapeKind::kCompound;
 }
 
-Placed place_convex(const state::ColliderShape& shape, const Pose& pose) {
+PlacedConvex place_convex(const state::ColliderShape& shape, const Pose& pose) {
   const geometry::Box box = bounds_of(shape, {{}, pose.rotation});
   const Vec3 farthest = geometry::max_of(-box.lower, box.upper);
   return {{.shape = shape.shape, .axes = matrix_of(normalize(pose.rotation)), .hull = shape.hull.get()},
@@ -47,7 +47,7 @@ struct StandingMesh {
   [[nodiscard]] DVec3 to_mesh(DVec3 v) const { return rotate(conjugate(math::in_double(pose.rotation)), v); }
 
   /// About its first corner: offsets from there are as small as they can be.
-  [[nodiscard]] Placed triangle(std::uint32_t index) const {
+  [[nodiscard]] PlacedConvex triangle(std::uint32_t index) const {
     const Vec3 origin = mesh.desc.positions[mesh.desc.triangles[index][0]];
     const PlacedMesh placed = {mesh, matrix_of(normalize(pose.rotation)), origin};
     const DVec3 offset = rotate(math::in_double(pose.rotation), vector_cast<double>(origin));
@@ -58,7 +58,7 @@ struct StandingMesh {
 };
 
 /// Brings A to the neighborhood of B.
-Convex seen_from(const Placed& b, const Placed& a, DVec3 place) {
+Convex seen_from(const PlacedConvex& b, const PlacedConvex& a, DVec3 place) {
   Convex convex = a.convex;
   convex.center = vector_cast<Real>(place - b.place);
   return convex;
@@ -77,15 +77,15 @@ struct Contact {
 };
 
 /// For shapes that overlap: the shortest way out, and the deepest point of B.
-Contact overlap_contact(const Convex& a, const Placed& b, DVec3 motion) {
-  Meeting meeting;
-  meet(b.convex, a, {}, meeting);
+Contact overlap_contact(const Convex& a, const PlacedConvex& b, DVec3 motion) {
+  ContactResult result;
+  collide(b.convex, a, {}, result);
   Contact contact = {0, b.place, vector_cast<Real>(geometry::direction_or(-motion, DVec3{0, 1, 0}))};
-  if (meeting.count == 0) return contact;
+  if (result.count == 0) return contact;
   const auto* deepest = std::min_element(
-      meeting.point.data(), meeting.point.data() + meeting.count,
-      [](const MeetingPoint& p, const MeetingPoint& q) { return p.separation < q.separation; });
-  contact.normal = meeting.normal;
+      result.point.data(), result.point.data() + result.count,
+      [](const ContactResultPoint& p, const ContactResultPoint& q) { return p.separation < q.separation; });
+  contact.normal = result.normal;
   contact.point = b.place + vector_cast<double>(deepest->on_a);
   return contact;
 }
@@ -93,7 +93,7 @@ Contact overlap_contact(const Convex& a, const Placed& b, DVec3 motion) {
 /// The gap d(t) of two convex shapes of which one moves straight on falls no faster than the speed along its
 /// normal, and that normal goes on holding them apart for d / speed. What is not met before `limit` may be
 /// left out.
-std::optional<Contact> sweep(const Placed& a, DVec3 motion, const Placed& b, double limit) {
+std::optional<Contact> sweep(const PlacedConvex& a, DVec3 motion, const PlacedConvex& b, double limit) {
   const double tolerance = sweep_tolerance(a.size, b.size);
   const double rounding = 8 * kRounding * length(motion);
   Contact contact;
@@ -117,7 +117,7 @@ std::optional<Contact> sweep(const Placed& a, DVec3 motion, const Placed& b, dou
   return {};
 }
 
-std::optional<Contact> sweep_to_half_space(const Placed& a, DVec3 motion, const Pose& plane) {
+std::optional<Contact> sweep_to_half_space(const PlacedConvex& a, DVec3 motion, const Pose& plane) {
   const DVec3 n = rotate(math::in_double(plane.rotation), DVec3{0, 1, 0});
   const Vec3 down = vector_cast<Real>(-n);
   const DVec3 lowest = a.place + vector_cast<double>(support_of(a.convex, down) + skin_of(a.convex) * down);
@@ -131,52 +131,52 @@ std::optional<Contact> sweep_to_half_space(const Placed& a, DVec3 motion, const 
 }
 
 struct Sweep {
-  const Placed& shape;
+  const PlacedConvex& shape;
   DVec3 motion;
   DVec3 middle;  // of the box around the shape
   double radius;
 };
 
 /// The way as the mesh sees it, and all triangles on it.
-std::optional<RayHit> sweep_to_mesh(const Sweep& way, const StandingMesh& mesh, double limit) {
-  const DVec3 origin = mesh.to_mesh(way.middle - mesh.pose.position);
+std::optional<RayHit> sweep_to_mesh(const Sweep& swept, const StandingMesh& mesh, double limit) {
+  const DVec3 origin = mesh.to_mesh(swept.middle - mesh.pose.position);
   // The box turns with the mesh: the ball around it does not.
-  const double radius = std::sqrt(3.0) * way.radius + 2 * way.shape.size * kRounding;
+  const double radius = std::sqrt(3.0) * swept.radius + 2 * swept.shape.size * kRounding;
   std::vector<geometry::BvhEntry> found;
-  geometry::find_triangles_on_way(mesh.mesh.bvh, origin, mesh.to_mesh(way.motion), radius, found);
+  geometry::find_triangles_on_path(mesh.mesh.bvh, origin, mesh.to_mesh(swept.motion), radius, found);
   std::optional<RayHit> best;
   for (const geometry::BvhEntry& entry : found) {
     const double end = best ? best->fraction : limit;
     if (entry.fraction > end) break;
-    const auto contact = sweep(way.shape, way.motion, mesh.triangle(entry.triangle), end);
+    const auto contact = sweep(swept.shape, swept.motion, mesh.triangle(entry.triangle), end);
     if (!contact || (best && !(contact->fraction < best->fraction))) continue;
     best = RayHit{0, entry.triangle, contact->fraction, contact->point, contact->normal};
   }
   return best;
 }
 
-std::optional<RayHit> sweep_to_collider(const QueryScene& scene, const Sweep& way, std::uint32_t collider,
+std::optional<RayHit> sweep_to_collider(const QueryScene& scene, const Sweep& swept, std::uint32_t collider,
                                         double limit) {
   const state::ColliderShape& shape = scene.colliders.shape[collider];
   const Pose pose = state::frame_of_collider(scene.bodies, scene.colliders, collider);
   if (shape.shape.kind == ShapeKind::kMesh) {
-    std::optional<RayHit> hit = sweep_to_mesh(way, {*shape.mesh, pose}, limit);
+    std::optional<RayHit> hit = sweep_to_mesh(swept, {*shape.mesh, pose}, limit);
     if (hit) hit->collider = collider;
     return hit;
   }
-  const auto contact = is_convex(shape) ? sweep(way.shape, way.motion, place_convex(shape, pose), limit)
-                                        : sweep_to_half_space(way.shape, way.motion, pose);
+  const auto contact = is_convex(shape) ? sweep(swept.shape, swept.motion, place_convex(shape, pose), limit)
+                                        : sweep_to_half_space(swept.shape, swept.motion, pose);
   if (!contact) return {};
   return RayHit{collider, 0, contact->fraction, contact->point, contact->normal};
 }
 
-bool overlaps(const Placed& a, const Placed& b) {
+bool overlaps(const PlacedConvex& a, const PlacedConvex& b) {
   const Distance near = distance_between(seen_from(b, a, a.place), b.convex);
   return near.cores_overlap || near.distance <= Real(0);
 }
 
 bool overlaps_mesh(const state::ColliderShape& shape, const Pose& pose, const StandingMesh& mesh) {
-  const Placed a = place_convex(shape, pose);
+  const PlacedConvex a = place_convex(shape, pose);
   const Pose in_mesh = {mesh.to_mesh(pose.position - mesh.pose.position),
                         conjugate(mesh.pose.rotation) * pose.rotation};
   std::vector<std::uint32_t> found;
@@ -189,7 +189,7 @@ bool overlaps_mesh(const state::ColliderShape& shape, const Pose& pose, const St
 bool convex_overlaps(const state::ColliderShape& a, const Pose& pose_a, const state::ColliderShape& b,
                      const Pose& pose_b) {
   if (b.shape.kind == ShapeKind::kMesh) return overlaps_mesh(a, pose_a, {*b.mesh, pose_b});
-  const Placed placed = place_convex(a, pose_a);
+  const PlacedConvex placed = place_convex(a, pose_a);
   if (is_convex(b)) return overlaps(placed, place_convex(b, pose_b));
   return sweep_to_half_space(placed, {}, pose_b).has_value();
 }
@@ -198,12 +198,12 @@ bool convex_overlaps(const state::ColliderShape& a, const Pose& pose_a, const st
 
 std::optional<RayHit> cast_shape(const QueryScene& scene, const state::ColliderShape& shape,
                                  const Pose& start, DVec3 motion) {
-  const Placed placed = place_convex(shape, start);
+  const PlacedConvex placed = place_convex(shape, start);
   const geometry::Box box = bounds_of(shape, {{}, start.rotation});
   const Vec3 half = Real(0.5) * (box.upper - box.lower);
   const Real radius = std::max({half.x, half.y, half.z});
   const DVec3 middle = start.position + vector_cast<double>(Real(0.5) * (box.lower + box.upper));
-  const Sweep way = {placed, motion, middle, static_cast<double>(radius)};
+  const Sweep swept = {placed, motion, middle, static_cast<double>(radius)};
 
   // Not in the order of the tree: of hits that are equal but for the tolerance, its history must not choose.
   std::vector<std::uint32_t> near;
@@ -212,7 +212,7 @@ std::optional<RayHit> cast_shape(const QueryScene& scene, const state::ColliderS
   std::optional<RayHit> best;
   for (const std::uint32_t collider : near) {
     if (!can_be_found(scene, collider)) continue;
-    const auto hit = sweep_to_collider(scene, way, collider, best ? best->fraction : 1.0);
+    const auto hit = sweep_to_collider(scene, swept, collider, best ? best->fraction : 1.0);
     if (hit && (!best || hit->fraction < best->fraction)) best = hit;
   }
   return best;

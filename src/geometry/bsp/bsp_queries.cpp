@@ -189,9 +189,9 @@ DVec3 closest_on_face(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
 double time_to_distance(DVec3 offset, DVec3 motion, double radius) {
   const double speed = geometry::safe_length(motion);
   if (!(speed > 0)) return kNoFraction;
-  const DVec3 way = (1 / speed) * motion;
-  const double along = dot(offset, way);
-  const double across_squared = length_squared(offset - along * way);
+  const DVec3 direction = (1 / speed) * motion;
+  const double along = dot(offset, direction);
+  const double across_squared = length_squared(offset - along * direction);
   if (across_squared >= (1 - kGrazing) * radius * radius) return kNoFraction;
   const double distance = -along - std::sqrt(radius * radius - across_squared);
   return distance >= 0 ? distance / speed : kNoFraction;
@@ -217,7 +217,7 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
 }
 
 /// When the sphere touches the face, and from where.
-BspHit touch_face(std::span<const DVec3> corners, const Sphere& sphere) {
+BspHit sweep_to_face(std::span<const DVec3> corners, const Sphere& sphere) {
   const DVec3 normal = normal_of(corners);
   const DVec3 gap = sphere.center - closest_on_face(corners, normal, sphere.center);
   if (geometry::safe_length(gap) <= sphere.radius) {
@@ -283,7 +283,7 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
       geometry::Box3<double> box;
       for (const DVec3& p : corners) box = merge(box, {p, p});
       if (!overlap(box, swept)) continue;
-      const BspHit hit = touch_face(corners, sphere);
+      const BspHit hit = sweep_to_face(corners, sphere);
       if (hit.fraction < best.fraction) best = hit;
     }
     Stretch above = clip(s, height, rate, -reach, kNoFraction);

@@ -297,10 +297,12 @@ class Fans {
                      : along.y.sign() != 0 ? along.y.sign()
                                            : along.z.sign();
     if (sign < 0) along = -along;
-    const auto turn = [&](const Normal& u, const Normal& v) { return dot(cross(u, v), along).sign(); };
+    const auto rotation_sign = [&](const Normal& u, const Normal& v) {
+      return dot(cross(u, v), along).sign();
+    };
     // 0: along the start, 1: less than half a turn, 2: half, 3: more.
     const auto quarter = [&](const Normal& v) {
-      const int side = turn(start, v);
+      const int side = rotation_sign(start, v);
       if (side != 0) return side > 0 ? 1 : 3;
       return dot(start, v).sign() > 0 ? 0 : 2;
     };
@@ -310,7 +312,7 @@ class Fans {
       const int quarter_a = quarter(u);
       const int quarter_b = quarter(v);
       if (quarter_a != quarter_b) return quarter_a < quarter_b;
-      const int side = turn(u, v);
+      const int side = rotation_sign(u, v);
       return side != 0 ? side > 0 : a.triangle < b.triangle;
     });
   }

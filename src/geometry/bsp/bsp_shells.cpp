@@ -88,7 +88,7 @@ Result<void> check_shells(const BspSpace& space, std::span<const BspPiece> piece
     const DVec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
     // Outward, and along nothing in particular: 4 is beyond the boxes, which end at 1.
     const DVec3 direction = 4.0 * (normal + DVec3{0.1234567, -0.0765432, 0.1543217});
-    find_triangles_on_way(boxes, kBoxScale * middle, direction, kBoxSlack, near);
+    find_triangles_on_path(boxes, kBoxScale * middle, direction, kBoxSlack, near);
     int winding = 0;
     for (const BvhEntry& entry : near) {
       if (entry.triangle == piece) continue;

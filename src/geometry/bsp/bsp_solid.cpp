@@ -114,7 +114,7 @@ math::Int128 six_volumes(const std::vector<LatticePoint>& p, const std::vector<T
 }
 
 /// The piece seen from its other side.
-BspPiece turned_over(const BspPiece& piece) {
+BspPiece flipped(const BspPiece& piece) {
   BspPiece turned = {.plane = piece.plane, .triangle = piece.triangle, .is_flipped = !piece.is_flipped};
   const std::size_t count = piece.corners.size();
   for (std::size_t k = count; k-- > 0;) {
@@ -272,7 +272,7 @@ std::vector<BspPiece> surface_of(BspSpace& space, const Operand& a, const Operan
     keep_parts(space, a, b, {BspClass::kOutside, BspClass::kOpposite}, surface);
     const std::size_t of_a = surface.size();
     keep_parts(space, b, a, {BspClass::kInside, BspClass::kInside}, surface);
-    for (std::size_t i = of_a; i < surface.size(); ++i) surface[i] = turned_over(surface[i]);
+    for (std::size_t i = of_a; i < surface.size(); ++i) surface[i] = flipped(surface[i]);
   }
   return surface;
 }

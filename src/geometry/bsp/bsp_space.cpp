@@ -30,7 +30,7 @@ WideVector widened(const LatticeNormal& a) {
 }
 
 /// Cramer's rule: x w = -(d_a (b x c) + d_b (c x a) + d_c (a x b)), w = a . (b x c).
-Homogeneous meeting(const BspPlane& a, const BspPlane& b, const BspPlane& c) {
+Homogeneous intersection(const BspPlane& a, const BspPlane& b, const BspPlane& c) {
   const WideVector u = widened(a.a);
   const WideVector v = widened(b.a);
   const WideVector w = widened(c.a);
@@ -121,8 +121,8 @@ BspPiece BspSpace::add_triangle(const std::array<LatticePoint, 3>& corners, std:
   return piece;
 }
 
-std::uint32_t BspSpace::add_meeting(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  const Homogeneous p = meeting(planes_[a], planes_[b], planes_[c]);
+std::uint32_t BspSpace::add_intersection(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Homogeneous p = intersection(planes_[a], planes_[b], planes_[c]);
   HOOKE_ASSERT(p.w.sign() > 0);
   const double w = p.w.approximate();
   points_.push_back({.place = {p.x.x.approximate() / w, p.x.y.approximate() / w, p.x.z.approximate() / w},
@@ -142,7 +142,7 @@ int BspSpace::side_of(std::uint32_t plane, std::uint32_t point) const {
     const Int128 exact = s.a.x * q.x + s.a.y * q.y + s.a.z * q.z + s.d;
     return exact > 0 ? 1 : exact < 0 ? -1 : 0;
   }
-  const Homogeneous h = meeting(planes_[p.planes[0]], planes_[p.planes[1]], planes_[p.planes[2]]);
+  const Homogeneous h = intersection(planes_[p.planes[0]], planes_[p.planes[1]], planes_[p.planes[2]]);
   return (dot(widened(s.a), h.x) + h.w * WideInt(s.d)).sign();
 }
 
@@ -156,8 +156,8 @@ int BspSpace::compare(std::uint32_t p, std::uint32_t q) const {
   if (gap.x > sure) return 1;
   if (gap.x < -sure) return -1;
   if (is_exact) return gap.y != 0 ? (gap.y > 0 ? 1 : -1) : gap.z > 0 ? 1 : gap.z < 0 ? -1 : 0;
-  const Homogeneous u = meeting(planes_[a.planes[0]], planes_[a.planes[1]], planes_[a.planes[2]]);
-  const Homogeneous v = meeting(planes_[b.planes[0]], planes_[b.planes[1]], planes_[b.planes[2]]);
+  const Homogeneous u = intersection(planes_[a.planes[0]], planes_[a.planes[1]], planes_[a.planes[2]]);
+  const Homogeneous v = intersection(planes_[b.planes[0]], planes_[b.planes[1]], planes_[b.planes[2]]);
   const WideVector exact = v.w * u.x - u.w * v.x;
   for (const WideInt& coordinate : {exact.x, exact.y, exact.z}) {
     if (coordinate.sign() != 0) return coordinate.sign();
@@ -201,7 +201,7 @@ BspSplit split(BspSpace& space, const BspPiece& piece, std::uint32_t plane, BspP
       below.corners.push_back({corner.point, next > 0 ? plane : corner.edge_plane});
     }
     if (here * next < 0) {
-      const std::uint32_t cut = space.add_meeting(piece.plane, corner.edge_plane, plane);
+      const std::uint32_t cut = space.add_intersection(piece.plane, corner.edge_plane, plane);
       above.corners.push_back({cut, next < 0 ? plane : corner.edge_plane});
       below.corners.push_back({cut, next > 0 ? plane : corner.edge_plane});
     }

@@ -76,7 +76,7 @@ class BspSpace {
   /// The triangle as a piece; without corners if it has no area.
   BspPiece add_triangle(const std::array<LatticePoint, 3>& corners, std::uint32_t triangle);
   /// The point where the three planes meet. Precondition: there is one.
-  std::uint32_t add_meeting(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  std::uint32_t add_intersection(std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
   [[nodiscard]] const BspPlane& plane(std::uint32_t index) const { return planes_[index]; }
   [[nodiscard]] const BspPoint& point(std::uint32_t index) const { return points_[index]; }

@@ -122,9 +122,9 @@ Loops find_faces(GriddedPoints& points, int vertex_limit) {
     const auto triangles = triangulate_hull(points.grid, kToleranceOnGrid, vertex_limit);
     if (triangles.empty() || thickness_of(triangles, points.grid) < kThicknessOnGrid) return {};
     const Loops rough = join_triangles(triangles, points.grid, kToleranceOnGrid, false);
-    const auto meeting = count_loops(rough, points.grid.size());
-    std::vector<std::uint8_t> is_corner(meeting.size());
-    std::transform(meeting.begin(), meeting.end(), is_corner.begin(),
+    const auto loop_counts = count_loops(rough, points.grid.size());
+    std::vector<std::uint8_t> is_corner(loop_counts.size());
+    std::transform(loop_counts.begin(), loop_counts.end(), is_corner.begin(),
                    [](std::uint32_t count) { return count >= 3 ? 1 : 0; });
     if (std::ranges::all_of(is_corner, [](std::uint8_t corner) { return corner != 0; })) {
       return join_triangles(triangles, points.grid, kToleranceOnGrid, true);

@@ -231,8 +231,9 @@ PrincipalAxes principal_axes(const Inertia& matrix) {
     if (axis == 1) half = jacobi_angle(m.zz, m.xx, off);
     if (axis == 2) half = jacobi_angle(m.xx, m.yy, off);
     const double s = -half.sine;
-    const Quaternion<double> turn = {axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0, half.cosine};
-    q = normalize(q * turn);
+    const Quaternion<double> rotation = {axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0,
+                                         half.cosine};
+    q = normalize(q * rotation);
     m = rotated(matrix, conjugate(q));
   }
   if (q.w < 0) q = {-q.x, -q.y, -q.z, -q.w};

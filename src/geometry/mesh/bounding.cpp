@@ -105,7 +105,7 @@ struct Flat {
   double x = 0, y = 0;
 };
 
-double turn(Flat a, Flat b, Flat c) {
+double signed_area(Flat a, Flat b, Flat c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -117,7 +117,8 @@ std::vector<Flat> outline_of(std::vector<Flat> points) {
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t first = outline.size();
     for (const Flat p : points) {
-      while (outline.size() >= first + 2 && !(turn(outline[outline.size() - 2], outline.back(), p) > 0)) {
+      while (outline.size() >= first + 2 &&
+             !(signed_area(outline[outline.size() - 2], outline.back(), p) > 0)) {
         outline.pop_back();
       }
       outline.push_back(p);
@@ -239,13 +240,13 @@ double volume_of(const OrientedBox& box) {
   return h.x < 0 ? 0 : 8 * h.x * h.y * h.z;
 }
 
-bool may_touch(const BoundingSphere& a, const BoundingSphere& b, const RigidPose& b_in_a, double margin) {
+bool may_overlap(const BoundingSphere& a, const BoundingSphere& b, const RigidPose& b_in_a, double margin) {
   if (a.radius < 0 || b.radius < 0) return false;
   const double apart = length(to_world(b_in_a, b.center) - a.center);
   return apart <= (a.radius + b.radius + margin) + kRoundingSlack * (apart + a.radius + b.radius);
 }
 
-bool may_touch(const DBox& a, const DBox& b, const RigidPose& b_in_a, double margin) {
+bool may_overlap(const DBox& a, const DBox& b, const RigidPose& b_in_a, double margin) {
   if (a.upper.x < a.lower.x || b.upper.x < b.lower.x) return false;
   const Matrix3<double> r = matrix_of(b_in_a.rotation);
   const DVec3 half = 0.5 * (b.upper - b.lower);
@@ -258,7 +259,7 @@ bool may_touch(const DBox& a, const DBox& b, const RigidPose& b_in_a, double mar
   return overlap(a, DBox{center - grow, center + grow});
 }
 
-bool may_touch(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_in_a, double margin) {
+bool may_overlap(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_in_a, double margin) {
   if (a.half_extents.x < 0 || b.half_extents.x < 0) return false;
   const DVec3 apart = to_world(b_in_a, b.center) - a.center;
   const DVec3 of_a[3] = {a.axes.x, a.axes.y, a.axes.z};

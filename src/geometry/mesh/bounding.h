@@ -75,11 +75,11 @@ struct OrientedBox {
 /// `margin` [m] of each other: no is certain, as rounding counts for yes. Boxes along the axes are taken as
 /// the box around the turned one, oriented ones by the 15 axes of Gottschalk, Lin and Manocha (1996,
 /// OBBTree).
-[[nodiscard]] bool may_touch(const BoundingSphere& a, const BoundingSphere& b, const RigidPose& b_in_a,
-                             double margin);
-[[nodiscard]] bool may_touch(const DBox& a, const DBox& b, const RigidPose& b_in_a, double margin);
-[[nodiscard]] bool may_touch(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_in_a,
-                             double margin);
+[[nodiscard]] bool may_overlap(const BoundingSphere& a, const BoundingSphere& b, const RigidPose& b_in_a,
+                               double margin);
+[[nodiscard]] bool may_overlap(const DBox& a, const DBox& b, const RigidPose& b_in_a, double margin);
+[[nodiscard]] bool may_overlap(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_in_a,
+                               double margin);
 
 /// Squared distance of a point, 0 inside [m^2].
 [[nodiscard]] double distance_squared(const BoundingSphere& sphere, DVec3 p);

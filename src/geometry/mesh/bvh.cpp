@@ -94,8 +94,8 @@ void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& 
   std::sort(found.begin(), found.end());
 }
 
-void find_triangles_on_way(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
-                           std::vector<BvhEntry>& found) {
+void find_triangles_on_path(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
+                            std::vector<BvhEntry>& found) {
   found.clear();
   const RaySlabs ray = RaySlabs::of(origin, motion);
   for (std::uint32_t i = 0; i < bvh.nodes.size();) {

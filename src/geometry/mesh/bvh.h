@@ -40,8 +40,8 @@ struct BvhEntry {
 
 /// Replaces `found` by the triangles whose boxes, grown by `radius` on every side, the segment from `origin`
 /// over `motion` enters, and where; in order of (fraction, triangle). The motion may be zero.
-void find_triangles_on_way(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
-                           std::vector<BvhEntry>& found);
+void find_triangles_on_path(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
+                            std::vector<BvhEntry>& found);
 
 struct BvhClosest {
   std::uint32_t triangle = 0;

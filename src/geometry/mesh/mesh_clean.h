@@ -33,8 +33,8 @@ struct Weld {
 /// consistent and gets a positive volume; one inside another such surface turns with the outermost around it,
 /// so that a cavity stays a cavity. A surface with a border is made consistent as the most of its triangles
 /// are.
-[[nodiscard]] std::vector<std::uint8_t> find_turned(std::span<const DVec3> points,
-                                                    std::span<const Triangle> triangles);
+[[nodiscard]] std::vector<std::uint8_t> find_flipped(std::span<const DVec3> points,
+                                                     std::span<const Triangle> triangles);
 
 /// Whether two triangles of a mesh have more in common than the corners they share: they cross, or lie on
 /// each other. Exact.

@@ -102,41 +102,41 @@ std::vector<Neighbors> find_neighbors(std::span<const Border> sides, std::size_t
 /// Turns triangles so that neighbors agree with each other, as far as edges with two sides lead from `start`:
 /// the fewer of them, of equally many not `start`.
 void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::vector<std::uint8_t>& is_seen,
-                std::vector<std::uint8_t>& turned) {
+                std::vector<std::uint8_t>& flipped) {
   std::vector<std::uint32_t> reached = {start};
-  std::size_t turned_count = 0;
+  std::size_t flipped_count = 0;
   for (std::size_t next = 0; next < reached.size(); ++next) {
     const std::uint32_t t = reached[next];
-    turned_count += turned[t];
+    flipped_count += flipped[t];
     for (std::size_t i = 0; i < neighbors[t].count; ++i) {
       const Neighbors::Link link = neighbors[t].links[i];
       if (std::exchange(is_seen[link.to], std::uint8_t{1}) != 0) continue;
-      turned[link.to] = turned[t] ^ static_cast<std::uint8_t>(link.must_differ);
+      flipped[link.to] = flipped[t] ^ static_cast<std::uint8_t>(link.must_differ);
       reached.push_back(link.to);
     }
   }
-  if (2 * turned_count <= reached.size()) return;
-  for (const std::uint32_t t : reached) turned[t] ^= 1u;
+  if (2 * flipped_count <= reached.size()) return;
+  for (const std::uint32_t t : reached) flipped[t] ^= 1u;
 }
 
 /// Makes each surface agree with the most of its triangles.
-void make_consistent(std::span<const Border> sides, std::vector<std::uint8_t>& turned) {
-  const std::vector<Neighbors> neighbors = find_neighbors(sides, turned.size());
-  std::vector<std::uint8_t> is_seen(turned.size(), 0);
-  for (std::uint32_t start = 0; start < turned.size(); ++start) {
-    if (std::exchange(is_seen[start], std::uint8_t{1}) == 0) agree_from(start, neighbors, is_seen, turned);
+void make_consistent(std::span<const Border> sides, std::vector<std::uint8_t>& flipped) {
+  const std::vector<Neighbors> neighbors = find_neighbors(sides, flipped.size());
+  std::vector<std::uint8_t> is_seen(flipped.size(), 0);
+  for (std::uint32_t start = 0; start < flipped.size(); ++start) {
+    if (std::exchange(is_seen[start], std::uint8_t{1}) == 0) agree_from(start, neighbors, is_seen, flipped);
   }
 }
 
 /// Whether as many sides run along the edge as against it.
-bool is_balanced(std::span<const Border> edge, std::span<const std::uint8_t> turned) {
+bool is_balanced(std::span<const Border> edge, std::span<const std::uint8_t> flipped) {
   std::ptrdiff_t sum = 0;
-  for (const Border& side : edge) sum += side.ascending != (turned[side.triangle] != 0) ? 1 : -1;
+  for (const Border& side : edge) sum += side.ascending != (flipped[side.triangle] != 0) ? 1 : -1;
   return sum == 0;
 }
 
 std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<const Triangle> triangles,
-                                       std::span<const Border> sides, std::span<const std::uint8_t> turned) {
+                                       std::span<const Border> sides, std::span<const std::uint8_t> flipped) {
   const std::vector<std::uint32_t> surface_of = find_surfaces(sides, triangles.size());
   const std::uint32_t count =
       surface_of.empty() ? 0 : *std::max_element(surface_of.begin(), surface_of.end()) + 1;
@@ -149,7 +149,7 @@ std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<
     const DVec3 b = points[triangles[t][1]];
     const DVec3 c = points[triangles[t][2]];
     const double volume = dot(origin - reference, cross(b - reference, c - reference)) / 6;
-    surface.volume += turned[t] != 0 ? -volume : volume;
+    surface.volume += flipped[t] != 0 ? -volume : volume;
     for (const DVec3 p : {origin, b, c}) {
       surface.low = {std::min(surface.low.x, p.x), std::min(surface.low.y, p.y),
                      std::min(surface.low.z, p.z)};
@@ -159,15 +159,15 @@ std::vector<Surface> describe_surfaces(std::span<const DVec3> points, std::span<
     surface.triangles.push_back(t);
   }
   for_edges(sides, [&](std::span<const Border> edge) {
-    if (!is_balanced(edge, turned)) surfaces[surface_of[edge[0].triangle]].is_closed = false;
+    if (!is_balanced(edge, flipped)) surfaces[surface_of[edge[0].triangle]].is_closed = false;
   });
   return surfaces;
 }
 
 /// How often the surface winds around `p`: the sum of signed solid angles over 4 pi (Van Oosterom and
 /// Strackee, 1983). About +-1 inside a closed surface, about 0 outside.
-double turns_around(std::span<const DVec3> points, std::span<const Triangle> triangles,
-                    const Surface& surface, DVec3 p) {
+double reverses(std::span<const DVec3> points, std::span<const Triangle> triangles, const Surface& surface,
+                DVec3 p) {
   double sum = 0.0;
   for (const std::uint32_t t : surface.triangles) {
     const DVec3 a = points[triangles[t][0]] - p;
@@ -197,14 +197,14 @@ double outermost_volume(std::span<const DVec3> points, std::span<const Triangle>
   for (const Surface& other : surfaces) {
     if (!other.is_closed || !box_contains(other, surfaces[s])) continue;
     if (outermost != &surfaces[s] && !box_contains(other, *outermost)) continue;
-    if (std::abs(turns_around(points, triangles, other, p)) > 0.5) outermost = &other;
+    if (std::abs(reverses(points, triangles, other, p)) > 0.5) outermost = &other;
   }
   return outermost->volume;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> find_turned(std::span<const DVec3> points, std::span<const Triangle> triangles) {
+std::vector<std::uint8_t> find_flipped(std::span<const DVec3> points, std::span<const Triangle> triangles) {
   const std::vector<Border> sides = sorted_sides(triangles);
   std::vector<std::uint8_t> agreed(triangles.size(), 0);
   const std::vector<Surface> given = describe_surfaces(points, triangles, sides, agreed);
@@ -213,19 +213,19 @@ std::vector<std::uint8_t> find_turned(std::span<const DVec3> points, std::span<c
   const auto closed_count =
       std::count_if(given.begin(), given.end(), [](const Surface& surface) { return surface.is_closed; });
 
-  std::vector<std::uint8_t> turned(triangles.size(), 0);
+  std::vector<std::uint8_t> flipped(triangles.size(), 0);
   for (std::size_t s = 0; s < given.size(); ++s) {
     double volume = 0.0;  // of a surface with a border: it has none
     if (given[s].is_closed) {
       volume = closed_count > kMaxNested ? given[s].volume : outermost_volume(points, triangles, given, s);
     } else {
       volume = repaired[s].is_closed ? repaired[s].volume : 0.0;
-      for (const std::uint32_t t : given[s].triangles) turned[t] = agreed[t];
+      for (const std::uint32_t t : given[s].triangles) flipped[t] = agreed[t];
     }
     if (volume >= 0) continue;
-    for (const std::uint32_t t : given[s].triangles) turned[t] ^= 1u;
+    for (const std::uint32_t t : given[s].triangles) flipped[t] ^= 1u;
   }
-  return turned;
+  return flipped;
 }
 
 }  // namespace hooke::geometry

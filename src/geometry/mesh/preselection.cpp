@@ -17,7 +17,7 @@ namespace {
 template <class Volume>
 Candidates by_volume(const Volume& a, const Volume& b, const RigidPose& b_in_a, double margin,
                      std::uint64_t all) {
-  return {1, may_touch(a, b, b_in_a, margin) ? all : 0};
+  return {1, may_overlap(a, b, b_in_a, margin) ? all : 0};
 }
 
 template <class Volume>

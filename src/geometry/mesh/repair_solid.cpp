@@ -143,10 +143,10 @@ void drop_duplicates(Draft& draft, Numbers& dropped) {
   draft.keep(is_kept, dropped);
 }
 
-void turn_outward(Draft& draft, Numbers& turned) {
-  const std::vector<std::uint8_t> must_turn = geometry::find_turned(draft.points, draft.triangles);
-  for (std::size_t t = 0; t < must_turn.size(); ++t) {
-    if (must_turn[t] == 0) continue;
+void flip_outward(Draft& draft, Numbers& turned) {
+  const std::vector<std::uint8_t> must_flip = geometry::find_flipped(draft.points, draft.triangles);
+  for (std::size_t t = 0; t < must_flip.size(); ++t) {
+    if (must_flip[t] == 0) continue;
     std::swap(draft.triangles[t][1], draft.triangles[t][2]);
     turned.push_back(draft.given[t]);
   }
@@ -205,7 +205,7 @@ Result<SolidRepair> repair_solid(const MeshDesc& mesh) {
   Draft draft = welded(mesh);
   drop_degenerate(draft, repair.degenerate);
   drop_duplicates(draft, repair.duplicate);
-  turn_outward(draft, repair.turned);
+  flip_outward(draft, repair.turned);
   if (Result<void> closed = check_surface(draft); !closed) return closed.error();
   if (Result<void> solid = check_solid(draft); !solid) return solid.error();
   Numbers place(draft.points.size(), kNone);

@@ -149,7 +149,7 @@ std::uint64_t find_candidates(const VolumeTree<Volume>& a, const VolumeTree<Volu
     const auto& node_a = a.nodes[in_a];
     const auto& node_b = b.nodes[in_b];
     ++compared;
-    if (!may_touch(node_a.volume, node_b.volume, b_in_a, margin)) continue;
+    if (!may_overlap(node_a.volume, node_b.volume, b_in_a, margin)) continue;
     const bool is_leaf_a = a.is_leaf(in_a);
     const bool is_leaf_b = b.is_leaf(in_b);
     if (is_leaf_a && is_leaf_b) {

@@ -63,7 +63,7 @@ struct Part {
 double depth_of(std::span<const Corners> surface, const ConvexHull& hull) {
   const double spacing = 2 * static_cast<double>(hull.outer_radius) / kSamplesPerExtent;
   double deepest = 0;
-  const auto look_at = [&](Vec3 p) {
+  const auto sample = [&](Vec3 p) {
     Real depth = std::numeric_limits<Real>::infinity();
     for (const ConvexHull::Face& face : hull.faces)
       depth = std::min(depth, face.offset - dot(face.normal, p));
@@ -74,7 +74,7 @@ double depth_of(std::span<const Corners> surface, const ConvexHull& hull) {
     const int steps = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, 2 * kSamplesPerExtent);
     for (int i = 0; i <= steps; ++i) {
       for (int k = 0; k <= steps - i; ++k) {
-        look_at(a + Real(i) / Real(steps) * (b - a) + Real(k) / Real(steps) * (c - a));
+        sample(a + Real(i) / Real(steps) * (b - a) + Real(k) / Real(steps) * (c - a));
       }
     }
   }

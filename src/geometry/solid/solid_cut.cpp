@@ -56,7 +56,7 @@ void cut_triangle(const Corners& t, const std::array<double, 3>& height, SolidHa
 }
 
 /// The point where three planes meet; nothing if two of them are almost parallel.
-std::optional<DVec3> meeting_point(const Plane& a, const Plane& b, const Plane& c) {
+std::optional<DVec3> intersection_point(const Plane& a, const Plane& b, const Plane& c) {
   const DVec3 bc = cross(b.normal, c.normal);
   const double volume = dot(a.normal, bc);
   if (!(std::abs(volume) > 1e-4)) return std::nullopt;
@@ -79,7 +79,7 @@ void cut_corners(const SolidPiece& piece, std::span<const Corners> solid, const 
   };
   for (std::size_t i = 0; i < piece.planes.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      const std::optional<DVec3> p = meeting_point(plane, piece.planes[i], piece.planes[k]);
+      const std::optional<DVec3> p = intersection_point(plane, piece.planes[i], piece.planes[k]);
       if (!p || !is_in_piece(*p) || !contains(solid, *p)) continue;
       halves.below.corners.push_back(vector_cast<Real>(*p));
       halves.above.corners.push_back(vector_cast<Real>(*p));

@@ -27,8 +27,8 @@ struct Crossing {
 
 /// Times that the triangle, seen along x, turns about (y, z). Counted by its edges, each of them in one
 /// direction whatever triangle asks: neighbors agree to the bit, and no line slips between them.
-int turns_about(const std::array<DVec3, 3>& t, double y, double z) {
-  int turns = 0;
+int winding_about(const std::array<DVec3, 3>& t, double y, double z) {
+  int winding = 0;
   for (int k = 0; k < 3; ++k) {
     DVec3 a = t[k], b = t[(k + 1) % 3];
     int sign = 1;
@@ -37,9 +37,9 @@ int turns_about(const std::array<DVec3, 3>& t, double y, double z) {
       sign = -1;
     }
     if (!(a.z <= z) || b.z <= z) continue;
-    if (a.y + (z - a.z) / (b.z - a.z) * (b.y - a.y) > y) turns += sign;
+    if (a.y + (z - a.z) / (b.z - a.z) * (b.y - a.y) > y) winding += sign;
   }
-  return turns;
+  return winding;
 }
 
 double crossing_of(const std::array<DVec3, 3>& t, double y, double z) {
@@ -56,11 +56,11 @@ class Filler {
       : mesh_(mesh), grid_(grid), rows_(2 * grid.counts[1]), layers_(2 * grid.counts[2]) {}
 
   void fill() {
-    lines_.resize(static_cast<std::size_t>(rows_) * layers_);
-    for (const Triangle& t : mesh_.triangles) cross_lines(t);
+    rays_.resize(static_cast<std::size_t>(rows_) * layers_);
+    for (const Triangle& t : mesh_.triangles) cross_rays(t);
     std::vector<int> inside(grid_.filled.size(), 0);
     for (int layer = 0; layer < layers_; ++layer) {
-      for (int row = 0; row < rows_; ++row) count_line(row, layer, inside);
+      for (int row = 0; row < rows_; ++row) count_ray(row, layer, inside);
     }
     for (std::size_t i = 0; i < inside.size(); ++i) grid_.filled[i] = inside[i] >= 4 ? 1 : 0;
   }
@@ -77,7 +77,7 @@ class Filler {
     return {std::max(at(least) - 1, 0), std::min(at(most) + 1, count - 1)};
   }
 
-  void cross_lines(const Triangle& triangle) {
+  void cross_rays(const Triangle& triangle) {
     std::array<DVec3, 3> t;
     for (int k = 0; k < 3; ++k) t[k] = vector_cast<double>(mesh_.positions[triangle[k]]);
     const Box3<double> box = box_of(t[0], t[1], t[2]);
@@ -85,21 +85,21 @@ class Filler {
     const auto layers = range_of(box.lower.z, box.upper.z, grid_.corner.z, 0.5 * grid_.cell.z, layers_);
     for (int layer = layers[0]; layer <= layers[1]; ++layer) {
       for (int row = rows[0]; row <= rows[1]; ++row) {
-        const int turns = turns_about(t, y_of(row), z_of(layer));
-        if (turns == 0) continue;
-        lines_[static_cast<std::size_t>(layer) * rows_ + row].push_back(
-            {crossing_of(t, y_of(row), z_of(layer)), turns});
+        const int winding = winding_about(t, y_of(row), z_of(layer));
+        if (winding == 0) continue;
+        rays_[static_cast<std::size_t>(layer) * rows_ + row].push_back(
+            {crossing_of(t, y_of(row), z_of(layer)), winding});
       }
     }
   }
 
-  void count_line(int row, int layer, std::vector<int>& inside) {
-    const auto& line = lines_[static_cast<std::size_t>(layer) * rows_ + row];
-    if (line.empty()) return;
+  void count_ray(int row, int layer, std::vector<int>& inside) {
+    const auto& ray = rays_[static_cast<std::size_t>(layer) * rows_ + row];
+    if (ray.empty()) return;
     for (int i = 0; i < 2 * grid_.counts[0]; ++i) {
       const double x = grid_.corner.x + (i + 0.5) * 0.5 * grid_.cell.x;
       int winding = 0;
-      for (const Crossing& c : line) winding += c.x > x ? c.sign : 0;
+      for (const Crossing& c : ray) winding += c.x > x ? c.sign : 0;
       if (winding > 0) ++inside[grid_.index(i / 2, row / 2, layer / 2)];
     }
   }
@@ -107,7 +107,7 @@ class Filler {
   const MeshDesc& mesh_;
   CellGrid& grid_;
   int rows_, layers_;
-  std::vector<std::vector<Crossing>> lines_;
+  std::vector<std::vector<Crossing>> rays_;
 };
 
 /// Moves points of the surface to the nearest places of the mesh, or part of the way.
@@ -139,9 +139,9 @@ void fit_surface(const MeshDesc& target, TetrahedralMesh& mesh) {
     const DVec3 from = mesh.points[p];
     const auto closest = find_closest(bvh, vector_cast<Real>(from));
     if (!closest) continue;
-    const DVec3 way = vector_cast<double>(closest->point) - from;
+    const DVec3 offset = vector_cast<double>(closest->point) - from;
     for (const double part : {1.0, 0.75, 0.5, 0.25, 0.0}) {
-      mesh.points[p] = from + part * way;
+      mesh.points[p] = from + part * offset;
       if (fits(p)) break;
     }
   }

@@ -101,9 +101,9 @@ class CellFiller {
           const std::uint32_t other = point_of_cell_[grid_.index(beside[0], beside[1], beside[2])];
           for (int k = 0; k < 4; ++k) add({center, other, face[k], face[(k + 1) % 4]});
         } else {
-          const int turn = (corner[0] + corner[1] + corner[2]) & 1;
-          add({center, face[turn], face[turn + 1], face[turn + 2]});
-          add({center, face[turn], face[turn + 2], face[(turn + 3) % 4]});
+          const int parity = (corner[0] + corner[1] + corner[2]) & 1;
+          add({center, face[parity], face[parity + 1], face[parity + 2]});
+          add({center, face[parity], face[parity + 2], face[(parity + 3) % 4]});
         }
       }
     }

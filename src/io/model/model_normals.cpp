@@ -10,7 +10,7 @@ namespace hooke::io {
 
 namespace {
 
-using geometry::find_turned;
+using geometry::find_flipped;
 using geometry::is_degenerate;
 using geometry::Weld;
 using geometry::weld;
@@ -117,9 +117,9 @@ Faces find_faces(const Soup& soup) {
     faces.given.push_back(given);
     faces.material_of.push_back(soup.material_of[t]);
   }
-  const std::vector<std::uint8_t> turned = find_turned(faces.points, faces.welded);
-  for (std::size_t t = 0; t < turned.size(); ++t) {
-    if (turned[t] == 0) continue;
+  const std::vector<std::uint8_t> flipped = find_flipped(faces.points, faces.welded);
+  for (std::size_t t = 0; t < flipped.size(); ++t) {
+    if (flipped[t] == 0) continue;
     std::swap(faces.welded[t][1], faces.welded[t][2]);
     std::swap(faces.given[t][1], faces.given[t][2]);
   }

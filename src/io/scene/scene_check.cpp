@@ -757,7 +757,7 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
   return joined.string();
 }
 
-void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
+void check_scene(const Scene& scene, const JsonDocument& document, bool files_must_exist,
                  std::vector<JsonError>& errors, std::vector<JsonError>& ignored) {
   const bool clean = errors.empty();
   Checker checker(scene, document, errors, ignored);
@@ -765,7 +765,7 @@ void check_scene(const Scene& scene, const JsonDocument& document, bool look_for
   if (clean) checker.check_total();
   if (clean && !errors.empty()) return;
   checker.collect_names();
-  checker.check_files(look_for_files);
+  checker.check_files(files_must_exist);
   checker.check_references();
   checker.check_points();
 }

@@ -9,7 +9,7 @@ namespace hooke::io {
 /// What only the whole scene can tell: names that refer to nothing or to two things, points that do not
 /// exist, too many points, files outside of the scene's folder. `look_for_files`: they must also be there.
 /// `ignored`: points of what has none, and what a hook of points makes no use of.
-void check_scene(const Scene& scene, const JsonDocument& document, bool look_for_files,
+void check_scene(const Scene& scene, const JsonDocument& document, bool files_must_exist,
                  std::vector<JsonError>& errors, std::vector<JsonError>& ignored);
 
 /// "ball[3]" taken apart: the name of an array and the number of a copy. Nothing for another name.

@@ -15,17 +15,17 @@ class IgnoredKeys {
  public:
   explicit IgnoredKeys(const JsonDocument& document) : document_(document) {}
 
-  void look_at(const SceneMesh& mesh);
-  void look_at(const WindDesc& wind, const std::string& path);
-  void look_at(const SceneBody& body, const std::string& path);
-  void look_at(const SceneRope& rope, const std::string& path);
-  void look_at(const SceneCloth& cloth, const std::string& path);
-  void look_at(const SceneSolid& solid, const std::string& path);
-  void look_at(const SceneParticles& particles, const std::string& path);
-  void look_at(const SceneHook& hook, const std::string& path);
-  void look_at(const SceneObjects& objects, const std::string& prefix);
-  void look_at(const SceneCamera& camera);
-  void look_at(const SceneExpectation& expectation, const std::string& path);
+  void check(const SceneMesh& mesh);
+  void check(const WindDesc& wind, const std::string& path);
+  void check(const SceneBody& body, const std::string& path);
+  void check(const SceneRope& rope, const std::string& path);
+  void check(const SceneCloth& cloth, const std::string& path);
+  void check(const SceneSolid& solid, const std::string& path);
+  void check(const SceneParticles& particles, const std::string& path);
+  void check(const SceneHook& hook, const std::string& path);
+  void check(const SceneObjects& objects, const std::string& prefix);
+  void check(const SceneCamera& camera);
+  void check(const SceneExpectation& expectation, const std::string& path);
 
   [[nodiscard]] std::vector<JsonError> take() { return std::move(found_); }
 
@@ -41,30 +41,30 @@ class IgnoredKeys {
                         {ErrorCode::kOutOfRange, path + "." + key, std::string("has no effect: ") + reason}});
     }
   }
-  void look_at(const HookFreedom& freedom, const std::string& path);
+  void check(const HookFreedom& freedom, const std::string& path);
   template <class T>
-  void look_at_all(const std::vector<T>& list, const std::string& name) {
-    for (std::size_t i = 0; i < list.size(); ++i) look_at(list[i], indexed(name, i));
+  void check_all(const std::vector<T>& list, const std::string& name) {
+    for (std::size_t i = 0; i < list.size(); ++i) check(list[i], indexed(name, i));
   }
 
   const JsonDocument& document_;
   std::vector<JsonError> found_;
 };
 
-void IgnoredKeys::look_at(const SceneMesh& mesh) {
+void IgnoredKeys::check(const SceneMesh& mesh) {
   const std::string path = "meshes." + mesh.name;
   ignore(path, {"scale"}, mesh.import.fit.has_value(), "'fit' replaces it");
   ignore(path, {"up", "scale", "fit"}, mesh.file.empty(), "it is for a file");
 }
 
-void IgnoredKeys::look_at(const WindDesc& wind, const std::string& path) {
+void IgnoredKeys::check(const WindDesc& wind, const std::string& path) {
   const Keys gusts = {"correlation_time", "correlation_length", "seed", "gusts"};
   const bool is_still = wind.velocity == Vec3{};
   ignore(path, {"gust", "side_gust"}, is_still, "gusts are relative to 'velocity', which is zero");
   ignore(path, gusts, is_still || (wind.gust == Real(0) && wind.side_gust == Real(0)), "there are no gusts");
 }
 
-void IgnoredKeys::look_at(const SceneBody& body, const std::string& path) {
+void IgnoredKeys::check(const SceneBody& body, const std::string& path) {
   const BodyDesc& desc = body.desc;
   const Keys forces = {"mass",          "density",          "linear_damping",    "angular_damping",
                        "gravity_scale", "drag_coefficient", "magnus_coefficient"};
@@ -79,7 +79,7 @@ void IgnoredKeys::look_at(const SceneBody& body, const std::string& path) {
   ignore(path, {"density"}, body.parts.empty() && desc.mass.has_value(), "'mass' replaces it");
 }
 
-void IgnoredKeys::look_at(const SceneRope& rope, const std::string& path) {
+void IgnoredKeys::check(const SceneRope& rope, const std::string& path) {
   const RopeDesc& desc = rope.desc;
   const bool is_material = desc.youngs_modulus.has_value();
   ignore(path, {"hook_point", "direction", "masses", "length_at_rest"}, !desc.points.empty(),
@@ -97,7 +97,7 @@ void IgnoredKeys::look_at(const SceneRope& rope, const std::string& path) {
   ignore(path, {"repulsion_range"}, desc.repulsion_strength == Real(0), "there is no repulsion_strength");
 }
 
-void IgnoredKeys::look_at(const SceneCloth& cloth, const std::string& path) {
+void IgnoredKeys::check(const SceneCloth& cloth, const std::string& path) {
   const ClothDesc& desc = cloth.desc;
   const Keys grid = {"columns", "rows", "corner", "column_direction", "row_direction", "width", "height"};
   ignore(path, grid, !cloth.mesh.empty(), "'mesh' replaces the grid");
@@ -106,7 +106,7 @@ void IgnoredKeys::look_at(const SceneCloth& cloth, const std::string& path) {
   ignore(path, {"bend_stiffness", "bend_damping"}, desc.bend == ClothDesc::Bend::kNone, "'bend' is \"none\"");
 }
 
-void IgnoredKeys::look_at(const SceneSolid& solid, const std::string& path) {
+void IgnoredKeys::check(const SceneSolid& solid, const std::string& path) {
   const SolidDesc& desc = solid.desc;
   const bool is_matched = desc.elasticity == SolidDesc::Elasticity::kShapeMatching;
   ignore(path, {"cells", "size"}, !solid.mesh.empty(), "'mesh' replaces the box");
@@ -117,17 +117,17 @@ void IgnoredKeys::look_at(const SceneSolid& solid, const std::string& path) {
   ignore(path, {"match_hz", "match_damping_ratio"}, !is_matched, "it is for shape matching");
 }
 
-void IgnoredKeys::look_at(const SceneParticles& particles, const std::string& path) {
+void IgnoredKeys::check(const SceneParticles& particles, const std::string& path) {
   ignore(path, {"direction", "damping"}, particles.desc.springs.empty(), "there are no springs");
 }
 
-void IgnoredKeys::look_at(const HookFreedom& freedom, const std::string& path) {
+void IgnoredKeys::check(const HookFreedom& freedom, const std::string& path) {
   ignore(path, {"limits", "motor"}, freedom.locked, "the freedom is locked");
   ignore(path + ".spring", {"stiffness", "damping"}, freedom.locked && freedom.spring != HookSpring{},
          "the freedom is locked");
 }
 
-void IgnoredKeys::look_at(const SceneHook& hook, const std::string& path) {
+void IgnoredKeys::check(const SceneHook& hook, const std::string& path) {
   const HookDesc& desc = hook.desc;
   const HookKind kind = desc.kind;
   const bool moves_one_way = kind == HookKind::kBall || kind == HookKind::kHinge ||
@@ -145,27 +145,27 @@ void IgnoredKeys::look_at(const SceneHook& hook, const std::string& path) {
   ignore(path, {"axis"}, !has_axis, "this kind of hook has none");
   ignore(path, {"second_axis"}, kind != HookKind::kWheel && kind != HookKind::kSixDegrees,
          "it is for a wheel or six_degrees");
-  if (kind == HookKind::kWheel) look_at(desc.steering, path + ".steering");
+  if (kind == HookKind::kWheel) check(desc.steering, path + ".steering");
   if (kind != HookKind::kSixDegrees) return;
   for (std::size_t i = 0; i < desc.freedoms.size(); ++i) {
-    look_at(desc.freedoms[i], indexed(path + ".freedoms", i));
+    check(desc.freedoms[i], indexed(path + ".freedoms", i));
   }
 }
 
-void IgnoredKeys::look_at(const SceneObjects& objects, const std::string& prefix) {
-  look_at_all(objects.bodies, prefix + "bodies");
-  look_at_all(objects.ropes, prefix + "ropes");
-  look_at_all(objects.cloths, prefix + "cloths");
-  look_at_all(objects.solids, prefix + "solids");
-  look_at_all(objects.particles, prefix + "particles");
-  look_at_all(objects.hooks, prefix + "hooks");
+void IgnoredKeys::check(const SceneObjects& objects, const std::string& prefix) {
+  check_all(objects.bodies, prefix + "bodies");
+  check_all(objects.ropes, prefix + "ropes");
+  check_all(objects.cloths, prefix + "cloths");
+  check_all(objects.solids, prefix + "solids");
+  check_all(objects.particles, prefix + "particles");
+  check_all(objects.hooks, prefix + "hooks");
 }
 
-void IgnoredKeys::look_at(const SceneCamera& camera) {
+void IgnoredKeys::check(const SceneCamera& camera) {
   ignore("camera", {"eye", "target"}, !camera.path.empty(), "'path' replaces it");
 }
 
-void IgnoredKeys::look_at(const SceneExpectation& expectation, const std::string& path) {
+void IgnoredKeys::check(const SceneExpectation& expectation, const std::string& path) {
   const bool has_tolerance =
       expectation.op == SceneExpectation::Op::kEqual || expectation.op == SceneExpectation::Op::kWithin;
   ignore(path, {"tolerance"}, !has_tolerance, "it is for \"==\" and \"within\"");
@@ -175,19 +175,19 @@ void IgnoredKeys::look_at(const SceneExpectation& expectation, const std::string
 
 std::vector<JsonError> find_ignored_keys(const Scene& scene, const JsonDocument& document) {
   IgnoredKeys ignored(document);
-  for (const SceneMesh& mesh : scene.meshes) ignored.look_at(mesh);
-  if (document.root.find("world") != nullptr) ignored.look_at(scene.world.wind, "world.wind");
-  ignored.look_at(scene.objects, "");
+  for (const SceneMesh& mesh : scene.meshes) ignored.check(mesh);
+  if (document.root.find("world") != nullptr) ignored.check(scene.world.wind, "world.wind");
+  ignored.check(scene.objects, "");
   for (std::size_t i = 0; i < scene.timeline.size(); ++i) {
     const std::string path = indexed("timeline", i);
-    ignored.look_at(scene.timeline[i].add, path + ".add.");
+    ignored.check(scene.timeline[i].add, path + ".add.");
     if (scene.timeline[i].kind == SceneEvent::Kind::kWind) {
-      ignored.look_at(scene.timeline[i].wind, path + ".wind");
+      ignored.check(scene.timeline[i].wind, path + ".wind");
     }
   }
-  if (scene.camera) ignored.look_at(*scene.camera);
+  if (scene.camera) ignored.check(*scene.camera);
   for (std::size_t i = 0; i < scene.expect.size(); ++i) {
-    ignored.look_at(scene.expect[i], indexed("expect", i));
+    ignored.check(scene.expect[i], indexed("expect", i));
   }
   return ignored.take();
 }

@@ -76,7 +76,7 @@ std::vector<Error> warnings_of(const Scene& scene, const JsonDocument& document,
   return finish(document, std::move(ignored));
 }
 
-Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files) {
+Loaded<Scene> read_scene(std::string text, std::string name, bool files_must_exist) {
   auto source = std::make_shared<SceneSource>();
   JsonDocument& document = source->document;
   std::vector<JsonError> errors = parse_json(std::move(text), name, document);
@@ -90,7 +90,7 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool look_for_files
   if (parsed && check_version(document, errors)) {
     Reader reader(document, errors);
     read_object(reader, document.root, kind_of<Scene>(), &scene);
-    check_scene(scene, document, look_for_files, errors, ignored);
+    check_scene(scene, document, files_must_exist, errors, ignored);
   }
   if (!errors.empty()) return {.errors = finish(document, std::move(errors))};
   std::vector<Error> warnings = warnings_of(scene, document, std::move(ignored));

@@ -24,7 +24,7 @@ struct Workspace {
   std::optional<Error> error;              ///< Set by a step that could not be made.
 
   /// After y was changed from outside: what was kept describes another motion.
-  void forget() {
+  void reset() {
     history.clear();
     carried.reset();
     matrix.reset();

@@ -60,7 +60,7 @@ Error not_finite(const Part& part) {
 }
 
 /// Coordinates of turns (turn.h) tell one step from the next up to about a radian.
-Result<void> turns_slowly(const Part& part) {
+Result<void> rotates_slowly(const Part& part) {
   if (!part.system.is_body()) return {};
   const double angle = length(part.system.body(part.start_time, part.y).spin) * part.h;
   if (!(angle > 1) || part.y.size() == 0) return {};
@@ -83,11 +83,11 @@ Result<void> advance(Part& part) {
     if (const auto moved = take_steps(part, start + i * part.h, part.h, part.y); !moved) {
       part.y = before;
       part.steps -= static_cast<std::uint64_t>(i);
-      part.work.forget();
+      part.work.reset();
       return moved.error();
     }
-    if (push_out(part.system, part.bodies, part.y)) part.work.forget();
-    if (part.system.lay_chart(part.y)) part.work.forget();
+    if (push_out(part.system, part.bodies, part.y)) part.work.reset();
+    if (part.system.lay_chart(part.y)) part.work.reset();
     ++part.steps;
   }
   ++part.outputs;
@@ -98,19 +98,19 @@ Result<void> take_steps(Part& part, double t, double seconds, State& y) {
   if (y.size() == 0) return {};
   const double count = std::max(1.0, std::ceil(std::abs(seconds) / part.h * (1 - 1e-12)));
   const bool whole = seconds == count * part.h;
-  if (!whole) part.work.forget();
+  if (!whole) part.work.reset();
   const double h = seconds / count;
   for (double i = 0; i < count; ++i) {
     part.method->step(part.system, t + i * h, h, y, part.work);
-    if (!part.work.error && !(y.allFinite() && part.system.turn_is_known(y)))
+    if (!part.work.error && !(y.allFinite() && part.system.rotation_is_known(y)))
       part.work.error = not_finite(part);
     if (!part.work.error) continue;
     const Error error = *part.work.error;
-    part.work.forget();
+    part.work.reset();
     part.work.error.reset();
     return error;
   }
-  if (!whole) part.work.forget();
+  if (!whole) part.work.reset();
   return {};
 }
 
@@ -128,7 +128,7 @@ Result<void> check(const Part& part, const Options& options) {
         name + " needs derivatives, which force laws and gusts of wind do not have: " + part.system.name()};
   }
   if (options.force || info.adaptive) return {};
-  if (const Result<void> slow = turns_slowly(part); !slow) return slow.error();
+  if (const Result<void> slow = rotates_slowly(part); !slow) return slow.error();
   if (info.implicit) return {};
   const auto grows = worst(part.system, *part.method, part.start_time, part.h);
   if (grows) return diverges(part.system, *part.method, *grows, part.h);

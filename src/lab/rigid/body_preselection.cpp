@@ -43,7 +43,7 @@ geometry::RigidPose middle_of(const DenseMotion& motion) {
 
 /// How far a turn takes any point of the body from where it is in the middle of the step [m].
 double largest_swing(const MovingVolumes& body) {
-  const double turn = 0.5 * body.motion.largest_turn();
+  const double turn = 0.5 * body.motion.largest_rotation();
   return turn > 0 ? std::min(2.0, turn) * body.radius : 0;
 }
 
@@ -63,7 +63,7 @@ BodyVolumes make_body_volumes(const RigidBody& body, Preselection kind) {
   return result;
 }
 
-bool may_meet(Preselection kind, const MovingVolumes& a, const MovingVolumes& b, double reach) {
+bool may_collide(Preselection kind, const MovingVolumes& a, const MovingVolumes& b, double reach) {
   if (a.volumes.is_everywhere || b.volumes.is_everywhere) return true;
   const geometry::RigidPose at_a = middle_of(a.motion);
   const geometry::RigidPose at_b = middle_of(b.motion);

@@ -26,6 +26,7 @@ struct MovingVolumes {
 
 /// False if the bodies cannot come nearer than `reach` [m] within the step: the volumes stand where they are
 /// in its middle, apart by more than their points can move against each other from there.
-[[nodiscard]] bool may_meet(Preselection kind, const MovingVolumes& a, const MovingVolumes& b, double reach);
+[[nodiscard]] bool may_collide(Preselection kind, const MovingVolumes& a, const MovingVolumes& b,
+                               double reach);
 
 }  // namespace hooke::lab

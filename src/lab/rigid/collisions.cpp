@@ -44,7 +44,7 @@ Result<void> Collisions::advance(double t, double dt, std::vector<Part>& parts) 
       for (const std::uint32_t body : region.members) {
         const auto part = static_cast<std::size_t>(bodies_[body].part);
         parts[part] = before[part];
-        if (region.members.size() > 1) parts[part].work.forget();
+        if (region.members.size() > 1) parts[part].work.reset();
       }
       if (const auto moved = run(region, t, dt, parts); !moved) return moved.error();
     }
@@ -63,7 +63,7 @@ Result<void> Collisions::run(Outcome& outcome, double t, double dt, std::vector<
   return {};
 }
 
-bool Collisions::may_meet(const Outcome& a, const Outcome& b) const {
+bool Collisions::may_collide(const Outcome& a, const Outcome& b) const {
   for (std::size_t i = 0; i < a.members.size(); ++i) {
     for (std::size_t j = 0; j < b.members.size(); ++j) {
       const RigidBody& of_a = bodies_[a.members[i]];
@@ -85,7 +85,7 @@ bool Collisions::join_crossing(std::vector<Outcome>& regions) const {
   bool joined = false;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     for (std::size_t j = i + 1; j < regions.size();) {
-      if (!may_meet(regions[i], regions[j])) {
+      if (!may_collide(regions[i], regions[j])) {
         ++j;
         continue;
       }

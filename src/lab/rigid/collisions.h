@@ -35,7 +35,7 @@ class Collisions {
   };
 
   Result<void> run(Outcome& region, double t, double dt, std::vector<Part>& parts) const;
-  [[nodiscard]] bool may_meet(const Outcome& a, const Outcome& b) const;
+  [[nodiscard]] bool may_collide(const Outcome& a, const Outcome& b) const;
   bool join_crossing(std::vector<Outcome>& regions) const;
   void add(const CollisionReport& report);
 

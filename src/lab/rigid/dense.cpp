@@ -64,10 +64,10 @@ DenseMotion::DenseMotion(const System& system, double t, double h, const State& 
   }
   const State x0 = system.x(y0), x1 = system.x(y1), v0 = system.v(y0), v1 = system.v(y1);
   center_ = {coordinates(x0, 0), coordinates(x1, 0), coordinates(v0, 0), coordinates(v1, 0)};
-  turn_ = {coordinates(x0, 1), coordinates(x1, 1), coordinates(v0, 1), coordinates(v1, 1)};
+  rotation_ = {coordinates(x0, 1), coordinates(x1, 1), coordinates(v0, 1), coordinates(v1, 1)};
   rates_ = center_.rates(h);
   // |omega| = |p'| / sqrt(s) <= |p'| where p' is across p, and |p'| / s along it.
-  for (const DVec3 rate : turn_.rates(h)) spin_ = std::max(spin_, length(rate));
+  for (const DVec3 rate : rotation_.rates(h)) spin_ = std::max(spin_, length(rate));
 }
 
 BodyMotion DenseMotion::at(double share) const {
@@ -81,8 +81,8 @@ BodyMotion DenseMotion::at(double share) const {
   }
   if (told_) return system_->body(t_ + share * h_, State(0));
   State y(2 * system_->coordinates());
-  const DVec3 parts[] = {center_.at(share, h_), turn_.at(share, h_), center_.rate_at(share, h_),
-                         turn_.rate_at(share, h_)};
+  const DVec3 parts[] = {center_.at(share, h_), rotation_.at(share, h_), center_.rate_at(share, h_),
+                         rotation_.rate_at(share, h_)};
   for (int i = 0; i < 4; ++i) y.segment<3>(3 * i) = Eigen::Vector3d(parts[i].x, parts[i].y, parts[i].z);
   return system_->body(t_ + share * h_, y);
 }
@@ -99,7 +99,7 @@ BodyGap DensePair::gap(double share) const {
   const double reach = motion_a.seconds() > 0 || motion_b.seconds() > 0
                            ? 0.1 + closing({}) * std::max(motion_a.seconds(), motion_b.seconds())
                            : 0.1;
-  return gap_between(a, motion_a.at(share), b, motion_b.at(share), look, reach);
+  return gap_between(a, motion_a.at(share), b, motion_b.at(share), contact_search, reach);
 }
 
 double DensePair::closing(DVec3 n) const {
@@ -168,28 +168,29 @@ std::optional<double> contact_root(const DensePair& pair, double epsilon) {
   return {};
 }
 
-bool may_meet(const DensePair& pair, double reach) {
+bool may_collide(const DensePair& pair, double reach) {
   if (!is_one_convex(pair.a) || !is_one_convex(pair.b)) return true;
-  const auto swept = [&](const RigidBody& body, const DenseMotion& motion, DVec3 way) {
+  const auto swept = [&](const RigidBody& body, const DenseMotion& motion, DVec3 displacement) {
     const BodyMotion start = motion.at(0);
     geometry::ConvexSolid solid = geometry::placed(body.shapes[0].solid, start.rotation, start.center);
-    solid = geometry::extruded(solid, way);
-    const double half = std::min(0.5 * motion.largest_turn(), 1.57);
+    solid = geometry::extruded(solid, displacement);
+    const double half = std::min(0.5 * motion.largest_rotation(), 1.57);
     if (half > 0) solid.skin += 2 * lever_of(body) * half;
     return solid;
   };
   if (pair.a.shapes[0].solid.vertices.empty() || pair.b.shapes[0].solid.vertices.empty()) return true;
   // B is at rest in this view. A leaves the straight way by less than its control points do.
   const std::array<DVec3, 4> of_a = pair.motion_a.centers(), of_b = pair.motion_b.centers();
-  const DVec3 way = (of_a[3] - of_a[0]) - (of_b[3] - of_b[0]);
+  const DVec3 displacement = (of_a[3] - of_a[0]) - (of_b[3] - of_b[0]);
   double aside = 0;
   for (int i = 1; i < 3; ++i) {
     const DVec3 passed = (of_a[i] - of_a[0]) - (of_b[i] - of_b[0]);
-    const double s =
-        length_squared(way) > 0 ? std::clamp(dot(passed, way) / length_squared(way), 0.0, 1.0) : 0;
-    aside = std::max(aside, length(passed - s * way));
+    const double s = length_squared(displacement) > 0
+                         ? std::clamp(dot(passed, displacement) / length_squared(displacement), 0.0, 1.0)
+                         : 0;
+    aside = std::max(aside, length(passed - s * displacement));
   }
-  const geometry::ConvexSolid a = swept(pair.a, pair.motion_a, way);
+  const geometry::ConvexSolid a = swept(pair.a, pair.motion_a, displacement);
   const geometry::ConvexSolid b = swept(pair.b, pair.motion_b, {});
   return geometry::gap_between(a, b).distance <= reach + aside;
 }

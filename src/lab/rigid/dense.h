@@ -32,7 +32,7 @@ class DenseMotion {
   /// Bound of the angular velocity [rad/s].
   [[nodiscard]] double fastest_spin() const { return spin_; }
   /// Bound of the angle turned through since the start [rad].
-  [[nodiscard]] double largest_turn() const { return spin_ * h_; }
+  [[nodiscard]] double largest_rotation() const { return spin_ * h_; }
   /// Control points of the center: it stays within their hull [m].
   [[nodiscard]] std::array<DVec3, 4> centers() const;
 
@@ -48,7 +48,7 @@ class DenseMotion {
   bool told_ = false;
   double t_ = 0, h_ = 0, spin_ = 0;
   BodyMotion start_ = {};
-  Cubic center_, turn_;
+  Cubic center_, rotation_;
   std::array<DVec3, 3> rates_ = {};
 };
 
@@ -58,7 +58,7 @@ struct DensePair {
   const DenseMotion& motion_a;
   const RigidBody& b;
   const DenseMotion& motion_b;
-  Look look = {};
+  ContactSearch contact_search = {};
 
   [[nodiscard]] BodyGap gap(double share) const;
   /// Bound of how fast their distance along `n` shrinks [m/s]; of any direction, where they are not convex.
@@ -78,6 +78,6 @@ struct DensePair {
 /// Extruded silhouettes (the paper's 4.5.4; extruded() in lab/shape/extrusion.h): false if the bodies cannot
 /// have come nearer than `reach` [m] within the step. Exact for translation; what turns has a skin as thick
 /// as its points may leave the extrusion.
-[[nodiscard]] bool may_meet(const DensePair& pair, double reach);
+[[nodiscard]] bool may_collide(const DensePair& pair, double reach);
 
 }  // namespace hooke::lab

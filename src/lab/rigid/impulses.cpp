@@ -8,10 +8,10 @@ namespace hooke::lab {
 namespace {
 
 constexpr int kMostSweeps = 20000;
-constexpr double kSettled = 1e-14;   ///< Change of velocity in a sweep, in units of the largest velocity.
-constexpr double kNoChange = 1e-15;  ///< Change of an impulse in a sweep, in units of itself.
-constexpr int kMostHitsOfPair = 200;
-constexpr double kApproach = 1e-12;  ///< Likewise, of a speed that counts as coming together.
+constexpr double kConverged = 1e-14;  ///< Change of velocity in a sweep, in units of the largest velocity.
+constexpr double kNoChange = 1e-15;   ///< Change of an impulse in a sweep, in units of itself.
+constexpr int kMostImpactsOfPair = 200;
+constexpr double kClosingSpeed = 1e-12;  ///< Likewise, of a speed that counts as coming together.
 
 DVec3 response(const ImpulseBody& body, DVec3 lever, DVec3 impulse) {
   return body.inverse_mass * impulse + cross(body.inverse_inertia * cross(lever, impulse), lever);
@@ -104,7 +104,7 @@ double largest_speed(std::span<const ImpulseBody> bodies, std::span<const Impuls
 /// Points of one pair of bodies.
 struct Group {
   std::size_t first = 0, count = 0;
-  int hits = 0;
+  int impacts = 0;
 };
 
 std::vector<Group> groups_of(std::span<const ImpulsePoint> points) {
@@ -150,8 +150,8 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
     point.tangent = {};
     rows.emplace_back(bodies, point);
   }
-  const double enough = kSettled * largest_speed(bodies, points);
-  std::vector<DVec3> way(points.size());  // of the sweeps before, as impulses on b
+  const double enough = kConverged * largest_speed(bodies, points);
+  std::vector<DVec3> momentum(points.size());  // of the sweeps before, as impulses on b
   double size = 0;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     const double before = size;
@@ -165,24 +165,24 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
     if (sweep + 1 == kMostSweeps) break;  // a sweep is last: it ends with impulses that are allowed
     const double beta = size < before ? size / before : 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const DVec3 on = beta * way[i];
+      const DVec3 on = beta * momentum[i];
       rows[i].go_on(on);
-      way[i] = on + rows[i].last_change();
+      momentum[i] = on + rows[i].last_change();
     }
   }
   return false;
 }
 
-int resolve_hits(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
-                 std::span<const double> rest_speed) {
+int resolve_impacts(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
+                    std::span<const double> rest_speed) {
   std::vector<Group> groups = groups_of(points);
   double scale = largest_speed(bodies, points);
   for (const double speed : rest_speed) scale = std::max(scale, std::isfinite(speed) ? speed : 0);
-  const double approach = kApproach * scale;
-  int hits = 0;
+  const double closing_speed = kClosingSpeed * scale;
+  int impacts = 0;
   for (;;) {
     Group* next = nullptr;
-    double fastest = -approach;
+    double fastest = -closing_speed;
     for (Group& group : groups) {
       for (std::size_t i = group.first; i < group.first + group.count; ++i) {
         const double speed = normal_speed(bodies, points[i]);
@@ -192,8 +192,8 @@ int resolve_hits(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
         }
       }
     }
-    if (next == nullptr) return hits;
-    if (++next->hits > kMostHitsOfPair) break;
+    if (next == nullptr) return impacts;
+    if (++next->impacts > kMostImpactsOfPair) break;
     const auto own = points.subspan(next->first, next->count);
     bool any_bounces = false;
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -202,12 +202,12 @@ int resolve_hits(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
       any_bounces = any_bounces || bounces;
       own[i].target = bounces ? -own[i].contact.restitution * speed : 0;
     }
-    hits += any_bounces ? 1 : 0;
+    impacts += any_bounces ? 1 : 0;
     solve_impulses(bodies, own);
   }
   for (ImpulsePoint& point : points) point.target = 0;
   solve_impulses(bodies, points);
-  return hits;
+  return impacts;
 }
 
 }  // namespace hooke::lab

@@ -56,7 +56,7 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
 /// hits first, as if the hits of one instant came one after another (so a row of touching balls passes one
 /// on); its own points at once. A point slower than its `rest_speed` [m/s] does not bounce. Hits that do not
 /// end (a body between two) end as one, without bounce. \return The number of hits faster than that.
-int resolve_hits(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
-                 std::span<const double> rest_speed);
+int resolve_impacts(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> points,
+                    std::span<const double> rest_speed);
 
 }  // namespace hooke::lab

@@ -46,12 +46,12 @@ Result<void> Region::advance(double t, double dt) {
     if (const auto moved = step_all(attempt); !moved) return moved.error();
     find_pairs(attempt);
     if (first && respond(0)) {  // what touches at the start is known only now, and had no say in the step
-      forget();
+      reset();
       continue;
     }
-    judge(attempt);
+    evaluate(attempt);
     if (attempt.deep) {
-      forget();
+      reset();
       ++report_.rollbacks;
       report_.resimulated_seconds += h * static_cast<double>(members_.size());
       if (++tries_ < setting_.options.iteration_limit) {
@@ -120,7 +120,7 @@ double Region::shorter_step(const Attempt& attempt) {
     step = known_;  // where the way saw them touch
   } else if (search == Search::kBackward) {
     if (tries_ == 1) report_.backward_error = std::max(report_.backward_error, backward_error(attempt));
-    step = h - attempt.depth / attempt.approach;
+    step = h - attempt.depth / attempt.closing_speed;
   } else if (tries_ % 3 == 0) {
     step = half;
   } else if (tries_ == 1 || search == Search::kAdvancement) {
@@ -142,7 +142,7 @@ double Region::longer_step(const Attempt& attempt) {
   ++tries_;
   const double gap =
       gap_between(bodies_[pair_known_.a], now(pair_known_.a), bodies_[pair_known_.b], now(pair_known_.b),
-                  Look(setting_.options), setting_.options.epsilon + attempt.h)
+                  ContactSearch(setting_.options), setting_.options.epsilon + attempt.h)
           .distance;
   if (!(gap > 0) || tries_ % 3 == 0) return 0.5 * known_;
   if (!(depth_known_ > 0)) return known_;
@@ -152,7 +152,7 @@ double Region::longer_step(const Attempt& attempt) {
 /// The paper's backward step (4.5.1), from the overlap by its depth over its speed: how far from where the
 /// method was at that time it leaves the bodies [m]. Only methods that are symmetric in time come back.
 double Region::backward_error(const Attempt& attempt) {
-  const double back = attempt.depth / attempt.approach;
+  const double back = attempt.depth / attempt.closing_speed;
   if (!(back > 0 && back < attempt.h)) return 0;
   double error = 0;
   for (const std::uint32_t body : {attempt.pair.a, attempt.pair.b}) {
@@ -170,8 +170,8 @@ double Region::backward_error(const Attempt& attempt) {
 }
 
 /// What methods keep from step to step is of another motion.
-void Region::forget() {
-  for (const std::uint32_t body : members_) part(body).work.forget();
+void Region::reset() {
+  for (const std::uint32_t body : members_) part(body).work.reset();
 }
 
 void Region::accept(const Attempt& attempt) {
@@ -179,7 +179,7 @@ void Region::accept(const Attempt& attempt) {
     Part& own = part(members_[i]);
     own.y = attempt.ends[i];
     ++own.steps;
-    if (own.y.size() > 0 && own.system.lay_chart(own.y)) own.work.forget();
+    if (own.y.size() > 0 && own.system.lay_chart(own.y)) own.work.reset();
     swept_[i] = merge(swept_[i], swept_bounds(bodies_[members_[i]], attempt.motions[members_[i]]));
   }
   time_ += attempt.h;
@@ -196,7 +196,7 @@ void Region::give_up(const Attempt& attempt) {
   known_ = 0;
   const auto [a, b] = attempt.pair;
   const BodyGap gap =
-      gap_between(bodies_[a], now(a), bodies_[b], now(b), Look(setting_.options),
+      gap_between(bodies_[a], now(a), bodies_[b], now(b), ContactSearch(setting_.options),
                   setting_.options.epsilon + dense(attempt, attempt.pair).closing({}) * attempt.h);
   project(attempt.pair, gap.distance, gap.normal);
   respond(0);
@@ -205,7 +205,7 @@ void Region::give_up(const Attempt& attempt) {
 /// Moves two bodies along n until they touch, shared by their inverse masses; what has an axle turns.
 void Region::project(BodyPair pair, double distance, DVec3 normal) {
   if (bodies_[pair.a].axle || bodies_[pair.b].axle) {
-    project_by_turning(pair);
+    project_by_rotating(pair);
     return;
   }
   const auto inverse = [&](std::uint32_t body) {
@@ -220,7 +220,7 @@ void Region::project(BodyPair pair, double distance, DVec3 normal) {
 
 /// Where they are deepest. A body is moved as an impulse there would change its velocity, but that what has
 /// no axle does not turn.
-void Region::project_by_turning(BodyPair pair) {
+void Region::project_by_rotating(BodyPair pair) {
   const std::vector<Contact> contacts = contacts_of(pair, now(pair.a), now(pair.b));
   const auto deepest =
       std::min_element(contacts.begin(), contacts.end(),
@@ -228,7 +228,7 @@ void Region::project_by_turning(BodyPair pair) {
   if (deepest == contacts.end()) return;
   /// Of its answers to a push of 1 along n: the turn about its axle, and the way along n.
   struct Answer {
-    double turn = 0, way = 0;
+    double rotation = 0, displacement = 0;
   };
   const auto answer = [&](std::uint32_t body) -> Answer {
     const RigidBody& own = bodies_[body];
@@ -238,15 +238,15 @@ void Region::project_by_turning(BodyPair pair) {
     return {lever / own.axle->inertia, lever * lever / own.axle->inertia};
   };
   const Answer of_a = answer(pair.a), of_b = answer(pair.b);
-  if (!(of_a.way + of_b.way > 0)) return;
-  const double push = deepest->distance / (of_a.way + of_b.way);
+  if (!(of_a.displacement + of_b.displacement > 0)) return;
+  const double push = deepest->distance / (of_a.displacement + of_b.displacement);
   const auto move = [&](std::uint32_t body, const Answer& own, double size) {
-    if (!(own.way > 0)) return;
+    if (!(own.displacement > 0)) return;
     const System& system = part(body).system;
     if (bodies_[body].axle) {
-      system.turn_by(part(body).y, (size * own.turn) * bodies_[body].axle->axis);
+      system.rotate_by(part(body).y, (size * own.rotation) * bodies_[body].axle->axis);
     } else {
-      system.move_center(part(body).y, (size * own.way) * deepest->normal);
+      system.move_center(part(body).y, (size * own.displacement) * deepest->normal);
     }
   };
   move(pair.a, of_a, push);
@@ -262,7 +262,7 @@ BodyMotion Region::now(std::uint32_t body) const {
 
 DensePair Region::dense(const Attempt& attempt, BodyPair pair) const {
   return {bodies_[pair.a], attempt.motions[pair.a], bodies_[pair.b], attempt.motions[pair.b],
-          Look(setting_.options)};
+          ContactSearch(setting_.options)};
 }
 
 }  // namespace hooke::lab

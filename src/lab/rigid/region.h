@@ -61,10 +61,10 @@ class Region {
     std::vector<Overlap> overlaps = {};     ///< At the end.
     bool deep = false;                      ///< Deeper than allowed, there or on the way.
     bool touches = false;
-    BodyPair pair = {};      ///< The deepest.
-    double depth = 0;        ///< Of it at the end [m]; 0 where only the way saw it.
-    double approach = 0;     ///< Its speed there [m/s].
-    double first_share = 1;  ///< When the way saw it.
+    BodyPair pair = {};        ///< The deepest.
+    double depth = 0;          ///< Of it at the end [m]; 0 where only the way saw it.
+    double closing_speed = 0;  ///< Its speed there [m/s].
+    double first_share = 1;    ///< When the way saw it.
   };
   struct Pull {
     DVec3 linear = {}, angular = {};  ///< [m/s^2], [rad/s^2]
@@ -74,17 +74,17 @@ class Region {
   double shorter_step(const Attempt& attempt);
   double longer_step(const Attempt& attempt);
   double backward_error(const Attempt& attempt);
-  void forget();
+  void reset();
   void accept(const Attempt& attempt);
   void give_up(const Attempt& attempt);
   void project(BodyPair pair, double distance, DVec3 normal);
-  void project_by_turning(BodyPair pair);
+  void project_by_rotating(BodyPair pair);
 
   // region_judge.cpp
   void find_pairs(const Attempt& attempt);
-  void judge(Attempt& attempt);
-  void judge_end(Attempt& attempt, BodyPair pair);
-  void judge_way(Attempt& attempt);
+  void evaluate(Attempt& attempt);
+  void evaluate_end(Attempt& attempt, BodyPair pair);
+  void evaluate_path(Attempt& attempt);
 
   // region_respond.cpp
   bool respond(double h);
@@ -95,7 +95,7 @@ class Region {
   [[nodiscard]] std::vector<Contact> contacts_of(BodyPair pair, const BodyMotion& a,
                                                  const BodyMotion& b) const;
   [[nodiscard]] bool is_resting(BodyPair pair) const;
-  [[nodiscard]] bool rested(BodyPair pair, const Contact& contact, double approach, double h) const;
+  [[nodiscard]] bool rested(BodyPair pair, const Contact& contact, double closing_speed, double h) const;
 
   [[nodiscard]] BodyMotion now(std::uint32_t body) const;
   [[nodiscard]] DensePair dense(const Attempt& attempt, BodyPair pair) const;

@@ -23,8 +23,8 @@ std::vector<Contact> Region::contacts_of(BodyPair pair, const BodyMotion& a, con
   std::vector<Contact> contacts;
   const double epsilon = setting_.options.epsilon;
   // Farther than what counts as a touch: what rests at the very limit still rests after rounding.
-  find_contacts(bodies_[pair.a], a, bodies_[pair.b], b, Look(setting_.options), 2 * epsilon, 2 * epsilon,
-                setting_.materials, contacts);
+  find_contacts(bodies_[pair.a], a, bodies_[pair.b], b, ContactSearch(setting_.options), 2 * epsilon,
+                2 * epsilon, setting_.materials, contacts);
   return contacts;
 }
 
@@ -36,7 +36,7 @@ bool Region::is_resting(BodyPair pair) const {
 /// Whether a point of contact is one that rested at the last clear state, as far as it may have slid in `h`.
 /// Curved ways press what rests together; that is no hit. They do so by no more than the turning of the
 /// bodies turns their speeds in that time: what comes in faster has met another side.
-bool Region::rested(BodyPair pair, const Contact& contact, double approach, double h) const {
+bool Region::rested(BodyPair pair, const Contact& contact, double closing_speed, double h) const {
   if (!is_resting(pair)) return false;
   const auto speed = [&](std::uint32_t body) {
     const BodyMotion at = now(body);
@@ -46,7 +46,7 @@ bool Region::rested(BodyPair pair, const Contact& contact, double approach, doub
   const double speeds = speed(pair.a) + speed(pair.b);
   const double turned = h * (length(now(pair.a).spin) + length(now(pair.b).spin) +
                              (length(pulls_[pair.a].angular) + length(pulls_[pair.b].angular)) * h);
-  if (approach > 2 * turned * speeds + kAtRest * speeds && approach * h > setting_.options.epsilon)
+  if (closing_speed > 2 * turned * speeds + kAtRest * speeds && closing_speed * h > setting_.options.epsilon)
     return false;
   return std::any_of(resting_.begin(), resting_.end(), [&](const ImpulsePoint& p) {
     if (p.a != pair.a || p.b != pair.b) return false;
@@ -93,7 +93,7 @@ bool Region::respond(double h) {
     }
   }
   pulls_ = std::move(pull);
-  const int hits = resolve_hits(bodies, points, no_bounce);
+  const int hits = resolve_impacts(bodies, points, no_bounce);
   report_.hits += static_cast<std::uint64_t>(hits);
   if (hits > 0) report_.last_hit = time_;
   write_velocities(bodies);
@@ -113,7 +113,7 @@ void Region::write_velocities(const std::vector<ImpulseBody>& bodies) {
     const BodyMotion before = own.system.body(time_, own.y);
     if (before.velocity == bodies[body].velocity && before.spin == bodies[body].spin) continue;
     own.system.set_velocity(own.y, bodies[body].velocity, bodies[body].spin);
-    own.work.forget();
+    own.work.reset();
   }
 }
 
@@ -146,7 +146,7 @@ void Region::carry(double h) {
   for (const std::uint32_t body : members_) {
     if (force[body] == DVec3{} && torque[body] == DVec3{}) continue;
     part(body).system.set_load(force[body], torque[body]);
-    part(body).work.forget();
+    part(body).work.reset();
   }
 }
 

@@ -59,12 +59,12 @@ struct Contact {
 };
 
 /// How a collider looks at pairs of shapes.
-struct Look {
+struct ContactSearch {
   CollisionOptions::Collider collider = CollisionOptions::Collider::kExact;
   CollisionOptions::MeshSearch mesh_search = CollisionOptions::MeshSearch::kTree;
 
-  Look() = default;
-  explicit Look(const CollisionOptions& options)
+  ContactSearch() = default;
+  explicit ContactSearch(const CollisionOptions& options)
       : collider(options.collider), mesh_search(options.mesh_search) {}
 };
 
@@ -75,13 +75,13 @@ struct BodyGap {
 
 /// Nearest of all pairs of shapes. Meshes are asked up to `reach` [m] from them.
 [[nodiscard]] BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b,
-                                  const BodyMotion& at_b, const Look& look, double reach);
+                                  const BodyMotion& at_b, const ContactSearch& contact_search, double reach);
 
 /// Appends the places where shapes are no farther apart than `reach` [m], each with the normal and the
 /// distance of its shapes, or triangle; of two solids of triangles each with its own. `tolerance` [m] tells
 /// which corners belong to a place.
 void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                   const Look& look, double reach, double tolerance,
+                   const ContactSearch& contact_search, double reach, double tolerance,
                    const std::vector<MaterialPairDesc>& materials, std::vector<Contact>& contacts);
 
 /// The shapes where they stand.

@@ -25,13 +25,13 @@ struct Plane {
 };
 
 /// A shape where its body is.
-struct Placed {
+struct PlacedRigidShape {
   const RigidShape& shape;
   ConvexSolid solid = {};  ///< Of convex ones.
   DVec3 position = {};     ///< Of the frame of others.
   Quaternion<double> rotation = {};
 
-  Placed(const RigidShape& s, const BodyMotion& at)
+  PlacedRigidShape(const RigidShape& s, const BodyMotion& at)
       : shape(s),
         solid(geometry::placed(s.solid, at.rotation, at.center)),
         position(at.center + rotate(at.rotation, s.position)),
@@ -70,8 +70,8 @@ SolidGap gap_to_faces(const ConvexSolid& solid, const ConvexSolid& ball) {
   return best;
 }
 
-SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, const Look& look) {
-  if (look.collider == CollisionOptions::Collider::kFaces) {
+SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, const ContactSearch& contact_search) {
+  if (contact_search.collider == CollisionOptions::Collider::kFaces) {
     if (b.vertices.size() == 1 && !a.faces.empty()) return gap_to_faces(a, b);
     if (a.vertices.size() == 1 && !b.faces.empty()) {
       const SolidGap gap = gap_to_faces(b, a);
@@ -82,7 +82,8 @@ SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, const Look& look
 }
 
 /// Triangles of a mesh that come within `reach` of a solid, as solids of their own.
-std::vector<ConvexSolid> triangles_near(const Placed& mesh, const ConvexSolid& solid, double reach) {
+std::vector<ConvexSolid> triangles_near(const PlacedRigidShape& mesh, const ConvexSolid& solid,
+                                        double reach) {
   const Quaternion<double> back = conjugate(mesh.rotation);
   const double around = solid.skin + reach;
   Box box;
@@ -105,7 +106,7 @@ std::vector<ConvexSolid> triangles_near(const Placed& mesh, const ConvexSolid& s
 }
 
 /// To a plane a mesh is its vertices.
-ConvexSolid vertices_of(const Placed& mesh) {
+ConvexSolid vertices_of(const PlacedRigidShape& mesh) {
   ConvexSolid solid;
   for (const Vec3 v : mesh.shape.mesh->desc.positions)
     solid.vertices.push_back(to_world(mesh.pose(), vector_cast<double>(v)));
@@ -113,39 +114,42 @@ ConvexSolid vertices_of(const Placed& mesh) {
 }
 
 /// Solids of triangles, or one and what can be taken as such.
-bool are_surfaces(const Placed& a, const Placed& b) {
+bool are_surfaces(const PlacedRigidShape& a, const PlacedRigidShape& b) {
   return a.shape.surface && b.shape.surface && (a.is_mesh() || b.is_mesh());
 }
 
-bool is_ball_at_surface(const Placed& a, const Placed& b, const Look& look) {
+bool is_ball_at_surface(const PlacedRigidShape& a, const PlacedRigidShape& b,
+                        const ContactSearch& contact_search) {
   return a.shape.kind == ShapeKind::kSphere && b.is_mesh() && b.shape.surface &&
-         look.collider == CollisionOptions::Collider::kExact;
+         contact_search.collider == CollisionOptions::Collider::kExact;
 }
 
-geometry::Search search_of(const Look& look) {
-  return look.mesh_search == CollisionOptions::MeshSearch::kAll ? geometry::Search::kAll
-                                                                : geometry::Search::kTree;
+geometry::Search search_of(const ContactSearch& contact_search) {
+  return contact_search.mesh_search == CollisionOptions::MeshSearch::kAll ? geometry::Search::kAll
+                                                                          : geometry::Search::kTree;
 }
 
-std::vector<collision::MeshContact> ball_contacts(const Placed& ball, const Placed& mesh, const Look& look,
-                                                  double reach) {
+std::vector<collision::MeshContact> ball_contacts(const PlacedRigidShape& ball, const PlacedRigidShape& mesh,
+                                                  const ContactSearch& contact_search, double reach) {
   std::vector<collision::MeshContact> contacts;
   collision::find_sphere_contacts(ball.solid.vertices[0], ball.solid.skin, *mesh.shape.surface, mesh.pose(),
-                                  reach, search_of(look), contacts);
+                                  reach, search_of(contact_search), contacts);
   return contacts;
 }
 
 /// Calls `visit(contact)` for each place where solids of triangles touch, or one and a ball, with normals
 /// from a to b. \return Whether the two are that.
 template <class Visit>
-bool for_each_mesh_contact(const Placed& a, const Placed& b, const Look& look, double reach, Visit&& visit) {
-  const bool swapped = is_ball_at_surface(b, a, look);
+bool for_each_mesh_contact(const PlacedRigidShape& a, const PlacedRigidShape& b,
+                           const ContactSearch& contact_search, double reach, Visit&& visit) {
+  const bool swapped = is_ball_at_surface(b, a, contact_search);
   std::vector<collision::MeshContact> contacts;
   if (are_surfaces(a, b)) {
     collision::find_mesh_contacts(*a.shape.surface, a.pose(), *b.shape.surface, b.pose(), reach,
-                                  search_of(look), contacts);
-  } else if (swapped || is_ball_at_surface(a, b, look)) {
-    contacts = swapped ? ball_contacts(b, a, look, reach) : ball_contacts(a, b, look, reach);
+                                  search_of(contact_search), contacts);
+  } else if (swapped || is_ball_at_surface(a, b, contact_search)) {
+    contacts =
+        swapped ? ball_contacts(b, a, contact_search, reach) : ball_contacts(a, b, contact_search, reach);
   } else {
     return false;
   }
@@ -159,10 +163,10 @@ bool for_each_mesh_contact(const Placed& a, const Placed& b, const Look& look, d
 /// Calls `visit(solid_a, solid_b, gap)` for each pair of convex pieces, and `visit_plane(plane, solid,
 /// swapped)` for a half-space and a piece.
 template <class Visit, class VisitPlane>
-void for_each_piece(const Placed& a, const Placed& b, const Look& look, double reach, Visit&& visit,
-                    VisitPlane&& visit_plane) {
+void for_each_piece(const PlacedRigidShape& a, const PlacedRigidShape& b, const ContactSearch& contact_search,
+                    double reach, Visit&& visit, VisitPlane&& visit_plane) {
   if (a.is_convex() && b.is_convex()) {
-    visit(a.solid, b.solid, convex_gap(a.solid, b.solid, look));
+    visit(a.solid, b.solid, convex_gap(a.solid, b.solid, contact_search));
   } else if (a.shape.kind == ShapeKind::kHalfSpace && b.is_convex()) {
     visit_plane(a.plane(), b.solid, false);
   } else if (b.shape.kind == ShapeKind::kHalfSpace && a.is_convex()) {
@@ -173,10 +177,10 @@ void for_each_piece(const Placed& a, const Placed& b, const Look& look, double r
     visit_plane(b.plane(), vertices_of(a), true);
   } else if (a.is_mesh() && b.is_convex()) {
     for (const ConvexSolid& piece : triangles_near(a, b.solid, reach))
-      visit(piece, b.solid, convex_gap(piece, b.solid, look));
+      visit(piece, b.solid, convex_gap(piece, b.solid, contact_search));
   } else if (b.is_mesh() && a.is_convex()) {
     for (const ConvexSolid& piece : triangles_near(b, a.solid, reach))
-      visit(a.solid, piece, convex_gap(a.solid, piece, look));
+      visit(a.solid, piece, convex_gap(a.solid, piece, contact_search));
   }
 }
 
@@ -184,33 +188,34 @@ template <class Visit>
 void for_each_pair(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
                    Visit&& visit) {
   for (const RigidShape& of_a : a.shapes) {
-    const Placed placed_a(of_a, at_a);
-    for (const RigidShape& of_b : b.shapes) visit(placed_a, Placed(of_b, at_b));
+    const PlacedRigidShape shape_a(of_a, at_a);
+    for (const RigidShape& of_b : b.shapes) visit(shape_a, PlacedRigidShape(of_b, at_b));
   }
 }
 
 }  // namespace
 
 BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                    const Look& look, double reach) {
+                    const ContactSearch& contact_search, double reach) {
   BodyGap best = {kNothing, {0, 1, 0}};
   const auto take = [&](double distance, DVec3 normal) {
     if (distance < best.distance) best = {distance, normal};
   };
-  for_each_pair(a, at_a, b, at_b, [&](const Placed& of_a, const Placed& of_b) {
+  for_each_pair(a, at_a, b, at_b, [&](const PlacedRigidShape& of_a, const PlacedRigidShape& of_b) {
     if (of_a.is_mesh() || of_b.is_mesh()) take(reach, best.normal);
     if (are_surfaces(of_a, of_b)) {
-      const collision::MeshGap gap = collision::find_mesh_gap(
-          *of_a.shape.surface, of_a.pose(), *of_b.shape.surface, of_b.pose(), reach, search_of(look));
+      const collision::MeshGap gap =
+          collision::find_mesh_gap(*of_a.shape.surface, of_a.pose(), *of_b.shape.surface, of_b.pose(), reach,
+                                   search_of(contact_search));
       take(gap.distance, gap.normal);
       return;
     }
-    if (for_each_mesh_contact(of_a, of_b, look, reach, [&](const collision::MeshContact& contact) {
+    if (for_each_mesh_contact(of_a, of_b, contact_search, reach, [&](const collision::MeshContact& contact) {
           take(-contact.depth, contact.normal);
         }))
       return;
     for_each_piece(
-        of_a, of_b, look, reach,
+        of_a, of_b, contact_search, reach,
         [&](const ConvexSolid&, const ConvexSolid&, const SolidGap& gap) { take(gap.distance, gap.normal); },
         [&](const Plane& plane, const ConvexSolid& solid, bool swapped) {
           take(height_over(plane, solid), swapped ? -plane.normal : plane.normal);
@@ -220,9 +225,9 @@ BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody&
 }
 
 void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                   const Look& look, double reach, double tolerance,
+                   const ContactSearch& contact_search, double reach, double tolerance,
                    const std::vector<MaterialPairDesc>& materials, std::vector<Contact>& contacts) {
-  for_each_pair(a, at_a, b, at_b, [&](const Placed& of_a, const Placed& of_b) {
+  for_each_pair(a, at_a, b, at_b, [&](const PlacedRigidShape& of_a, const PlacedRigidShape& of_b) {
     const collision::PairSurface surface =
         collision::surface_of(of_a.shape.contact, of_b.shape.contact, materials);
     const auto add = [&](DVec3 point, DVec3 normal, double distance) {
@@ -230,15 +235,15 @@ void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& 
                           static_cast<double>(surface.static_friction),
                           static_cast<double>(surface.restitution)});
     };
-    if (for_each_mesh_contact(of_a, of_b, look, reach, [&](const collision::MeshContact& contact) {
+    if (for_each_mesh_contact(of_a, of_b, contact_search, reach, [&](const collision::MeshContact& contact) {
           add(contact.point, contact.normal, -contact.depth);
         }))
       return;
     for_each_piece(
-        of_a, of_b, look, reach,
+        of_a, of_b, contact_search, reach,
         [&](const ConvexSolid& x, const ConvexSolid& y, const SolidGap& gap) {
           if (gap.distance > reach) return;
-          for (const DVec3 point : geometry::touch_points(x, y, gap, tolerance))
+          for (const DVec3 point : geometry::contact_points(x, y, gap, tolerance))
             add(point, gap.normal, gap.distance);
         },
         [&](const Plane& plane, const ConvexSolid& solid, bool swapped) {

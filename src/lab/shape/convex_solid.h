@@ -60,7 +60,7 @@ struct SolidGap {
 /// Places where the features that lie within `tolerance` [m] of the planes of contact meet, seen along
 /// `gap.normal`: corners of one over the other, and crossings of edges. Half way between the surfaces; at
 /// least one.
-[[nodiscard]] std::vector<DVec3> touch_points(const ConvexSolid& a, const ConvexSolid& b, const SolidGap& gap,
-                                              double tolerance);
+[[nodiscard]] std::vector<DVec3> contact_points(const ConvexSolid& a, const ConvexSolid& b,
+                                                const SolidGap& gap, double tolerance);
 
 }  // namespace hooke::geometry

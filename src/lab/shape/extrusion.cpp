@@ -16,18 +16,18 @@ double farthest_along(const ConvexSolid& solid, DVec3 n) {
 }
 
 /// A segment along `edge` shifted by `way`: a plate with its rims; a longer segment where they are parallel.
-ConvexSolid plate_of(const ConvexSolid& segment, DVec3 way) {
+ConvexSolid plate_of(const ConvexSolid& segment, DVec3 displacement) {
   const DVec3 a = segment.vertices[0], b = segment.vertices[1];
   const DVec3 along = direction_or(b - a, {});
-  const DVec3 ahead = direction_or(way, {});
+  const DVec3 ahead = direction_or(displacement, {});
   const DVec3 n = cross(along, ahead);
   if (length(n) < 1e-9) {
-    const DVec3 far = dot(along, way) > 0 ? b + way : a + way;
-    const DVec3 back = dot(along, way) > 0 ? a : b;
+    const DVec3 far = dot(along, displacement) > 0 ? b + displacement : a + displacement;
+    const DVec3 back = dot(along, displacement) > 0 ? a : b;
     return {.vertices = {back, far}, .edges = {{0, 1}}, .directions = {{0, 1}}, .skin = segment.skin};
   }
-  ConvexSolid plate = solid_triangle(a, b, b + way);
-  plate.vertices.push_back(a + way);
+  ConvexSolid plate = solid_triangle(a, b, b + displacement);
+  plate.vertices.push_back(a + displacement);
   plate.edges = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   plate.directions = {{0, 1}, {1, 2}};
   const DVec3 up = normalize(n);
@@ -42,41 +42,43 @@ ConvexSolid plate_of(const ConvexSolid& segment, DVec3 way) {
 
 }  // namespace
 
-ConvexSolid extruded(const ConvexSolid& solid, DVec3 way) {
-  if (way == DVec3{}) return solid;
+ConvexSolid extruded(const ConvexSolid& solid, DVec3 displacement) {
+  if (displacement == DVec3{}) return solid;
   const auto count = static_cast<std::uint32_t>(solid.vertices.size());
   if (count == 1) {
-    return {.vertices = {solid.vertices[0], solid.vertices[0] + way},
+    return {.vertices = {solid.vertices[0], solid.vertices[0] + displacement},
             .edges = {{0, 1}},
             .directions = {{0, 1}},
             .skin = solid.skin};
   }
-  if (count == 2) return plate_of(solid, way);
+  if (count == 2) return plate_of(solid, displacement);
   ConvexSolid result = solid;
-  for (std::uint32_t i = 0; i < count; ++i) result.vertices.push_back(solid.vertices[i] + way);
+  for (std::uint32_t i = 0; i < count; ++i) result.vertices.push_back(solid.vertices[i] + displacement);
   // Faces that look ahead are those of the moved copy.
-  const auto looks_ahead = [&](const ConvexSolid::Face& face) { return dot(face.normal, way) > 0; };
+  const auto faces_forward = [&](const ConvexSolid::Face& face) {
+    return dot(face.normal, displacement) > 0;
+  };
   for (ConvexSolid::Face& face : result.faces) {
-    if (!looks_ahead(face)) continue;
-    face.offset += dot(face.normal, way);
+    if (!faces_forward(face)) continue;
+    face.offset += dot(face.normal, displacement);
     for (std::uint32_t& corner : face.loop) corner += count;
   }
   // Each edge of the silhouette has a face on either side: it is in the loop of one that looks ahead, and
   // backwards in the loop of one that does not.
   for (const ConvexSolid::Face& face : solid.faces) {
-    if (!looks_ahead(face)) continue;
+    if (!faces_forward(face)) continue;
     for (std::size_t i = 0; i < face.loop.size(); ++i) {
       const std::uint32_t from = face.loop[i];
       const std::uint32_t to = face.loop[(i + 1) % face.loop.size()];
       const bool inner = std::any_of(solid.faces.begin(), solid.faces.end(), [&](const auto& other) {
-        if (!looks_ahead(other)) return false;
+        if (!faces_forward(other)) return false;
         for (std::size_t j = 0; j < other.loop.size(); ++j) {
           if (other.loop[j] == to && other.loop[(j + 1) % other.loop.size()] == from) return true;
         }
         return false;
       });
       if (inner) continue;
-      const DVec3 n = direction_or(cross(solid.vertices[to] - solid.vertices[from], way), {});
+      const DVec3 n = direction_or(cross(solid.vertices[to] - solid.vertices[from], displacement), {});
       if (n == DVec3{}) continue;
       result.faces.push_back({n, farthest_along(result, n), {from + count, from, to, to + count}});
     }

@@ -29,12 +29,12 @@ constexpr double kParallel = 1e-9;   ///< Sine of the angle below which directio
 constexpr double kCoplanar = 1e-9;   ///< Scores of faces this near are the same.
 
 /// A mesh and where its vertices are in the frame of the search, that of b.
-struct Placed {
+struct PlacedContactMesh {
   const ContactMesh& mesh;
   std::vector<DVec3> positions;
   RigidPose pose;  ///< From the mesh's own frame to that of the search.
 
-  Placed(const ContactMesh& solid, const RigidPose& place) : mesh(solid), pose(place) {
+  PlacedContactMesh(const ContactMesh& solid, const RigidPose& place) : mesh(solid), pose(place) {
     positions.reserve(solid.positions.size());
     for (const DVec3& p : solid.positions) positions.push_back(to_world(place, p));
   }
@@ -55,7 +55,7 @@ struct Placed {
 
 /// Everything of one search but its pairs.
 struct TwoMeshes {
-  Placed a, b;
+  PlacedContactMesh a, b;
   double margin = 0;
   Search search = Search::kAll;
   double rounding = 0;  ///< Lengths below are nothing [m].
@@ -64,7 +64,7 @@ struct TwoMeshes {
 // --- Vertices ---
 
 /// How far the edges at the vertex keep away from the side behind a plane with this normal: the least sine.
-double clearance(const Placed& own, std::uint32_t vertex, DVec3 normal) {
+double clearance(const PlacedContactMesh& own, std::uint32_t vertex, DVec3 normal) {
   double least = 1;
   const DVec3 from = own.positions[vertex];
   for (const std::uint32_t t : own.mesh.topology.triangles_at(vertex)) {
@@ -77,8 +77,8 @@ double clearance(const Placed& own, std::uint32_t vertex, DVec3 normal) {
 }
 
 /// The face through which a vertex near the surface is pushed out.
-SolidPoint face_for(const Placed& own, std::uint32_t vertex, const Placed& other, const SolidPoint& nearest,
-                    const TwoMeshes& scene) {
+SolidPoint face_for(const PlacedContactMesh& own, std::uint32_t vertex, const PlacedContactMesh& other,
+                    const SolidPoint& nearest, const TwoMeshes& scene) {
   const DVec3 p = to_local(other.pose, own.positions[vertex]);
   std::vector<std::uint32_t> faces;
   const double reach = std::fabs(nearest.signed_distance) + scene.margin + scene.rounding;
@@ -100,8 +100,8 @@ SolidPoint face_for(const Placed& own, std::uint32_t vertex, const Placed& other
 }
 
 /// Contacts of the vertices of `own` with `other`; normals point out of `other`.
-void find_vertex_contacts(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene,
-                          std::vector<MeshContact>& found) {
+void find_vertex_contacts(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
+                          const TwoMeshes& scene, std::vector<MeshContact>& found) {
   const geometry::OrientedBox& bounds = other.mesh.tree.nodes[0].volume;
   for (std::uint32_t v = 0; v < own.positions.size(); ++v) {
     const DVec3 p = own.positions[v];
@@ -145,8 +145,8 @@ struct Pierce {
 };
 
 /// Pairs (edge of `own`, triangle of `other`) that may meet.
-Pairs edge_face_pairs(const Placed& own, const Placed& other, bool own_is_a, const Pairs& near,
-                      Search search) {
+Pairs edge_face_pairs(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
+                      const Pairs& near, Search search) {
   Pairs pairs;
   if (search == Search::kAll) {
     for (std::uint32_t e = 0; e < own.mesh.topology.edges.size(); ++e) {
@@ -166,7 +166,8 @@ Pairs edge_face_pairs(const Placed& own, const Placed& other, bool own_is_a, con
 
 /// Edges that lie in a face's plane do not go through it. Flat and concave ones are left out: where solids
 /// overlap, what stands out most is a vertex of either or a convex edge of one in a face of the other.
-std::vector<Pierce> find_pierces(const Placed& own, const Placed& other, const Pairs& pairs) {
+std::vector<Pierce> find_pierces(const PlacedContactMesh& own, const PlacedContactMesh& other,
+                                 const Pairs& pairs) {
   std::vector<Pierce> pierces;
   for (const auto& [edge, face] : pairs) {
     if (own.mesh.is_convex_edge[edge] == 0) continue;
@@ -201,7 +202,8 @@ MeshContact edge_contact(std::uint32_t own_edge, std::uint32_t other_edge, bool 
 /// Adds the contacts of one part of an edge inside the other solid, from `in` to `out`.
 class InnerPart {
  public:
-  InnerPart(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene)
+  InnerPart(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
+            const TwoMeshes& scene)
       : own_(own), other_(other), own_is_a_(own_is_a), scene_(scene) {}
 
   void add(const Pierce& in, const Pierce& out, std::vector<MeshContact>& found) const {
@@ -213,15 +215,15 @@ class InnerPart {
     const SolidPoint place = other_.closest(middle, scene_.search);
     if (!(place.signed_distance < -scene_.rounding)) return;
     const DVec3 through = normalize(place.point - middle);
-    const double way_out = std::max(dot(through, place.point - from), dot(through, place.point - to));
-    if (add_edges(in, out, middle, way_out, found)) return;
+    const double exit_depth = std::max(dot(through, place.point - from), dot(through, place.point - to));
+    if (add_edges(in, out, middle, exit_depth, found)) return;
     add_through(in.edge, from, to, place, found);
   }
 
  private:
   /// If the faces that the edge goes through meet in an edge right over it, and the way out over that edge is
   /// no longer than the one through the nearest face.
-  bool add_edges(const Pierce& in, const Pierce& out, DVec3 middle, double way_out,
+  bool add_edges(const Pierce& in, const Pierce& out, DVec3 middle, double exit_depth,
                  std::vector<MeshContact>& found) const {
     const DVec3 n_in = other_.normal(in.face);
     const DVec3 n_out = other_.normal(out.face);
@@ -242,7 +244,7 @@ class InnerPart {
     if (!(std::fabs(determinant) > kParallel)) return false;
     const double depth = (h_in * a22 - a12 * h_out) / determinant;
     const double shift = (a11 * h_out - h_in * a21) / determinant;
-    if (!(depth > 0) || depth > way_out) return false;
+    if (!(depth > 0) || depth > exit_depth) return false;
     const DVec3 below = middle + shift * along_own;
     const DVec3 above = below + depth * normal;
     const SolidPoint corner = other_.closest(above, scene_.search);
@@ -275,14 +277,14 @@ class InnerPart {
     }
   }
 
-  const Placed& own_;
-  const Placed& other_;
+  const PlacedContactMesh& own_;
+  const PlacedContactMesh& other_;
   bool own_is_a_;
   const TwoMeshes& scene_;
 };
 
-void find_through_contacts(const Placed& own, const Placed& other, bool own_is_a, const TwoMeshes& scene,
-                           const Pairs& near, std::vector<MeshContact>& found) {
+void find_through_contacts(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
+                           const TwoMeshes& scene, const Pairs& near, std::vector<MeshContact>& found) {
   const Pairs pairs = edge_face_pairs(own, other, own_is_a, near, scene.search);
   const std::vector<Pierce> pierces = find_pierces(own, other, pairs);
   const InnerPart part(own, other, own_is_a, scene);
@@ -311,7 +313,7 @@ Pairs edge_pairs(const TwoMeshes& scene, const Pairs& near) {
 }
 
 /// Whether the solid at the edge is all behind the plane through it with the normal `out`.
-bool is_behind(const Placed& placed, std::uint32_t edge, DVec3 out) {
+bool is_behind(const PlacedContactMesh& placed, std::uint32_t edge, DVec3 out) {
   const geometry::EdgeSides& sides = placed.mesh.topology.edge_sides[edge];
   const auto [start, end] = placed.edge(edge);
   const DVec3 along = normalize(end - start);
@@ -386,8 +388,8 @@ void find_mesh_contacts(const ContactMesh& a, const RigidPose& pose_a, const Con
   const RigidPose a_in_b = relative_pose(pose_a, pose_b);
   const double rounding = kRounding * (a.size + b.size);
   const TwoMeshes scene = {{a, a_in_b}, {b, {}}, std::max(margin, 0.0), search, rounding};
-  if (!may_touch(a.tree.nodes[0].volume, b.tree.nodes[0].volume, relative_pose(pose_b, pose_a),
-                 scene.margin + rounding)) {
+  if (!may_overlap(a.tree.nodes[0].volume, b.tree.nodes[0].volume, relative_pose(pose_b, pose_a),
+                   scene.margin + rounding)) {
     return;
   }
   Pairs near;
@@ -426,9 +428,9 @@ void find_sphere_contacts(DVec3 center, double radius, const ContactMesh& b, con
   if (nearest.signed_distance > radius + margin) return;
   const double on_surface = kRounding * (b.size + length(p));
   if (nearest.signed_distance <= on_surface) {
-    const DVec3 way = nearest.signed_distance < 0 ? nearest.point - p : p - nearest.point;
-    const bool has_way = std::fabs(nearest.signed_distance) > on_surface;
-    add(nearest, has_way ? normalize(way) : b.face_normals[nearest.triangle]);
+    const DVec3 offset = nearest.signed_distance < 0 ? nearest.point - p : p - nearest.point;
+    const bool has_offset = std::fabs(nearest.signed_distance) > on_surface;
+    add(nearest, has_offset ? normalize(offset) : b.face_normals[nearest.triangle]);
   } else {
     std::vector<std::uint32_t> faces;
     find_near_faces(b, p, radius + margin, search, faces);

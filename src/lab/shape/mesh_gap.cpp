@@ -58,20 +58,20 @@ Features features_of(const ContactMesh& a, const ContactMesh& b, const Pairs& tr
 }
 
 /// The nearest two places so far, in the frame of b; of equally near ones the first.
-struct NearestPlaces {
+struct NearestPoints {
   double distance_squared = std::numeric_limits<double>::infinity();
-  DVec3 way = {};  ///< From a to b.
+  DVec3 offset = {};  ///< From a to b.
 
   void take(double squared, DVec3 from_a_to_b) {
     if (!(squared < distance_squared)) return;
     distance_squared = squared;
-    way = from_a_to_b;
+    offset = from_a_to_b;
   }
 };
 
-NearestPlaces nearest_of(const ContactMesh& a, std::span<const DVec3> a_positions, const ContactMesh& b,
+NearestPoints nearest_of(const ContactMesh& a, std::span<const DVec3> a_positions, const ContactMesh& b,
                          const Features& features) {
-  NearestPlaces nearest;
+  NearestPoints nearest;
   const geometry::MeshView view_a = {a_positions, a.triangles};
   for (const auto& [v, t] : features.vertex_face) {
     const auto [p, q, r] = b.view().corners(t);
@@ -93,7 +93,7 @@ NearestPlaces nearest_of(const ContactMesh& a, std::span<const DVec3> a_position
   return nearest;
 }
 
-NearestPlaces nearest_by_tree(const ContactMesh& a, std::span<const DVec3> a_positions,
+NearestPoints nearest_by_tree(const ContactMesh& a, std::span<const DVec3> a_positions,
                               const RigidPose& a_in_b, const ContactMesh& b, double reach) {
   const RigidPose b_in_a = relative_pose({}, a_in_b);
   Pairs triangles;
@@ -101,7 +101,7 @@ NearestPlaces nearest_by_tree(const ContactMesh& a, std::span<const DVec3> a_pos
     const double held = std::min(margin, reach);
     triangles.clear();
     geometry::find_candidates(a.tree, b.tree, b_in_a, held, triangles);
-    const NearestPlaces nearest = nearest_of(a, a_positions, b, features_of(a, b, triangles));
+    const NearestPoints nearest = nearest_of(a, a_positions, b, features_of(a, b, triangles));
     const bool holds_it = nearest.distance_squared <= held * held;
     if (holds_it || !(margin < reach)) return nearest;
   }
@@ -127,11 +127,11 @@ MeshGap find_mesh_gap(const ContactMesh& a, const RigidPose& pose_a, const Conta
   std::vector<DVec3> a_positions;
   a_positions.reserve(a.positions.size());
   for (const DVec3& p : a.positions) a_positions.push_back(to_world(a_in_b, p));
-  const NearestPlaces nearest = search == Search::kAll ? nearest_of(a, a_positions, b, all_features(a, b))
+  const NearestPoints nearest = search == Search::kAll ? nearest_of(a, a_positions, b, all_features(a, b))
                                                        : nearest_by_tree(a, a_positions, a_in_b, b, reach);
   const double distance = std::sqrt(nearest.distance_squared);
   if (!(distance < reach)) return nothing;
-  return {distance, normalize(rotate(pose_b.rotation, nearest.way))};
+  return {distance, normalize(rotate(pose_b.rotation, nearest.offset))};
 }
 
 }  // namespace hooke::collision

@@ -60,7 +60,7 @@ void find_opposing_faces(const ContactMesh& a, const RigidPose& pose_a, const Co
   if (a.triangles.empty() || b.triangles.empty()) return;
   const RigidPose a_in_b = relative_pose(pose_a, pose_b);
   const BoundingSphere sphere_a = {to_world(a_in_b, a.sphere.center), a.sphere.radius};
-  if (!may_touch(b.sphere, sphere_a, {}, 0)) return;  // 0; not for what is not a number
+  if (!may_overlap(b.sphere, sphere_a, {}, 0)) return;  // 0; not for what is not a number
   std::vector<DVec3> moved;
   moved.reserve(a.positions.size());
   for (const DVec3& p : a.positions) moved.push_back(to_world(a_in_b, p));
@@ -74,7 +74,7 @@ void find_opposing_faces(const ContactMesh& a, const RigidPose& pose_a, const Co
   result.faces_a = nearest(view_a, near_a, around_b.center, k);                 // 6
   result.faces_b = nearest(view_b, near_b, around_a.center, k);
   result.last_step = 5;
-  if (!may_touch(around_a, around_b, {}, 0)) return;  // 5
+  if (!may_overlap(around_a, around_b, {}, 0)) return;  // 5
   result.last_step = 7;
   const std::size_t count_a = result.faces_a.size();
   const std::size_t count_b = result.faces_b.size();

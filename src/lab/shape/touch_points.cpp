@@ -129,8 +129,8 @@ class Places {
 
 }  // namespace
 
-std::vector<DVec3> touch_points(const ConvexSolid& a, const ConvexSolid& b, const SolidGap& gap,
-                                double tolerance) {
+std::vector<DVec3> contact_points(const ConvexSolid& a, const ConvexSolid& b, const SolidGap& gap,
+                                  double tolerance) {
   const DVec3 n = gap.normal;
   const Plane2 plane = plane_across(n);
   const std::vector<Point2> of_a = feature(a, n, plane, tolerance);

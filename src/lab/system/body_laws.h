@@ -37,10 +37,10 @@ class BodyLaws {
     bodies.center[row] = motion.center;
     bodies.rotation[row] = normalize(axes * conjugate(bodies.mass[row].principal));
     bodies.scale[row] = math::Symmetric3<Real>::diagonal(Real(1));
-    state::MotionLine& line = bodies.motion[row];
-    line = {.inverse_mass = line.inverse_mass};
-    line.v = vector_cast<Real>(motion.velocity);
-    line.omega_scaled = vector_cast<Real>(motion.spin);
+    state::MotionRecord& record = bodies.motion[row];
+    record = {.inverse_mass = record.inverse_mass};
+    record.v = vector_cast<Real>(motion.velocity);
+    record.omega_scaled = vector_cast<Real>(motion.spin);
   }
 
   struct Load {
@@ -53,7 +53,7 @@ class BodyLaws {
     state::Bodies& bodies = world_.tables.bodies;
     const DVec3 center = bodies.center[row];
     const Quat rotation = bodies.rotation[row];
-    const state::MotionLine line = bodies.motion[row];
+    const state::MotionRecord record = bodies.motion[row];
     place(row, now);
     for (const std::uint32_t body : world_.law_bodies) {
       bodies.force[body] = {};
@@ -65,7 +65,7 @@ class BodyLaws {
     }
     bodies.center[row] = center;
     bodies.rotation[row] = rotation;
-    bodies.motion[row] = line;
+    bodies.motion[row] = record;
     return {vector_cast<double>(bodies.force[row]), vector_cast<double>(bodies.torque[row])};
   }
 

@@ -155,7 +155,7 @@ struct PointRow {
 ///     I omega' = torque - omega x I omega   (in those axes),   omega' -= damping omega
 ///
 /// As a row on a point of mass 1, its force is p''.
-struct TurnRow {
+struct RotationRow {
   static constexpr int kPoints = 1;
   std::array<std::uint32_t, 1> at = {};
   std::array<DVec3, 3> axes = {};  ///< Principal, in the world, where p = 0.
@@ -173,8 +173,8 @@ struct TurnRow {
     const DVec3 inverse = {1 / inertia.x, 1 / inertia.y, 1 / inertia.z};
     const Vector3<T> spin_up = turned(p, out_of_axes(weighted(moment, inverse))) - damping * omega;
     // omega' s + omega s' = p'' + p x p'' / 2, solved for p''.
-    const Vector3<T> b = turn_scale(p) * spin_up + (0.5 * dot(p, points.v[0])) * omega;
-    return {(1 / turn_scale(p)) * turn_rate(p, b)};
+    const Vector3<T> b = rotation_scale(p) * spin_up + (0.5 * dot(p, points.v[0])) * omega;
+    return {(1 / rotation_scale(p)) * rotation_rate(p, b)};
   }
 
   template <class T>

@@ -112,9 +112,9 @@ class System {
   /// Of its center [m/s^2], and of its spin [rad/s^2].
   [[nodiscard]] std::array<DVec3, 2> body_acceleration(double t, const State& y) const;
   void set_velocity(State& y, DVec3 velocity, DVec3 spin) const;
-  void move_center(State& y, DVec3 way) const;
+  void move_center(State& y, DVec3 displacement) const;
   /// Turns it by 2 tan(angle / 2) about an axis, both in `turn` (turn.h); its spin stays.
-  void turn_by(State& y, DVec3 turn) const;
+  void rotate_by(State& y, DVec3 turn) const;
   /// Force and torque about the center from now on, in world axes [N], [N m]. Bearings take what an axle does
   /// not follow.
   void set_load(DVec3 force, DVec3 torque);
@@ -124,7 +124,7 @@ class System {
   /// was: states kept from before then mean nothing.
   bool lay_chart(State& y);
   /// False after a step that turned a body so far that its coordinates do not tell where it is.
-  [[nodiscard]] bool turn_is_known(const State& y) const;
+  [[nodiscard]] bool rotation_is_known(const State& y) const;
 
   /// Free point `i` of y: its row of the object, for contacts.
   [[nodiscard]] std::uint32_t row_of_free(Eigen::Index i) const { return free_rows_[i]; }
@@ -173,7 +173,7 @@ class System {
     for (const SailRow& row : sails_) visit(row);
     for (const StrandRow& row : strands_) visit(row);
     for (const PointRow& row : points_) visit(row);
-    for (const TurnRow& row : turns_) visit(row);
+    for (const RotationRow& row : turns_) visit(row);
   }
   [[nodiscard]] std::vector<DVec3> wind(double t, const std::vector<DVec3>& x) const;
   [[nodiscard]] std::vector<DVec3> body_positions(double t, const State& y) const;
@@ -189,7 +189,7 @@ class System {
   std::vector<SailRow> sails_;
   std::vector<StrandRow> strands_;
   std::vector<PointRow> points_;
-  std::vector<TurnRow> turns_;           ///< One for a body that moves freely.
+  std::vector<RotationRow> turns_;       ///< One for a body that moves freely.
   Quaternion<double> chart_ = {};        ///< Of a body, where its turn is zero.
   std::optional<DVec3> kinematic_spin_;  ///< Of a body that moves as told [rad/s].
   std::optional<Axle> axle_;             ///< Of a body that only turns.

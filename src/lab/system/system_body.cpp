@@ -120,7 +120,7 @@ void System::show_laws(double t, const State& y) const {
 
 void System::add_body_laws(double t, const Motion<double>& m, std::vector<DVec3>& accelerations) const {
   BodyLaws::Load load = body_laws_->load(body_row_, t, body_of(m, t));
-  TurnRow turn = turns_[0];
+  RotationRow turn = turns_[0];
   Points<double, 1> point = {.x = {m.x[kTurn]}, .v = {m.v[kTurn]}, .wind = {}};
   if (axle_) {  // its bearings take the rest
     load = {.torque = dot(axle_->axis, load.torque) * axle_->axis};
@@ -137,7 +137,7 @@ std::array<DVec3, 2> System::body_acceleration(double t, const State& y) const {
   const DVec3 second = {a[3 * kTurn], a[3 * kTurn + 1], a[3 * kTurn + 2]};
   // omega s = p' + p x p' / 2, differentiated.
   const DVec3 spin_up = second + 0.5 * cross(p, second) - (0.5 * dot(p, rate)) * spin_of(p, rate);
-  return {DVec3{a[0], a[1], a[2]}, (1 / turn_scale(p)) * spin_up};
+  return {DVec3{a[0], a[1], a[2]}, (1 / rotation_scale(p)) * spin_up};
 }
 
 std::vector<DVec3> System::body_positions(double t, const State& y) const {
@@ -150,16 +150,16 @@ std::vector<DVec3> System::body_positions(double t, const State& y) const {
 void System::set_velocity(State& y, DVec3 velocity, DVec3 spin) const {
   auto all = v(y);
   const auto turn = x(y).segment<3>(3 * kTurn);
-  const DVec3 rate = turn_rate({turn[0], turn[1], turn[2]}, spin);
+  const DVec3 rate = rotation_rate({turn[0], turn[1], turn[2]}, spin);
   all.segment<3>(3 * kCenter) = Eigen::Vector3d(velocity.x, velocity.y, velocity.z);
   all.segment<3>(3 * kTurn) = Eigen::Vector3d(rate.x, rate.y, rate.z);
 }
 
-void System::move_center(State& y, DVec3 way) const {
-  x(y).segment<3>(3 * kCenter) += Eigen::Vector3d(way.x, way.y, way.z);
+void System::move_center(State& y, DVec3 displacement) const {
+  x(y).segment<3>(3 * kCenter) += Eigen::Vector3d(displacement.x, displacement.y, displacement.z);
 }
 
-void System::turn_by(State& y, DVec3 turn) const {
+void System::rotate_by(State& y, DVec3 turn) const {
   const BodyMotion now = body(0, y);
   auto old = x(y).segment<3>(3 * kTurn);
   const DVec3 p = {old[0], old[1], old[2]};
@@ -175,10 +175,10 @@ void System::set_load(DVec3 force, DVec3 torque) {
     torque = dot(axle_->axis, torque) * axle_->axis;
   }
   for (PointRow& row : points_) row.load = force;
-  for (TurnRow& row : turns_) row.torque = torque;
+  for (RotationRow& row : turns_) row.torque = torque;
 }
 
-bool System::turn_is_known(const State& y) const {
+bool System::rotation_is_known(const State& y) const {
   return turns_.empty() || x(y).segment<3>(3 * kTurn).norm() <= kMostTurn;
 }
 

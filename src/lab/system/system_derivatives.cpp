@@ -130,7 +130,7 @@ Energy System::energy(double t, const State& y) const {
       if (r > 0) energy.potential -= row.mass * field.strength / r;
     }
   }
-  for (const TurnRow& row : turns_) {
+  for (const RotationRow& row : turns_) {
     const std::uint32_t i = row.at[0];
     const DVec3 own = row.in_axes(turned(-m.x[i], spin_of(m.x[i], m.v[i])));
     energy.kinetic += 0.5 * dot(own, {row.inertia.x * own.x, row.inertia.y * own.y, row.inertia.z * own.z});

@@ -19,7 +19,7 @@
 namespace hooke::lab {
 
 template <class T>
-T turn_scale(Vector3<T> p) {
+T rotation_scale(Vector3<T> p) {
   return T(1) + T(0.25) * dot(p, p);
 }
 
@@ -27,24 +27,24 @@ T turn_scale(Vector3<T> p) {
 template <class T>
 Vector3<T> turned(Vector3<T> p, Vector3<T> v) {
   const Vector3<T> across = cross(p, v);
-  return v + (T(1) / turn_scale(p)) * (across + T(0.5) * cross(p, across));
+  return v + (T(1) / rotation_scale(p)) * (across + T(0.5) * cross(p, across));
 }
 
 /// omega of p and p'.
 template <class T>
 Vector3<T> spin_of(Vector3<T> p, Vector3<T> rate) {
-  return (T(1) / turn_scale(p)) * (rate + T(0.5) * cross(p, rate));
+  return (T(1) / rotation_scale(p)) * (rate + T(0.5) * cross(p, rate));
 }
 
 /// p' of p and omega.
 template <class T>
-Vector3<T> turn_rate(Vector3<T> p, Vector3<T> omega) {
+Vector3<T> rotation_rate(Vector3<T> p, Vector3<T> omega) {
   return omega - T(0.5) * cross(p, omega) + (T(0.25) * dot(p, omega)) * p;
 }
 
 /// p as a rotation.
 inline Quaternion<double> rotation_of(DVec3 p) {
-  const double w = 1 / std::sqrt(turn_scale(p));
+  const double w = 1 / std::sqrt(rotation_scale(p));
   return {0.5 * w * p.x, 0.5 * w * p.y, 0.5 * w * p.z, w};
 }
 

@@ -16,14 +16,14 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
     const auto& t = triangles.corners[i];
     for (const std::uint32_t p : {t.a, t.b, t.c}) loads.triangle_of[next[p]++] = i;
   }
-  loads.corner_impulse.assign(triangles.corners.size(), AirLine{});
-  loads.change.assign(static_cast<std::size_t>(particle_count), AirLine{});
+  loads.corner_impulse.assign(triangles.corners.size(), AirRecord{});
+  loads.change.assign(static_cast<std::size_t>(particle_count), AirRecord{});
 }
 
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads) {
   static_assert(sizeof(state::Triangles::Corners) == 3 * sizeof(std::uint32_t));
-  const auto numbers = [](auto& lines) { return reinterpret_cast<const Real*>(lines.data()); };
+  const auto numbers = [](auto& records) { return reinterpret_cast<const Real*>(records.data()); };
   const wide::TriangleAir on_triangles = {
       .corners = reinterpret_cast<const std::uint32_t*>(triangles.corners.data()),
       .mass = triangles.mass.data(),
@@ -51,7 +51,7 @@ void gather_loads(const state::Particles& particles, Real share, parallel::Range
 
 void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles) {
   // As plain numbers, which compilers take by the vector: the inverse masses beside the velocities get zero.
-  static_assert(sizeof(AirLine) == sizeof(state::VelocityLine));
+  static_assert(sizeof(AirRecord) == sizeof(state::VelocityRecord));
   const Real* change = &loads.change[range.begin].v.x;
   Real* velocity = &particles.velocity[range.begin].v.x;
   for (int i = 0; i < 4 * range.count(); ++i) velocity[i] += change[i];

@@ -10,7 +10,7 @@
 namespace hooke::solver {
 
 /// A vector in one load, as particles are.
-struct alignas(4 * sizeof(Real)) AirLine {
+struct alignas(4 * sizeof(Real)) AirRecord {
   Vec3 v = {};
   Real unused = Real(0);
 };
@@ -19,16 +19,16 @@ struct alignas(4 * sizeof(Real)) AirLine {
 struct AirLoads {
   std::vector<std::uint32_t> first_of;  ///< Per particle, into `triangle_of`; one end marker.
   std::vector<std::uint32_t> triangle_of;
-  std::vector<AirLine>
-      corner_impulse;           ///< A third of each triangle's impulse [N s]; written by load_triangles.
-  std::vector<AirLine> change;  ///< Of each particle's velocity [m/s]; written by gather_loads.
+  std::vector<AirRecord>
+      corner_impulse;             ///< A third of each triangle's impulse [N s]; written by load_triangles.
+  std::vector<AirRecord> change;  ///< Of each particle's velocity [m/s]; written by gather_loads.
 };
 
 /// What the air does in one substep.
 struct Air {
-  const std::vector<AirLine>& wind;  ///< At each particle [m/s].
-  Real density = Real(0);            ///< [kg/m^3]
-  Real h = Real(0);                  ///< [s]
+  const std::vector<AirRecord>& wind;  ///< At each particle [m/s].
+  Real density = Real(0);              ///< [kg/m^3]
+  Real h = Real(0);                    ///< [s]
 };
 
 void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads);

@@ -17,9 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 template <class Number>
-HWY_INLINE Triple<Number> read_line(const Real* base, const std::uint32_t* line) {
+HWY_INLINE Triple<Number> read_record(const Real* base, const std::uint32_t* record) {
   Quad<Number> q;
-  read_quad(base, line, q);
+  read_quad(base, record, q);
   return {q.x, q.y, q.z};
 }
 
@@ -29,23 +29,23 @@ HWY_INLINE Triple<Number> read_line(const Real* base, const std::uint32_t* line)
 ///     h rho / 12 |N.u| ((C_d - C_l c / |u|) u + C_l |u| n) / max(1, h rho |N.u| (C_d + C_l) / 4 m)
 template <class Number>
 HWY_INLINE void load_triangle_lanes(const TriangleAir& air, std::uint32_t row) {
-  std::uint32_t line[3][kLanesOf<Number>];
+  std::uint32_t record[3][kLanesOf<Number>];
   std::uint32_t out[kLanesOf<Number>];
   alignas(64) Real masses[kLanesOf<Number>];  // a triangle's row may begin anywhere
   for (std::uint32_t k = 0; k < kLanesOf<Number>; ++k) {
-    for (int j = 0; j < 3; ++j) line[j][k] = 4 * air.corners[3 * (row + k) + static_cast<std::uint32_t>(j)];
+    for (int j = 0; j < 3; ++j) record[j][k] = 4 * air.corners[3 * (row + k) + static_cast<std::uint32_t>(j)];
     out[k] = 4 * (row + k);
     masses[k] = air.mass[row + k];
   }
   const auto flow_at = [&](int j) HWY_ATTR {
-    return difference(read_line<Number>(air.wind, line[j]), read_line<Number>(air.velocity, line[j]));
+    return difference(read_record<Number>(air.wind, record[j]), read_record<Number>(air.velocity, record[j]));
   };
   const Number zero(Real(0));
   const Number one(Real(1));
   const Triple<Number> u = scaled(Number(Real(1) / Real(3)), sum(sum(flow_at(0), flow_at(1)), flow_at(2)));
-  const Triple<Number> x = read_line<Number>(air.position, line[0]);
-  const Triple<Number> normal = cross(difference(read_line<Number>(air.position, line[1]), x),
-                                      difference(read_line<Number>(air.position, line[2]), x));
+  const Triple<Number> x = read_record<Number>(air.position, record[0]);
+  const Triple<Number> normal = cross(difference(read_record<Number>(air.position, record[1]), x),
+                                      difference(read_record<Number>(air.position, record[2]), x));
   const Number size = root(dot(normal, normal));
   const Number speed = root(dot(u, u));
   const Number through = dot(normal, u);

@@ -84,8 +84,8 @@ void drive_pins(const std::vector<state::Pin>& pins, const std::vector<state::De
     }
     const DVec3 goal =
         pin.start + motion_offset(pin.motion, time - pin.start_time) - objects[pin.object].origin;
-    const DVec3 way = goal - vector_cast<double>(particles.position[pin.particle].x);
-    particles.velocity[pin.particle].v = vector_cast<Real>((1.0 / static_cast<double>(h)) * way);
+    const DVec3 displacement = goal - vector_cast<double>(particles.position[pin.particle].x);
+    particles.velocity[pin.particle].v = vector_cast<Real>((1.0 / static_cast<double>(h)) * displacement);
   }
 }
 

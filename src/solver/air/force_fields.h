@@ -20,7 +20,7 @@ namespace hooke::solver {
 /// `object`; gravity is not among these (it is added to all at once).
 struct ForceInputs {
   const std::vector<state::Field>& fields;
-  const std::vector<AirLine>& wind;
+  const std::vector<AirRecord>& wind;
   Real air_density = Real(0);
   bool any_force = false;  ///< Some external force is set.
 };

@@ -261,17 +261,17 @@ void apply_liquid(const FieldDesc& liquid, const LiquidSurface& surface, const s
   const auto step = static_cast<double>(h);
   const double weight = liquid.density * surface.gravity;  // [N/m^3]
   for (std::uint32_t k = 0; k < object.particles.count; ++k) {
-    state::VelocityLine& line = particles.velocity[object.particles.first + k];
+    state::VelocityRecord& record = particles.velocity[object.particles.first + k];
     const LiquidLoad& load = loads[k];
-    if (!(line.inverse_mass > Real(0))) continue;
-    const auto w = static_cast<double>(line.inverse_mass);
+    if (!(record.inverse_mass > Real(0))) continue;
+    const auto w = static_cast<double>(record.inverse_mass);
     const double rate = liquid.drag * liquid.density * load.volume * w;
     const DVec3 flow = vector_cast<double>(liquid.vector);
-    DVec3 v = flow + (1 / (1 + step * rate)) * (vector_cast<double>(line.v) - flow);
+    DVec3 v = flow + (1 / (1 + step * rate)) * (vector_cast<double>(record.v) - flow);
     v += (step * weight * w) * load.push;
     const double excess = step * step * weight * load.area * w - 1;
     if (excess > 0) v -= excess / (1 + excess) * dot(v, surface.up) * surface.up;
-    line.v = vector_cast<Real>(v);
+    record.v = vector_cast<Real>(v);
   }
 }
 

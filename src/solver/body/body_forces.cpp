@@ -28,7 +28,7 @@ struct Push {
 
 BodyNow body_now(const state::Bodies& bodies, std::uint32_t row) {
   const Pose pose = state::pose_now(bodies, row);
-  const state::MotionLine& m = bodies.motion[row];
+  const state::MotionRecord& m = bodies.motion[row];
   return {.row = row,
           .center = pose.position,
           .rotation = pose.rotation,

@@ -15,7 +15,7 @@ namespace {
 
 using state::Bodies;
 using state::BodyMass;
-using state::MotionLine;
+using state::MotionRecord;
 
 /// D x with the diagonal matrix D in principal axes.
 Vec3 in_axes(Quat axes, Vec3 diagonal, Vec3 x) {
@@ -134,9 +134,9 @@ Vec3 split_velocity(const FreeTurn& turn, Real h) {
 }
 
 /// Too small a speed to keep: nothing may decay into denormals.
-Vec3 settled(Vec3 v) {
-  const auto settle = [](Real x) { return std::abs(x) < Real(1e-20) ? Real(0) : x; };
-  return {settle(v.x), settle(v.y), settle(v.z)};
+Vec3 flushed(Vec3 v) {
+  const auto flush = [](Real x) { return std::abs(x) < Real(1e-20) ? Real(0) : x; };
+  return {flush(v.x), flush(v.y), flush(v.z)};
 }
 
 /// Mean velocities of up to kLanes bodies, the slow ones side by side.
@@ -184,29 +184,29 @@ void turn_momentum(std::uint32_t i, const BodyStep& step, Bodies& bodies) {
 /// if the body tumbles.
 Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 omega, const Bodies& bodies) {
   const math::Symmetric3<Real>& scale = bodies.scale[i];
-  if (tumbles_now(bodies, i)) return momentum_of(scale, omega);
+  if (is_gyroscopic_now(bodies, i)) return momentum_of(scale, omega);
   return angular_damping(i, step.h, bodies) *
          (bodies.motion[i].omega_scaled + scale * (step.h * bodies.torque[i]));
 }
 
 /// `omega` as turned has it.
 void accelerate_body(std::uint32_t i, const BodyStep& step, Vec3 omega, Bodies& bodies) {
-  MotionLine& m = bodies.motion[i];
-  state::FreeLine& free = bodies.free_motion[i];
+  MotionRecord& m = bodies.motion[i];
+  state::FreeMotionRecord& free = bodies.free_motion[i];
   const Vec3 by_contacts = m.v - free.v;
   const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;
 
   const state::BodyTraits& traits = bodies.traits[i];
   const Vec3 a = traits.gravity_scale * step.gravity + m.inverse_mass * bodies.force[i];
-  free.v = settled((Real(1) / (Real(1) + step.h * traits.linear_damping)) * (m.v + step.h * a));
-  free.omega_scaled = settled(turned(i, step, omega, bodies));
+  free.v = flushed((Real(1) / (Real(1) + step.h * traits.linear_damping)) * (m.v + step.h * a));
+  free.omega_scaled = flushed(turned(i, step, omega, bodies));
   m.v = free.v + by_contacts;
   m.omega_scaled = free.omega_scaled + turn_by_contacts;
 }
 
 /// L, with what contacts have yet to add to it, becomes smaller where it has more energy than it had when the
 /// body stood in `before`.
-void keep_turning_energy(std::uint32_t row, Quat before, Bodies& bodies) {
+void keep_rotational_energy(std::uint32_t row, Quat before, Bodies& bodies) {
   const Vec3 pending =
       momentum_of(bodies.scale[row], bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled);
   const Vec3 momentum = bodies.angular_momentum[row] + pending;
@@ -247,11 +247,11 @@ math::Symmetric3<Real> spinning_scale(const Bodies& bodies, std::uint32_t i) {
 
 /// The turn of the step so far becomes one about a single axis from its start. Its energy is that of L, but
 /// no more than rows know: where a hit turned the body over within the substep, L tells of another time.
-void begin_steady_turn(std::uint32_t i, Vec3 momentum, const math::Symmetric3<Real>& now, Quat start,
-                       Bodies& bodies) {
+void begin_frozen_inertia(std::uint32_t i, Vec3 momentum, const math::Symmetric3<Real>& now, Quat start,
+                          Bodies& bodies) {
   const math::Symmetric3<Real>& scale = bodies.scale[i];
-  MotionLine& m = bodies.motion[i];
-  state::FreeLine& free = bodies.free_motion[i];
+  MotionRecord& m = bodies.motion[i];
+  state::FreeMotionRecord& free = bodies.free_motion[i];
   const Vec3 by_contacts = m.omega_scaled - free.omega_scaled;
   const Vec3 omega_now = now * momentum;
   const Vec3 omega_scaled = momentum_of(scale, now * omega_now);
@@ -261,12 +261,12 @@ void begin_steady_turn(std::uint32_t i, Vec3 momentum, const math::Symmetric3<Re
   free.omega_scaled = m.omega_scaled - by_contacts;
   m.theta_scaled = momentum_of(scale, math::turn_between(start, bodies.rotation[i], scale * m.theta_scaled));
   bodies.rotation[i] = start;
-  bodies.steady_turn[i].on = true;
+  bodies.frozen_inertia[i].on = true;
 }
 
 /// The inertia is not turned exactly as the body is: the rotational energy decides how fast it is.
-void finish_steady_turn(std::uint32_t i, Bodies& bodies) {
-  const MotionLine& m = bodies.motion[i];
+void finish_frozen_inertia(std::uint32_t i, Bodies& bodies) {
+  const MotionRecord& m = bodies.motion[i];
   bodies.rotation[i] = normalize(math::quaternion_of(bodies.scale[i] * m.theta_scaled) * bodies.rotation[i]);
   const Vec3 omega = bodies.scale[i] * m.omega_scaled;
   const Vec3 momentum = state::angular_momentum_of(bodies.mass[i], bodies.rotation[i], omega);
@@ -277,18 +277,18 @@ void finish_steady_turn(std::uint32_t i, Bodies& bodies) {
 }
 
 void finish_rotation(std::uint32_t i, Bodies& bodies) {
-  const MotionLine& m = bodies.motion[i];
+  const MotionRecord& m = bodies.motion[i];
   const math::Symmetric3<Real>& scale = bodies.scale[i];
   if (!(m.inverse_mass > Real(0))) {
     bodies.rotation[i] = normalize(math::quaternion_of(m.theta_scaled) * bodies.rotation[i]);
     return;
   }
-  if (bodies.steady_turn[i].on) {
-    finish_steady_turn(i, bodies);
+  if (bodies.frozen_inertia[i].on) {
+    finish_frozen_inertia(i, bodies);
     return;
   }
   Vec3& momentum = bodies.angular_momentum[i];
-  if (tumbles(bodies.mass[i])) {
+  if (is_gyroscopic(bodies.mass[i])) {
     momentum += momentum_of(scale, m.omega_scaled - bodies.free_motion[i].omega_scaled);
   } else {
     momentum += momentum_of(scale, m.omega_scaled - scale * momentum);
@@ -322,15 +322,15 @@ Vec3 mean_velocity(const BodyMass& mass, Quat rotation, Vec3 momentum, Real h) {
 
 void prepare_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
   for (const std::uint32_t i : rows) {
-    MotionLine& m = bodies.motion[i];
+    MotionRecord& m = bodies.motion[i];
     m.dx = {};
     m.theta_scaled = {};
     if (m.inverse_mass > Real(0)) {
-      const state::SteadyTurn& steady = bodies.steady_turn[i];
+      const state::FrozenInertia& frozen = bodies.frozen_inertia[i];
       const Quat turned =
-          steady.on ? math::quaternion_of(steady.until_impact) * bodies.rotation[i] : bodies.rotation[i];
-      bodies.scale[i] = steady.hooked ? spinning_scale(bodies, i) : inertia_scale(bodies.mass[i], turned);
-      m.omega_scaled = steady.on ? momentum_of(bodies.scale[i], bodies.angular_velocity[i])
+          frozen.on ? math::quaternion_of(frozen.until_impact) * bodies.rotation[i] : bodies.rotation[i];
+      bodies.scale[i] = frozen.hooked ? spinning_scale(bodies, i) : inertia_scale(bodies.mass[i], turned);
+      m.omega_scaled = frozen.on ? momentum_of(bodies.scale[i], bodies.angular_velocity[i])
                                  : bodies.scale[i] * bodies.angular_momentum[i];
     } else {
       bodies.scale[i] = math::Symmetric3<Real>::diagonal(Real(1));
@@ -346,7 +346,7 @@ void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step
     MeanVelocities velocities(step.h);
     for (std::size_t k = 0; k < some.size(); ++k) {
       const std::uint32_t i = some[k];
-      if (!(bodies.motion[i].inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
+      if (!(bodies.motion[i].inverse_mass > Real(0)) || !is_gyroscopic_now(bodies, i)) continue;
       turn_momentum(i, step, bodies);
       velocities.add(k, free_turn(bodies.mass[i], bodies.rotation[i], bodies.angular_momentum[i]));
     }
@@ -362,12 +362,12 @@ void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, Bodies& bodies) {
   const Vec3 angular = cross(lever, impulse);
   const math::Symmetric3<Real>& scale = bodies.scale[row];
   Vec3 turn = scale * angular;
-  if (tumbles_now(bodies, row)) {
+  if (is_gyroscopic_now(bodies, row)) {
     const math::Symmetric3<Real> now = inertia_scale(bodies.mass[row], bodies.rotation[row]);
     turn = momentum_of(scale, now * (now * angular));
   }
-  MotionLine& m = bodies.motion[row];
-  state::FreeLine& free = bodies.free_motion[row];
+  MotionRecord& m = bodies.motion[row];
+  state::FreeMotionRecord& free = bodies.free_motion[row];
   m.v += m.inverse_mass * impulse;
   free.v += m.inverse_mass * impulse;
   m.omega_scaled += turn;
@@ -382,22 +382,22 @@ Real inverse_mass_at(const Bodies& bodies, std::uint32_t row, Vec3 direction, Ve
 void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
   constexpr Real kFarTurn = Real(0.5);  // [rad]
   for (const std::uint32_t i : rows) {
-    MotionLine& m = bodies.motion[i];
+    MotionRecord& m = bodies.motion[i];
     m.dx += h * m.v;
     m.theta_scaled += h * m.omega_scaled;
-    if (!(m.inverse_mass > Real(0)) || !tumbles_now(bodies, i)) continue;
+    if (!(m.inverse_mass > Real(0)) || !is_gyroscopic_now(bodies, i)) continue;
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
     const Quat before = bodies.rotation[i];
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * before);
     // Far from where it would have turned freely, L stands for any energy.
-    if (length_squared(turn) > kFarTurn * kFarTurn) keep_turning_energy(i, before, bodies);
+    if (length_squared(turn) > kFarTurn * kFarTurn) keep_rotational_energy(i, before, bodies);
   }
 }
 
 bool outgrows_rows(const Bodies& bodies, std::uint32_t row, Real h) {
   constexpr Real kMostTurn = Real(1.5);  // [rad]; after half a turn all is as it was
   const Vec3 turn = h * bodies.angular_velocity[row];
-  if (!gives_way(bodies, row) || !tumbles(bodies.mass[row])) return false;
+  if (!gives_way(bodies, row) || !is_gyroscopic(bodies.mass[row])) return false;
   const Real angle = length(turn);
   if (angle < kLeastTurn) return false;
   const Quat then = math::quaternion_of(std::min(Real(1), kMostTurn / angle) * turn) * bodies.rotation[row];
@@ -405,36 +405,36 @@ bool outgrows_rows(const Bodies& bodies, std::uint32_t row, Real h) {
                        inertia_scale(bodies.mass[row], then));
 }
 
-void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
-                  bool moved, Bodies& bodies) {
+void freeze_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
+                    bool moved, Bodies& bodies) {
   constexpr Real kMost = Real(2);
   for (const std::uint32_t i : rows) {
-    const state::SteadyTurn& steady = bodies.steady_turn[i];
-    if (!steady.touches || steady.on) continue;
-    const MotionLine& m = bodies.motion[i];
+    const state::FrozenInertia& frozen = bodies.frozen_inertia[i];
+    if (!frozen.touches || frozen.on) continue;
+    const MotionRecord& m = bodies.motion[i];
     const math::Symmetric3<Real>& scale = bodies.scale[i];
     const Vec3 turn = moved ? m.theta_scaled : h * m.omega_scaled;
     if (length_squared(scale * turn) < kLeastTurn * kLeastTurn) continue;
     const math::Symmetric3<Real> now = inertia_scale(bodies.mass[i], bodies.rotation[i]);
-    const state::FreeLine& free = bodies.free_motion[i];
+    const state::FreeMotionRecord& free = bodies.free_motion[i];
     Vec3 momentum = bodies.angular_momentum[i];
     if (moved) momentum += momentum_of(scale, m.omega_scaled - free.omega_scaled);
     const bool is_other_motion =
         !moved && length_squared(free.omega_scaled) > kMost * length_squared(now * momentum);
     if (is_other_motion || outgrows_rows(scale, now))
-      begin_steady_turn(i, momentum, now, start_rotation[i], bodies);
+      begin_frozen_inertia(i, momentum, now, start_rotation[i], bodies);
   }
 }
 
-void turn_back(std::uint32_t row, Quat rotation, Bodies& bodies) {
+void stop_rotation(std::uint32_t row, Quat rotation, Bodies& bodies) {
   const Quat turned = bodies.rotation[row];
   bodies.rotation[row] = rotation;
-  keep_turning_energy(row, turned, bodies);
+  keep_rotational_energy(row, turned, bodies);
 }
 
 void finish_bodies(std::span<const std::uint32_t> rows, Bodies& bodies) {
   for (const std::uint32_t i : rows) {
-    MotionLine& m = bodies.motion[i];
+    MotionRecord& m = bodies.motion[i];
     bodies.center[i] = bodies.center[i] + vector_cast<double>(m.dx);
     finish_rotation(i, bodies);
     m = {.v = m.v, .inverse_mass = m.inverse_mass};

@@ -70,8 +70,8 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, state::Bodies& bod
 /// were tipped over, gained factors of 1e11 in a step. Of a body with an axis of symmetry the trace is
 /// 1 + r + 1/r. Before it moves, |omega_scaled|^2 tells too, which is beyond 2 E where the axis will tip over
 /// within the substep. The body keeps its energy, |omega_scaled|^2 / 2 from now on.
-void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
-                  bool moved, state::Bodies& bodies);
+void freeze_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
+                    bool moved, state::Bodies& bodies);
 
 /// Whether within h [s] the inertia of a body that forces move comes to be so different that an impulse would
 /// do more than twice what rows know, as with r above.
@@ -80,7 +80,7 @@ void keep_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> sta
 /// Gives a body that tumbles, after the last substep, the rotation at which it was stopped on its way. That
 /// lies on the straight way from start to end, not quite on the body's own: with the same L it may have more
 /// rotational energy than at the end of the step, in which case L shrinks.
-void turn_back(std::uint32_t row, Quat rotation, state::Bodies& bodies);
+void stop_rotation(std::uint32_t row, Quat rotation, state::Bodies& bodies);
 
 /// End of a step: centers and rotations follow dx and theta, L follows the change of omega_scaled alone (so
 /// that a free body keeps it exactly), angular_velocity follows L. A body in a steady turn has the rotational

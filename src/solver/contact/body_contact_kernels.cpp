@@ -26,11 +26,12 @@ void compute_contact_rows_here(const ContactSource& source, ContactBlock& block)
   compute_contact_rows_scalar(source, block);
 }
 
-void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
+void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass,
+                         state::MotionRecord* motion) {
   solve_contacts_scalar(blocks, pass, motion);
 }
 
-void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
+void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion) {
   warm_start_contacts_scalar(blocks, free_motion);
 }
 
@@ -48,27 +49,28 @@ void compute_contact_rows_here(const ContactSource& source, ContactBlock& block)
   }
 }
 
-void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
-  auto* lines = reinterpret_cast<float*>(motion);
+void solve_contacts_here(std::span<ContactBlock> blocks, const ContactPass& pass,
+                         state::MotionRecord* motion) {
+  auto* records = reinterpret_cast<float*>(motion);
   for (ContactBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
-        solve_lanes<Wide, true>(block, lane, pass, lines);
+        solve_lanes<Wide, true>(block, lane, pass, records);
       } else {
-        solve_lanes<Wide, false>(block, lane, pass, lines);
+        solve_lanes<Wide, false>(block, lane, pass, records);
       }
     }
   }
 }
 
-void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
-  auto* lines = reinterpret_cast<float*>(free_motion);
+void warm_start_contacts_here(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion) {
+  auto* records = reinterpret_cast<float*>(free_motion);
   for (const ContactBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
-        warm_start_lanes<Wide, true>(block, lane, lines);
+        warm_start_lanes<Wide, true>(block, lane, records);
       } else {
-        warm_start_lanes<Wide, false>(block, lane, lines);
+        warm_start_lanes<Wide, false>(block, lane, records);
       }
     }
   }
@@ -92,12 +94,12 @@ void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
   HWY_DYNAMIC_DISPATCH(compute_contact_rows_here)(source, block);
 }
 
-void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
+void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionRecord* motion) {
   if (is_scalar()) return solve_contacts_scalar(blocks, pass, motion);
   HWY_DYNAMIC_DISPATCH(solve_contacts_here)(blocks, pass, motion);
 }
 
-void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
+void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion) {
   if (is_scalar()) return warm_start_contacts_scalar(blocks, free_motion);
   HWY_DYNAMIC_DISPATCH(warm_start_contacts_here)(blocks, free_motion);
 }
@@ -114,11 +116,11 @@ void compute_contact_rows(const ContactSource& source, ContactBlock& block) {
   compute_contact_rows_scalar(source, block);
 }
 
-void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion) {
+void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionRecord* motion) {
   solve_contacts_scalar(blocks, pass, motion);
 }
 
-void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
+void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion) {
   warm_start_contacts_scalar(blocks, free_motion);
 }
 

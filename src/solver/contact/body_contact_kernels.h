@@ -33,16 +33,16 @@ struct ContactPass {
 void compute_contact_rows(const ContactSource& source, ContactBlock& block);
 
 /// One pass over blocks of one color.
-void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionLine* motion);
+void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionRecord* motion);
 
 /// Takes the impulses carried over out of the free motion of the bodies.
-void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeLine* free_motion);
+void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion);
 
 // The scalar twins.
 void compute_contact_lane_scalar(const ContactSource& source, int lane, ContactBlock& block);
 void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& block);
 void solve_contacts_scalar(std::span<ContactBlock> blocks, const ContactPass& pass,
-                           state::MotionLine* motion);
-void warm_start_contacts_scalar(std::span<const ContactBlock> blocks, state::FreeLine* free_motion);
+                           state::MotionRecord* motion);
+void warm_start_contacts_scalar(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion);
 
 }  // namespace hooke::solver::wide

@@ -32,7 +32,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const auto bounces = above(get<Number>(block.restitution + lane), zero);
     inverse_h = choose(bounces, Number(kNeverReached), inverse_h);
   }
-  const Number approach = dot(n, difference(moved_b.dx, moved_a.dx));
+  const Number closing_speed = dot(n, difference(moved_b.dx, moved_a.dx));
   Number rate = dot(n, difference(bodies.b.v, bodies.a.v));
   Number total(Real(0));
   for (int k = 0; k < block.point_count; ++k) {
@@ -40,7 +40,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const Triple<Number> j_a = get3<Number>(point.j_a, lane);
     const Triple<Number> j_b = get3<Number>(point.j_b, lane);
     const Number s = get<Number>(point.separation + lane) +
-                     (approach + (dot(j_b, moved_b.theta) - dot(j_a, moved_a.theta)));
+                     (closing_speed + (dot(j_b, moved_b.theta) - dot(j_a, moved_a.theta)));
     const auto apart = above(s, zero);
     const Number undo = larger(Number(pass.softness.rate) * s, Number(Real(-3)));
     const Number bias = choose(apart, inverse_h * s, undo);
@@ -156,11 +156,11 @@ HWY_INLINE void take_impulses(const ContactBlock& block, int lane, Bodies<Number
 template <class Number, bool kAnchored>
 HWY_INLINE void warm_start_lanes(const ContactBlock& block, int lane, Real* free_motion) {
   Bodies<Number, kAnchored> bodies;
-  read_free(free_motion, block.line_a + lane, bodies.a);
-  read_free(free_motion, block.line_b + lane, bodies.b);
+  read_free(free_motion, block.record_a + lane, bodies.a);
+  read_free(free_motion, block.record_b + lane, bodies.b);
   take_impulses(block, lane, bodies);
-  write_free(bodies.a, free_motion, block.line_a + lane);
-  if constexpr (!kAnchored) write_free(bodies.b, free_motion, block.line_b + lane);
+  write_free(bodies.a, free_motion, block.record_a + lane);
+  if constexpr (!kAnchored) write_free(bodies.b, free_motion, block.record_b + lane);
 }
 
 /// What rows are made of, A and B in the order of the block.
@@ -233,8 +233,8 @@ HWY_INLINE void read_inputs(const ContactSource& source, int lane, ContactBlock&
   write(surface.x, block.friction + lane);
   write(surface.y, block.static_friction + lane);
   write(Number(Real(0)), block.pushed + lane);
-  inputs.scale_a = read_scale<Number>(source.scale, block.line_a + lane);
-  inputs.scale_b = read_scale<Number>(source.scale, block.line_b + lane);
+  inputs.scale_a = read_scale<Number>(source.scale, block.record_a + lane);
+  inputs.scale_b = read_scale<Number>(source.scale, block.record_b + lane);
   read_points(source, lane, block, inputs);
 }
 

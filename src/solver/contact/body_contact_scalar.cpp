@@ -17,27 +17,27 @@ void compute_contact_rows_scalar(const ContactSource& source, ContactBlock& bloc
 }
 
 void solve_contacts_scalar(std::span<ContactBlock> blocks, const ContactPass& pass,
-                           state::MotionLine* motion) {
-  auto* lines = reinterpret_cast<Real*>(motion);
+                           state::MotionRecord* motion) {
+  auto* records = reinterpret_cast<Real*>(motion);
   for (ContactBlock& block : blocks) {
     for (int lane = 0; lane < block.count; ++lane) {
       if (block.anchored) {
-        HWY_NAMESPACE::solve_lanes<Real, true>(block, lane, pass, lines);
+        HWY_NAMESPACE::solve_lanes<Real, true>(block, lane, pass, records);
       } else {
-        HWY_NAMESPACE::solve_lanes<Real, false>(block, lane, pass, lines);
+        HWY_NAMESPACE::solve_lanes<Real, false>(block, lane, pass, records);
       }
     }
   }
 }
 
-void warm_start_contacts_scalar(std::span<const ContactBlock> blocks, state::FreeLine* free_motion) {
-  auto* lines = reinterpret_cast<Real*>(free_motion);
+void warm_start_contacts_scalar(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion) {
+  auto* records = reinterpret_cast<Real*>(free_motion);
   for (const ContactBlock& block : blocks) {
     for (int lane = 0; lane < block.count; ++lane) {
       if (block.anchored) {
-        HWY_NAMESPACE::warm_start_lanes<Real, true>(block, lane, lines);
+        HWY_NAMESPACE::warm_start_lanes<Real, true>(block, lane, records);
       } else {
-        HWY_NAMESPACE::warm_start_lanes<Real, false>(block, lane, lines);
+        HWY_NAMESPACE::warm_start_lanes<Real, false>(block, lane, records);
       }
     }
   }

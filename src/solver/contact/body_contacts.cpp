@@ -22,7 +22,7 @@ constexpr int kWarmGrain = 16;
 
 /// Whether the manifold's bodies change places in its rows, so that A moves.
 bool is_swapped(const Manifold& m, const ContactBlock& block, int lane) {
-  return block.line_a[lane] != 16 * m.body_a;
+  return block.record_a[lane] != 16 * m.body_a;
 }
 
 /// Who is in the lane; the rest is for the kernel.
@@ -35,8 +35,8 @@ void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bod
   source.sign[lane] = swapped ? Real(-1) : Real(1);
   source.points[lane] = static_cast<Real>(m.point_count);
   source.manifold[lane] = row * static_cast<std::uint32_t>(sizeof(Manifold) / sizeof(Real));
-  block.line_a[lane] = 16 * a;
-  block.line_b[lane] = 16 * b;
+  block.record_a[lane] = 16 * a;
+  block.record_b[lane] = 16 * b;
   block.w_a[lane] = bodies.motion[a].inverse_mass;
   block.w_b[lane] = block.anchored ? Real(0) : bodies.motion[b].inverse_mass;
   block.restitution[lane] = m.restitution;
@@ -52,8 +52,8 @@ math::Symmetric3<Real> square(const math::Symmetric3<Real>& s) {
 
 void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& step, const ContactBlock& block,
                   RollingRow& row) {
-  math::Symmetric3<Real> give = square(bodies.scale[block.line_a[row.lane] / 16]);
-  if (!block.anchored) give = give + square(bodies.scale[block.line_b[row.lane] / 16]);
+  math::Symmetric3<Real> give = square(bodies.scale[block.record_a[row.lane] / 16]);
+  if (!block.anchored) give = give + square(bodies.scale[block.record_b[row.lane] / 16]);
   row.inertia = math::inverse(give);
   row.lever = m.rolling_friction;
   row.impulse =
@@ -66,28 +66,28 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
   contacts.color_begin = {0};
   contacts.manifold_of.clear();
   contacts.rolling.clear();
-  contacts.lively.clear();
+  contacts.refreshed.clear();
   std::size_t block_count = 0;
   for (std::size_t color = 0; color + 1 < colors.begin.size(); ++color) {
     int i = colors.begin[color];
     while (i < colors.begin[color + 1]) {
       if (contacts.blocks.size() == block_count) contacts.blocks.emplace_back();
       ContactBlock& block = contacts.blocks[block_count++];
-      const auto [first_manifold, anchored, hard] = colors.members[i];
+      const auto [first_manifold, anchored, direct] = colors.members[i];
       block.anchored = anchored;
-      block.hard = hard;
+      block.direct = direct;
       block.point_count = manifolds[first_manifold].point_count;
       block.first_rolling = static_cast<int>(contacts.rolling.size());
       block.count = 0;
       block.bounces = false;
       const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
-      for (; i < end && colors.members[i].anchored == anchored && colors.members[i].hard == hard; ++i) {
+      for (; i < end && colors.members[i].anchored == anchored && colors.members[i].direct == direct; ++i) {
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
         block.bounces = block.bounces || m.restitution > Real(0);
-        if (m.lively && !hard) {
+        if (m.refreshed && !direct) {
           block.point_count = Manifold::kMaxPoints;
-          contacts.lively.push_back(
+          contacts.refreshed.push_back(
               {static_cast<int>(block_count) - 1, block.count, colors.members[i].manifold});
         }
         if (m.rolling_friction > Real(0)) contacts.rolling.push_back({.lane = block.count});
@@ -122,8 +122,8 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
 void warm_start_rolling(const BodyContacts& contacts, const ContactBlock& block, Bodies& bodies) {
   for (int i = 0; i < block.rolling_count; ++i) {
     const RollingRow& row = contacts.rolling[block.first_rolling + i];
-    const std::uint32_t a = block.line_a[row.lane] / 16;
-    const std::uint32_t b = block.line_b[row.lane] / 16;
+    const std::uint32_t a = block.record_a[row.lane] / 16;
+    const std::uint32_t b = block.record_b[row.lane] / 16;
     bodies.free_motion[a].omega_scaled += bodies.scale[a] * row.impulse;
     if (!block.anchored) bodies.free_motion[b].omega_scaled -= bodies.scale[b] * row.impulse;
   }
@@ -131,8 +131,8 @@ void warm_start_rolling(const BodyContacts& contacts, const ContactBlock& block,
 
 /// Resists relative angular velocity across the normal.
 void roll(const ContactBlock& block, RollingRow& row, Bodies& bodies) {
-  const std::uint32_t a = block.line_a[row.lane] / 16;
-  const std::uint32_t b = block.line_b[row.lane] / 16;
+  const std::uint32_t a = block.record_a[row.lane] / 16;
+  const std::uint32_t b = block.record_b[row.lane] / 16;
   Vec3& omega_a = bodies.motion[a].omega_scaled;
   Vec3& omega_b = bodies.motion[b].omega_scaled;
   Real load = Real(0);
@@ -157,9 +157,9 @@ std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
 /// Blocks of hard islands are the last of their color.
 std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
-  const auto hard =
-      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.hard; });
-  return all.first(static_cast<std::size_t>(hard - all.begin()));
+  const auto direct =
+      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.direct; });
+  return all.first(static_cast<std::size_t>(direct - all.begin()));
 }
 
 /// Calls `change(body, v, omega_scaled)` with what a lane's impulses do to each body that they move.
@@ -181,8 +181,8 @@ void for_impulses(const ContactBlock& block, int lane, Change&& change) {
     turn_a += impulse * vector_of(block.point[k].j_a, lane);
     turn_b += impulse * vector_of(block.point[k].j_b, lane);
   }
-  change(block.line_a[lane] / 16, (-block.w_a[lane]) * push, -turn_a);
-  if (!block.anchored) change(block.line_b[lane] / 16, block.w_b[lane] * push, turn_b);
+  change(block.record_a[lane] / 16, (-block.w_a[lane]) * push, -turn_a);
+  if (!block.anchored) change(block.record_b[lane] / 16, block.w_b[lane] * push, turn_b);
 }
 
 /// What a lane's impulses have done to the bodies is to be of free motion (`sign` 1), or no longer (-1).
@@ -190,25 +190,27 @@ void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodie
   for_impulses(block, lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.free_motion[body].v += sign * v;
     bodies.free_motion[body].omega_scaled += sign * turn;
-    if (state::tumbles_now(bodies, body))
+    if (state::is_gyroscopic_now(bodies, body))
       bodies.angular_momentum[body] += math::inverse(bodies.scale[body]) * (sign * turn);
   });
 }
 
 /// From separations of `time` from now to those of the start of the step, along the rows' straight lines.
 void bring_to_start(const Bodies& bodies, Real time, int lane, ContactBlock& block) {
-  const std::uint32_t row_a = block.line_a[lane] / 16;
-  const std::uint32_t row_b = block.line_b[lane] / 16;
-  const state::MotionLine& a = bodies.motion[row_a];
-  const state::MotionLine& b = bodies.motion[row_b];
-  const state::FreeLine from_a = state::motion_before_contacts(bodies, row_a);
-  const state::FreeLine from_b = state::motion_before_contacts(bodies, row_b);
-  const Real way = dot(vector_of(block.normal, lane), (b.dx + time * from_b.v) - (a.dx + time * from_a.v));
+  const std::uint32_t row_a = block.record_a[lane] / 16;
+  const std::uint32_t row_b = block.record_b[lane] / 16;
+  const state::MotionRecord& a = bodies.motion[row_a];
+  const state::MotionRecord& b = bodies.motion[row_b];
+  const state::FreeMotionRecord from_a = state::motion_before_contacts(bodies, row_a);
+  const state::FreeMotionRecord from_b = state::motion_before_contacts(bodies, row_b);
+  const Real displacement =
+      dot(vector_of(block.normal, lane), (b.dx + time * from_b.v) - (a.dx + time * from_a.v));
   const Vec3 turn_a = a.theta_scaled + time * from_a.omega_scaled;
   const Vec3 turn_b = b.theta_scaled + time * from_b.omega_scaled;
   for (int k = 0; k < block.point_count; ++k) {
     ContactBlock::Point& p = block.point[k];
-    p.separation[lane] -= way + (dot(vector_of(p.j_b, lane), turn_b) - dot(vector_of(p.j_a, lane), turn_a));
+    p.separation[lane] -=
+        displacement + (dot(vector_of(p.j_b, lane), turn_b) - dot(vector_of(p.j_a, lane), turn_a));
   }
 }
 
@@ -315,7 +317,7 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
   for (const auto& [index, lane, row] : lanes) {
     const ContactBlock& block = contacts.blocks[index];
     Manifold& m = manifolds[row];
-    if (block.hard) continue;
+    if (block.direct) continue;
     const int count = std::min(m.point_count, block.point_count);
     for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
     store_friction(block, lane, m);
@@ -324,7 +326,7 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
 
 void drop_warm_start(const ContactLane& at, BodyContacts& contacts, Bodies& bodies) {
   ContactBlock& block = contacts.blocks[at.block];
-  if (block.hard) return;
+  if (block.direct) return;
   for_impulses(block, at.lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.motion[body].v -= v;
     bodies.motion[body].omega_scaled -= turn;
@@ -340,7 +342,7 @@ void drop_warm_start(const ContactLane& at, BodyContacts& contacts, Bodies& bodi
 void refill_lanes(std::span<const ContactLane> lanes, const std::vector<Manifold>& manifolds, Real time,
                   Bodies& bodies, BodyContacts& contacts) {
   for (const ContactLane& lane : lanes) {
-    if (!contacts.blocks[lane.block].hard) refill_lane(lane, manifolds, time, bodies, contacts);
+    if (!contacts.blocks[lane.block].direct) refill_lane(lane, manifolds, time, bodies, contacts);
   }
 }
 

@@ -49,8 +49,8 @@ namespace hooke::solver {
 inline constexpr int kContactLanes = 16;
 
 /// Slower impacts do not bounce [m/s].
-inline constexpr Real kLeastHit = Real(0.03);
-inline constexpr Real kLeastHitInCrowd = Real(0.2);
+inline constexpr Real kLeastImpactSpeed = Real(0.03);
+inline constexpr Real kLeastImpactSpeedInPile = Real(0.2);
 
 /// Rows of up to 16 manifolds of one color: no two of them share a body that moves. A's side always moves;
 /// where only one body does, it is made A. The last lane that holds a manifold is repeated up to the end, so
@@ -66,8 +66,8 @@ struct alignas(64) ContactBlock {
   };
 
   // What the passes over points alone read.
-  std::uint32_t line_a[kContactLanes];  ///< 16 times the row of body A: where its line begins, in numbers.
-  std::uint32_t line_b[kContactLanes];
+  std::uint32_t record_a[kContactLanes];  ///< 16 times the row of body A: where its line begins, in numbers.
+  std::uint32_t record_b[kContactLanes];
   Lane normal[3];
   Lane w_a, w_b;
   std::array<Point, state::Manifold::kMaxPoints> point;
@@ -88,7 +88,7 @@ struct alignas(64) ContactBlock {
   int count = 0;          ///< Lanes with a manifold of their own.
   int point_count = 0;    ///< The largest of the lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
-  bool hard = false;      ///< Its manifolds are of hard islands: only rolling is solved here.
+  bool direct = false;    ///< Its manifolds are of hard islands: only rolling is solved here.
   bool bounces = false;   ///< Some lane has restitution.
   int first_rolling = 0;  ///< Its rolling rows.
   int rolling_count = 0;
@@ -121,7 +121,7 @@ struct BodyContacts {
   std::vector<int> color_begin = {0};      ///< Blocks of color c are [color_begin[c], color_begin[c + 1]).
   std::vector<std::uint32_t> manifold_of;  ///< Row of each lane's manifold; kNoManifold where there is none.
   std::vector<RollingRow> rolling;
-  std::vector<ContactLane> lively;  ///< Lanes of lively manifolds that soft contacts solve.
+  std::vector<ContactLane> refreshed;  ///< Lanes of lively manifolds that soft contacts solve.
   ContactColors colors;
 
   [[nodiscard]] int color_count() const { return static_cast<int>(color_begin.size()) - 1; }

@@ -46,8 +46,9 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 }
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
-  if (m.borne) return false;
-  if ((m.point_count == 0 && !m.lively) || bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor)
+  if (m.load_bearing) return false;
+  if ((m.point_count == 0 && !m.refreshed) || bodies.traits[m.body_a].sensor ||
+      bodies.traits[m.body_b].sensor)
     return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
 }
@@ -72,30 +73,31 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     if (color < kPairColors) return color;
     return color < kColors ? color + lone : color - kColors + kPairColors;
   };
-  const auto is_hard = [&](const Manifold& m) {
-    if (colors.hard.empty() || (colors.hard[m.body_a] == 0 && colors.hard[m.body_b] == 0)) return false;
-    return is_anchored(m) || colors.hard[m.body_a] == colors.hard[m.body_b];
+  const auto is_direct = [&](const Manifold& m) {
+    if (colors.direct.empty() || (colors.direct[m.body_a] == 0 && colors.direct[m.body_b] == 0)) return false;
+    return is_anchored(m) || colors.direct[m.body_a] == colors.direct[m.body_b];
   };
   constexpr int kKinds = 4 * Manifold::kMaxPoints;
   const auto key = [&](std::size_t i) {
     const Manifold& m = manifolds[i];
-    const int kind = (is_hard(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
+    const int kind = (is_direct(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
     return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - std::max(m.point_count, 1);
   };
-  colors.place.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
+  colors.next_slot.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (colors.color[i] >= 0) ++colors.place[key(i) + 1];
+    if (colors.color[i] >= 0) ++colors.next_slot[key(i) + 1];
   }
-  std::partial_sum(colors.place.begin(), colors.place.end(), colors.place.begin());
+  std::partial_sum(colors.next_slot.begin(), colors.next_slot.end(), colors.next_slot.begin());
   colors.begin = {0};
-  for (int rank_end = kKinds; rank_end < static_cast<int>(colors.place.size()); rank_end += kKinds) {
-    if (colors.place[rank_end] > colors.begin.back()) colors.begin.push_back(colors.place[rank_end]);
+  for (int rank_end = kKinds; rank_end < static_cast<int>(colors.next_slot.size()); rank_end += kKinds) {
+    if (colors.next_slot[rank_end] > colors.begin.back()) colors.begin.push_back(colors.next_slot[rank_end]);
   }
   colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
     if (colors.color[i] < 0) continue;
     const Manifold& m = manifolds[i];
-    colors.members[colors.place[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(m), is_hard(m)};
+    colors.members[colors.next_slot[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(m),
+                                                  is_direct(m)};
   }
 }
 

@@ -13,18 +13,18 @@ struct ContactColors {
   struct Member {
     std::uint32_t manifold = 0;
     bool anchored = false;  ///< Only one of its bodies moves.
-    bool hard = false;      ///< Of a hard island (hard_islands.h).
+    bool direct = false;    ///< Of a hard island (hard_islands.h).
   };
 
   std::vector<Member> members;   ///< Color after color; in each, those of hard islands come last, before that
                                  ///< pairs that both move first, then more points before fewer, then the
                                  ///< order of the manifolds.
   std::vector<int> begin = {0};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
-  std::vector<std::uint8_t> moves;  ///< Whether contacts move a body, by body row.
-  std::vector<std::uint8_t> hard;   ///< Whether it is in a hard island; empty: none is. Given.
-  std::vector<std::uint64_t> used;  ///< Colors of a body, by body row.
-  std::vector<int> color;           ///< Of each manifold, as taken; -1: has no rows.
-  std::vector<int> place;           ///< Where the next member of each kind goes.
+  std::vector<std::uint8_t> moves;   ///< Whether contacts move a body, by body row.
+  std::vector<std::uint8_t> direct;  ///< Whether it is in a hard island; empty: none is. Given.
+  std::vector<std::uint64_t> used;   ///< Colors of a body, by body row.
+  std::vector<int> color;            ///< Of each manifold, as taken; -1: has no rows.
+  std::vector<int> next_slot;        ///< Where the next member of each kind goes.
 };
 
 /// Whether contacts move the body in `row`.

@@ -10,10 +10,10 @@ namespace {
 constexpr Real kPushOutSpeed = Real(3);  // as of solver/contact/body_contacts.h [m/s]
 
 /// The mean velocity, by mass.
-Vec3 velocity_of(std::span<const std::uint32_t> crowd, const state::Bodies& bodies) {
+Vec3 velocity_of(std::span<const std::uint32_t> pile, const state::Bodies& bodies) {
   Vec3 momentum;
   Real mass = Real(0);
-  for (const std::uint32_t body : crowd) {
+  for (const std::uint32_t body : pile) {
     momentum += bodies.mass[body].mass * bodies.motion[body].v;
     mass += bodies.mass[body].mass;
   }
@@ -22,11 +22,11 @@ Vec3 velocity_of(std::span<const std::uint32_t> crowd, const state::Bodies& bodi
 
 }  // namespace
 
-void slow_crowd(std::span<const std::uint32_t> crowd, state::Bodies& bodies) {
-  const Vec3 mean = velocity_of(crowd, bodies);
-  for (const std::uint32_t body : crowd) {
-    state::MotionLine& m = bodies.motion[body];
-    const state::FreeLine& free = bodies.free_motion[body];
+void limit_dense_pile(std::span<const std::uint32_t> pile, state::Bodies& bodies) {
+  const Vec3 mean = velocity_of(pile, bodies);
+  for (const std::uint32_t body : pile) {
+    state::MotionRecord& m = bodies.motion[body];
+    const state::FreeMotionRecord& free = bodies.free_motion[body];
     const Real fastest = std::max(kPushOutSpeed, length(free.v - mean));
     const Real speed = length(m.v - mean);
     if (speed > fastest) m.v = mean + (fastest / speed) * (m.v - mean);
@@ -34,8 +34,8 @@ void slow_crowd(std::span<const std::uint32_t> crowd, state::Bodies& bodies) {
     const Real most = std::max(kPushOutSpeed * std::sqrt(bodies.mass[body].mass), length(free.omega_scaled));
     if (length(m.omega_scaled) > most) m.omega_scaled = free.omega_scaled;
   }
-  const Vec3 lost = mean - velocity_of(crowd, bodies);
-  for (const std::uint32_t body : crowd) bodies.motion[body].v += lost;
+  const Vec3 lost = mean - velocity_of(pile, bodies);
+  for (const std::uint32_t body : pile) bodies.motion[body].v += lost;
 }
 
 }  // namespace hooke::solver

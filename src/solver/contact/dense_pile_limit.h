@@ -11,6 +11,6 @@ namespace hooke::solver {
 /// (collision/narrow_phase/dense_piles.h) each body is pushed by many whose pushes add up: there they make
 /// nothing faster than that, against the crowd as a whole, or faster than it was without them. Keeps the
 /// momentum of the crowd: what contacts did to it is their warm start, which acts again in each substep.
-void slow_crowd(std::span<const std::uint32_t> crowd, state::Bodies& bodies);
+void limit_dense_pile(std::span<const std::uint32_t> pile, state::Bodies& bodies);
 
 }  // namespace hooke::solver

@@ -16,13 +16,13 @@ namespace {
 
 using state::Bodies;
 
-constexpr double kHardStiffness = 1e5;  ///< D of a row over its effective mass.
-constexpr double kHardSlop = 1e-5;      ///< Of the smaller body's radius: overlap, or gap, that is none.
-constexpr double kPushOut = 0.5;        ///< Share of overlap that a step removes.
-constexpr double kLargestPush = 0.05;   ///< In a step [m].
-constexpr int kRounds = 3;              ///< Of friction.
-constexpr int kNewtonSteps = 12;        ///< In a round.
-constexpr int kQuickSteps = 3;          ///< Before softer rows are tried.
+constexpr double kDirectStiffness = 1e5;  ///< D of a row over its effective mass.
+constexpr double kDirectSlop = 1e-5;      ///< Of the smaller body's radius: overlap, or gap, that is none.
+constexpr double kPushOut = 0.5;          ///< Share of overlap that a step removes.
+constexpr double kLargestPush = 0.05;     ///< In a step [m].
+constexpr int kRounds = 3;                ///< Of friction.
+constexpr int kNewtonSteps = 12;          ///< In a round.
+constexpr int kQuickSteps = 3;            ///< Before softer rows are tried.
 constexpr double kSofterStiffness = 1e2;
 constexpr int kSweeps = 8;  ///< Where no solution is found.
 constexpr int kSearchSteps = 20;
@@ -32,93 +32,94 @@ constexpr double kSticking = 0.999;  ///< Of its limit: friction that slid in th
 /// Friction that has changed less is not solved again.
 constexpr double kSameLoad = 0.01;
 
-HardLever joined(double scale, Vec3 linear, double sign, Vec3 angular) {
+DirectLever scaled_lever(double scale, Vec3 linear, double sign, Vec3 angular) {
   const auto d = [](Real x) { return static_cast<double>(x); };
   return {scale * d(linear.x), scale * d(linear.y), scale * d(linear.z),
           sign * d(angular.x), sign * d(angular.y), sign * d(angular.z)};
 }
 
-double product(const HardLever& j, const double* u) {
+double product(const DirectLever& j, const double* u) {
   double sum = 0;
   for (int i = 0; i < 6; ++i) sum += j[i] * u[i];
   return sum;
 }
 
-void add_lever(double impulse, const HardLever& j, double* u) {
+void add_lever(double impulse, const DirectLever& j, double* u) {
   for (int i = 0; i < 6; ++i) u[i] += impulse * j[i];
 }
 
 /// Makes rows of one manifold from its lane.
-struct HardRowMaker {
+struct DirectRowMaker {
   const ContactBlock& block;
   int lane;
   double root_a, root_b;  ///< Roots of the inverse masses; -1 for what does not move.
 
-  [[nodiscard]] HardRow row(Vec3 direction, Vec3 j_a, Vec3 j_b) const {
-    HardRow made = {.a = joined(-root_a, direction, -1, j_a), .b = joined(root_b, direction, 1, j_b)};
+  [[nodiscard]] DirectRow row(Vec3 direction, Vec3 j_a, Vec3 j_b) const {
+    DirectRow made = {.a = scaled_lever(-root_a, direction, -1, j_a),
+                      .b = scaled_lever(root_b, direction, 1, j_b)};
     const double on_b = block.anchored ? 0 : product(made.b, made.b.data());
     const double inverse = product(made.a, made.a.data()) + on_b;
     made.mass = inverse > 0 ? 1 / inverse : 0;
     return made;
   }
 
-  [[nodiscard]] HardRow point(int k) const {
+  [[nodiscard]] DirectRow point(int k) const {
     const ContactBlock::Point& p = block.point[k];
-    HardRow made = row(vector_of(block.normal, lane), vector_of(p.j_a, lane), vector_of(p.j_b, lane));
+    DirectRow made = row(vector_of(block.normal, lane), vector_of(p.j_a, lane), vector_of(p.j_b, lane));
     made.separation = static_cast<double>(p.separation[lane]);
     made.twist_lever = static_cast<double>(block.twist_lever[k][lane]);
     return made;
   }
 
-  [[nodiscard]] HardRow friction(int i) const {
+  [[nodiscard]] DirectRow friction(int i) const {
     const Vec3 t_1 = vector_of(block.tangent, lane);
     const Vec3 t = i == 0 ? t_1 : cross(vector_of(block.normal, lane), t_1);
     return row(t, vector_of(block.friction_j_a[i], lane), vector_of(block.friction_j_b[i], lane));
   }
 
-  [[nodiscard]] HardRow twist() const {
+  [[nodiscard]] DirectRow twist() const {
     return row({}, vector_of(block.twist_j_a, lane), vector_of(block.twist_j_b, lane));
   }
 };
 
-void find_blocks(const BlockPattern& p, HardContact& c) {
+void find_blocks(const BlockPattern& p, DirectContact& c) {
   c.diagonal_a = p.block[p.column_begin[c.a]].offset;
-  if (c.b == HardContact::kNone) return;
+  if (c.b == DirectContact::kNone) return;
   c.diagonal_b = p.block[p.column_begin[c.b]].offset;
   c.b_is_row = c.b > c.a;
   c.between = p.block[find_block(p, std::max(c.a, c.b), std::min(c.a, c.b))].offset;
 }
 
-std::span<HardRow> rows_of(HardIsland& island, const HardContact& c) {
+std::span<DirectRow> rows_of(DirectIsland& island, const DirectContact& c) {
   return {&island.rows[c.first], static_cast<std::size_t>(c.points) + 3};
 }
 
 /// Adds what the impulses of a contact do.
-void add_impulses(const HardIsland& island, const HardContact& c, double HardRow::*impulse,
+void add_impulses(const DirectIsland& island, const DirectContact& c, double DirectRow::*impulse,
                   std::vector<double>& u) {
   const int end = c.first + c.points + 3;
   for (int i = c.first; i < end; ++i) {
-    const HardRow& row = island.rows[i];
+    const DirectRow& row = island.rows[i];
     add_lever(row.*impulse, row.a, &u[6 * c.a]);
-    if (c.b != HardContact::kNone) add_lever(row.*impulse, row.b, &u[6 * c.b]);
+    if (c.b != DirectContact::kNone) add_lever(row.*impulse, row.b, &u[6 * c.b]);
   }
 }
 
-double rate_of(const HardContact& c, const HardRow& row, const std::vector<double>& u) {
+double rate_of(const DirectContact& c, const DirectRow& row, const std::vector<double>& u) {
   const double rate = product(row.a, &u[6 * c.a]);
-  return c.b == HardContact::kNone ? rate : rate + product(row.b, &u[6 * c.b]);
+  return c.b == DirectContact::kNone ? rate : rate + product(row.b, &u[6 * c.b]);
 }
 
 /// The impulses of a contact at rate + t slope, and which rows are not at their bounds then.
-void respond(double t, const HardContact& c, std::vector<HardRow>& rows) {
-  const auto wish = [&](const HardRow& row) {
+void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows) {
+  const auto wish = [&](const DirectRow& row) {
     return row.before - row.stiffness * (row.rate + t * row.slope);
   };
   for (int i = c.first; i < c.first + c.points; ++i) {
     rows[i].impulse = std::max(0.0, wish(rows[i]));
     rows[i].holds = rows[i].impulse > 0;
   }
-  HardRow* friction = &rows[c.first + c.points];
+  DirectRow* friction = &rows[c.first + c.points];
   const double x = wish(friction[0]);
   const double y = wish(friction[1]);
   const double size = std::sqrt(x * x + y * y);
@@ -132,13 +133,13 @@ void respond(double t, const HardContact& c, std::vector<HardRow>& rows) {
 }
 
 /// How fast the energy grows along the direction of search, at the end of t of it.
-double climb(double t, HardIsland& island) {
+double climb(double t, DirectIsland& island) {
   double sum = 0;
   for (std::size_t i = 0; i < island.velocity.size(); ++i) {
     const double d = island.direction[i];
     sum += d * (island.velocity[i] - island.free[i] + t * d);
   }
-  for (const HardContact& c : island.contacts) {
+  for (const DirectContact& c : island.contacts) {
     respond(t, c, island.rows);
     for (int i = c.first; i < c.first + c.points + 3; ++i)
       sum -= island.rows[i].impulse * island.rows[i].slope;
@@ -146,7 +147,7 @@ double climb(double t, HardIsland& island) {
   return sum;
 }
 
-void add_block(double d, const HardLever& left, const HardLever& right, double* block) {
+void add_block(double d, const DirectLever& left, const DirectLever& right, double* block) {
   for (int r = 0; r < 6; ++r) {
     const double factor = d * left[r];
     for (int c = 0; c < 6; ++c) block[6 * r + c] += factor * right[c];
@@ -154,21 +155,22 @@ void add_block(double d, const HardLever& left, const HardLever& right, double* 
 }
 
 /// H += d j j^T
-void add_row(double d, const HardContact& c, const HardLever& a, const HardLever& b, std::vector<double>& h) {
+void add_row(double d, const DirectContact& c, const DirectLever& a, const DirectLever& b,
+             std::vector<double>& h) {
   add_block(d, a, a, &h[c.diagonal_a]);
-  if (c.b == HardContact::kNone) return;
+  if (c.b == DirectContact::kNone) return;
   add_block(d, b, b, &h[c.diagonal_b]);
   add_block(d, c.b_is_row ? b : a, c.b_is_row ? a : b, &h[c.between]);
 }
 
 /// Friction that slides resists across its slip.
-void add_sliding(const HardContact& c, const HardRow& x, const HardRow& y, std::vector<double>& h) {
+void add_sliding(const DirectContact& c, const DirectRow& x, const DirectRow& y, std::vector<double>& h) {
   const double wish_x = x.before - x.stiffness * x.rate;
   const double wish_y = y.before - y.stiffness * y.rate;
   const double size = std::sqrt(wish_x * wish_x + wish_y * wish_y);
   if (!(size > 0)) return;
-  HardLever a;
-  HardLever b;
+  DirectLever a;
+  DirectLever b;
   for (int i = 0; i < 6; ++i) {
     a[i] = (wish_x * y.a[i] - wish_y * x.a[i]) / size;
     b[i] = (wish_x * y.b[i] - wish_y * x.b[i]) / size;
@@ -177,18 +179,18 @@ void add_sliding(const HardContact& c, const HardRow& x, const HardRow& y, std::
 }
 
 /// The factors of 1 + J^T D J over the rows that hold, and over friction that slides if `slides`.
-void make_factors(bool slides, HardIsland& island, std::vector<double>& h) {
+void make_factors(bool slides, DirectIsland& island, std::vector<double>& h) {
   const BlockPattern& p = island.pattern;
   h.assign(p.number_count, 0.0);
   for (int node = 0; node < p.node_count(); ++node) {
     double* diagonal = &h[p.block[p.column_begin[node]].offset];
     for (int i = 0; i < 6; ++i) diagonal[7 * i] = 1;
   }
-  for (const HardContact& c : island.contacts) {
-    for (const HardRow& row : rows_of(island, c)) {
+  for (const DirectContact& c : island.contacts) {
+    for (const DirectRow& row : rows_of(island, c)) {
       if (row.holds) add_row(row.stiffness, c, row.a, row.b, h);
     }
-    const HardRow* friction = &island.rows[c.first + c.points];
+    const DirectRow* friction = &island.rows[c.first + c.points];
     if (slides && !friction->holds) add_sliding(c, friction[0], friction[1], h);
   }
   factor(p, h, island.factor_scratch);
@@ -200,20 +202,20 @@ double largest(const std::vector<double>& x) {
   return most;
 }
 
-void find_rates(HardIsland& island) {
-  for (const HardContact& c : island.contacts) {
-    for (HardRow& row : rows_of(island, c)) row.rate = rate_of(c, row, island.velocity) + row.drift;
+void find_rates(DirectIsland& island) {
+  for (const DirectContact& c : island.contacts) {
+    for (DirectRow& row : rows_of(island, c)) row.rate = rate_of(c, row, island.velocity) + row.drift;
   }
 }
 
 /// Impulses and downhill direction at the present velocities. True if there is nothing left to go.
-bool look(HardIsland& island) {
+bool evaluate(DirectIsland& island) {
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     island.direction[i] = island.free[i] - island.velocity[i];
   find_rates(island);
-  for (const HardContact& c : island.contacts) {
+  for (const DirectContact& c : island.contacts) {
     respond(0, c, island.rows);
-    add_impulses(island, c, &HardRow::impulse, island.direction);
+    add_impulses(island, c, &DirectRow::impulse, island.direction);
   }
   double done = 0;
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
@@ -222,8 +224,8 @@ bool look(HardIsland& island) {
 }
 
 /// The place along the direction of search where the energy is least.
-double search(HardIsland& island) {
-  for (const HardContact& c : island.contacts) {
+double search(DirectIsland& island) {
+  for (const DirectContact& c : island.contacts) {
     for (int i = c.first; i < c.first + c.points + 3; ++i)
       island.rows[i].slope = rate_of(c, island.rows[i], island.direction);
   }
@@ -239,21 +241,21 @@ double search(HardIsland& island) {
 }
 
 /// One pass over the rows of a contact.
-void sweep_contact(const HardContact& c, HardIsland& island) {
-  const std::span<HardRow> rows = rows_of(island, c);
+void sweep_contact(const DirectContact& c, DirectIsland& island) {
+  const std::span<DirectRow> rows = rows_of(island, c);
   const auto points = static_cast<std::size_t>(c.points);
-  const auto push = [&](HardRow& row, double impulse) {
+  const auto push = [&](DirectRow& row, double impulse) {
     const double change = impulse - row.impulse;
     row.impulse = impulse;
     add_lever(change, row.a, &island.velocity[6 * c.a]);
-    if (c.b != HardContact::kNone) add_lever(change, row.b, &island.velocity[6 * c.b]);
+    if (c.b != DirectContact::kNone) add_lever(change, row.b, &island.velocity[6 * c.b]);
   };
-  const auto wish = [&](const HardRow& row) {
+  const auto wish = [&](const DirectRow& row) {
     return row.impulse - row.mass * (rate_of(c, row, island.velocity) + row.drift);
   };
   double load = 0;
   double twist_limit = 0;
-  for (HardRow& row : rows.first(points)) {
+  for (DirectRow& row : rows.first(points)) {
     push(row, std::max(0.0, wish(row)));
     load += row.impulse;
     twist_limit += row.impulse * row.twist_lever;
@@ -274,11 +276,11 @@ enum class Guess : std::uint8_t {
   kAll,   ///< Whatever touches, and all friction.
 };
 
-void guess_rows(Guess guess, HardIsland& island) {
-  for (const HardContact& c : island.contacts) {
+void guess_rows(Guess guess, DirectIsland& island) {
+  for (const DirectContact& c : island.contacts) {
     const bool all = guess == Guess::kAll || !(c.limit > 0);
-    for (HardRow& row : rows_of(island, c)) row.holds = row.before > 0 || (all && row.touches);
-    HardRow* friction = &island.rows[c.first + c.points];
+    for (DirectRow& row : rows_of(island, c)) row.holds = row.before > 0 || (all && row.touches);
+    DirectRow* friction = &island.rows[c.first + c.points];
     const double size =
         std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
     friction[0].holds = friction[1].holds = all || size < kSticking * c.limit;
@@ -289,45 +291,46 @@ void guess_rows(Guess guess, HardIsland& island) {
 /// The velocities if just the guessed rows hold, pulling too. From there on impulses are of the right size,
 /// and Newton steps are few; from anywhere else each ends at the next change of one contact of many.
 /// Factors last as long as the guess does.
-void jump(Guess guess, HardIsland& island) {
+void jump(Guess guess, DirectIsland& island) {
   find_rates(island);
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     island.direction[i] = island.free[i] - island.velocity[i];
   guess_rows(guess, island);
-  bool same = island.kept_stiffness == island.stiffness && island.kept.size() == island.rows.size();
-  island.kept.resize(island.rows.size());
+  bool same = island.cached_stiffness == island.stiffness && island.cached_holds.size() == island.rows.size();
+  island.cached_holds.resize(island.rows.size());
   for (std::size_t i = 0; i < island.rows.size(); ++i) {
-    HardRow& row = island.rows[i];
-    same = same && island.kept[i] == static_cast<std::uint8_t>(row.holds);
-    island.kept[i] = static_cast<std::uint8_t>(row.holds);
+    DirectRow& row = island.rows[i];
+    same = same && island.cached_holds[i] == static_cast<std::uint8_t>(row.holds);
+    island.cached_holds[i] = static_cast<std::uint8_t>(row.holds);
     row.impulse = row.holds ? row.before - row.stiffness * row.rate : row.before;
   }
-  if (!same) make_factors(false, island, island.kept_factors);
-  island.kept_stiffness = island.stiffness;
-  for (const HardContact& c : island.contacts) add_impulses(island, c, &HardRow::impulse, island.direction);
-  solve(island.pattern, island.kept_factors, island.direction);
+  if (!same) make_factors(false, island, island.cached_factors);
+  island.cached_stiffness = island.stiffness;
+  for (const DirectContact& c : island.contacts)
+    add_impulses(island, c, &DirectRow::impulse, island.direction);
+  solve(island.pattern, island.cached_factors, island.direction);
   for (std::size_t k = 0; k < island.velocity.size(); ++k) island.velocity[k] += island.direction[k];
 }
 
 /// Newton steps with limits of friction as they are. False if they do not come to an end.
-bool descend(int steps, HardIsland& island) {
+bool descend(int steps, DirectIsland& island) {
   for (int i = 0; i < steps; ++i) {
-    if (look(island)) return true;
+    if (evaluate(island)) return true;
     make_factors(true, island, island.factors);
     solve(island.pattern, island.factors, island.direction);
     const double t = search(island);
     for (std::size_t k = 0; k < island.velocity.size(); ++k) island.velocity[k] += t * island.direction[k];
   }
-  return look(island);
+  return evaluate(island);
 }
 
 /// Friction slides on with the lower coefficient where it slid in the last substep.
-void choose_friction(const ContactBlock& block, HardIsland& island, HardContact& c) {
+void choose_friction(const ContactBlock& block, DirectIsland& island, DirectContact& c) {
   const double slow = static_cast<double>(block.static_friction[c.lane]);
   const double fast = static_cast<double>(block.friction[c.lane]);
   double load = 0;
   for (int i = c.first; i < c.first + c.points; ++i) load += island.rows[i].before;
-  const HardRow* friction = &island.rows[c.first + c.points];
+  const DirectRow* friction = &island.rows[c.first + c.points];
   const double size =
       std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
   const bool slid =
@@ -336,9 +339,9 @@ void choose_friction(const ContactBlock& block, HardIsland& island, HardContact&
 }
 
 /// Limits of friction by the loads that were found. True if something slides whose load has changed.
-bool limit_friction(HardIsland& island) {
+bool limit_friction(DirectIsland& island) {
   bool changed = false;
-  for (HardContact& c : island.contacts) {
+  for (DirectContact& c : island.contacts) {
     double load = 0;
     double twist_limit = 0;
     for (int i = c.first; i < c.first + c.points; ++i) {
@@ -346,7 +349,7 @@ bool limit_friction(HardIsland& island) {
       twist_limit += island.rows[i].impulse * island.rows[i].twist_lever;
     }
     const double limit = load * c.friction;
-    const HardRow* friction = &island.rows[c.first + c.points];
+    const DirectRow* friction = &island.rows[c.first + c.points];
     const double size =
         std::sqrt(friction[0].impulse * friction[0].impulse + friction[1].impulse * friction[1].impulse);
     const auto moved = [](double used, double old, double now) {
@@ -361,39 +364,40 @@ bool limit_friction(HardIsland& island) {
 }
 
 /// A node's six numbers.
-double* numbers_of(std::uint32_t i, const HardIsland& island, std::vector<double>& u) {
-  return &u[6 * island.place[i]];
+double* numbers_of(std::uint32_t i, const DirectIsland& island, std::vector<double>& u) {
+  return &u[6 * island.slot[i]];
 }
 
 /// v / sqrt(w) or dx / sqrt(w), with their angular halves, of all nodes.
 template <class Read>
-void read_nodes(const Bodies& bodies, Read&& read, const HardIsland& island, std::vector<double>& u) {
+void read_nodes(const Bodies& bodies, Read&& read, const DirectIsland& island, std::vector<double>& u) {
   for (std::uint32_t i = 0; i < island.graph.bodies.size(); ++i) {
     const std::uint32_t body = island.graph.bodies[i];
     const auto [linear, angular] = read(body);
     const double scale = 1 / std::sqrt(static_cast<double>(bodies.motion[body].inverse_mass));
-    const HardLever numbers = joined(scale, linear, 1, angular);
+    const DirectLever numbers = scaled_lever(scale, linear, 1, angular);
     std::copy(numbers.begin(), numbers.end(), numbers_of(i, island, u));
   }
 }
 
 /// What rolling resistance did in the last substep is in the velocities that relaxation starts from.
-void add_rolling(const HardContact& c, const BodyContacts& contacts, const Bodies& bodies,
+void add_rolling(const DirectContact& c, const BodyContacts& contacts, const Bodies& bodies,
                  std::vector<double>& u) {
   const ContactBlock& block = contacts.blocks[c.block];
   for (int i = 0; i < block.rolling_count; ++i) {
     const RollingRow& row = contacts.rolling[block.first_rolling + i];
     if (row.lane != c.lane) continue;
-    const Vec3 on_a = bodies.scale[block.line_a[c.lane] / 16] * row.impulse;
-    add_lever(1, joined(0, {}, -1, on_a), &u[6 * c.a]);
-    if (c.b == HardContact::kNone) continue;
-    add_lever(1, joined(0, {}, 1, bodies.scale[block.line_b[c.lane] / 16] * row.impulse), &u[6 * c.b]);
+    const Vec3 on_a = bodies.scale[block.record_a[c.lane] / 16] * row.impulse;
+    add_lever(1, scaled_lever(0, {}, -1, on_a), &u[6 * c.a]);
+    if (c.b == DirectContact::kNone) continue;
+    add_lever(1, scaled_lever(0, {}, 1, bodies.scale[block.record_b[c.lane] / 16] * row.impulse),
+              &u[6 * c.b]);
   }
 }
 
 /// The impulses of the last substep, and what conveyors and moving walls do.
-void load_impulses(const ContactBlock& block, const Bodies& bodies, const HardContact& c, HardRow* row) {
-  HardRow* friction = row + c.points;
+void load_impulses(const ContactBlock& block, const Bodies& bodies, const DirectContact& c, DirectRow* row) {
+  DirectRow* friction = row + c.points;
   for (int k = 0; k < c.points; ++k) row[k].before = static_cast<double>(block.point[k].impulse[c.lane]);
   for (int i = 0; i < 2; ++i) friction[i].before = static_cast<double>(block.friction_impulse[i][c.lane]);
   friction[2].before = static_cast<double>(block.twist_impulse[c.lane]);
@@ -402,48 +406,48 @@ void load_impulses(const ContactBlock& block, const Bodies& bodies, const HardCo
     row[k].drift = 0;
   }
   for (int i = 0; i < 2; ++i) friction[i].drift = static_cast<double>(block.surface_speed[i][c.lane]);
-  if (c.b != HardContact::kNone) return;
-  const state::MotionLine& still = bodies.motion[block.line_b[c.lane] / 16];
-  const HardLever velocity = joined(1, still.v, 1, still.omega_scaled);
+  if (c.b != DirectContact::kNone) return;
+  const state::MotionRecord& still = bodies.motion[block.record_b[c.lane] / 16];
+  const DirectLever velocity = scaled_lever(1, still.v, 1, still.omega_scaled);
   for (int k = 0; k < c.points + 3; ++k) row[k].drift += product(row[k].b, velocity.data());
 }
 
 /// Points that are apart may close their gap in the substep. Takes ways since the start of the step.
-void open_gaps(double h, const BodyContacts& contacts, const Bodies& bodies, const std::vector<double>& way,
-               HardIsland& island) {
-  for (const HardContact& c : island.contacts) {
-    HardLever still = {};
-    if (c.b == HardContact::kNone) {
-      const state::MotionLine& m = bodies.motion[contacts.blocks[c.block].line_b[c.lane] / 16];
-      still = joined(1, m.dx, 1, m.theta_scaled);
+void open_gaps(double h, const BodyContacts& contacts, const Bodies& bodies,
+               const std::vector<double>& displacement, DirectIsland& island) {
+  for (const DirectContact& c : island.contacts) {
+    DirectLever still = {};
+    if (c.b == DirectContact::kNone) {
+      const state::MotionRecord& m = bodies.motion[contacts.blocks[c.block].record_b[c.lane] / 16];
+      still = scaled_lever(1, m.dx, 1, m.theta_scaled);
     }
     for (int i = c.first; i < c.first + c.points; ++i) {
-      HardRow& row = island.rows[i];
-      double s = row.separation + rate_of(c, row, way);
-      if (c.b == HardContact::kNone) s += product(row.b, still.data());
+      DirectRow& row = island.rows[i];
+      double s = row.separation + rate_of(c, row, displacement);
+      if (c.b == DirectContact::kNone) s += product(row.b, still.data());
       row.touches = !(s > c.slop);
       if (!row.touches) row.drift += s / h;
     }
   }
 }
 
-void load_island(double h, const BodyContacts& contacts, const Bodies& bodies, HardIsland& island) {
-  for (HardContact& c : island.contacts) {
+void load_island(double h, const BodyContacts& contacts, const Bodies& bodies, DirectIsland& island) {
+  for (DirectContact& c : island.contacts) {
     load_impulses(contacts.blocks[c.block], bodies, c, &island.rows[c.first]);
     choose_friction(contacts.blocks[c.block], island, c);
   }
-  const auto way = [&](std::uint32_t body) {
+  const auto displacement = [&](std::uint32_t body) {
     return std::pair{bodies.motion[body].dx, bodies.motion[body].theta_scaled};
   };
-  read_nodes(bodies, way, island, island.velocity);
+  read_nodes(bodies, displacement, island, island.velocity);
   open_gaps(h, contacts, bodies, island.velocity, island);
   const auto free = [&](std::uint32_t body) {
     return std::pair{bodies.free_motion[body].v, bodies.free_motion[body].omega_scaled};
   };
   read_nodes(bodies, free, island, island.free);
-  for (const HardContact& c : island.contacts) add_rolling(c, contacts, bodies, island.free);
+  for (const DirectContact& c : island.contacts) add_rolling(c, contacts, bodies, island.free);
   island.velocity = island.free;
-  for (const HardContact& c : island.contacts) add_impulses(island, c, &HardRow::before, island.velocity);
+  for (const DirectContact& c : island.contacts) add_impulses(island, c, &DirectRow::before, island.velocity);
 }
 
 /// The linear half of a node's numbers, and the angular one.
@@ -453,17 +457,17 @@ std::pair<Vec3, Vec3> halves(const double* u, Real inverse_mass) {
   return {{r(root * u[0]), r(root * u[1]), r(root * u[2])}, {r(u[3]), r(u[4]), r(u[5])}};
 }
 
-void store_island(HardIsland& island, BodyContacts& contacts, Bodies& bodies) {
+void store_island(DirectIsland& island, BodyContacts& contacts, Bodies& bodies) {
   for (std::uint32_t i = 0; i < island.graph.bodies.size(); ++i) {
-    state::MotionLine& m = bodies.motion[island.graph.bodies[i]];
+    state::MotionRecord& m = bodies.motion[island.graph.bodies[i]];
     const auto [linear, angular] = halves(numbers_of(i, island, island.velocity), m.inverse_mass);
     m.v = linear;
     m.omega_scaled = angular;
   }
-  for (const HardContact& c : island.contacts) {
+  for (const DirectContact& c : island.contacts) {
     ContactBlock& block = contacts.blocks[c.block];
-    const HardRow* row = &island.rows[c.first];
-    const HardRow* friction = row + c.points;
+    const DirectRow* row = &island.rows[c.first];
+    const DirectRow* friction = row + c.points;
     for (int k = 0; k < c.points; ++k) block.point[k].impulse[c.lane] = static_cast<Real>(row[k].impulse);
     for (int i = 0; i < 2; ++i) block.friction_impulse[i][c.lane] = static_cast<Real>(friction[i].impulse);
     block.twist_impulse[c.lane] = static_cast<Real>(friction[2].impulse);
@@ -474,29 +478,29 @@ void store_island(HardIsland& island, BodyContacts& contacts, Bodies& bodies) {
 }
 
 /// Moves bodies out of each other, without speed.
-void remove_overlap(HardIsland& island, Bodies& bodies) {
+void remove_overlap(DirectIsland& island, Bodies& bodies) {
   bool any = false;
   std::fill(island.direction.begin(), island.direction.end(), 0.0);
-  for (const HardContact& c : island.contacts) {
+  for (const DirectContact& c : island.contacts) {
     for (int i = c.first; i < c.first + c.points + 3; ++i) {
-      HardRow& row = island.rows[i];
+      DirectRow& row = island.rows[i];
       const bool overlaps = i < c.first + c.points && row.separation < -c.slop;
       any = any || overlaps;
       row.slope = overlaps ? row.stiffness * std::min(kLargestPush, -kPushOut * row.separation) : 0;
       row.holds = row.holds || overlaps;
     }
-    add_impulses(island, c, &HardRow::slope, island.direction);
+    add_impulses(island, c, &DirectRow::slope, island.direction);
   }
   if (!any) return;
   make_factors(false, island, island.factors);
   solve(island.pattern, island.factors, island.direction);
   for (std::uint32_t i = 0; i < island.graph.bodies.size(); ++i) {
     const std::uint32_t body = island.graph.bodies[i];
-    state::MotionLine& m = bodies.motion[body];
-    const auto [way, turn] = halves(numbers_of(i, island, island.direction), m.inverse_mass);
-    m.dx += way;
+    state::MotionRecord& m = bodies.motion[body];
+    const auto [displacement, turn] = halves(numbers_of(i, island, island.direction), m.inverse_mass);
+    m.dx += displacement;
     m.theta_scaled += turn;
-    if (tumbles(bodies.mass[body])) {
+    if (is_gyroscopic(bodies.mass[body])) {
       bodies.rotation[body] =
           normalize(math::quaternion_of(bodies.scale[body] * turn) * bodies.rotation[body]);
     }
@@ -505,15 +509,15 @@ void remove_overlap(HardIsland& island, Bodies& bodies) {
 
 /// How a solution is sought.
 struct Attempt {
-  double stiffness = kHardStiffness;  ///< D over effective masses.
+  double stiffness = kDirectStiffness;  ///< D over effective masses.
   Guess guess = Guess::kSame;
   int steps = kNewtonSteps;
 };
 
 /// The solution, friction by its own loads; false if it is not found.
-bool settle(const Attempt& attempt, HardIsland& island) {
+bool converge(const Attempt& attempt, DirectIsland& island) {
   island.stiffness = attempt.stiffness;
-  for (HardRow& row : island.rows) {
+  for (DirectRow& row : island.rows) {
     row.stiffness = attempt.stiffness * row.mass;
     row.impulse = row.before;
     row.slope = 0;
@@ -528,12 +532,12 @@ bool settle(const Attempt& attempt, HardIsland& island) {
 }
 
 /// Row by row, from the impulses of the last substep: no solution, but a step toward it that gains no energy.
-void sweep_rows(HardIsland& island) {
+void sweep_rows(DirectIsland& island) {
   island.velocity = island.free;
-  for (HardRow& row : island.rows) row.impulse = row.before;
-  for (const HardContact& c : island.contacts) add_impulses(island, c, &HardRow::before, island.velocity);
+  for (DirectRow& row : island.rows) row.impulse = row.before;
+  for (const DirectContact& c : island.contacts) add_impulses(island, c, &DirectRow::before, island.velocity);
   for (int i = 0; i < kSweeps; ++i) {
-    for (const HardContact& c : island.contacts) sweep_contact(c, island);
+    for (const DirectContact& c : island.contacts) sweep_contact(c, island);
   }
 }
 
@@ -543,18 +547,18 @@ std::uint32_t node_of(const std::vector<std::uint32_t>& bodies, std::uint32_t bo
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
 }
 
-void prepare_hard_rows(const BodyContacts& contacts, const Bodies& bodies, HardIsland& island) {
+void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, DirectIsland& island) {
   island.rows.clear();
-  island.kept_stiffness = 0;
-  for (HardContact& c : island.contacts) {
+  island.cached_stiffness = 0;
+  for (DirectContact& c : island.contacts) {
     const ContactBlock& block = contacts.blocks[c.block];
-    const std::uint32_t a = block.line_a[c.lane] / 16;
-    const std::uint32_t b = block.line_b[c.lane] / 16;
+    const std::uint32_t a = block.record_a[c.lane] / 16;
+    const std::uint32_t b = block.record_b[c.lane] / 16;
     const auto root = [](Real w) { return std::sqrt(static_cast<double>(w)); };
-    const HardRowMaker make = {block, c.lane, root(block.w_a[c.lane]),
-                               block.anchored ? 1.0 : root(block.w_b[c.lane])};
-    c.a = island.place[node_of(island.graph.bodies, a)];
-    c.b = block.anchored ? HardContact::kNone : island.place[node_of(island.graph.bodies, b)];
+    const DirectRowMaker make = {block, c.lane, root(block.w_a[c.lane]),
+                                 block.anchored ? 1.0 : root(block.w_b[c.lane])};
+    c.a = island.slot[node_of(island.graph.bodies, a)];
+    c.b = block.anchored ? DirectContact::kNone : island.slot[node_of(island.graph.bodies, b)];
     c.first = static_cast<int>(island.rows.size());
     for (int k = 0; k < c.points; ++k) island.rows.push_back(make.point(k));
     island.rows.push_back(make.friction(0));
@@ -563,18 +567,18 @@ void prepare_hard_rows(const BodyContacts& contacts, const Bodies& bodies, HardI
     find_blocks(island.pattern, c);
     const Real radius_a = bodies.traits[a].radius;
     const Real radius = block.anchored ? radius_a : std::min(radius_a, bodies.traits[b].radius);
-    c.slop = kHardSlop * static_cast<double>(radius);
+    c.slop = kDirectSlop * static_cast<double>(radius);
   }
   const std::size_t size = 6 * island.graph.bodies.size();
   for (std::vector<double>* x : {&island.free, &island.velocity, &island.direction}) x->resize(size);
 }
 
-void solve_hard_island(const BodyStep& step, HardIsland& island, BodyContacts& contacts, Bodies& bodies) {
+void solve_direct_island(const BodyStep& step, DirectIsland& island, BodyContacts& contacts, Bodies& bodies) {
   load_island(static_cast<double>(step.h), contacts, bodies, island);
   constexpr Attempt kAttempts[] = {
       {.steps = kQuickSteps}, {.guess = Guess::kAll}, {.stiffness = kSofterStiffness, .guess = Guess::kAll}};
   const bool solved = std::any_of(std::begin(kAttempts), std::end(kAttempts),
-                                  [&](const Attempt& attempt) { return settle(attempt, island); });
+                                  [&](const Attempt& attempt) { return converge(attempt, island); });
   if (!solved) sweep_rows(island);
   store_island(island, contacts, bodies);
   if (step.first) remove_overlap(island, bodies);

@@ -19,11 +19,11 @@ namespace hooke::solver {
 
 /// What a row does to the velocities of one body, or to those of a node: in the scaled coordinates of
 /// state/bodies.h with v / sqrt(w) in place of v, so that masses are one.
-using HardLever = std::array<double, 6>;
+using DirectLever = std::array<double, 6>;
 
-struct HardRow {
-  HardLever a = {};        ///< Signed: the rate of the row is a.u_a + b.u_b + drift.
-  HardLever b = {};        ///< Of what does not move: for its v and omega as they are.
+struct DirectRow {
+  DirectLever a = {};      ///< Signed: the rate of the row is a.u_a + b.u_b + drift.
+  DirectLever b = {};      ///< Of what does not move: for its v and omega as they are.
   double mass = 0;         ///< Effective [kg or kg m^2].
   double stiffness = 0;    ///< D: impulse per rate [kg or kg m^2].
   double separation = 0;   ///< Of a point, at the start of the step [m].
@@ -38,7 +38,7 @@ struct HardRow {
 };
 
 /// A manifold of the island: rows of its points, then two of friction, then twist.
-struct HardContact {
+struct DirectContact {
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   int block = 0, lane = 0;         ///< Its lane of BodyContacts.
@@ -55,11 +55,11 @@ struct HardContact {
 };
 
 /// Bodies and who touches whom.
-struct HardGraph {
+struct DirectGraph {
   std::vector<std::uint32_t> bodies;                           ///< Rows, ascending: the nodes.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< Of nodes, ascending.
 
-  friend bool operator==(const HardGraph&, const HardGraph&) = default;
+  friend bool operator==(const DirectGraph&, const DirectGraph&) = default;
 };
 
 /// The node of a body that is among `bodies`.
@@ -85,14 +85,14 @@ struct HardGraph {
 /// Sources: Newton for piecewise quadratic energies of contact, e.g. Todorov 2014, "Convex and analytically
 /// invertible dynamics"; multipliers kept from step to step: Hestenes 1969, "Multiplier and gradient
 /// methods".
-struct HardIsland {
-  HardGraph graph;
+struct DirectIsland {
+  DirectGraph graph;
   BlockPattern pattern;
-  std::vector<std::uint32_t> place;  ///< Of each node in the order of elimination.
+  std::vector<std::uint32_t> slot;  ///< Of each node in the order of elimination.
 
   // Lives for one step.
-  std::vector<HardContact> contacts;
-  std::vector<HardRow> rows;
+  std::vector<DirectContact> contacts;
+  std::vector<DirectRow> rows;
   // Lives for one substep. Six numbers a node, in the order of elimination.
   std::vector<double> free;       ///< u_0
   std::vector<double> velocity;   ///< u
@@ -100,17 +100,17 @@ struct HardIsland {
   std::vector<double> factors;
   std::vector<double> factor_scratch;
   double stiffness = 0;
-  std::vector<std::uint8_t> kept;  ///< Which rows hold in kept_factors.
-  std::vector<double> kept_factors;
-  double kept_stiffness = 0;
+  std::vector<std::uint8_t> cached_holds;  ///< Which rows hold in kept_factors.
+  std::vector<double> cached_factors;
+  double cached_stiffness = 0;
 };
 
 /// Start of a step, after prepare_body_contacts: the rows of the island's contacts.
-void prepare_hard_rows(const BodyContacts& contacts, const state::Bodies& bodies, HardIsland& island);
+void prepare_direct_rows(const BodyContacts& contacts, const state::Bodies& bodies, DirectIsland& island);
 
 /// Velocities of the island's bodies for a substep, and the impulses of its contacts; in the first substep of
 /// a step their overlaps too, at most 5 cm.
-void solve_hard_island(const BodyStep& step, HardIsland& island, BodyContacts& contacts,
-                       state::Bodies& bodies);
+void solve_direct_island(const BodyStep& step, DirectIsland& island, BodyContacts& contacts,
+                         state::Bodies& bodies);
 
 }  // namespace hooke::solver

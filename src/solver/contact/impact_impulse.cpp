@@ -15,7 +15,7 @@ namespace {
 
 using state::Bodies;
 using state::Manifold;
-using state::MotionLine;
+using state::MotionRecord;
 
 constexpr std::size_t kMostPoints = 32;   // of an impact
 constexpr double kTogether = 1e-4;        // points that are nearer meet at once [m]
@@ -28,10 +28,10 @@ struct Effort {
   double converged = 1e-9;
 };
 constexpr Effort kFull = {};
-constexpr Effort kInCrowd = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
+constexpr Effort kInDensePile = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
 
 /// A body in an impact.
-struct Struck {
+struct ImpactBody {
   JointBody body;  ///< Its mass and inertia.
   DVec3 v = {};
   DVec3 omega = {};
@@ -62,13 +62,13 @@ struct Struck {
 
 /// The body `time` from now. One that tumbles has the inertia and the angular velocity of that time, not the
 /// mean of the substep: with those of another the impact would change its energy.
-Struck struck(const Bodies& bodies, std::uint32_t row, Real time) {
+ImpactBody body_at_impact(const Bodies& bodies, std::uint32_t row, Real time) {
   JointBody now = joint_body_now(bodies, row);
   if (!is_moved(bodies, row)) now.inverse_mass = 0;
-  const state::FreeLine motion = state::motion_before_contacts(bodies, row);
+  const state::FreeMotionRecord motion = state::motion_before_contacts(bodies, row);
   const DVec3 v = vector_cast<double>(motion.v);
   DVec3 omega = vector_cast<double>(bodies.scale[row] * motion.omega_scaled);
-  if (now.inverse_mass > 0 && state::tumbles_now(bodies, row)) {
+  if (now.inverse_mass > 0 && state::is_gyroscopic_now(bodies, row)) {
     const Quat then = state::pose_after(bodies, row, time).rotation;
     now.scale = math::in_double(inertia_scale(bodies.mass[row], then));
     omega = now.scale * (now.scale * vector_cast<double>(bodies.angular_momentum[row]));
@@ -86,15 +86,15 @@ struct Point {
   Levers at = {};
   DVec3 n = {};
   std::size_t lane = 0;
-  double lag = 0;       ///< Speed at the time of the hit less that of now [m/s].
-  double approach = 0;  ///< Speed before, at that time; negative [m/s].
-  double target = 0;    ///< Speed of now after it [m/s].
-  double mass = 0;      ///< Effective [kg].
-  double impulse = 0;   ///< [N s]
+  double lag = 0;            ///< Speed at the time of the hit less that of now [m/s].
+  double closing_speed = 0;  ///< Speed before, at that time; negative [m/s].
+  double target = 0;         ///< Speed of now after it [m/s].
+  double mass = 0;           ///< Effective [kg].
+  double impulse = 0;        ///< [N s]
 };
 
 /// Friction of a lane's points, at their middle.
-struct Grip {
+struct FrictionRow {
   std::size_t lane = 0;
   Levers at = {};
   DVec3 n = {};
@@ -112,17 +112,19 @@ DVec3 across(DVec3 n, DVec3 v) {
 
 /// Two bodies while they hit each other.
 struct Impact {
-  Struck a;
-  Struck b;
+  ImpactBody a;
+  ImpactBody b;
   std::array<Point, kMostPoints> point_memory = {};
-  std::array<Grip, kMostPoints> grip_memory = {};
+  std::array<FrictionRow, kMostPoints> friction_row_memory = {};
   std::size_t point_count = 0;
-  std::size_t grip_count = 0;
+  std::size_t friction_row_count = 0;
   Effort effort;
   double fastest = 0;  ///< Of the points' approaches [m/s].
 
   [[nodiscard]] std::span<Point> points() { return std::span(point_memory).first(point_count); }
-  [[nodiscard]] std::span<Grip> grips() { return std::span(grip_memory).first(grip_count); }
+  [[nodiscard]] std::span<FrictionRow> friction_rows() {
+    return std::span(friction_row_memory).first(friction_row_count);
+  }
 
   [[nodiscard]] DVec3 velocity(const Levers& at) const { return b.velocity_at(at.b) - a.velocity_at(at.a); }
 
@@ -136,11 +138,12 @@ struct Impact {
     b.push(impulse, at.b);
   }
 
-  [[nodiscard]] DVec3 sliding(const Grip& grip) const {
-    return across(grip.n, velocity(grip.at) + grip.surface);
+  [[nodiscard]] DVec3 sliding(const FrictionRow& friction_row) const {
+    return across(friction_row.n, velocity(friction_row.at) + friction_row.surface);
   }
-  [[nodiscard]] DVec3 sliding_before(const Grip& grip) const {
-    return across(grip.n, b.velocity_before_at(grip.at.b) - a.velocity_before_at(grip.at.a) + grip.surface);
+  [[nodiscard]] DVec3 sliding_before(const FrictionRow& friction_row) const {
+    return across(friction_row.n, b.velocity_before_at(friction_row.at.b) -
+                                      a.velocity_before_at(friction_row.at.a) + friction_row.surface);
   }
 };
 
@@ -150,17 +153,17 @@ void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact)
   for (int k = 0; k < m.point_count && impact.point_count < kMostPoints; ++k) {
     const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
     const Levers at = {vector_cast<double>(p.anchor_a), vector_cast<double>(p.anchor_b)};
-    const double approach = dot(n, impact.velocity(at)) + lag;
-    if (static_cast<double>(p.separation) > kTogether || !(approach < 0)) continue;
+    const double closing_speed = dot(n, impact.velocity(at)) + lag;
+    if (static_cast<double>(p.separation) > kTogether || !(closing_speed < 0)) continue;
     impact.point_memory[impact.point_count++] = {
         .at = at,
         .n = n,
         .lane = lane,
         .lag = lag,
-        .approach = approach,
-        .target = -static_cast<double>(m.restitution) * approach - lag,
+        .closing_speed = closing_speed,
+        .target = -static_cast<double>(m.restitution) * closing_speed - lag,
         .mass = 1 / std::max(kLeastResponse, dot(n, impact.response(at, n)))};
-    impact.fastest = std::min(impact.fastest, approach);
+    impact.fastest = std::min(impact.fastest, closing_speed);
   }
 }
 
@@ -197,32 +200,32 @@ math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& im
   return math::inverse(math::Symmetric3<double>{x.x, x.y, x.z, y.y, y.z, z.z});
 }
 
-void add_grip(const Manifold& m, std::size_t lane, Impact& impact) {
+void add_friction_row(const Manifold& m, std::size_t lane, Impact& impact) {
   const double load = load_of(lane, impact);
   if (!(load > 0) || !(std::max(m.static_friction, m.friction) > Real(0))) return;
-  Grip grip = {.lane = lane,
-               .n = vector_cast<double>(m.normal),
-               .surface = vector_cast<double>(m.surface_velocity),
-               .friction = static_cast<double>(m.friction),
-               .static_friction = static_cast<double>(m.static_friction)};
+  FrictionRow friction_row = {.lane = lane,
+                              .n = vector_cast<double>(m.normal),
+                              .surface = vector_cast<double>(m.surface_velocity),
+                              .friction = static_cast<double>(m.friction),
+                              .static_friction = static_cast<double>(m.static_friction)};
   for (const Point& p : impact.points()) {
     if (p.lane != lane) continue;
-    grip.at.a += (p.impulse / load) * p.at.a;
-    grip.at.b += (p.impulse / load) * p.at.b;
+    friction_row.at.a += (p.impulse / load) * p.at.a;
+    friction_row.at.b += (p.impulse / load) * p.at.b;
   }
-  grip.mass = mass_across(grip.at, grip.n, impact);
-  grip.before = impact.sliding_before(grip);
-  impact.grip_memory[impact.grip_count++] = grip;
+  friction_row.mass = mass_across(friction_row.at, friction_row.n, impact);
+  friction_row.before = impact.sliding_before(friction_row);
+  impact.friction_row_memory[impact.friction_row_count++] = friction_row;
 }
 
-void hold(Grip& grip, Impact& impact) {
-  const double load = load_of(grip.lane, impact);
-  DVec3 after = grip.impulse - grip.mass * impact.sliding(grip);
-  after = across(grip.n, after);
+void solve_friction(FrictionRow& friction_row, Impact& impact) {
+  const double load = load_of(friction_row.lane, impact);
+  DVec3 after = friction_row.impulse - friction_row.mass * impact.sliding(friction_row);
+  after = across(friction_row.n, after);
   const double size = length(after);
-  if (size > grip.static_friction * load) after = (grip.friction * load / size) * after;
-  impact.push(after - grip.impulse, grip.at);
-  grip.impulse = after;
+  if (size > friction_row.static_friction * load) after = (friction_row.friction * load / size) * after;
+  impact.push(after - friction_row.impulse, friction_row.at);
+  friction_row.impulse = after;
 }
 
 /// Whether impulses do more work than rounding explains; conveyors aside.
@@ -230,21 +233,23 @@ bool gains_energy(Impact& impact) {
   double gain = 0;
   double exchanged = 0;
   for (const Point& p : impact.points()) {
-    gain += p.impulse * (p.approach + dot(p.n, impact.velocity(p.at)) + p.lag);
-    exchanged -= p.impulse * p.approach;
+    gain += p.impulse * (p.closing_speed + dot(p.n, impact.velocity(p.at)) + p.lag);
+    exchanged -= p.impulse * p.closing_speed;
   }
-  for (const Grip& grip : impact.grips()) gain += dot(grip.impulse, grip.before + impact.sliding(grip));
+  for (const FrictionRow& friction_row : impact.friction_rows())
+    gain += dot(friction_row.impulse, friction_row.before + impact.sliding(friction_row));
   return gain > 1e-9 * exchanged;
 }
 
 /// Adds friction, a share of what it may be. True if that gains energy.
-bool rub(double share, Impact& impact) {
-  for (Grip& grip : impact.grips()) {
-    grip.friction *= share;
-    grip.static_friction *= share;
+bool add_friction(double share, Impact& impact) {
+  for (FrictionRow& friction_row : impact.friction_rows()) {
+    friction_row.friction *= share;
+    friction_row.static_friction *= share;
   }
-  for (int round = 0; impact.grip_count > 0 && share > 0 && round < impact.effort.friction_rounds; ++round) {
-    for (Grip& grip : impact.grips()) hold(grip, impact);
+  for (int round = 0; impact.friction_row_count > 0 && share > 0 && round < impact.effort.friction_rounds;
+       ++round) {
+    for (FrictionRow& friction_row : impact.friction_rows()) solve_friction(friction_row, impact);
     push_points(impact);
   }
   return gains_energy(impact);
@@ -253,16 +258,16 @@ bool rub(double share, Impact& impact) {
 /// Changes the body's velocities, and its line as if it had changed them after `time` only. What tumbles goes
 /// on from there as a free body does, to the substep's end `rest` later; its rotation becomes the one from
 /// which a steady turn leads to both.
-void set_struck(const Struck& after, std::uint32_t row, Real time, Real rest, Bodies& bodies) {
+void set_after_impact(const ImpactBody& after, std::uint32_t row, Real time, Real rest, Bodies& bodies) {
   if (!(after.body.inverse_mass > 0)) return;
-  MotionLine& m = bodies.motion[row];
-  state::FreeLine& free = bodies.free_motion[row];
+  MotionRecord& m = bodies.motion[row];
+  state::FreeMotionRecord& free = bodies.free_motion[row];
   const math::Symmetric3<double> root = math::inverse(after.body.scale);  // of the inertia
   const DVec3 turned = after.omega - after.omega_before;
   const Vec3 v = vector_cast<Real>(after.v - after.v_before);
   Vec3 turn = vector_cast<Real>(turned);
   bodies.angular_momentum[row] += vector_cast<Real>(root * (root * turned));
-  if (state::tumbles_now(bodies, row)) {
+  if (state::is_gyroscopic_now(bodies, row)) {
     const Quat then = state::pose_after(bodies, row, time).rotation;
     const Vec3 omega = mean_velocity(bodies.mass[row], then, bodies.angular_momentum[row], rest);
     turn = omega - bodies.scale[row] * free.omega_scaled;
@@ -279,13 +284,13 @@ void set_struck(const Struck& after, std::uint32_t row, Real time, Real rest, Bo
 
 }  // namespace
 
-bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real time,
-            const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
+bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifolds, Real time,
+                  const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<const ContactLane> lanes = pair.lanes;
   const Manifold& first = manifolds[lanes.front().manifold];
-  Impact impact = {.a = struck(bodies, first.body_a, time),
-                   .b = struck(bodies, first.body_b, time),
-                   .effort = pair.in_crowd ? kInCrowd : kFull};
+  Impact impact = {.a = body_at_impact(bodies, first.body_a, time),
+                   .b = body_at_impact(bodies, first.body_b, time),
+                   .effort = pair.in_dense_pile ? kInDensePile : kFull};
   // One of them has to give way: what is backed does not only where the other does.
   // Its direction is a unit vector in double, lest a heavy partner give way less than rounding takes back.
   const DVec3 n = normalize(vector_cast<double>(first.normal));
@@ -300,20 +305,22 @@ bool strike(const StruckPair& pair, const std::vector<Manifold>& manifolds, Real
     const Real lag = dot(m.normal, pull) * (time - Real(0.5) * step.h);
     add_points(m, i, static_cast<double>(lag), impact);
   }
-  if (!(impact.fastest < -static_cast<double>(pair.in_crowd ? kLeastHitInCrowd : kLeastHit))) return false;
+  if (!(impact.fastest <
+        -static_cast<double>(pair.in_dense_pile ? kLeastImpactSpeedInPile : kLeastImpactSpeed)))
+    return false;
   push_points(impact);
-  for (std::size_t i = 0; i < lanes.size() && impact.grip_count < kMostPoints; ++i)
-    add_grip(manifolds[lanes[i].manifold], i, impact);
+  for (std::size_t i = 0; i < lanes.size() && impact.friction_row_count < kMostPoints; ++i)
+    add_friction_row(manifolds[lanes[i].manifold], i, impact);
   const Impact smooth = impact;
-  bool gains = rub(1, impact);
+  bool gains = add_friction(1, impact);
   for (const double share : {0.5, 0.25, 0.0}) {
     if (!gains) break;
     impact = smooth;
-    gains = rub(share, impact);
+    gains = add_friction(share, impact);
   }
   const Real rest = std::max(Real(0), step.h - time);
-  set_struck(impact.a, first.body_a, time, rest, bodies);
-  set_struck(impact.b, first.body_b, time, rest, bodies);
+  set_after_impact(impact.a, first.body_a, time, rest, bodies);
+  set_after_impact(impact.b, first.body_b, time, rest, bodies);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     Real& pushed = contacts.blocks[static_cast<std::size_t>(lanes[i].block)].pushed[lanes[i].lane];
     pushed = std::max(pushed, static_cast<Real>(load_of(i, impact)));

@@ -10,9 +10,9 @@
 namespace hooke::solver {
 
 /// Who strikes whom.
-struct StruckPair {
+struct ImpactLanes {
   std::span<const ContactLane> lanes;  ///< Of the pair's manifolds.
-  bool in_crowd = false;               ///< Bounces from kLeastHitInCrowd on, and is iterated less.
+  bool in_dense_pile = false;          ///< Bounces from kLeastHitInCrowd on, and is iterated less.
   bool a_is_backed = false;            ///< A gives way across the normal only; the ground takes the rest.
   bool b_is_backed = false;
 };
@@ -27,7 +27,7 @@ struct StruckPair {
 /// Velocities, angular momenta and free motion change, and positions so that the line of the whole substep
 /// leads from the hit on; lanes note what pushed them. False, and nothing changes, if no point comes together
 /// faster than kLeastHit.
-bool strike(const StruckPair& pair, const std::vector<state::Manifold>& manifolds, Real time,
-            const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies);
+bool apply_impact(const ImpactLanes& pair, const std::vector<state::Manifold>& manifolds, Real time,
+                  const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies);
 
 }  // namespace hooke::solver

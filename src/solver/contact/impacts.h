@@ -44,7 +44,7 @@
 namespace hooke::solver {
 
 /// A pair of colliders that may bounce.
-struct HitPair {
+struct ImpactPair {
   std::uint32_t pair = 0;  ///< Row.
   std::uint32_t a = 0;     ///< Bodies.
   std::uint32_t b = 0;
@@ -54,44 +54,44 @@ struct HitPair {
   bool b_is_backed = false;
   bool a_is_hooked = false;
   bool b_is_hooked = false;
-  bool in_crowd = false;
+  bool in_dense_pile = false;
   // Of the substep.
   Real time = Real(0);  ///< Of its next hit, as its rows have it [s]; kNever.
-  int looks = 0;        ///< At its shapes, for that hit.
+  int refreshes = 0;    ///< At its shapes, for that hit.
   int count = 0;        ///< Of its hits; in a crowd, of the step.
 };
 
 /// A body on hooks that is hit in a substep.
-struct StruckOnHooks {
+struct HookedImpact {
   struct Motion {
-    state::MotionLine line = {};
+    state::MotionRecord record = {};
     Quat rotation = {};
   };
   std::uint32_t body = 0;
   int count = 0;            ///< Of its hits.
   Real time_sum = Real(0);  ///< [s]
   Motion before = {};       ///< As it was before the first.
-  bool is_led = false;      ///< Its joints go against its hits.
+  bool is_reset = false;    ///< Its joints go against its hits.
 };
 
 /// What is next.
-struct Hit {
+struct NextImpact {
   std::uint32_t index = 0;  ///< In Hits::pairs.
   Real time = Real(0);      ///< [s]
 };
 
-struct Hits {
+struct Impacts {
   static constexpr Real kNever = Real(1e30);
 
-  std::vector<HitPair> pairs;  ///< In order of their rows.
+  std::vector<ImpactPair> pairs;  ///< In order of their rows.
   std::vector<ContactLane> lanes;
   std::vector<std::uint32_t> pairs_of_body;  ///< Those of body i begin at pairs_begin[i].
   std::vector<std::uint32_t> pairs_begin;
   // Of the substep.
-  std::vector<Hit> queue;   ///< A heap; one whose time is no longer that of its pair is void.
-  std::vector<Real> since;  ///< Of each body: when it was hit last [s].
-  std::vector<std::uint32_t> struck;
-  std::vector<StruckOnHooks> on_hooks;
+  std::vector<NextImpact> queue;  ///< A heap; one whose time is no longer that of its pair is void.
+  std::vector<Real> since;        ///< Of each body: when it was hit last [s].
+  std::vector<std::uint32_t> impacted;
+  std::vector<HookedImpact> hooked_impacts;
   // Memory of list_hits.
   struct Support {
     std::uint32_t body = 0;
@@ -103,31 +103,33 @@ struct Hits {
 };
 
 /// Lanes of the pair's manifolds.
-[[nodiscard]] std::span<const ContactLane> lanes_of(const HitPair& pair, const Hits& hits);
+[[nodiscard]] std::span<const ContactLane> lanes_of(const ImpactPair& pair, const Impacts& impacts);
 
 /// Once a step, after prepare_body_contacts: the pairs that may bounce. `hooked`: 1 for each body on hooks.
-void list_hits(const state::Pairs& pairs, const state::Bodies& bodies,
-               const std::vector<std::uint8_t>& hooked, const BodyContacts& contacts, Hits& hits);
+void list_impact_pairs(const state::Pairs& pairs, const state::Bodies& bodies,
+                       const std::vector<std::uint8_t>& hooked, const BodyContacts& contacts,
+                       Impacts& impacts);
 
 /// After accelerate_bodies: when the rows of each pair meet within the substep. False if none do. Velocities
 /// are those before contacts: what is repeated of their impulses would be taken for motion. The rows of pairs
 /// that are not at rest begin the substep without them.
-[[nodiscard]] bool foresee_hits(const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies,
-                                Hits& hits);
+[[nodiscard]] bool predict_impacts(const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies,
+                                   Impacts& impacts);
 
 /// The earliest; of two at one time the one of the lower row.
-[[nodiscard]] std::optional<Hit> next_hit(Hits& hits);
+[[nodiscard]] std::optional<NextImpact> next_impact(Impacts& impacts);
 
 /// Takes the hit of a pair whose manifolds are those of that time; if its rows now say another time, it waits
 /// for that one. Brings the rows of the pair up to date.
-void take_hit(const Hit& hit, const ContactStep& step, const state::Pairs& pairs, BodyContacts& contacts,
-              state::Bodies& bodies, Hits& hits);
+void resolve_impact(const NextImpact& impact, const ContactStep& step, const state::Pairs& pairs,
+                    BodyContacts& contacts, state::Bodies& bodies, Impacts& impacts);
 
 /// After the last hit: bodies whose hooks go against their hits are where they were, with the velocities that
 /// hits gave them. The others are forgotten.
-void put_back_on_hooks(const std::vector<state::Hook>& hooks, Real h, state::Bodies& bodies, Hits& hits);
+void reset_hooked_bodies(const std::vector<state::Hook>& hooks, Real h, state::Bodies& bodies,
+                         Impacts& impacts);
 
 /// After solve_joints: the lines of these bodies lead from their hits on.
-void lead_from_hits(state::Bodies& bodies, Hits& hits);
+void propagate_impacts(state::Bodies& bodies, Impacts& impacts);
 
 }  // namespace hooke::solver

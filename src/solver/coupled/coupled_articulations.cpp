@@ -12,38 +12,40 @@ using state::Hook;
 using state::Tables;
 
 /// Notes the bodies that a bundle holds by other rows than those of hooks between bodies. True if any.
-bool find_touched(const Tables& t, std::vector<std::uint8_t>& touched) {
-  touched.assign(t.bodies.motion.size(), 0);
+bool mark_held_bodies(const Tables& t, std::vector<std::uint8_t>& body_marks) {
+  body_marks.assign(t.bodies.motion.size(), 0);
   bool any = false;
-  const auto touch = [&](std::uint32_t body) {
+  const auto mark = [&](std::uint32_t body) {
     if (!gives_way(t.bodies, body)) return;
-    touched[body] = 1;
+    body_marks[body] = 1;
     any = true;
   };
   for (const Hook& hook : t.hooks) {
     if (!hook.holds_point()) continue;
-    touch(hook.a.body);
-    touch(hook.b.body);
+    mark(hook.a.body);
+    mark(hook.b.body);
   }
-  for (const std::uint32_t body : t.contacts.body) touch(body);
-  for (const state::InnerContact& inner : t.inner_contacts) {
-    if (is_tied(t, inner)) touch(inner.body);
+  for (const std::uint32_t body : t.contacts.body) mark(body);
+  for (const state::ElementContact& element_contact : t.element_contacts) {
+    if (is_coupled(t, element_contact)) mark(element_contact.body);
   }
-  for (const state::BorneContact& borne : t.pairs.borne) {
-    touch(borne.body_a);
-    touch(borne.body_b);
+  for (const state::LoadBearingContact& load_bearing : t.pairs.load_bearing) {
+    mark(load_bearing.body_a);
+    mark(load_bearing.body_b);
   }
   return any;
 }
 
 }  // namespace
 
-void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& touched, Tables& t) {
-  if (joints.order.empty() || !find_touched(t, touched)) return;
-  const auto is_touched = [&](std::uint32_t body) { return body < touched.size() && touched[body] != 0; };
+void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_marks, Tables& t) {
+  if (joints.order.empty() || !mark_held_bodies(t, body_marks)) return;
+  const auto is_marked = [&](std::uint32_t body) {
+    return body < body_marks.size() && body_marks[body] != 0;
+  };
   for (const std::uint32_t i : joints.order) {
     const Articulation& art = joints.articulations[i];
-    if (std::none_of(art.bodies.begin(), art.bodies.end(), is_touched)) continue;
+    if (std::none_of(art.bodies.begin(), art.bodies.end(), is_marked)) continue;
     for (const Articulation::Joint& joint : art.joints) {
       if (joint.is_weld()) continue;
       Hook& hook = t.hooks[joint.hook];

@@ -17,6 +17,6 @@ namespace hooke::solver {
 /// Marks the hooks of these articulations, state::Hook::coupled, for a step: after prepare_joints, which
 /// takes the marks of the last step away, and once contacts of points and borne contacts are known. `touched`
 /// is scratch, by body row.
-void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& touched, state::Tables& tables);
+void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_marks, state::Tables& tables);
 
 }  // namespace hooke::solver

@@ -17,7 +17,7 @@ namespace hooke::solver {
 inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
 
 /// What a contact did in the last substep [N].
-struct TouchForce {
+struct ContactForce {
   DVec3 n;  ///< Along which `normal` pushes.
   double normal = 0;
   DVec3 friction;
@@ -25,15 +25,15 @@ struct TouchForce {
   double fast = std::numeric_limits<double>::infinity();  ///< From this speed on it slides at first [m/s].
 };
 
-class BundleSolution {
+class CoupledGroupSolution {
  public:
-  BundleSolution(double h, Bundle& bundle, state::Tables& tables) : h_(h), b_(bundle), t_(tables) {}
+  CoupledGroupSolution(double h, CoupledGroup& group, state::Tables& tables) : h_(h), b_(group), t_(tables) {}
 
-  void load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains);
-  void run(std::vector<Chain>& chains);
+  void load(const std::vector<state::VelocityRecord>& before, const std::vector<RopeSystem>& rope_systems);
+  void run(std::vector<RopeSystem>& rope_systems);
   /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything is to be loaded and run again.
   [[nodiscard]] bool gives_way(int round);
-  void store(const std::vector<Chain>& chains);
+  void store(const std::vector<RopeSystem>& rope_systems);
 
  private:
   /// Largest relative length error left in any rope.
@@ -53,40 +53,40 @@ class BundleSolution {
   void push_out_points();
 
   // Contacts between points: bundles_inner.cpp.
-  void load_inner();
-  void load_inner_touch(std::size_t index);
-  void load_rope_touch(std::size_t index);
+  void load_coupled_contacts();
+  void load_element_contact(std::size_t index);
+  void load_rope_contact(std::size_t index);
   [[nodiscard]] const state::RopeContact& rope_contact(std::size_t index) const;
-  void load_borne_touch(std::size_t index);
+  void load_body_contact(std::size_t index);
   [[nodiscard]] DVec3 velocity_of(std::uint32_t body, DVec3 lever) const;
-  void make_touch_rows(std::size_t index, const TouchForce& last);
+  void make_contact_rows(std::size_t index, const ContactForce& last);
   void note_rope_in_contact(std::uint32_t node);
-  void set_inner_rows(std::size_t index);
-  void revise_inner();
-  bool update_inner_friction(std::size_t index, bool may_stick);
-  [[nodiscard]] Unsettled update_borne_touch(std::size_t index, bool only_join);
-  [[nodiscard]] Unsettled update_inner_touch(std::size_t index, bool let_go);
-  [[nodiscard]] Unsettled update_inner(bool let_go);
-  bool let_inner_slide();
-  void store_inner();
-  [[nodiscard]] bool has_inner(std::size_t node) const;
-  [[nodiscard]] double heaviest_inner(std::size_t node) const;
-  [[nodiscard]] double gap_speed(const InnerTouch& touch) const;
+  void set_coupled_rows(std::size_t index);
+  void revise_coupled_contacts();
+  bool update_coupled_friction(std::size_t index, bool may_stick);
+  [[nodiscard]] Unconverged update_body_contact(std::size_t index, bool only_join);
+  [[nodiscard]] Unconverged update_coupled_contact(std::size_t index, bool let_go);
+  [[nodiscard]] Unconverged update_coupled_contacts(bool let_go);
+  bool let_contacts_slide();
+  void store_coupled_contacts();
+  [[nodiscard]] bool has_coupled_contact(std::size_t node) const;
+  [[nodiscard]] double heaviest_in_contact(std::size_t node) const;
+  [[nodiscard]] double gap_speed(const CoupledContact& contact_row) const;
   [[nodiscard]] DVec3 velocity_at(std::size_t index, bool before) const;
   [[nodiscard]] DVec3 sliding_of(std::size_t index, bool before) const;
-  [[nodiscard]] int least_solves_of_inner() const;
+  [[nodiscard]] int least_solves_of_contacts() const;
 
   // The matrix and its right side.
   void assemble();
-  void resize_rope_touches();
-  void assemble_pair(const Bundle::Incident& a, const Bundle::Incident& b, std::uint32_t block,
+  void resize_coupled_contacts();
+  void assemble_pair(const CoupledGroup::Incident& a, const CoupledGroup::Incident& b, std::uint32_t block,
                      const RopeNode& node);
   void assemble_pairs();
   void assemble_hooks();
   void assemble_bodies();
-  void assemble_touches();
-  void assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node);
-  void assemble_point(int body, std::span<const RopeTouch> at_node);
+  void assemble_contact_rows();
+  void assemble_contact_row(const RopeContactRow& contact_row, std::span<const RopeContactRow> at_node);
+  void assemble_point(int body, std::span<const RopeContactRow> at_node);
   void fill_right_side();
   void start_bodies();
   void give_impulses();
@@ -120,11 +120,11 @@ class BundleSolution {
   [[nodiscard]] std::uint32_t body_block(int body) const {
     return hook_block(static_cast<std::uint32_t>(b_.ends.size())) + static_cast<std::uint32_t>(body);
   }
-  [[nodiscard]] std::span<const Bundle::Incident> incidents_of(std::size_t node) const {
+  [[nodiscard]] std::span<const CoupledGroup::Incident> incidents_of(std::size_t node) const {
     return std::span(b_.incidents)
         .subspan(b_.first_incident[node], b_.first_incident[node + 1] - b_.first_incident[node]);
   }
-  [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.place[block]]; }
+  [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.slot[block]]; }
   /// Direction k of a row block; zero of a row that is at a bound.
   [[nodiscard]] DVec3 direction(std::uint32_t block, int k) const {
     if (block < vector_count()) return kAxes[static_cast<std::size_t>(k)];
@@ -139,8 +139,8 @@ class BundleSolution {
   };
   /// Where block `a` meets `b`, row i of `a` and column k of `b`.
   Numbers numbers(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t row = b_.place[a];
-    const std::uint32_t column = b_.place[b];
+    const std::uint32_t row = b_.slot[a];
+    const std::uint32_t column = b_.slot[b];
     const std::uint32_t block = find_block(b_.pattern, std::max(row, column), std::min(row, column));
     const BlockPattern::Block& at = b_.pattern.block[block];
     const int width = b_.pattern.size[at.column];
@@ -148,11 +148,11 @@ class BundleSolution {
     return row >= column ? Numbers{first, width, 1} : Numbers{first, 1, width};
   }
   double& right_side(std::uint32_t block, int i) {
-    return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.place[block]] + i)];
+    return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.slot[block]] + i)];
   }
 
   double h_;
-  Bundle& b_;
+  CoupledGroup& b_;
   state::Tables& t_;
 };
 

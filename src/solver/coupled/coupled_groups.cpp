@@ -20,18 +20,19 @@ using state::Hook;
 
 }  // namespace
 
-void BundleSolution::load(const std::vector<state::VelocityLine>& before, const std::vector<Chain>& chains) {
+void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before,
+                                const std::vector<RopeSystem>& rope_systems) {
   b_.ropes.clear();
   b_.settings.clear();
-  b_.chain_nodes.clear();
-  for (const std::uint32_t c : b_.chains) {
+  b_.rope_node_counts.clear();
+  for (const std::uint32_t c : b_.rope_systems) {
     const std::size_t first = b_.ropes.nodes.size();
     const std::size_t first_segment = b_.ropes.segments.size();
-    const std::size_t first_touch = b_.ropes.touches.size();
-    load_rope(chains[c], before, h_, t_, b_.ropes);
-    load_bends(chains[c], first, t_.segments, b_.ropes);
-    b_.settings.push_back(first_setting(first, first_segment, first_touch, b_.ropes));
-    b_.chain_nodes.push_back(chains[c].node_count);
+    const std::size_t first_contact_row = b_.ropes.contact_rows.size();
+    load_rope(rope_systems[c], before, h_, t_, b_.ropes);
+    load_bends(rope_systems[c], first, t_.segments, b_.ropes);
+    b_.settings.push_back(first_setting(first, first_segment, first_contact_row, b_.ropes));
+    b_.rope_node_counts.push_back(rope_systems[c].node_count);
   }
   load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
@@ -43,16 +44,17 @@ void BundleSolution::load(const std::vector<state::VelocityLine>& before, const 
                     .v = body.v,
                     .omega_scaled = body.omega_scaled};
   }
-  for (RopeTouch& touch : b_.ropes.touches)
-    touch.body = touch.row == RopeTouch::kTether ? -1 : b_.body_of(t_.contacts.body[touch.row]);
+  for (RopeContactRow& contact_row : b_.ropes.contact_rows)
+    contact_row.body =
+        contact_row.row == RopeContactRow::kTether ? -1 : b_.body_of(t_.contacts.body[contact_row.row]);
   load_hooks();
-  load_inner();
+  load_coupled_contacts();
   stiffen();
 }
 
 /// Points that touch nothing which gives way are held by what they touch after all ropes
 /// (solver/soft/particle_contact_solve.h).
-void BundleSolution::load_points() {
+void CoupledGroupSolution::load_points() {
   const std::vector<std::uint32_t>& particle = t_.contacts.particle;
   auto row = particle.begin();
   for (std::size_t i = 0; i < b_.points.size(); ++i) {
@@ -63,16 +65,17 @@ void BundleSolution::load_points() {
     const auto first = static_cast<std::size_t>(row - particle.begin());
     row = std::upper_bound(row, particle.end(), p);
     const auto end = static_cast<std::size_t>(row - particle.begin());
-    const bool touches = touches_what_gives_way(t_.bodies, t_.contacts, first, end) || has_inner(node);
-    if (!(b_.ropes.nodes.back().w > 0) || !touches) continue;
+    const bool in_contact =
+        touches_what_gives_way(t_.bodies, t_.contacts, first, end) || has_coupled_contact(node);
+    if (!(b_.ropes.nodes.back().w > 0) || !in_contact) continue;
     const std::span<const std::uint32_t> tethers =
         std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
-    load_point_touches(node, b_.ropes.nodes.back(), first, end, tethers, heaviest_inner(node), h_, t_,
-                       b_.ropes.touches);
+    load_point_contact_rows(node, b_.ropes.nodes.back(), first, end, tethers, heaviest_in_contact(node), h_,
+                            t_, b_.ropes.contact_rows);
   }
 }
 
-void BundleSolution::load_hooks() {
+void CoupledGroupSolution::load_hooks() {
   std::array<JointRow, Hook::kMaxRows> rows;
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     Hook& hook = t_.hooks[b_.hooks[i]];
@@ -81,7 +84,7 @@ void BundleSolution::load_hooks() {
       return body >= 0 ? b_.moving[body].body : joint_end(t_, end == 0 ? hook.a : hook.b);
     };
     JointBody a = end_of(0);
-    if (hook.kind == HookKind::kRopeSlide) a.rotation = turn_of_slide(t_, hook);
+    if (hook.kind == HookKind::kRopeSlide) a.rotation = slide_rotation(t_, hook);
     const bool a_given = b_.ends[i][0] < 0 && !hook.a.is_point();
     const bool b_given = b_.ends[i][1] < 0 && !hook.b.is_point();
     const int count = make_rows(hook, a, end_of(1), a_given, b_given, h_, rows);
@@ -96,8 +99,8 @@ void BundleSolution::load_hooks() {
 
 /// Geometric stiffness of the forces found last. True if it has grown so much that the solution must be
 /// repeated.
-bool BundleSolution::stiffen() {
-  for (BundleBody& body : b_.moving) body.found = {};
+bool CoupledGroupSolution::stiffen() {
+  for (CoupledBody& body : b_.moving) body.found = {};
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     const Hook& hook = t_.hooks[b_.hooks[i]];
     DVec3 force;
@@ -107,13 +110,13 @@ bool BundleSolution::stiffen() {
       const int body = b_.ends[i][end];
       const DVec3 anchor = end == 0 ? hook.a.anchor : hook.b.anchor;
       if (body < 0 || force == DVec3{} || anchor == DVec3{}) continue;
-      BundleBody& at = b_.moving[body];
+      CoupledBody& at = b_.moving[body];
       at.found =
           at.found + stiffness_of(rotate(at.body.rotation, anchor), end == 0 ? -force : force, at.body, h_);
     }
   }
   bool grew = false;
-  for (BundleBody& moving : b_.moving) {
+  for (CoupledBody& moving : b_.moving) {
     const double before = trace(moving.stiffness);
     if (trace(moving.found) <= before) continue;
     grew = grew || trace(moving.found) > std::max(kStiffnessGrowth * before, kStiffnessLeft);
@@ -123,7 +126,7 @@ bool BundleSolution::stiffen() {
   return grew;
 }
 
-void BundleSolution::read_solution() {
+void CoupledGroupSolution::read_solution() {
   const auto vector_at = [&](std::uint32_t block, int first) {
     return DVec3{right_side(block, first), right_side(block, first + 1), right_side(block, first + 2)};
   };
@@ -141,16 +144,16 @@ void BundleSolution::read_solution() {
 }
 
 /// u = v* + W (B^T l + R V); what rows at bounds give is in v* already.
-void BundleSolution::move_nodes() {
-  for (RopeTouch& touch : b_.ropes.touches) {
-    if (touch.body < 0) continue;
-    const BundleBody& m = b_.moving[touch.body];
-    touch.surface = touch.belt + m.v + cross(m.body.scale * m.omega_scaled, touch.lever);
+void CoupledGroupSolution::move_nodes() {
+  for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    if (contact_row.body < 0) continue;
+    const CoupledBody& m = b_.moving[contact_row.body];
+    contact_row.surface = contact_row.belt + m.v + cross(m.body.scale * m.omega_scaled, contact_row.lever);
   }
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     RopeNode& node = b_.ropes.nodes[n];
     DVec3 impulse;
-    for (const Bundle::Incident& at : incidents_of(n)) {
+    for (const CoupledGroup::Incident& at : incidents_of(n)) {
       if (at.block < vector_count()) {
         impulse += at.weight * vector_impulse(at.block);
         continue;
@@ -161,18 +164,18 @@ void BundleSolution::move_nodes() {
     }
     node.u = node.target + node.inverse * impulse;
   }
-  for (const RopeTouch& touch : b_.ropes.touches) {
-    if (touch.body < 0 || !touch.active) continue;
-    RopeNode& node = b_.ropes.nodes[touch.node];
-    node.u += node.inverse * (grip_of(touch) * (touch.surface - touch.belt));
+  for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    if (contact_row.body < 0 || !contact_row.active) continue;
+    RopeNode& node = b_.ropes.nodes[contact_row.node];
+    node.u += node.inverse * (contact_stiffness(contact_row) * (contact_row.surface - contact_row.belt));
   }
 }
 
 /// As in articulations: rows beyond a bound go to it, rows that it holds back are let go if `release`.
-bool BundleSolution::revise_bounds(bool release) {
+bool CoupledGroupSolution::revise_bounds(bool release) {
   b_.speed.assign(b_.rows.size(), 0);
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
-    for (const Bundle::Incident& at : incidents_of(n)) {
+    for (const CoupledGroup::Incident& at : incidents_of(n)) {
       if (at.block < vector_count()) continue;
       const std::uint32_t hook = at.block - vector_count();
       for (std::uint32_t row = b_.first_row[hook]; row < b_.first_row[hook + 1]; ++row)
@@ -191,7 +194,7 @@ bool BundleSolution::revise_bounds(bool release) {
       for (int end = 0; end < 2; ++end) {
         const int body = b_.ends[hook][end];
         if (body < 0) continue;
-        const BundleBody& m = b_.moving[body];
+        const CoupledBody& m = b_.moving[body];
         const BodyRow velocity = {(1 / std::sqrt(m.body.inverse_mass)) * m.v, m.omega_scaled};
         lacks -= dot(hook_row(of, end, m.body), velocity);
       }
@@ -204,11 +207,11 @@ bool BundleSolution::revise_bounds(bool release) {
   return changed;
 }
 
-void BundleSolution::solve_with_bounds() {
+void CoupledGroupSolution::solve_with_bounds() {
   bool changed = true;
   for (int pass = 0; changed && pass < kMostBoundPasses && (pass == 0 || within_budget()); ++pass) {
-    hold_nodes(h_, b_.ropes);
-    resize_rope_touches();
+    constrain_nodes(h_, b_.ropes);
+    resize_coupled_contacts();
     fill_right_side();
     assemble();
     factor(b_.pattern, b_.numbers, b_.factor_scratch);
@@ -220,24 +223,25 @@ void BundleSolution::solve_with_bounds() {
   }
 }
 
-bool BundleSolution::within_budget() {
-  if (b_.factored < kFewestFactorizations || b_.factored * b_.pattern.operations < kBundleBudget) return true;
+bool CoupledGroupSolution::within_budget() {
+  if (b_.factored < kFewestFactorizations || b_.factored * b_.pattern.operations < kCoupledGroupBudget)
+    return true;
   b_.cut_short = true;
   return false;
 }
 
-bool BundleSolution::is_sound() const {
+bool CoupledGroupSolution::is_sound() const {
   return solver::is_finite(b_.ropes) &&
-         std::all_of(b_.moving.begin(), b_.moving.end(), [](const BundleBody& m) {
+         std::all_of(b_.moving.begin(), b_.moving.end(), [](const CoupledBody& m) {
            return hooke::is_finite(m.v) && hooke::is_finite(m.omega_scaled);
          });
 }
 
-double BundleSolution::check_ropes(bool& limits_changed) {
+double CoupledGroupSolution::check_ropes(bool& limits_changed) {
   double worst = 0;
   std::span<RopeSegment> rest = b_.ropes.segments;
-  for (std::size_t k = 0; k < b_.chains.size(); ++k) {
-    const std::size_t count = b_.chain_nodes[k] - 1;
+  for (std::size_t k = 0; k < b_.rope_systems.size(); ++k) {
+    const std::size_t count = b_.rope_node_counts[k] - 1;
     const double error =
         check_segments(b_.settings[k], h_, b_.ropes.nodes, rest.first(count), limits_changed);
     worst = std::max(worst, error);
@@ -249,7 +253,7 @@ double BundleSolution::check_ropes(bool& limits_changed) {
 /// Whether everything moves faster than before by more than can come of a stretch that is taken back. Where
 /// ropes touch ropes, a solution in which contacts still pull throws what is folded far from where it is, and
 /// another about that one may settle there.
-bool BundleSolution::gains_energy() const {
+bool CoupledGroupSolution::gains_energy() const {
   constexpr double kMostGain = 1.1;
   double before = 0;
   double behind = 0;
@@ -258,53 +262,53 @@ bool BundleSolution::gains_energy() const {
     before += node.mass * length_squared(node.v_free);
     behind += node.mass * length_squared(node.u);
   }
-  for (const BundleBody& m : b_.moving) {
+  for (const CoupledBody& m : b_.moving) {
     before += length_squared(m.body.v) / m.body.inverse_mass;
     behind += length_squared(m.v) / m.body.inverse_mass;
   }
   return behind > kMostGain * before;
 }
 
-void BundleSolution::run(std::vector<Chain>& chains) {
+void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
   double error = 0;
-  Unsettled unsettled;
+  Unconverged unconverged;
   const auto again = [&](int solves) {
-    if (unsettled.points && solves < 2 * kMostRopeSolves) return true;
-    const bool slides = solves == kMostRopeSolves && error > kReportedError && let_inner_slide();
-    return solve_again(solves, error, unsettled.pulls, b_.ropes.touches) || slides;
+    if (unconverged.points && solves < 2 * kMostRopeSolves) return true;
+    const bool slides = solves == kMostRopeSolves && error > kReportedError && let_contacts_slide();
+    return solve_again(solves, error, unconverged.pulls, b_.ropes.contact_rows) || slides;
   };
   for (int solves = 1; solves == 1 || (again(solves - 1) && within_budget()); ++solves) {
     std::size_t segment = 0;
     std::size_t bend = 0;
-    for (std::size_t k = 0; k < b_.chains.size(); ++k) {
-      Chain& chain = chains[b_.chains[k]];
-      for (std::uint32_t i = 1; chain.bend_stiffness > 0 && i + 1 < chain.node_count; ++i)
+    for (std::size_t k = 0; k < b_.rope_systems.size(); ++k) {
+      RopeSystem& rope_system = rope_systems[b_.rope_systems[k]];
+      for (std::uint32_t i = 1; rope_system.bend_stiffness > 0 && i + 1 < rope_system.node_count; ++i)
         linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.bends[bend++]);
-      for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i)
+      for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i)
         linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
-      ++chain.solves;
+      ++rope_system.solves;
     }
-    if (solves > 1) revise_inner();
+    if (solves > 1) revise_coupled_contacts();
     solve_with_bounds();
     if (!is_sound()) break;
 
-    unsettled = update_touches(h_, lets_go(solves), b_.ropes);
-    unsettled.add(update_inner(lets_go(solves)));
+    unconverged = update_contact_rows(h_, lets_go(solves), b_.ropes);
+    unconverged.add(update_coupled_contacts(lets_go(solves)));
     bool limits_changed = false;
     error = check_ropes(limits_changed);
     const bool long_enough = error <= kLengthTolerance && !limits_changed;
     const bool grew = stiffen();
-    const int least = std::max(least_solves(b_.ropes.touches, unsettled), least_solves_of_inner());
-    const bool settled = !unsettled.points && solves >= least;
-    if (long_enough && !grew && settled) break;
+    const int least = std::max(least_solves(b_.ropes.contact_rows, unconverged), least_solves_of_contacts());
+    const bool converged = !unconverged.points && solves >= least;
+    if (long_enough && !grew && converged) break;
     const bool is_wild = !b_.rope_contacts.empty() && gains_energy();
     for (RopeSetting& setting : b_.settings) setting.first = is_wild || (setting.first && long_enough);
   }
-  for (const std::uint32_t c : b_.chains)
-    chains[c].unconverged = chains[c].unconverged || !(error <= kReportedError) || !is_sound();
+  for (const std::uint32_t c : b_.rope_systems)
+    rope_systems[c].unconverged = rope_systems[c].unconverged || !(error <= kReportedError) || !is_sound();
 }
 
-bool BundleSolution::gives_way(int round) {
+bool CoupledGroupSolution::gives_way(int round) {
   b_.breakable.clear();
   for (const std::uint32_t row : b_.hooks) {
     if (t_.hooks[row].can_break() && !t_.hooks[row].broken) b_.breakable.push_back(row);
@@ -322,24 +326,24 @@ bool BundleSolution::gives_way(int round) {
   });
 }
 
-void BundleSolution::store(const std::vector<Chain>& chains) {
+void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
   if (!is_sound()) return;
   std::size_t node = 0;
   std::size_t segment = 0;
-  for (const std::uint32_t c : b_.chains) {
-    store_rope(chains[c], node, segment, h_, b_.ropes, t_);
-    node += chains[c].node_count;
-    segment += chains[c].node_count - 1;
+  for (const std::uint32_t c : b_.rope_systems) {
+    store_rope(rope_systems[c], node, segment, h_, b_.ropes, t_);
+    node += rope_systems[c].node_count;
+    segment += rope_systems[c].node_count - 1;
   }
   for (const std::uint32_t p : b_.points) {
     if (b_.ropes.nodes[node].w > 0) t_.particles.velocity[p].v = vector_cast<Real>(b_.ropes.nodes[node].u);
     ++node;
   }
-  store_touches(h_, b_.ropes.touches, t_.contacts);
-  store_inner();
+  store_contact_rows(h_, b_.ropes.contact_rows, t_.contacts);
+  store_coupled_contacts();
   push_out_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
-    const BundleBody& m = b_.moving[i];
+    const CoupledBody& m = b_.moving[i];
     set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);
   }
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
@@ -353,24 +357,24 @@ void BundleSolution::store(const std::vector<Chain>& chains) {
 }
 
 /// As in solver/soft/particle_contact_solve.h: overlap of points leaves by place, not by speed.
-void BundleSolution::push_out_points() {
-  for (const RopeTouch& touch : b_.ropes.touches) {
-    if (touch.of_point && touch.row != RopeTouch::kTether)
-      push_out(touch.row, static_cast<Real>(h_), t_.contacts, t_.particles);
+void CoupledGroupSolution::push_out_points() {
+  for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    if (contact_row.of_point && contact_row.row != RopeContactRow::kTether)
+      push_out(contact_row.row, static_cast<Real>(h_), t_.contacts, t_.particles);
   }
 }
 
-void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle& bundle,
-                  std::vector<Chain>& chains, state::Tables& tables) {
-  bundle.factored = 0;
-  BundleSolution solution(static_cast<double>(h), bundle, tables);
-  solution.load(before, chains);
-  solution.run(chains);
+void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real h, CoupledGroup& group,
+                         std::vector<RopeSystem>& rope_systems, state::Tables& tables) {
+  group.factored = 0;
+  CoupledGroupSolution solution(static_cast<double>(h), group, tables);
+  solution.load(before, rope_systems);
+  solution.run(rope_systems);
   for (int round = 0; solution.gives_way(round); ++round) {
-    solution.load(before, chains);
-    solution.run(chains);
+    solution.load(before, rope_systems);
+    solution.run(rope_systems);
   }
-  solution.store(chains);
+  solution.store(rope_systems);
 }
 
 }  // namespace hooke::solver

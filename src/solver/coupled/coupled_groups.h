@@ -40,7 +40,7 @@ struct BodyRow {
 };
 
 /// A body of a bundle while it is solved.
-struct BundleBody {
+struct CoupledBody {
   JointBody body;                      ///< Before the solution.
   math::Symmetric3<double> stiffness;  ///< h^2 S K S of the hooks' forces.
   math::Symmetric3<double> excess;     ///< What of it is implicit.
@@ -51,7 +51,7 @@ struct BundleBody {
 
 /// A contact between points of a rope or a cloth, of a rope with a rope, or of a body that is borne, while it
 /// is solved.
-struct InnerTouch {
+struct CoupledContact {
   static constexpr int kRows = 3;  ///< Along the normal and two across.
 
   std::array<std::uint32_t, 4> node = {};  ///< As `particle` of its row; none of what is borne.
@@ -100,34 +100,36 @@ struct InnerTouch {
 /// A share of 1e-6 of each hook row's diagonal is added as compliance, 1e-10 of a motor's: it decides what
 /// loops of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b
 /// across the rope, whose direction at b is that of its points blended along the segment.
-struct Bundle {
-  std::vector<std::uint32_t> chains;         ///< In order.
-  std::vector<std::uint32_t> points;         ///< Particles of no rope, in order of rows.
-  std::vector<std::uint32_t> hooks;          ///< Rows, in order.
-  std::vector<std::uint32_t> inner;          ///< Contacts between points: rows, in order.
-  std::vector<std::uint32_t> rope_contacts;  ///< Rows, in order.
-  std::uint32_t refused = 0;                 ///< Contacts of ropes that kBundleBudget left out.
-  std::vector<std::uint32_t> borne;          ///< Contacts between bodies: of state::Pairs::borne, in order.
-  std::vector<std::uint32_t> bodies;         ///< Rows, in order.
+struct CoupledGroup {
+  std::vector<std::uint32_t> rope_systems;      ///< In order.
+  std::vector<std::uint32_t> points;            ///< Particles of no rope, in order of rows.
+  std::vector<std::uint32_t> hooks;             ///< Rows, in order.
+  std::vector<std::uint32_t> element_contacts;  ///< Contacts between points: rows, in order.
+  std::vector<std::uint32_t> rope_contacts;     ///< Rows, in order.
+  std::uint32_t refused = 0;                    ///< Contacts of ropes that kBundleBudget left out.
+  std::vector<std::uint32_t> load_bearing;  ///< Contacts between bodies: of state::Pairs::borne, in order.
+  std::vector<std::uint32_t> bodies;        ///< Rows, in order.
   /// Of each hook, inner contact, contact of ropes and borne contact, a and b: index into `bodies`, or -1.
   std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
   std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
 
-  [[nodiscard]] std::uint32_t inner_count() const { return static_cast<std::uint32_t>(inner.size()); }
-  /// Of the borne contacts among all touches.
-  [[nodiscard]] std::uint32_t first_borne() const {
-    return inner_count() + static_cast<std::uint32_t>(rope_contacts.size());
+  [[nodiscard]] std::uint32_t element_contact_count() const {
+    return static_cast<std::uint32_t>(element_contacts.size());
   }
-  [[nodiscard]] std::uint32_t touch_count() const {
-    return first_borne() + static_cast<std::uint32_t>(borne.size());
+  /// Of the borne contacts among all touches.
+  [[nodiscard]] std::uint32_t first_load_bearing() const {
+    return element_contact_count() + static_cast<std::uint32_t>(rope_contacts.size());
+  }
+  [[nodiscard]] std::uint32_t contact_count() const {
+    return first_load_bearing() + static_cast<std::uint32_t>(load_bearing.size());
   }
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
   // The matrix. Blocks are segments, bends, hooks, inner contacts, those of ropes, borne ones, bodies.
   BlockPattern pattern;
-  std::vector<std::uint32_t> place;  ///< Of each block in the order of elimination.
+  std::vector<std::uint32_t> slot;  ///< Of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
   struct Incident {
     std::uint32_t block = 0;
@@ -142,18 +144,18 @@ struct Bundle {
   bool cut_short = false;  ///< Its solution ended by kBundleBudget in some substep.
 
   // Lives for one substep.
-  int factored = 0;                        ///< How often its matrix was factored.
-  RopeScratch ropes;                       ///< Nodes of chains, then points.
-  std::vector<RopeSetting> settings;       ///< Of chains.
-  std::vector<std::uint32_t> chain_nodes;  ///< Of chains: how many.
-  std::vector<BundleBody> moving;          ///< As `bodies`.
-  std::vector<InnerTouch> touches;         ///< As `inner`, then as `rope_contacts`, then as `borne`.
-  std::vector<JointRow> rows;              ///< Of hooks, then of touches.
-  std::vector<std::uint32_t> first_row;    ///< Of each of these; one more at the end.
-  std::vector<std::int8_t> bound;          ///< Of rows, as Articulation::bound.
-  std::vector<double> lambda;              ///< Of rows.
-  std::vector<double> speed;               ///< Of rows: of opening.
-  std::vector<int> sizes;                  ///< Of blocks, in the order of elimination.
+  int factored = 0;                             ///< How often its matrix was factored.
+  RopeScratch ropes;                            ///< Nodes of chains, then points.
+  std::vector<RopeSetting> settings;            ///< Of chains.
+  std::vector<std::uint32_t> rope_node_counts;  ///< Of chains: how many.
+  std::vector<CoupledBody> moving;              ///< As `bodies`.
+  std::vector<CoupledContact> contact_rows;     ///< As `inner`, then as `rope_contacts`, then as `borne`.
+  std::vector<JointRow> rows;                   ///< Of hooks, then of touches.
+  std::vector<std::uint32_t> first_row;         ///< Of each of these; one more at the end.
+  std::vector<std::int8_t> bound;               ///< Of rows, as Articulation::bound.
+  std::vector<double> lambda;                   ///< Of rows.
+  std::vector<double> speed;                    ///< Of rows: of opening.
+  std::vector<int> sizes;                       ///< Of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
   std::vector<double> right_side;        ///< Then the solution.
@@ -168,7 +170,7 @@ struct Bundle {
 /// whatever that takes. Contacts of ropes that let go and come back could ask for 256. Where contacts of
 /// ropes ask for more in one, as of segments that each touch all others, every second one is left out until
 /// it is enough: a choice that knows only who touches whom.
-inline constexpr double kBundleBudget = 2e7;
+inline constexpr double kCoupledGroupBudget = 2e7;
 inline constexpr int kFewestFactorizations = 4;
 
 /// The share of a motor row's diagonal that it has as compliance: it asks for a speed and does not take back
@@ -176,13 +178,13 @@ inline constexpr int kFewestFactorizations = 4;
 inline constexpr double kMotorCompliance = 1e-10;
 
 /// Memory to lay out bundles in.
-struct BundleScratch {
+struct CoupledGroupScratch {
   std::vector<std::uint32_t> signature;
-  base::DisjointSets sets;               ///< Bodies, then particles.
-  std::vector<std::uint8_t> tied;        ///< Of each set: whether it is a bundle.
-  std::vector<std::uint32_t> bundle_of;  ///< Of each set.
-  std::vector<std::uint32_t> anchors;    ///< Hooks.
-  std::vector<std::vector<Bundle::Incident>> at_node;
+  base::DisjointSets sets;              ///< Bodies, then particles.
+  std::vector<std::uint8_t> coupled;    ///< Of each set: whether it is a bundle.
+  std::vector<std::uint32_t> group_of;  ///< Of each set.
+  std::vector<std::uint32_t> anchors;   ///< Hooks.
+  std::vector<std::vector<CoupledGroup::Incident>> at_node;
   std::vector<std::uint32_t> first_node;              ///< Of each chain, then of the points.
   std::vector<std::vector<std::uint32_t>> bodies_at;  ///< Blocks of bodies that touch a node.
   BlockGraph matrix;
@@ -191,29 +193,30 @@ struct BundleScratch {
   std::vector<int> counts;         ///< Of a bundle's hooks or bodies.
 };
 
-struct Bundles {
-  std::vector<Bundle> bundles;  ///< The first `count` are those of now.
+struct CoupledGroups {
+  std::vector<CoupledGroup> groups;  ///< The first `count` are those of now.
   std::size_t count = 0;
   std::vector<RopeAnchor> anchors;       ///< Of ropes outside bundles, by chain and node.
   std::vector<std::uint32_t> signature;  ///< Of what they were made from.
   std::vector<std::uint32_t> tethers;    ///< All there are, in order of the particles that they hold.
   std::uint64_t tethers_revision = 0;    ///< Of the tables that they are of.
-  BundleScratch scratch;
+  CoupledGroupScratch scratch;
 
-  [[nodiscard]] std::span<Bundle> live() { return {bundles.data(), count}; }
+  [[nodiscard]] std::span<CoupledGroup> live() { return {groups.data(), count}; }
 };
 
 /// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has
 /// changed since they were made. Marks the chains that belong to one. A rope that hangs by ball hooks on what
 /// does not give way, and on nothing else, needs none: those are its anchors.
-void build_bundles(const state::Tables& tables, std::vector<Chain>& chains, Bundles& bundles);
+void build_coupled_groups(const state::Tables& tables, std::vector<RopeSystem>& rope_systems,
+                          CoupledGroups& groups);
 
 /// Puts the ends of hooks that slide along a rope where the other ends are nearest to them, searching from
 /// where they were.
 void slide_hooks(state::Tables& tables);
 
 /// The rotation whose x axis is the direction of the rope where a hook slides along it.
-[[nodiscard]] Quaternion<double> turn_of_slide(const state::Tables& tables, const state::Hook& hook);
+[[nodiscard]] Quaternion<double> slide_rotation(const state::Tables& tables, const state::Hook& hook);
 
 /// While elastic rows are solved, a hooked point of a cloth, solid or group of particles has the mass of what
 /// it is tied to as well: it is as hard to move as that. `weigh_points` notes the points' own state and gives
@@ -224,12 +227,12 @@ struct HookedPoint {
   Real inverse_mass = Real(0);
   Vec3 velocity = {};
 };
-void weigh_points(Bundles& bundles, state::Tables& tables, std::vector<HookedPoint>& points);
-void release_points(const std::vector<HookedPoint>& points, state::Particles& particles);
+void apply_mass_shares(CoupledGroups& groups, state::Tables& tables, std::vector<HookedPoint>& points);
+void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles);
 
 /// Velocities of everything in a bundle for a substep of length h [s]. `before` holds velocities of particles
 /// from before the forces.
-void solve_bundle(const std::vector<state::VelocityLine>& before, Real h, Bundle& bundle,
-                  std::vector<Chain>& chains, state::Tables& tables);
+void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real h, CoupledGroup& group,
+                         std::vector<RopeSystem>& rope_systems, state::Tables& tables);
 
 }  // namespace hooke::solver

@@ -96,38 +96,38 @@ Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
 
 }  // namespace
 
-void weigh_points(Bundles& bundles, Tables& t, std::vector<HookedPoint>& points) {
+void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint>& points) {
   points.clear();
-  std::vector<int>& shares = bundles.scratch.counts;
-  for (const Bundle& bundle : bundles.live()) {
-    shares.assign(bundle.bodies.size() + 1, 0);
-    const auto shares_of = [&](std::uint32_t body) -> int& { return shares[bundle.body_of(body) + 1]; };
-    for (const std::uint32_t row : bundle.hooks) {
+  std::vector<int>& shares = groups.scratch.counts;
+  for (const CoupledGroup& group : groups.live()) {
+    shares.assign(group.bodies.size() + 1, 0);
+    const auto shares_of = [&](std::uint32_t body) -> int& { return shares[group.body_of(body) + 1]; };
+    for (const std::uint32_t row : group.hooks) {
       for (const HookPlace& end : {t.hooks[row].a, t.hooks[row].b}) ++shares_of(end.body);
     }
-    for (const std::uint32_t row : bundle.hooks) {
+    for (const std::uint32_t row : group.hooks) {
       const Hook& hook = t.hooks[row];
       if (hook.kind != HookKind::kBall || hook.broken) continue;
       for (const HookPlace* end : {&hook.a, &hook.b}) {
         const HookPlace& other = end == &hook.a ? hook.b : hook.a;
         // Of several points that share a place, each moves freely against the others.
         if (end->particle_count != 1 || t.objects[end->object].kind == PointRef::Kind::kRope) continue;
-        state::VelocityLine& line = t.particles.velocity[end->particle[0]];
-        if (!(line.inverse_mass > Real(0)) || other.is_point()) continue;
-        points.push_back({end->particle[0], line.inverse_mass, line.v});
+        state::VelocityRecord& record = t.particles.velocity[end->particle[0]];
+        if (!(record.inverse_mass > Real(0)) || other.is_point()) continue;
+        points.push_back({end->particle[0], record.inverse_mass, record.v});
         const Real held_by = inverse_mass_of(t, other, shares_of(other.body));
-        const Real merged = line.inverse_mass * held_by / (line.inverse_mass + held_by);
-        line.inverse_mass = std::max(merged, kLeastShare * line.inverse_mass);
+        const Real merged = record.inverse_mass * held_by / (record.inverse_mass + held_by);
+        record.inverse_mass = std::max(merged, kLeastShare * record.inverse_mass);
       }
     }
   }
 }
 
-void release_points(const std::vector<HookedPoint>& points, state::Particles& particles) {
+void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles) {
   for (auto point = points.rbegin(); point != points.rend(); ++point) {
-    state::VelocityLine& line = particles.velocity[point->particle];
-    line.v = point->velocity + (point->inverse_mass / line.inverse_mass) * (line.v - point->velocity);
-    line.inverse_mass = point->inverse_mass;
+    state::VelocityRecord& record = particles.velocity[point->particle];
+    record.v = point->velocity + (point->inverse_mass / record.inverse_mass) * (record.v - point->velocity);
+    record.inverse_mass = point->inverse_mass;
   }
 }
 
@@ -137,7 +137,7 @@ void slide_hooks(Tables& t) {
   }
 }
 
-Quaternion<double> turn_of_slide(const Tables& t, const Hook& hook) {
+Quaternion<double> slide_rotation(const Tables& t, const Hook& hook) {
   const state::Deformable& rope = t.objects[hook.a.object];
   const Line line = {t, rope};
   const std::uint32_t node = hook.a.particle[0] - rope.particles.first;

@@ -12,7 +12,7 @@ namespace hooke::solver {
 namespace {
 
 using math::Symmetric3;
-using Incident = Bundle::Incident;
+using Incident = CoupledGroup::Incident;
 
 std::array<double, 9> entries_of(const Symmetric3<double>& m) {
   return {m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz};
@@ -29,22 +29,22 @@ DVec3 column_at(int m, DVec3 lever, const JointBody& body) {
 }
 
 /// The one body that active contacts of a node are with, if it is one.
-std::optional<int> only_body_of(std::span<const RopeTouch> at_node) {
+std::optional<int> only_body_of(std::span<const RopeContactRow> at_node) {
   std::optional<int> body;
-  for (const RopeTouch& touch : at_node) {
-    if (!touch.active || touch.body < 0) continue;
-    if (body && *body != touch.body) return std::nullopt;
-    body = touch.body;
+  for (const RopeContactRow& contact_row : at_node) {
+    if (!contact_row.active || contact_row.body < 0) continue;
+    if (body && *body != contact_row.body) return std::nullopt;
+    body = contact_row.body;
   }
   return body;
 }
 
 }  // namespace
 
-void BundleSolution::assemble_pair(const Incident& a, const Incident& b, std::uint32_t block,
-                                   const RopeNode& node) {
+void CoupledGroupSolution::assemble_pair(const Incident& a, const Incident& b, std::uint32_t block,
+                                         const RopeNode& node) {
   const BlockPattern::Block& at = b_.pattern.block[block];
-  const bool a_is_row = b_.place[a.block] == at.row;
+  const bool a_is_row = b_.slot[a.block] == at.row;
   const Incident& row = a_is_row ? a : b;
   const Incident& column = a_is_row ? b : a;
   double* numbers = b_.numbers.data() + at.offset;
@@ -63,7 +63,7 @@ void BundleSolution::assemble_pair(const Incident& a, const Incident& b, std::ui
   }
 }
 
-void BundleSolution::assemble_pairs() {
+void CoupledGroupSolution::assemble_pairs() {
   for (std::size_t node = 0; node < b_.ropes.nodes.size(); ++node) {
     const RopeNode& of = b_.ropes.nodes[node];
     if (!(of.w > 0)) continue;
@@ -75,7 +75,7 @@ void BundleSolution::assemble_pairs() {
   }
 }
 
-void BundleSolution::assemble_hooks() {
+void CoupledGroupSolution::assemble_hooks() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     const std::uint32_t block = hook_block(hook);
     if (k >= size_of(block)) return;
@@ -98,7 +98,7 @@ void BundleSolution::assemble_hooks() {
   });
 }
 
-void BundleSolution::assemble_bodies() {
+void CoupledGroupSolution::assemble_bodies() {
   for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
     const std::array<double, 9> turn =
         entries_of(Symmetric3<double>::diagonal(1) + scaled(1 + kStiffnessDamping, b_.moving[i].excess));
@@ -112,16 +112,16 @@ void BundleSolution::assemble_bodies() {
 
 /// At a node without rows that touches one body: -J^T (P - P W P) J on the body's own block, where P is the
 /// grip of all that body's contacts there.
-void BundleSolution::assemble_point(int body, std::span<const RopeTouch> at_node) {
-  Symmetric3<double> grip;
+void CoupledGroupSolution::assemble_point(int body, std::span<const RopeContactRow> at_node) {
+  Symmetric3<double> stiffness;
   DVec3 lever;  // the same of all: to the particle
-  for (const RopeTouch& touch : at_node) {
-    if (!touch.active || touch.body != body) continue;
-    grip = grip + grip_of(touch);
-    lever = touch.lever;
+  for (const RopeContactRow& contact_row : at_node) {
+    if (!contact_row.active || contact_row.body != body) continue;
+    stiffness = stiffness + contact_stiffness(contact_row);
+    lever = contact_row.lever;
   }
   const Symmetric3<double>& inverse = b_.ropes.nodes[at_node.front().node].inverse;
-  const Symmetric3<double> held = grip + scaled(-1, symmetric_product(grip, inverse, grip));
+  const Symmetric3<double> held = stiffness + scaled(-1, symmetric_product(stiffness, inverse, stiffness));
   std::array<DVec3, 6> columns;
   for (int m = 0; m < 6; ++m) columns[m] = column_at(m, lever, b_.moving[body].body);
   const Numbers own = numbers(body_block(body), body_block(body));
@@ -132,59 +132,60 @@ void BundleSolution::assemble_point(int body, std::span<const RopeTouch> at_node
 }
 
 /// R = P J couples the rows at the node to the body, the body to itself, and to others that touch the node.
-void BundleSolution::assemble_touch(const RopeTouch& touch, std::span<const RopeTouch> at_node) {
-  const RopeNode& node = b_.ropes.nodes[touch.node];
-  const Symmetric3<double> grip = grip_of(touch);
-  const JointBody& body = b_.moving[touch.body].body;
-  const std::uint32_t block = body_block(touch.body);
+void CoupledGroupSolution::assemble_contact_row(const RopeContactRow& contact_row,
+                                                std::span<const RopeContactRow> at_node) {
+  const RopeNode& node = b_.ropes.nodes[contact_row.node];
+  const Symmetric3<double> stiffness = contact_stiffness(contact_row);
+  const JointBody& body = b_.moving[contact_row.body].body;
+  const std::uint32_t block = body_block(contact_row.body);
   for (int m = 0; m < 6; ++m) {
-    const DVec3 r = grip * column_at(m, touch.lever, body);
+    const DVec3 r = stiffness * column_at(m, contact_row.lever, body);
     const DVec3 moved_by = node.inverse * r;
-    for (const Incident& at : incidents_of(touch.node)) {
+    for (const Incident& at : incidents_of(contact_row.node)) {
       const Numbers coupled = numbers(at.block, block);
       for (int k = 0; k < size_of(at.block); ++k)
         coupled(k, m) += at.weight * dot(direction(at.block, k), moved_by);
     }
     const Numbers own = numbers(block, block);
-    for (int k = 0; k < 6; ++k) own(k, m) -= dot(column_at(k, touch.lever, body), r);
-    for (const RopeTouch& other : at_node) {
-      if (other.body < touch.body || !other.active) continue;
+    for (int k = 0; k < 6; ++k) own(k, m) -= dot(column_at(k, contact_row.lever, body), r);
+    for (const RopeContactRow& other : at_node) {
+      if (other.body < contact_row.body || !other.active) continue;
       const JointBody& to = b_.moving[other.body].body;
-      const DVec3 gripped = grip_of(other) * moved_by;
+      const DVec3 pushed = contact_stiffness(other) * moved_by;
       const Numbers coupled = numbers(body_block(other.body), block);
-      for (int k = 0; k < 6; ++k) coupled(k, m) += dot(column_at(k, other.lever, to), gripped);
+      for (int k = 0; k < 6; ++k) coupled(k, m) += dot(column_at(k, other.lever, to), pushed);
     }
   }
 }
 
-void BundleSolution::assemble_touches() {
-  for_each_touched(b_.ropes.touches, [&](std::span<const RopeTouch> at_node) {
+void CoupledGroupSolution::assemble_contact_rows() {
+  for_each_node_in_contact(b_.ropes.contact_rows, [&](std::span<const RopeContactRow> at_node) {
     if (incidents_of(at_node.front().node).empty()) {
       if (const std::optional<int> body = only_body_of(at_node)) {
         assemble_point(*body, at_node);
         return;
       }
     }
-    for (const RopeTouch& touch : at_node) {
-      if (touch.body >= 0 && touch.active) assemble_touch(touch, at_node);
+    for (const RopeContactRow& contact_row : at_node) {
+      if (contact_row.body >= 0 && contact_row.active) assemble_contact_row(contact_row, at_node);
     }
   });
 }
 
 /// Contacts of ropes that do not act have no rows in the matrix, and those without friction one: of those
 /// that may act most do not.
-void BundleSolution::resize_rope_touches() {
+void CoupledGroupSolution::resize_coupled_contacts() {
   if (b_.rope_contacts.empty()) return;
   b_.sizes.assign(b_.pattern.size.begin(), b_.pattern.size.end());
-  for (std::size_t i = b_.hooks.size() + b_.inner.size(); i < b_.ends.size(); ++i) {
+  for (std::size_t i = b_.hooks.size() + b_.element_contacts.size(); i < b_.ends.size(); ++i) {
     const std::uint32_t first = b_.first_row[i];
-    const int held = b_.bound[first + 1] == 0 ? InnerTouch::kRows : 1;
-    b_.sizes[b_.place[hook_block(static_cast<std::uint32_t>(i))]] = b_.bound[first] == 0 ? held : 0;
+    const int held = b_.bound[first + 1] == 0 ? CoupledContact::kRows : 1;
+    b_.sizes[b_.slot[hook_block(static_cast<std::uint32_t>(i))]] = b_.bound[first] == 0 ? held : 0;
   }
   resize_blocks(b_.sizes, b_.pattern);
 }
 
-void BundleSolution::assemble() {
+void CoupledGroupSolution::assemble() {
   b_.numbers.assign(b_.pattern.number_count, 0);
   assemble_pairs();
   for (std::uint32_t i = 0; i < segment_count(); ++i) {
@@ -198,20 +199,20 @@ void BundleSolution::assemble() {
   }
   assemble_hooks();
   assemble_bodies();
-  assemble_touches();
+  assemble_contact_rows();
 }
 
 /// V0 as geometric stiffness has it.
-void BundleSolution::start_bodies() {
+void CoupledGroupSolution::start_bodies() {
   b_.start.clear();
-  for (const BundleBody& m : b_.moving) {
+  for (const CoupledBody& m : b_.moving) {
     b_.start.push_back({(1 / std::sqrt(m.body.inverse_mass)) * m.body.v,
                         m.body.omega_scaled + m.excess * m.body.omega_scaled});
   }
 }
 
 /// Rows at a bound give its impulse, like a force from outside.
-void BundleSolution::give_impulses() {
+void CoupledGroupSolution::give_impulses() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
     if (b_.bound[row] == 0 || b_.lambda[row] == 0) return;
     for (int end = 0; end < 2; ++end) {
@@ -232,7 +233,7 @@ void BundleSolution::give_impulses() {
   }
 }
 
-void BundleSolution::fill_right_side() {
+void CoupledGroupSolution::fill_right_side() {
   b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
   start_bodies();
   give_impulses();
@@ -251,13 +252,14 @@ void BundleSolution::fill_right_side() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     if (b_.bound[row] == 0) right_side(hook_block(hook), k) += b_.rows[row].target;
   });
-  for (const RopeTouch& touch : b_.ropes.touches) {
-    if (touch.body < 0 || !touch.active) continue;
-    const RopeNode& node = b_.ropes.nodes[touch.node];
-    const DVec3 on_node = push_of(touch, h_) + grip_of(touch) * (touch.belt - node.target);
-    const JointBody& body = b_.moving[touch.body].body;
-    b_.start[touch.body] +=
-        {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(touch.lever, on_node))};
+  for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    if (contact_row.body < 0 || !contact_row.active) continue;
+    const RopeNode& node = b_.ropes.nodes[contact_row.node];
+    const DVec3 on_node =
+        push_of(contact_row, h_) + contact_stiffness(contact_row) * (contact_row.belt - node.target);
+    const JointBody& body = b_.moving[contact_row.body].body;
+    b_.start[contact_row.body] +=
+        {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(contact_row.lever, on_node))};
   }
   for (int i = 0; i < static_cast<int>(b_.start.size()); ++i) {
     for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -b_.start[i].at(m);

@@ -39,13 +39,13 @@
 namespace hooke::solver {
 
 /// Multiplications of one factorization, of one island and of all: some milliseconds a step.
-inline constexpr double kHardIslandBudget = 4e4;
-inline constexpr double kHardBudget = 1e6;
-inline constexpr std::uint32_t kMaxHardBodies = 256;
+inline constexpr double kDirectIslandBudget = 4e4;
+inline constexpr double kDirectBudget = 1e6;
+inline constexpr std::uint32_t kMaxDirectBodies = 256;
 
 /// hardness of a body: below 0 its island was refused and is not judged for as many steps, then steps in
 /// which it has asked for a direct solution, and from kHard on it is hard for as many steps and more.
-inline constexpr std::int8_t kHard = 2;
+inline constexpr std::int8_t kDirect = 2;
 
 /// Who may be in a hard island, by body row. What hangs is no member: its contacts stay soft, whatever its
 /// neighbors are. Islands with a body of a ragdoll stay soft as a whole.
@@ -54,8 +54,8 @@ using IslandMembers = std::span<const Footing>;
 /// What an island asks for; of each body at first, then of all at its root.
 struct IslandDemand {
   Real sag = Real(0);                                     ///< Over the size.
-  Real lean = Real(0);                                    ///< sag / size^3 [1/m^2]
-  Real bearing = Real(0);                                 ///< Of what it rests on; see add_own_weight.
+  Real buckling = Real(0);                                ///< sag / size^3 [1/m^2]
+  Real support_stiffness = Real(0);                       ///< Of what it rests on; see add_own_weight.
   Real thinnest = std::numeric_limits<Real>::infinity();  ///< Size at these [m].
   Real low = std::numeric_limits<Real>::infinity();       ///< Along gravity [m].
   Real high = -std::numeric_limits<Real>::infinity();
@@ -64,15 +64,15 @@ struct IslandDemand {
   std::int8_t most = std::numeric_limits<std::int8_t>::min();
 };
 
-struct HardIslands {
-  std::vector<HardIsland> islands;  ///< The first `count` are those of this step, by lowest body.
+struct DirectIslands {
+  std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
   std::uint32_t refused = 0;  ///< Hard, but over the budget.
 
   // Scratch, to be used again.
   base::DisjointSets sets;
   std::vector<std::uint32_t> island_of;  ///< By body row.
-  std::vector<HardGraph> found;
+  std::vector<DirectGraph> found;
   std::vector<std::uint8_t> fits;     ///< Of `found`: within the budget.
   std::vector<Real> loads;            ///< Of `found` [m/s].
   std::vector<int> order;             ///< Of `found`, by load.
@@ -80,26 +80,26 @@ struct HardIslands {
   std::vector<int> sizes;             ///< Of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
 
-  [[nodiscard]] std::span<HardIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
+  [[nodiscard]] std::span<DirectIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
 };
 
 /// Islands of hard bodies, with all that touches them; `contacts.colors.hard` says so to the soft contacts.
 /// `awake` are rows in ascending order. No body is new after it.
-void find_hard_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
-                       const std::vector<state::Manifold>& manifolds, IslandMembers members,
-                       state::Bodies& bodies, BodyContacts& contacts, HardIslands& hard);
+void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
+                         const std::vector<state::Manifold>& manifolds, IslandMembers members,
+                         state::Bodies& bodies, BodyContacts& contacts, DirectIslands& direct);
 
 /// The rows of their contacts.
-void prepare_hard_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
-                          const state::Bodies& bodies, HardIslands& hard);
+void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
+                            const state::Bodies& bodies, DirectIslands& direct);
 
 /// One substep.
-void solve_hard_islands(parallel::ThreadPool& pool, const BodyStep& step, HardIslands& hard,
-                        BodyContacts& contacts, state::Bodies& bodies);
+void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, DirectIslands& direct,
+                          BodyContacts& contacts, state::Bodies& bodies);
 
 /// Updates the hardness of bodies by the impulses of the last substep.
-void judge_hardness(std::span<const std::uint32_t> awake, const ContactStep& step,
-                    const BodyContacts& contacts, IslandMembers members, HardIslands& hard,
-                    state::Bodies& bodies);
+void evaluate_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
+                             const BodyContacts& contacts, IslandMembers members, DirectIslands& direct,
+                             state::Bodies& bodies);
 
 }  // namespace hooke::solver

@@ -32,8 +32,8 @@ namespace hooke::solver {
 
 /// From this ratio of masses on contacts are borne; and from this ratio of the load to the weight of what
 /// hangs.
-inline constexpr Real kBorneMass = Real(2);
-inline constexpr Real kBorneLoad = Real(1);
+inline constexpr Real kLoadBearingMassRatio = Real(2);
+inline constexpr Real kLoadBearingLoadRatio = Real(1);
 
 /// From this ratio on between a body and one that it is locked to, its contacts with the ground are borne;
 /// from the second on between it and all that hang together with it, if it presses on the ground with so many
@@ -44,32 +44,32 @@ inline constexpr Real kPressedGroup = Real(25);
 inline constexpr Real kPressedLoad = Real(20);
 
 /// How many may be borne in a step: some milliseconds.
-inline constexpr std::size_t kMostBorneManifolds = 512;
+inline constexpr std::size_t kMostLoadBearingManifolds = 512;
 
 /// How a body can hold another that lies on it.
-enum class Holding : std::uint8_t {
+enum class SupportRole : std::uint8_t {
   kNone,
-  kHooked,  ///< Part of an articulation that hangs on nothing.
-  kHangs,   ///< On a point, or part of an articulation that something holds.
-  kBorne,   ///< Lies on such.
+  kHooked,     ///< Part of an articulation that hangs on nothing.
+  kHangs,      ///< On a point, or part of an articulation that something holds.
+  kSupported,  ///< Lies on such.
 };
 
 /// What may press a body on the ground [kg].
-struct Burden {
+struct GroundLoad {
   Real neighbor = Real(0);  ///< The heaviest that a hook holds at its place on it, or at a distance from it.
   Real group = Real(0);     ///< Its articulation, with what lies on that.
   bool driven = false;      ///< A hook's motor or spring moves it.
 };
 
 /// What bodies hold by their hooks, by body row.
-struct Holders {
-  std::vector<Holding> holding;
-  std::vector<Burden> burden;
+struct Supports {
+  std::vector<SupportRole> support_role;
+  std::vector<GroundLoad> ground_load;
 };
 
 /// To be found again when hooks or bodies come or go. Bodies of nets hold nothing: nets are relaxed.
-void find_holders(const Joints& joints, const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
-                  Holders& holders);
+void find_supporting_bodies(const Joints& joints, const state::Bodies& bodies,
+                            const std::vector<state::Hook>& hooks, Supports& supports);
 
 /// By what a body is carried.
 enum class Footing : std::uint8_t {
@@ -79,7 +79,7 @@ enum class Footing : std::uint8_t {
 };
 
 /// What contacts did to a body in the last step, along gravity.
-struct Carried {
+struct CarriedLoad {
   Real from_below = Real(0);  ///< [N s]
   Real from_above = Real(0);  ///< [N s]
   bool on_something = false;  ///< Something touches it from below.
@@ -93,16 +93,16 @@ struct Prop {
 };
 
 /// Memory of find_borne_contacts.
-struct BorneScratch {
-  Holders holders;
+struct LoadBearingScratch {
+  Supports supports;
   std::vector<Footing> footing;  ///< By body.
   std::uint32_t refused = 0;     ///< Over kMostBorneManifolds.
   std::vector<Prop> props;
-  std::vector<Carried> carried;     ///< By body.
-  std::vector<Real> weights;        ///< By body, in a substep [N s].
-  std::vector<std::uint32_t> bore;  ///< Bodies of the contacts that were borne, ascending.
-  std::vector<Real> load;           ///< By body: the heaviest that lies on it [kg].
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> borne_before;
+  std::vector<CarriedLoad> carried;      ///< By body.
+  std::vector<Real> weights;             ///< By body, in a substep [N s].
+  std::vector<std::uint32_t> bore_load;  ///< Bodies of the contacts that were borne, ascending.
+  std::vector<Real> load;                ///< By body: the heaviest that lies on it [kg].
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> load_bearing_before;
 };
 
 /// Fills `pairs.borne`. What is borne by a body that hangs is
@@ -111,15 +111,15 @@ struct BorneScratch {
 /// carry bears nothing by its hooks: a crate with a slack rope tied to it; and what stands is borne by what
 /// it lies on, not by what leans on its side. `impulse_to_force` is that of the impulses that manifolds have
 /// from the last step [1/s].
-void find_borne_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                         std::span<const std::uint8_t> hooked, const Holders& holders,
-                         const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
-                         state::Pairs& pairs, BorneScratch& scratch);
+void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
+                                std::span<const std::uint8_t> hooked, const Supports& supports,
+                                const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
+                                state::Pairs& pairs, LoadBearingScratch& scratch);
 
 /// Forces and separations by what the manifolds say now.
-void place_borne_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
+void update_load_bearing_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
 
 /// Gives the manifolds the impulses of their last substep, of length h [s].
-void store_borne_contacts(Real h, state::Pairs& pairs);
+void store_load_bearing_contacts(Real h, state::Pairs& pairs);
 
 }  // namespace hooke::solver

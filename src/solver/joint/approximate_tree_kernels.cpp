@@ -27,11 +27,11 @@ using TreeNumber = float;
 using TreeNumber = Wide;
 #endif
 
-void make_approximate_rows_here(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void make_approximate_rows_here(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   make_tree_row_lanes<TreeNumber>(h, form, trees);
 }
 
-void solve_approximate_here(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void solve_approximate_here(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   solve_tree_lanes<TreeNumber>(h, form, trees);
 }
 
@@ -44,12 +44,12 @@ namespace hooke::solver::wide {
 HWY_EXPORT(make_approximate_rows_here);
 HWY_EXPORT(solve_approximate_here);
 
-void make_tree_rows(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   if (is_scalar()) return make_tree_rows_scalar(h, form, trees);
   HWY_DYNAMIC_DISPATCH(make_approximate_rows_here)(h, form, trees);
 }
 
-void solve_trees(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   if (is_scalar()) return solve_trees_scalar(h, form, trees);
   HWY_DYNAMIC_DISPATCH(solve_approximate_here)(h, form, trees);
 }
@@ -61,11 +61,11 @@ void solve_trees(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
 
 namespace hooke::solver::wide {
 
-void make_tree_rows(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   make_tree_rows_scalar(h, form, trees);
 }
 
-void solve_trees(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees) {
+void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees) {
   solve_trees_scalar(h, form, trees);
 }
 

@@ -18,7 +18,7 @@ bool has_like_masses(const Articulation& tree, const state::Bodies& bodies) {
     least = std::min(least, mass);
     most = std::max(most, mass);
   }
-  return most <= static_cast<Real>(kLooseMasses) * least;
+  return most <= static_cast<Real>(kApproximateMasses) * least;
 }
 
 /// It rubs, and is not driven.
@@ -39,7 +39,7 @@ bool held(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& j
     const wide::TreeRowForm& row = form.rows[r];
     if (row.role != RowRole::kLock) continue;
     const double off = hook.value[row.freedom] - static_cast<double>(hook.freedom[row.freedom].spring.target);
-    if (!(std::abs(off) < kLooseError)) return false;
+    if (!(std::abs(off) < kApproximateError)) return false;
   }
   return true;
 }
@@ -61,7 +61,7 @@ bool is_ragdoll(const Articulation& tree, const std::vector<Hook>& hooks, const 
          all_joints(tree, hooks, rubs);
 }
 
-bool is_loose(const Articulation& ragdoll, const std::vector<Hook>& hooks) {
+bool is_approximate(const Articulation& ragdoll, const std::vector<Hook>& hooks) {
   return all_joints(ragdoll, hooks, held);
 }
 

@@ -7,8 +7,10 @@
 
 namespace hooke::solver {
 
-inline constexpr double kLooseError = 1e-3;  ///< Of a lock, from which on a tree is not loose [m or rad].
-inline constexpr double kLooseMasses = 30;   ///< Ratio of the heaviest to the lightest, up to which it is.
+inline constexpr double kApproximateError =
+    1e-3;  ///< Of a lock, from which on a tree is not loose [m or rad].
+inline constexpr double kApproximateMasses =
+    30;  ///< Ratio of the heaviest to the lightest, up to which it is.
 
 /// Whether a tree is a ragdoll. Nothing hangs on it and it hangs on nothing: its root moves; its masses
 /// differ by kLooseMasses at most; every joint rubs, and nothing drives one.
@@ -19,6 +21,6 @@ inline constexpr double kLooseMasses = 30;   ///< Ratio of the heaviest to the l
 /// little late, and rows about the start of the substep only (wide/trees.h). In the last substep no lock was
 /// off by kLooseError. It depends on the state alone, which a snapshot has: a tree is exact for as long as
 /// its error asks for it.
-[[nodiscard]] bool is_loose(const Articulation& ragdoll, const std::vector<state::Hook>& hooks);
+[[nodiscard]] bool is_approximate(const Articulation& ragdoll, const std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

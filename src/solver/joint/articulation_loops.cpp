@@ -196,8 +196,8 @@ void solve_loops(double h, Articulation& art, JointTables tables) {
   const bool far = turns_farther(kFarTurn, h, art) || lines_turn_farther(kFarTurn, h, tables.hooks, art);
   const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
   store_velocities(art, tables.bodies);
-  if (!far) return forget_energy(art, tables.hooks);
-  settle_energy(before, art, tables, [&](std::size_t i) { return work_of(h, art, art.joints[i]); });
+  if (!far) return reset_energy(art, tables.hooks);
+  balance_energy(before, art, tables, [&](std::size_t i) { return work_of(h, art, art.joints[i]); });
 }
 
 }  // namespace hooke::solver

@@ -126,7 +126,7 @@ class Group {
 
   /// Makes its rows anew if it turns fast; whether a lock is off by too much then.
   bool is_bent(const std::vector<Hook>& hooks, int lane, Block<Kind>& block) const {
-    if constexpr (Kind::kLoose)
+    if constexpr (Kind::kApproximate)
       return false;
     else {
       const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
@@ -154,11 +154,12 @@ class Group {
 
   /// Rows of locks are not always made anew: theirs is all that they have.
   static void soften(const wide::TreeRowForm& form, Lane compliance, int lane, RowLanes& row) {
-    const bool is_soft = form.role == RowRole::kSpring || (Kind::kLoose && form.role == RowRole::kMotor);
+    const bool is_soft =
+        form.role == RowRole::kSpring || (Kind::kApproximate && form.role == RowRole::kMotor);
     row.gamma[lane] = is_soft ? row.gamma[lane] + compliance : compliance;
     if (!form.sprung) return;
     row.spring_gamma[lane] += compliance;
-    if (!Kind::kLoose)
+    if (!Kind::kApproximate)
       row.held_spring[lane] = (row.spring_target[lane] - row.target[lane]) / row.spring_gamma[lane];
   }
 
@@ -201,7 +202,7 @@ class Group {
   /// Lane after lane of each part: a line of memory is written eight times while it is at hand.
   void load(const std::array<const Articulation*, kCount>& trees, JointTables tables) {
     std::array<DVec3, kCount> origin = {};
-    for (int lane = 0; Kind::kLoose && lane < kCount; ++lane)
+    for (int lane = 0; Kind::kApproximate && lane < kCount; ++lane)
       origin[lane] = tables.bodies.center[trees[lane]->bodies.back()];
     for (std::size_t i = 0; i <= form_->joints.size(); ++i) {
       for (int lane = 0; lane < kCount; ++lane)
@@ -223,11 +224,11 @@ class Group {
   /// Of a body that tumbles, what inertia of now is found from. Places are those from `origin`.
   static void load_link(const state::Bodies& bodies, std::uint32_t row, DVec3 origin, LinkLanes& to,
                         int lane) {
-    const bool tumbles = is_dynamic(bodies, row) && tumbles_now(bodies, row);
-    to.tumbles[lane] = tumbles ? 1 : 0;
+    const bool is_gyroscopic = is_dynamic(bodies, row) && is_gyroscopic_now(bodies, row);
+    to.is_gyroscopic[lane] = is_gyroscopic ? 1 : 0;
     put(math::Symmetric3<double>{}, to.stiffness, lane);
     put(math::Symmetric3<double>::diagonal(1), to.turning, lane);
-    if (!tumbles) {
+    if (!is_gyroscopic) {
       const JointBody body = joint_body(bodies, row);
       load_motion(body.inverse_mass, body.center - origin, body.v, body.omega_scaled, to, lane);
       put(body.rotation, to.rotation, lane);
@@ -236,7 +237,7 @@ class Group {
       put(DVec3{1, 1, 1}, to.inertia, lane);
       return;
     }
-    const state::MotionLine& m = bodies.motion[row];
+    const state::MotionRecord& m = bodies.motion[row];
     const state::BodyMass& mass = bodies.mass[row];
     load_motion(static_cast<double>(m.inverse_mass), bodies.center[row] + vector_cast<double>(m.dx) - origin,
                 m.v, m.omega_scaled, to, lane);
@@ -290,7 +291,7 @@ class Group {
   }
 
   void store(const Articulation& art, const wide::TreeLanes<Kind>& from, int lane, JointTables tables) const {
-    const bool far = !Kind::kLoose && turns_far(from, lane);
+    const bool far = !Kind::kApproximate && turns_far(from, lane);
     const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
     for (std::size_t i = 0; i < art.joints.size(); ++i) {
       Hook& hook = tables.hooks[art.joints[i].hook];
@@ -311,15 +312,15 @@ class Group {
       if (!(link.inverse_mass[lane] > 0)) continue;
       const auto omega = get(link.omega_now, lane);
       const auto change = get6(link.scale_inverse, lane) * (omega - get(link.omega_before, lane));
-      const auto of_step = link.tumbles[lane] > 0
+      const auto of_step = link.is_gyroscopic[lane] > 0
                                ? get6(link.step_scale_inverse, lane) * (get6(link.scale, lane) * omega)
                                : omega;
       set_joint_velocity(vector_cast<double>(get(link.v_now, lane)), vector_cast<double>(of_step),
                          vector_cast<double>(change), art.bodies[i], tables.bodies);
     }
-    if (!far) return forget_energy(art, tables.hooks);
-    if constexpr (!Kind::kLoose) {
-      settle_energy(before, art, tables, [&](std::size_t i) { return work_of(from, i, lane); });
+    if (!far) return reset_energy(art, tables.hooks);
+    if constexpr (!Kind::kApproximate) {
+      balance_energy(before, art, tables, [&](std::size_t i) { return work_of(from, i, lane); });
     }
   }
 
@@ -409,7 +410,7 @@ struct Pool {
 
 struct TreeScratch::Groups {
   Pool<wide::ExactTrees, wide::ExactTree> exact;
-  Pool<wide::LooseTrees, wide::LooseTree> loose;
+  Pool<wide::ApproximateTrees, wide::ApproximateTree> approximate;
 };
 
 TreeScratch::TreeScratch() : groups_(std::make_unique<Groups>()) {}
@@ -418,10 +419,10 @@ TreeScratch::TreeScratch(TreeScratch&&) noexcept = default;
 TreeScratch& TreeScratch::operator=(TreeScratch&&) noexcept = default;
 
 void solve_trees(double h, std::span<Articulation* const> trees, TreeScratch& scratch, JointTables tables) {
-  auto& [exact, loose] = scratch.groups();
-  for (Articulation* tree : trees) (tree->tree.loose ? loose.trees : exact.trees).push_back(tree);
+  auto& [exact, approximate] = scratch.groups();
+  for (Articulation* tree : trees) (tree->tree.approximate ? approximate.trees : exact.trees).push_back(tree);
   exact.solve(h, tables);
-  loose.solve(h, tables);
+  approximate.solve(h, tables);
 }
 
 }  // namespace hooke::solver

@@ -86,9 +86,9 @@ struct Articulation {
   /// A tree: joint i joins link i, its child, to a link behind it; the root is the last.
   struct Tree {
     wide::TreeForm form;
-    std::vector<int> rows;  ///< Of the hook, for each of the form; a motor's spring is the one before it.
-    int kind = 0;           ///< Equal where forms are.
-    bool loose = false;     ///< In this step; see solver/joint/approximate_trees.h.
+    std::vector<int> rows;     ///< Of the hook, for each of the form; a motor's spring is the one before it.
+    int kind = 0;              ///< Equal where forms are.
+    bool approximate = false;  ///< In this step; see solver/joint/approximate_trees.h.
   } tree;
   [[nodiscard]] bool has_loops() const { return tree.form.joints.empty(); }
 

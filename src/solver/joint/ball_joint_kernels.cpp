@@ -22,54 +22,54 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-void solve_balls_here(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion) {
+void solve_balls_here(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion) {
   solve_balls_scalar(blocks, pass, motion);
 }
 
-void warm_start_balls_here(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void warm_start_balls_here(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   warm_start_balls_scalar(blocks, motion);
 }
 
-void relax_balls_here(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void relax_balls_here(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   relax_balls_scalar(blocks, motion);
 }
 
 #else
 
-void solve_balls_here(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion) {
-  auto* lines = reinterpret_cast<float*>(motion);
+void solve_balls_here(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion) {
+  auto* records = reinterpret_cast<float*>(motion);
   for (BallBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
-        solve_ball_lanes<Wide, true>(block, lane, pass, lines);
+        solve_ball_lanes<Wide, true>(block, lane, pass, records);
       } else {
-        solve_ball_lanes<Wide, false>(block, lane, pass, lines);
+        solve_ball_lanes<Wide, false>(block, lane, pass, records);
       }
     }
   }
 }
 
-void warm_start_balls_here(std::span<BallBlock> blocks, state::MotionLine* motion) {
-  auto* lines = reinterpret_cast<float*>(motion);
+void warm_start_balls_here(std::span<BallBlock> blocks, state::MotionRecord* motion) {
+  auto* records = reinterpret_cast<float*>(motion);
   for (BallBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
-        warm_start_ball_lanes<Wide, true>(block, lane, lines);
+        warm_start_ball_lanes<Wide, true>(block, lane, records);
       } else {
-        warm_start_ball_lanes<Wide, false>(block, lane, lines);
+        warm_start_ball_lanes<Wide, false>(block, lane, records);
       }
     }
   }
 }
 
-void relax_balls_here(std::span<BallBlock> blocks, state::MotionLine* motion) {
-  auto* lines = reinterpret_cast<float*>(motion);
+void relax_balls_here(std::span<BallBlock> blocks, state::MotionRecord* motion) {
+  auto* records = reinterpret_cast<float*>(motion);
   for (BallBlock& block : blocks) {
     for (int lane = 0; lane < block.count; lane += kStride) {
       if (block.anchored) {
-        relax_ball_lanes<Wide, true>(block, lane, lines);
+        relax_ball_lanes<Wide, true>(block, lane, records);
       } else {
-        relax_ball_lanes<Wide, false>(block, lane, lines);
+        relax_ball_lanes<Wide, false>(block, lane, records);
       }
     }
   }
@@ -87,17 +87,17 @@ HWY_EXPORT(solve_balls_here);
 HWY_EXPORT(warm_start_balls_here);
 HWY_EXPORT(relax_balls_here);
 
-void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion) {
+void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion) {
   if (is_scalar()) return solve_balls_scalar(blocks, pass, motion);
   HWY_DYNAMIC_DISPATCH(solve_balls_here)(blocks, pass, motion);
 }
 
-void warm_start_balls(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void warm_start_balls(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   if (is_scalar()) return warm_start_balls_scalar(blocks, motion);
   HWY_DYNAMIC_DISPATCH(warm_start_balls_here)(blocks, motion);
 }
 
-void relax_balls(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void relax_balls(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   if (is_scalar()) return relax_balls_scalar(blocks, motion);
   HWY_DYNAMIC_DISPATCH(relax_balls_here)(blocks, motion);
 }
@@ -109,15 +109,15 @@ void relax_balls(std::span<BallBlock> blocks, state::MotionLine* motion) {
 
 namespace hooke::solver::wide {
 
-void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion) {
+void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion) {
   solve_balls_scalar(blocks, pass, motion);
 }
 
-void warm_start_balls(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void warm_start_balls(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   warm_start_balls_scalar(blocks, motion);
 }
 
-void relax_balls(std::span<BallBlock> blocks, state::MotionLine* motion) {
+void relax_balls(std::span<BallBlock> blocks, state::MotionRecord* motion) {
   relax_balls_scalar(blocks, motion);
 }
 

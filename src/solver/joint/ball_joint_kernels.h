@@ -19,15 +19,15 @@ struct BallPass {
 };
 
 /// The impulses carried over from the last step, for blocks of one color.
-void warm_start_balls(std::span<BallBlock> blocks, state::MotionLine* motion);
+void warm_start_balls(std::span<BallBlock> blocks, state::MotionRecord* motion);
 /// One pass over blocks of one color, before the bodies move.
-void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion);
+void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion);
 /// And after.
-void relax_balls(std::span<BallBlock> blocks, state::MotionLine* motion);
+void relax_balls(std::span<BallBlock> blocks, state::MotionRecord* motion);
 
 // The scalar twins.
-void warm_start_balls_scalar(std::span<BallBlock> blocks, state::MotionLine* motion);
-void solve_balls_scalar(std::span<BallBlock> blocks, const BallPass& pass, state::MotionLine* motion);
-void relax_balls_scalar(std::span<BallBlock> blocks, state::MotionLine* motion);
+void warm_start_balls_scalar(std::span<BallBlock> blocks, state::MotionRecord* motion);
+void solve_balls_scalar(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion);
+void relax_balls_scalar(std::span<BallBlock> blocks, state::MotionRecord* motion);
 
 }  // namespace hooke::solver::wide

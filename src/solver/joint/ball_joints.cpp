@@ -25,7 +25,7 @@ constexpr int kFillGrain = 8;
 constexpr int kSolveGrain = 4;
 
 bool may_be_in_block(const Bodies& bodies, std::uint32_t body) {
-  return body != HookPlace::kWorld && (!is_dynamic(bodies, body) || !tumbles(bodies.mass[body]));
+  return body != HookPlace::kWorld && (!is_dynamic(bodies, body) || !is_gyroscopic(bodies.mass[body]));
 }
 
 /// A hook as the block sees it.
@@ -77,8 +77,8 @@ void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int l
   const DVec3 arm_a = arm_of(ends.a, bodies);
   const DVec3 arm_b = arm_of(ends.b, bodies);
   const DVec3 gap = (bodies.center[ends.b.body] - bodies.center[ends.a.body]) + (arm_b - arm_a);
-  block.line_a[lane] = 16 * ends.a.body;
-  block.line_b[lane] = 16 * ends.b.body;
+  block.record_a[lane] = 16 * ends.a.body;
+  block.record_b[lane] = 16 * ends.b.body;
   block.w_a[lane] = bodies.motion[ends.a.body].inverse_mass;
   block.w_b[lane] = bodies.motion[ends.b.body].inverse_mass;
   put_scale(bodies, ends.a.body, block.scale_a, lane);
@@ -161,8 +161,8 @@ void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies,
 
 bool is_plain_ball(const Hook& hook, const Bodies& bodies) {
   if (hook.kind == HookKind::kDistance || count_joint_rows(hook) != 3) return false;
-  for (int way = 0; way < 3; ++way) {
-    if (!hook.freedom[way].locked || hook.freedom[way].spring.target != Real(0)) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!hook.freedom[axis].locked || hook.freedom[axis].spring.target != Real(0)) return false;
   }
   return may_be_in_block(bodies, hook.a.body) && may_be_in_block(bodies, hook.b.body) &&
          (is_dynamic(bodies, hook.a.body) || is_dynamic(bodies, hook.b.body));

@@ -37,8 +37,8 @@ namespace hooke::solver {
 struct alignas(64) BallBlock {
   using Lane = Real[kLanes];
 
-  std::uint32_t line_a[kLanes];  ///< 16 times the row of body A: where its line begins, in numbers.
-  std::uint32_t line_b[kLanes];
+  std::uint32_t record_a[kLanes];  ///< 16 times the row of body A: where its line begins, in numbers.
+  std::uint32_t record_b[kLanes];
   Lane w_a, w_b;
   Lane scale_a[6], scale_b[6];  ///< S, or 1 where nothing moves the body: xx xy xz yy yz zz.
   Lane arm_a[3], arm_b[3];      ///< At the start of the step [m].

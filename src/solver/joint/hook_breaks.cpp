@@ -87,9 +87,9 @@ std::span<const std::uint32_t> BreakScratch::give_way(double h, const JointTable
   };
   for (Group& group : groups_) {
     const auto rows = std::span(rows_).subspan(group.first_hook, group.end_hook - group.first_hook);
-    if (group.settled) continue;
-    group.settled = !solver::give_way(h, rows, group.round++, tables.hooks, load_of);
-    if (group.settled) continue;
+    if (group.converged) continue;
+    group.converged = !solver::give_way(h, rows, group.round++, tables.hooks, load_of);
+    if (group.converged) continue;
     put_back(group, tables);
     again_.push_back(group.articulation);
   }

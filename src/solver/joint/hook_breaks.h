@@ -50,8 +50,8 @@ class BreakScratch {
  private:
   struct SavedBody {
     std::uint32_t row = 0;
-    state::MotionLine motion = {};
-    state::FreeLine free_motion = {};
+    state::MotionRecord motion = {};
+    state::FreeMotionRecord free_motion = {};
     Vec3 angular_momentum = {};
   };
   struct SavedHook {
@@ -68,7 +68,7 @@ class BreakScratch {
     std::size_t first_body = 0, end_body = 0;
     std::size_t first_hook = 0, end_hook = 0;
     int round = 0;
-    bool settled = false;
+    bool converged = false;
   };
 
   void put_back(const Group& group, const JointTables& tables) const;

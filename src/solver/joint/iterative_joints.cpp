@@ -55,13 +55,13 @@ void add(const JointImpulse& p, JointImpulse& sum) {
 }
 
 /// K of joint_nets.h.
-double diagonal_of(const JointRow& row, const Ends& ends, const Crowd& crowd) {
+double diagonal_of(const JointRow& row, const Ends& ends, const ExtraHooks& extra_hooks) {
   const auto part = [&](const JointBody& body, DVec3 j) {
     return body.inverse_mass > 0 ? body.inverse_mass * dot(row.n, row.n) + dot(j, j) : 0;
   };
   const double a = part(ends.a, row.j_a);
   const double b = part(ends.b, row.j_b);
-  return a + b > 0 ? a + b + (crowd.a * a * a + crowd.b * b * b) / (a + b) : 0;
+  return a + b > 0 ? a + b + (extra_hooks.a * a * a + extra_hooks.b * b * b) / (a + b) : 0;
 }
 
 /// The change of a row's impulse.
@@ -85,28 +85,28 @@ double solve_row(const JointRow& row, const Ends& ends, double diagonal, double 
 /// Calls visit(i) for every hook of the net that holds a body awake, color after color.
 template <class Visit>
 void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                    const JointNet& net, SweepOrder order, Visit&& visit) {
-  for_each_color(static_cast<int>(net.color_begin.size()) - 1, order, [&](int color) {
-    const int first = net.color_begin[color];
-    parallel::for_ranges(pool, net.color_begin[color + 1] - first, kGrain, [&](Range range) {
+                    const IterativeJoints& iterative, SweepOrder order, Visit&& visit) {
+  for_each_color(static_cast<int>(iterative.color_begin.size()) - 1, order, [&](int color) {
+    const int first = iterative.color_begin[color];
+    parallel::for_ranges(pool, iterative.color_begin[color + 1] - first, kGrain, [&](Range range) {
       for (int i = first + range.begin; i < first + range.end; ++i) {
-        if (is_awake(hooks[net.hooks[i]], bodies)) visit(i);
+        if (is_awake(hooks[iterative.hooks[i]], bodies)) visit(i);
       }
     });
   });
 }
 
 /// Rows of now, and the impulses that carry over along them.
-void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, JointNet& net) {
+void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, IterativeJoints& iterative) {
   Ends ends = {joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body)};
   std::array<JointRow, Hook::kMaxRows> rows;
   const int count = make_joint_rows(hook, ends.a, ends.b, h, rows);
-  std::copy_n(rows.begin(), count, net.rows.begin() + net.first_row[i]);
+  std::copy_n(rows.begin(), count, iterative.rows.begin() + iterative.first_row[i]);
   JointImpulse warm;
   for (int k = 0; k < count; ++k) add(impulse_of(rows[k], static_cast<double>(hook.row_impulse[k])), warm);
-  const JointImpulse& done = net.done[i];
+  const JointImpulse& done = iterative.done[i];
   apply({warm.linear - done.linear, warm.angular_a - done.angular_a, warm.angular_b - done.angular_b}, ends);
-  net.done[i] = warm;
+  iterative.done[i] = warm;
   store_velocity(ends.a, hook.a.body, bodies);
   store_velocity(ends.b, hook.b.body, bodies);
 }
@@ -136,28 +136,29 @@ void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImp
 
 /// Returns what the hook needed.
 HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
-                     state::Bodies& bodies, JointNet& net) {
+                     state::Bodies& bodies, IterativeJoints& iterative) {
   Ends ends;
   load_velocity(bodies, hook.a.body, ends.a);
   load_velocity(bodies, hook.b.body, ends.b);
-  const int count = net.first_row[i + 1] - net.first_row[i];
+  const int count = iterative.first_row[i + 1] - iterative.first_row[i];
   for (int step = 0; step < count; ++step) {
     const int k = order == SweepOrder::kForward ? step : count - 1 - step;
-    const JointRow& row = net.rows[net.first_row[i] + k];
+    const JointRow& row = iterative.rows[iterative.first_row[i] + k];
     Real& lambda = hook.row_impulse[k];
-    const double diagonal = diagonal_of(row, ends, net.crowd[i]);
+    const double diagonal = diagonal_of(row, ends, iterative.extra_hooks[i]);
     const double change = solve_row(row, ends, diagonal, static_cast<double>(lambda), h, soft);
     lambda += static_cast<Real>(change);
     const JointImpulse p = impulse_of(row, change);
     apply(p, ends);
-    add(p, net.done[i]);
+    add(p, iterative.done[i]);
   }
   HookLoad load;
   if (hook.can_break()) {
-    const auto rows = std::span(net.rows).subspan(static_cast<std::size_t>(net.first_row[i]),
-                                                  static_cast<std::size_t>(count));
+    const auto rows =
+        std::span(iterative.rows)
+            .subspan(static_cast<std::size_t>(iterative.first_row[i]), static_cast<std::size_t>(count));
     load = load_of(rows, hook);
-    cap_joint(rows, need_of(hook, load, h), ends, net.done[i], hook);
+    cap_joint(rows, need_of(hook, load, h), ends, iterative.done[i], hook);
   }
   store_velocity(ends.a, hook.a.body, bodies);
   store_velocity(ends.b, hook.b.body, bodies);
@@ -186,49 +187,50 @@ void count_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<Hoo
   }
 }
 
-void build_net(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
-               const state::Bodies& bodies, const std::vector<int>& degree, ColorScratch& scratch,
-               JointNet& net) {
-  color_hooks(hook_rows, hooks, bodies, scratch, {net.hooks, net.color_begin});
-  net.first_row.assign(1, 0);
-  for (const std::uint32_t row : net.hooks)
-    net.first_row.push_back(net.first_row.back() + count_joint_rows(hooks[row]));
-  net.rows.resize(static_cast<std::size_t>(net.first_row.back()));
-  net.done.resize(net.hooks.size());
-  net.crowd.clear();
+void build_iterative_joints(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
+                            const state::Bodies& bodies, const std::vector<int>& degree,
+                            ColorScratch& scratch, IterativeJoints& iterative) {
+  color_hooks(hook_rows, hooks, bodies, scratch, {iterative.hooks, iterative.color_begin});
+  iterative.first_row.assign(1, 0);
+  for (const std::uint32_t row : iterative.hooks)
+    iterative.first_row.push_back(iterative.first_row.back() + count_joint_rows(hooks[row]));
+  iterative.rows.resize(static_cast<std::size_t>(iterative.first_row.back()));
+  iterative.done.resize(iterative.hooks.size());
+  iterative.extra_hooks.clear();
   const auto beyond = [&](std::uint32_t body) {
     return is_dynamic(bodies, body) ? static_cast<double>(std::max(0, degree[body] - kMostFreeHooks)) : 0.0;
   };
-  for (const std::uint32_t row : net.hooks)
-    net.crowd.push_back({beyond(hooks[row].a.body), beyond(hooks[row].b.body)});
+  for (const std::uint32_t row : iterative.hooks)
+    iterative.extra_hooks.push_back({beyond(hooks[row].a.body), beyond(hooks[row].b.body)});
 }
 
-void prepare_net(JointNet& net) {
-  std::fill(net.done.begin(), net.done.end(), JointImpulse{});
+void prepare_iterative_joints(IterativeJoints& iterative) {
+  std::fill(iterative.done.begin(), iterative.done.end(), JointImpulse{});
 }
 
-void solve_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
-               JointNet& net) {
+void solve_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks,
+                            state::Bodies& bodies, IterativeJoints& iterative) {
   const LockSoftness soft = lock_softness(h);
   constexpr SweepOrder kOrder = SweepOrder::kForward;
-  for_each_joint(pool, hooks, bodies, net, kOrder,
-                 [&](int i) { begin_joint(i, h, hooks[net.hooks[i]], bodies, net); });
-  for_each_joint(pool, hooks, bodies, net, kOrder,
-                 [&](int i) { solve_joint(i, h, soft, kOrder, hooks[net.hooks[i]], bodies, net); });
+  for_each_joint(pool, hooks, bodies, iterative, kOrder,
+                 [&](int i) { begin_joint(i, h, hooks[iterative.hooks[i]], bodies, iterative); });
+  for_each_joint(pool, hooks, bodies, iterative, kOrder, [&](int i) {
+    solve_joint(i, h, soft, kOrder, hooks[iterative.hooks[i]], bodies, iterative);
+  });
 }
 
-void relax_net(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks, state::Bodies& bodies,
-               JointNet& net) {
+void relax_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks,
+                            state::Bodies& bodies, IterativeJoints& iterative) {
   constexpr SweepOrder kOrder = SweepOrder::kBackward;
-  for_each_joint(pool, hooks, bodies, net, kOrder, [&](int i) {
-    Hook& hook = hooks[net.hooks[i]];
-    const HookLoad load = solve_joint(i, h, {}, kOrder, hook, bodies, net);
+  for_each_joint(pool, hooks, bodies, iterative, kOrder, [&](int i) {
+    Hook& hook = hooks[iterative.hooks[i]];
+    const HookLoad load = solve_joint(i, h, {}, kOrder, hook, bodies, iterative);
     if (hook.can_break()) note_need(h, load, hook);
     std::array<double, Hook::kMaxRows> lambda = {};
     std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());
-    const auto first = static_cast<std::size_t>(net.first_row[i]);
-    const auto count = static_cast<std::size_t>(net.first_row[i + 1]) - first;
-    store_joint_impulses({&net.rows[first], count}, {lambda.data(), count}, hook);
+    const auto first = static_cast<std::size_t>(iterative.first_row[i]);
+    const auto count = static_cast<std::size_t>(iterative.first_row[i + 1]) - first;
+    store_joint_impulses({&iterative.rows[first], count}, {lambda.data(), count}, hook);
   });
 }
 

@@ -27,7 +27,7 @@ struct JointImpulse {
 inline constexpr int kMostFreeHooks = 5;
 
 /// Hooks that each end of a hook has beyond kMostFreeHooks.
-struct Crowd {
+struct ExtraHooks {
   double a = 0;
   double b = 0;
 };
@@ -57,30 +57,30 @@ void count_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<sta
 /// a row: sweeps that have not settled ask for more than there is.
 ///
 /// Source of the soft form: Catto 2023, "Solver2D".
-struct JointNet {
+struct IterativeJoints {
   std::vector<std::uint32_t> hooks;  ///< Rows, by color.
   std::vector<int> color_begin = {0};
   std::vector<int> first_row = {0};  ///< Of each hook; one more at the end.
   std::vector<JointRow> rows;
-  std::vector<JointImpulse> done;  ///< Of each hook.
-  std::vector<Crowd> crowd;        ///< Of each hook.
+  std::vector<JointImpulse> done;       ///< Of each hook.
+  std::vector<ExtraHooks> extra_hooks;  ///< Of each hook.
 };
 
 /// Colors hooks in the order they come. `degree` by count_hooks, of these and all others that move the
 /// bodies.
-void build_net(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
-               const state::Bodies& bodies, const std::vector<int>& degree, ColorScratch& scratch,
-               JointNet& net);
+void build_iterative_joints(std::span<const std::uint32_t> hook_rows, const std::vector<state::Hook>& hooks,
+                            const state::Bodies& bodies, const std::vector<int>& degree,
+                            ColorScratch& scratch, IterativeJoints& iterative);
 
 /// Start of a step: bodies carry nothing over.
-void prepare_net(JointNet& net);
+void prepare_iterative_joints(IterativeJoints& iterative);
 
 /// The rows of a substep of length h [s], with their errors removed. Hooks between sleepers are left alone.
-void solve_net(parallel::ThreadPool& pool, double h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
-               JointNet& net);
+void solve_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<state::Hook>& hooks,
+                            state::Bodies& bodies, IterativeJoints& iterative);
 
 /// The same without their errors, after the bodies have moved.
-void relax_net(parallel::ThreadPool& pool, double h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
-               JointNet& net);
+void relax_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<state::Hook>& hooks,
+                            state::Bodies& bodies, IterativeJoints& iterative);
 
 }  // namespace hooke::solver

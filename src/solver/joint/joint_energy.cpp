@@ -37,7 +37,7 @@ Mover mover_of(std::uint32_t row, const JointBody& body, const state::Bodies& bo
                  .omega = body.scale * body.omega_scaled,
                  .momentum = {},
                  .root = body.scale};
-  if (tumbles_now(bodies, row)) {
+  if (is_gyroscopic_now(bodies, row)) {
     const Vec3 by_contacts = bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled;
     mover.momentum = vector_cast<double>(bodies.angular_momentum[row]) +
                      math::inverse(math::in_double(bodies.scale[row])) * vector_cast<double>(by_contacts);
@@ -161,7 +161,7 @@ BodySums sum_bodies(const Articulation& articulation, const state::Bodies& bodie
   return sums;
 }
 
-void forget_energy(const Articulation& articulation, std::vector<state::Hook>& hooks) {
+void reset_energy(const Articulation& articulation, std::vector<state::Hook>& hooks) {
   for (const Articulation::Joint& joint : articulation.joints) {
     if (joint.is_weld()) continue;
     hooks[joint.hook].energy_debt = 0;

@@ -50,7 +50,7 @@ struct JointWork {
 };
 
 /// Where nothing turns far, or others solve the articulation.
-void forget_energy(const Articulation& articulation, std::vector<state::Hook>& hooks);
+void reset_energy(const Articulation& articulation, std::vector<state::Hook>& hooks);
 
 /// After a solution whose joints may add `work` [J]: takes what has been added in this substep and those
 /// before beyond the slack out of the motion of the bodies relative to the one that nothing moves, or to that
@@ -61,8 +61,8 @@ void forget_energy(const Articulation& articulation, std::vector<state::Hook>& h
 /// The same where `work_of(i)` gives the JointWork of joint i. All joints hold as they did, in proportion.
 /// Hooks remember what was added, and what their springs should hold by now (state::Hook).
 template <class WorkOf>
-void settle_energy(const BodySums& before, const Articulation& articulation, JointTables tables,
-                   WorkOf&& work_of) {
+void balance_energy(const BodySums& before, const Articulation& articulation, JointTables tables,
+                    WorkOf&& work_of) {
   double work = 0;
   for (std::size_t i = 0; i < articulation.joints.size(); ++i) {
     if (articulation.joints[i].is_weld()) continue;

@@ -60,7 +60,7 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
 }
 
 /// Whether it is solved with what touches it.
-bool is_bundled(const Articulation& articulation, const std::vector<Hook>& hooks) {
+bool is_in_coupled_group(const Articulation& articulation, const std::vector<Hook>& hooks) {
   const auto joint = std::find_if(articulation.joints.begin(), articulation.joints.end(),
                                   [](const Articulation::Joint& j) { return !j.is_weld(); });
   return joint != articulation.joints.end() && hooks[joint->hook].coupled;
@@ -78,8 +78,8 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
   for (const std::uint32_t i : order) {
     Articulation& art = articulations[i];
     if (!any_awake(art, tables.bodies)) continue;
-    if (is_bundled(art, tables.hooks)) {
-      forget_energy(art, tables.hooks);  // others solve it for now
+    if (is_in_coupled_group(art, tables.hooks)) {
+      reset_energy(art, tables.hooks);  // others solve it for now
       continue;
     }
     if (art.has_loops()) {
@@ -98,7 +98,7 @@ void solve_with_breaks(double h, std::span<const std::uint32_t> order,
   scratch.breaks.clear();
   for (const std::uint32_t i : order) {
     const Articulation& art = articulations[i];
-    if (!art.breakable || !any_awake(art, tables.bodies) || is_bundled(art, tables.hooks)) continue;
+    if (!art.breakable || !any_awake(art, tables.bodies) || is_in_coupled_group(art, tables.hooks)) continue;
     scratch.breaks.note(i, art, tables);
   }
   while (!order.empty()) {
@@ -153,26 +153,27 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
   balls.clear();
   others.clear();
   // Blocks know no crowds.
-  const auto is_crowded = [&](std::uint32_t body) {
+  const auto has_many_hooks = [&](std::uint32_t body) {
     return is_dynamic(bodies, body) && joints.build.degree[body] > kMostFreeHooks;
   };
   for (const std::uint32_t row : rest) {
     const Hook& hook = hooks[row];
-    const bool plain = is_plain_ball(hook, bodies) && !is_crowded(hook.a.body) && !is_crowded(hook.b.body);
+    const bool plain =
+        is_plain_ball(hook, bodies) && !has_many_hooks(hook.a.body) && !has_many_hooks(hook.b.body);
     (plain ? balls : others).push_back(row);
   }
   build_ball_joints(balls, hooks, bodies, colors, joints.balls);
-  build_net(others, hooks, bodies, degree, colors, joints.net);
+  build_iterative_joints(others, hooks, bodies, degree, colors, joints.iterative);
 }
 
-void judge_ragdolls(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
-                    Joints& joints) {
+void evaluate_ragdolls(parallel::ThreadPool& pool, const std::vector<Hook>& hooks,
+                       const state::Bodies& bodies, Joints& joints) {
   joints.in_ragdoll.assign(bodies.motion.size(), 0);
   parallel::for_ranges(pool, static_cast<int>(joints.order.size()), kTreeGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       Articulation& art = joints.articulations[joints.order[i]];
       const bool ragdoll = !art.has_loops() && is_ragdoll(art, hooks, bodies);
-      art.tree.loose = ragdoll && is_loose(art, hooks);
+      art.tree.approximate = ragdoll && is_approximate(art, hooks);
       if (!ragdoll) continue;
       for (const std::uint32_t body : art.bodies) joints.in_ragdoll[body] = 1;
     }
@@ -181,7 +182,7 @@ void judge_ragdolls(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, 
 
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, const state::Bodies& bodies,
                     Joints& joints) {
-  prepare_net(joints.net);
+  prepare_iterative_joints(joints.iterative);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {
     hook.coupled = false;
@@ -207,14 +208,14 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
     }
   });
   solve_ball_joints(pool, h, bodies, joints.balls);
-  solve_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
+  solve_iterative_joints(pool, static_cast<double>(h), hooks, bodies, joints.iterative);
 }
 
 void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
   relax_ball_joints(pool, bodies, joints.balls);
-  relax_net(pool, static_cast<double>(h), hooks, bodies, joints.net);
-  for (const std::uint32_t row : joints.net.hooks) add_up_impulses(h, hooks[row]);
+  relax_iterative_joints(pool, static_cast<double>(h), hooks, bodies, joints.iterative);
+  for (const std::uint32_t row : joints.iterative.hooks) add_up_impulses(h, hooks[row]);
 }
 
 void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,

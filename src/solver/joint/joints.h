@@ -61,8 +61,8 @@ struct Joints {
   std::vector<Articulation> articulations;  ///< Those of `order`, then some that only keep their memory.
   std::vector<std::uint32_t> order;         ///< Articulations: those with loops first, then trees by kind.
   BallJoints
-      balls;     ///< Plain balls in none of them, and at no crowded body (solver/joint/iterative_joints.h).
-  JointNet net;  ///< All others that are in none of them.
+      balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint/iterative_joints.h).
+  IterativeJoints iterative;  ///< All others that are in none of them.
   std::vector<std::uint8_t>
       in_ragdoll;  ///< By body row: 1 for members of ragdolls (solver/joint/approximate_trees.h).
   std::vector<SolveScratch> scratch;
@@ -78,8 +78,8 @@ void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bo
                   Joints& joints);
 
 /// Which trees are ragdolls, and which of those are loose in this step (solver/joint/approximate_trees.h).
-void judge_ragdolls(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
-                    const state::Bodies& bodies, Joints& joints);
+void evaluate_ragdolls(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
+                       const state::Bodies& bodies, Joints& joints);
 
 /// Start of a step of substeps of length h [s]: no impulse yet.
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,

@@ -57,10 +57,10 @@ struct TreeForm {
 ///
 /// and it is at its bound only if that asks for more than kLooseFriction times as much, as where a jolt sets
 /// it sliding. Limits are met, and let go, in the next substep where that makes kLooseSpeed or less.
-inline constexpr double kLooseSlide = 0.05;  ///< [m/s] or [rad/s]
-inline constexpr double kLooseJolt = 0.25;
-inline constexpr double kLooseFriction = 3;
-inline constexpr double kLooseSpeed = 0.2;  ///< [m/s] or [rad/s]
+inline constexpr double kApproximateSlide = 0.05;  ///< [m/s] or [rad/s]
+inline constexpr double kApproximateJolt = 0.25;
+inline constexpr double kApproximateFriction = 3;
+inline constexpr double kApproximateSpeed = 0.2;  ///< [m/s] or [rad/s]
 
 /// How trees are solved, and how many side by side: one vector of the widest set of instructions, several of
 /// others. Of exact ones the numbers are double in both precisions of the engine. `kCompliance` is a share of
@@ -68,19 +68,19 @@ inline constexpr double kLooseSpeed = 0.2;  ///< [m/s] or [rad/s]
 struct ExactTrees {
   using Lane = double;
   static constexpr int kCount = 8;
-  static constexpr bool kLoose = false;
+  static constexpr bool kApproximate = false;
   static constexpr double kCompliance = 1e-9;
 };
 struct ExactTree : ExactTrees {
   static constexpr int kCount = 1;
 };
-struct LooseTrees {
+struct ApproximateTrees {
   using Lane = Real;
   static constexpr int kCount = 16;
-  static constexpr bool kLoose = true;
+  static constexpr bool kApproximate = true;
   static constexpr double kCompliance = 1e-5;
 };
-struct LooseTree : LooseTrees {
+struct ApproximateTree : ApproximateTrees {
   static constexpr int kCount = 1;
 };
 
@@ -94,7 +94,7 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLinkLanes {
   Lane center[3][kCount], v[3][kCount];
   Lane inverse_mass[kCount], mass[kCount];  ///< Both 0 where nothing moves it.
   Lane rotation[4][kCount], scale[6][kCount], omega_before[3][kCount];
-  Lane scale_inverse[6][kCount], step_scale_inverse[6][kCount], tumbles[kCount];
+  Lane scale_inverse[6][kCount], step_scale_inverse[6][kCount], is_gyroscopic[kCount];
 
   Lane stiffness[6][kCount];  ///< h^2 S K S
   Lane turning[6][kCount];    ///< 1 + 1.2 G: inertia in scaled coordinates.
@@ -165,21 +165,22 @@ struct TreeLanes {
 
 // Vectors are loaded from these as from aligned memory.
 static_assert(alignof(TreeLanes<ExactTrees>) == sizeof(ExactTrees::Lane) * ExactTrees::kCount);
-static_assert(alignof(TreeLanes<LooseTrees>) == sizeof(LooseTrees::Lane) * LooseTrees::kCount);
+static_assert(alignof(TreeLanes<ApproximateTrees>) ==
+              sizeof(ApproximateTrees::Lane) * ApproximateTrees::kCount);
 
 /// The rows of a substep of length h [s], with the bounds they begin with, and the stiffness by the last
 /// forces.
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ExactTree>& tree);
-void make_tree_rows(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees);
-void make_tree_rows(double h, const TreeForm& form, TreeLanes<LooseTree>& tree);
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
+void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTree>& tree);
 
 /// Impulses and velocities with the rows' bounds, then the bounds that they ask for; where none changes, the
 /// stiffness by the forces found.
 void solve_trees(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
 void solve_trees(double h, const TreeForm& form, TreeLanes<ExactTree>& tree);
-void solve_trees(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees);
-void solve_trees(double h, const TreeForm& form, TreeLanes<LooseTree>& tree);
+void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
+void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTree>& tree);
 
 /// One lane's rows anew about the end of the substep, as the velocities found say. Returns the largest error
 /// of a lock, over the levers or in rad.
@@ -189,13 +190,13 @@ double make_tree_rows_ahead(double h, const TreeForm& form, int lane, TreeLanes<
 /// One lane's impulses within their bounds, and the velocities that they give.
 void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ExactTrees>& trees);
 void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ExactTree>& tree);
-void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<LooseTrees>& trees);
-void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<LooseTree>& tree);
+void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ApproximateTrees>& trees);
+void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ApproximateTree>& tree);
 
 // The scalar twins, lane after lane.
 void make_tree_rows_scalar(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
-void make_tree_rows_scalar(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees);
+void make_tree_rows_scalar(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
 void solve_trees_scalar(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
-void solve_trees_scalar(double h, const TreeForm& form, TreeLanes<LooseTrees>& trees);
+void solve_trees_scalar(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
 
 }  // namespace hooke::solver::wide

@@ -47,11 +47,11 @@ class TreeRows {
         if (form.role == RowRole::kSpring || form.sprung)
           put(f.value[form.freedom] - at(row.goal), row.start);
         first_bound(form, now, row);
-        if (Kind::kLoose && form.role == RowRole::kMotor)
-          loosen(form,
-                 slide_of(form, per_h_ * (f.value[form.freedom] - before.value[form.freedom]), now, link_a(i),
-                          link_b(i)),
-                 row);
+        if (Kind::kApproximate && form.role == RowRole::kMotor)
+          soften_motor(form,
+                       slide_of(form, per_h_ * (f.value[form.freedom] - before.value[form.freedom]), now,
+                                link_a(i), link_b(i)),
+                       row);
       }
     }
   }
@@ -78,15 +78,15 @@ class TreeRows {
         Number rate = dot(now.j_b, get3<Number>(link_of_b.omega_now, lane_)) -
                       dot(now.j_a, get3<Number>(link_of_a.omega_now, lane_));
         if (!row_form.turns()) rate = rate + dot(now.n, v);
-        const Number way = Number(h_) * rate;
+        const Number displacement = Number(h_) * rate;
         // An error beyond the speed limit comes back along the row it has.
         if (row_form.role == RowRole::kLock) {
           const Number size_of_c = size_of_number(now.c);
           if (any(above(Number(0.999) * now.rate * size_of_c, size_of_number(now.target)))) continue;
           worst = larger(worst, row_form.turns() ? size_of_c : quotient(size_of_c, size));
         }
-        now.target = now.target + now.rate * way;
-        if (row_form.sprung) now.spring_target = now.spring_target + now.spring_rate * way;
+        now.target = now.target + now.rate * displacement;
+        if (row_form.sprung) now.spring_target = now.spring_target + now.spring_rate * displacement;
         write_row(row_form, shape.child_is_b, now, row);
       }
     }
@@ -138,7 +138,7 @@ class TreeRows {
     Number spring_rate, spring_target, spring_gamma;
   };
   struct Speeds {
-    Number way, turn;
+    Number displacement, turn;
   };
   struct Before {
     Number value[6];
@@ -166,18 +166,19 @@ class TreeRows {
     const Scale<Number> now_inverse = in_axes(r, roots);
     const Scale<Number> step = get6(link.step_scale);
     const Scale<Number> step_inverse = inverse(step);
-    const auto tumbles = above(at(link.tumbles), zero);
+    const auto is_gyroscopic = above(at(link.is_gyroscopic), zero);
     const Triple<Number> given = get3<Number>(link.omega_before, lane_);
     const Triple<Number> turned = now_inverse.times(step.times(given));
     put(rotation.x, link.rotation[0]);
     put(rotation.y, link.rotation[1]);
     put(rotation.z, link.rotation[2]);
     put(rotation.w, link.rotation[3]);
-    put6(chosen(tumbles, now, step), link.scale);
-    put6(chosen(tumbles, now_inverse, step_inverse), link.scale_inverse);
+    put6(chosen(is_gyroscopic, now, step), link.scale);
+    put6(chosen(is_gyroscopic, now_inverse, step_inverse), link.scale_inverse);
     put6(step_inverse, link.step_scale_inverse);
-    const Triple<Number> omega = {choose(tumbles, turned.x, given.x), choose(tumbles, turned.y, given.y),
-                                  choose(tumbles, turned.z, given.z)};
+    const Triple<Number> omega = {choose(is_gyroscopic, turned.x, given.x),
+                                  choose(is_gyroscopic, turned.y, given.y),
+                                  choose(is_gyroscopic, turned.z, given.z)};
     put3(omega, link.omega_before, lane_);
     put3(omega, link.omega, lane_);
   }
@@ -285,7 +286,7 @@ class TreeRows {
         now.c = value - at(row.goal);
         if (form.turns()) now.c = now.c - whole_turns_of(now.c);
         now.rate = per_h_;
-        const Number most = form.turns() ? fastest.turn : fastest.way;
+        const Number most = form.turns() ? fastest.turn : fastest.displacement;
         now.target = smaller(larger(zero - now.rate * now.c, zero - most), most);
         break;
       }
@@ -359,13 +360,13 @@ class TreeRows {
         dot(now.j_b, get3<Number>(b.omega_before, lane_)) - dot(now.j_a, get3<Number>(a.omega_before, lane_));
     if (!form.turns())
       rate = rate + dot(now.n, difference(get3<Number>(b.v, lane_), get3<Number>(a.v, lane_)));
-    const Number jolt = Number(kLooseJolt) * size_of_number(rate);
-    return larger(larger(size_of_number(last), jolt), Number(kLooseSlide));
+    const Number jolt = Number(kApproximateJolt) * size_of_number(rate);
+    return larger(larger(size_of_number(last), jolt), Number(kApproximateSlide));
   }
 
   /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. It slides at
   /// `speed`.
-  HWY_INLINE void loosen(const TreeRowForm& form, const Number& speed, Row& row) const {
+  HWY_INLINE void soften_motor(const TreeRowForm& form, const Number& speed, Row& row) const {
     const Number zero(0.0);
     Number gamma = quotient(speed, at(row.high));
     Number target = zero;

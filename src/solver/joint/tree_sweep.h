@@ -419,7 +419,7 @@ class TreeSweep {
     Number spring = zero;
     if (form.sprung) {
       Number beside = fixed;
-      if constexpr (Kind::kLoose) {
+      if constexpr (Kind::kApproximate) {
         // Friction is one row with the spring.
         beside = quotient(at(row.spring_target) - rate_now, at(row.spring_gamma));
         own = lambda - beside;
@@ -445,17 +445,17 @@ class TreeSweep {
     Number low = at(row.low);
     Number high = at(row.high);
     Number least(kNoSpeed);
-    if constexpr (Kind::kLoose) {
-      const Number slack = form.role == RowRole::kMotor ? Number(kLooseFriction - 1) * high
-                                                        : Number(kLooseSpeed) * at(row.inverse);
+    if constexpr (Kind::kApproximate) {
+      const Number slack = form.role == RowRole::kMotor ? Number(kApproximateFriction - 1) * high
+                                                        : Number(kApproximateSpeed) * at(row.inverse);
       low = low - slack;
       high = high + slack;
-      least = Number(kLooseSpeed);
+      least = Number(kApproximateSpeed);
     }
     const Number to = choose(above(low, own), zero - one, choose(above(own, high), one, zero));
     const Number let_go = choose(above(zero - least, bound * lacks), zero, bound);
     const Number freed = at(row.freed);
-    const bool stays = Kind::kLoose && form.role == RowRole::kMotor;
+    const bool stays = Kind::kApproximate && form.role == RowRole::kMotor;
     const Number held = stays ? bound : choose(above(release, freed), let_go, bound);
     put(choose(above(bound * bound, held * held), one, freed), row.freed);
     return choose(above(Number(0.5), bound * bound), to, held);
@@ -474,8 +474,8 @@ template <class Number, class Kind>
 HWY_INLINE void solve_tree_lanes(double h, const TreeForm& form, TreeLanes<Kind>& trees) {
   for (int lane = 0; lane < Kind::kCount; lane += kLanesOf<Number>) {
     TreeSweep<Number, Kind>(form, trees, lane).run(trees);
-    const Number settled = Number(1.0) - get<Number>(trees.changed + lane);
-    write(TreeStiffness<Number, Kind>(h, form, trees, lane).stiffen(settled), trees.grew + lane);
+    const Number converged = Number(1.0) - get<Number>(trees.changed + lane);
+    write(TreeStiffness<Number, Kind>(h, form, trees, lane).stiffen(converged), trees.grew + lane);
   }
 }
 

@@ -11,10 +11,10 @@ JointBody joint_end(const state::Tables& t, const state::HookPlace& place) {
   end.center = t.objects[place.object].origin;
   for (std::uint32_t i = 0; i < place.particle_count; ++i) {
     const auto weight = static_cast<double>(place.weight[i]);
-    const state::VelocityLine& line = t.particles.velocity[place.particle[i]];
+    const state::VelocityRecord& record = t.particles.velocity[place.particle[i]];
     end.center += weight * vector_cast<double>(t.particles.position[place.particle[i]].x);
-    end.v += weight * vector_cast<double>(line.v);
-    end.inverse_mass += weight * weight * static_cast<double>(line.inverse_mass);
+    end.v += weight * vector_cast<double>(record.v);
+    end.inverse_mass += weight * weight * static_cast<double>(record.inverse_mass);
   }
   return end;
 }

@@ -205,21 +205,21 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
                     std::span<JointRow, Hook::kMaxRows> rows) {
   Freedoms f = find_freedoms(hook, a, b);
   for (int i = 0; i < 6; ++i) hook.value[i] = f.value[i];
-  const double fastest_way = kPushSpeed + length(b.v - a.v);
-  const double fastest_turn = kPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
+  const double fastest_translation = kPushSpeed + length(b.v - a.v);
+  const double fastest_rotation = kPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
   const double levers = length(f.r_a) + length(f.r_b);
   int count = 0;
   for_each_row(hook, [&](int i, RowRole role) {
-    const bool is_way = i < 3;
+    const bool is_translation = i < 3;
     const bool is_twist = hook.kind == HookKind::kBall && i == kTwist && role == RowRole::kLimit;
     if (is_twist)
       take_twist(a.rotation * math::in_double(hook.a.axes), b.rotation * math::in_double(hook.b.axes), f);
     JointRow& row = rows[count++];
     row = {.low = -kInfinite, .high = kInfinite, .role = role};
-    (is_way ? row.n : row.axis) = f.axis[i];
-    row.j_a = a.scale * (is_way ? cross(f.r_a, row.n) : row.axis);
-    row.j_b = b.scale * (is_way ? cross(f.r_b, row.n) : row.axis);
-    const double fastest = is_way ? fastest_way : fastest_turn;
+    (is_translation ? row.n : row.axis) = f.axis[i];
+    row.j_a = a.scale * (is_translation ? cross(f.r_a, row.n) : row.axis);
+    row.j_b = b.scale * (is_translation ? cross(f.r_b, row.n) : row.axis);
+    const double fastest = is_translation ? fastest_translation : fastest_rotation;
     if (i == kCone) {
       row.gamma = hook.compliance[1];
       return make_limit({.upper = hook.cone}, f.value[i], h, row);
@@ -228,8 +228,8 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     row.c = f.value[i] - static_cast<double>(freedom.spring.target);
     switch (role) {
       case RowRole::kLock:
-        if (!is_way) row.c -= math::whole_turns(row.c);
-        if (!hook.holds_point()) row.c = without_rounding(row.c, kRounding * (is_way ? levers : 1));
+        if (!is_translation) row.c -= math::whole_turns(row.c);
+        if (!hook.holds_point()) row.c = without_rounding(row.c, kRounding * (is_translation ? levers : 1));
         row.rate = 1 / h;
         row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;
@@ -245,7 +245,7 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
         make_limit(freedom.limits, f.value[i], h, row);
         break;
     }
-    row.gamma += hook.compliance[is_way ? 0 : 1];
+    row.gamma += hook.compliance[is_translation ? 0 : 1];
   });
   return count;
 }

@@ -27,17 +27,18 @@ using Number = double;
 using Number = WideDouble;
 #endif
 
-void load_ropes_here(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
-  load_rope_lanes<Number>(places, ropes);
+void load_ropes_here(const RopeLocations<kRopeLanes>& locations, RopeLanes<kRopeLanes>& ropes) {
+  load_rope_lanes<Number>(locations, ropes);
 }
 
 void solve_ropes_here(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
   solve_rope_lanes<Number>(h, traits, ropes);
 }
 
-void store_ropes_here(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
-                      const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
-  store_rope_lanes<Number>(h, places, traits, chosen, ropes);
+void store_ropes_here(double h, const RopeLocations<kRopeLanes>& locations,
+                      const RopeTraits<kRopeLanes>& traits, const bool (&chosen)[kRopeLanes],
+                      const RopeLanes<kRopeLanes>& ropes) {
+  store_rope_lanes<Number>(h, locations, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE
@@ -50,9 +51,9 @@ HWY_EXPORT(load_ropes_here);
 HWY_EXPORT(solve_ropes_here);
 HWY_EXPORT(store_ropes_here);
 
-void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
-  if (is_scalar()) return load_ropes_scalar(places, ropes);
-  HWY_DYNAMIC_DISPATCH(load_ropes_here)(places, ropes);
+void load_ropes(const RopeLocations<kRopeLanes>& locations, RopeLanes<kRopeLanes>& ropes) {
+  if (is_scalar()) return load_ropes_scalar(locations, ropes);
+  HWY_DYNAMIC_DISPATCH(load_ropes_here)(locations, ropes);
 }
 
 void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
@@ -60,10 +61,10 @@ void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRope
   HWY_DYNAMIC_DISPATCH(solve_ropes_here)(h, traits, ropes);
 }
 
-void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+void store_ropes(double h, const RopeLocations<kRopeLanes>& locations, const RopeTraits<kRopeLanes>& traits,
                  const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
-  if (is_scalar()) return store_ropes_scalar(h, places, traits, chosen, ropes);
-  HWY_DYNAMIC_DISPATCH(store_ropes_here)(h, places, traits, chosen, ropes);
+  if (is_scalar()) return store_ropes_scalar(h, locations, traits, chosen, ropes);
+  HWY_DYNAMIC_DISPATCH(store_ropes_here)(h, locations, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide
@@ -73,17 +74,17 @@ void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTrait
 
 namespace hooke::solver::wide {
 
-void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes) {
-  load_ropes_scalar(places, ropes);
+void load_ropes(const RopeLocations<kRopeLanes>& locations, RopeLanes<kRopeLanes>& ropes) {
+  load_ropes_scalar(locations, ropes);
 }
 
 void solve_ropes(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes) {
   solve_ropes_scalar(h, traits, ropes);
 }
 
-void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+void store_ropes(double h, const RopeLocations<kRopeLanes>& locations, const RopeTraits<kRopeLanes>& traits,
                  const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes) {
-  store_ropes_scalar(h, places, traits, chosen, ropes);
+  store_ropes_scalar(h, locations, traits, chosen, ropes);
 }
 
 }  // namespace hooke::solver::wide

@@ -23,7 +23,7 @@ struct SegmentTraits {
   Number rest, per_rest;          ///< L [m]; 1 / L
   Number limit;                   ///< Largest length [m].
   Number damping, per_stiffness;  ///< c; 1 / k, 0 if it is rigid.
-  Number bias, grip;              ///< b; 1 / gamma = h (c + h k), infinite if it is rigid.
+  Number bias, resistance;        ///< b; 1 / gamma = h (c + h k), infinite if it is rigid.
   Number lighter, per_lighter;    ///< m, mass of the lighter end that moves [kg]; 1 / m
 };
 
@@ -32,7 +32,7 @@ template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeTraitLanes {
   double mass[kCount], w[kCount];
   double rest[kCount], per_rest[kCount], limit[kCount], damping[kCount], per_stiffness[kCount];
-  double bias[kCount], grip[kCount], lighter[kCount], per_lighter[kCount];
+  double bias[kCount], resistance[kCount], lighter[kCount], per_lighter[kCount];
 };
 
 /// Bending at node i + 1, as RopeBend. Its compliance and target in one: `pull` is what it gives for each
@@ -41,7 +41,7 @@ struct alignas(kCount * sizeof(double)) RopeTraitLanes {
 template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeBendLanes {
   double before[kCount], behind[kCount];
-  double pull[kCount], grip[kCount], back[kCount], whipping_grip[kCount];
+  double pull[kCount], resistance[kCount], back[kCount], whipping_resistance[kCount];
 };
 
 /// What stays of ropes from substep to substep.
@@ -66,12 +66,12 @@ struct alignas(kCount * sizeof(double)) RopeNodeLanes {
 /// Of the elimination of nodes with bends, as rope_sweep.h has it: F and c.
 template <int kCount>
 struct alignas(kCount * sizeof(double)) RopeFillLanes {
-  double meets[3][3][kCount], outer[kCount];
+  double next_block[3][3][kCount], outer[kCount];
 };
 
 /// What touches a node: grips, and impulse.
 template <int kCount>
-struct alignas(kCount * sizeof(double)) RopeHoldLanes {
+struct alignas(kCount * sizeof(double)) NodeConstraintLanes {
   double mass[6][kCount], impulse[3][kCount];
 };
 
@@ -89,9 +89,9 @@ template <int kCount>
 struct RopeLanes {
   std::vector<RopeNodeLanes<kCount>> nodes;
   std::vector<RopeSegmentLanes<kCount>> segments;
-  std::vector<RopeFillLanes<kCount>> fills;  ///< None if no rope resists bending.
-  std::vector<RopeHoldLanes<kCount>> holds;  ///< Of nodes that `held` names.
-  std::vector<char> held;                    ///< Whether a node is touched in any lane.
+  std::vector<RopeFillLanes<kCount>> fills;              ///< None if no rope resists bending.
+  std::vector<NodeConstraintLanes<kCount>> constraints;  ///< Of nodes that `held` names.
+  std::vector<char> constrained;                         ///< Whether a node is touched in any lane.
   // As RopeSetting; `first` is 1 or 0.
   double compliance[kCount], turning[3][kCount], first[kCount];
 
@@ -104,7 +104,7 @@ struct RopeLanes {
 /// Where ropes are in the tables. Positions and velocities are lines of four numbers, three of which are a
 /// vector.
 template <int kCount>
-struct RopePlaces {
+struct RopeLocations {
   std::uint32_t first_particle[kCount], first_segment[kCount];
   const Real* position;
   const Real* before;  ///< Velocities before this substep's forces.
@@ -114,8 +114,8 @@ struct RopePlaces {
 };
 
 /// Reads free velocities, how segments lie and went, and T+. No segment is at its limit.
-void load_ropes(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes);
-void load_ropes(const RopePlaces<1>& places, RopeLanes<1>& rope);
+void load_ropes(const RopeLocations<kRopeLanes>& locations, RopeLanes<kRopeLanes>& ropes);
+void load_ropes(const RopeLocations<1>& locations, RopeLanes<1>& rope);
 
 /// A Newton step of substep length h [s]: linearizes all segments, finds velocities and impulses, raises T+,
 /// moves segments onto or off their limits.
@@ -124,15 +124,16 @@ void solve_ropes(double h, const RopeTraits<1>& traits, RopeLanes<1>& rope);
 
 /// Writes velocities and tensions of the lanes that `chosen` names, after a substep of length h [s], and adds
 /// tensions to their sums.
-void store_ropes(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
+void store_ropes(double h, const RopeLocations<kRopeLanes>& locations, const RopeTraits<kRopeLanes>& traits,
                  const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes);
-void store_ropes(double h, const RopePlaces<1>& places, const RopeTraits<1>& traits, const bool (&chosen)[1],
-                 const RopeLanes<1>& rope);
+void store_ropes(double h, const RopeLocations<1>& locations, const RopeTraits<1>& traits,
+                 const bool (&chosen)[1], const RopeLanes<1>& rope);
 
 // The scalar twins, lane after lane.
-void load_ropes_scalar(const RopePlaces<kRopeLanes>& places, RopeLanes<kRopeLanes>& ropes);
+void load_ropes_scalar(const RopeLocations<kRopeLanes>& locations, RopeLanes<kRopeLanes>& ropes);
 void solve_ropes_scalar(double h, const RopeTraits<kRopeLanes>& traits, RopeLanes<kRopeLanes>& ropes);
-void store_ropes_scalar(double h, const RopePlaces<kRopeLanes>& places, const RopeTraits<kRopeLanes>& traits,
-                        const bool (&chosen)[kRopeLanes], const RopeLanes<kRopeLanes>& ropes);
+void store_ropes_scalar(double h, const RopeLocations<kRopeLanes>& locations,
+                        const RopeTraits<kRopeLanes>& traits, const bool (&chosen)[kRopeLanes],
+                        const RopeLanes<kRopeLanes>& ropes);
 
 }  // namespace hooke::solver::wide

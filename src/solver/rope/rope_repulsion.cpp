@@ -45,7 +45,7 @@ double largest_range(const std::vector<Point>& points) {
   return static_cast<double>(range);
 }
 
-bool are_kin(const Point& a, const Point& b) {
+bool are_adjacent(const Point& a, const Point& b) {
   constexpr Real kTurn = std::numbers::pi_v<Real> / 2;
   return a.object == b.object && std::abs(a.arc - b.arc) < kTurn * a.range;
 }
@@ -56,10 +56,10 @@ bool are_known(const Repulsion& memory) {
   DVec3 drift;
   for (std::size_t i = 0; i < memory.places.size(); ++i) drift += memory.places[i] - memory.found_at[i];
   drift = (1 / static_cast<double>(memory.places.size())) * drift;
-  double way = 0;
+  double largest_square = 0;
   for (std::size_t i = 0; i < memory.places.size(); ++i)
-    way = std::max(way, length_squared(memory.places[i] - memory.found_at[i] - drift));
-  return 2 * std::sqrt(way) < (kNoted - kNear) * largest_range(memory.points);
+    largest_square = std::max(largest_square, length_squared(memory.places[i] - memory.found_at[i] - drift));
+  return 2 * std::sqrt(largest_square) < (kNoted - kNear) * largest_range(memory.points);
 }
 
 /// Notes what may push each point in `range` until one has moved too far.
@@ -70,7 +70,7 @@ void find_others(parallel::Range range, double reach, const Repulsion& memory, R
     const auto first = static_cast<std::ptrdiff_t>(part.others.size());
     memory.grid.for_each_near(memory.places[i], [&](std::uint32_t j) {
       const bool is_near = length_squared(memory.places[i] - memory.places[j]) < reach * reach;
-      if (is_near && j != i && !are_kin(memory.points[i], memory.points[j])) part.others.push_back(j);
+      if (is_near && j != i && !are_adjacent(memory.points[i], memory.points[j])) part.others.push_back(j);
     });
     std::sort(part.others.begin() + first, part.others.end());
     part.end.push_back(static_cast<std::uint32_t>(part.others.size()));

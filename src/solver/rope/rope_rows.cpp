@@ -39,37 +39,37 @@ wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const R
 }
 
 /// How fast a contact would open, with its gap as speed.
-double approach_of(const RopeTouch& t, V u, double h) {
+double closing_speed_of(const RopeContactRow& t, V u, double h) {
   return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
 }
 
 /// What friction did while it slid: it drives where N was not right yet, or the way has turned.
-bool drives_by_friction(const RopeTouch& t, V sliding) {
+bool drives_by_friction(const RopeContactRow& t, V sliding) {
   return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
 }
 
 /// Friction that a contact starts from: what it did in the last substep, of the size that N allows now.
-V carried_friction(const RopeTouch& t) {
+V carried_friction(const RopeContactRow& t) {
   const double most = t.friction * t.normal;
   const double size = length(t.f0);
   return size > most ? (most / size) * t.f0 : t.f0;
 }
 
-void slide(V trial, double size, RopeTouch& t) {
+void slide(V trial, double size, RopeContactRow& t) {
   t.slides = true;
   t.trial = size;
   t.against = (1.0 / size) * trial;
 }
 
 /// Of a change of the trial force across its direction, what the friction of a node that slides gets.
-double turned_share(const RopeTouch& t) {
+double turned_share(const RopeContactRow& t) {
   return t.trial > 0 ? t.friction * t.normal / t.trial : 0;
 }
 
 /// Friction of an active contact: holds with f0 - rho u_t up to mu N, and is mu N along that beyond: the
 /// nearest force that Coulomb's cone allows. What is `dragged` is so by mu N over its speed, which never
 /// drives, but takes many solutions to come to the force.
-void update_friction(RopeTouch& t, V sliding) {
+void update_friction(RopeContactRow& t, V sliding) {
   const double most = t.friction * t.normal;
   if (t.dragged) {
     const double speed = length(sliding);
@@ -86,22 +86,22 @@ void update_friction(RopeTouch& t, V sliding) {
 }
 
 /// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
-double drag_of(const RopeTouch& t, V u) {
+double drag_of(const RopeContactRow& t, V u) {
   if (!(t.normal > 0)) return 0;
   const double speed = length(across(t.n, u - t.surface));
   return speed * t.rho > t.friction * t.normal ? t.friction * t.normal / speed : t.rho;
 }
 
 /// True if it came into effect or out of it, or if its friction is not yet what its force allows.
-bool update_point_touch(double h, bool let_go, V u, RopeTouch& t) {
+bool update_point_contact_row(double h, bool let_go, V u, RopeContactRow& t) {
   const bool was_active = t.active;
   const double drag = t.drag;
-  const double approach = approach_of(t, u, h);
-  t.normal = t.active ? std::max(0.0, -t.rho * approach) : 0;
-  t.active = t.active ? t.normal > 0 : approach < 0 && !let_go;
+  const double closing_speed = closing_speed_of(t, u, h);
+  t.normal = t.active ? std::max(0.0, -t.rho * closing_speed) : 0;
+  t.active = t.active ? t.normal > 0 : closing_speed < 0 && !let_go;
   t.drag = drag_of(t, u);
   t.f = -drag * across(t.n, u - t.surface);
-  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kSettledDrag * drag);
+  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kConvergedDrag * drag);
 }
 
 wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
@@ -116,7 +116,7 @@ wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, doub
 
 /// A force across the normal of before, across the one of now: of the same size, as its node has gone round
 /// what it touches; but of a new place only what is across there too.
-V across_anew(V n, V force) {
+V friction_across(V n, V force) {
   constexpr double kSamePlace = 0.95;  // cosine of the turn
   const V now = across(n, force);
   const double size = length(now);
@@ -124,9 +124,9 @@ V across_anew(V n, V force) {
   return size > kSamePlace * before ? (before / size) * now : now;
 }
 
-RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
+RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Contacts& contacts = tables.contacts;
-  RopeTouch t;
+  RopeContactRow t;
   t.row = static_cast<std::uint32_t>(row);
   t.node = node;
   t.rho = kContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
@@ -137,7 +137,7 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
   t.separation = static_cast<double>(contacts.separation[row]);
   t.friction = static_cast<double>(contacts.friction[row]);
   t.n0 = h * static_cast<double>(contacts.normal_force[row]);
-  t.f0 = across_anew(t.n, h * vector_cast<double>(contacts.friction_force[row]));
+  t.f0 = friction_across(t.n, h * vector_cast<double>(contacts.friction_force[row]));
   t.active = t.n0 > 0 || t.separation <= 0;
   const double size = length(t.f0);
   t.normal = t.n0;
@@ -148,16 +148,17 @@ RopeTouch load_touch(std::size_t row, std::uint32_t node, double h, const state:
 }
 
 /// A tether that is a spring row from a free particle to a pin.
-RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const state::Tables& tables) {
+RopeContactRow load_tether(std::uint32_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Springs& springs = tables.springs;
   const std::uint32_t particle = springs.particle_a[row];
   const std::uint32_t pin = springs.particle_b[row];
-  const V way = vector_cast<double>(tables.particles.position[pin].x - tables.particles.position[particle].x);
-  const double distance = length(way);
-  RopeTouch t;
-  t.row = RopeTouch::kTether;
+  const V displacement =
+      vector_cast<double>(tables.particles.position[pin].x - tables.particles.position[particle].x);
+  const double distance = length(displacement);
+  RopeContactRow t;
+  t.row = RopeContactRow::kTether;
   t.node = node;
-  t.n = distance > 0 ? (1.0 / distance) * way : V{0, 1, 0};
+  t.n = distance > 0 ? (1.0 / distance) * displacement : V{0, 1, 0};
   t.surface = vector_cast<double>(tables.particles.velocity[pin].v);
   const double slack = static_cast<double>(springs.rest_length[row]) - distance;
   t.active = slack <= 0;
@@ -168,15 +169,15 @@ RopeTouch load_tether(std::uint32_t row, std::uint32_t node, double h, const sta
 
 }  // namespace
 
-void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityRecord>& before, double h,
                const state::Tables& tables, RopeScratch& s) {
   const auto first = static_cast<std::uint32_t>(s.nodes.size());
-  for (std::uint32_t i = 0; i < chain.node_count; ++i) {
-    const std::uint32_t row = chain.first_particle + i;
+  for (std::uint32_t i = 0; i < rope_system.node_count; ++i) {
+    const std::uint32_t row = rope_system.first_particle + i;
     s.nodes.push_back(load_node(row, before[row].v, tables.particles));
   }
-  for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
-    const std::size_t row = chain.first_segment + i;
+  for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i) {
+    const std::size_t row = rope_system.first_segment + i;
     const RopeNode& a = s.nodes[first + i];
     const RopeNode& b = s.nodes[first + i + 1];
     RopeSegment e;
@@ -186,7 +187,7 @@ void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& befor
     e.limited = tables.segments.limited[row] != 0;
     s.segments.push_back(e);
   }
-  load_touches(chain, first, h, tables, s.touches);
+  load_contact_rows(rope_system, first, h, tables, s.contact_rows);
 }
 
 wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
@@ -203,51 +204,52 @@ wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, doub
           .damping = c,
           .per_stiffness = 1 / k,
           .bias = rigid ? 1 / h : k / s,
-          .grip = h * s,
+          .resistance = h * s,
           .lighter = lighter,
           .per_lighter = 1 / lighter};
 }
 
-void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
-                  std::vector<RopeTouch>& touches) {
-  for (std::uint32_t row = chain.first_contact; row < chain.end_contact; ++row) {
+void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
+                       const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
+  for (std::uint32_t row = rope_system.first_contact; row < rope_system.end_contact; ++row) {
     const std::uint32_t particle = tables.contacts.particle[row];
     if (tables.particles.velocity[particle].inverse_mass > Real(0))
-      touches.push_back(load_touch(row, first_node + particle - chain.first_particle, h, tables));
+      contact_rows.push_back(
+          load_contact_row(row, first_node + particle - rope_system.first_particle, h, tables));
   }
 }
 
-void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
-                        std::span<const std::uint32_t> tethers, double heaviest, double h,
-                        const state::Tables& tables, std::vector<RopeTouch>& touches) {
+void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                             std::span<const std::uint32_t> tethers, double heaviest, double h,
+                             const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
   const double own = node.mass;
   heaviest = std::max(heaviest, own);
   for (std::size_t row = first; row < end; ++row) {
     const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
     if (w > 0) heaviest = std::max(heaviest, 1 / w);
   }
-  const std::size_t first_touch = touches.size();
+  const std::size_t first_contact_row = contact_rows.size();
   for (std::size_t row = first; row < end; ++row) {
-    RopeTouch t = load_touch(row, index, h, tables);
+    RopeContactRow t = load_contact_row(row, index, h, tables);
     t.separation = std::max(t.separation, 0.0);
     t.n0 = 0;
     t.f0 = {};
     t.slides = false;
-    touches.push_back(t);
+    contact_rows.push_back(t);
   }
   for (const std::uint32_t row : tethers) {
     const bool still_pinned =
         tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
-    if (still_pinned) touches.push_back(load_tether(row, index, h, tables));
+    if (still_pinned) contact_rows.push_back(load_tether(row, index, h, tables));
   }
-  for (RopeTouch& t : std::span(touches).subspan(first_touch)) {
+  for (RopeContactRow& t : std::span(contact_rows).subspan(first_contact_row)) {
     t.of_point = true;
     t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
     t.drag = drag_of(t, node.v_free);
   }
 }
 
-RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments) {
+RopeBend load_bend(const RopeSystem& rope_system, std::size_t row, const state::Segments& segments) {
   const auto before = static_cast<double>(segments.rest_length[row]);
   const auto behind = static_cast<double>(segments.rest_length[row + 1]);
   const double length =
@@ -255,15 +257,16 @@ RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& s
   RopeBend bend;
   bend.before = 1 / before;
   bend.behind = 1 / behind;
-  bend.stiffness = chain.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
-  bend.damping = chain.bend_damping * bend.stiffness;
+  bend.stiffness = rope_system.bend_stiffness / (length > 0 ? length : 0.5 * (before + behind));
+  bend.damping = rope_system.bend_damping * bend.stiffness;
   return bend;
 }
 
-void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s) {
-  if (!(chain.bend_stiffness > 0)) return;
-  for (std::size_t i = 1; i + 1 < chain.node_count; ++i) {
-    RopeBend bend = load_bend(chain, chain.first_segment + i - 1, segments);
+void load_bends(const RopeSystem& rope_system, std::size_t first_node, const state::Segments& segments,
+                RopeScratch& s) {
+  if (!(rope_system.bend_stiffness > 0)) return;
+  for (std::size_t i = 1; i + 1 < rope_system.node_count; ++i) {
+    RopeBend bend = load_bend(rope_system, rope_system.first_segment + i - 1, segments);
     bend.node = static_cast<std::uint32_t>(first_node + i);
     s.bends.push_back(bend);
   }
@@ -271,18 +274,18 @@ void load_bends(const Chain& chain, std::size_t first_node, const state::Segment
 
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend) {
   const bool whips = !setting.first;
-  const double grip = bend.grip(h, whips);
+  const double resistance = bend.resistance(h, whips);
   const double back = whips ? 0 : kBendNewmark * h;
   const RopeNode* node = &nodes[bend.node];
   const auto line = [&](int i) {
     return node[i + 1].x - node[i].x - back * (node[i + 1].v_before - node[i].v_before);
   };
-  bend.gamma = 1 / (h * grip);
-  bend.target = (-bend.stiffness / grip) * (bend.behind * line(0) - bend.before * line(-1));
+  bend.gamma = 1 / (h * resistance);
+  bend.target = (-bend.stiffness / resistance) * (bend.behind * line(0) - bend.before * line(-1));
 }
 
-RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V line, V speed) {
-  if (std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; }))
+RopeSetting first_setting(std::span<const RopeContactRow> contact_rows, double rest, V line, V speed) {
+  if (std::any_of(contact_rows.begin(), contact_rows.end(), [](const RopeContactRow& t) { return t.active; }))
     return {.compliance = kComplianceInContact};
   RopeSetting setting = {.compliance = kComplianceInAir};
   // The line of a rope that is folded to less than a quarter of its length means nothing.
@@ -291,13 +294,13 @@ RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, V lin
   return setting;
 }
 
-RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std::size_t first_touch,
+RopeSetting first_setting(std::size_t first_node, std::size_t first_segment, std::size_t first_contact_row,
                           const RopeScratch& s) {
   double rest = 0;
   for (std::size_t i = first_segment; i < s.segments.size(); ++i) rest += s.segments[i].traits.rest;
   const RopeNode& first = s.nodes[first_node];
   const RopeNode& last = s.nodes.back();
-  return first_setting(std::span(s.touches).subspan(first_touch), rest, last.x - first.x,
+  return first_setting(std::span(s.contact_rows).subspan(first_contact_row), rest, last.x - first.x,
                        last.v_before - first.v_before);
 }
 
@@ -313,13 +316,13 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
 
 /// What slides is free along its way. Beside it a change of velocity turns the force: mu N for each of the
 /// trial force.
-M grip_of(const RopeTouch& t) {
+M contact_stiffness(const RopeContactRow& t) {
   if (!t.slides || t.of_point || t.dragged)
     return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho);
   return math::axial(t.n, t.rho, 0.0) + math::axial(cross(t.n, t.against), t.rho * turned_share(t), 0.0);
 }
 
-V push_of(const RopeTouch& t, double h) {
+V push_of(const RopeContactRow& t, double h) {
   const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
   if (t.dragged) return normal;
   const V held = carried_friction(t);
@@ -328,37 +331,37 @@ V push_of(const RopeTouch& t, double h) {
   return normal + (t.friction * t.normal) * t.against + (turned_share(t) * dot(beside, held)) * beside;
 }
 
-NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h) {
-  NodeHold hold = {M::diagonal(node.mass), node.mass * node.v_free};
-  for (const RopeTouch& t : at_node) {
+NodeConstraint node_constraint(std::span<const RopeContactRow> at_node, const RopeNode& node, double h) {
+  NodeConstraint constraint = {M::diagonal(node.mass), node.mass * node.v_free};
+  for (const RopeContactRow& t : at_node) {
     if (!t.active) continue;
-    const M grip = grip_of(t);
-    hold.mass = hold.mass + grip;
-    hold.impulse += push_of(t, h) + grip * (t.body < 0 ? t.surface : t.belt);
+    const M resistance = contact_stiffness(t);
+    constraint.mass = constraint.mass + resistance;
+    constraint.impulse += push_of(t, h) + resistance * (t.body < 0 ? t.surface : t.belt);
   }
-  return hold;
+  return constraint;
 }
 
-void hold_nodes(double h, RopeScratch& s) {
+void constrain_nodes(double h, RopeScratch& s) {
   for (RopeNode& node : s.nodes) {
     node.inverse = M::diagonal(node.w);
     node.target = node.v_free;
   }
-  for_each_touched(s.touches, [&](std::span<RopeTouch> at_node) {
+  for_each_node_in_contact(s.contact_rows, [&](std::span<RopeContactRow> at_node) {
     RopeNode& node = s.nodes[at_node.front().node];
-    const NodeHold hold = hold_of(at_node, node, h);
-    node.inverse = math::inverse(hold.mass);
-    node.target = node.inverse * hold.impulse;
+    const NodeConstraint constraint = node_constraint(at_node, node, h);
+    node.inverse = math::inverse(constraint.mass);
+    node.target = node.inverse * constraint.impulse;
   });
 }
 
-Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& t) {
-  const double approach = approach_of(t, node.u, h);
+Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, RopeContactRow& t) {
+  const double closing_speed = closing_speed_of(t, node.u, h);
   const bool was_active = t.active;
   const bool slid = t.slides;
-  Unsettled unsettled;
+  Unconverged unconverged;
   if (t.active) {
-    const double push = t.n0 - t.rho * approach;
+    const double push = t.n0 - t.rho * closing_speed;
     const V sliding = across(t.n, node.u - t.surface);
     const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kContactStiffness);
     const bool drags_on = drives_by_friction(t, sliding);
@@ -367,28 +370,28 @@ Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& t
     t.let_go = let_go && pulls;
     t.dragged = t.dragged || drags_on;
     if (t.active) update_friction(t, sliding);
-    unsettled.pulls = pulls || drags_on;
+    unconverged.pulls = pulls || drags_on;
   } else {
     t.normal = 0;
-    t.active = approach < 0 && !t.let_go;
-    unsettled.meets = t.active && approach < -kMeetingSpeed;
+    t.active = closing_speed < 0 && !t.let_go;
+    unconverged.impacts = t.active && closing_speed < -kImpactSpeed;
   }
   if (!t.active) t.f = {};
-  unsettled.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;
-  return unsettled;
+  unconverged.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;
+  return unconverged;
 }
 
-Unsettled update_touches(double h, bool let_go, RopeScratch& s) {
-  Unsettled unsettled;
-  for (RopeTouch& t : s.touches) {
+Unconverged update_contact_rows(double h, bool let_go, RopeScratch& s) {
+  Unconverged unconverged;
+  for (RopeContactRow& t : s.contact_rows) {
     const RopeNode& node = s.nodes[t.node];
     if (t.of_point) {
-      unsettled.points = update_point_touch(h, let_go, node.u, t) || unsettled.points;
+      unconverged.points = update_point_contact_row(h, let_go, node.u, t) || unconverged.points;
     } else {
-      unsettled.add(update_touch(h, let_go, node, t));
+      unconverged.add(update_contact_row(h, let_go, node, t));
     }
   }
-  return unsettled;
+  return unconverged;
 }
 
 double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
@@ -409,19 +412,19 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
   return worst;
 }
 
-int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled) {
-  if (unsettled.pulls) return 2 * kMostRopeSolves;
-  if (unsettled.meets) return kMostRopeSolves;
-  if (unsettled.ropes) return kSlidingSolves;
+int least_solves(std::span<const RopeContactRow> contact_rows, const Unconverged& unconverged) {
+  if (unconverged.pulls) return 2 * kMostRopeSolves;
+  if (unconverged.impacts) return kMostRopeSolves;
+  if (unconverged.ropes) return kSlidingSolves;
   const bool active =
-      std::any_of(touches.begin(), touches.end(), [](const RopeTouch& t) { return t.active; });
+      std::any_of(contact_rows.begin(), contact_rows.end(), [](const RopeContactRow& t) { return t.active; });
   return active ? kLeastContactSolves : 1;
 }
 
-bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches) {
+bool solve_again(int solves, double error, bool pulls, std::span<RopeContactRow> contact_rows) {
   if (solves != kMostRopeSolves) return solves < 2 * kMostRopeSolves;
-  if (error <= kReportedError || touches.empty()) return pulls;
-  for (RopeTouch& t : touches) {
+  if (error <= kReportedError || contact_rows.empty()) return pulls;
+  for (RopeContactRow& t : contact_rows) {
     t.friction = t.drag = 0;
     t.f0 = t.f = {};
     t.slides = true;
@@ -440,21 +443,21 @@ void store_tension(std::size_t row, double tension, bool limited, state::Segment
   segments.limited[row] = limited ? 1 : 0;
 }
 
-void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+void store_rope(const RopeSystem& rope_system, std::size_t first_node, std::size_t first_segment, double h,
                 const RopeScratch& s, state::Tables& tables) {
-  for (std::uint32_t i = 0; i < chain.node_count; ++i) {
+  for (std::uint32_t i = 0; i < rope_system.node_count; ++i) {
     const RopeNode& node = s.nodes[first_node + i];
-    if (node.w > 0) tables.particles.velocity[chain.first_particle + i].v = vector_cast<Real>(node.u);
+    if (node.w > 0) tables.particles.velocity[rope_system.first_particle + i].v = vector_cast<Real>(node.u);
   }
-  for (std::uint32_t i = 0; i + 1 < chain.node_count; ++i) {
+  for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i) {
     const RopeSegment& e = s.segments[first_segment + i];
-    store_tension(chain.first_segment + i, dot(e.n, e.q) / h, e.limited, tables.segments);
+    store_tension(rope_system.first_segment + i, dot(e.n, e.q) / h, e.limited, tables.segments);
   }
 }
 
-void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts) {
-  for (const RopeTouch& t : touches) {
-    if (t.row == RopeTouch::kTether) continue;
+void store_contact_rows(double h, std::span<const RopeContactRow> contact_rows, state::Contacts& contacts) {
+  for (const RopeContactRow& t : contact_rows) {
+    if (t.row == RopeContactRow::kTether) continue;
     contacts.normal_force[t.row] = static_cast<Real>(t.normal / h);
     contacts.friction_force[t.row] = vector_cast<Real>((1.0 / h) * t.f);
   }

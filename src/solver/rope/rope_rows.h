@@ -60,14 +60,14 @@ struct RopeBend {
   DVec3 impulse;  ///< [N m s]
 
   /// Moment per rate, over h, in a substep of length h [s].
-  [[nodiscard]] double grip(double h, bool whips) const {
+  [[nodiscard]] double resistance(double h, bool whips) const {
     return damping + (whips ? 1 : kBendNewmark + kBendDamping) * h * stiffness;
   }
 };
 
 /// A contact of a node, or a tether: what holds a point within a distance of its pin holds it as a plane
 /// across its way would, without friction.
-struct RopeTouch {
+struct RopeContactRow {
   static constexpr std::uint32_t kTether = 0xFFFFFFFF;
 
   std::uint32_t row = 0, node = 0;
@@ -99,13 +99,13 @@ struct RopeScratch {
   std::vector<RopeNode> nodes;
   std::vector<RopeSegment> segments;
   std::vector<RopeBend> bends;
-  std::vector<RopeTouch> touches;  ///< In order of nodes.
+  std::vector<RopeContactRow> contact_rows;  ///< In order of nodes.
 
   void clear() {
     nodes.clear();
     segments.clear();
     bends.clear();
-    touches.clear();
+    contact_rows.clear();
   }
 };
 
@@ -116,11 +116,11 @@ inline constexpr int kMostRopeSolves = 8;
 inline constexpr int kLeastContactSolves = 2;
 inline constexpr int kSlidingSolves = 4;
 inline constexpr double kSlidingShare =
-    0.9999;                                  ///< Of mu N: a node whose friction was this large was sliding.
-inline constexpr double kSettledDrag = 0.1;  ///< Share by which drag may still change.
+    0.9999;                                    ///< Of mu N: a node whose friction was this large was sliding.
+inline constexpr double kConvergedDrag = 0.1;  ///< Share by which drag may still change.
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
-void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& before, double h,
+void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityRecord>& before, double h,
                const state::Tables& tables, RopeScratch& s);
 
 /// What stays of a segment; `lighter` is the mass of its lighter end [kg].
@@ -128,19 +128,20 @@ void load_rope(const Chain& chain, const std::vector<state::VelocityLine>& befor
                                                          const state::Segments& segments);
 
 /// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
-void load_touches(const Chain& chain, std::uint32_t first_node, double h, const state::Tables& tables,
-                  std::vector<RopeTouch>& touches);
+void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
+                       const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
 /// Appends the contacts of one particle that is no rope's, `node` of the number `index`: rows [first, end),
 /// and the tethers that hold it, rows of springs. Overlap does not become speed
 /// (solver/soft/particle_contact_solve.h). `heaviest` is the mass of what else presses on it [kg].
-void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
-                        std::span<const std::uint32_t> tethers, double heaviest, double h,
-                        const state::Tables& tables, std::vector<RopeTouch>& touches);
+void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
+                             std::span<const std::uint32_t> tethers, double heaviest, double h,
+                             const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
 /// Bending between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only half a
 /// segment bends.
-[[nodiscard]] RopeBend load_bend(const Chain& chain, std::size_t row, const state::Segments& segments);
+[[nodiscard]] RopeBend load_bend(const RopeSystem& rope_system, std::size_t row,
+                                 const state::Segments& segments);
 
 /// Mass of the lighter of two nodes that move; 1 if neither does [kg]. Inverse masses are 0 of what is held.
 [[nodiscard]] inline double lighter_end(double mass_a, double inverse_a, double mass_b, double inverse_b) {
@@ -169,64 +170,66 @@ void load_point_touches(std::uint32_t index, const RopeNode& node, std::size_t f
 
 /// How a rope of length `rest` [m] is linearized at the start of a substep; `line` and `speed` go from its
 /// first node to its last.
-[[nodiscard]] RopeSetting first_setting(std::span<const RopeTouch> touches, double rest, DVec3 line,
+[[nodiscard]] RopeSetting first_setting(std::span<const RopeContactRow> contact_rows, double rest, DVec3 line,
                                         DVec3 speed);
 /// The same for the rope that was loaded last.
 [[nodiscard]] RopeSetting first_setting(std::size_t first_node, std::size_t first_segment,
-                                        std::size_t first_touch, const RopeScratch& s);
+                                        std::size_t first_contact_row, const RopeScratch& s);
 
 /// The segment's equation u_b - u_a = offset + compliance q.
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                RopeSegment& segment);
 
 /// Bends of a rope whose nodes begin at `first_node`.
-void load_bends(const Chain& chain, std::size_t first_node, const state::Segments& segments, RopeScratch& s);
+void load_bends(const RopeSystem& rope_system, std::size_t first_node, const state::Segments& segments,
+                RopeScratch& s);
 /// The bend's equation r = target - gamma * impulse in a substep of length h [s].
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend);
 
 /// W and v* of every node, with what touches it.
-void hold_nodes(double h, RopeScratch& s);
+void constrain_nodes(double h, RopeScratch& s);
 
 /// Calls visit(touches) for those of each node that has any; they are in order of nodes.
 template <class Visit>
-void for_each_touched(std::span<RopeTouch> touches, Visit&& visit) {
-  for (std::size_t first = 0; first < touches.size();) {
+void for_each_node_in_contact(std::span<RopeContactRow> contact_rows, Visit&& visit) {
+  for (std::size_t first = 0; first < contact_rows.size();) {
     std::size_t end = first;
-    while (end < touches.size() && touches[end].node == touches[first].node) ++end;
-    visit(touches.subspan(first, end - first));
+    while (end < contact_rows.size() && contact_rows[end].node == contact_rows[first].node) ++end;
+    visit(contact_rows.subspan(first, end - first));
     first = end;
   }
 }
 
 /// A node with what touches it: its mass with their grips, and the impulse that makes it go v*.
-struct NodeHold {
+struct NodeConstraint {
   math::Symmetric3<double> mass;
   DVec3 impulse;
 };
-[[nodiscard]] NodeHold hold_of(std::span<const RopeTouch> at_node, const RopeNode& node, double h);
+[[nodiscard]] NodeConstraint node_constraint(std::span<const RopeContactRow> at_node, const RopeNode& node,
+                                             double h);
 
 /// The mass that a contact adds to its node: the change of the impulse on it per velocity.
-[[nodiscard]] math::Symmetric3<double> grip_of(const RopeTouch& touch);
+[[nodiscard]] math::Symmetric3<double> contact_stiffness(const RopeContactRow& contact_row);
 
 /// The impulse of a contact on its node, less what `grip_of` says of velocities.
-[[nodiscard]] DVec3 push_of(const RopeTouch& touch, double h);
+[[nodiscard]] DVec3 push_of(const RopeContactRow& contact_row, double h);
 
 /// What a solution has left to do with contacts. A rope's that came into effect or out of it, or slides
 /// otherwise, is mended in the next substep if it must be; but not what is met fast, or what drives it.
-struct Unsettled {
+struct Unconverged {
   bool ropes = false, points = false;
-  bool meets = false;  ///< One of a rope, faster than kMeetingSpeed.
-  bool pulls = false;  ///< One of a rope, across a gap, or its friction drives: it makes energy.
+  bool impacts = false;  ///< One of a rope, faster than kMeetingSpeed.
+  bool pulls = false;    ///< One of a rope, across a gap, or its friction drives: it makes energy.
 
-  void add(const Unsettled& other) {
+  void add(const Unconverged& other) {
     ropes = ropes || other.ropes;
     points = points || other.points;
-    meets = meets || other.meets;
+    impacts = impacts || other.impacts;
     pulls = pulls || other.pulls;
   }
 };
 
-inline constexpr double kMeetingSpeed = 0.1;  ///< [m/s]
+inline constexpr double kImpactSpeed = 0.1;  ///< [m/s]
 
 /// Whether what a contact does to a mass counts: more than 1 cm/s of it. Where there is no gap a pull does
 /// none.
@@ -237,17 +240,17 @@ inline constexpr double kMeetingSpeed = 0.1;  ///< [m/s]
 
 /// The contact's force that follows from u, of a rope. Where contacts may only `let_go`, none comes into
 /// effect any more, so that the last solution has none that pulls.
-Unsettled update_touch(double h, bool let_go, const RopeNode& node, RopeTouch& touch);
+Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, RopeContactRow& contact_row);
 
 /// The same for all, of points too.
-[[nodiscard]] Unsettled update_touches(double h, bool let_go, RopeScratch& s);
+[[nodiscard]] Unconverged update_contact_rows(double h, bool let_go, RopeScratch& s);
 
 /// Largest relative length error left in a rope; raises T+ and moves segments onto or off their limits.
 double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                       std::span<RopeSegment> segments, bool& limits_changed);
 
 /// How many solutions a substep takes at least, by what update_touches said.
-[[nodiscard]] int least_solves(std::span<const RopeTouch> touches, const Unsettled& unsettled);
+[[nodiscard]] int least_solves(std::span<const RopeContactRow> contact_rows, const Unconverged& unconverged);
 
 /// Whether contacts that pull are let go for good.
 [[nodiscard]] inline bool lets_go(int solves) {
@@ -257,7 +260,7 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
 /// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its length
 /// because friction pushes nodes that no longer move against it, which makes energy: after kMostRopeSolves it
 /// is let go for this substep, and the rope gets as many solutions without.
-[[nodiscard]] bool solve_again(int solves, double error, bool pulls, std::span<RopeTouch> touches);
+[[nodiscard]] bool solve_again(int solves, double error, bool pulls, std::span<RopeContactRow> contact_rows);
 
 [[nodiscard]] bool is_finite(const RopeScratch& s);
 
@@ -265,9 +268,9 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
 void store_tension(std::size_t row, double tension, bool limited, state::Segments& segments);
 
 /// Writes back one rope, which begins at node `first_node` and segment `first_segment`.
-void store_rope(const Chain& chain, std::size_t first_node, std::size_t first_segment, double h,
+void store_rope(const RopeSystem& rope_system, std::size_t first_node, std::size_t first_segment, double h,
                 const RopeScratch& s, state::Tables& tables);
 
-void store_touches(double h, std::span<const RopeTouch> touches, state::Contacts& contacts);
+void store_contact_rows(double h, std::span<const RopeContactRow> contact_rows, state::Contacts& contacts);
 
 }  // namespace hooke::solver

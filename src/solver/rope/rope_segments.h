@@ -100,7 +100,7 @@ template <class Number>
 HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                           const RopeTerms<Number>& terms, SegmentRow<Number>& row) {
   const Number most = most_along(traits, terms);
-  row.along = smaller(traits.grip, most);
+  row.along = smaller(traits.resistance, most);
   if (!terms.limits) return traits.bias;
   const auto limited = above(at.limited, Number(0.0));
   row.along = choose(limited, most, row.along);
@@ -117,12 +117,12 @@ HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
   const Number held = g + Number(kTransverseFloor) * traits.lighter;
   SegmentRow<Number> row;
   row.across = held + Number(kWaveDamping) * g;
-  const Direction<Number> way = direction_of(at.line, row.across);
-  row.n = way.n;
+  const Direction<Number> direction = direction_of(at.line, row.across);
+  row.n = direction.n;
   const Number bias = stiffen(at, traits, terms, row);
-  const Number c = way.length - target_length(at, traits, terms);
-  const Number kept = held * way.quotient;
-  const Number turned = Number(kWaveDamping) * pulled * way.quotient;  // d g L / across
+  const Number c = direction.length - target_length(at, traits, terms);
+  const Number kept = held * direction.quotient;
+  const Number turned = Number(kWaveDamping) * pulled * direction.quotient;  // d g L / across
   row.n_offset = Number(0.0) - bias * c;
   const Number along = row.n_offset - kept * dot(row.n, at.before);
   row.offset =
@@ -138,10 +138,10 @@ HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
   const Number g = terms.h * terms.h * at.tension_bound * traits.per_rest;
   SegmentRow<Number> row;
   row.across = g + Number(kTransverseFloor) * traits.lighter;
-  const Direction<Number> way = direction_of(sum(at.line, scaled(terms.h, at.relative)), Number(1.0));
-  row.n = way.n;
+  const Direction<Number> direction = direction_of(sum(at.line, scaled(terms.h, at.relative)), Number(1.0));
+  row.n = direction.n;
   const Number bias = stiffen(at, traits, terms, row);
-  const Number c = way.length - target_length(at, traits, terms);
+  const Number c = direction.length - target_length(at, traits, terms);
   const Number speed = dot(row.n, at.relative);
   row.n_offset = bias * (terms.h * speed - c);
   row.offset = sum(at.relative, scaled(row.n_offset - speed, row.n));
@@ -190,7 +190,7 @@ HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const Se
   const Triple<Number> d = sum(at.line, scaled(terms.h, at.relative));
   const Number length = root(dot(d, d));
   const Number tension = terms.per_h * pull;
-  const auto firm = above(traits.grip, Number(kFirmer) * most_along(traits, terms));
+  const auto firm = above(traits.resistance, Number(kFirmer) * most_along(traits, terms));
   const Number by_most = terms.h * terms.compliance * traits.per_lighter * pull;
   Number expected = choose(firm, by_most, (tension - traits.damping * opening) * traits.per_stiffness);
   SegmentCheck<Number> result = {larger(at.tension_bound, tension), zero, zero, zero};

@@ -142,7 +142,7 @@ class RopeSweep {
     Number share;
     Triple<Number> impulse;
     Number firm;
-    Triple<Number> way;
+    Triple<Number> direction;
   };
 
   HWY_INLINE SegmentTraits<Number> traits_of(std::size_t i) const {
@@ -150,7 +150,7 @@ class RopeSweep {
     return {get<Number>(row.rest + lane_),          get<Number>(row.per_rest + lane_),
             get<Number>(row.limit + lane_),         get<Number>(row.damping + lane_),
             get<Number>(row.per_stiffness + lane_), get<Number>(row.bias + lane_),
-            get<Number>(row.grip + lane_),          get<Number>(row.lighter + lane_),
+            get<Number>(row.resistance + lane_),    get<Number>(row.lighter + lane_),
             get<Number>(row.per_lighter + lane_)};
   }
 
@@ -170,10 +170,10 @@ class RopeSweep {
     const Number mass = get<Number>(traits_.rows[i].mass + lane_);
     pivot.share = pivot.share + mass;
     add(mass, get3<Number>(ropes_.nodes[i].v_free, lane_), pivot.impulse);
-    if (ropes_.held[i] == 0) return;
-    const RopeHoldLanes<kCount>& hold = ropes_.holds[i];
-    pivot.mass = sum(pivot.mass, get6<Number>(hold.mass, lane_));
-    pivot.impulse = sum(pivot.impulse, get3<Number>(hold.impulse, lane_));
+    if (ropes_.constrained[i] == 0) return;
+    const NodeConstraintLanes<kCount>& constraint = ropes_.constraints[i];
+    pivot.mass = sum(pivot.mass, get6<Number>(constraint.mass, lane_));
+    pivot.impulse = sum(pivot.impulse, get3<Number>(constraint.impulse, lane_));
   }
 
   /// K = k n n^T + b 1, o and n.o of a segment.
@@ -196,20 +196,21 @@ class RopeSweep {
   }
 
   /// How nodes meet but for segments: a node and the next, the next two, and the outer ones.
-  struct Meeting {
+  struct OffDiagonal {
     Columns3<Number> next, following;
     Number outer;
   };
 
   /// The bend of the three nodes from i on.
-  HWY_INLINE void add_bend(std::size_t i, Pivot& here, Pivot& next, Pivot& second, Meeting& meeting) const {
+  HWY_INLINE void add_bend(std::size_t i, Pivot& here, Pivot& next, Pivot& second,
+                           OffDiagonal& off_diagonal) const {
     const RopeBendLanes<kCount>& bend = traits_.bends[i];
     const Number before = get<Number>(bend.before + lane_);
     const Number behind = get<Number>(bend.behind + lane_);
     const Number middle = Number(0.0) - (before + behind);
     const auto first = above(terms_.first, Number(0.0));
-    const Number grip =
-        choose(first, get<Number>(bend.grip + lane_), get<Number>(bend.whipping_grip + lane_));
+    const Number resistance =
+        choose(first, get<Number>(bend.resistance + lane_), get<Number>(bend.whipping_resistance + lane_));
     const Number back = choose(first, get<Number>(bend.back + lane_), Number(0.0));
     const auto line = [&](const RopeSegmentLanes<kCount>& s) HWY_ATTR {
       return difference(get3<Number>(s.line, lane_), scaled(back, get3<Number>(s.before, lane_)));
@@ -218,15 +219,15 @@ class RopeSweep {
         difference(scaled(behind, line(ropes_.segments[i + 1])), scaled(before, line(ropes_.segments[i])));
     const Triple<Number> pull = scaled(get<Number>(bend.pull + lane_), change);
     const auto add_to = [&](Number weight, Pivot& pivot) HWY_ATTR {
-      pivot.share = pivot.share + grip * weight * weight;
+      pivot.share = pivot.share + resistance * weight * weight;
       add(weight, pull, pivot.impulse);
     };
     add_to(before, here);
     add_to(middle, next);
     add_to(behind, second);
-    add_diagonal(grip * before * middle, meeting.next);
-    add_diagonal(grip * middle * behind, meeting.following);
-    meeting.outer = grip * before * behind;
+    add_diagonal(resistance * before * middle, off_diagonal.next);
+    add_diagonal(resistance * middle * behind, off_diagonal.following);
+    off_diagonal.outer = resistance * before * behind;
   }
 
   static HWY_INLINE void add_diagonal(Number s, Columns3<Number>& to) {
@@ -242,19 +243,19 @@ class RopeSweep {
 
   HWY_INLINE void forward() {
     const Number zero(0.0);
-    const Columns3<Number> no_meeting = full(diagonal(zero));
+    const Columns3<Number> no_off_diagonal = full(diagonal(zero));
     const Pivot none = {diagonal(zero), zero, {zero, zero, zero}, zero, {zero, zero, zero}};
     const std::size_t last = ropes_.nodes.size() - 1;
     Pivot here = none;
     Pivot next = none;
     Pivot second = none;
-    Meeting meeting = {no_meeting, no_meeting, zero};
+    OffDiagonal off_diagonal = {no_off_diagonal, no_off_diagonal, zero};
     for (std::size_t i = 0; i < last; ++i) {
       if constexpr (kBends) {
-        if (i + 1 < last) add_bend(i, here, next, second, meeting);
+        if (i + 1 < last) add_bend(i, here, next, second, off_diagonal);
       }
       add_own(i, here);
-      eliminate(i, linearize(i), here, next, second, meeting);
+      eliminate(i, linearize(i), here, next, second, off_diagonal);
       here = next;
       if constexpr (kBends) {
         next = second;
@@ -279,8 +280,8 @@ class RopeSweep {
     Scale<Number> m = pivot.mass;
     add_diagonal(pivot.share + b, m);
     const Scale<Number> a = cofactors(m);
-    return {sum(a, scaled(pivot.firm, across(pivot.way, m))),
-            determinant(m, a) + pivot.firm * dot(pivot.way, a.times(pivot.way))};
+    return {sum(a, scaled(pivot.firm, across(pivot.direction, m))),
+            determinant(m, a) + pivot.firm * dot(pivot.direction, a.times(pivot.direction))};
   }
 
   /// P, r and tau of a node, by one division: P = A / D, r = A n / D, tau = k D / (D + k n.A n).
@@ -301,7 +302,7 @@ class RopeSweep {
 
   /// Notes what the way back needs; adds what is left to the next two nodes.
   HWY_INLINE void eliminate(std::size_t i, const Segment& segment, const Pivot& here, Pivot& next,
-                            Pivot& second, Meeting& meeting) {
+                            Pivot& second, OffDiagonal& off_diagonal) {
     const auto& [n, o, n_o, k, b] = segment;
     RopeNodeLanes<kCount>& node = ropes_.nodes[i];
     const bool pinned = traits_.pinned[i] != 0;
@@ -326,42 +327,44 @@ class RopeSweep {
       given = choose(above(moves(i), Number(0.0)), given, tau * (dot(n, v) + n_o));
     }
     if constexpr (kBends) {
-      pass_on_bent(i, segment, {p, r, tau}, given, difference(y, scaled(given, r)), next, second, meeting);
+      pass_on_bent(i, segment, {p, r, tau}, given, difference(y, scaled(given, r)), next, second,
+                   off_diagonal);
     } else {
       const Triple<Number> t = difference(n, scaled(b, r));
       next.mass = scaled(Number(0.0) - b * b, p);
       next.firm = tau;
-      next.way = t;
+      next.direction = t;
       next.share = b;
       next.impulse = sum(scaled(b, sum(o, y)), scaled(given, t));
     }
   }
 
   HWY_INLINE void pass_on_bent(std::size_t i, const Segment& segment, const Inverse& inverse, Number given,
-                               const Triple<Number>& z, Pivot& next, Pivot& second, Meeting& meeting) {
+                               const Triple<Number>& z, Pivot& next, Pivot& second,
+                               OffDiagonal& off_diagonal) {
     const auto& [n, o, n_o, k, b] = segment;
     const auto& [p, r, tau] = inverse;
     RopeFillLanes<kCount>& fill = ropes_.fills[i];
-    put9(meeting.next, fill.meets, lane_);
-    write(meeting.outer, fill.outer + lane_);
-    Columns3<Number> meets = meeting.next;
-    add_diagonal(Number(0.0) - b, meets);
-    const Columns3<Number> pb = product(p, meets);
-    const Triple<Number> t = sum(n, meets.transposed_times(r));
-    next.mass = difference(next.mass, symmetric_product(meets, pb));
+    put9(off_diagonal.next, fill.next_block, lane_);
+    write(off_diagonal.outer, fill.outer + lane_);
+    Columns3<Number> next_block = off_diagonal.next;
+    add_diagonal(Number(0.0) - b, next_block);
+    const Columns3<Number> pb = product(p, next_block);
+    const Triple<Number> t = sum(n, next_block.transposed_times(r));
+    next.mass = difference(next.mass, symmetric_product(next_block, pb));
     next.firm = tau;
-    next.way = t;
+    next.direction = t;
     next.share = next.share + b;
     add(b, o, next.impulse);
     add(given, n, next.impulse);
-    next.impulse = difference(next.impulse, meets.transposed_times(z));
-    const Number c = meeting.outer;
+    next.impulse = difference(next.impulse, next_block.transposed_times(z));
+    const Number c = off_diagonal.outer;
     Number moving = tau;
     if (traits_.pinned[i] != 0) moving = moves(i) * tau;
     second.mass = sum(second.mass, scaled(c * c, difference(square(moving, r), p)));
     take(c, z, second.impulse);
-    add_fill(c, pb, scaled(tau, r), t, meeting.following);
-    meeting = {meeting.following, full(diagonal(Number(0.0))), Number(0.0)};
+    add_fill(c, pb, scaled(tau, r), t, off_diagonal.following);
+    off_diagonal = {off_diagonal.following, full(diagonal(Number(0.0))), Number(0.0)};
   }
 
   /// f -= c (P B - tau r t'^T)^T
@@ -387,7 +390,7 @@ class RopeSweep {
       const Triple<Number> w = difference(next, get3<Number>(segment.offset, lane_));
       Triple<Number> f = get3<Number>(node.impulse, lane_);
       if constexpr (kBends) {
-        f = difference(f, get9<Number>(ropes_.fills[i].meets, lane_).times(next));
+        f = difference(f, get9<Number>(ropes_.fills[i].next_block, lane_).times(next));
         take(get<Number>(ropes_.fills[i].outer + lane_), second, f);
       }
       const Triple<Number> pushed = sum(f, scaled(b, w));

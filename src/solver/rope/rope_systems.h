@@ -11,7 +11,7 @@ namespace hooke::solver {
 
 /// A ball hook that holds a node of a rope to what does not give way.
 struct RopeAnchor {
-  std::uint32_t chain = 0, node = 0;
+  std::uint32_t rope_system = 0, node = 0;
   std::uint32_t hook = 0;  ///< Row.
   bool node_is_b = false;  ///< Else it is the hook's end a.
 };
@@ -19,7 +19,7 @@ struct RopeAnchor {
 /// One rope as the solver sees it. Its nodes are particles [first_particle, first_particle + node_count), its
 /// segments rows [first_segment, first_segment + node_count - 1), its contacts rows [first_contact,
 /// end_contact), its anchors [first_anchor, end_anchor).
-struct Chain {
+struct RopeSystem {
   std::uint32_t first_particle = 0;
   std::uint32_t node_count = 0;
   std::uint32_t first_segment = 0;
@@ -30,20 +30,20 @@ struct Chain {
   std::uint32_t first_anchor = 0;  ///< Written by build_bundles.
   std::uint32_t end_anchor = 0;
   std::uint32_t solves = 0;  ///< Newton steps since the frame began; written by solve_chains.
-  bool in_bundle =
+  bool in_coupled_group =
       false;  ///< Solved with what it is tied to; written by build_bundles (solver/coupled/coupled_groups.h).
   bool unconverged = false;  ///< A length error above 1 % was left in this frame; written by solve_chains.
 };
 
 /// Memory of solve_chains: it keeps what stays of ropes, until the revision of the tables changes.
-class ChainScratch {
+class RopeSystemScratch {
  public:
   struct Groups;  // chains.cpp
 
-  ChainScratch();
-  ~ChainScratch();
-  ChainScratch(ChainScratch&&) noexcept;
-  ChainScratch& operator=(ChainScratch&&) noexcept;
+  RopeSystemScratch();
+  ~RopeSystemScratch();
+  RopeSystemScratch(RopeSystemScratch&&) noexcept;
+  RopeSystemScratch& operator=(RopeSystemScratch&&) noexcept;
 
   [[nodiscard]] Groups& groups() { return *groups_; }
 
@@ -85,8 +85,8 @@ class ChainScratch {
 /// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable constrained
 /// dynamics". A segment of no length is taken to point down. Sweeps are in double: the directions of a rope's
 /// segments differ in compliance by a factor of 1e10. `before` holds velocities from before the forces.
-void solve_chains(std::span<Chain> chains, std::span<const RopeAnchor> anchors,
-                  const std::vector<state::VelocityLine>& before, Real h, ChainScratch& scratch,
-                  state::Tables& tables);
+void solve_rope_systems(std::span<RopeSystem> rope_systems, std::span<const RopeAnchor> anchors,
+                        const std::vector<state::VelocityRecord>& before, Real h, RopeSystemScratch& scratch,
+                        state::Tables& tables);
 
 }  // namespace hooke::solver

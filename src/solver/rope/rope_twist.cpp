@@ -202,9 +202,9 @@ void twist_nodes(const std::vector<TwistRow>& rows, Tables& tables) {
     if (span.impulse == 0) continue;
     const std::uint32_t first = first_particle(tables, span);
     for (std::uint32_t i = 0; i < rows[k].gradients.size(); ++i) {
-      state::VelocityLine& line = tables.particles.velocity[first + i];
-      const double share = span.impulse * static_cast<double>(line.inverse_mass);
-      line.v += vector_cast<Real>(share * rows[k].gradients[i]);
+      state::VelocityRecord& record = tables.particles.velocity[first + i];
+      const double share = span.impulse * static_cast<double>(record.inverse_mass);
+      record.v += vector_cast<Real>(share * rows[k].gradients[i]);
     }
   }
 }

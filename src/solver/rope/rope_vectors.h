@@ -20,26 +20,26 @@ constexpr int kDoubles = hn::MaxLanes(DoubleLanes());
 using HalfLanes = hn::CappedTag<float, kDoubles>;  ///< As many floats.
 constexpr HalfLanes kHalfTag;
 
-HWY_INLINE void read_line(const float* base, const std::uint32_t* line, Quad<WideDouble>& value) {
+HWY_INLINE void read_record(const float* base, const std::uint32_t* record, Quad<WideDouble>& value) {
   if constexpr (kDoubles >= 4) {
-    auto x = load_lines(kHalfTag, base, line);
-    auto y = load_lines(kHalfTag, base, line + 1);
-    auto z = load_lines(kHalfTag, base, line + 2);
-    auto w = load_lines(kHalfTag, base, line + 3);
+    auto x = load_records(kHalfTag, base, record);
+    auto y = load_records(kHalfTag, base, record + 1);
+    auto z = load_records(kHalfTag, base, record + 2);
+    auto w = load_records(kHalfTag, base, record + 3);
     transpose(kHalfTag, x, y, z, w);
     value = {WideDouble(hn::PromoteTo(kDoubleTag, x)), WideDouble(hn::PromoteTo(kDoubleTag, y)),
              WideDouble(hn::PromoteTo(kDoubleTag, z)), WideDouble(hn::PromoteTo(kDoubleTag, w))};
   } else {
     alignas(16) double lanes[4][kDoubles];
     for (int k = 0; k < kDoubles; ++k) {
-      for (int j = 0; j < 4; ++j) lanes[j][k] = static_cast<double>(base[line[k] + j]);
+      for (int j = 0; j < 4; ++j) lanes[j][k] = static_cast<double>(base[record[k] + j]);
     }
     value = {get<WideDouble>(lanes[0]), get<WideDouble>(lanes[1]), get<WideDouble>(lanes[2]),
              get<WideDouble>(lanes[3])};
   }
 }
 
-HWY_INLINE void round_line(const Quad<WideDouble>& value, StoredLines<WideDouble>& lines) {
+HWY_INLINE void round_record(const Quad<WideDouble>& value, StoredRecords<WideDouble>& records) {
   if constexpr (kDoubles >= 4) {
     auto x = hn::DemoteTo(kHalfTag, value.x.raw);
     auto y = hn::DemoteTo(kHalfTag, value.y.raw);
@@ -47,11 +47,11 @@ HWY_INLINE void round_line(const Quad<WideDouble>& value, StoredLines<WideDouble
     auto w = hn::DemoteTo(kHalfTag, value.w.raw);
     transpose(kHalfTag, x, y, z, w);
     // The k-th line of a vector is that of lane 4 k and up.
-    constexpr std::uint32_t kLines[8] = {0, 4, 8, 12, 16, 20, 24, 28};
-    store_lines(kHalfTag, x, lines.of[0], kLines);
-    store_lines(kHalfTag, y, lines.of[0], kLines + 1);
-    store_lines(kHalfTag, z, lines.of[0], kLines + 2);
-    store_lines(kHalfTag, w, lines.of[0], kLines + 3);
+    constexpr std::uint32_t kRecords[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+    store_records(kHalfTag, x, records.of[0], kRecords);
+    store_records(kHalfTag, y, records.of[0], kRecords + 1);
+    store_records(kHalfTag, z, records.of[0], kRecords + 2);
+    store_records(kHalfTag, w, records.of[0], kRecords + 3);
   } else {
     alignas(16) double lanes[4][kDoubles];
     write(value.x, lanes[0]);
@@ -59,7 +59,7 @@ HWY_INLINE void round_line(const Quad<WideDouble>& value, StoredLines<WideDouble
     write(value.z, lanes[2]);
     write(value.w, lanes[3]);
     for (int k = 0; k < kDoubles; ++k) {
-      for (int j = 0; j < 4; ++j) lines.of[k][j] = static_cast<float>(lanes[j][k]);
+      for (int j = 0; j < 4; ++j) records.of[k][j] = static_cast<float>(lanes[j][k]);
     }
   }
 }

@@ -95,8 +95,8 @@ template <std::floating_point Lane>
 HWY_INLINE Lane root(Lane a) {
   return std::sqrt(a);
 }
-HWY_INLINE void read_quad(const Real* base, const std::uint32_t* line, Quad<Real>& q) {
-  const Real* from = base + *line;
+HWY_INLINE void read_quad(const Real* base, const std::uint32_t* record, Quad<Real>& q) {
+  const Real* from = base + *record;
   q = {from[0], from[1], from[2], from[3]};
 }
 /// The first three numbers of one line less those of another.
@@ -106,8 +106,8 @@ HWY_INLINE void read_offset(const Real* base, const std::uint32_t* to, const std
   const Real* start = base + *from;
   offset = {end[0] - start[0], end[1] - start[1], end[2] - start[2]};
 }
-HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t* line) {
-  Real* to = base + *line;
+HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t* record) {
+  Real* to = base + *record;
   to[0] = q.x;
   to[1] = q.y;
   to[2] = q.z;
@@ -181,36 +181,36 @@ HWY_INLINE void take(Number s, const Triple<Number>& a, Triple<Number>& to) {
 
 /// Reads the bodies' lines, the three quarters of each that rows look at.
 template <class Number>
-HWY_INLINE void read_motion(const Real* base, const std::uint32_t* line, Velocity<Number>& motion,
+HWY_INLINE void read_motion(const Real* base, const std::uint32_t* record, Velocity<Number>& motion,
                             Displacement<Number>& moved) {
   Quad<Number> first, second, third;
-  read_quad(base, line, first);
-  read_quad(base + 4, line, second);
-  read_quad(base + 8, line, third);
+  read_quad(base, record, first);
+  read_quad(base + 4, record, second);
+  read_quad(base + 8, record, third);
   motion = {{first.x, first.y, first.z}, {first.w, second.x, second.y}};
   moved = {{second.z, second.w, third.x}, {third.y, third.z, third.w}};
 }
 
 template <class Number>
 HWY_INLINE void write_motion(const Velocity<Number>& motion, const Displacement<Number>& moved, Real* base,
-                             const std::uint32_t* line) {
-  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, line);
-  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, line);
+                             const std::uint32_t* record) {
+  write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, record);
+  write_quad(Quad<Number>{motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, record);
 }
 
 /// Where free lines begin, from where motion lines do.
 template <class Number>
-struct FreeLines {
+struct FreeMotionRecords {
   std::uint32_t at[kLanesOf<Number>];
 
-  HWY_INLINE explicit FreeLines(const std::uint32_t* line) {
-    for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = line[i] / 2;
+  HWY_INLINE explicit FreeMotionRecords(const std::uint32_t* record) {
+    for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = record[i] / 2;
   }
 };
 
 template <class Number>
-HWY_INLINE void read_free(const Real* base, const std::uint32_t* line, Velocity<Number>& motion) {
-  const FreeLines<Number> free(line);
+HWY_INLINE void read_free(const Real* base, const std::uint32_t* record, Velocity<Number>& motion) {
+  const FreeMotionRecords<Number> free(record);
   Quad<Number> first, second;
   read_quad(base, free.at, first);
   read_quad(base + 4, free.at, second);
@@ -218,8 +218,8 @@ HWY_INLINE void read_free(const Real* base, const std::uint32_t* line, Velocity<
 }
 
 template <class Number>
-HWY_INLINE void write_free(const Velocity<Number>& motion, Real* base, const std::uint32_t* line) {
-  const FreeLines<Number> free(line);
+HWY_INLINE void write_free(const Velocity<Number>& motion, Real* base, const std::uint32_t* record) {
+  const FreeMotionRecords<Number> free(record);
   const Number zero(Real(0));
   write_quad(Quad<Number>{motion.v.x, motion.v.y, motion.v.z, motion.omega.x}, base, free.at);
   write_quad(Quad<Number>{motion.omega.y, motion.omega.z, zero, zero}, base + 4, free.at);
@@ -252,13 +252,13 @@ struct MovingBodies {
 
   template <class Block>
   HWY_INLINE MovingBodies(const Block& block, int lane, const Real* motion) {
-    read_motion(motion, block.line_a + lane, velocity.a, moved_a);
-    read_motion(motion, block.line_b + lane, velocity.b, moved_b);
+    read_motion(motion, block.record_a + lane, velocity.a, moved_a);
+    read_motion(motion, block.record_b + lane, velocity.b, moved_b);
   }
   template <class Block>
   HWY_INLINE void write_back(const Block& block, int lane, Real* motion) const {
-    write_motion(velocity.a, moved_a, motion, block.line_a + lane);
-    if constexpr (!kAnchored) write_motion(velocity.b, moved_b, motion, block.line_b + lane);
+    write_motion(velocity.a, moved_a, motion, block.record_a + lane);
+    if constexpr (!kAnchored) write_motion(velocity.b, moved_b, motion, block.record_b + lane);
   }
 };
 
@@ -273,9 +273,9 @@ struct Scale {
 };
 
 template <class Number>
-HWY_INLINE Scale<Number> read_scale(const math::Symmetric3<Real>* scale, const std::uint32_t* motion_line) {
+HWY_INLINE Scale<Number> read_scale(const math::Symmetric3<Real>* scale, const std::uint32_t* motion_record) {
   std::uint32_t at[kLanesOf<Number>];
-  for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = motion_line[i] / 16 * 6;
+  for (int i = 0; i < kLanesOf<Number>; ++i) at[i] = motion_record[i] / 16 * 6;
   const auto* base = reinterpret_cast<const Real*>(scale);
   Quad<Number> first, last;
   read_quad(base, at, first);

@@ -26,17 +26,17 @@ using Line = hn::FixedTag<float, 4>;
 
 constexpr Lanes kTag;
 constexpr int kWidth = hn::MaxLanes(Lanes());
-constexpr int kLineCount = kWidth / 4;  // lines in one vector
+constexpr int kRecordCount = kWidth / 4;  // lines in one vector
 
 /// A vector whose k-th line begins at number index[4 k] of `base`, anywhere.
 template <class D>
-HWY_INLINE hn::Vec<D> load_lines(D tag, const float* base, const std::uint32_t* index) {
+HWY_INLINE hn::Vec<D> load_records(D tag, const float* base, const std::uint32_t* index) {
   if constexpr (hn::MaxLanes(D()) == 4) {
     return hn::LoadU(tag, base + *index);
   } else {
     const hn::Half<D> half;
     constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    return hn::Combine(tag, load_lines(half, base, index + kHalf), load_lines(half, base, index));
+    return hn::Combine(tag, load_records(half, base, index + kHalf), load_records(half, base, index));
   }
 }
 
@@ -55,14 +55,14 @@ HWY_INLINE void transpose(D tag, hn::Vec<D>& r0, hn::Vec<D>& r1, hn::Vec<D>& r2,
 }
 
 template <class D>
-HWY_INLINE void store_lines(D tag, hn::Vec<D> lines, float* base, const std::uint32_t* index) {
+HWY_INLINE void store_records(D tag, hn::Vec<D> records, float* base, const std::uint32_t* index) {
   if constexpr (hn::MaxLanes(D()) == 4) {
-    hn::Store(lines, tag, base + *index);
+    hn::Store(records, tag, base + *index);
   } else {
     const hn::Half<D> half;
     constexpr int kHalf = hn::MaxLanes(D()) / 2;
-    store_lines(half, hn::LowerHalf(half, lines), base, index);
-    store_lines(half, hn::UpperHalf(half, lines), base, index + kHalf);
+    store_records(half, hn::LowerHalf(half, records), base, index);
+    store_records(half, hn::UpperHalf(half, records), base, index + kHalf);
   }
 }
 
@@ -72,8 +72,8 @@ struct Columns {
 };
 
 HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
-  Columns c = {load_lines(kTag, base, index), load_lines(kTag, base, index + 1),
-               load_lines(kTag, base, index + 2), load_lines(kTag, base, index + 3)};
+  Columns c = {load_records(kTag, base, index), load_records(kTag, base, index + 1),
+               load_records(kTag, base, index + 2), load_records(kTag, base, index + 3)};
   transpose(kTag, c.x, c.y, c.z, c.w);
   return c;
 }
@@ -81,7 +81,7 @@ HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
 /// Components of lines less others, subtracted before the transposition, which is one less then.
 HWY_INLINE Columns load_offsets(const float* base, const std::uint32_t* to, const std::uint32_t* from) {
   const auto offset = [&](int j) HWY_ATTR {
-    return hn::Sub(load_lines(kTag, base, to + j), load_lines(kTag, base, from + j));
+    return hn::Sub(load_records(kTag, base, to + j), load_records(kTag, base, from + j));
   };
   Columns c = {offset(0), offset(1), offset(2), offset(3)};
   transpose(kTag, c.x, c.y, c.z, c.w);
@@ -90,10 +90,10 @@ HWY_INLINE Columns load_offsets(const float* base, const std::uint32_t* to, cons
 
 HWY_INLINE void store_columns(Columns c, float* base, const std::uint32_t* index) {
   transpose(kTag, c.x, c.y, c.z, c.w);
-  store_lines(kTag, c.x, base, index);
-  store_lines(kTag, c.y, base, index + 1);
-  store_lines(kTag, c.z, base, index + 2);
-  store_lines(kTag, c.w, base, index + 3);
+  store_records(kTag, c.x, base, index);
+  store_records(kTag, c.y, base, index + 1);
+  store_records(kTag, c.z, base, index + 2);
+  store_records(kTag, c.w, base, index + 3);
 }
 
 #endif

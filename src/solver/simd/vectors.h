@@ -117,9 +117,9 @@ inline constexpr int kLanesOf<Wide> = kStride;
 template <>
 inline constexpr bool kIsSingle<Wide> = true;
 
-HWY_INLINE void read_quad(const float* base, const std::uint32_t* line, Quad<Wide>& q) {
+HWY_INLINE void read_quad(const float* base, const std::uint32_t* record, Quad<Wide>& q) {
   for (int i = 0; i < kVectors; ++i) {
-    const Columns c = load_columns(base, line + i * kWidth);
+    const Columns c = load_columns(base, record + i * kWidth);
     q.x.raw[i] = c.x;
     q.y.raw[i] = c.y;
     q.z.raw[i] = c.z;
@@ -137,9 +137,9 @@ HWY_INLINE void read_offset(const float* base, const std::uint32_t* to, const st
   }
 }
 
-HWY_INLINE void write_quad(const Quad<Wide>& q, float* base, const std::uint32_t* line) {
+HWY_INLINE void write_quad(const Quad<Wide>& q, float* base, const std::uint32_t* record) {
   for (int i = 0; i < kVectors; ++i)
-    store_columns({q.x.raw[i], q.y.raw[i], q.z.raw[i], q.w.raw[i]}, base, line + i * kWidth);
+    store_columns({q.x.raw[i], q.y.raw[i], q.z.raw[i], q.w.raw[i]}, base, record + i * kWidth);
 }
 
 #endif

@@ -12,7 +12,7 @@ namespace {
 void set_lane(const state::Bends& bends, std::size_t row, int lane, BendBlock& block, BendLaws& laws) {
   const state::Bends::Stencil& s = bends.stencil[row];
   const std::uint32_t ends[4] = {s.edge_a, s.edge_b, s.wing_a, s.wing_b};
-  for (int k = 0; k < 4; ++k) block.line[k][lane] = 4 * ends[k];
+  for (int k = 0; k < 4; ++k) block.record[k][lane] = 4 * ends[k];
   block.rest_angle[lane] = bends.rest_angle[row];
   laws.row[lane] = static_cast<std::uint32_t>(row);
   laws.stiffness[lane] = bends.stiffness[row];

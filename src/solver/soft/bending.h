@@ -13,7 +13,7 @@ namespace hooke::solver {
 /// 16 bends of one color. The last block of a color may hold fewer: copies of its last row fill it.
 struct BendBlock {
   /// Where the lines of a row's particles begin, as in SpringBlock: both ends of the edge, both wings.
-  std::uint32_t line[4][kLanes];
+  std::uint32_t record[4][kLanes];
   Real rest_angle[kLanes];
   Real bias[kLanes];   ///< b = k / (c + h k) [1/s]; written by prepare_bends.
   Real gamma[kLanes];  ///< 1 / (h (c + h k)); written by prepare_bends.

@@ -9,9 +9,9 @@ namespace hooke::solver {
 
 namespace {
 
-using state::InnerContact;
+using state::ElementContact;
 
-Real inverse_mass_of(const InnerContact& contact, const state::Particles& particles) {
+Real inverse_mass_of(const ElementContact& contact, const state::Particles& particles) {
   Real sum = Real(0);
   for (std::uint32_t i = 0; i < contact.count; ++i)
     sum += contact.weight[i] * contact.weight[i] * particles.velocity[contact.particle[i]].inverse_mass;
@@ -21,23 +21,23 @@ Real inverse_mass_of(const InnerContact& contact, const state::Particles& partic
 constexpr int kSweeps = 2;
 constexpr Real kFar = Real(1e6);  ///< Separation of a row that does not hold now, at least [m].
 
-void push(const InnerContact& contact, Vec3 impulse, state::Tables& t) {
+void push(const ElementContact& contact, Vec3 impulse, state::Tables& t) {
   for (std::uint32_t i = 0; i < contact.count; ++i) {
-    state::VelocityLine& line = t.particles.velocity[contact.particle[i]];
-    line.v += (contact.weight[i] * line.inverse_mass) * impulse;
+    state::VelocityRecord& record = t.particles.velocity[contact.particle[i]];
+    record.v += (contact.weight[i] * record.inverse_mass) * impulse;
   }
   if (gives_way(t.bodies, contact.body)) push_body(contact.body, -impulse, contact.lever, t.bodies);
 }
 
 /// Velocity of the place against the surface.
-Vec3 velocity_of(const InnerContact& contact, const state::Tables& t) {
+Vec3 velocity_of(const ElementContact& contact, const state::Tables& t) {
   Vec3 v = -(state::velocity_now(t.bodies, contact.body, contact.lever) + contact.belt_velocity);
   for (std::uint32_t i = 0; i < contact.count; ++i)
     v += contact.weight[i] * t.particles.velocity[contact.particle[i]].v;
   return v;
 }
 
-void solve_row(Real h, InnerContact& contact, state::Tables& t) {
+void solve_row(Real h, ElementContact& contact, state::Tables& t) {
   const Real w = inverse_mass_of(contact, t.particles);
   const auto resists = [&](Vec3 along) {
     return gives_way(t.bodies, contact.body)
@@ -65,31 +65,31 @@ void solve_row(Real h, InnerContact& contact, state::Tables& t) {
 
 }  // namespace
 
-bool is_tied(const state::Tables& t, const InnerContact& contact) {
+bool is_coupled(const state::Tables& t, const ElementContact& contact) {
   if (!contact.joined) return false;
   if (t.objects[contact.object].kind == PointRef::Kind::kRope) return true;
   return contact.few && gives_way(t.bodies, contact.body);
 }
 
-bool is_near(const InnerContact& contact) {
+bool is_near(const ElementContact& contact) {
   return contact.separation < kFar;
 }
 
-void push_out(const InnerContact& contact, Real h, state::Particles& particles) {
+void push_out(const ElementContact& contact, Real h, state::Particles& particles) {
   const Real overlap = -contact.separation;
   const Real w = inverse_mass_of(contact, particles);
   if (!(overlap > Real(0)) || !(w > Real(0))) return;
-  const Vec3 way = (std::min(overlap, Real(kPushOutSpeed) * h) / w) * contact.normal;
+  const Vec3 displacement = (std::min(overlap, Real(kPushOutSpeed) * h) / w) * contact.normal;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     const std::uint32_t p = contact.particle[i];
-    particles.position[p].x += (contact.weight[i] * particles.velocity[p].inverse_mass) * way;
+    particles.position[p].x += (contact.weight[i] * particles.velocity[p].inverse_mass) * displacement;
   }
 }
 
-void solve_inner_contacts(Real h, state::Tables& t) {
+void solve_element_contacts(Real h, state::Tables& t) {
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (InnerContact& contact : t.inner_contacts) {
-      if (is_tied(t, contact)) continue;
+    for (ElementContact& contact : t.element_contacts) {
+      if (is_coupled(t, contact)) continue;
       if (sweep == 0) {
         contact.normal_force = Real(0);
         contact.friction_force = {};

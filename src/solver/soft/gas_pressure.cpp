@@ -27,8 +27,8 @@ void hold(const state::Contacts& contacts, std::size_t row, DVec3 v, double w, D
   const DVec3 n = vector_cast<double>(contacts.normal[row]);
   const double along = dot(gradient, n);
   if (!(contacts.normal_force[row] > Real(0)) || !(along < 0)) return;
-  const double approach = dot(n, v - vector_cast<double>(contacts.surface_velocity[row]));
-  if (approach < 0) response.rate -= along * approach;
+  const double closing_speed = dot(n, v - vector_cast<double>(contacts.surface_velocity[row]));
+  if (closing_speed < 0) response.rate -= along * closing_speed;
   response.mobility -= w * along * along;
   GasVolume::Push& push = push_on(contacts.body[row], pushes);
   push.force += along * n;
@@ -78,9 +78,9 @@ void press_gas(const state::Deformable& object, const state::Triangles& triangle
       static_cast<std::size_t>(std::lower_bound(contacts.particle.begin(), contacts.particle.end(), first) -
                                contacts.particle.begin());
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
-    const state::VelocityLine& line = particles.velocity[first + i];
-    const DVec3 v = vector_cast<double>(line.v);
-    const auto w = static_cast<double>(line.inverse_mass);
+    const state::VelocityRecord& record = particles.velocity[first + i];
+    const DVec3 v = vector_cast<double>(record.v);
+    const auto w = static_cast<double>(record.inverse_mass);
     all.rate += dot(scratch.gradient[i], v);
     all.mobility += w * length_squared(scratch.gradient[i]);
     while (row < contacts.particle.size() && contacts.particle[row] < first + i) ++row;
@@ -93,8 +93,8 @@ void press_gas(const state::Deformable& object, const state::Triangles& triangle
   const double impulse = h * (gas_pressure(object, scratch.volume) - h * stiffness * all.rate) /
                          (1 + h * h * stiffness * all.mobility);
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
-    state::VelocityLine& line = particles.velocity[first + i];
-    line.v += vector_cast<Real>(static_cast<double>(line.inverse_mass) * impulse * scratch.gradient[i]);
+    state::VelocityRecord& record = particles.velocity[first + i];
+    record.v += vector_cast<Real>(static_cast<double>(record.inverse_mass) * impulse * scratch.gradient[i]);
   }
 }
 

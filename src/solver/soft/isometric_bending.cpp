@@ -53,7 +53,7 @@ struct Spring {
   Real rest_length = Real(0);
 };
 
-struct Hinge {
+struct IsometricBend {
   std::uint32_t bend = 0;
   Spring edge, wings;
   int color = 0;
@@ -62,20 +62,21 @@ struct Hinge {
   [[nodiscard]] auto key() const { return std::tie(color, edge.material, wings.material, damping); }
 };
 
-Spring load_spring(std::optional<std::uint32_t> row, const state::Springs& springs, HingeBlocks& hinges) {
+Spring load_spring(std::optional<std::uint32_t> row, const state::Springs& springs,
+                   IsometricBendBlocks& isometric_bends) {
   if (!row) return {};
-  return {find_or_add_material(springs, *row, hinges.materials), springs.rest_length[*row]};
+  return {find_or_add_material(springs, *row, isometric_bends.materials), springs.rest_length[*row]};
 }
 
-void set_lane(const Hinge& hinge, const state::Bends& bends, std::size_t lane, HingeBlock& block,
-              std::array<Real, kLanes>& stiffness) {
-  const Stencil& s = bends.stencil[hinge.bend];
+void set_lane(const IsometricBend& isometric, const state::Bends& bends, std::size_t lane,
+              IsometricBendBlock& block, std::array<Real, kLanes>& stiffness) {
+  const Stencil& s = bends.stencil[isometric.bend];
   const std::uint32_t ends[4] = {s.edge_a, s.edge_b, s.wing_a, s.wing_b};
-  for (int k = 0; k < 4; ++k) block.line[k][lane] = 4 * ends[k];
-  for (int k = 0; k < 3; ++k) block.weight[k][lane] = bends.weights[hinge.bend][k + 1];
-  block.edge_length[lane] = hinge.edge.rest_length;
-  block.wing_length[lane] = hinge.wings.rest_length;
-  stiffness[lane] = bends.stiffness[hinge.bend];
+  for (int k = 0; k < 4; ++k) block.record[k][lane] = 4 * ends[k];
+  for (int k = 0; k < 3; ++k) block.weight[k][lane] = bends.weights[isometric.bend][k + 1];
+  block.edge_length[lane] = isometric.edge.rest_length;
+  block.wing_length[lane] = isometric.wings.rest_length;
+  stiffness[lane] = bends.stiffness[isometric.bend];
 }
 
 /// Of a bend, k sum |weight|^2 [N/m]: over the mass of a point the square of how fast it acts.
@@ -86,10 +87,11 @@ Real resistance(const state::Bends& bends, std::uint32_t row) {
 }
 
 /// Isometric bends with their springs, sorted by color and materials.
-std::vector<Hinge> list_hinges(const state::Bends& bends, const state::Springs& springs, int particle_count,
-                               std::vector<std::uint8_t>& taken, HingeBlocks& hinges) {
+std::vector<IsometricBend> list_isometric_bends(const state::Bends& bends, const state::Springs& springs,
+                                                int particle_count, std::vector<std::uint8_t>& taken,
+                                                IsometricBendBlocks& isometric_bends) {
   const SpringsByEnds by_ends(springs);
-  std::vector<Hinge> list;
+  std::vector<IsometricBend> list;
   std::vector<Stencil> stencils;
   for (std::uint32_t row = 0; row < bends.stencil.size(); ++row) {
     if (!bends.is_isometric(row)) continue;
@@ -97,38 +99,40 @@ std::vector<Hinge> list_hinges(const state::Bends& bends, const state::Springs& 
     const auto edge = by_ends.take(s.edge_a, s.edge_b, taken);
     const auto wings = by_ends.take(s.wing_a, s.wing_b, taken);
     list.push_back({.bend = row,
-                    .edge = load_spring(edge, springs, hinges),
-                    .wings = load_spring(wings, springs, hinges),
+                    .edge = load_spring(edge, springs, isometric_bends),
+                    .wings = load_spring(wings, springs, isometric_bends),
                     .damping = bends.damping[row]});
     stencils.push_back(s);
   }
   const std::vector<int> color = color_fours(stencils, particle_count);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].color = color[i];
   std::stable_sort(list.begin(), list.end(),
-                   [](const Hinge& a, const Hinge& b) { return a.key() < b.key(); });
+                   [](const IsometricBend& a, const IsometricBend& b) { return a.key() < b.key(); });
   return list;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const state::Springs& springs,
-                                             int particle_count, HingeBlocks& hinges) {
-  hinges = {};
-  hinges.materials.push_back({});  // kNoSpring
+std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
+                                                      const state::Springs& springs, int particle_count,
+                                                      IsometricBendBlocks& isometric_bends) {
+  isometric_bends = {};
+  isometric_bends.materials.push_back({});  // kNoSpring
   std::vector<std::uint8_t> taken(springs.kind.size(), 0);
-  const std::vector<Hinge> list = list_hinges(bends, springs, particle_count, taken, hinges);
+  const std::vector<IsometricBend> list =
+      list_isometric_bends(bends, springs, particle_count, taken, isometric_bends);
 
   std::size_t i = 0;
   while (i < list.size()) {
-    const Hinge& head = list[i];
-    HingePass pass{.edge = head.edge.material,
-                   .wings = head.wings.material,
-                   .damping = head.damping,
-                   .first = static_cast<int>(hinges.blocks.size())};
+    const IsometricBend& head = list[i];
+    IsometricBendPass pass{.edge = head.edge.material,
+                           .wings = head.wings.material,
+                           .damping = head.damping,
+                           .first = static_cast<int>(isometric_bends.blocks.size())};
     const auto more = [&] { return i < list.size() && list[i].key() == head.key(); };
     while (more()) {
-      HingeBlock& block = hinges.blocks.emplace_back();
-      std::array<Real, kLanes>& stiffness = hinges.stiffness.emplace_back();
+      IsometricBendBlock& block = isometric_bends.blocks.emplace_back();
+      std::array<Real, kLanes>& stiffness = isometric_bends.stiffness.emplace_back();
       pass.last_count = 0;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const bool own = more();
@@ -137,36 +141,36 @@ std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const st
         if (own) ++pass.last_count;
       }
     }
-    pass.end = static_cast<int>(hinges.blocks.size());
-    hinges.passes.push_back(pass);
+    pass.end = static_cast<int>(isometric_bends.blocks.size());
+    isometric_bends.passes.push_back(pass);
   }
   return taken;
 }
 
-void prepare_hinges(HingeBlocks& hinges, Real h) {
-  prepare_springs(hinges.materials, h);
-  for (HingePass& pass : hinges.passes) {
-    const Real mass = hinges.materials[pass.edge].damped_mass;  // of the same cloth
+void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {
+  prepare_springs(isometric_bends.materials, h);
+  for (IsometricBendPass& pass : isometric_bends.passes) {
+    const Real mass = isometric_bends.materials[pass.edge].damped_mass;  // of the same cloth
     const Real most = most_damping(mass, pass.stiffest, h) / pass.stiffest;
     const Real damped = Real(1) / (std::min(pass.damping, most) + h);
     pass.softness = {.bias = Real(1) / h, .damped_bias = damped, .gamma_share = h * damped};
   }
-  for (std::size_t i = 0; i < hinges.blocks.size(); ++i) {
+  for (std::size_t i = 0; i < isometric_bends.blocks.size(); ++i) {
     for (std::size_t lane = 0; lane < kLanes; ++lane)
-      hinges.blocks[i].gamma[lane] = Real(1) / (h * h * hinges.stiffness[i][lane]);
+      isometric_bends.blocks[i].gamma[lane] = Real(1) / (h * h * isometric_bends.stiffness[i][lane]);
   }
 }
 
-void solve_hinges(const HingeBlocks& hinges, const HingePass& pass, parallel::Range blocks,
-                  state::Particles& particles) {
-  const wide::HingeRun run = {
-      .blocks = {hinges.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())},
+void solve_isometric_bends(const IsometricBendBlocks& isometric_bends, const IsometricBendPass& pass,
+                           parallel::Range blocks, state::Particles& particles) {
+  const wide::IsometricBendRun run = {
+      .blocks = {isometric_bends.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())},
       .last_count = blocks.end == pass.end ? pass.last_count : kLanes};
-  const wide::HingeMaterials materials = {
+  const wide::IsometricBendMaterials materials = {
       .bend = pass.softness,
-      .edge = hinges.materials[pass.edge],
-      .wings = pass.wings == kNoSpring ? nullptr : &hinges.materials[pass.wings]};
-  wide::solve_hinges(run, materials, particles);
+      .edge = isometric_bends.materials[pass.edge],
+      .wings = pass.wings == kNoSpring ? nullptr : &isometric_bends.materials[pass.wings]};
+  wide::solve_isometric_bends(run, materials, particles);
 }
 
 }  // namespace hooke::solver

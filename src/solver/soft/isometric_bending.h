@@ -17,16 +17,16 @@ namespace hooke::solver {
 
 /// 16 hinges of one color whose springs are of the same materials. The last block of a pass may hold fewer:
 /// copies of its last hinge fill it.
-struct alignas(64) HingeBlock {
-  std::uint32_t line[4][kLanes];  ///< Where the lines of a hinge's particles begin, as in BendBlock.
-  Real edge_length[kLanes];       ///< L of the spring along the edge [m].
-  Real wing_length[kLanes];       ///< L of the one between the wings [m].
-  Real weight[3][kLanes];         ///< K_1, K_2, K_3 of elements::isometric_bend; K_0 is minus their sum.
-  Real gamma[kLanes];             ///< 1 / (h^2 k) [1/kg]; written by prepare_hinges.
+struct alignas(64) IsometricBendBlock {
+  std::uint32_t record[4][kLanes];  ///< Where the lines of a hinge's particles begin, as in BendBlock.
+  Real edge_length[kLanes];         ///< L of the spring along the edge [m].
+  Real wing_length[kLanes];         ///< L of the one between the wings [m].
+  Real weight[3][kLanes];           ///< K_1, K_2, K_3 of elements::isometric_bend; K_0 is minus their sum.
+  Real gamma[kLanes];               ///< 1 / (h^2 k) [1/kg]; written by prepare_hinges.
 };
 
 /// What all bends of a pass have in common, in a substep of h; written by prepare_hinges.
-struct HingeSoftness {
+struct IsometricBendSoftness {
   Real bias = Real(0);         ///< 1 / h [1/s]
   Real damped_bias = Real(0);  ///< 1 / (tau + h) [1/s]; equal to `bias` without damping.
   Real gamma_share = Real(1);  ///< h / (tau + h)
@@ -35,7 +35,7 @@ struct HingeSoftness {
 };
 
 /// Blocks [first, end) hold hinges of one color: no two share a particle.
-struct HingePass {
+struct IsometricBendPass {
   std::uint32_t edge = 0;   ///< Material of the springs along edges; kNoSpring.
   std::uint32_t wings = 0;  ///< Material of those between wings; kNoSpring.
   Real damping = Real(0);   ///< tau of the bends [s].
@@ -43,26 +43,27 @@ struct HingePass {
   int first = 0;
   int end = 0;
   int last_count = kLanes;  ///< Hinges in the last block.
-  HingeSoftness softness = {};
+  IsometricBendSoftness softness = {};
 };
 
 /// The first material of all, that of springs that are not there.
 inline constexpr std::uint32_t kNoSpring = 0;
 
-struct HingeBlocks {
-  std::vector<HingeBlock> blocks;
+struct IsometricBendBlocks {
+  std::vector<IsometricBendBlock> blocks;
   std::vector<std::array<Real, kLanes>> stiffness;  ///< k of the bends [N/m], by block.
   std::vector<SpringMaterial> materials;
-  std::vector<HingePass> passes;
+  std::vector<IsometricBendPass> passes;
 };
 
 /// Makes hinges of the isometric bends and of the springs that lie along their edges or between their wings.
 /// Returns, by row of `springs`, whether it is in a hinge.
-std::vector<std::uint8_t> build_hinge_blocks(const state::Bends& bends, const state::Springs& springs,
-                                             int particle_count, HingeBlocks& hinges);
+std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
+                                                      const state::Springs& springs, int particle_count,
+                                                      IsometricBendBlocks& isometric_bends);
 
 /// The coefficients of every row for a substep of `h` [s].
-void prepare_hinges(HingeBlocks& hinges, Real h);
+void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h);
 
 /// Solves the rows of each hinge one after another, the bend first, the spring along the edge last. Springs
 /// as in solver/soft/spring_solve.h; the bend is an implicit Euler step of E = k |q|^2 / 2, q = sum K_i x_i,
@@ -75,7 +76,7 @@ void prepare_hinges(HingeBlocks& hinges, Real h);
 /// so by a little: of a spin omega it takes 2 h E omega in each second.
 ///
 /// `blocks` lies within one pass.
-void solve_hinges(const HingeBlocks& hinges, const HingePass& pass, parallel::Range blocks,
-                  state::Particles& particles);
+void solve_isometric_bends(const IsometricBendBlocks& isometric_bends, const IsometricBendPass& pass,
+                           parallel::Range blocks, state::Particles& particles);
 
 }  // namespace hooke::solver

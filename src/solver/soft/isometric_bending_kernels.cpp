@@ -18,11 +18,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-void solve_hinges_here(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
+void solve_isometric_bends_here(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                                state::Particles& particles) {
 #if HWY_TARGET == HWY_SCALAR
-  solve_hinges_scalar(run, materials, particles);
+  solve_isometric_bends_scalar(run, materials, particles);
 #else
-  solve_hinge_run<Wide>(run, materials, particles);
+  solve_isometric_bend_run<Wide>(run, materials, particles);
 #endif
 }
 
@@ -32,12 +33,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hooke::solver::wide {
 
-HWY_EXPORT(solve_hinges_here);
+HWY_EXPORT(solve_isometric_bends_here);
 
-void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
+void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                           state::Particles& particles) {
   if (run.blocks.empty()) return;
-  if (is_scalar()) return solve_hinges_scalar(run, materials, particles);
-  HWY_DYNAMIC_DISPATCH(solve_hinges_here)(run, materials, particles);
+  if (is_scalar()) return solve_isometric_bends_scalar(run, materials, particles);
+  HWY_DYNAMIC_DISPATCH(solve_isometric_bends_here)(run, materials, particles);
 }
 
 }  // namespace hooke::solver::wide
@@ -47,8 +49,9 @@ void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::P
 
 namespace hooke::solver::wide {
 
-void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
-  if (!run.blocks.empty()) solve_hinges_scalar(run, materials, particles);
+void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                           state::Particles& particles) {
+  if (!run.blocks.empty()) solve_isometric_bends_scalar(run, materials, particles);
 }
 
 }  // namespace hooke::solver::wide

@@ -6,16 +6,18 @@
 
 namespace hooke::solver::wide {
 
-using HingeRun = Run<HingeBlock>;
+using IsometricBendRun = Run<IsometricBendBlock>;
 
-struct HingeMaterials {
-  const HingeSoftness& bend;
+struct IsometricBendMaterials {
+  const IsometricBendSoftness& bend;
   const SpringMaterial& edge;
   const SpringMaterial* wings;  ///< Null where none of the hinges has a spring there.
 };
 
 /// One pass over a run; the formulas stand in solver/soft/isometric_bending.h.
-void solve_hinges(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles);
-void solve_hinges_scalar(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles);
+void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                           state::Particles& particles);
+void solve_isometric_bends_scalar(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                                  state::Particles& particles);
 
 }  // namespace hooke::solver::wide

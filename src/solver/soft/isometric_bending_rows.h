@@ -41,7 +41,7 @@ HWY_INLINE void solve_spring(const Triple<Number>& d, Number rest_length, const 
 /// The impulse of a bend of the curvature q and its rate, `w` the sum of w_i K_i^2.
 template <class Number, bool kDamped>
 HWY_INLINE Triple<Number> bend_impulse(const Triple<Number>& q, const Triple<Number>& rate, Number w,
-                                       Number gamma, const HingeSoftness& softness) {
+                                       Number gamma, const IsometricBendSoftness& softness) {
   const Number one(Real(1));
   const Number bias(softness.bias);
   const Number share = quotient(one, w + gamma);
@@ -58,18 +58,19 @@ HWY_INLINE Triple<Number> bend_impulse(const Triple<Number>& q, const Triple<Num
 
 /// The hinges of a block from `lane` on, one for each lane of a Number.
 template <class Number, bool kWings, bool kDamped>
-HWY_INLINE void solve_hinge_lanes(const HingeBlock& block, int lane, const HingeMaterials& materials,
-                                  const Real* position, Real* velocity) {
-  const auto line = [&](int k) HWY_ATTR { return block.line[k] + lane; };
+HWY_INLINE void solve_isometric_bend_lanes(const IsometricBendBlock& block, int lane,
+                                           const IsometricBendMaterials& materials, const Real* position,
+                                           Real* velocity) {
+  const auto record = [&](int k) HWY_ATTR { return block.record[k] + lane; };
   Triple<Number> e, d2, d3;  // from x0
-  read_offset(position, line(1), line(0), e);
-  read_offset(position, line(2), line(0), d2);
-  read_offset(position, line(3), line(0), d3);
+  read_offset(position, record(1), record(0), e);
+  read_offset(position, record(2), record(0), d2);
+  read_offset(position, record(3), record(0), d3);
   Quad<Number> v0, v1, v2, v3;
-  read_quad(velocity, line(0), v0);
-  read_quad(velocity, line(1), v1);
-  read_quad(velocity, line(2), v2);
-  read_quad(velocity, line(3), v3);
+  read_quad(velocity, record(0), v0);
+  read_quad(velocity, record(1), v1);
+  read_quad(velocity, record(2), v2);
+  read_quad(velocity, record(3), v3);
 
   const Number k1 = get<Number>(block.weight[0] + lane);
   const Number k2 = get<Number>(block.weight[1] + lane);
@@ -80,10 +81,10 @@ HWY_INLINE void solve_hinge_lanes(const HingeBlock& block, int lane, const Hinge
   const auto from_first = [&](const Quad<Number>& v) HWY_ATTR {
     return Triple<Number>{v.x - v0.x, v.y - v0.y, v.z - v0.z};
   };
-  const auto weighed = [&](const Triple<Number>& a, const Triple<Number>& b, const Triple<Number>& c)
-                           HWY_ATTR { return sum(sum(scaled(k1, a), scaled(k2, b)), scaled(k3, c)); };
-  const Triple<Number> rate = weighed(from_first(v1), from_first(v2), from_first(v3));
-  const Triple<Number> p = bend_impulse<Number, kDamped>(weighed(e, d2, d3), rate, w,
+  const auto weighted = [&](const Triple<Number>& a, const Triple<Number>& b, const Triple<Number>& c)
+                            HWY_ATTR { return sum(sum(scaled(k1, a), scaled(k2, b)), scaled(k3, c)); };
+  const Triple<Number> rate = weighted(from_first(v1), from_first(v2), from_first(v3));
+  const Triple<Number> p = bend_impulse<Number, kDamped>(weighted(e, d2, d3), rate, w,
                                                          get<Number>(block.gamma + lane), materials.bend);
   const auto push = [&](Number k, Quad<Number>& v) HWY_ATTR {
     const Number s = k * v.w;
@@ -98,36 +99,37 @@ HWY_INLINE void solve_hinge_lanes(const HingeBlock& block, int lane, const Hinge
     solve_spring(difference(d2, d3), get<Number>(block.wing_length + lane), *materials.wings, v2, v3);
   }
   solve_spring(e, get<Number>(block.edge_length + lane), materials.edge, v1, v0);
-  write_quad(v0, velocity, line(0));
-  write_quad(v1, velocity, line(1));
-  write_quad(v2, velocity, line(2));
-  write_quad(v3, velocity, line(3));
+  write_quad(v0, velocity, record(0));
+  write_quad(v1, velocity, record(1));
+  write_quad(v2, velocity, record(2));
+  write_quad(v3, velocity, record(3));
 }
 
 /// All loads of a Number come before its stores, so that the copies which fill a block store what their
 /// original does.
 template <class Number, bool kWings, bool kDamped>
-HWY_INLINE void solve_hinge_blocks(const HingeRun& run, const HingeMaterials& materials,
-                                   state::Particles& particles) {
+HWY_INLINE void solve_isometric_bend_blocks(const IsometricBendRun& run,
+                                            const IsometricBendMaterials& materials,
+                                            state::Particles& particles) {
   const auto* position = reinterpret_cast<const Real*>(particles.position.data());
   auto* velocity = reinterpret_cast<Real*>(particles.velocity.data());
-  for (const HingeBlock& block : run.blocks) {
+  for (const IsometricBendBlock& block : run.blocks) {
     const int count = &block == &run.blocks.back() ? run.last_count : kLanes;
     for (int lane = 0; lane < count; lane += kLanesOf<Number>)
-      solve_hinge_lanes<Number, kWings, kDamped>(block, lane, materials, position, velocity);
+      solve_isometric_bend_lanes<Number, kWings, kDamped>(block, lane, materials, position, velocity);
   }
 }
 
 template <class Number>
-HWY_INLINE void solve_hinge_run(const HingeRun& run, const HingeMaterials& materials,
-                                state::Particles& particles) {
+HWY_INLINE void solve_isometric_bend_run(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                                         state::Particles& particles) {
   const bool damped = materials.bend.is_damped();
   if (materials.wings != nullptr) {
-    damped ? solve_hinge_blocks<Number, true, true>(run, materials, particles)
-           : solve_hinge_blocks<Number, true, false>(run, materials, particles);
+    damped ? solve_isometric_bend_blocks<Number, true, true>(run, materials, particles)
+           : solve_isometric_bend_blocks<Number, true, false>(run, materials, particles);
   } else {
-    damped ? solve_hinge_blocks<Number, false, true>(run, materials, particles)
-           : solve_hinge_blocks<Number, false, false>(run, materials, particles);
+    damped ? solve_isometric_bend_blocks<Number, false, true>(run, materials, particles)
+           : solve_isometric_bend_blocks<Number, false, false>(run, materials, particles);
   }
 }
 

@@ -4,8 +4,9 @@
 
 namespace hooke::solver::wide {
 
-void solve_hinges_scalar(const HingeRun& run, const HingeMaterials& materials, state::Particles& particles) {
-  HWY_NAMESPACE::solve_hinge_run<Real>(run, materials, particles);
+void solve_isometric_bends_scalar(const IsometricBendRun& run, const IsometricBendMaterials& materials,
+                                  state::Particles& particles) {
+  HWY_NAMESPACE::solve_isometric_bend_run<Real>(run, materials, particles);
 }
 
 }  // namespace hooke::solver::wide

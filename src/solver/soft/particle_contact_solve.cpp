@@ -6,7 +6,7 @@ namespace hooke::solver {
 
 namespace {
 
-void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::VelocityLine& particle) {
+void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::VelocityRecord& particle) {
   const Vec3 n = contacts.normal[row];
   const Vec3 relative = particle.v - contacts.surface_velocity[row];
   const Real speed = dot(n, relative);

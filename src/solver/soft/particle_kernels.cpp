@@ -26,12 +26,12 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 
 void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
-                        const state::PositionLine* position, state::VelocityLine* velocity) {
+                        const state::PositionRecord* position, state::VelocityRecord* velocity) {
   solve_springs_scalar(run, material, position, velocity);
 }
 
-void solve_bends_here(const BendRun& run, const state::PositionLine* position,
-                      state::VelocityLine* velocity) {
+void solve_bends_here(const BendRun& run, const state::PositionRecord* position,
+                      state::VelocityRecord* velocity) {
   solve_bends_scalar(run, position, velocity);
 }
 
@@ -60,8 +60,8 @@ struct Rows {
 
 HWY_INLINE void load_rows(const SpringBlock& block, int first, const float* position, const float* velocity,
                           Rows& rows) {
-  const std::uint32_t* a = block.line_a + first;
-  const std::uint32_t* b = block.line_b + first;
+  const std::uint32_t* a = block.record_a + first;
+  const std::uint32_t* b = block.record_b + first;
   const Columns d = load_offsets(position, a, b);
   rows.dx = d.x;
   rows.dy = d.y;
@@ -106,17 +106,17 @@ HWY_INLINE void apply_impulses(const Rows& rows, const SpringBlock& block, int f
   const Columns& a = rows.v_a;
   store_columns(
       {hn::Sub(a.x, hn::Mul(a.w, x)), hn::Sub(a.y, hn::Mul(a.w, y)), hn::Sub(a.z, hn::Mul(a.w, z)), a.w},
-      velocity, block.line_a + first);
+      velocity, block.record_a + first);
   if constexpr (kAnchored) return;
   const Columns& b = rows.v_b;
   store_columns(
       {hn::Add(b.x, hn::Mul(b.w, x)), hn::Add(b.y, hn::Mul(b.w, y)), hn::Add(b.z, hn::Mul(b.w, z)), b.w},
-      velocity, block.line_b + first);
+      velocity, block.record_b + first);
 }
 
 /// A vector of rows: the lanes of a block from `first` on.
 template <class Block>
-struct Place {
+struct BlockLanes {
   const Block* block;
   int first;
 };
@@ -128,7 +128,7 @@ HWY_INLINE int count_vectors(const Run<Block>& run) {
 }
 
 template <class Block>
-HWY_INLINE Place<Block> place_of(const Run<Block>& run, int vector) {
+HWY_INLINE BlockLanes<Block> lanes_at(const Run<Block>& run, int vector) {
   return {&run.blocks[vector * kWidth / kLanes], vector * kWidth % kLanes};
 }
 
@@ -136,8 +136,8 @@ HWY_INLINE Place<Block> place_of(const Run<Block>& run, int vector) {
 /// waits for the roots and quotients of the other. All loads come before the first store, so the copies of
 /// the last row that fill a partial block store what that row stores.
 template <int kCount, bool kOneSided, bool kAnchored, bool kRigid>
-HWY_INLINE void solve_vectors(const Place<SpringBlock> (&at)[kCount], const Law& law, const float* position,
-                              float* velocity) {
+HWY_INLINE void solve_vectors(const BlockLanes<SpringBlock> (&at)[kCount], const Law& law,
+                              const float* position, float* velocity) {
   Rows rows, more;
   load_rows(*at[0].block, at[0].first, position, velocity, rows);
   if constexpr (kCount > 1) load_rows(*at[1].block, at[1].first, position, velocity, more);
@@ -156,11 +156,11 @@ void solve_run(const SpringRun& run, const SpringMaterial& material, const float
   const int vectors = count_vectors(run);
   int i = 0;
   for (; i + 1 < vectors; i += 2) {
-    solve_vectors<2, kOneSided, kAnchored, kRigid>({place_of(run, i), place_of(run, i + 1)}, law, position,
+    solve_vectors<2, kOneSided, kAnchored, kRigid>({lanes_at(run, i), lanes_at(run, i + 1)}, law, position,
                                                    velocity);
   }
   if (i < vectors)
-    solve_vectors<1, kOneSided, kAnchored, kRigid>({place_of(run, i)}, law, position, velocity);
+    solve_vectors<1, kOneSided, kAnchored, kRigid>({lanes_at(run, i)}, law, position, velocity);
 }
 
 template <bool kRigid>
@@ -176,7 +176,7 @@ void solve_kind(const SpringRun& run, const SpringMaterial& material, const floa
 }
 
 void solve_springs_here(const SpringRun& run, const SpringMaterial& material,
-                        const state::PositionLine* positions, state::VelocityLine* velocities) {
+                        const state::PositionRecord* positions, state::VelocityRecord* velocities) {
   const auto* position = reinterpret_cast<const float*>(positions);
   auto* velocity = reinterpret_cast<float*>(velocities);
   if (material.is_rigid()) {
@@ -237,7 +237,7 @@ HWY_INLINE Vector wrapped_error(Vector angle, Vector rest_angle) {
 }
 
 /// A vector of bend rows between its loads and its stores; the names are those of solver/soft/bending.h.
-struct Hinges {
+struct BendVectors {
   Vector l, l2, inverse_aa, inverse_bb;
   Vector error;            ///< theta - theta_0
   Vectors g0, g1, ua, ub;  ///< Gradients divided by l: g0, g1, -ua, -ub.
@@ -245,10 +245,10 @@ struct Hinges {
   Vector s;  ///< -l lambda
 };
 
-HWY_INLINE void load_hinges(Place<BendBlock> at, const float* position, Hinges& rows) {
-  const std::uint32_t* x0 = at.block->line[0] + at.first;
+HWY_INLINE void load_bend_vectors(BlockLanes<BendBlock> at, const float* position, BendVectors& rows) {
+  const std::uint32_t* x0 = at.block->record[0] + at.first;
   const auto from_x0 = [&](int k) HWY_ATTR {
-    const Columns d = load_offsets(position, at.block->line[k] + at.first, x0);
+    const Columns d = load_offsets(position, at.block->record[k] + at.first, x0);
     return Vectors{d.x, d.y, d.z};
   };
   const Vectors e = from_x0(1);
@@ -284,11 +284,11 @@ HWY_INLINE Vector rate_of(Vectors g, const Columns& v) {
 
 /// Velocities are loaded only now, when most of what positions needed is out of the registers. Rows without
 /// extent have no gradients, so that their impulse is zero whatever s.
-HWY_INLINE void compute_impulses(Place<BendBlock> at, const float* velocity, Hinges& rows) {
-  rows.v0 = load_columns(velocity, at.block->line[0] + at.first);
-  rows.v1 = load_columns(velocity, at.block->line[1] + at.first);
-  rows.v2 = load_columns(velocity, at.block->line[2] + at.first);
-  rows.v3 = load_columns(velocity, at.block->line[3] + at.first);
+HWY_INLINE void compute_impulses(BlockLanes<BendBlock> at, const float* velocity, BendVectors& rows) {
+  rows.v0 = load_columns(velocity, at.block->record[0] + at.first);
+  rows.v1 = load_columns(velocity, at.block->record[1] + at.first);
+  rows.v2 = load_columns(velocity, at.block->record[2] + at.first);
+  rows.v3 = load_columns(velocity, at.block->record[3] + at.first);
   const Vector rate = hn::Sub(hn::Add(rate_of(rows.g0, rows.v0), rate_of(rows.g1, rows.v1)),
                               hn::Add(rate_of(rows.ua, rows.v2), rate_of(rows.ub, rows.v3)));
   const Vector w =
@@ -308,26 +308,26 @@ HWY_INLINE Columns changed(const Columns& v, Vectors g, Vector s, Combine combin
   return {after.x, after.y, after.z, v.w};
 }
 
-HWY_INLINE void apply_impulses(const Hinges& rows, Place<BendBlock> at, float* velocity) {
-  store_columns(changed(rows.v0, rows.g0, rows.s, subtract), velocity, at.block->line[0] + at.first);
-  store_columns(changed(rows.v1, rows.g1, rows.s, subtract), velocity, at.block->line[1] + at.first);
-  store_columns(changed(rows.v2, rows.ua, rows.s, add), velocity, at.block->line[2] + at.first);
-  store_columns(changed(rows.v3, rows.ub, rows.s, add), velocity, at.block->line[3] + at.first);
+HWY_INLINE void apply_impulses(const BendVectors& rows, BlockLanes<BendBlock> at, float* velocity) {
+  store_columns(changed(rows.v0, rows.g0, rows.s, subtract), velocity, at.block->record[0] + at.first);
+  store_columns(changed(rows.v1, rows.g1, rows.s, subtract), velocity, at.block->record[1] + at.first);
+  store_columns(changed(rows.v2, rows.ua, rows.s, add), velocity, at.block->record[2] + at.first);
+  store_columns(changed(rows.v3, rows.ub, rows.s, add), velocity, at.block->record[3] + at.first);
 }
 
-void solve_bends_here(const BendRun& run, const state::PositionLine* positions,
-                      state::VelocityLine* velocities) {
+void solve_bends_here(const BendRun& run, const state::PositionRecord* positions,
+                      state::VelocityRecord* velocities) {
   const auto* position = reinterpret_cast<const float*>(positions);
   auto* velocity = reinterpret_cast<float*>(velocities);
   const int vectors = count_vectors(run);
   for (int i = 0; i < vectors; i += 2) {
     // The last of an odd number is solved twice: both store the same.
     const bool is_pair = i + 1 < vectors;
-    const Place<BendBlock> at = place_of(run, i);
-    const Place<BendBlock> next = place_of(run, is_pair ? i + 1 : i);
-    Hinges rows, more;
-    load_hinges(at, position, rows);
-    load_hinges(next, position, more);
+    const BlockLanes<BendBlock> at = lanes_at(run, i);
+    const BlockLanes<BendBlock> next = lanes_at(run, is_pair ? i + 1 : i);
+    BendVectors rows, more;
+    load_bend_vectors(at, position, rows);
+    load_bend_vectors(next, position, more);
     compute_impulses(at, velocity, rows);
     compute_impulses(next, velocity, more);
     apply_impulses(rows, at, velocity);
@@ -336,12 +336,12 @@ void solve_bends_here(const BendRun& run, const state::PositionLine* positions,
 }
 
 template <class D>
-HWY_INLINE void accelerate_lines(D tag, const float* change, float* velocity) {
-  alignas(16) static constexpr float kSettled[4] = {1e-20f, 1e-20f, 1e-20f, 0.0f};
-  const auto line = hn::LoadU(tag, velocity);
-  const auto moves = hn::Gt(hn::Broadcast<3>(line), hn::Zero(tag));
-  const auto v = hn::Add(line, hn::IfThenElseZero(moves, hn::LoadDup128(tag, change)));
-  hn::StoreU(hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::LoadDup128(tag, kSettled)), v), tag, velocity);
+HWY_INLINE void accelerate_records(D tag, const float* change, float* velocity) {
+  alignas(16) static constexpr float kFlushed[4] = {1e-20f, 1e-20f, 1e-20f, 0.0f};
+  const auto record = hn::LoadU(tag, velocity);
+  const auto moves = hn::Gt(hn::Broadcast<3>(record), hn::Zero(tag));
+  const auto v = hn::Add(record, hn::IfThenElseZero(moves, hn::LoadDup128(tag, change)));
+  hn::StoreU(hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::LoadDup128(tag, kFlushed)), v), tag, velocity);
 }
 
 void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Particles& particles) {
@@ -349,8 +349,8 @@ void accelerate_here(Vec3 acceleration, float h, parallel::Range rows, state::Pa
   alignas(16) const float change[4] = {step.x, step.y, step.z, 0.0f};
   auto* velocity = reinterpret_cast<float*>(particles.velocity.data());
   int i = rows.begin;
-  for (; i + kLineCount <= rows.end; i += kLineCount) accelerate_lines(kTag, change, velocity + 4 * i);
-  for (; i < rows.end; ++i) accelerate_lines(Line(), change, velocity + 4 * i);
+  for (; i + kRecordCount <= rows.end; i += kRecordCount) accelerate_records(kTag, change, velocity + 4 * i);
+  for (; i < rows.end; ++i) accelerate_records(Line(), change, velocity + 4 * i);
 }
 
 void move_here(float h, parallel::Range rows, state::Particles& particles) {
@@ -362,7 +362,7 @@ void move_here(float h, parallel::Range rows, state::Particles& particles) {
     hn::StoreU(hn::Add(hn::LoadU(tag, position + 4 * i), change), tag, position + 4 * i);
   };
   int i = rows.begin;
-  for (; i + kLineCount <= rows.end; i += kLineCount) advance(kTag, i);
+  for (; i + kRecordCount <= rows.end; i += kRecordCount) advance(kTag, i);
   for (; i < rows.end; ++i) advance(Line(), i);
 }
 
@@ -380,14 +380,14 @@ HWY_EXPORT(solve_bends_here);
 HWY_EXPORT(accelerate_here);
 HWY_EXPORT(move_here);
 
-void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
-                   state::VelocityLine* velocity) {
+void solve_springs(const SpringRun& run, const SpringMaterial& material,
+                   const state::PositionRecord* position, state::VelocityRecord* velocity) {
   if (run.blocks.empty()) return;
   if (is_scalar()) return solve_springs_scalar(run, material, position, velocity);
   HWY_DYNAMIC_DISPATCH(solve_springs_here)(run, material, position, velocity);
 }
 
-void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity) {
+void solve_bends(const BendRun& run, const state::PositionRecord* position, state::VelocityRecord* velocity) {
   if (run.blocks.empty()) return;
   if (is_scalar()) return solve_bends_scalar(run, position, velocity);
   HWY_DYNAMIC_DISPATCH(solve_bends_here)(run, position, velocity);
@@ -411,12 +411,12 @@ void move(Real h, parallel::Range rows, state::Particles& particles) {
 
 namespace hooke::solver::wide {
 
-void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
-                   state::VelocityLine* velocity) {
+void solve_springs(const SpringRun& run, const SpringMaterial& material,
+                   const state::PositionRecord* position, state::VelocityRecord* velocity) {
   solve_springs_scalar(run, material, position, velocity);
 }
 
-void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity) {
+void solve_bends(const BendRun& run, const state::PositionRecord* position, state::VelocityRecord* velocity) {
   solve_bends_scalar(run, position, velocity);
 }
 

@@ -21,11 +21,11 @@ using SpringRun = Run<SpringBlock>;
 using BendRun = Run<BendBlock>;
 
 /// One pass over a run; the formula stands in solver/soft/spring_solve.h.
-void solve_springs(const SpringRun& run, const SpringMaterial& material, const state::PositionLine* position,
-                   state::VelocityLine* velocity);
+void solve_springs(const SpringRun& run, const SpringMaterial& material,
+                   const state::PositionRecord* position, state::VelocityRecord* velocity);
 
 /// One pass over a run; the formula stands in solver/soft/bending.h.
-void solve_bends(const BendRun& run, const state::PositionLine* position, state::VelocityLine* velocity);
+void solve_bends(const BendRun& run, const state::PositionRecord* position, state::VelocityRecord* velocity);
 
 /// v += h a for particles that can move; components below 1e-20 m/s become zero, so that nothing decays into
 /// denormals.
@@ -36,9 +36,9 @@ void move(Real h, parallel::Range rows, state::Particles& particles);
 
 // The scalar twins: the same bits, one row at a time.
 void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
-                          const state::PositionLine* position, state::VelocityLine* velocity);
-void solve_bends_scalar(const BendRun& run, const state::PositionLine* position,
-                        state::VelocityLine* velocity);
+                          const state::PositionRecord* position, state::VelocityRecord* velocity);
+void solve_bends_scalar(const BendRun& run, const state::PositionRecord* position,
+                        state::VelocityRecord* velocity);
 void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles);
 void move_scalar(Real h, parallel::Range rows, state::Particles& particles);
 

@@ -13,9 +13,9 @@ namespace hooke::solver::wide {
 namespace {
 
 void solve_row(const SpringBlock& block, int lane, const SpringMaterial& material,
-               const state::PositionLine* position, state::VelocityLine* velocity) {
-  const std::uint32_t a = block.line_a[lane] / 4;
-  const std::uint32_t b = block.line_b[lane] / 4;
+               const state::PositionRecord* position, state::VelocityRecord* velocity) {
+  const std::uint32_t a = block.record_a[lane] / 4;
+  const std::uint32_t b = block.record_b[lane] / 4;
   const Vec3 d = position[a].x - position[b].x;
   const Vec3 dv = velocity[a].v - velocity[b].v;
   const Real w = velocity[a].inverse_mass + velocity[b].inverse_mass;
@@ -39,10 +39,10 @@ void solve_row(const SpringBlock& block, int lane, const SpringMaterial& materia
 }
 
 /// The names are those of solver/soft/bending.h.
-void solve_row(const BendBlock& block, int lane, const state::PositionLine* position,
-               state::VelocityLine* velocity) {
-  const auto at = [&](int k) { return block.line[k][lane] / 4; };
-  state::VelocityLine* v[4] = {velocity + at(0), velocity + at(1), velocity + at(2), velocity + at(3)};
+void solve_row(const BendBlock& block, int lane, const state::PositionRecord* position,
+               state::VelocityRecord* velocity) {
+  const auto at = [&](int k) { return block.record[k][lane] / 4; };
+  state::VelocityRecord* v[4] = {velocity + at(0), velocity + at(1), velocity + at(2), velocity + at(3)};
   const Vec3 x0 = position[at(0)].x;
   const Vec3 e = position[at(1)].x - x0;
   const Vec3 d2 = position[at(2)].x - x0;
@@ -90,23 +90,23 @@ void for_each_row(const Run<Block>& run, Solve&& solve) {
 }  // namespace
 
 void solve_springs_scalar(const SpringRun& run, const SpringMaterial& material,
-                          const state::PositionLine* position, state::VelocityLine* velocity) {
+                          const state::PositionRecord* position, state::VelocityRecord* velocity) {
   for_each_row(
       run, [&](const SpringBlock& block, int lane) { solve_row(block, lane, material, position, velocity); });
 }
 
-void solve_bends_scalar(const BendRun& run, const state::PositionLine* position,
-                        state::VelocityLine* velocity) {
+void solve_bends_scalar(const BendRun& run, const state::PositionRecord* position,
+                        state::VelocityRecord* velocity) {
   for_each_row(run, [&](const BendBlock& block, int lane) { solve_row(block, lane, position, velocity); });
 }
 
 void accelerate_scalar(Vec3 acceleration, Real h, parallel::Range rows, state::Particles& particles) {
   const Vec3 change = h * acceleration;
-  const auto settled = [](Real v) { return std::abs(v) < Real(1e-20) ? Real(0) : v; };
+  const auto flushed = [](Real v) { return std::abs(v) < Real(1e-20) ? Real(0) : v; };
   for (int i = rows.begin; i < rows.end; ++i) {
     const bool moves = particles.velocity[i].inverse_mass > Real(0);
     const Vec3 v = particles.velocity[i].v + (moves ? change : Vec3{});
-    particles.velocity[i].v = {settled(v.x), settled(v.y), settled(v.z)};
+    particles.velocity[i].v = {flushed(v.x), flushed(v.y), flushed(v.z)};
   }
 }
 

@@ -18,7 +18,7 @@ double mass_at(const Particles& particles, std::uint32_t p) {
   return static_cast<double>(particles.mass[p]);
 }
 
-DVec3 place_at(const Particles& particles, std::uint32_t p, double ahead) {
+DVec3 position_at(const Particles& particles, std::uint32_t p, double ahead) {
   return vector_cast<double>(particles.position[p].x) + ahead * vector_cast<double>(particles.velocity[p].v);
 }
 
@@ -32,7 +32,7 @@ struct Moments {
 DVec3 center_of(const Deformable& object, const Particles& particles, double ahead) {
   DVec3 sum;
   for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p)
-    sum += mass_at(particles, p) * place_at(particles, p, ahead);
+    sum += mass_at(particles, p) * position_at(particles, p, ahead);
   return (1 / object.rest_shape->mass) * sum;
 }
 
@@ -41,7 +41,7 @@ DMat3 product_of(const Deformable& object, const Particles& particles, DVec3 cen
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
     const std::uint32_t row = object.particles.first + i;
     const DVec3 q = object.rest_shape->place[i];
-    const DVec3 p = mass_at(particles, row) * (place_at(particles, row, ahead) - center);
+    const DVec3 p = mass_at(particles, row) * (position_at(particles, row, ahead) - center);
     a.x += q.x * p;
     a.y += q.y * p;
     a.z += q.z * p;
@@ -57,7 +57,7 @@ Moments moments_of(const Deformable& object, const Particles& particles, DVec3 c
   inertia = math::Symmetric3<double>::diagonal(1e-12 * object.rest_shape->inertia);
   for (std::uint32_t row = object.particles.first; row < object.particles.end(); ++row) {
     const double m = mass_at(particles, row);
-    const DVec3 p = place_at(particles, row, 0) - center;
+    const DVec3 p = position_at(particles, row, 0) - center;
     const DVec3 v = m * vector_cast<double>(particles.velocity[row].v);
     momentum += v;
     sum.angular_momentum += cross(p, v);
@@ -80,9 +80,9 @@ DVec3 torque_of(const DMat3& a, const DMat3& turn) {
 
 /// A point's own velocity, or that of what hangs on it, less u.
 void slow_down(Particles& particles, std::uint32_t row, DVec3 u) {
-  state::VelocityLine& line = particles.velocity[row];
-  const double share = static_cast<double>(line.inverse_mass) * mass_at(particles, row);
-  line.v = vector_cast<Real>(vector_cast<double>(line.v) - share * u);
+  state::VelocityRecord& record = particles.velocity[row];
+  const double share = static_cast<double>(record.inverse_mass) * mass_at(particles, row);
+  record.v = vector_cast<Real>(vector_cast<double>(record.v) - share * u);
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ void match_shape(const Deformable& object, double h, Particles& particles) {
   const DVec3 spin = math::inverse(sum.inertia) * torque;
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
     const std::uint32_t row = object.particles.first + i;
-    const DVec3 p = place_at(particles, row, 0) - center;
+    const DVec3 p = position_at(particles, row, 0) - center;
     const DVec3 e = p - turn * rest.place[i];
     const DVec3 v = vector_cast<double>(particles.velocity[row].v) - sum.velocity;
     slow_down(particles, row, pull * (e + h * v) - cross(spin, p));
@@ -118,7 +118,7 @@ void damp_shape(const Deformable& object, double h, Particles& particles) {
   const double share = h * object.rest_shape->damping / (1 + h * object.rest_shape->damping);
   const DVec3 spin = math::inverse(sum.inertia) * sum.angular_momentum;
   for (std::uint32_t row = object.particles.first; row < object.particles.end(); ++row) {
-    const DVec3 p = place_at(particles, row, 0) - center;
+    const DVec3 p = position_at(particles, row, 0) - center;
     const DVec3 v = vector_cast<double>(particles.velocity[row].v) - sum.velocity;
     slow_down(particles, row, share * (v - cross(spin, p)));
   }
@@ -131,7 +131,7 @@ double match_energy(const Deformable& object, const Particles& particles, double
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
     const std::uint32_t row = object.particles.first + i;
     const DVec3 goal = match.center + rotate(match.turn, object.rest_shape->place[i]);
-    sum += mass_at(particles, row) * length_squared(place_at(particles, row, ahead) - goal);
+    sum += mass_at(particles, row) * length_squared(position_at(particles, row, ahead) - goal);
   }
   return 0.5 * object.rest_shape->stiffness * sum;
 }

@@ -59,8 +59,8 @@ void color_class(const state::Springs& springs, const state::Particles& particle
 /// Copies the last row into the lanes behind it.
 void fill_lanes(SpringBlock& block, int count) {
   for (int lane = count; lane < kLanes; ++lane) {
-    block.line_a[lane] = block.line_a[count - 1];
-    block.line_b[lane] = block.line_b[count - 1];
+    block.record_a[lane] = block.record_a[count - 1];
+    block.record_b[lane] = block.record_b[count - 1];
     block.rest_length[lane] = block.rest_length[count - 1];
   }
 }
@@ -98,8 +98,8 @@ void build_spring_blocks(const state::Springs& springs, const state::Particles& 
       int lane = 0;
       for (; lane < kLanes && i < places.size() && places[i].same_pass(head); ++lane, ++i) {
         const std::uint32_t row = places[i].row;
-        block.line_a[lane] = 4 * springs.particle_a[row];
-        block.line_b[lane] = 4 * springs.particle_b[row];
+        block.record_a[lane] = 4 * springs.particle_a[row];
+        block.record_b[lane] = 4 * springs.particle_b[row];
         block.rest_length[lane] = springs.rest_length[row];
       }
       fill_lanes(block, lane);

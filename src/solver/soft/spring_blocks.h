@@ -20,8 +20,8 @@ namespace hooke::solver {
 /// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
 /// fill it.
 struct SpringBlock {
-  std::uint32_t line_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
-  std::uint32_t line_b[kLanes];
+  std::uint32_t record_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
+  std::uint32_t record_b[kLanes];
   Real rest_length[kLanes];
 };
 

@@ -22,14 +22,14 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
   const bool isotropic =
       material.form == SpringForm::kExplicitIsotropic || material.form == SpringForm::kPredictedIsotropic;
   for (int lane = 0; lane < count; ++lane) {
-    const std::uint32_t a = block.line_a[lane] / 4;
-    const std::uint32_t b = block.line_b[lane] / 4;
-    state::VelocityLine& line_a = particles.velocity[a];
-    state::VelocityLine& line_b = particles.velocity[b];
-    const Vec3 dv = line_a.v - line_b.v;
+    const std::uint32_t a = block.record_a[lane] / 4;
+    const std::uint32_t b = block.record_b[lane] / 4;
+    state::VelocityRecord& record_a = particles.velocity[a];
+    state::VelocityRecord& record_b = particles.velocity[b];
+    const Vec3 dv = record_a.v - record_b.v;
     const Vec3 d = (particles.position[a].x - particles.position[b].x) + (predicted ? h * dv : Vec3{});
     const Real l = length(d);
-    const Real w = line_a.inverse_mass + line_b.inverse_mass;
+    const Real w = record_a.inverse_mass + record_b.inverse_mass;
     if (!(l > Real(0)) || !(w > Real(0))) continue;
 
     const Vec3 n = (Real(1) / l) * d;
@@ -42,8 +42,8 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
     if (isotropic && material.damping > Real(0)) {
       p -= (Real(1) / (w + Real(1) / (h * material.damping))) * (dv - vn * n);
     }
-    line_a.v += line_a.inverse_mass * p;
-    line_b.v -= line_b.inverse_mass * p;
+    record_a.v += record_a.inverse_mass * p;
+    record_b.v -= record_b.inverse_mass * p;
   }
 }
 

@@ -181,10 +181,10 @@ struct Corners {
 
   Corners(const TetrahedronRow& row, const state::Particles& particles) : b(all_gradients(row.b)) {
     for (int i = 0; i < 4; ++i) {
-      const state::VelocityLine& line = particles.velocity[row.particle[i]];
+      const state::VelocityRecord& record = particles.velocity[row.particle[i]];
       x[i] = particles.position[row.particle[i]].x;
-      v[i] = line.v;
-      w[i] = line.inverse_mass;
+      v[i] = record.v;
+      w[i] = record.inverse_mass;
     }
     squares = weighted_squares(b, w);
   }

@@ -1,5 +1,4 @@
 #include "collision/deformable/particle_contacts.h"
-#include "state/sleeping_pairs.h"
 #include "elements/dihedral.h"
 #include "elements/isometric_bend.h"
 #include "elements/tetrahedron.h"
@@ -7,6 +6,7 @@
 #include "solver/rope/rope_rows.h"
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/shape_matching.h"
+#include "state/sleeping_pairs.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
 #include "world/world_data.h"
@@ -149,10 +149,10 @@ double measure_rope_bends(const Tables& t) {
   double energy = 0;
   for (const state::Deformable& rope : t.objects) {
     if (!(rope.bend_stiffness > Real(0)) || rope.kind != PointRef::Kind::kRope) continue;
-    const solver::Chain chain = {.bend_stiffness = static_cast<double>(rope.bend_stiffness)};
+    const solver::RopeSystem rope_system = {.bend_stiffness = static_cast<double>(rope.bend_stiffness)};
     for (std::uint32_t i = 1; i + 1 < rope.particles.count; ++i) {
       const std::uint32_t p = rope.particles.first + i;
-      const solver::RopeBend bend = solver::load_bend(chain, rope.segments.first + i - 1, t.segments);
+      const solver::RopeBend bend = solver::load_bend(rope_system, rope.segments.first + i - 1, t.segments);
       const DVec3 change = bend.behind * (middle_of(t, p + 1) - middle_of(t, p)) -
                            bend.before * (middle_of(t, p) - middle_of(t, p - 1));
       energy += 0.5 * bend.stiffness * length_squared(change);

@@ -59,7 +59,7 @@ PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& s
   if (row == slots.kNone) return {};
   const state::Deformable& object = tables.objects[row];
   const std::size_t first = object.particles.first;
-  constexpr bool kPlaces = std::is_same_v<Line, state::PositionLine>;
+  constexpr bool kPlaces = std::is_same_v<Line, state::PositionRecord>;
   return {kPlaces ? object.origin : DVec3{}, reinterpret_cast<const std::byte*>(column.data() + first),
           object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
 }
@@ -114,9 +114,9 @@ Vec3 PointView::offset(std::size_t i) const {
 
 Real ForceView::mass(std::size_t i) const {
   if (i >= size()) return Real(0);
-  state::VelocityLine line;
-  std::memcpy(&line, lines_ + row_of_[i] * sizeof(line), sizeof(line));
-  return line.inverse_mass > Real(0) ? Real(1) / line.inverse_mass : Real(0);
+  state::VelocityRecord record;
+  std::memcpy(&record, records_ + row_of_[i] * sizeof(record), sizeof(record));
+  return record.inverse_mass > Real(0) ? Real(1) / record.inverse_mass : Real(0);
 }
 
 void ForceView::add_force(std::size_t i, Vec3 force) {
@@ -420,13 +420,13 @@ Result<void> World::apply_impulse(PointRef point, Vec3 impulse) {
   if (!claim) return claim.error();
   const auto row = world::find_particle(claim.tables(), point);
   if (!row) return world::stale("point");
-  state::VelocityLine& line = claim.tables().particles.velocity[row->particle];
-  const Vec3 v = line.v + line.inverse_mass * impulse;
+  state::VelocityRecord& record = claim.tables().particles.velocity[row->particle];
+  const Vec3 v = record.v + record.inverse_mass * impulse;
   Result<void> good = Checks("")
                           .within("impulse", impulse, limits::kForce)
                           .within("impulse", v, limits::kSpeed, " m/s, the velocity that it gives")
                           .result();
-  if (good) line.v = v;
+  if (good) record.v = v;
   return good;
 }
 
@@ -545,7 +545,7 @@ Result<void> World::restore(const Snapshot& snapshot) {
   if (!claim) return claim.error();
   if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
   claim->broad_phase_stale = true;
-  claim->bodies_placed.clear();  // rows of the world that was
+  claim->placed_bodies.clear();  // rows of the world that was
   claim->boxes_are_current = false;
   world::clear_events(claim->events);
   claim->broken_hooks.clear();

@@ -5,10 +5,10 @@
 #include "base/make_room.h"
 #include "build/build.h"
 #include "build/checks.h"
-#include "state/sleeping_pairs.h"
 #include "math/rotation.h"
 #include "solver/body/body_motion.h"
 #include "state/body_frames.h"
+#include "state/sleeping_pairs.h"
 #include "world/claim.h"
 #include "world/hook_stages.h"
 #include "world/object_edits.h"
@@ -142,12 +142,12 @@ Result<BodyId> World::add_body(const BodyDesc& desc) {
   if (!claim) return claim.error();
   Tables& t = claim.tables();
   t.body_slots.make_room();
-  base::make_room(claim->bodies_placed);
+  base::make_room(claim->placed_bodies);
   const Result<std::uint32_t> row = build::add_body(desc, t);
   if (!row) return row.error();
   const BodyId id = t.body_slots.add(row.value());
   t.bodies.slot[row.value()] = id.slot;
-  claim->bodies_placed.push_back(row.value());
+  claim->placed_bodies.push_back(row.value());
   claim->boxes_are_current = false;
   world::wake_near_body(row.value(), t);
   return id;
@@ -175,10 +175,10 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   if (count == 0) return 0;
   world::wake_neighbors(t, [&](std::uint32_t row) { return goes[row] != 0; });
   world::remove_hooks_of(goes, t);
-  std::erase_if(claim->bodies_placed, [&](std::uint32_t row) { return goes[row] != 0; });
+  std::erase_if(claim->placed_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
   t.contacts = {};  // detect finds those that remain again
-  t.inner_contacts.clear();
+  t.element_contacts.clear();
   return count;
 }
 
@@ -374,7 +374,7 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.angular_momentum[row] = state::angular_momentum_of(bodies.mass[row], rotation, omega);
   bodies.path_start[row] = bodies.center[row];
   bodies.path_time[row] = claim.tables().time;
-  claim->bodies_placed.push_back(row);
+  claim->placed_bodies.push_back(row);
   claim->boxes_are_current = false;
   world::wake_neighbors(claim.tables(), [row](std::uint32_t near) { return near == row; });
   world::wake_near_body(row, claim.tables());

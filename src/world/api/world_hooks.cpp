@@ -157,7 +157,7 @@ std::vector<std::string> World::connection_points(const HookEnd& of) const {
   if (object != Tables::kNoRow) {
     list(*t.objects[object].connection_points);
   } else if (body != Tables::kNoRow) {
-    list(build::places_of_body(body, t));
+    list(build::connection_points_of_body(body, t));
   }
   return names;
 }

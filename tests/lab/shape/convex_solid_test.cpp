@@ -109,7 +109,7 @@ TEST_SUITE("geometry/convex_solid") {
   TEST_CASE("boxes touch at the corners of what their faces share") {
     const ConvexSolid cube = box({1, 1, 1});
     const auto points_of = [&](const ConvexSolid& a, const ConvexSolid& b) {
-      return geometry::touch_points(a, b, gap_between(a, b), 1e-6);
+      return geometry::contact_points(a, b, gap_between(a, b), 1e-6);
     };
     // A cube on a cube, aside by (0.5, 0.25): corners of both, none twice.
     std::vector<DVec3> points = points_of(cube, at(cube, {0.5, 2, 0.25}));

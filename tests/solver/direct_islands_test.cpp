@@ -1,5 +1,6 @@
-#include "constants.h"
 #include "solver/coupled/direct_islands.h"
+
+#include "constants.h"
 #include "world/access.h"
 #include "world/make.h"
 
@@ -56,9 +57,9 @@ Column make_column(int count, double half, double shift = 0, const WorldDesc& de
   return column;
 }
 
-bool is_hard(const World& world) {
-  const std::vector<std::int8_t>& hardness = WorldAccess::tables(world).bodies.hardness;
-  return std::any_of(hardness.begin(), hardness.end(), [](int h) { return h >= solver::kHard; });
+bool is_direct(const World& world) {
+  const std::vector<std::int8_t>& direct_state = WorldAccess::tables(world).bodies.direct_state;
+  return std::any_of(direct_state.begin(), direct_state.end(), [](int h) { return h >= solver::kDirect; });
 }
 
 double force_between(const World& world, BodyId a, BodyId b) {
@@ -83,13 +84,13 @@ double fall_of_stairs(double shift) {
 
 }  // namespace
 
-TEST_SUITE("solver/hard_islands") {
+TEST_SUITE("solver/direct_islands") {
   TEST_CASE(
       "a column above the buckling height of soft contacts stands, and each contact bears what is on it") {
     constexpr int kCount = 40;
     Column column = make_column(kCount, 0.5);
     run(column.world, 240);
-    CHECK(is_hard(column.world));
+    CHECK(is_direct(column.world));
     for (std::size_t i = 0; i < kCount; ++i) {
       CAPTURE(i);
       const DVec3 at = place_of(column, i);
@@ -133,7 +134,7 @@ TEST_SUITE("solver/hard_islands") {
       take(world.add_body(lower));
       const BodyId top = take(world.add_body(load));
       run(world, 60);
-      CHECK(is_hard(world));
+      CHECK(is_direct(world));
       const double before = static_cast<double>(world.velocity(top).x);
       run(world, 60);
       const double gained = static_cast<double>(world.velocity(top).x) - before;
@@ -145,25 +146,25 @@ TEST_SUITE("solver/hard_islands") {
     Column column = make_column(12, 0.05);
     column.boxes.push_back(take(column.world.add_body(box({0.01, 1.75, 0.02}, 0.05, 5 * kDensity))));
     const double start = column.world.measure().energy.total();
-    bool was_hard = false;
+    bool was_direct = false;
     for (int i = 0; i < 120; ++i) {
       run(column.world, 1);
-      was_hard = was_hard || is_hard(column.world);
+      was_direct = was_direct || is_direct(column.world);
       CHECK(column.world.measure().energy.total() < start * (1 + 1e-4));
     }
-    CHECK(was_hard);
+    CHECK(was_direct);
   }
 
   TEST_CASE("what soft contacts hold stays soft, and a column becomes soft again when it is taken apart") {
     Column low = make_column(4, 0.5);
     run(low.world, 120);
-    CHECK(!is_hard(low.world));
+    CHECK(!is_direct(low.world));
     Column high = make_column(16, 0.5);
     run(high.world, 60);
-    CHECK(is_hard(high.world));
+    CHECK(is_direct(high.world));
     for (std::size_t i = 3; i < high.boxes.size(); ++i) REQUIRE(high.world.remove(high.boxes[i]));
     run(high.world, 60);
-    CHECK(!is_hard(high.world));
+    CHECK(!is_direct(high.world));
   }
 
   TEST_CASE("what is placed in balance rests from its first step on") {
@@ -178,7 +179,7 @@ TEST_SUITE("solver/hard_islands") {
     fast.velocity = {Real(0), Real(0), Real(2)};
     take(thrown.world.add_body(fast));
     run(thrown.world, 1);
-    CHECK(!is_hard(thrown.world));
+    CHECK(!is_direct(thrown.world));
   }
 
   TEST_CASE("hard islands give the same bits with any number of workers, and after a restoration") {
@@ -193,7 +194,7 @@ TEST_SUITE("solver/hard_islands") {
     Column three = build(3);
     run(one.world, 40);
     run(three.world, 40);
-    REQUIRE(is_hard(one.world));
+    REQUIRE(is_direct(one.world));
     CHECK(one.world.state_hash() == three.world.state_hash());
     const Snapshot snapshot = one.world.snapshot();
     run(one.world, 20);

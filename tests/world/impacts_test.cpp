@@ -87,7 +87,7 @@ World make_room(double e, int workers) {
 
 }  // namespace
 
-TEST_SUITE("world/hits") {
+TEST_SUITE("world/impacts") {
   TEST_CASE("a hit goes through a row of balls within one step") {
     World world = make_world(empty_space());
     std::vector<BodyId> row;

@@ -1,6 +1,7 @@
+#include "solver/soft/bending.h"
+
 #include "elements/dihedral.h"
 #include "solver/pass_rows.h"
-#include "solver/soft/bending.h"
 #include "solver/target_bits.h"
 
 #include <array>
@@ -83,7 +84,7 @@ Net random_net(int particles, int bends) {
 
 }  // namespace
 
-TEST_SUITE("solver/bends") {
+TEST_SUITE("solver/bending") {
   TEST_CASE("a bend gives the impulse of implicit Euler along the gradient of its angle") {
     // From rest: lambda = -h k C / (1 + h^2 k sum w |G|^2), v_i = w_i lambda G_i.
     constexpr Real kStiffness = Real(3000);

@@ -1,4 +1,5 @@
 #include "solver/soft/spring_solve.h"
+
 #include "solver/target_bits.h"
 
 #include <doctest/doctest.h>
@@ -76,7 +77,7 @@ Pair random_net(int particles, int springs, state::SpringClass kind) {
 
 }  // namespace
 
-TEST_SUITE("solver/springs") {
+TEST_SUITE("solver/spring_solve") {
   TEST_CASE("a rigid link closes its error within one substep, no faster than 100 m/s") {
     for (const double far : {0.002, 2.0}) {
       Pair pair = make_pair({.separation = static_cast<Real>(1 + far), .stiffness = kStiff});
@@ -162,8 +163,8 @@ TEST_SUITE("solver/springs") {
         const int count = i + 1 == pass.end ? pass.last_count : kLanes;
         rows += static_cast<std::size_t>(count);
         for (int lane = 0; lane < count; ++lane) {
-          CHECK(++uses[blocks.blocks[i].line_a[lane] / 4] == 1);
-          CHECK(++uses[blocks.blocks[i].line_b[lane] / 4] == 1);
+          CHECK(++uses[blocks.blocks[i].record_a[lane] / 4] == 1);
+          CHECK(++uses[blocks.blocks[i].record_b[lane] / 4] == 1);
         }
       }
     }

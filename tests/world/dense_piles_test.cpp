@@ -36,7 +36,7 @@ double fastest_of(const World& world, const std::vector<BodyId>& ids) {
 
 }  // namespace
 
-TEST_SUITE("world/crowd") {
+TEST_SUITE("world/dense_piles") {
   TEST_CASE(
       "250 bodies at one place: each meets the eight nearest, and none is pushed faster than one contact "
       "pushes") {

@@ -1,8 +1,9 @@
+#include "solver/soft/isometric_bending.h"
+
 #include "hooke/desc.h"
 
 #include "elements/isometric_bend.h"
 #include "solver/pass_rows.h"
-#include "solver/soft/isometric_bending.h"
 #include "solver/target_bits.h"
 
 #include <array>
@@ -78,11 +79,11 @@ Net hinge(double angle, Real stiffness) {
 }
 
 void solve(Net& net) {
-  HingeBlocks blocks;
-  build_hinge_blocks(net.bends, net.springs, net.particles.count(), blocks);
-  prepare_hinges(blocks, kSubstep);
-  for (const HingePass& pass : blocks.passes)
-    solve_hinges(blocks, pass, {pass.first, pass.end}, net.particles);
+  IsometricBendBlocks blocks;
+  build_isometric_bend_blocks(net.bends, net.springs, net.particles.count(), blocks);
+  prepare_isometric_bends(blocks, kSubstep);
+  for (const IsometricBendPass& pass : blocks.passes)
+    solve_isometric_bends(blocks, pass, {pass.first, pass.end}, net.particles);
 }
 
 /// Bends between random four of many particles; springs of two materials along some edges and between some
@@ -112,7 +113,7 @@ Net random_net(std::uint32_t particles, int bends) {
 
 }  // namespace
 
-TEST_SUITE("solver/hinges") {
+TEST_SUITE("solver/isometric_bending") {
   TEST_CASE(
       "the curvature of a fold is 2 l sin(theta / 2) long, and zero for any flat form turned or moved") {
     const std::array<double, 4> weights = weights_of(flat_hinge());
@@ -187,11 +188,12 @@ TEST_SUITE("solver/hinges") {
 
   TEST_CASE("every hinge and every spring is in one place, and hinges of a pass share no particle") {
     const Net net = random_net(400, 777);
-    HingeBlocks hinges;
-    const std::vector<std::uint8_t> taken = build_hinge_blocks(net.bends, net.springs, 400, hinges);
-    CHECK(count_rows_apart(hinges, 400) == 777);
+    IsometricBendBlocks isometric_bends;
+    const std::vector<std::uint8_t> taken =
+        build_isometric_bend_blocks(net.bends, net.springs, 400, isometric_bends);
+    CHECK(count_rows_apart(isometric_bends, 400) == 777);
     int springs = 0;
-    for (const HingePass& pass : hinges.passes) {
+    for (const IsometricBendPass& pass : isometric_bends.passes) {
       const int count = kLanes * (pass.end - pass.first - 1) + pass.last_count;
       springs += count * ((pass.edge != kNoSpring ? 1 : 0) + (pass.wings != kNoSpring ? 1 : 0));
     }

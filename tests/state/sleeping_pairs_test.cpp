@@ -1,4 +1,5 @@
 #include "state/sleeping_pairs.h"
+
 #include "collision/scene.h"
 
 #include <doctest/doctest.h>
@@ -8,7 +9,7 @@ using hooke::Real;
 using hooke::Shape;
 using hooke::state::Manifold;
 using hooke::state::Pair;
-using hooke::state::ParkingScratch;
+using hooke::state::SleepingPairScratch;
 using hooke::test::PairScene;
 
 namespace {
@@ -24,7 +25,7 @@ struct Line {
 
 /// A floor (body 0) and cubes on it in stacks of two: 1 under 2, 3 under 4, ...
 struct Stacks : PairScene {
-  ParkingScratch scratch;
+  SleepingPairScratch scratch;
 
   explicit Stacks(int count) {
     add_static(Shape::box({Real(1000), Real(0.5), Real(10)}), {0, -0.5, 0});
@@ -42,9 +43,9 @@ struct Stacks : PairScene {
   void fall_asleep(std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t body = first; body <= last; ++body) bodies.asleep[body] = 1;
   }
-  void park() { hooke::state::park_pairs(bodies, colliders, pairs, scratch); }
+  void park() { hooke::state::put_pairs_to_sleep(bodies, colliders, pairs, scratch); }
   bool unpark(const std::vector<std::uint32_t>& moving) {
-    return hooke::state::unpark_pairs(moving, bodies, colliders, pairs, scratch);
+    return hooke::state::wake_pairs(moving, bodies, colliders, pairs, scratch);
   }
   [[nodiscard]] std::vector<Line> lines() const {
     std::vector<Line> lines;
@@ -63,17 +64,17 @@ TEST_SUITE("parked_pairs") {
     const std::vector<Line> before = scene.lines();
     REQUIRE(before.size() == 8);
     scene.park();
-    CHECK(scene.pairs.parked.pair.empty());  // nobody sleeps
+    CHECK(scene.pairs.sleeping.pair.empty());  // nobody sleeps
 
-    for (Manifold& m : scene.pairs.manifold) m.borne = true;  // in the last step
+    for (Manifold& m : scene.pairs.manifold) m.load_bearing = true;  // in the last step
     scene.fall_asleep(3, 6);
     scene.park();
     CHECK(scene.pairs.pair.size() == 4);
     CHECK(scene.pairs.manifold.size() == 4);
-    CHECK(scene.pairs.parked.pair.size() == 4);
-    CHECK(scene.pairs.parked.of_body == std::vector<std::uint32_t>{2, 0, 0, 2, 1, 2, 1, 0, 0});
+    CHECK(scene.pairs.sleeping.pair.size() == 4);
+    CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 0, 0, 2, 1, 2, 1, 0, 0});
     CHECK(scene.lines() == before);
-    for (const Manifold& m : scene.pairs.parked.manifold) CHECK_FALSE(m.borne);
+    for (const Manifold& m : scene.pairs.sleeping.manifold) CHECK_FALSE(m.load_bearing);
     for (const Pair& pair : scene.pairs.pair)
       CHECK(scene.pairs.manifold.at(pair.first_manifold).collider_b == pair.collider_b);
   }
@@ -92,7 +93,7 @@ TEST_SUITE("parked_pairs") {
     REQUIRE(scene.pairs.pair.size() == 1);
     CHECK(scene.pairs.pair[0].collider_a == 3);
     CHECK(scene.pairs.pair[0].collider_b == 4);
-    CHECK(scene.pairs.parked.of_body == std::vector<std::uint32_t>{4, 2, 1, 1, 0, 2, 1, 2, 1});
+    CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{4, 2, 1, 1, 0, 2, 1, 2, 1});
     CHECK(scene.lines() == before);
 
     // Parked again, where there are gaps now.
@@ -106,13 +107,13 @@ TEST_SUITE("parked_pairs") {
     Stacks scene(40);
     scene.fall_asleep(1, 78);
     scene.park();
-    REQUIRE(scene.pairs.parked.pair.size() == 78);
+    REQUIRE(scene.pairs.sleeping.pair.size() == 78);
     scene.fall_asleep(79, 80);
     scene.park();
     CHECK(scene.pairs.pair.size() == 2);
     scene.park();
     CHECK(scene.pairs.pair.empty());
-    CHECK(scene.pairs.parked.pair.size() == 80);
+    CHECK(scene.pairs.sleeping.pair.size() == 80);
   }
 
   TEST_CASE("points that push are counted, and pairs of bodies that go are removed") {
@@ -120,11 +121,11 @@ TEST_SUITE("parked_pairs") {
     for (Manifold& m : scene.pairs.manifold) m.point[0].normal_impulse = Real(1);
     scene.fall_asleep(1, 4);
     scene.park();
-    CHECK(scene.pairs.parked.contacts == 4);
+    CHECK(scene.pairs.sleeping.contacts == 4);
     hooke::state::remove_pairs(std::vector<std::uint8_t>{0, 0, 1, 0, 0}, scene.colliders, scene.pairs);
-    CHECK(scene.pairs.parked.contacts == 3);
-    CHECK(scene.pairs.parked.pair.size() == 3);
-    CHECK(scene.pairs.parked.of_body == std::vector<std::uint32_t>{2, 1, 0, 2, 1});
+    CHECK(scene.pairs.sleeping.contacts == 3);
+    CHECK(scene.pairs.sleeping.pair.size() == 3);
+    CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 1, 0, 2, 1});
   }
 
   TEST_CASE("pairs of sensors are not parked") {
@@ -133,6 +134,6 @@ TEST_SUITE("parked_pairs") {
     scene.fall_asleep(1, 4);
     scene.park();
     CHECK(scene.pairs.pair.size() == 2);
-    CHECK(scene.pairs.parked.pair.size() == 2);
+    CHECK(scene.pairs.sleeping.pair.size() == 2);
   }
 }

@@ -34,7 +34,7 @@ HookId tie(World& world, BodyId body, PointRef point) {
 
 }  // namespace
 
-TEST_SUITE("world/ties") {
+TEST_SUITE("world/coupled_groups") {
   TEST_CASE("a ton on a kilogram of rope: no stretch, and the tension of statics") {
     World world = make_world(without_air());
     const RopeId rope = take(world.add_rope({.hook_point = {0, 10, 0},

@@ -1,5 +1,6 @@
-#include "constants.h"
 #include "solver/joint/iterative_joints.h"
+
+#include "constants.h"
 #include "solver/joint_rig.h"
 
 #include <cmath>
@@ -43,7 +44,7 @@ struct HangingNet {
   }
 };
 
-TEST_SUITE("solver/joint_nets") {
+TEST_SUITE("solver/iterative_joints") {
   TEST_CASE("a net hangs still and its upper joints carry its weight") {
     HangingNet net(8, 0);
     net.rig.run(5);
@@ -86,7 +87,7 @@ TEST_SUITE("solver/joint_nets") {
               .anchor = {6, 0, 0},
               .motor = {.speed = Real(0.3), .max_force = Real(100)}});
     rig.run(3);
-    REQUIRE(rig.joints.net.hooks.size() == 3);
+    REQUIRE(rig.joints.iterative.hooks.size() == 3);
     CHECK(rig.center(weight).y == doctest::Approx(-2 * kGravity / 200).epsilon(1e-3));
     CHECK(rig.center(stopped).y == doctest::Approx(-0.5).epsilon(1e-2));
     CHECK(rig.center(driven).y == doctest::Approx(0.9).epsilon(1e-2));

@@ -36,7 +36,7 @@ ClothDesc sheet(int side) {
 
 }  // namespace
 
-TEST_SUITE("world/carrying") {
+TEST_SUITE("world/cloth_under_load") {
   TEST_CASE("tethered cloth of 0.3 kg carries what is ten thousand times as heavy, and it lies still") {
     for (const Real mass : {Real(0.3), Real(30), Real(300), Real(3000)}) {
       CAPTURE(mass);

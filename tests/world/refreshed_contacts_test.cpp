@@ -109,7 +109,7 @@ MeshDesc trough(std::uint32_t strips) {
 
 }  // namespace
 
-TEST_SUITE("world/lively_contacts") {
+TEST_SUITE("world/refreshed_contacts") {
   TEST_CASE("a drum rolls over weights that lie below its rim") {
     const double angle = kPi / 9;
     World world = make_world();

@@ -1,5 +1,6 @@
-#include "math/rotation.h"
 #include "solver/body/body_motion.h"
+
+#include "math/rotation.h"
 #include "solver/body_scene.h"
 
 #include <doctest/doctest.h>
@@ -20,7 +21,7 @@ double energy_of_rotation(const BodyScene& scene, std::uint32_t row) {
 
 }  // namespace
 
-TEST_SUITE("solver/bodies") {
+TEST_SUITE("solver/body_motion") {
   TEST_CASE("a body that tumbles over its middle axis keeps angular momentum exactly, and energy") {
     // Largest relative error of energy in 100 s, at 60 steps of 4 substeps.
     for (const auto& spin : {std::pair{2.0, 2e-5}, {6.0, 1e-4}, {20.0, 1e-3}}) {

@@ -1,7 +1,8 @@
+#include "solver/soft/tetrahedron_solve.h"
+
 #include "elements/tetrahedron.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 #include "math/random.h"
-#include "solver/soft/tetrahedron_solve.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -42,7 +43,8 @@ struct Jelly {
 
   [[nodiscard]] double fastest() const {
     double most = 0;
-    for (const auto& line : particles.velocity) most = std::max(most, static_cast<double>(length(line.v)));
+    for (const auto& record : particles.velocity)
+      most = std::max(most, static_cast<double>(length(record.v)));
     return most;
   }
 
@@ -100,7 +102,7 @@ constexpr Real kSubstep = Real(1) / Real(480);
 
 }  // namespace
 
-TEST_SUITE("solver/tetrahedra") {
+TEST_SUITE("solver/tetrahedron_solve") {
   TEST_CASE("rows of one color share no particle, and none is missing") {
     const Jelly j = make_cube(3, {});
     std::size_t rows = 0;
@@ -119,7 +121,7 @@ TEST_SUITE("solver/tetrahedra") {
     Jelly j = make_cube(1, stuff);
     const Mat3 f = {{Real(1.1), Real(0.1), 0}, {0, Real(0.95), Real(-0.1)}, {Real(0.05), 0, Real(1.05)}};
     std::vector<DVec3> expected(j.particles.mass.size());
-    for (auto& line : j.particles.position) line.x = f * line.x;
+    for (auto& record : j.particles.position) record.x = f * record.x;
     const auto material = elements::neo_hookean(stuff.young_modulus, stuff.poisson_ratio);
     const double h = 1e-6;
     for (std::size_t i = 0; i < j.tetrahedra.corners.size(); ++i) {
@@ -148,10 +150,10 @@ TEST_SUITE("solver/tetrahedra") {
       for (int i = 0; i < 100; ++i) j.step(kSubstep);
       // Rounding of forces that cancel, at most those of the stiffest that a substep carries.
       CHECK(j.fastest() < 1e-4);
-      for (auto& line : j.particles.velocity) line.v += Vec3{Real(3), Real(-2), Real(1)};
+      for (auto& record : j.particles.velocity) record.v += Vec3{Real(3), Real(-2), Real(1)};
       for (int i = 0; i < 100; ++i) j.step(kSubstep);
-      for (const auto& line : j.particles.velocity)
-        CHECK(length(line.v - Vec3{Real(3), Real(-2), Real(1)}) < Real(3e-4));
+      for (const auto& record : j.particles.velocity)
+        CHECK(length(record.v - Vec3{Real(3), Real(-2), Real(1)}) < Real(3e-4));
     }
   }
 
@@ -177,9 +179,9 @@ TEST_SUITE("solver/tetrahedra") {
       // out.
       const double poisson_ratio = mirrored ? 0.49 : 0.45;
       Jelly j = make_cube(4, {.young_modulus = 1e5, .poisson_ratio = poisson_ratio, .damping = 0.005});
-      for (auto& line : j.particles.position) {
-        const Vec3 x = line.x;
-        line.x =
+      for (auto& record : j.particles.position) {
+        const Vec3 x = record.x;
+        record.x =
             mirrored ? Vec3{-x.x, x.y, x.z} + Real(0.005) * random_vector(random) : random_vector(random);
       }
       const int all = static_cast<int>(j.tetrahedra.corners.size());
@@ -193,7 +195,7 @@ TEST_SUITE("solver/tetrahedra") {
   TEST_CASE("a solid much stiffer than a substep carries does not gain energy") {
     Jelly j = make_cube(4, {.young_modulus = 1e9});
     std::mt19937_64 random(11);
-    for (auto& line : j.particles.velocity) line.v = random_vector(random);
+    for (auto& record : j.particles.velocity) record.v = random_vector(random);
     const double before = j.fastest();
     for (int i = 0; i < 2000; ++i) j.step(kSubstep);
     CHECK(j.fastest() < 0.5 * before);
@@ -241,13 +243,13 @@ TEST_SUITE("solver/tetrahedra") {
   TEST_CASE("degenerate places leave everything finite") {
     for (const Real size : {Real(0), Real(1e-20), Real(1e10)}) {
       Jelly j = make_cube(1, {.damping = 0.01});
-      for (auto& line : j.particles.position) line.x = size * line.x;
+      for (auto& record : j.particles.position) record.x = size * record.x;
       for (int i = 0; i < 5; ++i) j.step(kSubstep);
-      for (const auto& line : j.particles.velocity) CHECK(is_finite(line.v));
+      for (const auto& record : j.particles.velocity) CHECK(is_finite(record.v));
     }
     Jelly held = make_cube(1, {});
-    for (auto& line : held.particles.velocity) line.inverse_mass = Real(0);
-    for (auto& line : held.particles.position) line.x = Real(2) * line.x;
+    for (auto& record : held.particles.velocity) record.inverse_mass = Real(0);
+    for (auto& record : held.particles.position) record.x = Real(2) * record.x;
     held.step(kSubstep);
     CHECK(held.fastest() == 0);
   }

@@ -1,4 +1,5 @@
 #include "solver/joint/approximate_trees.h"
+
 #include "solver/joint_rig.h"
 
 #include <algorithm>
@@ -32,10 +33,10 @@ struct Pair {
   [[nodiscard]] Real parting() const { return rig.omega(b).z - rig.omega(a).z; }
 };
 
-bool is_loose(const JointRig& rig) {
+bool is_approximate(const JointRig& rig) {
   REQUIRE(rig.joints.order.size() == 1);
   const Articulation& tree = rig.joints.articulations[0];
-  return is_ragdoll(tree, rig.t.hooks, rig.t.bodies) && is_loose(tree, rig.t.hooks);
+  return is_ragdoll(tree, rig.t.hooks, rig.t.bodies) && is_approximate(tree, rig.t.hooks);
 }
 
 /// A row of parts on balls that rub, thrown.
@@ -81,43 +82,43 @@ struct Row {
   }
 };
 
-TEST_SUITE("solver/loose_trees") {
+TEST_SUITE("solver/approximate_trees") {
   TEST_CASE("what hangs, carries a weight, is driven or slides without friction is exact") {
     Row loose;
     loose.rig.step(Real(0.01), 4);
-    CHECK(is_loose(loose.rig));
+    CHECK(is_approximate(loose.rig));
 
     Row hanging;
     hanging.rig.hook({.a = {hanging.part[0]}, .anchor = {-0.2, 0, 0}, .motor = {.max_force = Real(1)}});
     hanging.rig.step(Real(0.01), 4);
-    CHECK_FALSE(is_loose(hanging.rig));
+    CHECK_FALSE(is_approximate(hanging.rig));
 
-    Row heavy(Real(2 * kLooseMasses));
+    Row heavy(Real(2 * kApproximateMasses));
     heavy.rig.step(Real(0.01), 4);
-    CHECK_FALSE(is_loose(heavy.rig));
+    CHECK_FALSE(is_approximate(heavy.rig));
 
     Row driven(Real(1), Real(0.1));
     driven.rig.step(Real(0.01), 4);
-    CHECK_FALSE(is_loose(driven.rig));
+    CHECK_FALSE(is_approximate(driven.rig));
 
     Row smooth;
     smooth.part.push_back(smooth.rig.add({.center = {2, 0, 0}}));
     smooth.rig.hook({.a = {smooth.part[4]}, .b = {smooth.part[5]}, .anchor = {1.8, 0, 0}});
     smooth.rig.step(Real(0.01), 4);
-    CHECK_FALSE(is_loose(smooth.rig));
+    CHECK_FALSE(is_approximate(smooth.rig));
   }
 
   TEST_CASE("a tree is exact until its joints are closed") {
     Row row;
     row.rig.gravity = {};
     row.rig.step(Real(0.01), 4);
-    REQUIRE(is_loose(row.rig));
-    row.rig.t.bodies.center[4].y += 5 * kLooseError;
+    REQUIRE(is_approximate(row.rig));
+    row.rig.t.bodies.center[4].y += 5 * kApproximateError;
     row.rig.step(Real(0.01), 1);
-    CHECK_FALSE(is_loose(row.rig));
+    CHECK_FALSE(is_approximate(row.rig));
     row.rig.run(0.5, 4);
-    CHECK(is_loose(row.rig));
-    CHECK(row.largest_gap() < kLooseError);
+    CHECK(is_approximate(row.rig));
+    CHECK(row.largest_gap() < kApproximateError);
   }
 
   TEST_CASE("friction stops a joint at the time of its torque") {
@@ -125,7 +126,7 @@ TEST_SUITE("solver/loose_trees") {
     Pair pair(kSpin);
     const double time = static_cast<double>(kSpin * kInertia / kFriction);
     pair.rig.run(time / 2, 4);
-    REQUIRE(is_loose(pair.rig));
+    REQUIRE(is_approximate(pair.rig));
     CHECK(pair.parting() == doctest::Approx(static_cast<double>(kSpin)).epsilon(0.05));
     pair.rig.run(time / 2 + 0.05, 4);
     CHECK(std::abs(pair.parting()) < Real(0.01) * kSpin);
@@ -135,14 +136,15 @@ TEST_SUITE("solver/loose_trees") {
     for (const Real pull : {Real(0.8), Real(1.5)}) {
       const HookSpring spring = {.stiffness = Real(1), .damping = Real(0.1), .target = pull * kFriction};
       Pair pair(Real(0), spring);
-      Pair exact(Real(0), spring, Real(2 * kLooseMasses));
+      Pair exact(Real(0), spring, Real(2 * kApproximateMasses));
       pair.rig.run(2, 4);
       exact.rig.run(2, 4);
-      REQUIRE(is_loose(pair.rig));
-      REQUIRE_FALSE(is_loose(exact.rig));
+      REQUIRE(is_approximate(pair.rig));
+      REQUIRE_FALSE(is_approximate(exact.rig));
       // It creeps by kLooseSlide at most.
       const double expected = exact.rig.t.hooks[0].value[3];
-      CHECK(std::abs(pair.rig.t.hooks[0].value[3] - expected) < 0.02 * expected + 2 * wide::kLooseSlide);
+      CHECK(std::abs(pair.rig.t.hooks[0].value[3] - expected) <
+            0.02 * expected + 2 * wide::kApproximateSlide);
       CHECK((expected > 0.2) == (pull > Real(1)));
     }
   }
@@ -161,7 +163,7 @@ TEST_SUITE("solver/loose_trees") {
       CHECK(now <= before * (1 + 1e-4) + 1e-6);
       before = now;
       CHECK(row.largest_gap() < 5e-3);
-      loose += is_loose(row.rig) ? 1 : 0;
+      loose += is_approximate(row.rig) ? 1 : 0;
     }
     CHECK(loose > 200);
     CHECK(length(row.rig.momentum() - momentum) < 1e-4);

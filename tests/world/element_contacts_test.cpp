@@ -107,7 +107,7 @@ Under triangle_at(PointView p, int n, double x, double z) {
 
 }  // namespace
 
-TEST_SUITE("world/inner_contacts") {
+TEST_SUITE("world/element_contacts") {
   TEST_CASE("a rope of three segments over a narrow block rests on it, and does not sink in between nodes") {
     for (const ShapeKind kind :
          {ShapeKind::kBox, ShapeKind::kCylinder, ShapeKind::kCapsule, ShapeKind::kCone, ShapeKind::kSphere}) {

@@ -194,7 +194,7 @@ struct Stand {
 
 }  // namespace
 
-TEST_SUITE("world/borne_contacts") {
+TEST_SUITE("world/load_bearing_contacts") {
   TEST_CASE("a ton rests on planks of four kilograms between two ropes") {
     World world = make_world(awake());
     Bridge bridge(world);
