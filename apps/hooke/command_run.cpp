@@ -79,7 +79,8 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
     const auto elapsed = std::chrono::steady_clock::now() - start;
     if (!step.moved) return Error{ErrorCode::kOutOfRange, options.scene, "the step did not move"};
     record.step_ms.push_back(std::chrono::duration<double, std::milli>(elapsed).count());
-    record.contacts = step.contacts;
+    record.last = step;
+    note_refused(step, record.worst);
     watch.look(simulation, step);
     if (csv) csv->write(csv_line(simulation.world(), step.contacts));
     if (options.hash_every > 0 && (i + 1) % options.hash_every == 0) {

@@ -11,6 +11,55 @@ namespace hooke::app {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+/// A number of StepReport that is zero while all is well.
+struct RefusedCount {
+  const char* name;
+  std::uint32_t StepReport::*number;
+};
+
+constexpr RefusedCount kRefusedCounts[] = {
+    {"rows_quarantined", &StepReport::rows_quarantined},
+    {"ropes_unconverged", &StepReport::ropes_unconverged},
+    {"pairs_left_out", &StepReport::pairs_left_out},
+    {"islands_refused", &StepReport::islands_refused},
+    {"contacts_refused", &StepReport::contacts_refused},
+    {"coupled_groups_cut_short", &StepReport::coupled_groups_cut_short},
+};
+
+struct RouteName {
+  const char* name;
+  std::uint32_t RouteCounts::*number;
+};
+
+constexpr RouteName kRouteNames[] = {
+    {"contacts_soft", &RouteCounts::contacts_soft},
+    {"contacts_direct", &RouteCounts::contacts_direct},
+    {"contacts_coupled", &RouteCounts::contacts_coupled},
+    {"contacts_bouncing", &RouteCounts::contacts_bouncing},
+    {"pairs_at_start", &RouteCounts::pairs_at_start},
+    {"pairs_in_the_middle", &RouteCounts::pairs_in_the_middle},
+    {"pairs_at_impact", &RouteCounts::pairs_at_impact},
+    {"pairs_each_substep", &RouteCounts::pairs_each_substep},
+    {"hooks_tree", &RouteCounts::hooks_tree},
+    {"hooks_approximate_tree", &RouteCounts::hooks_approximate_tree},
+    {"hooks_loop", &RouteCounts::hooks_loop},
+    {"hooks_block", &RouteCounts::hooks_block},
+    {"hooks_iterative", &RouteCounts::hooks_iterative},
+    {"hooks_coupled", &RouteCounts::hooks_coupled},
+    {"ropes_alone", &RouteCounts::ropes_alone},
+    {"ropes_coupled", &RouteCounts::ropes_coupled},
+    {"points_swept", &RouteCounts::points_swept},
+    {"points_in_ropes", &RouteCounts::points_in_ropes},
+    {"points_coupled", &RouteCounts::points_coupled},
+    {"articulations", &RouteCounts::articulations},
+    {"direct_islands", &RouteCounts::direct_islands},
+    {"coupled_groups", &RouteCounts::coupled_groups},
+};
+
+}  // namespace
+
 StepTimes step_times(const std::vector<double>& step_ms) {
   if (step_ms.empty()) return {};
   std::vector<double> sorted = step_ms;
@@ -80,6 +129,25 @@ static Json json_of_problems(const std::vector<RunWarning>& problems) {
   return list;
 }
 
+void note_refused(const StepReport& step, StepReport& worst) {
+  for (const RefusedCount& count : kRefusedCounts)
+    worst.*count.number = std::max(worst.*count.number, step.*count.number);
+}
+
+/// How many contacts, hooks and ropes went which way in the last step.
+static Json json_of_routes(const RouteCounts& routes) {
+  Json json = Json::object();
+  for (const RouteName& route : kRouteNames) json[route.name] = routes.*route.number;
+  return json;
+}
+
+/// The most of each in any step.
+static Json json_of_refused(const StepReport& worst) {
+  Json json = Json::object();
+  for (const RefusedCount& count : kRefusedCounts) json[count.name] = worst.*count.number;
+  return json;
+}
+
 std::string run_json(const Simulation& simulation, const RunRecord& record) {
   const World& world = simulation.world();
   const Measurement end = world.measure();
@@ -97,7 +165,9 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"mean_stretch", end.mean_stretch},
       {"largest_penetration", end.largest_penetration},
       {"largest_gap", end.largest_gap},
-      {"contacts", record.contacts},
+      {"contacts", record.last.contacts},
+      {"routes", json_of_routes(record.last.routes)},
+      {"refused", json_of_refused(record.worst)},
       {"broke", json_of_breaks(simulation)},
       {"state_hash", hash_text(world.state_hash())},
       {"expect", json_of(simulation, simulation.verdicts())},
@@ -126,7 +196,8 @@ std::string run_summary(const Simulation& simulation, const RunRecord& record) {
                   record.start.potential, record.start.elastic);
   text += text_of("stretch   %.3g %% at most, %.3g %% on average\n", 100 * end.largest_stretch,
                   100 * end.mean_stretch);
-  text += text_of("contacts  %u, deepest overlap %.3g mm\n", record.contacts, 1000 * end.largest_penetration);
+  text += text_of("contacts  %u, deepest overlap %.3g mm\n", record.last.contacts,
+                  1000 * end.largest_penetration);
   text += text_of_breaks(simulation);
   text += "hash      " + hash_text(world.state_hash()) + "\n";
   text += simulation.report();

@@ -14,7 +14,8 @@ struct RunRecord {
   std::string scene;                 ///< As the user named it.
   std::vector<double> step_ms = {};  ///< Wall time of each step.
   Energy start = {};
-  std::uint32_t contacts = 0;              ///< After the last step.
+  StepReport last = {};                    ///< Of the last step.
+  StepReport worst = {};                   ///< The most of everything refused or left undone in any step.
   std::vector<std::string> warnings = {};  ///< One line each, of the file and of the run.
   std::vector<RunWarning> problems = {};   ///< Of the run.
 };
@@ -30,6 +31,9 @@ StepTimes step_times(const std::vector<double>& step_ms);
 
 /// 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
+
+/// Raises `worst` to what `step` refused or left undone.
+void note_refused(const StepReport& step, StepReport& worst);
 
 /// No expectation that was due failed, and no event.
 bool passed(const Simulation& simulation);

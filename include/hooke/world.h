@@ -77,6 +77,33 @@ struct HookForce {
   Vec3 torque = {};  ///< About the anchor [N m].
 };
 
+/// How many contacts, hooks and ropes a step solved which way: a scene that is slow or soft says why. What
+/// each way is, when it is taken and at what cost stands in src/solver/routes.h.
+struct RouteCounts {
+  std::uint32_t contacts_soft = 0;        ///< Contact manifolds of two bodies that yield a little.
+  std::uint32_t contacts_direct = 0;      ///< Manifolds solved with all others of their stack.
+  std::uint32_t contacts_coupled = 0;     ///< Manifolds solved with the hooks of what they press on.
+  std::uint32_t contacts_bouncing = 0;    ///< Those of all these that have restitution.
+  std::uint32_t pairs_at_start = 0;       ///< Pairs of shapes whose contact is that of the step's start.
+  std::uint32_t pairs_in_the_middle = 0;  ///< Pairs that spin against each other: that of the step's middle.
+  std::uint32_t pairs_at_impact = 0;      ///< Fast pairs: that of the time when they meet.
+  std::uint32_t pairs_each_substep = 0;   ///< Pairs that roll or slide far: made again in each substep.
+  std::uint32_t hooks_tree = 0;           ///< Hooks of bodies joined without loops.
+  std::uint32_t hooks_approximate_tree = 0;  ///< Hooks of ragdolls that are solved once a substep.
+  std::uint32_t hooks_loop = 0;              ///< Hooks of bodies joined in loops.
+  std::uint32_t hooks_block = 0;             ///< Ball hooks of nets beyond the budget, iterated.
+  std::uint32_t hooks_iterative = 0;         ///< All other hooks of such nets.
+  std::uint32_t hooks_coupled = 0;  ///< Hooks at points, and of bodies solved with what touches them.
+  std::uint32_t ropes_alone = 0;
+  std::uint32_t ropes_coupled = 0;  ///< Ropes that hold or touch something that gives way.
+  std::uint32_t points_swept = 0;   ///< Contacts of points, edges and faces with bodies, near enough to act.
+  std::uint32_t points_in_ropes = 0;  ///< Those solved with their rope.
+  std::uint32_t points_coupled = 0;   ///< Those solved with what touches them, and those between ropes.
+  std::uint32_t articulations = 0;    ///< Groups of hooked bodies that are solved together.
+  std::uint32_t direct_islands = 0;
+  std::uint32_t coupled_groups = 0;
+};
+
 /// What one step did. Numerical trouble is data, not an exception: read it, log it, stop on it.
 struct StepReport {
   bool moved = false;  ///< False: `dt` was not a positive finite number, or there was no world to step, or it
@@ -95,6 +122,7 @@ struct StepReport {
   std::uint32_t contacts_refused = 0;
   /// Groups of ropes, of what hangs on them and touches them, whose solution ended by its budget of work.
   std::uint32_t coupled_groups_cut_short = 0;
+  RouteCounts routes = {};
   double detect_ms = 0;
   double prepare_ms = 0;
   double substep_ms = 0;

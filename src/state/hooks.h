@@ -3,6 +3,8 @@
 #include "hooke/desc.h"
 #include "hooke/math.h"
 
+#include "state/route.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -36,7 +38,7 @@ struct Hook {
   HookKind kind = HookKind::kBall;
   bool collide = false;
   bool broken = false;
-  bool coupled = false;  ///< Between bodies of an articulation that is part of a bundle in this step.
+  JointRoute route = JointRoute::kNone;  ///< How it is solved in this step; see solver/routes.h.
   HookPlace a = {};
   HookPlace b = {};
   Real break_force = kRigid;
@@ -76,7 +78,7 @@ struct Hook {
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
   [[nodiscard]] bool can_break() const { return break_force < kRigid || break_torque < kRigid; }
   /// Whether it is solved in a bundle.
-  [[nodiscard]] bool is_in_coupled_group() const { return coupled || holds_point(); }
+  [[nodiscard]] bool is_in_coupled_group() const { return route == JointRoute::kCoupled || holds_point(); }
   /// Of such a hook, the end at particles, the first if both are, and the other one.
   [[nodiscard]] const HookPlace& point_end() const { return a.is_point() ? a : b; }
   [[nodiscard]] const HookPlace& other_end() const { return a.is_point() ? b : a; }

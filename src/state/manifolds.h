@@ -2,6 +2,8 @@
 
 #include "hooke/math.h"
 
+#include "state/route.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -47,8 +49,12 @@ struct Manifold {
   Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
   Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
-  bool refreshed = false;            ///< Looked at anew in each substep: may have no points now.
-  bool load_bearing = false;         ///< Its points have places in Pairs::borne in this step.
+  ContactRefresh refresh = ContactRefresh::kAtStart;  ///< As its pair; each substep: may have no points now.
+  ContactRoute route = ContactRoute::kSoft;           ///< How it is solved in this step; see solver/routes.h.
+
+  [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
+  /// Whether its points have slots in Pairs::load_bearing in this step.
+  [[nodiscard]] bool is_load_bearing() const { return route == ContactRoute::kCoupled; }
 };
 
 /// Number of points that pushed in the last substep.
@@ -102,8 +108,9 @@ struct Pair {
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
   Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
-  bool refreshed =
-      false;  ///< Its manifolds are made anew in each substep (collision/narrow_phase/narrow_phase.h).
+  ContactRefresh refresh = ContactRefresh::kAtStart;  ///< When its manifolds are made; see solver/routes.h.
+
+  [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
 };
 
 /// Where the narrow phase saw a body last.

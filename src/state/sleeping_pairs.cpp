@@ -114,7 +114,7 @@ void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs&
   for (const Pair& pair : scratch.moved) {
     // Marks of the step are taken off by who made them, who will not find these.
     for (std::uint32_t i = 0; i < pair.manifold_count; ++i)
-      pairs.manifold[pair.first_manifold + i].load_bearing = false;
+      pairs.manifold[pair.first_manifold + i].route = ContactRoute::kSoft;
   }
   count_sleeping(scratch.moved, pairs.manifold, true, colliders, sleeping);
   merge({sleeping.pair, sleeping.manifold}, {scratch.moved, pairs.manifold}, scratch.pair, scratch.manifold);

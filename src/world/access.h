@@ -42,7 +42,7 @@ struct ForceViewAccess {
   static BodyForceView make(WorldData& world, double time) {
     BodyForceView view;
     view.world_ = &world;
-    view.rows_ = world.law_bodies;
+    view.rows_ = world.frame.law_bodies;
     view.time_ = time;
     return view;
   }

@@ -2,12 +2,16 @@
 
 #include "collision/continuous/shape_bounds.h"
 #include "solver/air/force_fields.h"
+#include "solver/body/body_motion.h"
 #include "solver/contact/dense_pile_limit.h"
-#include "solver/coupled/coupled_articulations.h"
+#include "solver/routes.h"
 #include "state/body_frames.h"
 #include "state/sleeping_pairs.h"
 #include "world/events.h"
+#include "world/force_stages.h"
 #include "world/hook_stages.h"
+#include "world/impact_clamp.h"
+#include "world/sleep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +37,7 @@ bool may_meet(const BodyTraits& a, const BodyTraits& b) {
 /// Bodies of a negative group never collide with each other: that is a company.
 void set_box(WorldData& world, std::uint32_t body, std::uint32_t collider, const geometry::Box& box) {
   const BodyTraits& traits = world.tables.bodies.traits[body];
-  world.broad_phase.set(collider, box, moves(traits), std::min(traits.filter.group, 0));
+  world.derived.broad_phase.set(collider, box, moves(traits), std::min(traits.filter.group, 0));
 }
 
 /// What the colliders of a body can reach in this step.
@@ -52,31 +56,32 @@ void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
 /// All bodies that are not where they were in the last step, as far as pairs go.
 void list_moved_set(WorldData& world) {
   const Tables& t = world.tables;
-  world.moved_set = world.awake;
-  world.moved_set.insert(world.moved_set.end(), world.placed_bodies.begin(), world.placed_bodies.end());
-  world.in_moved_set.clear();
+  world.frame.moved_set = world.frame.awake;
+  world.frame.moved_set.insert(world.frame.moved_set.end(), world.derived.placed_bodies.begin(),
+                               world.derived.placed_bodies.end());
+  world.frame.in_moved_set.clear();
   if (!any_sleeps(world)) return;
-  world.in_moved_set.assign(t.colliders.body.size(), 0);
-  for (const std::uint32_t body : world.moved_set)
-    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.in_moved_set[c] = 1;
+  world.frame.in_moved_set.assign(t.colliders.body.size(), 0);
+  for (const std::uint32_t body : world.frame.moved_set)
+    for (const std::uint32_t c : colliders_of(t.bodies, body)) world.frame.in_moved_set[c] = 1;
 }
 
 /// Bodies that were added, or put elsewhere by hand, since the last step.
 void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
-  if (world.broad_phase_stale) {
-    world.broad_phase.clear();
-    world.placed_bodies.clear();
-    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.placed_bodies.push_back(body); });
-    world.broad_phase_stale = false;
+  if (world.derived.broad_phase_stale) {
+    world.derived.broad_phase.clear();
+    world.derived.placed_bodies.clear();
+    for_all_bodies(t.bodies, [&](std::uint32_t body) { world.derived.placed_bodies.push_back(body); });
+    world.derived.broad_phase_stale = false;
   }
-  for (const std::uint32_t body : world.placed_bodies) {
+  for (const std::uint32_t body : world.derived.placed_bodies) {
     if (!t.bodies.traits[body].alive) continue;
     update_bounds(t, body, dt);
     enter_broad_phase(world, body);
   }
   list_moved_set(world);
-  world.placed_bodies.clear();
+  world.derived.placed_bodies.clear();
 }
 
 /// Where a kinematic body stands still, for one.
@@ -89,6 +94,33 @@ bool is_sleeping(const Tables& t, collision::ColliderPair pair) {
   return std::binary_search(t.pairs.sleeping.pair.begin(), t.pairs.sleeping.pair.end(),
                             state::Pair{.collider_a = pair.first, .collider_b = pair.second},
                             state::comes_before);
+}
+
+void list_awake_bodies(WorldData& world) {
+  const state::Bodies& bodies = world.tables.bodies;
+  world.frame.awake.clear();
+  for (const std::uint32_t body : world.tables.moving_bodies) {
+    if (bodies.asleep[body] == 0) world.frame.awake.push_back(body);
+  }
+}
+
+void limit_dense_piles(WorldData& world) {
+  const std::span<const std::uint32_t> begins = world.frame.dense_piles.begins();
+  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    const auto pile = world.frame.dense_piles.members().subspan(begins[i], begins[i + 1] - begins[i]);
+    solver::limit_dense_pile(pile, world.tables.bodies);
+  }
+}
+
+void drive_kinematic_bodies(WorldData& world, double time, Real h) {
+  state::Bodies& b = world.tables.bodies;
+  for (const std::uint32_t body : world.frame.awake) {
+    if (b.traits[body].kind != BodyKind::kKinematic) continue;
+    if (b.path[body].kind == MotionDesc::Kind::kStill) continue;
+    const DVec3 goal = b.path_start[body] + solver::motion_offset(b.path[body], time - b.path_time[body]);
+    const DVec3 now = b.center[body] + vector_cast<double>(b.motion[body].dx);
+    b.motion[body].v = vector_cast<Real>((1.0 / static_cast<double>(h)) * (goal - now));
+  }
 }
 
 }  // namespace
@@ -109,102 +141,145 @@ void enter_broad_phase(WorldData& world, std::uint32_t body) {
 }
 
 const collision::BroadPhase& boxes_for_queries(WorldData& world) {
-  if (world.boxes_are_current.load(std::memory_order_acquire)) return world.broad_phase;
-  const std::lock_guard lock(world.boxes_mutex);
-  if (world.boxes_are_current.load(std::memory_order_relaxed)) return world.broad_phase;
+  if (world.derived.boxes_are_current.load(std::memory_order_acquire)) return world.derived.broad_phase;
+  const std::lock_guard lock(world.derived.boxes_mutex);
+  if (world.derived.boxes_are_current.load(std::memory_order_relaxed)) return world.derived.broad_phase;
   const Tables& t = world.tables;
   // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
   const auto enter = [&](std::uint32_t body) {
     for (const std::uint32_t c : colliders_of(t.bodies, body))
       set_box(world, body, c, collision::reach_of(t.bodies, t.colliders, c, Real(0)));
   };
-  if (world.broad_phase_stale) {
-    world.broad_phase.clear();
+  if (world.derived.broad_phase_stale) {
+    world.derived.broad_phase.clear();
     for_all_bodies(t.bodies, enter);
   } else {
-    for (const std::uint32_t body : world.placed_bodies) enter(body);
+    for (const std::uint32_t body : world.derived.placed_bodies) enter(body);
     for (const std::uint32_t body : t.moving_bodies) {
       if (t.bodies.asleep[body] == 0) enter(body);
     }
   }
-  world.broad_phase.update();
-  world.boxes_are_current.store(true, std::memory_order_release);
-  return world.broad_phase;
+  world.derived.broad_phase.update();
+  world.derived.boxes_are_current.store(true, std::memory_order_release);
+  return world.derived.broad_phase;
 }
 
-void list_awake_bodies(WorldData& world) {
-  const state::Bodies& bodies = world.tables.bodies;
-  world.awake.clear();
-  for (const std::uint32_t body : world.tables.moving_bodies) {
-    if (bodies.asleep[body] == 0) world.awake.push_back(body);
-  }
-}
-
-void find_body_contacts(WorldData& world, Real dt) {
+static void find_manifolds(WorldData& world, Real dt) {
   Tables& t = world.tables;
-  world.boxes_are_current = false;  // from now on they are those of the step
+  world.derived.boxes_are_current = false;  // from now on they are those of the step
   refresh_broad_phase(world, dt);
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) update_bounds(t, body, dt);
   });
-  for (const std::uint32_t body : world.awake) enter_broad_phase(world, body);
-  world.broad_phase.find_pairs_of(*world.pool, world.in_moved_set, world.pairs_found);
-  state::wake_pairs(world.awake, t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
-  std::erase_if(world.pairs_found, [&](collision::ColliderPair pair) {
+  for (const std::uint32_t body : world.frame.awake) enter_broad_phase(world, body);
+  world.derived.broad_phase.find_pairs_of(*world.pool, world.frame.in_moved_set, world.frame.pairs_found);
+  state::wake_pairs(world.frame.awake, t.bodies, t.colliders, t.pairs, world.frame.sleeping_pair_scratch);
+  std::erase_if(world.frame.pairs_found, [&](collision::ColliderPair pair) {
     return !may_collide(world, pair) || is_sleeping(t, pair);
   });
-  world.dense_piles.thin_out(t.bodies, t.colliders, world.pairs_found);
-  world.narrow_phase.merge_pairs(world.pairs_found, world.in_moved_set, t.pairs);
-  world.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
-                                      {.dt = dt,
-                                       .substeps = t.desc.substeps,
-                                       .has_several_neighbors = world.joints.in_ragdoll,
-                                       .moved_set = world.moved_set},
-                                      t.pairs);
-  world.dense_piles.thin_out(t.bodies, t.pairs);
-  if (t.desc.sleeping) state::reserve_sleeping_pairs(t.pairs, world.sleeping_pair_scratch);
+  world.frame.dense_piles.thin_out(t.bodies, t.colliders, world.frame.pairs_found);
+  world.frame.narrow_phase.merge_pairs(world.frame.pairs_found, world.frame.in_moved_set, t.pairs);
+  world.frame.narrow_phase.update_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials,
+                                            {.dt = dt,
+                                             .substeps = t.desc.substeps,
+                                             .has_several_neighbors = world.derived.joints.in_ragdoll,
+                                             .moved_set = world.frame.moved_set},
+                                            t.pairs);
+  world.frame.dense_piles.thin_out(t.bodies, t.pairs);
+  if (t.desc.sleeping) state::reserve_sleeping_pairs(t.pairs, world.frame.sleeping_pair_scratch);
   if (any_sleeps(world))
-    state::put_pairs_to_sleep(t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
+    state::put_pairs_to_sleep(t.bodies, t.colliders, t.pairs, world.frame.sleeping_pair_scratch);
+}
+
+void find_body_contacts(WorldData& world, Real dt) {
+  list_awake_bodies(world);
+  solver::evaluate_ragdolls(*world.pool, world.tables.hooks, world.tables.bodies, world.derived.joints);
+  find_manifolds(world, dt);
+  if (wake_touched(world, dt)) list_awake_bodies(world);
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  world.narrow_phase.list_refreshed(t.pairs);  // no pair changes its row any more in this step
+  world.frame.narrow_phase.list_refreshed(t.pairs);  // no pair changes its row any more in this step
   const WorldDesc& desc = t.desc;
   const auto before = static_cast<Real>(t.body_substep);
-  world.contact_step = {.gravity = desc.gravity,
-                        .h = h,
-                        .hz = desc.contact_hz,
-                        .damping_ratio = desc.contact_damping_ratio,
-                        .sweeps = desc.bias_sweeps,
-                        .impulse_scale = before > Real(0) ? h / before : Real(1)};
+  world.frame.contact_step = {.gravity = desc.gravity,
+                              .h = h,
+                              .hz = desc.contact_hz,
+                              .damping_ratio = desc.contact_damping_ratio,
+                              .sweeps = desc.bias_sweeps,
+                              .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
-  solver::find_load_bearing_contacts(world.contact_step, before > Real(0) ? Real(1) / before : Real(0),
-                                     world.joints, world.hooked, world.supports, t.bodies, t.hooks, t.pairs,
-                                     world.load_bearing);
-  solver::couple_articulations(world.joints, world.body_marks, t);
-  solver::find_direct_islands(world.awake, world.contact_step, t.pairs.manifold, world.load_bearing.footing,
-                              t.bodies, world.body_contacts, world.direct_islands);
-  solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.contact_step,
-                                world.body_contacts);
-  solver::prepare_direct_islands(*world.pool, world.body_contacts, t.bodies, world.direct_islands);
-  solver::list_impact_pairs(t.pairs, t.bodies, world.hooked, world.body_contacts, world.impacts);
+  solver::choose_contact_routes({.step = world.frame.contact_step,
+                                 .impulse_to_force = before > Real(0) ? Real(1) / before : Real(0),
+                                 .awake = world.frame.awake,
+                                 .hooked = world.derived.hooked,
+                                 .supports = world.derived.supports,
+                                 .joints = world.derived.joints},
+                                world.frame.body_marks, world.frame.load_bearing, world.frame.direct_islands,
+                                t);
+  solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.frame.contact_step,
+                                world.frame.body_contacts);
+  solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.bodies,
+                                 world.frame.direct_islands);
+  solver::list_impact_pairs(t.pairs, t.bodies, world.derived.hooked, world.frame.body_contacts,
+                            world.frame.impacts);
   note_closing_pairs(world, h * static_cast<Real>(desc.substeps));
+}
+
+void accelerate_bodies(WorldData& world, double time, Real h, bool first) {
+  drive_kinematic_bodies(world, time + static_cast<double>(h), h);
+  force_bodies(world, time, h);
+  const solver::BodyStep step = {.gravity = world.tables.desc.gravity, .h = h, .first = first};
+  for_bodies(world, [&](auto rows) { solver::accelerate_bodies(rows, step, world.tables.bodies); });
+  freeze_inertia(world, h, false);
+}
+
+void solve_body_contacts(WorldData& world, Real h, bool first) {
+  state::Bodies& bodies = world.tables.bodies;
+  solver::BodyContacts& contacts = world.frame.body_contacts;
+  for (int sweep = 0; sweep < world.tables.desc.bias_sweeps; ++sweep) {
+    for_contact_colors(world, [&](parallel::Range blocks) {
+      solver::solve_body_contacts(blocks, world.frame.contact_step, contacts, bodies);
+    });
+  }
+  const solver::BodyStep step = {.gravity = world.tables.desc.gravity, .h = h, .first = first};
+  solver::solve_direct_islands(*world.pool, step, world.frame.direct_islands, contacts, bodies);
+  limit_dense_piles(world);
+}
+
+void move_bodies(WorldData& world, Real h) {
+  for_bodies(world, [&](auto rows) { solver::move_bodies(rows, h, world.tables.bodies); });
+}
+
+void relax_body_contacts(WorldData& world) {
+  for_contact_colors(world, [&](parallel::Range blocks) {
+    solver::relax_body_contacts(blocks, world.frame.contact_step, world.frame.body_contacts,
+                                world.tables.bodies);
+  });
+  limit_dense_piles(world);
+}
+
+void finish_bodies(WorldData& world, Real dt) {
+  state::Tables& t = world.tables;
+  for_bodies(world, [&](auto rows) { solver::finish_bodies(rows, t.bodies); });
+  solver::finish_joints(*world.pool, dt, t.desc.substeps, t.bodies, world.derived.joints, t.hooks);
 }
 
 void resolve_impacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  solver::BodyContacts& contacts = world.body_contacts;
-  if (!solver::predict_impacts(world.contact_step, contacts, t.bodies, world.impacts)) return;
-  while (const std::optional<solver::NextImpact> impact = solver::next_impact(world.impacts)) {
-    const solver::ImpactPair& pair = world.impacts.pairs[impact->index];
-    solver::store_lanes(solver::lanes_of(pair, world.impacts), contacts, t.pairs.manifold);
-    world.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
-                                  state::pose_after(t.bodies, pair.a, impact->time),
-                                  state::pose_after(t.bodies, pair.b, impact->time), pair.pair, t.pairs);
-    solver::resolve_impact(*impact, world.contact_step, t.pairs, contacts, t.bodies, world.impacts);
+  solver::BodyContacts& contacts = world.frame.body_contacts;
+  if (!solver::predict_impacts(world.frame.contact_step, contacts, t.bodies, world.frame.impacts)) return;
+  while (const std::optional<solver::NextImpact> impact = solver::next_impact(world.frame.impacts)) {
+    const solver::ImpactPair& pair = world.frame.impacts.pairs[impact->index];
+    solver::store_lanes(solver::lanes_of(pair, world.frame.impacts), contacts, t.pairs.manifold);
+    world.frame.narrow_phase.refresh_at(
+        t.bodies, t.colliders, t.desc.materials, h, state::pose_after(t.bodies, pair.a, impact->time),
+        state::pose_after(t.bodies, pair.b, impact->time), pair.pair, t.pairs);
+    solver::resolve_impact(*impact, world.frame.contact_step, t.pairs, contacts, t.bodies,
+                           world.frame.impacts);
   }
-  solver::reset_hooked_bodies(t.hooks, h, t.bodies, world.impacts);
+  solver::reset_hooked_bodies(t.hooks, h, t.bodies, world.frame.impacts);
 }
 
 namespace {
@@ -214,9 +289,9 @@ void refresh_load_bearing_contacts(WorldData& world, Real h) {
   solver::store_load_bearing_contacts(h, t.pairs);
   for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (contact.point > 0) continue;
-    world.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
-                                  state::pose_now(t.bodies, contact.body_a),
-                                  state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
+    world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
+                                        state::pose_now(t.bodies, contact.body_a),
+                                        state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
   }
   solver::update_load_bearing_contacts(Real(1) / h, t.bodies, t.pairs);
 }
@@ -224,49 +299,32 @@ void refresh_load_bearing_contacts(WorldData& world, Real h) {
 }  // namespace
 
 void refresh_contacts(WorldData& world, Real h) {
+  freeze_inertia(world, h, true);
   Tables& t = world.tables;
   if (!t.pairs.load_bearing.empty()) refresh_load_bearing_contacts(world, h);
-  if (world.body_contacts.refreshed.empty()) return;
-  solver::BodyContacts& contacts = world.body_contacts;
+  if (world.frame.body_contacts.refreshed.empty()) return;
+  solver::BodyContacts& contacts = world.frame.body_contacts;
   solver::store_lanes(contacts.refreshed, contacts, t.pairs.manifold);
-  world.narrow_phase.refresh_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h, t.pairs);
+  world.frame.narrow_phase.refresh_manifolds(*world.pool, t.bodies, t.colliders, t.desc.materials, h,
+                                             t.pairs);
   solver::refill_lanes(contacts.refreshed, t.pairs.manifold, Real(0), t.bodies, contacts);
-}
-
-void limit_dense_piles(WorldData& world) {
-  const std::span<const std::uint32_t> begins = world.dense_piles.begins();
-  for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
-    const auto pile = world.dense_piles.members().subspan(begins[i], begins[i + 1] - begins[i]);
-    solver::limit_dense_pile(pile, world.tables.bodies);
-  }
 }
 
 void finish_body_contacts(WorldData& world) {
   Tables& t = world.tables;
-  parallel::for_ranges(*world.pool, static_cast<int>(world.body_contacts.blocks.size()), kContactBlockGrain,
-                       [&](parallel::Range blocks) {
-                         solver::store_body_contacts(blocks, world.body_contacts, t.pairs.manifold);
+  parallel::for_ranges(*world.pool, static_cast<int>(world.frame.body_contacts.blocks.size()),
+                       kContactBlockGrain, [&](parallel::Range blocks) {
+                         solver::store_body_contacts(blocks, world.frame.body_contacts, t.pairs.manifold);
                        });
-  solver::store_load_bearing_contacts(world.contact_step.h, t.pairs);
-  solver::evaluate_direct_islands(world.awake, world.contact_step, world.body_contacts,
-                                  world.load_bearing.footing, world.direct_islands, t.bodies);
-}
-
-void drive_kinematic_bodies(WorldData& world, double time, Real h) {
-  state::Bodies& b = world.tables.bodies;
-  for (const std::uint32_t body : world.awake) {
-    if (b.traits[body].kind != BodyKind::kKinematic) continue;
-    if (b.path[body].kind == MotionDesc::Kind::kStill) continue;
-    const DVec3 goal = b.path_start[body] + solver::motion_offset(b.path[body], time - b.path_time[body]);
-    const DVec3 now = b.center[body] + vector_cast<double>(b.motion[body].dx);
-    b.motion[body].v = vector_cast<Real>((1.0 / static_cast<double>(h)) * (goal - now));
-  }
+  solver::store_load_bearing_contacts(world.frame.contact_step.h, t.pairs);
+  solver::evaluate_direct_islands(world.frame.awake, world.frame.contact_step, world.frame.body_contacts,
+                                  world.frame.load_bearing.footing, world.frame.direct_islands, t.bodies);
 }
 
 std::uint32_t quarantine_bodies(WorldData& world) {
   state::Bodies& b = world.tables.bodies;
   std::uint32_t count = 0;
-  for (const std::uint32_t body : world.awake) {
+  for (const std::uint32_t body : world.frame.awake) {
     const state::MotionRecord& m = b.motion[body];
     if (is_finite(m.v) && is_finite(m.omega_scaled) && is_finite(m.dx) && is_finite(m.theta_scaled)) continue;
     b.motion[body] = {.inverse_mass = m.inverse_mass};

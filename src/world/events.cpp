@@ -66,19 +66,19 @@ ContactEvent parts_of(const Tables& t, const Manifold& m) {
 
 void gather_contacts(WorldData& world) {
   Tables& t = world.tables;
-  std::vector<ContactEvent>& now = world.contacts_now;
+  std::vector<ContactEvent>& now = world.frame.contacts_now;
   now.clear();
   const auto asks = [&](std::uint32_t body) { return t.bodies.traits[body].reports_contacts; };
   state::for_each_manifold(t.pairs, [&](const Manifold& m) {
     if (m.touching && (asks(m.body_a) || asks(m.body_b))) now.push_back(parts_of(t, m));
   });
-  compare(now, t.touches, world.events.contact_begins, world.events.contact_ends);
+  compare(now, t.touches, world.last_step.events.contact_begins, world.last_step.events.contact_ends);
 }
 
 void gather_hits(const WorldData& world, Events& events) {
   const Tables& t = world.tables;
   events.hits.clear();
-  for (const ClosingPair& closing_pair : world.closing_pairs) {
+  for (const ClosingPair& closing_pair : world.frame.closing_pairs) {
     const Manifold& m = t.pairs.manifold[closing_pair.manifold];
     if (!m.touching) continue;
     const auto [a, b] = parts_of(t, m);
@@ -113,7 +113,7 @@ bool overlap(const Tables& t, state::Pair& pair) {
 
 void gather_visits(WorldData& world) {
   Tables& t = world.tables;
-  std::vector<SensorEvent>& now = world.visits_now;
+  std::vector<SensorEvent>& now = world.frame.visits_now;
   now.clear();
   for (state::Pair& pair : t.pairs.pair) {
     const std::uint32_t a = t.colliders.body[pair.collider_a];
@@ -122,15 +122,15 @@ void gather_visits(WorldData& world) {
     if (!(senses_a || t.bodies.traits[b].sensor) || !overlap(t, pair)) continue;
     now.push_back(senses_a ? SensorEvent{id_of(t, a), id_of(t, b)} : SensorEvent{id_of(t, b), id_of(t, a)});
   }
-  compare(now, t.visits, world.events.sensor_enters, world.events.sensor_leaves);
+  compare(now, t.visits, world.last_step.events.sensor_enters, world.last_step.events.sensor_leaves);
 }
 
 void gather_sleep(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
-  Events& events = world.events;
+  Events& events = world.last_step.events;
   events.fell_asleep.clear();
   events.woke_up.clear();
-  for (const std::uint32_t body : world.awake) {
+  for (const std::uint32_t body : world.frame.awake) {
     if (bodies.asleep[body] == bodies.slept[body]) continue;
     (bodies.asleep[body] != 0 ? events.fell_asleep : events.woke_up).push_back(id_of(world.tables, body));
     bodies.slept[body] = bodies.asleep[body];
@@ -180,14 +180,14 @@ ClosingPair fastest_of(const Tables& t, std::uint32_t row, Real dt) {
 
 void note_closing_pairs(WorldData& world, Real dt) {
   const Tables& t = world.tables;
-  world.closing_pairs.clear();
+  world.frame.closing_pairs.clear();
   if (!t.any_reports) return;
   for (std::uint32_t row = 0; row < t.pairs.manifold.size(); ++row) {
     const Manifold& m = t.pairs.manifold[row];
     const Real least = std::min(t.bodies.traits[m.body_a].hit_speed, t.bodies.traits[m.body_b].hit_speed);
     if (!std::isfinite(least)) continue;
     const ClosingPair closing_pair = fastest_of(t, row, dt);
-    if (closing_pair.speed > least) world.closing_pairs.push_back(closing_pair);
+    if (closing_pair.speed > least) world.frame.closing_pairs.push_back(closing_pair);
   }
 }
 
@@ -200,7 +200,7 @@ void clear_events(Events& events) {
 void gather_events(WorldData& world) {
   if (world.tables.any_reports) {
     gather_contacts(world);
-    gather_hits(world, world.events);
+    gather_hits(world, world.last_step.events);
     gather_visits(world);
   }
   gather_sleep(world);

@@ -18,19 +18,20 @@ constexpr int kDipoleGrain = 16;
 void list_law_bodies(WorldData& world) {
   const state::Tables& tables = world.tables;
   const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };
-  world.law_bodies.clear();
+  world.frame.law_bodies.clear();
   if (std::none_of(tables.force_laws.begin(), tables.force_laws.end(), asks)) return;
-  std::copy_if(world.awake.begin(), world.awake.end(), std::back_inserter(world.law_bodies),
+  std::copy_if(world.frame.awake.begin(), world.frame.awake.end(), std::back_inserter(world.frame.law_bodies),
                [&](std::uint32_t body) { return is_dynamic(tables.bodies, body); });
 }
 
 void force_dipoles(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  solver::gather_dipoles(tables.fields, world.dipole_bodies, tables.bodies, world.dipoles);
-  parallel::for_ranges(
-      *world.pool, static_cast<int>(world.dipoles.size()), kDipoleGrain, [&](parallel::Range range) {
-        solver::add_dipole_forces(range, world.dipoles, tables.fields, static_cast<double>(h), tables.bodies);
-      });
+  solver::gather_dipoles(tables.fields, world.frame.dipole_bodies, tables.bodies, world.frame.dipoles);
+  parallel::for_ranges(*world.pool, static_cast<int>(world.frame.dipoles.size()), kDipoleGrain,
+                       [&](parallel::Range range) {
+                         solver::add_dipole_forces(range, world.frame.dipoles, tables.fields,
+                                                   static_cast<double>(h), tables.bodies);
+                       });
 }
 
 void set_off(const FieldDesc& explosion, state::Tables& tables) {
@@ -69,21 +70,22 @@ void begin_body_forces(WorldData& world) {
     return traits.drag_coefficient > Real(0) || traits.magnus_volume != Real(0);
   };
   list_law_bodies(world);
-  solver::list_bodies_with_dipoles(tables.bodies, world.dipole_bodies);
-  world.bodies_surrounded = !tables.fields.empty() || !world.dipole_bodies.empty() ||
-                            std::any_of(world.awake.begin(), world.awake.end(), in_air);
-  if (world.law_bodies.empty() && !world.bodies_surrounded) return;
-  world.given_force = tables.bodies.force;
-  world.given_torque = tables.bodies.torque;
+  solver::list_bodies_with_dipoles(tables.bodies, world.frame.dipole_bodies);
+  world.frame.bodies_surrounded = !tables.fields.empty() || !world.frame.dipole_bodies.empty() ||
+                                  std::any_of(world.frame.awake.begin(), world.frame.awake.end(), in_air);
+  if (world.frame.law_bodies.empty() && !world.frame.bodies_surrounded) return;
+  world.frame.given_force = tables.bodies.force;
+  world.frame.given_torque = tables.bodies.torque;
 }
 
 void force_bodies(WorldData& world, double time, Real h) {
   state::Tables& tables = world.tables;
-  solver::twist_bodies(static_cast<double>(h) / tables.desc.particle_substeps, tables, world.twist_rows);
-  if (world.law_bodies.empty() && !world.bodies_surrounded) return;
-  tables.bodies.force = world.given_force;
-  tables.bodies.torque = world.given_torque;
-  if (world.bodies_surrounded) {
+  solver::twist_bodies(static_cast<double>(h) / tables.desc.particle_substeps, tables,
+                       world.frame.twist_rows);
+  if (world.frame.law_bodies.empty() && !world.frame.bodies_surrounded) return;
+  tables.bodies.force = world.frame.given_force;
+  tables.bodies.torque = world.frame.given_torque;
+  if (world.frame.bodies_surrounded) {
     const solver::Surroundings around = {.fields = tables.fields,
                                          .colliders = tables.colliders,
                                          .desc = tables.desc,
@@ -91,9 +93,9 @@ void force_bodies(WorldData& world, double time, Real h) {
                                          .time = time,
                                          .h = h};
     for_bodies(world, [&](auto rows) { solver::add_body_forces(rows, around, tables.bodies); });
-    if (!world.dipole_bodies.empty()) force_dipoles(world, h);
+    if (!world.frame.dipole_bodies.empty()) force_dipoles(world, h);
   }
-  if (world.law_bodies.empty()) return;
+  if (world.frame.law_bodies.empty()) return;
   BodyForceView view = ForceViewAccess::make(world, time);
   for (const state::ForceLawEntry& entry : tables.force_laws) {
     if (entry.body_law) entry.body_law(view);

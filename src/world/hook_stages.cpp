@@ -1,5 +1,9 @@
 #include "world/hook_stages.h"
 
+#include "solver/body/body_motion.h"
+#include "solver/contact/impacts.h"
+#include "solver/routes.h"
+#include "world/body_stages.h"
 #include "world/object_edits.h"
 
 #include <algorithm>
@@ -20,46 +24,65 @@ std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b
 
 void refresh_hooks(WorldData& world) {
   const state::Tables& t = world.tables;
-  world.hooked.resize(t.bodies.motion.size());
-  world.supports.support_role.resize(t.bodies.motion.size());
-  world.supports.ground_load.resize(t.bodies.motion.size());
-  if (world.joints_revision == t.hook_revision) return;
-  world.joints_revision = t.hook_revision;
-  solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.joints);
-  solver::find_supporting_bodies(world.joints, t.bodies, t.hooks, world.supports);
-  std::fill(world.hooked.begin(), world.hooked.end(), std::uint8_t{0});
-  world.hooked_pairs.clear();
+  world.derived.hooked.resize(t.bodies.motion.size());
+  world.derived.supports.support_role.resize(t.bodies.motion.size());
+  world.derived.supports.ground_load.resize(t.bodies.motion.size());
+  if (world.derived.joints_revision == t.hook_revision) return;
+  world.derived.joints_revision = t.hook_revision;
+  solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.derived.joints);
+  solver::find_supporting_bodies(world.derived.joints, t.bodies, t.hooks, world.derived.supports);
+  std::fill(world.derived.hooked.begin(), world.derived.hooked.end(), std::uint8_t{0});
+  world.derived.hooked_pairs.clear();
   for (const Hook& hook : t.hooks) {
     for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
-      if (body != HookPlace::kWorld) world.hooked[body] = 1;
+      if (body != HookPlace::kWorld) world.derived.hooked[body] = 1;
     }
-    if (!hook.collide) world.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
+    if (!hook.collide) world.derived.hooked_pairs.push_back(pair_of(hook.a.body, hook.b.body));
   }
-  std::sort(world.hooked_pairs.begin(), world.hooked_pairs.end());
-  world.hooked_begin.assign(t.bodies.motion.size() + 1, 0);
-  for (const auto& [body, other] : world.hooked_pairs) {
-    if (body != HookPlace::kWorld) ++world.hooked_begin[body + 1];
+  std::sort(world.derived.hooked_pairs.begin(), world.derived.hooked_pairs.end());
+  world.derived.hooked_begin.assign(t.bodies.motion.size() + 1, 0);
+  for (const auto& [body, other] : world.derived.hooked_pairs) {
+    if (body != HookPlace::kWorld) ++world.derived.hooked_begin[body + 1];
   }
-  std::partial_sum(world.hooked_begin.begin(), world.hooked_begin.end(), world.hooked_begin.begin());
+  std::partial_sum(world.derived.hooked_begin.begin(), world.derived.hooked_begin.end(),
+                   world.derived.hooked_begin.begin());
 }
 
 bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b) {
   const auto pair = pair_of(body_a, body_b);
-  if (pair.first + 1 >= world.hooked_begin.size()) return false;
-  const auto begin = world.hooked_pairs.begin();
-  return std::binary_search(begin + world.hooked_begin[pair.first],
-                            begin + world.hooked_begin[pair.first + 1], pair);
+  if (pair.first + 1 >= world.derived.hooked_begin.size()) return false;
+  const auto begin = world.derived.hooked_pairs.begin();
+  return std::binary_search(begin + world.derived.hooked_begin[pair.first],
+                            begin + world.derived.hooked_begin[pair.first + 1], pair);
+}
+
+void prepare_joints(WorldData& world, Real h) {
+  state::Tables& t = world.tables;
+  for_bodies(world, [&](auto rows) { solver::prepare_bodies(rows, t.bodies); });
+  solver::prepare_joints(*world.pool, h, t.hooks, t.bodies, world.derived.joints);
+  solver::choose_joint_routes(world.derived.joints, t.hooks);
+}
+
+void solve_joints(WorldData& world, Real h) {
+  state::Tables& t = world.tables;
+  solver::solve_joints(*world.pool, h, t.hooks, t.bodies, world.derived.joints);
+  solver::propagate_impacts(t.bodies, world.frame.impacts);
+}
+
+void relax_joints(WorldData& world, Real h) {
+  solver::relax_joints(*world.pool, h, world.tables.hooks, world.tables.bodies, world.derived.joints);
 }
 
 void drop_broken_hooks(WorldData& world) {
   state::Tables& t = world.tables;
-  std::vector<BreakEvent>& breaks = world.events.breaks;
-  world.broken_hooks.clear();
+  std::vector<BreakEvent>& breaks = world.last_step.events.breaks;
+  world.last_step.broken_hooks.clear();
   breaks.clear();
   for (const Hook& hook : t.hooks) {
     if (!hook.broken) continue;
-    world.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
-    breaks.push_back({world.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
+    world.last_step.broken_hooks.push_back(t.hook_slots.id_of(hook.slot));
+    breaks.push_back(
+        {world.last_step.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
   }
   // Few; a stable sort would allocate.
   for (auto at = breaks.begin(); at != breaks.end(); ++at) {
@@ -67,8 +90,8 @@ void drop_broken_hooks(WorldData& world) {
                                         [](double time, const BreakEvent& e) { return time < e.time; });
     std::rotate(place, at, at + 1);
   }
-  for (const HookId id : world.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
-  if (!world.broken_hooks.empty()) ++t.hook_revision;
+  for (const HookId id : world.last_step.broken_hooks) remove_row(t.hook_slots, id, t.hooks);
+  if (!world.last_step.broken_hooks.empty()) ++t.hook_revision;
 }
 
 namespace {

@@ -17,6 +17,16 @@ void refresh_hooks(WorldData& world);
 /// Whether a hook that keeps them apart joins two bodies. Valid after refresh_hooks.
 [[nodiscard]] bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b);
 
+/// Bodies and hooks at the start of a step of substeps of length `h` [s]; which way each hook is solved.
+void prepare_joints(WorldData& world, Real h);
+
+/// Rows of hooks between bodies for a substep of length `h` [s], with their errors removed. What impacts did
+/// to hooked bodies reaches those that they are hooked to.
+void solve_joints(WorldData& world, Real h);
+
+/// After bodies have moved: takes back the velocity that removing errors has added.
+void relax_joints(WorldData& world, Real h);
+
 /// Takes the hooks that broke in this step out of the world and lists them.
 void drop_broken_hooks(WorldData& world);
 

@@ -34,7 +34,7 @@ Path path_of(const WorldData& world, std::uint32_t body) {
   path.displacement = m.dx;
   path.turn = rotation_of(bodies, body);
   if (m.inverse_mass > Real(0) && state::is_gyroscopic_now(bodies, body)) {
-    path.rotation = world.start_rotation[body];
+    path.rotation = world.frame.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
   }
   return path;
@@ -51,7 +51,7 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
 
 /// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
 bool may_be_stopped(const WorldData& world, std::uint32_t body) {
-  return world.hooked[body] == 0 && state::gives_way(world.tables.bodies, body);
+  return world.derived.hooked[body] == 0 && state::gives_way(world.tables.bodies, body);
 }
 
 Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
@@ -86,12 +86,12 @@ bool changes_inertia(const Bodies& bodies, std::uint32_t body, bool foreseen, Re
 /// Marks the bodies that go or turn far for their thickness; false if none do, or none may be stopped.
 bool find_fast_bodies(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
-  world.fast.assign(bodies.motion.size(), 0);
+  world.frame.fast.assign(bodies.motion.size(), 0);
   bool any_is_fast = false;
   bool any_gives_way = false;
-  for (const std::uint32_t body : world.awake) {
-    world.fast[body] = is_fast(bodies, body) ? 1 : 0;
-    any_is_fast |= world.fast[body] != 0;
+  for (const std::uint32_t body : world.frame.awake) {
+    world.frame.fast[body] = is_fast(bodies, body) ? 1 : 0;
+    any_is_fast |= world.frame.fast[body] != 0;
     any_gives_way |= may_be_stopped(world, body);
   }
   return any_is_fast && any_gives_way;
@@ -99,7 +99,7 @@ bool find_fast_bodies(WorldData& world) {
 
 bool is_one_fast(const WorldData& world, ColliderPair pair) {
   const std::vector<std::uint32_t>& body = world.tables.colliders.body;
-  return world.fast[body[pair.first]] != 0 || world.fast[body[pair.second]] != 0;
+  return world.frame.fast[body[pair.first]] != 0 || world.frame.fast[body[pair.second]] != 0;
 }
 
 bool is_solid(const WorldData& world, std::uint32_t collider) {
@@ -122,7 +122,7 @@ bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
 /// to do so for all.
 void enter_standing(WorldData& world, std::uint32_t collider) {
   const Bodies& bodies = world.tables.bodies;
-  collision::SweptBodies& swept = world.swept;
+  collision::SweptBodies& swept = world.frame.swept;
   const std::uint32_t body = world.tables.colliders.body[collider];
   if (bodies.traits[body].kind != BodyKind::kStatic && bodies.asleep[body] == 0) return;
   swept.path[body] = collision::path_ahead(bodies, body, Real(0));
@@ -134,20 +134,20 @@ void enter_standing(WorldData& world, std::uint32_t collider) {
 /// How awake bodies go, and which of them go astray.
 void find_paths(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
-  collision::SweptBodies& swept = world.swept;
+  collision::SweptBodies& swept = world.frame.swept;
   const std::size_t count = bodies.motion.size();
   swept.path.resize(count);
   swept.stoppable.resize(count);
   swept.inverse_mass.resize(count);
   swept.clamps.resize(count);
-  world.astray.assign(count, 0);
+  world.frame.astray.assign(count, 0);
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) {
       swept.inverse_mass[body] = bodies.motion[body].inverse_mass;
       swept.clamps[body] = {};
       swept.path[body] = path_of(world, body);
-      swept.stoppable[body] = stoppable(world, body, world.fast[body] != 0);
-      world.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
+      swept.stoppable[body] = stoppable(world, body, world.frame.fast[body] != 0);
+      world.frame.astray[body] = goes_astray(world, body, swept.path[body]) ? 1 : 0;
     }
   });
 }
@@ -156,7 +156,7 @@ void find_paths(WorldData& world) {
 void enter_path(WorldData& world, std::uint32_t body) {
   state::Tables& t = world.tables;
   for (const std::uint32_t c : colliders_of(t.bodies, body))
-    t.colliders.bounds[c] = collision::reach_of(t.colliders, c, world.swept.path[body]);
+    t.colliders.bounds[c] = collision::reach_of(t.colliders, c, world.frame.swept.path[body]);
   enter_broad_phase(world, body);
 }
 
@@ -165,7 +165,7 @@ void find_in_path(WorldData& world, std::uint32_t body, collision::PathScratch& 
   const state::Tables& t = world.tables;
   scratch.pairs.clear();
   for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-    world.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
+    world.derived.broad_phase.query_for(c, t.colliders.bounds[c], scratch.near);
     for (const std::uint32_t other : scratch.near) {
       const ColliderPair pair = {std::min(c, other), std::max(c, other)};
       if (!is_solid(world, other) || !may_collide(world, pair)) continue;
@@ -188,15 +188,15 @@ void list_impact_candidates(WorldData& world, std::vector<collision::ImpactCandi
   }
   const std::size_t foreseen = impact_candidates.size();
   const auto for_each_astray = [&](auto&& visit) {
-    for (const std::uint32_t body : world.awake) {
-      if (world.astray[body] != 0 && !world.tables.bodies.traits[body].sensor) visit(body);
+    for (const std::uint32_t body : world.frame.awake) {
+      if (world.frame.astray[body] != 0 && !world.tables.bodies.traits[body].sensor) visit(body);
     }
   };
   for_each_astray([&](std::uint32_t body) { enter_path(world, body); });
-  world.broad_phase.update();
+  world.derived.broad_phase.update();
   for_each_astray([&](std::uint32_t body) {
-    find_in_path(world, body, world.path_scratch);
-    for (const ColliderPair pair : world.path_scratch.pairs) {
+    find_in_path(world, body, world.frame.path_scratch);
+    for (const ColliderPair pair : world.frame.path_scratch.pairs) {
       if (is_one_fast(world, pair)) impact_candidates.push_back({.pair = pair});
     }
   });
@@ -223,11 +223,11 @@ void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
 void begin_motion(WorldData& world, Real dt) {
   Bodies& bodies = world.tables.bodies;
   const Real h = dt / static_cast<Real>(world.tables.desc.substeps);
-  world.start_rotation.resize(bodies.rotation.size());
-  for (const std::uint32_t body : world.awake) {
-    world.start_rotation[body] = bodies.rotation[body];
+  world.frame.start_rotation.resize(bodies.rotation.size());
+  for (const std::uint32_t body : world.frame.awake) {
+    world.frame.start_rotation[body] = bodies.rotation[body];
     bodies.frozen_inertia[body] = {};
-    if (world.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
+    if (world.derived.hooked[body] != 0 && solver::outgrows_rows(bodies, body, h))
       bodies.frozen_inertia[body] = {.on = true, .hooked = true};
   }
   for (const state::Pair& pair : world.tables.pairs.pair) {
@@ -249,7 +249,7 @@ void begin_motion(WorldData& world, Real dt) {
 
 void freeze_inertia(WorldData& world, Real h, bool moved) {
   for_bodies(world, [&](auto rows) {
-    solver::freeze_inertia(rows, world.start_rotation, h, moved, world.tables.bodies);
+    solver::freeze_inertia(rows, world.frame.start_rotation, h, moved, world.tables.bodies);
   });
 }
 
@@ -257,16 +257,16 @@ void clamp_to_impact_times(WorldData& world) {
   Bodies& bodies = world.tables.bodies;
   if (!find_fast_bodies(world)) return;
   find_paths(world);
-  list_impact_candidates(world, world.impact_candidates);
+  list_impact_candidates(world, world.frame.impact_candidates);
   const auto find_pairs = [&world](std::uint32_t body, collision::PathScratch& scratch) {
     enter_path(world, body);
     find_in_path(world, body, scratch);
   };
-  collision::SweptBodies& swept = world.swept;
-  if (collision::clamp_to_impact_times(*world.pool, world.tables.colliders, world.impact_candidates,
-                                       find_pairs, world.continuous, swept) == 0)
+  collision::SweptBodies& swept = world.frame.swept;
+  if (collision::clamp_to_impact_times(*world.pool, world.tables.colliders, world.frame.impact_candidates,
+                                       find_pairs, world.frame.continuous, swept) == 0)
     return;
-  for (const std::uint32_t body : world.awake) {
+  for (const std::uint32_t body : world.frame.awake) {
     if (swept.clamps[body].count > 0) follow(swept.path[body], swept.clamps[body].first, body, bodies);
   }
 }

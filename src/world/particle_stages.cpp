@@ -2,6 +2,8 @@
 
 #include "solver/air/force_fields.h"
 #include "solver/air/wind.h"
+#include "solver/rope/rope_repulsion.h"
+#include "solver/soft/particle_kernels.h"
 #include "solver/soft/shape_matching.h"
 #include "solver/soft/spring_solve.h"
 #include "state/check_tables.h"
@@ -20,6 +22,7 @@ using parallel::for_ranges;
 using parallel::Range;
 
 constexpr int kParticleGrain = 1024;
+constexpr int kMotionGrain = 2048;
 constexpr int kTriangleGrain = 512;
 constexpr int kTetrahedronGrain = 64;
 constexpr int kBlockGrain = 16;
@@ -75,14 +78,14 @@ void read_wind(WorldData& world, double time) {
   for (const state::Deformable& object : tables.objects) {
     if (!object.feels_air()) continue;
     if (even) {
-      const auto first = world.wind.begin() + object.particles.first;
+      const auto first = world.frame.wind.begin() + object.particles.first;
       std::fill(first, first + object.particles.count, solver::AirRecord{tables.desc.wind.velocity, Real(0)});
       continue;
     }
     for_particles(world, object, [&](Range rows) {
       for (int p = rows.begin; p < rows.end; ++p) {
         const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
-        world.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
+        world.frame.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
       }
     });
   }
@@ -91,9 +94,9 @@ void read_wind(WorldData& world, double time) {
 /// Tetrahedra of one color share no particle; colors follow one another.
 template <class Kernel>
 void for_tetrahedra(WorldData& world, Kernel kernel) {
-  for (const solver::TetrahedronPass& pass : world.tetrahedra.passes) {
+  for (const solver::TetrahedronPass& pass : world.derived.tetrahedra.passes) {
     for_rows(world, pass.first, pass.end, kTetrahedronGrain,
-             [&](Range rows) { kernel(world.tetrahedra, rows, world.tables.particles); });
+             [&](Range rows) { kernel(world.derived.tetrahedra, rows, world.tables.particles); });
   }
 }
 
@@ -101,9 +104,9 @@ void for_tetrahedra(WorldData& world, Kernel kernel) {
 template <class Kernel>
 void for_matched(WorldData& world, Real h, Kernel kernel) {
   state::Tables& tables = world.tables;
-  for_ranges(*world.pool, static_cast<int>(world.matched_objects.size()), 1, [&](Range range) {
+  for_ranges(*world.pool, static_cast<int>(world.derived.matched_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i)
-      kernel(tables.objects[world.matched_objects[i]], static_cast<double>(h), tables.particles);
+      kernel(tables.objects[world.derived.matched_objects[i]], static_cast<double>(h), tables.particles);
   });
 }
 
@@ -112,12 +115,12 @@ void for_matched(WorldData& world, Real h, Kernel kernel) {
 void compute_air_loads(WorldData& world, const state::Deformable& object, Real h) {
   state::Tables& tables = world.tables;
   const auto count = static_cast<Real>(tables.desc.particle_substeps);
-  const solver::Air air = {world.wind, tables.desc.wind.air_density, count * h};
+  const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, count * h};
   for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
-    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.air_loads);
+    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.derived.air_loads);
   });
   for_particles(world, object, [&](Range rows) {
-    solver::gather_loads(tables.particles, Real(1) / count, rows, world.air_loads);
+    solver::gather_loads(tables.particles, Real(1) / count, rows, world.derived.air_loads);
   });
 }
 
@@ -128,7 +131,7 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
   if (others == Real(0)) return;
   const Real time = first ? -others * h : h;
-  for (const solver::CoupledGroup& group : world.coupled_groups.live()) {
+  for (const solver::CoupledGroup& group : world.derived.coupled_groups.live()) {
     for (const std::uint32_t body : group.bodies) {
       const Vec3 change = (time * tables.bodies.traits[body].gravity_scale) * tables.desc.gravity;
       tables.bodies.motion[body].v += change;
@@ -159,21 +162,21 @@ void share_out_contacts(WorldData& world, bool first) {
     bodies.motion[share.body].omega_scaled += times * share.omega_scaled;
   };
   if (!first) {
-    for (const ContactShare& share : world.contact_shares) give(share, Real(1));
+    for (const ContactShare& share : world.frame.contact_shares) give(share, Real(1));
     return;
   }
-  world.contact_shares.clear();
-  find_pushed(world.body_contacts, bodies.motion.size(), world.body_marks);
-  for (const solver::CoupledGroup& group : world.coupled_groups.live()) {
+  world.frame.contact_shares.clear();
+  find_pushed(world.frame.body_contacts, bodies.motion.size(), world.frame.body_marks);
+  for (const solver::CoupledGroup& group : world.derived.coupled_groups.live()) {
     for (const std::uint32_t body : group.bodies) {
-      if (world.body_marks[body] == 0) continue;
+      if (world.frame.body_marks[body] == 0) continue;
       const state::MotionRecord& m = bodies.motion[body];
       const state::FreeMotionRecord& free = bodies.free_motion[body];
-      world.contact_shares.push_back(
+      world.frame.contact_shares.push_back(
           {.body = body,
            .v = (Real(1) / count) * (m.v - free.v),
            .omega_scaled = (Real(1) / count) * (m.omega_scaled - free.omega_scaled)});
-      give(world.contact_shares.back(), Real(1) - count);
+      give(world.frame.contact_shares.back(), Real(1) - count);
     }
   }
 }
@@ -184,16 +187,16 @@ void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
     if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
     const solver::LiquidSurface surface(field.desc, t.desc.gravity);
     solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
-                              world.liquid_loads);
-    solver::apply_liquid(field.desc, surface, object, world.liquid_loads, h, t.particles);
+                              world.frame.liquid_loads);
+    solver::apply_liquid(field.desc, surface, object, world.frame.liquid_loads, h, t.particles);
   }
 }
 
 /// Pins and hooks say where ropes are held against bending and twist.
 void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
-  if (world.clamps_revision == revision) return;
-  world.clamps_revision = revision;
+  if (world.derived.clamps_revision == revision) return;
+  world.derived.clamps_revision = revision;
   const std::vector<solver::Holder> supports = solver::list_holders(world.tables);
   solver::note_clamps(supports, world.tables);
   solver::find_twist_spans(supports, world.tables);
@@ -204,43 +207,45 @@ void refresh_clamps(WorldData& world) {
 void refresh_derived(WorldData& world) {
   state::Tables& tables = world.tables;
   refresh_clamps(world);
-  if (world.derived_revision == tables.revision) return;
-  world.derived_revision = tables.revision;
+  if (world.derived.revision == tables.revision) return;
+  world.derived.revision = tables.revision;
   const std::vector<std::uint8_t> in_isometric_bends = solver::build_isometric_bend_blocks(
-      tables.bends, tables.springs, tables.particles.count(), world.isometric_bend_blocks);
-  solver::build_spring_blocks(tables.springs, tables.particles, in_isometric_bends, world.spring_blocks);
-  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.bend_blocks);
-  solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.tetrahedra);
-  solver::find_yields(tables.objects, world.bend_blocks, world.tetrahedra, world.yields);
-  solver::build_air_loads(tables.triangles, tables.particles.count(), world.air_loads);
-  world.gas_objects.clear();
-  world.matched_objects.clear();
+      tables.bends, tables.springs, tables.particles.count(), world.derived.isometric_bend_blocks);
+  solver::build_spring_blocks(tables.springs, tables.particles, in_isometric_bends,
+                              world.derived.spring_blocks);
+  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.derived.bend_blocks);
+  solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.derived.tetrahedra);
+  solver::find_yields(tables.objects, world.derived.bend_blocks, world.derived.tetrahedra,
+                      world.derived.yields);
+  solver::build_air_loads(tables.triangles, tables.particles.count(), world.derived.air_loads);
+  world.derived.gas_objects.clear();
+  world.derived.matched_objects.clear();
   for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
-    if (tables.objects[i].gas > 0) world.gas_objects.push_back(i);
-    if (tables.objects[i].rest_shape) world.matched_objects.push_back(i);
+    if (tables.objects[i].gas > 0) world.derived.gas_objects.push_back(i);
+    if (tables.objects[i].rest_shape) world.derived.matched_objects.push_back(i);
   }
-  world.gas_volumes.resize(world.gas_objects.size());
-  world.rope_systems.clear();
+  world.frame.gas_volumes.resize(world.derived.gas_objects.size());
+  world.derived.rope_systems.clear();
   for (const state::Deformable& object : tables.objects) {
     if (object.kind != PointRef::Kind::kRope) continue;
-    world.rope_systems.push_back({.first_particle = object.particles.first,
-                                  .node_count = object.particles.count,
-                                  .first_segment = object.segments.first,
-                                  .bend_stiffness = static_cast<double>(object.bend_stiffness),
-                                  .bend_damping = static_cast<double>(object.bend_damping)});
+    world.derived.rope_systems.push_back({.first_particle = object.particles.first,
+                                          .node_count = object.particles.count,
+                                          .first_segment = object.segments.first,
+                                          .bend_stiffness = static_cast<double>(object.bend_stiffness),
+                                          .bend_damping = static_cast<double>(object.bend_damping)});
   }
   const auto count = static_cast<std::size_t>(tables.particles.count());
-  world.velocity_before.assign(count, state::VelocityRecord{});
-  world.wind.assign(count, solver::AirRecord{});
-  world.law_force.assign(count, Vec3{});
+  world.frame.velocity_before.assign(count, state::VelocityRecord{});
+  world.frame.wind.assign(count, solver::AirRecord{});
+  world.frame.law_force.assign(count, Vec3{});
 }
 
-void prepare_rows(WorldData& world, Real h) {
+void prepare_particle_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // after all contacts were found
-  solver::prepare_springs(world.spring_blocks.materials, h);
-  solver::prepare_isometric_bends(world.isometric_bend_blocks, h);
-  solver::prepare_bends(world.bend_blocks, h);
-  solver::prepare_tetrahedra(world.tetrahedra, h);
+  solver::prepare_springs(world.derived.spring_blocks.materials, h);
+  solver::prepare_isometric_bends(world.derived.isometric_bend_blocks, h);
+  solver::prepare_bends(world.derived.bend_blocks, h);
+  solver::prepare_tetrahedra(world.derived.tetrahedra, h);
 }
 
 void begin_step(WorldData& world, double dt) {
@@ -252,7 +257,7 @@ void begin_step(WorldData& world, double dt) {
   for (state::TwistSpan& span : tables.twists) span.mean_torque = Real(0);
   std::size_t row = 0;
   const state::Contacts& contacts = tables.contacts;
-  for (solver::RopeSystem& rope_system : world.rope_systems) {
+  for (solver::RopeSystem& rope_system : world.derived.rope_systems) {
     const auto begins = [&](std::uint32_t particle) {
       return row < contacts.particle.size() && contacts.particle[row] < particle;
     };
@@ -266,18 +271,18 @@ void begin_step(WorldData& world, double dt) {
 }
 
 void begin_particle_substep(WorldData& world, Real h) {
-  if (world.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
+  if (world.derived.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
   for_matched(world, h, solver::damp_shape);
-  for (const solver::RopeSystem& rope_system : world.rope_systems) {
+  for (const solver::RopeSystem& rope_system : world.derived.rope_systems) {
     const auto first = world.tables.particles.velocity.begin() + rope_system.first_particle;
     std::copy(first, first + rope_system.node_count,
-              world.velocity_before.begin() + rope_system.first_particle);
+              world.frame.velocity_before.begin() + rope_system.first_particle);
   }
 }
 
 void apply_forces(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  const solver::ForceInputs inputs = {tables.fields, world.wind, tables.desc.wind.air_density,
+  const solver::ForceInputs inputs = {tables.fields, world.frame.wind, tables.desc.wind.air_density,
                                       tables.any_force};
   for (const state::Deformable& object : tables.objects) {
     if (tables.fields.empty() && !tables.any_force && !object.points_drag) continue;
@@ -292,21 +297,22 @@ void apply_wind(WorldData& world, Real h, bool first) {
   for (const state::Deformable& object : tables.objects) {
     if (!air_moves(tables, object)) continue;
     if (object.segments.count > 0) {
-      const solver::Air air = {world.wind, tables.desc.wind.air_density, h};
+      const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, h};
       solver::push_segments(object, tables.segments, air, tables.particles);
     }
     if (object.triangles.count == 0) continue;
     if (first) compute_air_loads(world, object, h);
-    for_particles(world, object,
-                  [&](Range rows) { solver::push_particles(world.air_loads, rows, tables.particles); });
+    for_particles(world, object, [&](Range rows) {
+      solver::push_particles(world.derived.air_loads, rows, tables.particles);
+    });
   }
 }
 
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
-  for (const solver::SpringPass& pass : world.spring_blocks.passes) {
+  for (const solver::SpringPass& pass : world.derived.spring_blocks.passes) {
     if (pass.kind < first || pass.kind > last) continue;
     for_rows(world, pass.first, pass.end, kBlockGrain, [&](Range blocks) {
-      solver::solve_springs(world.spring_blocks, pass, blocks, h, world.tables.particles);
+      solver::solve_springs(world.derived.spring_blocks, pass, blocks, h, world.tables.particles);
     });
   }
 }
@@ -318,23 +324,36 @@ void solve_bends(WorldData& world) {
                [&](Range blocks) { solve_pass(rows, pass, blocks, world.tables.particles); });
     }
   };
-  solve(world.bend_blocks, solver::solve_bends);
-  solve(world.isometric_bend_blocks, solver::solve_isometric_bends);
+  solve(world.derived.bend_blocks, solver::solve_bends);
+  solve(world.derived.isometric_bend_blocks, solver::solve_isometric_bends);
+}
+
+void apply_gravity(WorldData& world, Real h) {
+  for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain, [&](Range rows) {
+    solver::wide::accelerate(world.tables.desc.gravity, h, rows, world.tables.particles);
+  });
+}
+
+void repel_and_drive(WorldData& world, double time, Real h) {
+  state::Tables& tables = world.tables;
+  solver::repel(*world.pool, h, world.frame.repulsion, tables);
+  solver::drive_pins(tables.pins, tables.objects, time, h, tables.particles);
 }
 
 void call_force_laws(WorldData& world, double time, Real h) {
   state::Tables& tables = world.tables;
   if (tables.force_laws.empty()) return;
-  std::fill(world.law_force.begin(), world.law_force.end(), Vec3{});
+  std::fill(world.frame.law_force.begin(), world.frame.law_force.end(), Vec3{});
   for (const state::ForceLawEntry& entry : tables.force_laws) {
     if (!entry.law) continue;
     for (const state::Deformable& object : tables.objects) {
-      ForceView view = ForceViewAccess::make(tables, object, time, world.law_force.data());
+      ForceView view = ForceViewAccess::make(tables, object, time, world.frame.law_force.data());
       entry.law(view);
     }
   }
-  for (std::size_t p = 0; p < world.law_force.size(); ++p) {
-    tables.particles.velocity[p].v += (h * tables.particles.velocity[p].inverse_mass) * world.law_force[p];
+  for (std::size_t p = 0; p < world.frame.law_force.size(); ++p) {
+    tables.particles.velocity[p].v +=
+        (h * tables.particles.velocity[p].inverse_mass) * world.frame.law_force[p];
   }
 }
 
@@ -344,7 +363,7 @@ std::uint32_t quarantine_non_finite(WorldData& world) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     if (is_finite(particles.position[i].x) && is_finite(particles.velocity[i].v)) continue;
-    particles.position[i].x = world.start_position[i].x;
+    particles.position[i].x = world.frame.start_position[i].x;
     particles.velocity[i].v = {};
     ++count;
   }
@@ -370,92 +389,59 @@ void solve_solids(WorldData& world, Real h) {
   for_tetrahedra(world, solver::solve_tetrahedra);
   state::Tables& tables = world.tables;
   for_matched(world, h, solver::match_shape);
-  for_ranges(*world.pool, static_cast<int>(world.gas_objects.size()), 1, [&](Range range) {
+  for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
-      solver::press_gas(tables.objects[world.gas_objects[i]], tables.triangles, tables.contacts,
-                        tables.bodies, static_cast<double>(h), world.gas_volumes[i], tables.particles);
+      solver::press_gas(tables.objects[world.derived.gas_objects[i]], tables.triangles, tables.contacts,
+                        tables.bodies, static_cast<double>(h), world.frame.gas_volumes[i], tables.particles);
     }
   });
 }
 
-void flow_solids(WorldData& world, Real h) {
-  for_ranges(
-      *world.pool, static_cast<int>(world.yields.tetrahedra.size()), kTetrahedronGrain,
-      [&](Range rows) { solver::flow_tetrahedra(world.yields, rows, h, world.tables, world.tetrahedra); });
+void move_particles(WorldData& world, Real h) {
+  for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain,
+             [&](Range rows) { solver::wide::move(h, rows, world.tables.particles); });
+  for_ranges(*world.pool, static_cast<int>(world.derived.yields.tetrahedra.size()), kTetrahedronGrain,
+             [&](Range rows) {
+               solver::flow_tetrahedra(world.derived.yields, rows, h, world.tables, world.derived.tetrahedra);
+             });
 }
 
 void flow_cloths(WorldData& world) {
-  for_ranges(*world.pool, static_cast<int>(world.yields.bends.size()), kTriangleGrain,
-             [&](Range rows) { solver::flow_bends(world.yields, rows, world.tables, world.bend_blocks); });
+  for_ranges(*world.pool, static_cast<int>(world.derived.yields.bends.size()), kTriangleGrain,
+             [&](Range rows) {
+               solver::flow_bends(world.derived.yields, rows, world.tables, world.derived.bend_blocks);
+             });
 }
 
 void begin_coupled_groups(WorldData& world, Real h, bool first) {
   if (world.tables.objects.empty() && world.tables.pairs.load_bearing.empty() &&
-      world.coupled_groups.count == 0)
+      world.derived.coupled_groups.count == 0)
     return;
-  if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.twist_rows);
+  if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.frame.twist_rows);
   solver::slide_hooks(world.tables);
-  solver::build_coupled_groups(world.tables, world.rope_systems, world.coupled_groups);
+  solver::build_coupled_groups(world.tables, world.derived.rope_systems, world.derived.coupled_groups);
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
-  solver::apply_mass_shares(world.coupled_groups, world.tables, world.hooked_points);
+  solver::apply_mass_shares(world.derived.coupled_groups, world.tables, world.frame.hooked_points);
 }
 
 void solve_ropes(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  solver::remove_mass_shares(world.hooked_points, tables.particles);
-  solver::twist_nodes(world.twist_rows, tables);
-  world.rope_system_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
-  for_ranges(*world.pool, static_cast<int>(world.rope_systems.size()), 1, [&](Range rows, int part) {
-    solver::solve_rope_systems(std::span(world.rope_systems).subspan(rows.begin, rows.count()),
-                               world.coupled_groups.anchors, world.velocity_before, h,
-                               world.rope_system_scratch[part], tables);
+  solver::remove_mass_shares(world.frame.hooked_points, tables.particles);
+  solver::twist_nodes(world.frame.twist_rows, tables);
+  world.frame.rope_system_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
+  for_ranges(*world.pool, static_cast<int>(world.derived.rope_systems.size()), 1, [&](Range rows, int part) {
+    solver::solve_rope_systems(std::span(world.derived.rope_systems).subspan(rows.begin, rows.count()),
+                               world.derived.coupled_groups.anchors, world.frame.velocity_before, h,
+                               world.frame.rope_system_scratch[part], tables);
   });
-  for_ranges(*world.pool, static_cast<int>(world.coupled_groups.count), 1, [&](Range rows) {
+  for_ranges(*world.pool, static_cast<int>(world.derived.coupled_groups.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
-      solver::solve_coupled_group(world.velocity_before, h, world.coupled_groups.groups[i],
-                                  world.rope_systems, tables);
+      solver::solve_coupled_group(world.frame.velocity_before, h, world.derived.coupled_groups.groups[i],
+                                  world.derived.rope_systems, tables);
     }
   });
-  solver::note_twist_rates(static_cast<double>(h), world.twist_rows, tables);
-}
-
-void end_step(WorldData& world, double dt, StepReport& report) {
-  state::Tables& tables = world.tables;
-  const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
-  const Real share = Real(1) / static_cast<Real>(substeps);
-  for (Real& tension : tables.segments.mean_tension) tension *= share;
-  for (state::TwistSpan& span : tables.twists) span.mean_torque *= share;
-  for (const solver::RopeSystem& rope_system : world.rope_systems) {
-    report.rope_solves += rope_system.solves;
-    report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
-  }
-  report.islands_refused = world.direct_islands.refused;
-  report.contacts_refused = world.load_bearing.refused;
-  for (const solver::CoupledGroup& group : world.coupled_groups.live())
-    report.contacts_refused += group.refused;
-  for (solver::CoupledGroup& group : world.coupled_groups.groups)
-    report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
-  report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
-                                                             tables.contacts.normal_force.end(),
-                                                             [](Real n) { return n > Real(0); }));
-  for (const state::ElementContact& element_contact : tables.element_contacts)
-    report.contacts += element_contact.normal_force > Real(0) ? 1 : 0;
-  for (const state::RopeContact& contact : tables.rope_contacts)
-    report.contacts += contact.normal_force > Real(0) ? 1 : 0;
-  report.contacts += tables.pairs.sleeping.contacts;
-  for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
-  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.sleeping.pair.size());
-  report.pairs_left_out = world.dense_piles.left_out();
-  report.bodies_awake = static_cast<std::uint32_t>(
-      std::count_if(world.awake.begin(), world.awake.end(),
-                    [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
-  if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
-  tables.any_force = false;
-  tables.time += dt;
-  tables.substep = dt / substeps;
-  ++tables.step_count;
-  report.moved = true;
+  solver::note_twist_rates(static_cast<double>(h), world.frame.twist_rows, tables);
 }
 
 }  // namespace hooke::world

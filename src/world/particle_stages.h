@@ -11,10 +11,9 @@ namespace hooke::world {
 void refresh_derived(WorldData& world);
 
 /// The coefficients of springs, bends and tetrahedra for a particle substep of `h` [s].
-void prepare_rows(WorldData& world, Real h);
+void prepare_particle_rows(WorldData& world, Real h);
 
-/// Remembers where everything is, reads the wind at each particle for the middle of the step, zeroes what the
-/// step sums up.
+/// Reads the wind at each particle for the middle of the step, and zeroes what the step sums up.
 void begin_step(WorldData& world, double dt);
 
 /// What looks at velocities before the substep's forces change them: ropes remember theirs, solids are
@@ -26,7 +25,12 @@ void begin_particle_substep(WorldData& world, Real h);
 /// of them.
 void apply_wind(WorldData& world, Real h, bool first);
 void apply_forces(WorldData& world, Real h);
+void apply_gravity(WorldData& world, Real h);
 void call_force_laws(WorldData& world, double time, Real h);
+
+/// Ropes and particles with repulsion push each other apart; pinned particles get the velocities that bring
+/// them to where their pins are at `time`.
+void repel_and_drive(WorldData& world, double time, Real h);
 
 /// Springs of the classes from `first` to `last`; bends, with the springs that lie in hinges. Rows of one
 /// pass share no particle, so their order does not matter; passes follow one another.
@@ -41,9 +45,9 @@ void solve_ropes(WorldData& world, Real h);
 /// Tetrahedra of solids, color after color; then the gas in closed cloths.
 void solve_solids(WorldData& world, Real h);
 
-/// What is stressed in solids beyond their yield stress takes on its new form; in each particle substep, as a
-/// blow may be over within a step.
-void flow_solids(WorldData& world, Real h);
+/// Moves all particles by a substep of length `h` [s]. Solids that are stressed beyond their yield stress
+/// take on their new shape, in each particle substep, as a blow may be over within a step.
+void move_particles(WorldData& world, Real h);
 
 /// What is bent in cloths beyond their yield angle takes on its new angle.
 void flow_cloths(WorldData& world);
@@ -53,8 +57,5 @@ std::uint32_t quarantine_non_finite(WorldData& world);
 
 /// Moves the origin of each object that has wandered far from it, by whole meters.
 void rebase_origins(WorldData& world);
-
-/// Counts what the step did; ends the forces that were set for it.
-void end_step(WorldData& world, double dt, StepReport& report);
 
 }  // namespace hooke::world

@@ -77,7 +77,7 @@ bool wake_by_particles(WorldData& world) {
 /// Of bodies that woke.
 void take_pairs_back(WorldData& world) {
   state::Tables& t = world.tables;
-  state::wake_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.sleeping_pair_scratch);
+  state::wake_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.frame.sleeping_pair_scratch);
 }
 
 /// What is pressed into another leaves it more slowly than what rests may move
@@ -93,11 +93,11 @@ void keep_rising_awake(state::Tables& t) {
 /// For how long each island has been at rest: the least over its members, at its root.
 void find_rest_of_islands(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
-  world.island_rest.assign(bodies.motion.size(), std::numeric_limits<Real>::infinity());
-  for (const std::uint32_t body : world.awake) {
+  world.frame.island_rest.assign(bodies.motion.size(), std::numeric_limits<Real>::infinity());
+  for (const std::uint32_t body : world.frame.awake) {
     if (!is_dynamic(bodies, body)) continue;
     const Real own = bodies.traits[body].can_sleep ? bodies.rest_time[body] : Real(0);
-    Real& least = world.island_rest[world.islands.root(body)];
+    Real& least = world.frame.island_rest[world.frame.islands.root(body)];
     least = std::min(least, own);
   }
 }
@@ -108,7 +108,7 @@ bool wake_touched(WorldData& world, Real dt) {
   if (!any_sleeps(world)) return false;
   Bodies& bodies = world.tables.bodies;
   bool any = wake_by_particles(world);
-  if (world.awake.empty() && !any) return false;
+  if (world.frame.awake.empty() && !any) return false;
   for (bool changed = true; changed;) {
     changed = false;
     if (any) take_pairs_back(world);
@@ -134,21 +134,21 @@ bool wake_touched(WorldData& world, Real dt) {
 void put_to_sleep(WorldData& world, Real dt) {
   state::Tables& t = world.tables;
   Bodies& bodies = t.bodies;
-  if (!t.desc.sleeping || world.awake.empty()) return;
+  if (!t.desc.sleeping || world.frame.awake.empty()) return;
   for (const state::Hook& hook : t.hooks) {
     if (hook.holds_point()) wake_ends(hook, bodies);  // ropes and cloths never rest
   }
-  for (const std::uint32_t body : world.awake) {
+  for (const std::uint32_t body : world.frame.awake) {
     const Real speed =
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
   }
   keep_rising_awake(t);
-  const bool any_rests = std::any_of(world.awake.begin(), world.awake.end(), [&](std::uint32_t body) {
-    return !(bodies.rest_time[body] < kRestTime);
-  });
+  const bool any_rests =
+      std::any_of(world.frame.awake.begin(), world.frame.awake.end(),
+                  [&](std::uint32_t body) { return !(bodies.rest_time[body] < kRestTime); });
   if (!any_rests) return;
-  base::DisjointSets& islands = world.islands;
+  base::DisjointSets& islands = world.frame.islands;
   islands.reset(bodies.motion.size());
   for (const Manifold& m : t.pairs.manifold) {
     if (touches(m) && is_dynamic(bodies, m.body_a) && is_dynamic(bodies, m.body_b))
@@ -159,10 +159,10 @@ void put_to_sleep(WorldData& world, Real dt) {
       islands.merge(hook.a.body, hook.b.body);
   }
   find_rest_of_islands(world);
-  for (const std::uint32_t body : world.awake) {
-    if (!is_dynamic(bodies, body) || world.island_rest[islands.root(body)] < kRestTime) continue;
+  for (const std::uint32_t body : world.frame.awake) {
+    if (!is_dynamic(bodies, body) || world.frame.island_rest[islands.root(body)] < kRestTime) continue;
     bodies.asleep[body] = 1;
-    world.placed_bodies.push_back(body);  // its box is still that of its last way
+    world.derived.placed_bodies.push_back(body);  // its box is still that of its last way
     bodies.motion[body].v = {};
     bodies.angular_momentum[body] = {};
     bodies.angular_velocity[body] = {};

@@ -11,23 +11,23 @@ namespace {
 
 void note_start(WorldData& world) {
   const state::Tables& t = world.tables;
-  world.start_position = t.particles.position;
-  world.start_velocity = t.particles.velocity;
-  world.start_origin.clear();
-  for (const state::Deformable& object : t.objects) world.start_origin.push_back(object.origin);
+  world.frame.start_position = t.particles.position;
+  world.frame.start_velocity = t.particles.velocity;
+  world.frame.start_origin.clear();
+  for (const state::Deformable& object : t.objects) world.frame.start_origin.push_back(object.origin);
   const state::Bodies& b = t.bodies;
-  world.start_bodies.clear();
+  world.frame.start_bodies.clear();
   for (const std::uint32_t row : t.moving_bodies) {
     if (b.asleep[row] != 0) continue;
-    world.start_bodies.push_back({.row = row,
-                                  .rest_time = b.rest_time[row],
-                                  .center = b.center[row],
-                                  .rotation = b.rotation[row],
-                                  .v = b.motion[row].v,
-                                  .angular_momentum = b.angular_momentum[row],
-                                  .angular_velocity = b.angular_velocity[row],
-                                  .force = b.force[row],
-                                  .torque = b.torque[row]});
+    world.frame.start_bodies.push_back({.row = row,
+                                        .rest_time = b.rest_time[row],
+                                        .center = b.center[row],
+                                        .rotation = b.rotation[row],
+                                        .v = b.motion[row].v,
+                                        .angular_momentum = b.angular_momentum[row],
+                                        .angular_velocity = b.angular_velocity[row],
+                                        .force = b.force[row],
+                                        .torque = b.torque[row]});
   }
 }
 
@@ -41,7 +41,7 @@ void put_bodies_back(WorldData& world) {
     b.angular_momentum[row] = b.angular_velocity[row] = {};
     b.asleep[row] = 1;
   }
-  for (const StartOfBody& start : world.start_bodies) {
+  for (const StartOfBody& start : world.frame.start_bodies) {
     const std::uint32_t row = start.row;
     b.rest_time[row] = start.rest_time;
     b.center[row] = start.center;
@@ -57,9 +57,11 @@ void put_bodies_back(WorldData& world) {
 
 void put_points_back(WorldData& world) {
   state::Tables& t = world.tables;
-  std::copy(world.start_position.begin(), world.start_position.end(), t.particles.position.begin());
-  std::copy(world.start_velocity.begin(), world.start_velocity.end(), t.particles.velocity.begin());
-  for (std::size_t i = 0; i < t.objects.size(); ++i) t.objects[i].origin = world.start_origin[i];
+  std::copy(world.frame.start_position.begin(), world.frame.start_position.end(),
+            t.particles.position.begin());
+  std::copy(world.frame.start_velocity.begin(), world.frame.start_velocity.end(),
+            t.particles.velocity.begin());
+  for (std::size_t i = 0; i < t.objects.size(); ++i) t.objects[i].origin = world.frame.start_origin[i];
 }
 
 /// All that is found or derived anew from where things are; it may have been left half done.
@@ -75,10 +77,10 @@ void reset_contacts(WorldData& world) {
   }
   ++t.revision;
   ++t.hook_revision;
-  world.broad_phase_stale = true;
-  world.placed_bodies.clear();
-  world.boxes_are_current = false;
-  clear_events(world.events);
+  world.derived.broad_phase_stale = true;
+  world.derived.placed_bodies.clear();
+  world.derived.boxes_are_current = false;
+  clear_events(world.last_step.events);
 }
 
 }  // namespace

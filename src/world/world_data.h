@@ -67,97 +67,124 @@ struct ContactShare {
   Vec3 omega_scaled = {};
 };
 
-/// A World's inside: the tables, what is derived from them, and what lasts one step.
-struct WorldData {
-  state::Tables tables;
+namespace world {
 
-  // Derived from the tables whenever their revision changes; see world::refresh_derived.
-  std::uint64_t derived_revision = ~std::uint64_t{0};
+/// What is derived from the tables, and made again when their revision changes. It decides nothing: a World
+/// that was restored makes the same again.
+struct Derived {
+  // Of deformables; see world::refresh_derived.
+  std::uint64_t revision = ~std::uint64_t{0};  ///< Revision of the tables that all of this belongs to.
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
   solver::IsometricBendBlocks isometric_bend_blocks;
   solver::TetrahedronRows tetrahedra;
   solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
-  std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are matched to their forms at rest.
+  std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are matched to their shapes at rest.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
-  std::vector<solver::GasVolume> gas_volumes;  ///< Scratch, one for each of them.
   solver::AirLoads air_loads;
-  std::vector<solver::RopeSystem> rope_systems;                ///< One per rope, in order of creation.
-  std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
-  solver::CoupledGroups coupled_groups;                        ///< Of ropes with what they are tied to.
-  std::vector<ContactShare> contact_shares;                    ///< Lives for one substep.
-  std::vector<solver::HookedPoint> hooked_points;              ///< Lives for one substep.
-  std::uint64_t clamps_revision = 0;                           ///< Sum of both revisions, which only grow.
-  std::vector<solver::TwistRow> twist_rows;                    ///< Lives for one substep.
+  std::vector<solver::RopeSystem> rope_systems;  ///< One per rope, in order of creation.
+  solver::CoupledGroups coupled_groups;  ///< Ropes with the hooks, points and bodies that they depend on.
+  std::uint64_t clamps_revision = 0;     ///< Sum of both revisions, which only grow.
 
-  // Hooks. Derived from the tables whenever their hook_revision changes; see world::refresh_hooks.
+  // Of hooks; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
   solver::Joints joints;
   std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
   solver::Supports supports;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
   std::vector<std::uint32_t>
-      hooked_begin;                  ///< Of the pairs of each body that is the first; one more at the end.
-  std::vector<HookId> broken_hooks;  ///< In the last step.
+      hooked_begin;  ///< Where the pairs of each first body begin; one more at the end.
 
-  // Bodies. Derived from the tables; what it holds does not change what a step does.
+  // Of bodies; what it holds does not change what a step does.
   collision::BroadPhase broad_phase;
-  bool broad_phase_stale = true;                ///< Everything must be put into it anew.
-  std::vector<std::uint32_t> placed_bodies;     ///< Added, moved by hand or asleep since the last step.
-  std::atomic<bool> boxes_are_current = false;  ///< Of all bodies, where they are now; see boxes_for_queries.
+  bool broad_phase_stale = true;             ///< Everything must be entered again.
+  std::vector<std::uint32_t> placed_bodies;  ///< Bodies added, moved by hand or asleep since the last step.
+  std::atomic<bool> boxes_are_current =
+      false;  ///< Boxes of all bodies are where they are now; see boxes_for_queries.
   std::mutex boxes_mutex;
+};
 
-  Events events;  ///< Of the last step.
-
-  // Lives for one step.
+/// What lives for one step, or for one substep, and keeps only its memory from one to the next.
+struct Frame {
+  // Bodies: who moves, who is near whom.
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<std::uint32_t>
-      moved_set;  ///< Rows of those, and of bodies placed: all that may meet others now.
-  std::vector<std::uint8_t> in_moved_set;  ///< By collider; none where nobody sleeps, all being stirred.
+      moved_set;  ///< Rows of those and of placed bodies: all that may meet others now.
+  std::vector<std::uint8_t> in_moved_set;  ///< By collider; empty where nobody sleeps, as then all are in it.
   std::vector<collision::ColliderPair> pairs_found;
   collision::DensePiles dense_piles;
   collision::NarrowPhase narrow_phase;
   state::SleepingPairScratch sleeping_pair_scratch;
-  collision::ParticleContactScratch particle_contacts;
-  collision::RopeContactFinder rope_contacts;
-  solver::Repulsion repulsion;
   std::vector<ClosingPair> closing_pairs;  ///< In order of manifolds.
-  std::vector<ContactEvent> contacts_now;  ///< Of those that ask.
+  std::vector<ContactEvent> contacts_now;  ///< Contacts of bodies that ask for events.
   std::vector<SensorEvent> visits_now;
-  base::DisjointSets islands;        ///< Of bodies that may fall asleep together.
-  std::vector<Real> island_rest;     ///< For how long each has been at rest, at its root [s].
-  std::vector<std::uint8_t> fast;    ///< Of bodies: may pass through others.
-  std::vector<std::uint8_t> astray;  ///< Of bodies: goes where detect did not think it could.
-  std::vector<collision::ImpactCandidate> impact_candidates;
-  collision::PathScratch path_scratch;
-  collision::SweptBodies swept;
-  collision::ContinuousScratch continuous;
-  std::vector<Quat> start_rotation;  ///< Of bodies, at the start of the step; of those awake.
+  base::DisjointSets islands;            ///< Bodies that may fall asleep together.
+  std::vector<Real> island_rest;         ///< For how long each island has been at rest, at its root [s].
+  std::vector<std::uint8_t> body_marks;  ///< By body: scratch of couple_articulations and share_out_contacts.
+
+  // Bodies: how contacts are solved.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
   solver::Impacts impacts;
   solver::DirectIslands direct_islands;
   solver::LoadBearingScratch load_bearing;
-  std::vector<std::uint8_t>
-      body_marks;  ///< Of bodies: scratch of couple_articulations and share_out_contacts.
-  std::vector<state::PositionRecord>
-      start_position;  ///< At the start of the step: where quarantine puts rows back.
+
+  // Bodies: clamping to the time of impact.
+  std::vector<std::uint8_t> fast;    ///< By body: it may pass through others.
+  std::vector<std::uint8_t> astray;  ///< By body: it goes where detect did not think it could.
+  std::vector<collision::ImpactCandidate> impact_candidates;
+  collision::PathScratch path_scratch;
+  collision::SweptBodies swept;
+  collision::ContinuousScratch continuous;
+
+  // Where the step began: quarantine and a step that throws put things back.
+  std::vector<Quat> start_rotation;  ///< By body, of those awake.
+  std::vector<state::PositionRecord> start_position;
   std::vector<state::VelocityRecord> start_velocity;
   std::vector<DVec3> start_origin;
-  std::vector<StartOfBody> start_bodies;               ///< Those awake; see world::Stepping.
+  std::vector<StartOfBody> start_bodies;  ///< Bodies awake; see world::Stepping.
+
+  // Particles.
+  collision::ParticleContactScratch particle_contacts;
+  collision::RopeContactFinder rope_contacts;
+  solver::Repulsion repulsion;
   std::vector<state::VelocityRecord> velocity_before;  ///< Of rope nodes, before the substep's forces.
   std::vector<solver::AirRecord> wind;                 ///< At each particle [m/s].
   std::vector<solver::LiquidLoad> liquid_loads;        ///< Of the object at hand.
-  std::vector<Vec3> law_force;                         ///< What force laws ask for [N].
-  std::vector<std::uint32_t> law_bodies;               ///< What force laws see: rows in ascending order.
-  std::vector<std::uint32_t> dipole_bodies;  ///< Those with a dipole moment: rows in ascending order.
-  std::vector<solver::Dipole> dipoles;       ///< Where they are in this substep, and those of fields.
-  bool bodies_surrounded = false;            ///< Something besides laws pushes them in each substep.
-  std::vector<Vec3> given_force;             ///< On bodies, without fields and force laws [N].
-  std::vector<Vec3> given_torque;            ///< [N m]
+  std::vector<solver::GasVolume> gas_volumes;          ///< One for each of Derived::gas_objects.
+  std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
+  std::vector<ContactShare> contact_shares;                    ///< Lives for one substep.
+  std::vector<solver::HookedPoint> hooked_points;              ///< Lives for one substep.
+  std::vector<solver::TwistRow> twist_rows;                    ///< Lives for one substep.
 
+  // Forces.
+  std::vector<Vec3> law_force;               ///< What force laws ask for [N].
+  std::vector<std::uint32_t> law_bodies;     ///< Bodies that force laws see: rows in ascending order.
+  std::vector<std::uint32_t> dipole_bodies;  ///< Bodies with a dipole moment: rows in ascending order.
+  std::vector<solver::Dipole> dipoles;  ///< Dipoles of bodies where they are in this substep, and of fields.
+  bool bodies_surrounded = false;       ///< Something besides laws pushes bodies in each substep.
+  std::vector<Vec3> given_force;        ///< On bodies, without fields and force laws [N].
+  std::vector<Vec3> given_torque;       ///< [N m]
+};
+
+/// What the last step has to tell those who ask after it.
+struct LastStep {
+  Events events;
+  std::vector<HookId> broken_hooks;
+};
+
+}  // namespace world
+
+/// A World's inside, in parts: a stage of the step takes those that it uses.
+struct WorldData {
+  state::Tables tables;    ///< Everything that a snapshot holds.
+  world::Derived derived;  ///< Made again from the tables when they change.
+  world::Frame frame;      ///< Lives for one step.
+  world::LastStep last_step;
+
+  // Services.
   std::unique_ptr<parallel::ThreadPool> pool;
-  bool stepping = false;
+  bool stepping = false;  ///< A step runs: calls that change the World are refused.
 };
 
 struct SnapshotData {

@@ -119,7 +119,7 @@ void DensePiles::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
     Real overlap = Real(0);
     for (std::int32_t k = 0; k < m.point_count; ++k)
       overlap = std::max(overlap, -m.point[static_cast<std::size_t>(k)].separation);
-    if (!(overlap > Real(0)) || m.refreshed) continue;
+    if (!(overlap > Real(0)) || m.is_refreshed()) continue;
     const Real thin = std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
     if (!(overlap > kDeepOverlap * thin)) continue;
     note(bodies, {i, m.body_a, m.body_b, length_squared(bodies.center[m.body_b] - bodies.center[m.body_a])});

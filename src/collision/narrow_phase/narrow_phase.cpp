@@ -28,6 +28,7 @@ namespace {
 using parallel::for_items;
 using parallel::for_ranges;
 using parallel::Range;
+using state::ContactRefresh;
 using state::Manifold;
 using state::Pair;
 
@@ -161,7 +162,8 @@ void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bo
     describe(scene, pair, Manifold::kNoPatch, m);
     m.normal = {Real(0), Real(1), Real(0)};
   }
-  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i) chunk.manifolds[i].refreshed = true;
+  for (std::size_t i = begin; i < chunk.manifolds.size(); ++i)
+    chunk.manifolds[i].refresh = state::ContactRefresh::kEachSubstep;
 }
 
 /// The shapes of a pair, each from the center of mass of its body.
@@ -368,21 +370,24 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const SweptCollider b = {scene.colliders, pair.collider_b, path_b};
   chunk.time = Real(0);
   chunk.is_whole = true;
-  pair.refreshed = must_be_refreshed(scene, a, b, pair, chunk);
-  if (!pair.refreshed && is_fast(a, b, now_a, now_b)) {
+  pair.refresh =
+      must_be_refreshed(scene, a, b, pair, chunk) ? ContactRefresh::kEachSubstep : ContactRefresh::kAtStart;
+  if (!pair.is_refreshed() && is_fast(a, b, now_a, now_b)) {
     chunk.is_whole = false;
     const auto impact =
         find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
     chunk.time = impact ? impact->time : Real(0);
+    if (impact) pair.refresh = ContactRefresh::kAtImpact;
     const Real beyond =
         std::min((Real(1) - chunk.time) * (chunk.margin - kMargin), thinness_of(now_a) + thinness_of(now_b));
     chunk.margin = impact ? kMargin + beyond : kMargin;
   }
   pair.time = chunk.time;
-  if (!pair.refreshed && chunk.time < kMiddle &&
+  if (!pair.is_refreshed() && chunk.time < kMiddle &&
       (rotates_beyond(path_a, kSpinning) || rotates_beyond(path_b, kSpinning)) &&
       stays_in_contact(scene, pair)) {
     chunk.time = kMiddle;
+    pair.refresh = ContactRefresh::kInTheMiddle;
     chunk.is_whole = false;
     pair.time = Real(0);
   }
@@ -404,7 +409,7 @@ bool is_mesh(const Scene& scene, std::uint32_t collider) {
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
 /// the last test, and will not come as far as to points that were too far apart to be kept.
 bool can_reuse(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
-  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.refreshed) return false;
+  if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.is_refreshed()) return false;
   if (margin > Real(1.5) * kMargin) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
     return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
@@ -442,11 +447,12 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
     } else if (can_reuse(scene, pair, a, b, margin)) {
       ++chunk.counts.cached;
       reuse_manifolds(scene, pair, chunk);
+      pair.refresh = ContactRefresh::kAtStart;
     } else {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
-      if (pair.refreshed)
+      if (pair.is_refreshed())
         append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
                       chunk);
       pair.drift = {};
@@ -556,11 +562,11 @@ void refresh_pair(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pa
   for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
     Manifold& m = manifolds[pair.first_manifold + slot_of[i]];
     const Real largest = m.largest_impulse;
-    const bool load_bearing = m.load_bearing;
+    const state::ContactRoute route = m.route;
     m = chunk.manifolds[i];
     m.largest_impulse = largest;
-    m.refreshed = pair.refreshed;
-    m.load_bearing = load_bearing;
+    m.refresh = pair.refresh;
+    m.route = route;
     center_anchors(m);
   }
 }
@@ -752,7 +758,7 @@ void NarrowPhase::list_refreshed(const state::Pairs& pairs) {
   std::vector<std::uint32_t>& refreshed = buffers_->refreshed;
   refreshed.clear();
   for (std::uint32_t i = 0; i < pairs.pair.size(); ++i) {
-    if (pairs.pair[i].refreshed && pairs.pair[i].manifold_count > 0) refreshed.push_back(i);
+    if (pairs.pair[i].is_refreshed() && pairs.pair[i].manifold_count > 0) refreshed.push_back(i);
   }
 }
 
@@ -771,9 +777,9 @@ void NarrowPhase::refresh_manifolds(parallel::ThreadPool& pool, const state::Bod
     for (std::size_t i = begin; i < std::min(begin + kRefreshedChunk, rows.size()); ++i) {
       HOOKE_ASSERT(rows[i] < pairs.pair.size());
       Pair& pair = pairs.pair[rows[i]];
-      HOOKE_ASSERT(pair.refreshed && pair.manifold_count > 0);
+      HOOKE_ASSERT(pair.is_refreshed() && pair.manifold_count > 0);
       HOOKE_ASSERT(pair.first_manifold + pair.manifold_count <= pairs.manifold.size());
-      if (pairs.manifold[pair.first_manifold].load_bearing) continue;  // rows of the step's start
+      if (pairs.manifold[pair.first_manifold].is_load_bearing()) continue;  // rows of the step's start
       const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
       const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
       refresh_pair(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);

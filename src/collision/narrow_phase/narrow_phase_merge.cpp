@@ -9,7 +9,7 @@ void remove_empty(state::Pairs& pairs) {
     const std::uint32_t end = pair.first_manifold + pair.manifold_count;
     const std::uint32_t first = remaining;
     for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
-      if (pairs.manifold[i].point_count == 0 && !pair.refreshed) continue;
+      if (pairs.manifold[i].point_count == 0 && !pair.is_refreshed()) continue;
       pairs.manifold[remaining++] = pairs.manifold[i];
     }
     pair.first_manifold = first;

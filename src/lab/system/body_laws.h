@@ -23,11 +23,11 @@ class BodyLaws {
   explicit BodyLaws(const state::Tables& tables) {
     world_.tables = tables;
     for (const std::uint32_t row : tables.moving_bodies) {
-      if (is_dynamic(tables.bodies, row)) world_.law_bodies.push_back(row);
+      if (is_dynamic(tables.bodies, row)) world_.frame.law_bodies.push_back(row);
     }
   }
 
-  [[nodiscard]] std::size_t body_count() const { return world_.law_bodies.size(); }
+  [[nodiscard]] std::size_t body_count() const { return world_.frame.law_bodies.size(); }
 
   void place(std::uint32_t row, const BodyMotion& motion) {
     state::Bodies& bodies = world_.tables.bodies;
@@ -55,7 +55,7 @@ class BodyLaws {
     const Quat rotation = bodies.rotation[row];
     const state::MotionRecord record = bodies.motion[row];
     place(row, now);
-    for (const std::uint32_t body : world_.law_bodies) {
+    for (const std::uint32_t body : world_.frame.law_bodies) {
       bodies.force[body] = {};
       bodies.torque[body] = {};
     }

@@ -85,7 +85,7 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
         const Manifold& m = manifolds[colors.members[i].manifold];
         contacts.manifold_of.push_back(colors.members[i].manifold);
         block.bounces = block.bounces || m.restitution > Real(0);
-        if (m.refreshed && !direct) {
+        if (m.is_refreshed() && !direct) {
           block.point_count = Manifold::kMaxPoints;
           contacts.refreshed.push_back(
               {static_cast<int>(block_count) - 1, block.count, colors.members[i].manifold});

@@ -46,8 +46,8 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 }
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
-  if (m.load_bearing) return false;
-  if ((m.point_count == 0 && !m.refreshed) || bodies.traits[m.body_a].sensor ||
+  if (m.is_load_bearing()) return false;
+  if ((m.point_count == 0 && !m.is_refreshed()) || bodies.traits[m.body_a].sensor ||
       bodies.traits[m.body_b].sensor)
     return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
@@ -73,10 +73,7 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     if (color < kPairColors) return color;
     return color < kColors ? color + lone : color - kColors + kPairColors;
   };
-  const auto is_direct = [&](const Manifold& m) {
-    if (colors.direct.empty() || (colors.direct[m.body_a] == 0 && colors.direct[m.body_b] == 0)) return false;
-    return is_anchored(m) || colors.direct[m.body_a] == colors.direct[m.body_b];
-  };
+  const auto is_direct = [](const Manifold& m) { return m.route == state::ContactRoute::kDirect; };
   constexpr int kKinds = 4 * Manifold::kMaxPoints;
   const auto key = [&](std::size_t i) {
     const Manifold& m = manifolds[i];

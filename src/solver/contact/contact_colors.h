@@ -21,7 +21,6 @@ struct ContactColors {
                                  ///< order of the manifolds.
   std::vector<int> begin = {0};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
   std::vector<std::uint8_t> moves;   ///< Whether contacts move a body, by body row.
-  std::vector<std::uint8_t> direct;  ///< Whether it is in a hard island; empty: none is. Given.
   std::vector<std::uint64_t> used;   ///< Colors of a body, by body row.
   std::vector<int> color;            ///< Of each manifold, as taken; -1: has no rows.
   std::vector<int> next_slot;        ///< Where the next member of each kind goes.

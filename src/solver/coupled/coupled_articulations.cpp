@@ -50,7 +50,8 @@ void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_
       if (joint.is_weld()) continue;
       Hook& hook = t.hooks[joint.hook];
       // One between bodies that are both asleep or driven moves nothing, and is of no bundle.
-      hook.coupled = gives_way(t.bodies, hook.a.body) || gives_way(t.bodies, hook.b.body);
+      if (gives_way(t.bodies, hook.a.body) || gives_way(t.bodies, hook.b.body))
+        hook.route = state::JointRoute::kCoupled;
     }
   }
 }

@@ -190,7 +190,7 @@ void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, Couple
   std::vector<std::uint8_t>& coupled = groups.scratch.coupled;
   coupled.assign(set_count, 0);
   for (const Hook& hook : t.hooks) {
-    if (hook.coupled || (hook.holds_point() && !may_be_anchor(t, hook)))
+    if (hook.holds_point() ? !may_be_anchor(t, hook) : hook.route == state::JointRoute::kCoupled)
       coupled[membership.of_hook(hook)] = 1;
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {

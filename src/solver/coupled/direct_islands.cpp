@@ -16,7 +16,7 @@ using state::Bodies;
 using state::Manifold;
 using state::normal_impulse;
 
-constexpr std::uint32_t kNoIsland = 0xFFFFFFFF;
+constexpr std::uint32_t kNoIsland = DirectIslands::kNoIsland;
 constexpr Real kLargestSag = Real(0.005);     ///< Of the size of a body.
 constexpr Real kLargestBuckling = Real(0.3);  ///< sag H^2 / a^3
 constexpr Real kReleased = Real(0.6);         ///< Of both, below which an island may become soft again.
@@ -281,8 +281,7 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
 
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                          const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
-                         BodyContacts& contacts, DirectIslands& direct) {
-  contacts.colors.direct.clear();
+                         DirectIslands& direct) {
   direct.count = 0;
   direct.refused = 0;
   const bool any = std::any_of(awake.begin(), awake.end(),
@@ -300,9 +299,6 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   number_islands(awake, bodies, direct);
   list_edges(manifolds, members, bodies, direct);
   take_islands(manifolds, members, bodies, direct);
-  contacts.colors.direct.assign(bodies.motion.size(), 0);
-  for (const std::uint32_t body : awake)
-    contacts.colors.direct[body] = is_moved(bodies, body) && direct.island_of[body] != kNoIsland ? 1 : 0;
 }
 
 void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts, const Bodies& bodies,

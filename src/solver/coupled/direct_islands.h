@@ -65,6 +65,8 @@ struct IslandDemand {
 };
 
 struct DirectIslands {
+  static constexpr std::uint32_t kNoIsland = 0xFFFFFFFF;
+
   std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
   std::uint32_t refused = 0;  ///< Hard, but over the budget.
@@ -80,14 +82,16 @@ struct DirectIslands {
   std::vector<int> sizes;             ///< Of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
 
+  /// Whether the body is in an island of this step.
+  [[nodiscard]] bool holds(std::uint32_t body) const { return count > 0 && island_of[body] != kNoIsland; }
   [[nodiscard]] std::span<DirectIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
 };
 
-/// Islands of hard bodies, with all that touches them; `contacts.colors.hard` says so to the soft contacts.
+/// Islands of direct bodies, with all that touches them.
 /// `awake` are rows in ascending order. No body is new after it.
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                          const std::vector<state::Manifold>& manifolds, IslandMembers members,
-                         state::Bodies& bodies, BodyContacts& contacts, DirectIslands& direct);
+                         state::Bodies& bodies, DirectIslands& direct);
 
 /// The rows of their contacts.
 void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,

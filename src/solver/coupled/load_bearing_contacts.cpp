@@ -60,7 +60,7 @@ struct Candidates {
   std::span<const std::uint8_t> in_ragdoll;  ///< Of like masses: what presses there may err.
 
   [[nodiscard]] bool may_bear_load(const Manifold& m) const {
-    return !m.load_bearing && m.point_count > 0 && has_contact_rows(m, bodies);
+    return !m.is_load_bearing() && m.point_count > 0 && has_contact_rows(m, bodies);
   }
 
   [[nodiscard]] bool loads(std::uint32_t upper, std::uint32_t lower, const Manifold& m) const {
@@ -141,7 +141,8 @@ std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vecto
         continue;
       }
       ++chosen;
-      m->load_bearing = more = true;
+      m->route = state::ContactRoute::kCoupled;
+      more = true;
       support_role[a_is_upper ? m->body_a : m->body_b] = SupportRole::kSupported;
     }
   }
@@ -156,7 +157,7 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
     load[body] = std::max(load[body], Real(1) / bodies.motion[other].inverse_mass);
   };
   for (const Manifold& m : pairs.manifold) {
-    if (!m.load_bearing) continue;
+    if (!m.is_load_bearing()) continue;
     add(m.body_a, m.body_b);
     add(m.body_b, m.body_a);
   }
@@ -203,7 +204,7 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
       continue;
     }
     ++chosen;
-    m->load_bearing = true;
+    m->route = state::ContactRoute::kCoupled;
   }
 }
 
@@ -353,7 +354,9 @@ void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, 
   if (hooks.empty() && pairs.load_bearing.empty()) return;
   // Where none was borne no flag is set.
   if (!pairs.load_bearing.empty()) {
-    for (Manifold& m : pairs.manifold) m.load_bearing = false;
+    for (Manifold& m : pairs.manifold) {
+      if (m.is_load_bearing()) m.route = state::ContactRoute::kSoft;
+    }
   }
   scratch.load_bearing_before.clear();
   for (const LoadBearingContact& contact : pairs.load_bearing)
@@ -386,7 +389,7 @@ void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, 
   choose_pressed(candidates, chosen, pairs, scratch.refused);
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const std::uint32_t manifold = pairs.pair[row].first_manifold;
-    if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].load_bearing) continue;
+    if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].is_load_bearing()) continue;
     const Manifold& m = pairs.manifold[manifold];
     const Real load = lifted_mass(m, bodies, scratch.supports.ground_load);
     for (std::int32_t k = 0; k < Manifold::kMaxPoints; ++k)

@@ -63,7 +63,7 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
 bool is_in_coupled_group(const Articulation& articulation, const std::vector<Hook>& hooks) {
   const auto joint = std::find_if(articulation.joints.begin(), articulation.joints.end(),
                                   [](const Articulation::Joint& j) { return !j.is_weld(); });
-  return joint != articulation.joints.end() && hooks[joint->hook].coupled;
+  return joint != articulation.joints.end() && hooks[joint->hook].route == state::JointRoute::kCoupled;
 }
 
 /// Those awake; trees of a kind together.
@@ -185,7 +185,6 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
   prepare_iterative_joints(joints.iterative);
   prepare_ball_joints(pool, h, hooks, bodies, joints.balls);
   for_hooks(pool, hooks, [](Hook& hook) {
-    hook.coupled = false;
     hook.held = 0;
     hook.impulse_sum = {};
     hook.angular_impulse_sum = {};
@@ -203,7 +202,8 @@ void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, 
                       {hooks, bodies});
     for (const std::uint32_t i : some) {
       for (const Articulation::Joint& joint : joints.articulations[i].joints) {
-        if (!joint.is_weld() && !hooks[joint.hook].coupled) add_up_impulses(h, hooks[joint.hook]);
+        if (!joint.is_weld() && hooks[joint.hook].route != state::JointRoute::kCoupled)
+          add_up_impulses(h, hooks[joint.hook]);
       }
     }
   });

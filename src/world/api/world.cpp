@@ -544,11 +544,11 @@ Result<void> World::restore(const Snapshot& snapshot) {
   const world::Claim claim(data_);
   if (!claim) return claim.error();
   if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
-  claim->broad_phase_stale = true;
-  claim->placed_bodies.clear();  // rows of the world that was
-  claim->boxes_are_current = false;
-  world::clear_events(claim->events);
-  claim->broken_hooks.clear();
+  claim->derived.broad_phase_stale = true;
+  claim->derived.placed_bodies.clear();  // rows of the world that was
+  claim->derived.boxes_are_current = false;
+  world::clear_events(claim->last_step.events);
+  claim->last_step.broken_hooks.clear();
   world::restore_tables(snapshot.data_->tables, claim.tables());
   return {};
 }
@@ -564,9 +564,9 @@ World::Memory World::memory() const {
                                     [&](const auto& column) { memory.particle_bytes += bytes(column); });
   state::Springs::for_each_column(t.springs,
                                   [&](const auto& column) { memory.spring_bytes += bytes(column); });
-  memory.particle_bytes += bytes(reading->start_position) + bytes(reading->velocity_before) +
-                           bytes(reading->wind) + bytes(reading->law_force);
-  memory.spring_bytes += bytes(reading->spring_blocks.blocks);
+  memory.particle_bytes += bytes(reading->frame.start_position) + bytes(reading->frame.velocity_before) +
+                           bytes(reading->frame.wind) + bytes(reading->frame.law_force);
+  memory.spring_bytes += bytes(reading->derived.spring_blocks.blocks);
   return memory;
 }
 

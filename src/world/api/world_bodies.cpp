@@ -142,13 +142,13 @@ Result<BodyId> World::add_body(const BodyDesc& desc) {
   if (!claim) return claim.error();
   Tables& t = claim.tables();
   t.body_slots.make_room();
-  base::make_room(claim->placed_bodies);
+  base::make_room(claim->derived.placed_bodies);
   const Result<std::uint32_t> row = build::add_body(desc, t);
   if (!row) return row.error();
   const BodyId id = t.body_slots.add(row.value());
   t.bodies.slot[row.value()] = id.slot;
-  claim->placed_bodies.push_back(row.value());
-  claim->boxes_are_current = false;
+  claim->derived.placed_bodies.push_back(row.value());
+  claim->derived.boxes_are_current = false;
   world::wake_near_body(row.value(), t);
   return id;
 }
@@ -167,7 +167,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
     const std::uint32_t row = t.body_slots.find(id);
     if (row == kNone) continue;
     for (const std::uint32_t collider : state::colliders_of(t.bodies, row))
-      claim->broad_phase.remove(collider);
+      claim->derived.broad_phase.remove(collider);
     t.body_slots.move(id.slot, kNone);
     goes[row] = 1;
     ++count;
@@ -175,7 +175,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   if (count == 0) return 0;
   world::wake_neighbors(t, [&](std::uint32_t row) { return goes[row] != 0; });
   world::remove_hooks_of(goes, t);
-  std::erase_if(claim->placed_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
+  std::erase_if(claim->derived.placed_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
   t.contacts = {};  // detect finds those that remain again
   t.element_contacts.clear();
@@ -242,7 +242,7 @@ std::vector<BodyContact> World::body_contacts(BodyId id) const {
 
 const Events& World::events() const {
   const world::Reading reading(data_);
-  return reading->events;
+  return reading->last_step.events;
 }
 
 std::vector<BodyId> World::visitors(BodyId sensor) const {
@@ -374,8 +374,8 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   bodies.angular_momentum[row] = state::angular_momentum_of(bodies.mass[row], rotation, omega);
   bodies.path_start[row] = bodies.center[row];
   bodies.path_time[row] = claim.tables().time;
-  claim->placed_bodies.push_back(row);
-  claim->boxes_are_current = false;
+  claim->derived.placed_bodies.push_back(row);
+  claim->derived.boxes_are_current = false;
   world::wake_neighbors(claim.tables(), [row](std::uint32_t near) { return near == row; });
   world::wake_near_body(row, claim.tables());
   state::wake(bodies, row);

@@ -183,7 +183,7 @@ Real World::hook_gap(HookId id) const {
 
 const std::vector<HookId>& World::broken_hooks() const {
   const world::Reading reading(data_);
-  return reading->broken_hooks;
+  return reading->last_step.broken_hooks;
 }
 
 Result<void> World::set_motor(HookId id, const HookMotor& motor) {

@@ -1,0 +1,47 @@
+#include "world/point_contact_stages.h"
+
+#include "collision/deformable/element_contacts.h"
+#include "collision/deformable/particle_contacts.h"
+#include "collision/deformable/rope_contacts.h"
+#include "collision/deformable/rope_passes.h"
+#include "parallel/thread_pool.h"
+#include "solver/soft/element_contact_solve.h"
+#include "solver/soft/particle_contact_solve.h"
+
+namespace hooke::world {
+
+namespace {
+
+using parallel::for_ranges;
+using parallel::Range;
+
+// Sizes below which a job stays on one thread.
+constexpr int kContactGrain = 256;
+constexpr int kElementContactGrain = 32;
+
+}  // namespace
+
+void find_point_contacts(WorldData& world, double dt) {
+  collision::find_contacts(dt, world.frame.particle_contacts, world.tables);
+  collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
+}
+
+void update_point_contacts(WorldData& world, Real h) {
+  state::Tables& t = world.tables;
+  for_ranges(*world.pool, t.contacts.count(), kContactGrain,
+             [&](Range rows) { collision::update_contacts(rows, h, world.frame.particle_contacts, t); });
+  for_ranges(*world.pool, static_cast<int>(t.element_contacts.size()), kElementContactGrain,
+             [&](Range rows) { collision::update_element_contacts(rows, h, t); });
+  collision::update_rope_contacts(*world.pool, h, world.frame.rope_contacts, t);
+}
+
+void solve_point_contacts(WorldData& world, Real h) {
+  state::Tables& t = world.tables;
+  collision::stop_rope_passes(*world.pool, h, world.frame.rope_contacts, t);
+  solver::solve_element_contacts(h, t);
+  for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
+    solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
+  });
+}
+
+}  // namespace hooke::world

@@ -1,0 +1,65 @@
+#include "world/step_report.h"
+
+#include "solver/routes.h"
+#include "state/check_tables.h"
+#include "world/force_stages.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hooke::world {
+
+namespace {
+
+void count_refused(WorldData& world, StepReport& report) {
+  for (const solver::RopeSystem& rope_system : world.derived.rope_systems) {
+    report.rope_solves += rope_system.solves;
+    report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
+  }
+  report.islands_refused = world.frame.direct_islands.refused;
+  report.contacts_refused = world.frame.load_bearing.refused;
+  for (const solver::CoupledGroup& group : world.derived.coupled_groups.live())
+    report.contacts_refused += group.refused;
+  for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)
+    report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
+}
+
+void count_rows(WorldData& world, StepReport& report) {
+  const state::Tables& tables = world.tables;
+  count_refused(world, report);
+  report.contacts = static_cast<std::uint32_t>(std::count_if(tables.contacts.normal_force.begin(),
+                                                             tables.contacts.normal_force.end(),
+                                                             [](Real n) { return n > Real(0); }));
+  for (const state::ElementContact& element_contact : tables.element_contacts)
+    report.contacts += element_contact.normal_force > Real(0) ? 1 : 0;
+  for (const state::RopeContact& contact : tables.rope_contacts)
+    report.contacts += contact.normal_force > Real(0) ? 1 : 0;
+  report.contacts += tables.pairs.sleeping.contacts;
+  for (const state::Manifold& manifold : tables.pairs.manifold) report.contacts += pushing_points(manifold);
+  report.pairs = static_cast<std::uint32_t>(tables.pairs.pair.size() + tables.pairs.sleeping.pair.size());
+  report.pairs_left_out = world.frame.dense_piles.left_out();
+  report.bodies_awake = static_cast<std::uint32_t>(
+      std::count_if(world.frame.awake.begin(), world.frame.awake.end(),
+                    [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
+  report.routes = solver::count_routes(tables, world.derived.joints, world.derived.rope_systems,
+                                       world.derived.coupled_groups, world.frame.direct_islands);
+}
+
+}  // namespace
+
+void end_step(WorldData& world, double dt, StepReport& report) {
+  state::Tables& tables = world.tables;
+  const int substeps = tables.desc.substeps * tables.desc.particle_substeps;
+  const Real share = Real(1) / static_cast<Real>(substeps);
+  for (Real& tension : tables.segments.mean_tension) tension *= share;
+  for (state::TwistSpan& span : tables.twists) span.mean_torque *= share;
+  count_rows(world, report);
+  if (tables.any_force) std::fill(tables.particles.force.begin(), tables.particles.force.end(), Vec3{});
+  tables.any_force = false;
+  tables.time += dt;
+  tables.substep = dt / substeps;
+  ++tables.step_count;
+  report.moved = true;
+}
+
+}  // namespace hooke::world
