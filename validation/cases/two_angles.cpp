@@ -34,20 +34,20 @@ DoubleAngles rates(const DoubleAngles& y) {
 /// Where the end is after `seconds` from rest at these angles: Runge-Kutta 4 in steps of 0.1 ms, exact to
 /// 1e-10 m.
 DVec3 end_of_double_pendulum(double a, double b, double seconds) {
-  constexpr double kStep = 1e-4;
+  constexpr double kFineStep = 1e-4;
   DoubleAngles y = {a, b, 0, 0};
   const auto moved = [&y](const DoubleAngles& k, double h) {
     DoubleAngles next = y;
     for (std::size_t i = 0; i < next.size(); ++i) next[i] += h * k[i];
     return next;
   };
-  const auto steps = std::lround(seconds / kStep);
+  const auto steps = std::lround(seconds / kFineStep);
   for (long n = 0; n < steps; ++n) {
     const DoubleAngles k1 = rates(y);
-    const DoubleAngles k2 = rates(moved(k1, kStep / 2));
-    const DoubleAngles k3 = rates(moved(k2, kStep / 2));
-    const DoubleAngles k4 = rates(moved(k3, kStep));
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] += kStep / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    const DoubleAngles k2 = rates(moved(k1, kFineStep / 2));
+    const DoubleAngles k3 = rates(moved(k2, kFineStep / 2));
+    const DoubleAngles k4 = rates(moved(k3, kFineStep));
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += kFineStep / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   }
   return {std::sin(y[0]) + std::sin(y[1]), -std::cos(y[0]) - std::cos(y[1]), 0};
 }

@@ -11,7 +11,8 @@ namespace {
 using state::Hook;
 using state::Tables;
 
-/// Notes the bodies that a bundle holds by other rows than those of hooks between bodies. True if any.
+/// Marks the bodies that a coupled group holds by other rows than those of hooks between bodies. True if
+/// there are any.
 bool mark_held_bodies(const Tables& t, std::vector<std::uint8_t>& body_marks) {
   body_marks.assign(t.bodies.motion.size(), 0);
   bool any = false;
@@ -49,7 +50,7 @@ void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_
     for (const Articulation::Joint& joint : art.joints) {
       if (joint.is_weld()) continue;
       Hook& hook = t.hooks[joint.hook];
-      // One between bodies that are both asleep or driven moves nothing, and is of no bundle.
+      // A hook between bodies that are both asleep or driven moves nothing and belongs to no coupled group.
       if (gives_way(t.bodies, hook.a.body) || gives_way(t.bodies, hook.b.body))
         hook.route = state::JointRoute::kCoupled;
     }

@@ -1,4 +1,5 @@
-/// Contacts between points, as rows of a bundle. Which rows there are: bundles_build.cpp.
+/// Element contacts, rope contacts and load-bearing contacts, as rows of a coupled group. Which rows exist:
+/// coupled_groups_build.cpp.
 
 #include "geometry/closest.h"
 #include "solver/coupled/coupled_group_solution.h"
@@ -16,22 +17,22 @@ namespace {
 
 using state::ElementContact;
 
-/// What would take this many times its weight to stop in a substep slides at first: held, it would press so
-/// hard where it tips over that the friction there seems to hold it.
+/// A body slides at first if friction needs this many times its weight to stop it in a substep. If it were
+/// held, it would press so hard where it tips over that the friction there seems to hold it.
 constexpr double kMostStopped = 2;
 
-constexpr double kMostDrag = 1e4;  ///< Over the mass at the place: what is dragged harder sticks.
-/// The same of ropes, where a light one carries many times its weight.
+constexpr double kMostDrag = 1e4;  ///< Over the mass at the contact; a contact that is dragged harder sticks.
+/// The same for ropes, where a light one carries many times its weight.
 constexpr double kMostRopeDrag = 1e4;
-/// Overlap of ropes leaves no faster than this [m/s]: where one end of a segment is wedged, the other moves
-/// many times as fast as the place.
+/// Overlap of ropes is removed no faster than this [m/s]. Where one end of a segment is wedged, the other end
+/// moves many times as fast as the contact.
 constexpr double kElementPushOutSpeed = 0.05;
 
-/// Of a body on others, over its lever there: overlap, or gap, that is none. Some roundings' worth.
+/// Overlap, or gap, of a load-bearing contact that counts as none, over the shorter lever: some roundings.
 constexpr double kLoadBearingSlop = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 constexpr int kRopeSlidingSolves = 7;
-/// By how much a contact of ropes gives way to its force, at most [m/s].
+/// The most by which a rope contact gives way to its force [m/s].
 constexpr double kRopeYieldSpeed = 0.02;
 
 /// The normal and two directions across it.
@@ -48,7 +49,7 @@ bool CoupledGroupSolution::has_coupled_contact(std::size_t node) const {
   return !at.empty() && at.back().block >= hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
 }
 
-/// Mass of the heaviest body that a contact between points may press on a node; 0 without one [kg].
+/// Mass of the heaviest body that a contact of the group may press on a node; 0 if there is none [kg].
 double CoupledGroupSolution::heaviest_in_contact(std::size_t node) const {
   double heaviest = 0;
   for (const CoupledGroup::Incident& at : incidents_of(node)) {
@@ -67,7 +68,7 @@ void CoupledGroupSolution::load_coupled_contacts() {
   b_.contact_rows.assign(b_.contact_count(), {});
   if (b_.contact_rows.empty()) return;
   const std::uint32_t first = hook_block(static_cast<std::uint32_t>(b_.hooks.size()));
-  // Nodes and points of an element stand in the same order.
+  // Nodes and points of an element are in the same order.
   for (std::uint32_t node = 0; node < b_.ropes.nodes.size(); ++node) {
     for (std::uint32_t i = b_.first_incident[node]; i < b_.first_incident[node + 1]; ++i) {
       if (b_.incidents[i].block < first) continue;
@@ -118,8 +119,7 @@ void CoupledGroupSolution::load_rope_contact(std::size_t index) {
                             .friction = vector_cast<double>(contact.friction_force)});
 }
 
-/// Its separation goes along with the bodies from the start of the step, as that of other rows of bodies
-/// does.
+/// The separation follows the bodies from the start of the step, as in other rows of bodies.
 void CoupledGroupSolution::load_body_contact(std::size_t index) {
   const state::LoadBearingContact& contact =
       t_.pairs.load_bearing[b_.load_bearing[index - b_.first_load_bearing()]];
@@ -135,16 +135,17 @@ void CoupledGroupSolution::load_body_contact(std::size_t index) {
   const Vec3 displacement = displacement_between(t_.bodies, m, point);
   const double separation =
       coupled.near ? static_cast<double>(contact.separation + dot(m.normal, displacement)) : 0;
-  // Where it stands on several feet their loads must not hang on how each was rounded.
+  // If a body stands on several feet, their loads must not depend on how each separation was rounded.
   const double slop = kLoadBearingSlop * std::min(length(coupled.lever), length(coupled.lever_b));
   coupled.separation = separation - std::clamp(separation, -slop, slop);
-  // What does not give way moves as it is told.
+  // A body that does not give way moves as it is told.
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
   if (a < 0) coupled.surface += velocity_of(contact.body_a, coupled.lever);
   if (b < 0) coupled.surface -= velocity_of(contact.body_b, coupled.lever_b);
-  // What hangs is held: it is the heavier body that slides.
+  // The body that hangs is held: it is the heavier one that slides.
   coupled.resistance = 1 / static_cast<double>(contact.load);
-  // Where it is wedged in, leaving at the full speed would be work: no more than to lift it.
+  // If a body is wedged in, leaving at full speed would do work. It may do no more than lifting the body
+  // does.
   const auto gravity = static_cast<double>(length(t_.desc.gravity));
   const double weight = gravity / coupled.resistance;
   const double force = static_cast<double>(contact.normal_force);
@@ -191,7 +192,7 @@ void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactFor
   if (coupled.firm) {
     double& gamma = b_.rows[first].gamma;
     gamma = coupled.mobility / kContactStiffness;
-    // What presses a light rope with many times its weight would push on through it.
+    // What presses a light rope with many times its weight would otherwise push through it.
     const bool of_ropes = index >= b_.element_contacts.size() && index < b_.first_load_bearing();
     if (of_ropes && gamma * coupled.normal > kRopeYieldSpeed) gamma = kRopeYieldSpeed / coupled.normal;
     b_.rows[first].target += std::min(gamma * coupled.normal, kElementPushOutSpeed);
@@ -213,7 +214,7 @@ void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactFor
   note_rope_in_contact(coupled.node[coupled.count - 1]);
 }
 
-/// Overlap of ropes leaves by speed, that of cloths by place, as with the contacts of points.
+/// Overlap of ropes is removed by speed, that of cloths by displacement, as in particle contacts.
 double CoupledGroupSolution::gap_speed(const CoupledContact& coupled) const {
   return std::max(coupled.separation / h_, -coupled.push_out);
 }
@@ -226,7 +227,7 @@ void CoupledGroupSolution::note_rope_in_contact(std::uint32_t node) {
   b_.settings[rope_system].turning = {};
 }
 
-/// Which rows of a contact are solved for; the others do nothing.
+/// Chooses which rows of a contact are solved; the others do nothing.
 void CoupledGroupSolution::set_coupled_rows(std::size_t index) {
   const CoupledContact& coupled = b_.contact_rows[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
@@ -240,8 +241,8 @@ void CoupledGroupSolution::set_coupled_rows(std::size_t index) {
   }
 }
 
-/// Velocity of the place against the surface: as the forces left it, or as the solution has it. Of bodies it
-/// is the solution's, or before that what they had.
+/// Velocity of the contact relative to the surface: as the forces left it, or as the solution has it. Bodies
+/// have the velocity of the solution, or before the first one what they had.
 DVec3 CoupledGroupSolution::velocity_at(std::size_t index, bool before) const {
   const CoupledContact& coupled = b_.contact_rows[index];
   DVec3 v = -coupled.surface;
@@ -264,8 +265,8 @@ DVec3 CoupledGroupSolution::sliding_of(std::size_t index, bool before) const {
   return v - dot(n, v) * n;
 }
 
-/// Friction of an active contact: whether it sticks, and what drags it if not. True if it is not yet what it
-/// should be. What slides sticks only if it `may_stick`.
+/// Updates friction of an active contact: whether it sticks, and its drag if not. True if that has not
+/// converged. A sliding contact sticks only if it `may_stick`.
 bool CoupledGroupSolution::update_coupled_friction(std::size_t index, bool may_stick) {
   CoupledContact& coupled = b_.contact_rows[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
@@ -291,9 +292,10 @@ bool CoupledGroupSolution::update_coupled_friction(std::size_t index, bool may_s
   return !coupled.slides || std::abs(coupled.drag - drag) > kConvergedDrag * drag;
 }
 
-/// Of what is borne, rows join and leave until they are right. From some number of solutions on they only
-/// join, and what slides does not stick again: what is left out is gone through, what holds too long makes no
-/// energy, but friction that holds a substep too long takes all the speed there is.
+/// Rows of load-bearing contacts join and leave until they are right. From some number of solutions on they
+/// only join, and a sliding contact does not stick again. A contact that is left out is passed through, and
+/// one that holds too long adds no energy. But friction that holds a substep too long takes all the speed
+/// there is.
 Unconverged CoupledGroupSolution::update_body_contact(std::size_t index, bool only_join) {
   CoupledContact& coupled = b_.contact_rows[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
@@ -351,7 +353,7 @@ Unconverged CoupledGroupSolution::update_coupled_contacts(bool let_go) {
   return unconverged;
 }
 
-/// Before the next solution: what update_inner found comes into effect.
+/// Before the next solution: applies what update_coupled_contacts found.
 void CoupledGroupSolution::revise_coupled_contacts() {
   for (std::size_t i = 0; i < b_.contact_rows.size(); ++i) set_coupled_rows(i);
 }
@@ -367,7 +369,8 @@ int CoupledGroupSolution::least_solves_of_contacts() const {
   return any ? kLeastContactSolves : 1;
 }
 
-/// A rope that is jammed gets no friction for the rest of the substep (solve_again in rope_rows.h).
+/// Contacts of a jammed rope get no friction for the rest of the substep (solve_again in
+/// solver/rope/rope_rows.h).
 bool CoupledGroupSolution::let_contacts_slide() {
   bool any = false;
   for (CoupledContact& coupled : b_.contact_rows) {

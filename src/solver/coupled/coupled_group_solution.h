@@ -10,19 +10,21 @@
 #include <vector>
 
 /// \file
-/// A bundle in the middle of its solution. Only bundles.cpp and bundles_matrix.cpp know it.
+/// A coupled group in the middle of its solution. Only coupled_groups.cpp, coupled_groups_matrix.cpp and
+/// coupled_element_contacts.cpp know this class.
 
 namespace hooke::solver {
 
 inline constexpr std::array<DVec3, 3> kAxes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
 
-/// What a contact did in the last substep [N].
+/// Forces of a contact in the last substep [N].
 struct ContactForce {
-  DVec3 n;  ///< Along which `normal` pushes.
+  DVec3 n;  ///< Direction in which `normal` pushes.
   double normal = 0;
   DVec3 friction;
   bool slides = false;
-  double fast = std::numeric_limits<double>::infinity();  ///< From this speed on it slides at first [m/s].
+  /// From this speed on the contact slides at first [m/s].
+  double fast = std::numeric_limits<double>::infinity();
 };
 
 class CoupledGroupSolution {
@@ -31,7 +33,7 @@ class CoupledGroupSolution {
 
   void load(const std::vector<state::VelocityRecord>& before, const std::vector<RopeSystem>& rope_systems);
   void run(std::vector<RopeSystem>& rope_systems);
-  /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything is to be loaded and run again.
+  /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything must be loaded and run again.
   [[nodiscard]] bool gives_way(int round);
   void store(const std::vector<RopeSystem>& rope_systems);
 
@@ -48,11 +50,11 @@ class CoupledGroupSolution {
   void read_solution();
   void move_nodes();
   [[nodiscard]] bool is_sound() const;
-  /// Whether its matrix may be factored once more in this substep; notes in the bundle that it may not.
+  /// Whether the matrix may be factored once more in this substep. If not, the group notes it.
   bool within_budget();
   void push_out_points();
 
-  // Contacts between points: bundles_inner.cpp.
+  // Element contacts, rope contacts and load-bearing contacts: coupled_element_contacts.cpp.
   void load_coupled_contacts();
   void load_element_contact(std::size_t index);
   void load_rope_contact(std::size_t index);
@@ -95,7 +97,8 @@ class CoupledGroupSolution {
     const double sign = end == 1 ? 1 : -1;
     return {(sign * std::sqrt(body.inverse_mass)) * row.n, sign * (end == 1 ? row.j_b : row.j_a)};
   }
-  /// Calls visit(hook, row, k) for each row; k counts within the hook. Inner contacts count on after hooks.
+  /// Calls visit(hook, row, k) for each row; k counts within the hook. Contact rows follow those of the
+  /// hooks.
   template <class Visit>
   void for_each_row(Visit&& visit) const {
     for (std::uint32_t i = 0; i < b_.ends.size(); ++i) {
@@ -108,7 +111,7 @@ class CoupledGroupSolution {
     return static_cast<std::uint32_t>(b_.ropes.segments.size());
   }
   [[nodiscard]] std::uint32_t bend_block(std::uint32_t bend) const { return segment_count() + bend; }
-  /// Blocks before those of hooks: vectors, along the axes of the world.
+  /// Number of blocks before those of hooks: vectors, along the axes of the world.
   [[nodiscard]] std::uint32_t vector_count() const {
     return segment_count() + static_cast<std::uint32_t>(b_.ropes.bends.size());
   }
@@ -125,19 +128,19 @@ class CoupledGroupSolution {
         .subspan(b_.first_incident[node], b_.first_incident[node + 1] - b_.first_incident[node]);
   }
   [[nodiscard]] int size_of(std::uint32_t block) const { return b_.pattern.size[b_.slot[block]]; }
-  /// Direction k of a row block; zero of a row that is at a bound.
+  /// Direction k of a row block; zero if the row is at a bound.
   [[nodiscard]] DVec3 direction(std::uint32_t block, int k) const {
     if (block < vector_count()) return kAxes[static_cast<std::size_t>(k)];
     const std::uint32_t row = b_.first_row[block - vector_count()] + static_cast<std::uint32_t>(k);
     return b_.bound[row] == 0 ? b_.rows[row].n : DVec3{};
   }
-  /// Numbers (i, k) of a block; of the lower half of the matrix, which alone is kept.
+  /// Entries (i, k) of a block. Only the lower half of the matrix is stored.
   struct Numbers {
     double* first;
     int down, across;
     double& operator()(int i, int k) const { return first[i * down + k * across]; }
   };
-  /// Where block `a` meets `b`, row i of `a` and column k of `b`.
+  /// The block that couples `a` with `b`: row i is of `a`, column k of `b`.
   Numbers numbers(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t row = b_.slot[a];
     const std::uint32_t column = b_.slot[b];

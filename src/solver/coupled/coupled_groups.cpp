@@ -1,4 +1,5 @@
-/// Loads a bundle, solves it, checks, repeats if need be. Read solve_bundle first, at the end of the file.
+/// Loads a coupled group, solves it, checks it and repeats that if needed. Read solve_coupled_group first, at
+/// the end of the file.
 
 #include "solver/coupled/coupled_groups.h"
 
@@ -52,7 +53,7 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
   stiffen();
 }
 
-/// Points that touch nothing which gives way are held by what they touch after all ropes
+/// Points that touch nothing which gives way are held by their contacts after all ropes
 /// (solver/soft/particle_contact_solve.h).
 void CoupledGroupSolution::load_points() {
   const std::vector<std::uint32_t>& particle = t_.contacts.particle;
@@ -97,8 +98,8 @@ void CoupledGroupSolution::load_hooks() {
   }
 }
 
-/// Geometric stiffness of the forces found last. True if it has grown so much that the solution must be
-/// repeated.
+/// Computes the geometric stiffness of the forces found last. True if it has grown so much that the solution
+/// must be repeated.
 bool CoupledGroupSolution::stiffen() {
   for (CoupledBody& body : b_.moving) body.found = {};
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
@@ -143,7 +144,7 @@ void CoupledGroupSolution::read_solution() {
   move_nodes();
 }
 
-/// u = v* + W (B^T l + R V); what rows at bounds give is in v* already.
+/// Computes u = v* + W (B^T l + R V); impulses of rows at bounds are in v* already.
 void CoupledGroupSolution::move_nodes() {
   for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.body < 0) continue;
@@ -171,7 +172,7 @@ void CoupledGroupSolution::move_nodes() {
   }
 }
 
-/// As in articulations: rows beyond a bound go to it, rows that it holds back are let go if `release`.
+/// As in articulations, rows beyond a bound go to it. Rows that a bound holds back are let go if `release`.
 bool CoupledGroupSolution::revise_bounds(bool release) {
   b_.speed.assign(b_.rows.size(), 0);
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
@@ -250,9 +251,9 @@ double CoupledGroupSolution::check_ropes(bool& limits_changed) {
   return worst;
 }
 
-/// Whether everything moves faster than before by more than can come of a stretch that is taken back. Where
-/// ropes touch ropes, a solution in which contacts still pull throws what is folded far from where it is, and
-/// another about that one may settle there.
+/// Whether everything moves faster than before by more than the removal of a stretch can explain. Where ropes
+/// touch ropes, a solution in which contacts still pull throws a folded rope far from its position. Another
+/// solution about that state may converge there.
 bool CoupledGroupSolution::gains_energy() const {
   constexpr double kMostGain = 1.1;
   double before = 0;
@@ -356,7 +357,7 @@ void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
   }
 }
 
-/// As in solver/soft/particle_contact_solve.h: overlap of points leaves by place, not by speed.
+/// As in solver/soft/particle_contact_solve.h, overlap of points is removed by displacement, not by speed.
 void CoupledGroupSolution::push_out_points() {
   for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.of_point && contact_row.row != RopeContactRow::kTether)

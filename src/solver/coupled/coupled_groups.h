@@ -18,12 +18,14 @@
 #include <vector>
 
 /// \file
-/// Ropes with what they are tied to. A rope alone is a chain (solver/rope/rope_systems.h); what hooks at
-/// points join, or a rope or particle that lies on a moving body, is a bundle and solved as a whole.
+/// Ropes together with what they are hooked to. A rope alone is a rope system (solver/rope/rope_systems.h).
+/// What hooks at points join, or a rope or particle that lies on a moving body, is a coupled group and is
+/// solved as a whole.
 
 namespace hooke::solver {
 
-/// How a body's velocity V = (sqrt(m) v, omega~) moves a place along a direction: row . V; and such a V.
+/// Row that gives the speed of a point of a body along a direction as row . V, with the body's velocity V =
+/// (sqrt(m) v, omega~). The same type also holds such a V.
 struct BodyRow {
   DVec3 linear, angular;
 
@@ -39,85 +41,93 @@ struct BodyRow {
   }
 };
 
-/// A body of a bundle while it is solved.
+/// A body of a coupled group during the solution.
 struct CoupledBody {
-  JointBody body;                      ///< Before the solution.
-  math::Symmetric3<double> stiffness;  ///< h^2 S K S of the hooks' forces.
-  math::Symmetric3<double> excess;     ///< What of it is implicit.
-  math::Symmetric3<double> found;      ///< The stiffness of the forces found last.
-  DVec3 v = {};                        ///< The result.
+  JointBody body;                      ///< State before the solution.
+  math::Symmetric3<double> stiffness;  ///< h^2 S K S of the forces of hooks.
+  math::Symmetric3<double> excess;     ///< Implicit part of the stiffness.
+  math::Symmetric3<double> found;      ///< Stiffness of the forces found last.
+  DVec3 v = {};                        ///< Resulting velocity.
   DVec3 omega_scaled = {};
 };
 
-/// A contact between points of a rope or a cloth, of a rope with a rope, or of a body that is borne, while it
-/// is solved.
+/// A contact during the solution: an element contact of a rope or a cloth, a rope contact, or a load-bearing
+/// contact of bodies.
 struct CoupledContact {
-  static constexpr int kRows = 3;  ///< Along the normal and two across.
+  static constexpr int kRows = 3;  ///< One row along the normal and two across it.
 
-  std::array<std::uint32_t, 4> node = {};  ///< As `particle` of its row; none of what is borne.
+  std::array<std::uint32_t, 4> node = {};  ///< As `particle` of the contact; empty for load-bearing contacts.
   std::array<double, 4> weight = {};
   std::uint32_t count = 0;
   double separation = 0, friction = 0;
-  double mobility = 0;    ///< 1 / the mass that resists at the place, roughly [1/kg].
-  double push_out = 0;    ///< Largest speed at which an overlap leaves [m/s].
-  double resistance = 0;  ///< The same for what slides; a first guess [1/kg].
-  DVec3 surface;          ///< Velocity of the surface against its body; the whole if that is given [m/s].
-  DVec3 lever;            ///< From the body's center [m].
-  DVec3 lever_b;          ///< Of what is borne, from the center of that body [m].
-  double normal = 0;      ///< Impulse [N s].
-  DVec3 f;                ///< Of friction [N s].
-  double drag = 0;        ///< Of what slides: mu N over its speed [kg].
-  bool near = false;      ///< It may act within this substep.
+  double mobility = 0;    ///< 1 / the mass that resists at the contact, roughly [1/kg].
+  double push_out = 0;    ///< Largest speed at which an overlap is removed [m/s].
+  double resistance = 0;  ///< Mobility of what slides; a first guess [1/kg].
+  /// Velocity of the surface relative to its body; the whole velocity if the body does not give way [m/s].
+  DVec3 surface;
+  DVec3 lever;        ///< Offset from the body's center [m].
+  DVec3 lever_b;      ///< Offset from the center of body b, in load-bearing contacts [m].
+  double normal = 0;  ///< Normal impulse [N s].
+  DVec3 f;            ///< Friction impulse [N s].
+  double drag = 0;    ///< While the contact slides: mu N over its speed [kg].
+  bool near = false;  ///< The contact may act within this substep.
   bool active = false, slides = false;
-  bool let_go = false;  ///< For the rest of the substep: it pulled too often.
-  bool firm = false;    ///< Of ropes and of what is borne: pushes apart by speed, and is solved to the end.
+  bool let_go = false;  ///< Off for the rest of the substep, because it pulled too often.
+  /// Rope contacts and load-bearing contacts: they separate by speed and are solved until they converge.
+  bool firm = false;
 };
 
-/// Unknown are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m) v,
-/// omega~) of bodies. With B the Jacobians at particles, C those at bodies, W the particles' inverse masses
-/// with what touches them, P the grip of contacts on bodies and R = P J:
+/// The unknowns are the impulses of rope segments q and of hook rows lambda, and the velocities V = (sqrt(m)
+/// v, omega~) of bodies. With B the Jacobians at particles, C those at bodies, W the inverse masses of
+/// particles including their contacts, P the stiffness of contacts on bodies and R = P J:
 ///
 ///   particles   u = v* + W (B^T l + R V)
-///   rows        B u + C V + E l = target,          l = (q, lambda), E by chains.h and joint_rows.h
-///   bodies      (1 + G) (V - V0) + 0.2 G V0 = C^T l - J^T (k + P (J V - u)),   G by articulations.h
+///   rows        B u + C V + E l = target,   l = (q, lambda)
+///   bodies      (1 + G) (V - V0) + 0.2 G V0 = C^T l - J^T (k + P (J V - u))
 ///
-/// where k is the part of a contact's impulse that does not depend on velocities. Particles are eliminated by
-/// hand; what is left in (l, V) is quasi-definite and is factored in an order of little fill: ropes between
-/// hooks first, in time proportional to their length, as a chain would be. Newton steps, contacts inside the
-/// solution and their repetition are those of a chain. Rows with bounds join and leave as in an articulation.
+/// where E is that of solver/rope/rope_systems.h and solver/joint_rows/joint_rows.h, G that of
+/// solver/joint/articulations.h, and k the part of a contact's impulse that does not depend on velocities.
+/// Particles are eliminated by hand. The rest, in (l, V), is quasi-definite and is factored in an order of
+/// little fill: ropes between hooks first, in time proportional to their length, as in a rope system. Newton
+/// steps, contacts inside the solution and their repetition are those of a rope system. Rows with bounds join
+/// and leave as in an articulation.
 ///
-/// A rope that resists bending has a vector row at each inner node, the change of direction there, with the
-/// compliance of a spring of EI over the length between the middles of the two segments.
+/// A rope that resists bending has a vector row at each inner node: the change of direction there. Its
+/// compliance is that of a spring of EI over the length between the middles of the two segments.
 ///
-/// Particles of cloths, solids and groups that touch a body which gives way are points without rows, held by
-/// their contacts and tethers alone: docs/decisions/0011-ties.md.
+/// Particles of cloths, solids and groups that touch a body which gives way are points without rows. Only
+/// their contacts and tethers hold them: docs/decisions/0011-ties.md.
 ///
-/// A contact between points (state::InnerContact) has the rows of a hook at its place: along the normal,
-/// which only pushes, and two across for friction. What sticks is held; what slides is dragged with mu N over
-/// its speed, N and the speed of the solution before: however wrong they are, that takes energy. Along the
-/// normal those of ropes are as soft as contacts of nodes are, and carry their force over like these.
+/// An element contact (state::ElementContact) has the rows of a hook at its position: one along the normal,
+/// which only pushes, and two across it for friction. A sticking contact is held. A sliding contact is
+/// dragged with mu N over its speed, both from the solution before: however wrong they are, that takes
+/// energy. Along the normal, element contacts of ropes are as soft as contacts of nodes, and carry their
+/// force over like these.
 ///
-/// A share of 1e-6 of each hook row's diagonal is added as compliance, 1e-10 of a motor's: it decides what
+/// A share of 1e-6 of each hook row's diagonal, 1e-10 of a motor's, is added as compliance. It decides what
 /// loops of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b
+/// across the rope. The direction of the rope at b is that of its points, blended along the segment.
 /// across the rope, whose direction at b is that of its points blended along the segment.
 struct CoupledGroup {
-  std::vector<std::uint32_t> rope_systems;      ///< In order.
+  std::vector<std::uint32_t> rope_systems;      ///< Rope systems, in order.
   std::vector<std::uint32_t> points;            ///< Particles of no rope, in order of rows.
-  std::vector<std::uint32_t> hooks;             ///< Rows, in order.
-  std::vector<std::uint32_t> element_contacts;  ///< Contacts between points: rows, in order.
-  std::vector<std::uint32_t> rope_contacts;     ///< Rows, in order.
-  std::uint32_t refused = 0;                    ///< Contacts of ropes that kBundleBudget left out.
-  std::vector<std::uint32_t> load_bearing;  ///< Contacts between bodies: of state::Pairs::borne, in order.
-  std::vector<std::uint32_t> bodies;        ///< Rows, in order.
-  /// Of each hook, inner contact, contact of ropes and borne contact, a and b: index into `bodies`, or -1.
+  std::vector<std::uint32_t> hooks;             ///< Rows of hooks, in order.
+  std::vector<std::uint32_t> element_contacts;  ///< Rows of element contacts, in order.
+  std::vector<std::uint32_t> rope_contacts;     ///< Rows of rope contacts, in order.
+  std::uint32_t refused = 0;  ///< Number of rope contacts that kCoupledGroupBudget left out.
+  /// Load-bearing contacts: indices into state::Pairs::load_bearing, in order.
+  std::vector<std::uint32_t> load_bearing;
+  std::vector<std::uint32_t> bodies;  ///< Body rows, in order.
+  /// Ends a and b of each hook, element contact, rope contact and load-bearing contact: index into `bodies`,
+  /// or -1.
   std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
-  std::vector<std::uint32_t> first_tether;  ///< Of each point; one more at the end.
+  std::vector<std::uint32_t> first_tether;  ///< For each point, where its tethers begin; one more at the end.
 
   [[nodiscard]] std::uint32_t element_contact_count() const {
     return static_cast<std::uint32_t>(element_contacts.size());
   }
-  /// Of the borne contacts among all touches.
+  /// Index of the first load-bearing contact among all contacts.
   [[nodiscard]] std::uint32_t first_load_bearing() const {
     return element_contact_count() + static_cast<std::uint32_t>(rope_contacts.size());
   }
@@ -127,101 +137,102 @@ struct CoupledGroup {
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, bends, hooks, inner contacts, those of ropes, borne ones, bodies.
+  // The matrix. Blocks are segments, bends, hooks, element, rope and load-bearing contacts, and bodies.
   BlockPattern pattern;
-  std::vector<std::uint32_t> slot;  ///< Of each block in the order of elimination.
+  std::vector<std::uint32_t> slot;  ///< Position of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
   struct Incident {
     std::uint32_t block = 0;
     double weight = 0;
   };
-  std::vector<Incident> incidents;            ///< By node.
-  std::vector<std::uint32_t> first_incident;  ///< Of each node; one more at the end.
+  std::vector<Incident> incidents;            ///< Incidents, node by node.
+  std::vector<std::uint32_t> first_incident;  ///< Where those of each node begin; one more at the end.
   std::vector<std::uint32_t> pair_block;      ///< For each two incidents of a node (j <= i), by node, i, j.
-  std::vector<std::uint32_t> first_pair;      ///< Of each node.
+  std::vector<std::uint32_t> first_pair;      ///< Where the pairs of each node begin.
 
   // Lives for one step.
-  bool cut_short = false;  ///< Its solution ended by kBundleBudget in some substep.
+  bool cut_short = false;  ///< kCoupledGroupBudget ended its solution in some substep.
 
   // Lives for one substep.
   int factored = 0;                             ///< How often its matrix was factored.
-  RopeScratch ropes;                            ///< Nodes of chains, then points.
-  std::vector<RopeSetting> settings;            ///< Of chains.
-  std::vector<std::uint32_t> rope_node_counts;  ///< Of chains: how many.
-  std::vector<CoupledBody> moving;              ///< As `bodies`.
-  std::vector<CoupledContact> contact_rows;     ///< As `inner`, then as `rope_contacts`, then as `borne`.
-  std::vector<JointRow> rows;                   ///< Of hooks, then of touches.
-  std::vector<std::uint32_t> first_row;         ///< Of each of these; one more at the end.
-  std::vector<std::int8_t> bound;               ///< Of rows, as Articulation::bound.
-  std::vector<double> lambda;                   ///< Of rows.
-  std::vector<double> speed;                    ///< Of rows: of opening.
-  std::vector<int> sizes;                       ///< Of blocks, in the order of elimination.
+  RopeScratch ropes;                            ///< Nodes of rope systems, then points.
+  std::vector<RopeSetting> settings;            ///< Settings of each rope system.
+  std::vector<std::uint32_t> rope_node_counts;  ///< Number of nodes of each rope system.
+  std::vector<CoupledBody> moving;              ///< One for each of `bodies`.
+  /// In the order of `element_contacts`, then `rope_contacts`, then `load_bearing`.
+  std::vector<CoupledContact> contact_rows;
+  std::vector<JointRow> rows;            ///< Rows of hooks, then of contacts.
+  std::vector<std::uint32_t> first_row;  ///< Where the rows of each of these begin; one more at the end.
+  std::vector<std::int8_t> bound;        ///< Bound of each row, as Articulation::bound.
+  std::vector<double> lambda;            ///< Impulse of each row.
+  std::vector<double> speed;             ///< Speed at which each row opens.
+  std::vector<int> sizes;                ///< Sizes of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
-  std::vector<double> right_side;        ///< Then the solution.
-  std::vector<BodyRow> start;            ///< Of bodies.
+  std::vector<double> right_side;        ///< Right side, then the solution.
+  std::vector<BodyRow> start;            ///< (1 + G) V0 of each body.
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
 
-  /// No members, no matrix; keeps its memory.
+  /// Removes members and matrix, but keeps memory.
   void clear();
 };
 
-/// Multiplications of all factorizations of one bundle in a substep, some 20 ms; it is factored four times
-/// whatever that takes. Contacts of ropes that let go and come back could ask for 256. Where contacts of
-/// ropes ask for more in one, as of segments that each touch all others, every second one is left out until
-/// it is enough: a choice that knows only who touches whom.
+/// Multiplications of all factorizations of one coupled group in a substep, some 20 ms. The first four
+/// factorizations are always allowed. Rope contacts that switch off and on again could ask for 256. Where one
+/// factorization with all rope contacts costs more, as with segments that each touch all others, every second
+/// rope contact is left out until it fits. This choice knows only who touches whom.
 inline constexpr double kCoupledGroupBudget = 2e7;
 inline constexpr int kFewestFactorizations = 4;
 
-/// The share of a motor row's diagonal that it has as compliance: it asks for a speed and does not take back
-/// what it has yielded.
+/// The share of a motor row's diagonal that is added as its compliance. A motor asks for a speed and does not
+/// take back what it has yielded.
 inline constexpr double kMotorCompliance = 1e-10;
 
-/// Memory to lay out bundles in.
+/// Memory for building coupled groups.
 struct CoupledGroupScratch {
   std::vector<std::uint32_t> signature;
   base::DisjointSets sets;              ///< Bodies, then particles.
-  std::vector<std::uint8_t> coupled;    ///< Of each set: whether it is a bundle.
-  std::vector<std::uint32_t> group_of;  ///< Of each set.
-  std::vector<std::uint32_t> anchors;   ///< Hooks.
+  std::vector<std::uint8_t> coupled;    ///< For each set: whether it is a coupled group.
+  std::vector<std::uint32_t> group_of;  ///< Coupled group of each set.
+  std::vector<std::uint32_t> anchors;   ///< Rows of hooks that are anchors.
   std::vector<std::vector<CoupledGroup::Incident>> at_node;
-  std::vector<std::uint32_t> first_node;              ///< Of each chain, then of the points.
+  std::vector<std::uint32_t> first_node;              ///< First node of each rope system, then of the points.
   std::vector<std::vector<std::uint32_t>> bodies_at;  ///< Blocks of bodies that touch a node.
   BlockGraph matrix;
-  std::vector<int> sizes;          ///< Of blocks.
-  std::vector<std::int8_t> signs;  ///< Of blocks.
-  std::vector<int> counts;         ///< Of a bundle's hooks or bodies.
+  std::vector<int> sizes;          ///< Sizes of blocks.
+  std::vector<std::int8_t> signs;  ///< Signs of blocks.
+  std::vector<int> counts;         ///< For each hook or body of a coupled group.
 };
 
 struct CoupledGroups {
-  std::vector<CoupledGroup> groups;  ///< The first `count` are those of now.
+  std::vector<CoupledGroup> groups;  ///< The first `count` are in use.
   std::size_t count = 0;
-  std::vector<RopeAnchor> anchors;       ///< Of ropes outside bundles, by chain and node.
-  std::vector<std::uint32_t> signature;  ///< Of what they were made from.
-  std::vector<std::uint32_t> tethers;    ///< All there are, in order of the particles that they hold.
-  std::uint64_t tethers_revision = 0;    ///< Of the tables that they are of.
+  std::vector<RopeAnchor> anchors;  ///< Anchors of ropes outside coupled groups, by rope system and node.
+  std::vector<std::uint32_t> signature;  ///< What the groups were built from.
+  std::vector<std::uint32_t> tethers;    ///< All tethers, in order of the particles that they hold.
+  std::uint64_t tethers_revision = 0;    ///< Revision of the tables that `tethers` was built from.
   CoupledGroupScratch scratch;
 
   [[nodiscard]] std::span<CoupledGroup> live() { return {groups.data(), count}; }
 };
 
-/// Sorts ropes, hooks at points and bodies into bundles, if anything about who holds or touches whom has
-/// changed since they were made. Marks the chains that belong to one. A rope that hangs by ball hooks on what
-/// does not give way, and on nothing else, needs none: those are its anchors.
+/// Sorts ropes, hooks at points and bodies into coupled groups, if anything about who holds or touches whom
+/// has changed since they were built. Marks the rope systems that belong to one. A rope that hangs only on
+/// ball hooks, on what does not give way, needs no group: those hooks are its anchors.
 void build_coupled_groups(const state::Tables& tables, std::vector<RopeSystem>& rope_systems,
                           CoupledGroups& groups);
 
-/// Puts the ends of hooks that slide along a rope where the other ends are nearest to them, searching from
-/// where they were.
+/// Moves the ends of hooks that slide along a rope to where the rope is nearest to the other end. The search
+/// begins where they were.
 void slide_hooks(state::Tables& tables);
 
 /// The rotation whose x axis is the direction of the rope where a hook slides along it.
 [[nodiscard]] Quaternion<double> slide_rotation(const state::Tables& tables, const state::Hook& hook);
 
-/// While elastic rows are solved, a hooked point of a cloth, solid or group of particles has the mass of what
-/// it is tied to as well: it is as hard to move as that. `weigh_points` notes the points' own state and gives
-/// them that mass; `release_points` takes it away again and leaves to each point what the impulses it has got
-/// make of it alone, which solve_bundle then shares out.
+/// While elastic rows are solved, a hooked point of a cloth, solid or group of particles also has the mass of
+/// what it is hooked to, because it is as hard to move. `apply_mass_shares` notes the points' own state and
+/// gives them that mass. `remove_mass_shares` takes it away again and gives each point the velocity that its
+/// impulses alone cause. solve_coupled_group then shares these impulses out.
 struct HookedPoint {
   std::uint32_t particle = 0;
   Real inverse_mass = Real(0);
@@ -230,8 +241,8 @@ struct HookedPoint {
 void apply_mass_shares(CoupledGroups& groups, state::Tables& tables, std::vector<HookedPoint>& points);
 void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles);
 
-/// Velocities of everything in a bundle for a substep of length h [s]. `before` holds velocities of particles
-/// from before the forces.
+/// Solves for the velocities of everything in a coupled group in a substep of length h [s]. `before` holds
+/// the velocities of particles before the forces.
 void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real h, CoupledGroup& group,
                          std::vector<RopeSystem>& rope_systems, state::Tables& tables);
 

@@ -1,4 +1,4 @@
-/// Which ropes, points and bodies hang together, and the pattern of their matrix.
+/// Finds which ropes, points and bodies belong together, and the pattern of their matrix.
 
 #include "base/assert.h"
 #include "base/disjoint_sets.h"
@@ -21,14 +21,14 @@ using state::HookPlace;
 using state::Tables;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
-constexpr std::size_t kMostRopeContacts = 8;  // for each node of the bundle's ropes, on average
+constexpr std::size_t kMostRopeContacts = 8;  // for each node of the group's ropes, on average
 constexpr double kNoBudget = std::numeric_limits<double>::infinity();
 
 bool is_of_rope(const Tables& t, std::size_t contact) {
   return t.objects[t.contacts.object[contact]].kind == PointRef::Kind::kRope;
 }
 
-/// A contact that joins its rope, or its particle, to a body.
+/// Whether a contact joins its rope, or its particle, to a body.
 bool joins(const Tables& t, std::size_t contact) {
   if (!gives_way(t.bodies, t.contacts.body[contact])) return false;
   return is_of_rope(t, contact) || t.particles.velocity[t.contacts.particle[contact]].inverse_mass > Real(0);
@@ -43,7 +43,7 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   for (std::uint32_t row = 0; row < t.hooks.size(); ++row) {
     const Hook& hook = t.hooks[row];
     if (!hook.is_in_coupled_group()) continue;
-    s.insert(s.end(), {row, hook.a.particle[0]});  // the point changes where it slides
+    s.insert(s.end(), {row, hook.a.particle[0]});  // the point changes where the hook slides
     for (const std::uint32_t body : {hook.a.body, hook.b.body})
       s.push_back(gives_way(t.bodies, body) ? 1 : 0);
   }
@@ -66,7 +66,7 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   }
 }
 
-/// Bodies, then particles; a rope is its first particle.
+/// Disjoint sets of bodies, then particles. A rope is represented by its first particle.
 class Membership {
  public:
   Membership(const Tables& t, base::DisjointSets& sets) : tables_(t), sets_(sets) {
@@ -154,7 +154,7 @@ bool may_be_anchor(const Tables& t, const Hook& hook) {
          !other.is_point() && !gives_way(t.bodies, other.body);
 }
 
-/// Anchors of the chains, which are in order of their particles as ropes are.
+/// Lists the anchors of rope systems, which are in order of their particles as ropes are.
 void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks,
                   std::vector<RopeSystem>& rope_systems, std::vector<RopeAnchor>& anchors) {
   anchors.clear();
@@ -181,9 +181,8 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks,
   }
 }
 
-/// Members of all bundles, in order of the first hook, then of the first contact that makes one; of contacts,
-/// those of points come before those between bodies. Hooks that
-/// are anchors go to `scratch.anchors`.
+/// Lists the members of all coupled groups, in order of the first hook, then of the first contact that makes
+/// one. Contacts of points come before those between bodies. Hooks that are anchors go to `scratch.anchors`.
 void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, CoupledGroups& groups) {
   Membership membership(t, groups.scratch.sets);
   const std::size_t set_count = t.bodies.motion.size() + t.particles.position.size();
@@ -273,7 +272,7 @@ void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, Couple
   }
 }
 
-/// Finds the nodes of a bundle, and the blocks at them.
+/// Finds the nodes of a coupled group, and the blocks at them.
 struct Layout {
   const Tables& tables;
   const std::vector<RopeSystem>& rope_systems;
@@ -321,7 +320,7 @@ struct Layout {
     }
     for (std::uint32_t i = 0; i < group.element_contacts.size(); ++i) {
       const state::ElementContact& element_contact = tables.element_contacts[group.element_contacts[i]];
-      for (std::uint32_t k = 0; k < element_contact.count; ++k)  // weights: BundleSolution::load_inner
+      for (std::uint32_t k = 0; k < element_contact.count; ++k)  // weights: load_coupled_contacts
         at_node[node_of(element_contact.particle[k])].push_back({contact_block(i), 0});
     }
     for (std::uint32_t i = 0; i < group.rope_contacts.size(); ++i) {
@@ -344,7 +343,7 @@ struct Layout {
     }
   }
 
-  /// Weights of ends that slide change from substep to substep: set_slide_weights.
+  /// Weights of ends that slide change from substep to substep: see set_slide_weights.
   void add_end(std::uint32_t block, double sign, const HookPlace& end) {
     for (std::uint32_t i = 0; i < end.particle_count; ++i)
       at_node[node_of(end.particle[i])].push_back({block, sign * static_cast<double>(end.weight[i])});
@@ -359,7 +358,7 @@ struct Layout {
     return contact_block(group.contact_count()) + static_cast<std::uint32_t>(index);
   }
 
-  /// Blocks that meet: at a node, at a body, or by a contact of a node with a body.
+  /// Joins blocks that share a node or a body, or that a contact of a node with a body connects.
   void join_blocks() {
     scratch.matrix.reset(vector_count + group.hooks.size() + group.contact_count() + group.bodies.size());
     const auto connect = [&](std::uint32_t a, std::uint32_t b) {
@@ -470,7 +469,7 @@ void make_pattern(const Tables& t, const std::vector<RopeSystem>& rope_systems, 
   }
 }
 
-/// Tethers of a bundle's points, of which `by_particle` has all in order of their particles.
+/// Lists the tethers of a group's points. `by_particle` has all tethers in order of their particles.
 void list_tethers(const Tables& t, const std::vector<std::uint32_t>& by_particle, CoupledGroup& group) {
   auto at = by_particle.begin();
   for (const std::uint32_t p : group.points) {
@@ -493,7 +492,7 @@ std::vector<std::uint32_t> tethers_by_particle(const Tables& t) {
   return rows;
 }
 
-/// The two nodes at which a hook slides along its rope follow its weights.
+/// Where a hook slides along its rope, the two nodes there get the hook's weights.
 void set_slide_weights(const Tables& t, std::vector<int>& seen, CoupledGroup& group) {
   const auto vectors =
       static_cast<std::uint32_t>(group.slot.size() - group.ends.size() - group.bodies.size());

@@ -23,20 +23,20 @@ struct Line {
   const state::Deformable& rope;
 
   [[nodiscard]] DVec3 at(std::uint32_t node) const { return offset_of(t, rope.particles.first + node); }
-  /// Share of segment `i` that lies before the point of its line that is nearest to x.
+  /// Share of segment `i` that lies before the point of the segment's line that is nearest to x.
   [[nodiscard]] double share(std::uint32_t i, DVec3 x) const {
     const DVec3 d = at(i + 1) - at(i);
     const double square = length_squared(d);
     return square > 0 ? dot(x - at(i), d) / square : 0;
   }
-  /// Half the way from the node before to the one behind; the ends have one neighbor only.
+  /// Direction from the node before to the node behind; the ends have one neighbor only.
   [[nodiscard]] DVec3 tangent(std::uint32_t node) const {
     const std::uint32_t last = rope.particles.count - 1;
     return normalize(at(std::min(node + 1, last)) - at(node > 0 ? node - 1 : 0));
   }
 };
 
-/// The segment whose line has x beside it, from segment `i` on towards where it is.
+/// The segment whose line has x beside it. The search goes from segment `i` toward x.
 std::uint32_t find_segment(const Line& line, std::uint32_t i, DVec3 x) {
   const std::uint32_t last = line.rope.segments.count - 1;
   const bool onward = line.share(i, x) > 1;
@@ -48,7 +48,7 @@ std::uint32_t find_segment(const Line& line, std::uint32_t i, DVec3 x) {
   return i;
 }
 
-/// How far the hook may go along the rope, as limits of its way.
+/// How far the hook may slide along the rope, as limits of its freedom.
 HookLimits limits_along(const Tables& t, const state::Deformable& rope, std::uint32_t segment, double share) {
   double before = 0;
   double behind = 0;
@@ -78,11 +78,11 @@ void slide(const Tables& t, Hook& hook) {
   hook.freedom[0].limits = limits_along(t, rope, segment, share);
 }
 
-/// The least share of its own inverse mass that a hooked point keeps: what is tied to something that does not
-/// give way must still show how it was pulled.
+/// The least share of its own inverse mass that a hooked point keeps. A point that is hooked to something
+/// which does not give way must still show how it was pulled.
 constexpr Real kLeastShare = Real(1e-3);
 
-/// 1 / mass of what holds the other end, on average over directions, if it has `shares` such hooks [1/kg].
+/// 1 / mass of what holds the other end, if it has `shares` such hooks; a mean over directions [1/kg].
 Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
   const JointBody body = joint_end(t, end);
   double sum = 3 * body.inverse_mass;
@@ -110,7 +110,7 @@ void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint
       if (hook.kind != HookKind::kBall || hook.broken) continue;
       for (const HookPlace* end : {&hook.a, &hook.b}) {
         const HookPlace& other = end == &hook.a ? hook.b : hook.a;
-        // Of several points that share a place, each moves freely against the others.
+        // If several points share one end, each of them moves freely relative to the others.
         if (end->particle_count != 1 || t.objects[end->object].kind == PointRef::Kind::kRope) continue;
         state::VelocityRecord& record = t.particles.velocity[end->particle[0]];
         if (!(record.inverse_mass > Real(0)) || other.is_point()) continue;
@@ -143,7 +143,7 @@ Quaternion<double> slide_rotation(const Tables& t, const Hook& hook) {
   const std::uint32_t node = hook.a.particle[0] - rope.particles.first;
   const DVec3 x = normalize(static_cast<double>(hook.a.weight[0]) * line.tangent(node) +
                             static_cast<double>(hook.a.weight[1]) * line.tangent(node + 1));
-  // Half way between x and the x axis; of opposite ones, half a turn about y.
+  // Halfway between x and the x axis; for opposite directions, half a turn about y.
   const Quaternion<double> turn = {0, -x.z, x.y, 1 + x.x};
   return 1 + x.x > 1e-9 ? normalize(turn) : Quaternion<double>{0, 1, 0, 0};
 }

@@ -1,4 +1,4 @@
-/// The matrix of a bundle and its right side. Equations: bundles.h.
+/// The matrix of a coupled group and its right side. Equations: solver/coupled/coupled_groups.h.
 
 #include "solver/coupled/coupled_group_solution.h"
 #include "solver/joint_rows/geometric_stiffness.h"
@@ -22,13 +22,13 @@ BodyRow row_along(DVec3 n, DVec3 lever, const JointBody& body) {
   return {std::sqrt(body.inverse_mass) * n, body.scale * cross(lever, n)};
 }
 
-/// Column m of the Jacobian at `lever`: how V_m alone moves the place there.
+/// Column m of the Jacobian at `lever`: the velocity there when V_m alone is one.
 DVec3 column_at(int m, DVec3 lever, const JointBody& body) {
   return {row_along(kAxes[0], lever, body).at(m), row_along(kAxes[1], lever, body).at(m),
           row_along(kAxes[2], lever, body).at(m)};
 }
 
-/// The one body that active contacts of a node are with, if it is one.
+/// The body of the active contacts of a node, if there is exactly one.
 std::optional<int> only_body_of(std::span<const RopeContactRow> at_node) {
   std::optional<int> body;
   for (const RopeContactRow& contact_row : at_node) {
@@ -110,8 +110,8 @@ void CoupledGroupSolution::assemble_bodies() {
   }
 }
 
-/// At a node without rows that touches one body: -J^T (P - P W P) J on the body's own block, where P is the
-/// grip of all that body's contacts there.
+/// Adds the contacts of a node without rows that touches one body: -J^T (P - P W P) J on the body's own
+/// block, where P is the stiffness of all that body's contacts at the node.
 void CoupledGroupSolution::assemble_point(int body, std::span<const RopeContactRow> at_node) {
   Symmetric3<double> stiffness;
   DVec3 lever;  // the same of all: to the particle
@@ -131,7 +131,8 @@ void CoupledGroupSolution::assemble_point(int body, std::span<const RopeContactR
   }
 }
 
-/// R = P J couples the rows at the node to the body, the body to itself, and to others that touch the node.
+/// R = P J couples the rows at the node to the body, the body to itself and to other bodies that touch the
+/// node.
 void CoupledGroupSolution::assemble_contact_row(const RopeContactRow& contact_row,
                                                 std::span<const RopeContactRow> at_node) {
   const RopeNode& node = b_.ropes.nodes[contact_row.node];
@@ -172,8 +173,8 @@ void CoupledGroupSolution::assemble_contact_rows() {
   });
 }
 
-/// Contacts of ropes that do not act have no rows in the matrix, and those without friction one: of those
-/// that may act most do not.
+/// Rope contacts that do not act have no rows in the matrix, and those without friction have one. Most of
+/// those that may act do not.
 void CoupledGroupSolution::resize_coupled_contacts() {
   if (b_.rope_contacts.empty()) return;
   b_.sizes.assign(b_.pattern.size.begin(), b_.pattern.size.end());
@@ -202,7 +203,7 @@ void CoupledGroupSolution::assemble() {
   assemble_contact_rows();
 }
 
-/// V0 as geometric stiffness has it.
+/// Computes (1 + G) V0 of each body.
 void CoupledGroupSolution::start_bodies() {
   b_.start.clear();
   for (const CoupledBody& m : b_.moving) {
@@ -211,7 +212,7 @@ void CoupledGroupSolution::start_bodies() {
   }
 }
 
-/// Rows at a bound give its impulse, like a force from outside.
+/// Rows at a bound apply its impulse, like a force from outside.
 void CoupledGroupSolution::give_impulses() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int) {
     if (b_.bound[row] == 0 || b_.lambda[row] == 0) return;

@@ -17,15 +17,15 @@ using state::Manifold;
 using state::normal_impulse;
 
 constexpr std::uint32_t kNoIsland = DirectIslands::kNoIsland;
-constexpr Real kLargestSag = Real(0.005);     ///< Of the size of a body.
+constexpr Real kLargestSag = Real(0.005);     ///< Over the size of a body.
 constexpr Real kLargestBuckling = Real(0.3);  ///< sag H^2 / a^3
-constexpr Real kReleased = Real(0.6);         ///< Of both, below which an island may become soft again.
-constexpr Real kGross = Real(5);              ///< Of both: hard at once.
-constexpr Real kFast = Real(0.5);             ///< An island with a faster body does not become hard [m/s].
+constexpr Real kReleased = Real(0.6);         ///< Share of both, below which an island may become soft again.
+constexpr Real kGross = Real(5);              ///< Multiple of both, above which an island is direct at once.
+constexpr Real kFast = Real(0.5);             ///< An island with a faster body does not become direct [m/s].
 constexpr std::int8_t kStaysDirect = 30;      ///< Steps.
 constexpr std::int8_t kNotEvaluated = -60;    ///< Steps after a refusal, or if it is too large.
 
-/// Hardness of an island after a step in which it asked for `excess` of what soft contacts may do.
+/// The direct_state of an island after a step in which it asked for `excess` of what soft contacts may do.
 std::int8_t next_direct_state(std::int8_t most, Real excess) {
   if (most >= kDirect) {
     if (excess > (most > kDirect ? kReleased : Real(1))) return kDirect + kStaysDirect;
@@ -42,13 +42,13 @@ Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
   return Real(2) * (block.anchored ? a : std::min(a, bodies.traits[block.record_b[lane] / 16].inner_radius));
 }
 
-/// Impulse in a substep that would sink a soft contact by 1 m, over its effective mass [1/m].
+/// Impulse in a substep that would let a soft contact sink by 1 m, over its effective mass [1/m].
 Real stiffness_of(const ContactBlock& block, const ContactStep& step) {
   const ContactSoftness soft = contact_softness(step, block.anchored);
   return soft.rate / soft.impulse_scale;
 }
 
-/// Overlap that each lane of a soft contact needs to carry what it carries, and the effective mass of those
+/// Finds the overlap that each lane of a soft contact needs for its load, and the effective mass of those
 /// points that carry something.
 void find_sags(const ContactBlock& block, Real stiffness, ContactBlock::Lane& sag,
                ContactBlock::Lane& support_stiffness) {
@@ -64,8 +64,8 @@ void find_sags(const ContactBlock& block, Real stiffness, ContactBlock::Lane& sa
   }
 }
 
-/// Islands that were refused, or are too large, cost nothing until they are judged again: in their last step,
-/// so that those that still are never count as others in between.
+/// Islands that were refused, or are too large, cost nothing until they are evaluated again. That happens in
+/// their last such step, so that those that still are too large never count as others in between.
 bool is_evaluated(const ContactBlock& block, const Bodies& bodies) {
   for (int lane = 0; lane < block.count; ++lane) {
     if (bodies.direct_state[block.record_a[lane] / 16] >= -1) return true;
@@ -100,9 +100,9 @@ void evaluate_contacts(const ContactStep& step, const BodyContacts& contacts, Is
   }
 }
 
-/// A weight that is only just arriving has yet to show in impulses, and falls meanwhile: what a body rests on
-/// must carry at least the body itself. With bearing = sum of stiffness mass |g.n|, the contacts of a body of
-/// mass M sink by (M h g / bearing) g.
+/// The weight of a body that has just arrived does not show in impulses yet, and the body falls meanwhile.
+/// What it rests on must carry at least the body itself. With bearing = sum of stiffness mass |g.n|, the
+/// contacts of a body of mass M sink by (M h g / bearing) g.
 void add_own_weight(Real inverse_mass, const ContactStep& step, IslandDemand& own) {
   if (!(own.support_stiffness > Real(0))) return;
   const Real sag = step.h * length_squared(step.gravity) / (inverse_mass * own.support_stiffness);
@@ -122,7 +122,7 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
 
 std::int8_t evaluate(const IslandDemand& island) {
   if (island.count > kMaxDirectBodies) return kNotEvaluated;
-  // A wave of falling dominoes takes in calm heaps one after the other: hard ones become soft with it.
+  // A wave of falling dominoes joins resting heaps one after the other: direct ones become soft with it.
   if (island.least < 0)
     return island.most >= kDirect ? std::int8_t{0} : static_cast<std::int8_t>(island.least + 1);
   if (island.count < 2) return 0;
@@ -132,7 +132,8 @@ std::int8_t evaluate(const IslandDemand& island) {
   return next_direct_state(island.most, excess);
 }
 
-/// New bodies become hard where they stand on each other, or judged like others from now on.
+/// New bodies become direct where they stand on each other. Otherwise they are evaluated like others from now
+/// on.
 void evaluate_new_bodies(std::span<const std::uint32_t> awake, const ContactStep& step, IslandMembers members,
                          DirectIslands& direct, Bodies& bodies) {
   const auto is_new = [&](std::uint32_t body) { return bodies.direct_state[body] == Bodies::kNew; };
@@ -154,13 +155,13 @@ void evaluate_new_bodies(std::span<const std::uint32_t> awake, const ContactStep
   }
 }
 
-/// Whether it joins two bodies to one island.
+/// Whether the contact joins two bodies to one island.
 bool joins(const Manifold& m, IslandMembers members, const Bodies& bodies) {
   return has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b) &&
          members[m.body_a] != Footing::kHangs && members[m.body_b] != Footing::kHangs;
 }
 
-/// Numbers the islands with hard bodies by their lowest body, and lists their bodies.
+/// Numbers the islands with direct bodies by their lowest body, and lists their bodies.
 void number_islands(std::span<const std::uint32_t> awake, const Bodies& bodies, DirectIslands& direct) {
   std::vector<std::uint32_t>& island_of = direct.island_of;
   island_of.assign(bodies.motion.size(), kNoIsland);
@@ -198,7 +199,7 @@ void list_edges(const std::vector<Manifold>& manifolds, IslandMembers members, c
   }
 }
 
-/// The pattern of an island's matrix; false if it costs too much, and then the island is of nobody.
+/// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island.
 bool make_pattern(const DirectGraph& graph, DirectIslands& direct, DirectIsland& island) {
   direct.matrix.reset(graph.bodies.size());
   for (const auto& [a, b] : graph.edges) direct.matrix.join(a, b);
@@ -213,8 +214,8 @@ bool make_pattern(const DirectGraph& graph, DirectIslands& direct, DirectIsland&
   return true;
 }
 
-/// Of each island that was found, the largest speed at which its lighter bodies would leave their contacts
-/// without what they carried in the last substep [m/s].
+/// For each island that was found: the largest speed at which its lighter bodies would leave their contacts
+/// without their load of the last substep [m/s].
 void find_loads(const std::vector<Manifold>& manifolds, IslandMembers members, const Bodies& bodies,
                 DirectIslands& direct) {
   direct.loads.assign(static_cast<std::size_t>(direct.count), Real(0));
@@ -226,7 +227,7 @@ void find_loads(const std::vector<Manifold>& manifolds, IslandMembers members, c
   }
 }
 
-/// Costs nothing more than the budget: the islands with the largest loads come first.
+/// Chooses islands within the budget: those with the largest loads come first.
 void spend_budget(const std::vector<Manifold>& manifolds, IslandMembers members, const Bodies& bodies,
                   DirectIslands& direct) {
   find_loads(manifolds, members, bodies, direct);
@@ -244,8 +245,8 @@ void spend_budget(const std::vector<Manifold>& manifolds, IslandMembers members,
   }
 }
 
-/// Keeps what is within the budget and not too large. An island whose bodies and contacts are those of the
-/// step before keeps its matrix.
+/// Keeps the islands that are within the budget and not too large. An island whose bodies and contacts are
+/// those of the step before keeps its matrix.
 void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
                   DirectIslands& direct) {
   const auto found = static_cast<std::size_t>(direct.count);
@@ -266,7 +267,7 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
     const bool fits = direct.fits[i] != 0;
     for (const std::uint32_t body : direct.found[i].bodies) {
       direct.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
-      // What would be hard for this step only, as new bodies are, is judged at its end like others.
+      // What would be direct for this step only, as new bodies are, is evaluated at its end like others.
       if (!fits)
         bodies.direct_state[body] = bodies.direct_state[body] == kDirect ? std::int8_t{0} : kNotEvaluated;
     }
@@ -331,7 +332,7 @@ void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, Dire
 void evaluate_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                              const BodyContacts& contacts, IslandMembers members, DirectIslands& direct,
                              Bodies& bodies) {
-  // Without weight there are hits, but no loads.
+  // Without weight there are impacts, but no loads.
   if (step.gravity == Vec3{}) {
     for (const std::uint32_t body : awake) bodies.direct_state[body] = 0;
     return;
@@ -346,7 +347,7 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     add_own_weight(bodies.motion[body].inverse_mass, step, own);
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.direct_state[body];
-    // Ragdolls take turns with soft contacts only, and what is soft and fast falls anyway.
+    // Ragdolls are solved in turn with soft contacts only, and soft islands that are fast fall anyway.
     const bool falls = own.most < kDirect && length(bodies.motion[body].v) > kFast;
     if (members[body] != Footing::kStands || falls) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;

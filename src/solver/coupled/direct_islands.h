@@ -19,48 +19,50 @@
 /// Which contacts are solved directly: those of islands that soft contacts do not hold.
 ///
 /// The order of calls:
-///   find_hard_islands, prepare_body_contacts, prepare_hard_islands    once a step
-///   solve_hard_islands, in place of solve_body_contacts               each substep
-///   judge_hardness                                                    once, at the end
+///   find_direct_islands, prepare_body_contacts, prepare_direct_islands    once a step
+///   solve_direct_islands, in place of solve_body_contacts                 each substep
+///   evaluate_direct_islands                                               once, at the end
 ///
 /// A soft contact that carries the impulse lambda overlaps by sag = gamma lambda / (m mu beta)
-/// (body_contacts.h). Of an island, a the size of the smaller body of a contact and H the island's height
-/// along gravity, two ratios are judged:
+/// (solver/contact/body_contacts.h). With a the size of the smaller body of a contact and H the island's
+/// height along gravity, two ratios of an island are evaluated:
 ///
 ///   sag / a          what is seen                                              at most 0.5 %
 ///   sag H^2 / a^3    1.9 where a column of cubes buckles (docs/decisions/0004)  at most 0.3
 ///
-/// An island that exceeds one of them in two steps on end, or five times in one, is hard until it has kept
-/// both by 0.6 for 30 steps. One whose bodies are all new (state::Bodies::kNew) is hard in its first step:
-/// soft contacts learn in some steps what they carry, and what was placed in balance sinks and sways
-/// meanwhile. The sag follows from the impulse, which the direct solution knows too, so an island is judged
-/// alike in both. It is at least what a body's own weight needs, shared by what it rests on.
+/// An island that exceeds one of them in two consecutive steps, or five times in one step, is solved directly
+/// until it has stayed below 0.6 of both for 30 steps. An island whose bodies are all new
+/// (state::Bodies::kNew) is direct in its first step: soft contacts need some steps to learn what they carry,
+/// and meanwhile a balanced structure sinks and sways. The sag follows from the impulse, which the direct
+/// solution knows too, so both are evaluated alike. The sag is at least what a body's own weight needs,
+/// shared by what the body rests on.
 
 namespace hooke::solver {
 
-/// Multiplications of one factorization, of one island and of all: some milliseconds a step.
+/// Multiplications of one factorization, of one island and of all islands: some milliseconds a step.
 inline constexpr double kDirectIslandBudget = 4e4;
 inline constexpr double kDirectBudget = 1e6;
 inline constexpr std::uint32_t kMaxDirectBodies = 256;
 
-/// hardness of a body: below 0 its island was refused and is not judged for as many steps, then steps in
-/// which it has asked for a direct solution, and from kHard on it is hard for as many steps and more.
+/// direct_state of a body: below 0, its island was refused and is not evaluated for that many steps. From 0
+/// on it counts the steps in which the island asked for a direct solution. From kDirect on the island is
+/// direct for that many steps and more.
 inline constexpr std::int8_t kDirect = 2;
 
-/// Who may be in a hard island, by body row. What hangs is no member: its contacts stay soft, whatever its
-/// neighbors are. Islands with a body of a ragdoll stay soft as a whole.
+/// What carries each body, by body row: it decides who may be in a direct island. What hangs is no member:
+/// its contacts stay soft, whatever its neighbors are. Islands with a body of a ragdoll stay soft as a whole.
 using IslandMembers = std::span<const Footing>;
 
-/// What an island asks for; of each body at first, then of all at its root.
+/// What an island asks for; first of each body, then of the whole island at its root.
 struct IslandDemand {
-  Real sag = Real(0);                                     ///< Over the size.
-  Real buckling = Real(0);                                ///< sag / size^3 [1/m^2]
-  Real support_stiffness = Real(0);                       ///< Of what it rests on; see add_own_weight.
-  Real thinnest = std::numeric_limits<Real>::infinity();  ///< Size at these [m].
-  Real low = std::numeric_limits<Real>::infinity();       ///< Along gravity [m].
+  Real sag = Real(0);                ///< Largest sag over the size.
+  Real buckling = Real(0);           ///< Largest sag / size^3 [1/m^2].
+  Real support_stiffness = Real(0);  ///< Stiffness of what the body rests on; see add_own_weight.
+  Real thinnest = std::numeric_limits<Real>::infinity();  ///< Smallest size at these contacts [m].
+  Real low = std::numeric_limits<Real>::infinity();       ///< Lowest coordinate along gravity [m].
   Real high = -std::numeric_limits<Real>::infinity();
   std::uint32_t count = 0;
-  std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Hardness.
+  std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Smallest direct_state.
   std::int8_t most = std::numeric_limits<std::int8_t>::min();
 };
 
@@ -69,17 +71,17 @@ struct DirectIslands {
 
   std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
-  std::uint32_t refused = 0;  ///< Hard, but over the budget.
+  std::uint32_t refused = 0;  ///< Number of direct islands over the budget.
 
-  // Scratch, to be used again.
+  // Scratch memory.
   base::DisjointSets sets;
   std::vector<std::uint32_t> island_of;  ///< By body row.
   std::vector<DirectGraph> found;
-  std::vector<std::uint8_t> fits;     ///< Of `found`: within the budget.
-  std::vector<Real> loads;            ///< Of `found` [m/s].
-  std::vector<int> order;             ///< Of `found`, by load.
-  BlockGraph matrix;                  ///< Of one island.
-  std::vector<int> sizes;             ///< Of its blocks.
+  std::vector<std::uint8_t> fits;     ///< For each of `found`: whether it is within the budget.
+  std::vector<Real> loads;            ///< For each of `found` [m/s].
+  std::vector<int> order;             ///< Indices of `found`, by load.
+  BlockGraph matrix;                  ///< Graph of one island's matrix.
+  std::vector<int> sizes;             ///< Sizes of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
 
   /// Whether the body is in an island of this step.
@@ -87,21 +89,21 @@ struct DirectIslands {
   [[nodiscard]] std::span<DirectIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
 };
 
-/// Islands of direct bodies, with all that touches them.
-/// `awake` are rows in ascending order. No body is new after it.
+/// Finds the islands of direct bodies, with all that touches them. `awake` are rows in ascending order.
+/// Afterwards no body is new.
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                          const std::vector<state::Manifold>& manifolds, IslandMembers members,
                          state::Bodies& bodies, DirectIslands& direct);
 
-/// The rows of their contacts.
+/// Makes the rows of their contacts.
 void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
                             const state::Bodies& bodies, DirectIslands& direct);
 
-/// One substep.
+/// Solves one substep.
 void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, DirectIslands& direct,
                           BodyContacts& contacts, state::Bodies& bodies);
 
-/// Updates the hardness of bodies by the impulses of the last substep.
+/// Updates the direct_state of bodies by the impulses of the last substep.
 void evaluate_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                              const BodyContacts& contacts, IslandMembers members, DirectIslands& direct,
                              state::Bodies& bodies);

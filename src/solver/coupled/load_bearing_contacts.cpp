@@ -20,8 +20,8 @@ using state::normal_impulse;
 constexpr Real kTouchingGap = Real(1e-3);   ///< Surfaces so near may press on each other [m].
 constexpr Real kLiesOn = Real(0.3);         ///< Cosine between the normal and gravity.
 constexpr Real kStandingShare = Real(0.5);  ///< Share of load and weight that contacts under a body bring.
-constexpr Real kNeverStands = Real(-1);     ///< Weight of a body that is not asked.
-constexpr Real kStandingShareAgain = Real(0.9);  ///< The same of a body whose hooks carried it before.
+constexpr Real kNeverStands = Real(-1);     ///< Weight of a body that is not tested.
+constexpr Real kStandingShareAgain = Real(0.9);  ///< The same share for a body whose hooks carried it before.
 
 bool is_touching(const Manifold& m) {
   for (std::int32_t k = 0; k < m.point_count; ++k) {
@@ -31,7 +31,7 @@ bool is_touching(const Manifold& m) {
   return false;
 }
 
-/// Lists what lies on what.
+/// Lists which body lies on which.
 void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) {
   props.clear();
   for (const Manifold& m : pairs.manifold) {
@@ -44,20 +44,23 @@ void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) 
   }
 }
 
-/// What the choice is made from.
+/// What the choice of contacts depends on.
 struct Candidates {
   Real gravity;           ///< [m/s^2]
   Vec3 down;              ///< Unit; zero without gravity.
   Real impulse_to_force;  ///< [1/s]
   const Bodies& bodies;
   std::span<const std::uint8_t> hooked;
-  const std::vector<SupportRole>& by_hooks;       ///< What hooks alone say, of all bodies.
-  const std::vector<GroundLoad>& by_ground_load;  ///< The same.
-  const Supports& supports;  ///< The same of those that do not stand, with what lies on them.
+  const std::vector<SupportRole>& by_hooks;       ///< Roles by hooks alone, of all bodies.
+  const std::vector<GroundLoad>& by_ground_load;  ///< Loads by hooks alone.
+  /// The same without bodies that stand, and with what lies on the others.
+  const Supports& supports;
   std::span<const Footing> footing;
   std::span<const CarriedLoad> carried;
-  std::span<const std::pair<std::uint32_t, std::uint32_t>> load_bearing_before;  ///< Bodies, ascending.
-  std::span<const std::uint8_t> in_ragdoll;  ///< Of like masses: what presses there may err.
+  /// Pairs of bodies, ascending.
+  std::span<const std::pair<std::uint32_t, std::uint32_t>> load_bearing_before;
+  /// Ragdolls have like masses: contacts that press there may err.
+  std::span<const std::uint8_t> in_ragdoll;
 
   [[nodiscard]] bool may_bear_load(const Manifold& m) const {
     return !m.is_load_bearing() && m.point_count > 0 && has_contact_rows(m, bodies);
@@ -69,11 +72,12 @@ struct Candidates {
     if (of_iterative || support_role[lower] == SupportRole::kNone ||
         support_role[upper] == SupportRole::kHangs)
       return false;
-    // Of two that are hooked and hang on nothing, ragdolls in a heap, neither holds the other.
+    // Of two hooked bodies that hang on nothing, as ragdolls in a heap, neither holds the other.
     if (hooked[upper] != 0 && support_role[lower] == SupportRole::kHooked) return false;
     const Real w_upper = bodies.motion[upper].inverse_mass;
     const Real w_lower = bodies.motion[lower].inverse_mass;
-    // What stands beside, as a lamp beside a tower, does not rest on it; but a jaw may be driven against it.
+    // A body that stands beside, as a lamp beside a tower, does not rest on it; but a jaw may be driven
+    // against it.
     const bool stands = footing[upper] == Footing::kStands && carried[upper].on_something;
     if (stands && !lies_on(upper, m) && !by_ground_load[lower].driven) return false;
     // Rows of one body that are exact leave nothing to the others.
@@ -83,7 +87,7 @@ struct Candidates {
     return w_lower * load_on(m) > (was_load_bearing(m) ? Real(0) : kLoadBearingLoadRatio * gravity);
   }
 
-  /// Whether it is pressed against what no force moves.
+  /// Whether the body is pressed against what no force moves.
   [[nodiscard]] bool is_pressed(std::uint32_t body, const Manifold& m) const {
     if (by_hooks[body] == SupportRole::kNone || in_ragdoll[body] != 0) return false;
     const GroundLoad& ground_load = supports.ground_load[body];
@@ -93,14 +97,14 @@ struct Candidates {
     return w * load_on(m) > (was_load_bearing(m) ? Real(0.25) : Real(1)) * kPressedLoad * gravity;
   }
 
-  /// In the last step [N].
+  /// Load on the upper body in the last step [N].
   [[nodiscard]] Real load_on(const Manifold& m) const {
     Real load = Real(0);
     for (int k = 0; k < m.point_count; ++k) load += impulse_to_force * m.point[k].normal_impulse;
     return load;
   }
 
-  /// Whether it presses on the other one by its weight: not one that leans on its side.
+  /// Whether `upper` presses on the other body by its weight; false if it leans on its side.
   [[nodiscard]] bool lies_on(std::uint32_t upper, const Manifold& m) const {
     const Real up = dot(m.normal, down) * (upper == m.body_a ? Real(1) : Real(-1));
     return up > kLiesOn;
@@ -117,7 +121,7 @@ Manifold* only_manifold(const state::Pair& pair, std::vector<Manifold>& manifold
   return pair.manifold_count == 1 ? &manifolds[pair.first_manifold] : nullptr;
 }
 
-/// Marks manifolds, from what hangs upwards: what lies on it holds others. Returns how many.
+/// Marks manifolds upwards from what hangs, since what lies on it holds others in turn. Returns how many.
 std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vector<SupportRole>& support_role,
                    std::uint32_t& refused) {
   constexpr int kMostLayers = 4;
@@ -149,7 +153,7 @@ std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vecto
   return chosen;
 }
 
-/// What lies on one member of an articulation may press each of them on the ground.
+/// What lies on one member of an articulation may press each of the members on the ground.
 void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& pairs, std::vector<Real>& load,
                std::vector<GroundLoad>& ground_load) {
   load.assign(bodies.motion.size(), Real(0));
@@ -175,8 +179,8 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
   }
 }
 
-/// The body that may be pressed on the other one, the ground: what moves against what does not, or what is
-/// hooked and lies on something loose that stands. Null if there is none.
+/// The body that may be pressed on the other one, the ground. It is the one that moves if the other does not,
+/// or a hooked body that lies on an unhooked one that stands. Null if there is none.
 const std::uint32_t* pressed_body(const Candidates& candidates, const Manifold& m) {
   const bool a_moves = is_moved(candidates.bodies, m.body_a);
   const bool b_moves = is_moved(candidates.bodies, m.body_b);
@@ -190,7 +194,7 @@ const std::uint32_t* pressed_body(const Candidates& candidates, const Manifold& 
   return lies(m.body_b, m.body_a) ? &m.body_b : nullptr;
 }
 
-/// Marks manifolds of what is pressed on the ground, `chosen` being chosen already.
+/// Marks manifolds of bodies that are pressed on the ground; `chosen` have been marked before.
 void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pairs& pairs,
                     std::uint32_t& refused) {
   for (const state::Pair& pair : pairs.pair) {
@@ -208,7 +212,8 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
   }
 }
 
-/// Whether what it joins stays at its distance along any direction in which they may be pressed together.
+/// Whether the hook keeps its bodies at their distance in every direction in which they may be pressed
+/// together.
 bool keeps_distance(const Hook& hook) {
   if (hook.holds_point()) return false;
   if (hook.kind == HookKind::kDistance) return hook.freedom[0].locked;
@@ -232,7 +237,7 @@ void note_neighbors(const Hook& hook, const Bodies& bodies, std::vector<GroundLo
   note(hook.b.body, hook.a.body);
 }
 
-/// What has to be lifted for the two to leave each other: the heavier one, or what presses on the ground.
+/// Mass that must be lifted to part the two: the heavier one, or what presses on the ground.
 Real lifted_mass(const Manifold& m, const Bodies& bodies, const std::vector<GroundLoad>& ground_load) {
   const Real w_a = bodies.motion[m.body_a].inverse_mass;
   const Real w_b = bodies.motion[m.body_b].inverse_mass;
@@ -285,14 +290,14 @@ void find_supporting_bodies(const Joints& joints, const Bodies& bodies, const st
 
 namespace {
 
-/// Whether contacts under a body bring `share` of its weight and of what lies on it, or where nothing is
-/// known yet, something that stands touches it from below.
+/// Whether contacts under a body bring `share` of its weight and of what lies on it. Where nothing is known
+/// yet, it is enough that something which stands touches the body from below.
 bool is_carried(const CarriedLoad& by, Real weight, Real share) {
   const bool known = by.from_below > Real(0) || by.from_above > Real(0);
   return known ? by.from_below >= share * (by.from_above + weight) : by.on_something;
 }
 
-/// One look from below upwards: who stands on what stands. Returns whether it found more than before.
+/// One pass from below upwards: finds who stands on what stands. Returns whether it found more than before.
 bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop>& props,
                         LoadBearingScratch& scratch) {
   std::vector<CarriedLoad>& carried = scratch.carried;
@@ -316,8 +321,8 @@ bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop
   return more;
 }
 
-/// A hooked body stands if contacts under it, with what stands itself, bring most of its weight and of what
-/// lies on it, and no motor or spring moves it.
+/// A hooked body stands if contacts with standing bodies under it bring most of its weight and of what lies
+/// on it, and no motor or spring moves it.
 void find_footing(const ContactStep& step, std::span<const std::uint8_t> hooked, const Joints& joints,
                   const std::vector<GroundLoad>& ground_load, const Bodies& bodies, const state::Pairs& pairs,
                   LoadBearingScratch& scratch) {
@@ -336,7 +341,7 @@ void find_footing(const ContactStep& step, std::span<const std::uint8_t> hooked,
   }
 }
 
-/// What stands holds by its contacts, whatever its hooks are.
+/// A body that stands holds others by its contacts, whatever its hooks are.
 void let_stand(std::span<const Footing> footing, std::vector<SupportRole>& support_role) {
   for (std::size_t body = 0; body < support_role.size(); ++body) {
     if (footing[body] == Footing::kStands) support_role[body] = SupportRole::kNone;
@@ -352,7 +357,7 @@ void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, 
   scratch.footing.assign(bodies.motion.size(), Footing::kStands);
   scratch.refused = 0;
   if (hooks.empty() && pairs.load_bearing.empty()) return;
-  // Where none was borne no flag is set.
+  // Where no contact bore load, no flag is set.
   if (!pairs.load_bearing.empty()) {
     for (Manifold& m : pairs.manifold) {
       if (m.is_load_bearing()) m.route = state::ContactRoute::kSoft;
