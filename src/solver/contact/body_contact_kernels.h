@@ -6,36 +6,39 @@
 #include <span>
 
 /// \file
-/// Kernels over blocks of contacts; the formulas stand in solver/contact/body_contacts.h. As in wide.h, every
-/// instruction set gives the bits of the scalar twin, and wide::use_target chooses for these kernels too.
+/// Kernels over blocks of contacts; the formulas stand in solver/contact/body_contacts.h. Every instruction
+/// set gives the bits of the scalar twin, and wide::use_target (solver/simd/dispatch.h) chooses the
+/// instruction set.
 
 namespace hooke::solver::wide {
 
-/// Where the inputs of a block's rows are. Columns of structs are read as they are, four numbers at a time.
+/// Where the inputs of a block's rows are. Columns of structs are read in place, four numbers at a time.
 struct alignas(64) ContactSource {
-  ContactBlock::Lane sign;                ///< -1 where the bodies of the manifold change places, 1 elsewhere.
+  /// -1 where the bodies of the manifold are swapped in the block, 1 elsewhere.
+  ContactBlock::Lane sign;
   ContactBlock::Lane points;              ///< Number of points.
   std::uint32_t manifold[kContactLanes];  ///< Where the manifold begins, in numbers.
   const state::Manifold* manifolds = nullptr;
   const math::Symmetric3<Real>* scale = nullptr;  ///< S of each body.
-  Real impulse_scale = Real(1);                   ///< Of impulses carried over.
+  Real impulse_scale = Real(1);                   ///< Scale of the impulses carried over.
 };
 
 /// How a pass treats overlap, gaps and friction.
 struct ContactPass {
   ContactSoftness softness;
   Real inverse_h = Real(0);  ///< Points that are apart reach the surface within h, and no farther.
-  bool foresees = true;      ///< False: but where lanes bounce nothing is done about gaps.
+  bool foresees = true;      ///< False: lanes that bounce do nothing about gaps.
   bool friction = false;
 };
 
-/// The rows of a block of which only line numbers, w, restitution, number of points and `anchored` stand.
+/// Computes the rows of a block that has only record numbers, w, restitution, number of points and
+/// `anchored`.
 void compute_contact_rows(const ContactSource& source, ContactBlock& block);
 
-/// One pass over blocks of one color.
+/// Makes one pass over blocks of one color.
 void solve_contacts(std::span<ContactBlock> blocks, const ContactPass& pass, state::MotionRecord* motion);
 
-/// Takes the impulses carried over out of the free motion of the bodies.
+/// Removes the impulses carried over from the free motion of the bodies.
 void warm_start_contacts(std::span<const ContactBlock> blocks, state::FreeMotionRecord* free_motion);
 
 // The scalar twins.

@@ -1,4 +1,5 @@
-/// The arithmetic of contact rows in numbers.h's Numbers. Included anew for each instruction set.
+/// The arithmetic of contact rows, in Numbers of solver/simd/numbers.h. Included again for each instruction
+/// set.
 
 #if defined(HOOKE_SOLVER_CONTACT_BODY_CONTACT_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_CONTACT_BODY_CONTACT_ROWS_H
@@ -16,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-/// The rows of points.
+/// Solves the rows of the points.
 template <class Number, bool kAnchored>
 HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& pass,
                              const Displacement<Number>& moved_a, const Displacement<Number>& moved_b,
@@ -47,7 +48,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const Number mass_scale = choose(apart, Number(Real(1)), Number(pass.softness.mass_scale));
     const Number impulse_scale = choose(apart, zero, Number(pass.softness.impulse_scale));
 
-    // All that does not wait for the point before comes first.
+    // All that does not wait for the previous point comes first.
     const Number before = get<Number>(point.impulse + lane);
     const Number mass = get<Number>(point.mass + lane);
     const Number target = (before - impulse_scale * before) - mass * bias;
@@ -62,7 +63,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
   bodies.push(total, n, w_a, w_b);
 }
 
-/// Twist, then the two directions of the disc, within what the impulses of the points allow.
+/// Solves twist, then the two directions of the friction disc, within what the impulses of the points allow.
 template <class Number, bool kAnchored>
 HWY_INLINE void solve_friction(ContactBlock& block, int lane, Bodies<Number, kAnchored>& bodies) {
   const Number zero(Real(0));
@@ -127,7 +128,7 @@ HWY_INLINE void solve_lanes(ContactBlock& block, int lane, const ContactPass& pa
   pair.write_back(block, lane, motion);
 }
 
-/// Applies what the block holds to the bodies, with the opposite sign.
+/// Applies the impulses that the block holds to the bodies, with the opposite sign.
 template <class Number, bool kAnchored>
 HWY_INLINE void take_impulses(const ContactBlock& block, int lane, Bodies<Number, kAnchored>& bodies) {
   const Number zero(Real(0));
@@ -163,7 +164,7 @@ HWY_INLINE void warm_start_lanes(const ContactBlock& block, int lane, Real* free
   if constexpr (!kAnchored) write_free(bodies.b, free_motion, block.record_b + lane);
 }
 
-/// What rows are made of, A and B in the order of the block.
+/// What rows are made from, with A and B in the order of the block.
 template <class Number>
 struct Inputs {
   Scale<Number> scale_a, scale_b;
@@ -171,12 +172,12 @@ struct Inputs {
   Triple<Number> anchor_a[state::Manifold::kMaxPoints], anchor_b[state::Manifold::kMaxPoints];
   Number present[state::Manifold::kMaxPoints];  ///< 1 for a point, 0 for one the manifold lacks.
   Number separation[state::Manifold::kMaxPoints];
-  Triple<Number> friction_impulse;  ///< On B.
+  Triple<Number> friction_impulse;  ///< Impulse on B.
   Triple<Number> surface_velocity;
   Number spinning_friction;
 };
 
-// The quarters of a manifold that are read begin at these numbers.
+// The four-number groups of a manifold that are read begin at these numbers.
 constexpr std::size_t kNormalAt = offsetof(state::Manifold, normal) / sizeof(Real);
 constexpr std::size_t kPointAt = offsetof(state::Manifold, point) / sizeof(Real);
 constexpr std::size_t kPointStride = sizeof(state::ContactPoint) / sizeof(Real);
@@ -252,8 +253,8 @@ HWY_INLINE Triple<Number> across(const Triple<Number>& n) {
   return scaled(quotient(one, root(dot(t, t))), t);
 }
 
-/// Mean place of the contact: points count fully up to 5 mm apart and fade out to 2 cm. The mean of all, if
-/// none is as near as that.
+/// Mean position of the contact. Points count fully up to 5 mm apart and fade out to 2 cm. If none is as near
+/// as that, it is the mean of all.
 template <class Number>
 struct MeanAnchors {
   Triple<Number> a, b;
@@ -274,7 +275,7 @@ HWY_INLINE MeanAnchors<Number> mean_anchors(const Inputs<Number>& inputs, int po
     add(weight, inputs.anchor_a[k], mean.a);
     add(weight, inputs.anchor_b[k], mean.b);
   }
-  // A lively manifold may have no points now.
+  // A refreshed manifold may have no points now.
   const Number share = quotient(one, larger(sum, Number(Real(0.5) * kLeast)));
   return {scaled(share, mean.a), scaled(share, mean.b)};
 }
@@ -286,13 +287,13 @@ struct RowMaker {
   int lane;
   Number w;
 
-  /// Inverse effective mass of a row whose linear part is `linear`, of the product of two rows in general.
+  /// Inverse effective mass of a row whose linear part is `linear`, or in general the product of two rows.
   HWY_INLINE Number inverse_mass(Number linear, const Velocity<Number>& p, const Velocity<Number>& q) const {
     const Number of_a = linear + dot(p.v, q.v);
     return kAnchored ? of_a : of_a + dot(p.omega, q.omega);
   }
 
-  /// j_a in `v`, j_b in `omega`.
+  /// Returns j_a in `v` and j_b in `omega`.
   HWY_INLINE Velocity<Number> jacobians(const Triple<Number>& moment_a,
                                         const Triple<Number>& moment_b) const {
     return {inputs.scale_a.times(moment_a), inputs.scale_b.times(moment_b)};

@@ -20,12 +20,12 @@ using state::Manifold;
 constexpr int kFillGrain = 4;
 constexpr int kWarmGrain = 16;
 
-/// Whether the manifold's bodies change places in its rows, so that A moves.
+/// Whether the manifold's bodies are swapped in its rows, so that A moves.
 bool is_swapped(const Manifold& m, const ContactBlock& block, int lane) {
   return block.record_a[lane] != 16 * m.body_a;
 }
 
-/// Who is in the lane; the rest is for the kernel.
+/// Writes which bodies are in the lane; the kernel computes the rest.
 void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bodies, int lane,
                wide::ContactSource& source, ContactBlock& block) {
   const Manifold& m = source.manifolds[row];
@@ -60,7 +60,7 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
       (is_swapped(m, block, row.lane) ? -step.impulse_scale : step.impulse_scale) * m.rolling_impulse;
 }
 
-/// Cuts the colors into blocks, and finds places for what only some of them have.
+/// Cuts the colors into blocks, and finds room for what only some blocks have.
 void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contacts) {
   const ContactColors& colors = contacts.colors;
   contacts.color_begin = {0};
@@ -118,7 +118,7 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
   }
 }
 
-/// Takes the impulses of the block's rolling rows out of the free motion.
+/// Removes the impulses of the block's rolling rows from the free motion.
 void warm_start_rolling(const BodyContacts& contacts, const ContactBlock& block, Bodies& bodies) {
   for (int i = 0; i < block.rolling_count; ++i) {
     const RollingRow& row = contacts.rolling[block.first_rolling + i];
@@ -154,7 +154,7 @@ std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
   return {contacts.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())};
 }
 
-/// Blocks of hard islands are the last of their color.
+/// The soft blocks of a range: blocks of direct islands are the last of their color.
 std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
   const auto direct =
@@ -185,7 +185,7 @@ void for_impulses(const ContactBlock& block, int lane, Change&& change) {
   if (!block.anchored) change(block.record_b[lane] / 16, block.w_b[lane] * push, turn_b);
 }
 
-/// What a lane's impulses have done to the bodies is to be of free motion (`sign` 1), or no longer (-1).
+/// Adds what a lane's impulses have done to the free motion of the bodies (`sign` 1), or removes it (-1).
 void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodies) {
   for_impulses(block, lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.free_motion[body].v += sign * v;
@@ -195,7 +195,7 @@ void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodie
   });
 }
 
-/// From separations of `time` from now to those of the start of the step, along the rows' straight lines.
+/// Turns separations of `time` from now into those of the start of the step, along the rows' straight motion.
 void bring_to_start(const Bodies& bodies, Real time, int lane, ContactBlock& block) {
   const std::uint32_t row_a = block.record_a[lane] / 16;
   const std::uint32_t row_b = block.record_b[lane] / 16;
@@ -214,12 +214,13 @@ void bring_to_start(const Bodies& bodies, Real time, int lane, ContactBlock& blo
   }
 }
 
-/// The last lane with a manifold stands in all those behind it, too.
+/// The end of the lanes that repeat this one: the last lane with a manifold is repeated in all behind it.
 int end_of(const ContactBlock& block, int lane) {
   return lane + 1 == block.count ? kContactLanes : lane + 1;
 }
 
-/// Rows for a manifold that has more points now than any of the block's had; the other lanes have none there.
+/// Adds rows for a manifold that has more points now than any of the block's had. Other lanes have no point
+/// there.
 void make_room(int point_count, ContactBlock& block) {
   while (block.point_count < point_count) block.point[block.point_count++] = {};
 }
@@ -306,7 +307,7 @@ void relax_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
     for (int i = 0; i < block.rolling_count; ++i)
       roll(block, contacts.rolling[block.first_rolling + i], bodies);
   }
-  // What comes near and will be struck in the next substep must not be slower by then.
+  // What approaches and will bounce in the next substep must not be slower by then.
   const wide::ContactPass pass = {
       .softness = {}, .inverse_h = Real(1) / step.h, .foresees = false, .friction = true};
   wide::solve_contacts(soft_blocks_of(contacts, blocks), pass, bodies.motion.data());

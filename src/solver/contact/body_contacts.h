@@ -17,8 +17,8 @@
 /// \file
 /// Contacts between bodies: soft rows at velocity level, in colors, 16 manifolds to a block.
 ///
-/// The order of calls in a step, with those of bodies.h; `each color` is a loop over color_begin, and blocks
-/// of one color may be shared out over threads:
+/// The order of calls in a step, with those of solver/body/body_motion.h. `each color` is a loop over
+/// color_begin, and blocks of one color may be shared out over threads:
 ///
 ///   prepare_bodies, prepare_body_contacts                          once
 ///   accelerate_bodies
@@ -27,12 +27,13 @@
 ///   relax_body_contacts, each color                                substeps times
 ///   finish_bodies, store_body_contacts                             once
 ///
-/// One point, with n the normal from A to B, s its separation, v = n.(v_b - v_a) + j_b.omega_b - j_a.omega_a
-/// in scaled coordinates (state/bodies.h) and m = 1 / (w_a + w_b + |j_a|^2 + |j_b|^2):
+/// For one point, with n the normal from A to B, s its separation, v = n.(v_b - v_a) + j_b.omega_b -
+/// j_a.omega_a in scaled coordinates (state/bodies.h) and m = 1 / (w_a + w_b + |j_a|^2 + |j_b|^2), the row
+/// is:
 ///
 ///   separation   s = s_0 + n.(dx_b - dx_a) + j_b.theta_b - j_a.theta_a     linear within a step
 ///   apart        s > 0:   lambda' = max(0, lambda - m (v + s/h))           reach the surface, and no farther
-///                relax:   lambda' = 0 of what bounces: hits.h wants the speed of what comes
+///                relax:   lambda' = 0 if it bounces: solver/contact/impacts.h needs the closing speed
 ///   overlapping  bias:    lambda' = max(0, lambda - m (mu v + max(mu beta s, -3 m/s)) - gamma lambda)
 ///                relax:   lambda' = max(0, lambda - m v)                   takes out what the bias put in
 ///
@@ -41,32 +42,32 @@
 /// constraints: Catto, "Soft Constraints", GDC 2011; bias, move, relax: "Solver2D", 2024). At rest the row is
 /// a spring of stiffness m omega^2.
 ///
-/// Friction follows its points: one row of twist about the normal and one of two directions at the mean
-/// contact, on an exact disc: it sticks while its impulse is within mu_static N and slides with mu N.
+/// Friction is solved after its points: one row of twist about the normal and one of two directions at the
+/// mean contact, on an exact disc. It sticks while its impulse is within mu_static N and slides with mu N.
 
 namespace hooke::solver {
 
 inline constexpr int kContactLanes = 16;
 
-/// Slower impacts do not bounce [m/s].
+/// Slower impacts do not bounce [m/s]. The second speed is for dense piles.
 inline constexpr Real kLeastImpactSpeed = Real(0.03);
 inline constexpr Real kLeastImpactSpeedInPile = Real(0.2);
 
-/// Rows of up to 16 manifolds of one color: no two of them share a body that moves. A's side always moves;
-/// where only one body does, it is made A. The last lane that holds a manifold is repeated up to the end, so
-/// that a partly filled block can be computed, and stored, in full vectors.
+/// Rows of up to 16 manifolds of one color: no two of them share a body that moves. A always moves; where
+/// only one body does, it is made A. The last lane that holds a manifold is repeated up to the end, so that a
+/// partly filled block can be computed, and stored, in full vectors.
 struct alignas(64) ContactBlock {
   using Lane = Real[kContactLanes];
 
   struct Point {
     Lane j_a[3], j_b[3];
     Lane separation;  ///< At the start of the step [m].
-    Lane mass;        ///< Effective; 0 for a point the manifold lacks [kg].
+    Lane mass;        ///< Effective mass; 0 for a point the manifold lacks [kg].
     Lane impulse;     ///< [N s]
   };
 
-  // What the passes over points alone read.
-  std::uint32_t record_a[kContactLanes];  ///< 16 times the row of body A: where its line begins, in numbers.
+  // Read by passes over points alone.
+  std::uint32_t record_a[kContactLanes];  ///< 16 times body A's row: where its record begins, in numbers.
   std::uint32_t record_b[kContactLanes];
   Lane normal[3];
   Lane w_a, w_b;
@@ -86,11 +87,11 @@ struct alignas(64) ContactBlock {
   Lane pushed;  ///< Largest sum of the points' impulses after a pass with friction [N s].
 
   int count = 0;          ///< Lanes with a manifold of their own.
-  int point_count = 0;    ///< The largest of the lanes.
+  int point_count = 0;    ///< The largest number of points of its lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
-  bool direct = false;    ///< Its manifolds are of hard islands: only rolling is solved here.
+  bool direct = false;    ///< Its manifolds are of direct islands: only rolling is solved here.
   bool bounces = false;   ///< Some lane has restitution.
-  int first_rolling = 0;  ///< Its rolling rows.
+  int first_rolling = 0;  ///< Index of its first rolling row.
   int rolling_count = 0;
 };
 
@@ -99,87 +100,93 @@ inline Vec3 vector_of(const ContactBlock::Lane (&from)[3], int lane) {
   return {from[0][lane], from[1][lane], from[2][lane]};
 }
 
-/// Resistance to rolling: relative angular velocity across the normal, within lever times normal impulse.
+/// Rolling resistance: opposes relative angular velocity across the normal, within lever times normal
+/// impulse.
 struct RollingRow {
   int lane = 0;
   Real lever = Real(0);                 ///< [m]
-  math::Symmetric3<Real> inertia = {};  ///< Effective [kg m^2].
-  Vec3 impulse = {};                    ///< On B [N m s].
+  math::Symmetric3<Real> inertia = {};  ///< Effective inertia [kg m^2].
+  Vec3 impulse = {};                    ///< Angular impulse on B [N m s].
 };
 
 /// One lane of a block.
 struct ContactLane {
   int block = 0;
   int lane = 0;
-  std::uint32_t manifold = 0;  ///< Its row.
+  std::uint32_t manifold = 0;  ///< Row of the manifold.
 };
 
 struct BodyContacts {
   static constexpr std::uint32_t kNoManifold = 0xFFFFFFFF;
 
   std::vector<ContactBlock> blocks;
-  std::vector<int> color_begin = {0};      ///< Blocks of color c are [color_begin[c], color_begin[c + 1]).
-  std::vector<std::uint32_t> manifold_of;  ///< Row of each lane's manifold; kNoManifold where there is none.
+  std::vector<int> color_begin = {0};  ///< Blocks of color c are [color_begin[c], color_begin[c + 1]).
+  /// Row of each lane's manifold; kNoManifold where there is none.
+  std::vector<std::uint32_t> manifold_of;
   std::vector<RollingRow> rolling;
-  std::vector<ContactLane> refreshed;  ///< Lanes of lively manifolds that soft contacts solve.
+  /// Lanes of manifolds that are refreshed each substep and that soft contacts solve.
+  std::vector<ContactLane> refreshed;
   ContactColors colors;
 
   [[nodiscard]] int color_count() const { return static_cast<int>(color_begin.size()) - 1; }
 };
 
-/// The same for all contacts in a step.
+/// Settings of all contacts in a step.
 struct ContactStep {
   Vec3 gravity = {};              ///< [m/s^2]
   Real h = Real(0);               ///< Length of a substep [s].
   Real hz = Real(60);             ///< Frequency of the spring that undoes overlap.
-  Real damping_ratio = Real(5);   ///< Of that spring.
+  Real damping_ratio = Real(5);   ///< Damping ratio of that spring.
   int sweeps = 1;                 ///< Calls of solve_body_contacts in a substep.
   bool friction_in_bias = false;  ///< Friction also in solve_body_contacts: quieter at rest, and slower.
-  Real impulse_scale = Real(1);   ///< Of the impulses carried over: h now over h then.
+  Real impulse_scale = Real(1);   ///< Scale of the impulses carried over: h now over h then.
 };
 
-/// How rows treat overlap, of one pass.
+/// How the rows of one pass treat overlap.
 struct ContactSoftness {
-  Real rate = Real(0);           ///< mu beta: speed asked for per overlap [1/s].
+  Real rate = Real(0);           ///< mu beta: speed demanded per overlap [1/s].
   Real mass_scale = Real(1);     ///< mu
   Real impulse_scale = Real(0);  ///< gamma
 };
 
-/// Bias passes: contacts with what does not move (`anchored`) have twice the frequency and half the damping
-/// ratio. With one sweep the frequency is at most 1/(8h), with more 1/(4h): above, contacts slide apart.
+/// Softness of bias passes. Contacts with what does not move (`anchored`) have twice the frequency and half
+/// the damping ratio. With one sweep the frequency is at most 1/(8h), with more 1/(4h): above, contacts slide
+/// apart.
 [[nodiscard]] ContactSoftness contact_softness(const ContactStep& step, bool anchored);
 
 /// Colors manifolds in their order and makes their rows from where bodies are now and the impulses of the
-/// step before; takes those impulses out of bodies.free_motion, so that the first accelerate_bodies applies
+/// step before. Removes those impulses from bodies.free_motion, so that the first accelerate_bodies applies
 /// them. Manifolds without points, of sensors, or of bodies none of which moves have no rows.
 void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<state::Manifold>& manifolds,
                            state::Bodies& bodies, const ContactStep& step, BodyContacts& contacts);
 
-/// One pass with bias over blocks of one color. Velocities only.
+/// Makes one pass with bias over blocks of one color. It changes velocities only.
 void solve_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
 
-/// One pass without bias over blocks of one color, rolling resistance first, friction last.
+/// Makes one pass without bias over blocks of one color, with rolling resistance first and friction last.
 void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
 
-/// After accelerate_bodies, which repeats what contacts did in the substep before: takes that of a lane back.
+/// Takes back what a lane did in the substep before. It follows accelerate_bodies, which repeats that
+/// impulse.
 void drop_warm_start(const ContactLane& lane, BodyContacts& contacts, state::Bodies& bodies);
 
-/// In the middle of a step, the impulses of some lanes, but hard ones, to their manifolds.
+/// Copies the impulses of some lanes to their manifolds in the middle of a step, except those of direct
+/// contacts.
 void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contacts,
                  std::vector<state::Manifold>& manifolds);
 
-/// Then the rows of these lanes from their new manifolds, whose separations are those of `time` [s] from now.
-/// What contacts have done in this substep is, as warm start of the next, as if they had done it with the new
-/// rows; the velocities, and angular momenta, remain what the old ones have made of them.
+/// Makes the rows of these lanes again from their new manifolds, whose separations are those of `time` [s]
+/// from now. For the warm start of the next substep, the impulses of this one count as if the new rows had
+/// applied them. The velocities and angular momenta stay as the old rows have made them.
 void refill_lanes(std::span<const ContactLane> lanes, const std::vector<state::Manifold>& manifolds,
                   Real time, state::Bodies& bodies, BodyContacts& contacts);
 
 /// Acceleration of a body by all but contacts; zero if they do not move it [m/s^2].
 [[nodiscard]] Vec3 free_acceleration(const state::Bodies& bodies, std::uint32_t row, Vec3 gravity);
 
-/// Impulses back to the manifolds.
+/// Copies impulses back to the manifolds.
 void store_body_contacts(parallel::Range blocks, const BodyContacts& contacts,
                          std::vector<state::Manifold>& manifolds);
 

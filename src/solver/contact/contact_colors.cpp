@@ -11,14 +11,14 @@ namespace {
 using state::Manifold;
 
 constexpr int kPairColors = 56;
-constexpr int kColors = 64;  // bits of a mask; what finds none free is numbered from here on
+constexpr int kColors = 64;  // bits of a mask; manifolds that find none free are numbered from here on
 
 void find_moving(const state::Bodies& bodies, std::vector<std::uint8_t>& moves) {
   moves.resize(bodies.motion.size());
   for (std::uint32_t i = 0; i < moves.size(); ++i) moves[i] = is_moved(bodies, i) ? 1 : 0;
 }
 
-/// The color of one manifold, marked as used by its bodies that move; kColors if none is free.
+/// Takes the color of one manifold and marks it as used by its bodies that move; kColors if none is free.
 int take_color(const Manifold& m, ContactColors& colors) {
   const bool moves_a = colors.moves[m.body_a] != 0;
   const bool moves_b = colors.moves[m.body_b] != 0;
@@ -64,7 +64,7 @@ void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies&
     if (colors.color[i] == kColors) colors.color[i] += lone++;
   }
 
-  // A counting sort by color, with the lone ones between the two kinds; then as `members` says.
+  // A counting sort by color, with lone manifolds between the two kinds, then in the order of `members`.
   const auto is_anchored = [&](const Manifold& m) {
     return colors.moves[m.body_a] == 0 || colors.moves[m.body_b] == 0;
   };

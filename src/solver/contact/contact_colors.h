@@ -8,12 +8,12 @@
 
 namespace hooke::solver {
 
-/// Which manifolds are solved together. No two of a color share a body that moves.
+/// Which manifolds are solved together: no two of a color share a body that moves.
 struct ContactColors {
   struct Member {
     std::uint32_t manifold = 0;
     bool anchored = false;  ///< Only one of its bodies moves.
-    bool direct = false;    ///< Of a hard island (hard_islands.h).
+    bool direct = false;    ///< Its island is direct (solver/coupled/direct_islands.h).
   };
 
   std::vector<Member> members;   ///< Color after color; in each, those of hard islands come last, before that
@@ -29,13 +29,13 @@ struct ContactColors {
 /// Whether contacts move the body in `row`.
 [[nodiscard]] bool is_moved(const state::Bodies& bodies, std::uint32_t row);
 
-/// Whether the manifold has points that push, or may get some within the step, and a body they move.
+/// Whether the manifold has points that push, or may get some within the step, and a body that they move.
 [[nodiscard]] bool has_contact_rows(const state::Manifold& manifold, const state::Bodies& bodies);
 
-/// Takes the manifolds in order. One with two bodies that move takes the lowest color free in both, below 56;
-/// one with a single such body the highest that is free: it is solved last and so holds best. What finds no
-/// free color is alone in its own, between the two. Made anew from nothing each time: it depends on the
-/// manifolds alone.
+/// Takes the manifolds in order. A manifold with two bodies that move takes the lowest color free in both,
+/// below 56. One with a single such body takes the highest free color: it is solved last and so holds best. A
+/// manifold that finds no free color is alone in its own, between the two. Each call starts from nothing:
+/// colors depend on the manifolds alone.
 void color_contacts(const std::vector<state::Manifold>& manifolds, const state::Bodies& bodies,
                     ContactColors& colors);
 

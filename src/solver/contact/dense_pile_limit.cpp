@@ -7,9 +7,9 @@ namespace hooke::solver {
 
 namespace {
 
-constexpr Real kPushOutSpeed = Real(3);  // as of solver/contact/body_contacts.h [m/s]
+constexpr Real kPushOutSpeed = Real(3);  // as in solver/contact/body_contacts.h [m/s]
 
-/// The mean velocity, by mass.
+/// The mean velocity, weighted by mass.
 Vec3 velocity_of(std::span<const std::uint32_t> pile, const state::Bodies& bodies) {
   Vec3 momentum;
   Real mass = Real(0);
@@ -30,7 +30,7 @@ void limit_dense_pile(std::span<const std::uint32_t> pile, state::Bodies& bodies
     const Real fastest = std::max(kPushOutSpeed, length(free.v - mean));
     const Real speed = length(m.v - mean);
     if (speed > fastest) m.v = mean + (fastest / speed) * (m.v - mean);
-    // A spin has the energy of that speed.
+    // The rotation may have the energy of that speed.
     const Real most = std::max(kPushOutSpeed * std::sqrt(bodies.mass[body].mass), length(free.omega_scaled));
     if (length(m.omega_scaled) > most) m.omega_scaled = free.omega_scaled;
   }

@@ -17,19 +17,19 @@ namespace {
 using state::Bodies;
 
 constexpr double kDirectStiffness = 1e5;  ///< D of a row over its effective mass.
-constexpr double kDirectSlop = 1e-5;      ///< Of the smaller body's radius: overlap, or gap, that is none.
+constexpr double kDirectSlop = 1e-5;      ///< Overlap, or gap, that is none, over the smaller body's radius.
 constexpr double kPushOut = 0.5;          ///< Share of overlap that a step removes.
-constexpr double kLargestPush = 0.05;     ///< In a step [m].
-constexpr int kRounds = 3;                ///< Of friction.
-constexpr int kNewtonSteps = 12;          ///< In a round.
-constexpr int kQuickSteps = 3;            ///< Before softer rows are tried.
+constexpr double kLargestPush = 0.05;     ///< Largest displacement of that kind in a step [m].
+constexpr int kRounds = 3;                ///< Of friction, each with new limits.
+constexpr int kNewtonSteps = 12;          ///< Newton steps in a round.
+constexpr int kQuickSteps = 3;            ///< Newton steps before softer rows are tried.
 constexpr double kSofterStiffness = 1e2;
-constexpr int kSweeps = 8;  ///< Where no solution is found.
+constexpr int kSweeps = 8;  ///< Sweeps where no solution is found.
 constexpr int kSearchSteps = 20;
-constexpr double kTolerance = 1e-7;  ///< Of the gradient over what contacts do.
+constexpr double kTolerance = 1e-7;  ///< Largest gradient over what contacts do.
 
-constexpr double kSticking = 0.999;  ///< Of its limit: friction that slid in the last substep has more.
-/// Friction that has changed less is not solved again.
+constexpr double kSticking = 0.999;  ///< Share of its limit: friction with more slid in the last substep.
+/// Friction whose load has changed less than this share is not solved again.
 constexpr double kSameLoad = 0.01;
 
 DirectLever scaled_lever(double scale, Vec3 linear, double sign, Vec3 angular) {
@@ -48,11 +48,11 @@ void add_lever(double impulse, const DirectLever& j, double* u) {
   for (int i = 0; i < 6; ++i) u[i] += impulse * j[i];
 }
 
-/// Makes rows of one manifold from its lane.
+/// Makes the rows of one manifold from its lane.
 struct DirectRowMaker {
   const ContactBlock& block;
   int lane;
-  double root_a, root_b;  ///< Roots of the inverse masses; -1 for what does not move.
+  double root_a, root_b;  ///< Roots of the inverse masses; 1 for a body that does not move.
 
   [[nodiscard]] DirectRow row(Vec3 direction, Vec3 j_a, Vec3 j_b) const {
     DirectRow made = {.a = scaled_lever(-root_a, direction, -1, j_a),
@@ -110,7 +110,7 @@ double rate_of(const DirectContact& c, const DirectRow& row, const std::vector<d
   return c.b == DirectContact::kNone ? rate : rate + product(row.b, &u[6 * c.b]);
 }
 
-/// The impulses of a contact at rate + t slope, and which rows are not at their bounds then.
+/// Sets the impulses of a contact at rate + t slope, and which rows are not at their bounds then.
 void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows) {
   const auto wish = [&](const DirectRow& row) {
     return row.before - row.stiffness * (row.rate + t * row.slope);
@@ -132,7 +132,7 @@ void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows) {
   friction[2].holds = std::abs(twist) < c.twist_limit;
 }
 
-/// How fast the energy grows along the direction of search, at the end of t of it.
+/// How fast the energy grows along the search direction, after a share t of it.
 double climb(double t, DirectIsland& island) {
   double sum = 0;
   for (std::size_t i = 0; i < island.velocity.size(); ++i) {
@@ -163,7 +163,7 @@ void add_row(double d, const DirectContact& c, const DirectLever& a, const Direc
   add_block(d, c.b_is_row ? b : a, c.b_is_row ? a : b, &h[c.between]);
 }
 
-/// Friction that slides resists across its slip.
+/// Adds the resistance of sliding friction across its slip.
 void add_sliding(const DirectContact& c, const DirectRow& x, const DirectRow& y, std::vector<double>& h) {
   const double wish_x = x.before - x.stiffness * x.rate;
   const double wish_y = y.before - y.stiffness * y.rate;
@@ -178,7 +178,7 @@ void add_sliding(const DirectContact& c, const DirectRow& x, const DirectRow& y,
   add_row(x.stiffness * c.limit / size, c, a, b, h);
 }
 
-/// The factors of 1 + J^T D J over the rows that hold, and over friction that slides if `slides`.
+/// Factors 1 + J^T D J over the rows that hold, and over friction that slides if `slides`.
 void make_factors(bool slides, DirectIsland& island, std::vector<double>& h) {
   const BlockPattern& p = island.pattern;
   h.assign(p.number_count, 0.0);
@@ -208,7 +208,7 @@ void find_rates(DirectIsland& island) {
   }
 }
 
-/// Impulses and downhill direction at the present velocities. True if there is nothing left to go.
+/// Computes impulses and the downhill direction at the present velocities. True if nothing is left to go.
 bool evaluate(DirectIsland& island) {
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     island.direction[i] = island.free[i] - island.velocity[i];
@@ -223,7 +223,7 @@ bool evaluate(DirectIsland& island) {
   return largest(island.direction) <= kTolerance * done;
 }
 
-/// The place along the direction of search where the energy is least.
+/// The share of the search direction where the energy is least.
 double search(DirectIsland& island) {
   for (const DirectContact& c : island.contacts) {
     for (int i = c.first; i < c.first + c.points + 3; ++i)
@@ -240,7 +240,7 @@ double search(DirectIsland& island) {
   return 0.5 * (low + high);
 }
 
-/// One pass over the rows of a contact.
+/// Makes one pass over the rows of a contact.
 void sweep_contact(const DirectContact& c, DirectIsland& island) {
   const std::span<DirectRow> rows = rows_of(island, c);
   const auto points = static_cast<std::size_t>(c.points);
@@ -270,10 +270,10 @@ void sweep_contact(const DirectContact& c, DirectIsland& island) {
   push(rows[points + 1], shrink * y);
 }
 
-/// What is taken to hold before anything is known.
+/// Which rows are assumed to hold before anything is known.
 enum class Guess : std::uint8_t {
-  kSame,  ///< What held in the last substep; of a contact that is new, all.
-  kAll,   ///< Whatever touches, and all friction.
+  kSame,  ///< What held in the last substep; in a new contact, all rows.
+  kAll,   ///< Points without a gap, and all friction.
 };
 
 void guess_rows(Guess guess, DirectIsland& island) {
@@ -288,9 +288,9 @@ void guess_rows(Guess guess, DirectIsland& island) {
   }
 }
 
-/// The velocities if just the guessed rows hold, pulling too. From there on impulses are of the right size,
-/// and Newton steps are few; from anywhere else each ends at the next change of one contact of many.
-/// Factors last as long as the guess does.
+/// Computes the velocities if just the guessed rows hold, even by pulling. From there on impulses are of the
+/// right size, and few Newton steps are needed. From anywhere else each step ends where one contact of many
+/// changes. Factors are used again as long as the guess is the same.
 void jump(Guess guess, DirectIsland& island) {
   find_rates(island);
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
@@ -312,7 +312,7 @@ void jump(Guess guess, DirectIsland& island) {
   for (std::size_t k = 0; k < island.velocity.size(); ++k) island.velocity[k] += island.direction[k];
 }
 
-/// Newton steps with limits of friction as they are. False if they do not come to an end.
+/// Makes Newton steps with limits of friction as they are. False if they do not converge.
 bool descend(int steps, DirectIsland& island) {
   for (int i = 0; i < steps; ++i) {
     if (evaluate(island)) return true;
@@ -324,7 +324,7 @@ bool descend(int steps, DirectIsland& island) {
   return evaluate(island);
 }
 
-/// Friction slides on with the lower coefficient where it slid in the last substep.
+/// Friction goes on with the sliding coefficient where it slid in the last substep.
 void choose_friction(const ContactBlock& block, DirectIsland& island, DirectContact& c) {
   const double slow = static_cast<double>(block.static_friction[c.lane]);
   const double fast = static_cast<double>(block.friction[c.lane]);
@@ -338,7 +338,7 @@ void choose_friction(const ContactBlock& block, DirectIsland& island, DirectCont
   c.friction = slid ? fast : slow;
 }
 
-/// Limits of friction by the loads that were found. True if something slides whose load has changed.
+/// Sets limits of friction by the loads that were found. True if something slides whose load has changed.
 bool limit_friction(DirectIsland& island) {
   bool changed = false;
   for (DirectContact& c : island.contacts) {
@@ -363,12 +363,12 @@ bool limit_friction(DirectIsland& island) {
   return changed;
 }
 
-/// A node's six numbers.
+/// The six numbers of a node.
 double* numbers_of(std::uint32_t i, const DirectIsland& island, std::vector<double>& u) {
   return &u[6 * island.slot[i]];
 }
 
-/// v / sqrt(w) or dx / sqrt(w), with their angular halves, of all nodes.
+/// Reads v / sqrt(w) or dx / sqrt(w), with their angular halves, for all nodes.
 template <class Read>
 void read_nodes(const Bodies& bodies, Read&& read, const DirectIsland& island, std::vector<double>& u) {
   for (std::uint32_t i = 0; i < island.graph.bodies.size(); ++i) {
@@ -380,7 +380,8 @@ void read_nodes(const Bodies& bodies, Read&& read, const DirectIsland& island, s
   }
 }
 
-/// What rolling resistance did in the last substep is in the velocities that relaxation starts from.
+/// Adds what rolling resistance did in the last substep; the velocities that relaxation starts from contain
+/// it.
 void add_rolling(const DirectContact& c, const BodyContacts& contacts, const Bodies& bodies,
                  std::vector<double>& u) {
   const ContactBlock& block = contacts.blocks[c.block];
@@ -395,7 +396,7 @@ void add_rolling(const DirectContact& c, const BodyContacts& contacts, const Bod
   }
 }
 
-/// The impulses of the last substep, and what conveyors and moving walls do.
+/// Loads the impulses of the last substep, and what conveyors and moving walls do.
 void load_impulses(const ContactBlock& block, const Bodies& bodies, const DirectContact& c, DirectRow* row) {
   DirectRow* friction = row + c.points;
   for (int k = 0; k < c.points; ++k) row[k].before = static_cast<double>(block.point[k].impulse[c.lane]);
@@ -412,7 +413,8 @@ void load_impulses(const ContactBlock& block, const Bodies& bodies, const Direct
   for (int k = 0; k < c.points + 3; ++k) row[k].drift += product(row[k].b, velocity.data());
 }
 
-/// Points that are apart may close their gap in the substep. Takes ways since the start of the step.
+/// Points that are apart may close their gap in the substep. `displacement` is that since the start of the
+/// step.
 void open_gaps(double h, const BodyContacts& contacts, const Bodies& bodies,
                const std::vector<double>& displacement, DirectIsland& island) {
   for (const DirectContact& c : island.contacts) {
@@ -477,7 +479,7 @@ void store_island(DirectIsland& island, BodyContacts& contacts, Bodies& bodies) 
   }
 }
 
-/// Moves bodies out of each other, without speed.
+/// Moves bodies out of each other without adding velocity.
 void remove_overlap(DirectIsland& island, Bodies& bodies) {
   bool any = false;
   std::fill(island.direction.begin(), island.direction.end(), 0.0);
@@ -507,14 +509,14 @@ void remove_overlap(DirectIsland& island, Bodies& bodies) {
   }
 }
 
-/// How a solution is sought.
+/// How a solution is searched for.
 struct Attempt {
   double stiffness = kDirectStiffness;  ///< D over effective masses.
   Guess guess = Guess::kSame;
   int steps = kNewtonSteps;
 };
 
-/// The solution, friction by its own loads; false if it is not found.
+/// Finds the solution, with friction by its own loads. False if it is not found.
 bool converge(const Attempt& attempt, DirectIsland& island) {
   island.stiffness = attempt.stiffness;
   for (DirectRow& row : island.rows) {
@@ -531,7 +533,8 @@ bool converge(const Attempt& attempt, DirectIsland& island) {
   return true;
 }
 
-/// Row by row, from the impulses of the last substep: no solution, but a step toward it that gains no energy.
+/// Sweeps row by row, from the impulses of the last substep. That is no solution, but a step toward it that
+/// gains no energy.
 void sweep_rows(DirectIsland& island) {
   island.velocity = island.free;
   for (DirectRow& row : island.rows) row.impulse = row.before;

@@ -18,8 +18,8 @@ using state::Manifold;
 using state::MotionRecord;
 
 constexpr std::size_t kMostPoints = 32;   // of an impact
-constexpr double kTogether = 1e-4;        // points that are nearer meet at once [m]
-constexpr double kLeastResponse = 1e-12;  // 1/kg; what both together give way is no less
+constexpr double kTogether = 1e-4;        // points that are nearer than this meet at once [m]
+constexpr double kLeastResponse = 1e-12;  // what both together give way is no less [1/kg]
 
 /// How long an impact is iterated, and to what share of its fastest speed.
 struct Effort {
@@ -32,12 +32,13 @@ constexpr Effort kInDensePile = {.sweeps = 8, .friction_rounds = 2, .converged =
 
 /// A body in an impact.
 struct ImpactBody {
-  JointBody body;  ///< Its mass and inertia.
+  JointBody body;  ///< Mass and inertia.
   DVec3 v = {};
   DVec3 omega = {};
   DVec3 v_before = {};
   DVec3 omega_before = {};
-  DVec3 backed = {};  ///< Direction along which it does not give way; zero: it gives way in all, and turns.
+  /// Direction along which the body does not give way; zero: it gives way in all directions, and turns.
+  DVec3 backed = {};
 
   [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(omega, lever); }
   [[nodiscard]] DVec3 velocity_before_at(DVec3 lever) const { return v_before + cross(omega_before, lever); }
@@ -60,8 +61,8 @@ struct ImpactBody {
   }
 };
 
-/// The body `time` from now. One that tumbles has the inertia and the angular velocity of that time, not the
-/// mean of the substep: with those of another the impact would change its energy.
+/// The body `time` from now. A body in a gyroscopic turn has the inertia and the angular velocity of that
+/// time, not the mean of the substep. With those of another time the impact would change its energy.
 ImpactBody body_at_impact(const Bodies& bodies, std::uint32_t row, Real time) {
   JointBody now = joint_body_now(bodies, row);
   if (!is_moved(bodies, row)) now.inverse_mass = 0;
@@ -76,7 +77,7 @@ ImpactBody body_at_impact(const Bodies& bodies, std::uint32_t row, Real time) {
   return {.body = now, .v = v, .omega = omega, .v_before = v, .omega_before = omega};
 }
 
-/// From the centers of mass to a place [m].
+/// Offsets from the centers of mass to a point [m].
 struct Levers {
   DVec3 a = {};
   DVec3 b = {};
@@ -86,10 +87,10 @@ struct Point {
   Levers at = {};
   DVec3 n = {};
   std::size_t lane = 0;
-  double lag = 0;            ///< Speed at the time of the hit less that of now [m/s].
-  double closing_speed = 0;  ///< Speed before, at that time; negative [m/s].
-  double target = 0;         ///< Speed of now after it [m/s].
-  double mass = 0;           ///< Effective [kg].
+  double lag = 0;            ///< Speed at the time of the impact less that of now [m/s].
+  double closing_speed = 0;  ///< Speed before the impact, at that time; negative [m/s].
+  double target = 0;         ///< Speed of now after the impact [m/s].
+  double mass = 0;           ///< Effective mass [kg].
   double impulse = 0;        ///< [N s]
 };
 
@@ -98,10 +99,10 @@ struct FrictionRow {
   std::size_t lane = 0;
   Levers at = {};
   DVec3 n = {};
-  DVec3 surface = {};                  ///< Velocity of B's against A's [m/s].
-  math::Symmetric3<double> mass = {};  ///< Effective, across the normal [kg].
-  DVec3 before = {};                   ///< Sliding velocity [m/s].
-  DVec3 impulse = {};                  ///< On B [N s].
+  DVec3 surface = {};                  ///< Velocity of B's surface relative to A's [m/s].
+  math::Symmetric3<double> mass = {};  ///< Effective mass across the normal [kg].
+  DVec3 before = {};                   ///< Sliding velocity before the impact [m/s].
+  DVec3 impulse = {};                  ///< Impulse on B [N s].
   double friction = 0;
   double static_friction = 0;
 };
@@ -110,7 +111,7 @@ DVec3 across(DVec3 n, DVec3 v) {
   return v - dot(n, v) * n;
 }
 
-/// Two bodies while they hit each other.
+/// Two bodies during their impact.
 struct Impact {
   ImpactBody a;
   ImpactBody b;
@@ -119,7 +120,7 @@ struct Impact {
   std::size_t point_count = 0;
   std::size_t friction_row_count = 0;
   Effort effort;
-  double fastest = 0;  ///< Of the points' approaches [m/s].
+  double fastest = 0;  ///< Largest closing speed of the points [m/s].
 
   [[nodiscard]] std::span<Point> points() { return std::span(point_memory).first(point_count); }
   [[nodiscard]] std::span<FrictionRow> friction_rows() {
@@ -128,7 +129,7 @@ struct Impact {
 
   [[nodiscard]] DVec3 velocity(const Levers& at) const { return b.velocity_at(at.b) - a.velocity_at(at.a); }
 
-  /// Change of the relative velocity at a place by an impulse there.
+  /// Change of the relative velocity at a point by an impulse there.
   [[nodiscard]] DVec3 response(const Levers& at, DVec3 impulse) const {
     return b.response(at.b, impulse) + a.response(at.a, impulse);
   }
@@ -147,7 +148,7 @@ struct Impact {
   }
 };
 
-/// The points of a lane's manifold that meet.
+/// Adds the points of a lane's manifold that meet.
 void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact) {
   const DVec3 n = vector_cast<double>(m.normal);
   for (int k = 0; k < m.point_count && impact.point_count < kMostPoints; ++k) {
@@ -167,7 +168,7 @@ void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact)
   }
 }
 
-/// Gauss and Seidel's iteration: the velocities it ends with are unique, though impulses may not be.
+/// Runs a Gauss-Seidel iteration. The velocities it ends with are unique, though impulses may not be.
 void push_points(Impact& impact) {
   const double enough = impact.effort.converged * -impact.fastest;
   double change = -impact.fastest;
@@ -189,7 +190,7 @@ double load_of(std::size_t lane, Impact& impact) {
   return load;
 }
 
-/// The matrix of response(), and 1 along the normal, inverted.
+/// Inverse of the matrix of response(), with 1 along the normal.
 math::Symmetric3<double> mass_across(const Levers& at, DVec3 n, const Impact& impact) {
   const auto column = [&](DVec3 axis) {
     return across(n, impact.response(at, across(n, axis))) + dot(n, axis) * n;
@@ -228,7 +229,7 @@ void solve_friction(FrictionRow& friction_row, Impact& impact) {
   friction_row.impulse = after;
 }
 
-/// Whether impulses do more work than rounding explains; conveyors aside.
+/// Whether impulses do more work than rounding explains, without that of conveyors.
 bool gains_energy(Impact& impact) {
   double gain = 0;
   double exchanged = 0;
@@ -255,9 +256,9 @@ bool add_friction(double share, Impact& impact) {
   return gains_energy(impact);
 }
 
-/// Changes the body's velocities, and its line as if it had changed them after `time` only. What tumbles goes
-/// on from there as a free body does, to the substep's end `rest` later; its rotation becomes the one from
-/// which a steady turn leads to both.
+/// Changes the body's velocities, and its straight motion as if they had changed only after `time`. A body in
+/// a gyroscopic turn goes on from there as a free body does, to the substep's end `rest` later. Its rotation
+/// becomes the one from which a steady rotation leads to both.
 void set_after_impact(const ImpactBody& after, std::uint32_t row, Real time, Real rest, Bodies& bodies) {
   if (!(after.body.inverse_mass > 0)) return;
   MotionRecord& m = bodies.motion[row];
@@ -291,8 +292,8 @@ bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifold
   Impact impact = {.a = body_at_impact(bodies, first.body_a, time),
                    .b = body_at_impact(bodies, first.body_b, time),
                    .effort = pair.in_dense_pile ? kInDensePile : kFull};
-  // One of them has to give way: what is backed does not only where the other does.
-  // Its direction is a unit vector in double, lest a heavy partner give way less than rounding takes back.
+  // One of them has to give way: a backed body gives way only where the other does not. The direction is a
+  // unit vector in double, lest a heavy partner give way less than rounding takes back.
   const DVec3 n = normalize(vector_cast<double>(first.normal));
   const bool a_gives_way = impact.a.body.inverse_mass > 0 && !pair.a_is_backed;
   const bool b_gives_way = impact.b.body.inverse_mass > 0 && !pair.b_is_backed;

@@ -20,19 +20,19 @@ using state::Hook;
 using state::Manifold;
 using state::MotionRecord;
 
-constexpr int kMostRefreshes = 5;        // for one hit
-constexpr int kMostImpacts = 16;         // of a pair in a substep; what then still comes together stops
+constexpr int kMostRefreshes = 5;        // for one impact
+constexpr int kMostImpacts = 16;         // of a pair in a substep; points that then still come together stop
 constexpr int kMostImpactsInPile = 1;    // in a step
-constexpr std::uint32_t kDensePile = 3;  // pairs of a body
-constexpr Real kTouching = Real(1e-3);   // what rests is nearer to its support [m]
-constexpr Real kAgainst = Real(0.2);     // cosine between impulse and support
-constexpr Real kTimeShare = Real(2e-3);  // how well a time has to be known, of h
+constexpr std::uint32_t kDensePile = 3;  // pairs of a body, from which on it is in a dense pile
+constexpr Real kTouching = Real(1e-3);   // what rests is nearer to its support than this [m]
+constexpr Real kAgainst = Real(0.2);     // least cosine between impulse and support
+constexpr Real kTimeShare = Real(2e-3);  // how exactly a time has to be known, over h
 
 bool is_later(const NextImpact& a, const NextImpact& b) {
   return a.time != b.time ? a.time > b.time : a.index > b.index;
 }
 
-/// Where contacts that do not bounce hold bodies.
+/// Finds where contacts that do not bounce hold bodies.
 void find_supports(const std::vector<Manifold>& manifolds, const Bodies& bodies, Impacts& impacts) {
   impacts.supports.clear();
   for (const Manifold& m : manifolds) {
@@ -46,8 +46,8 @@ void find_supports(const std::vector<Manifold>& manifolds, const Bodies& bodies,
             [](const auto& p, const auto& q) { return p.body < q.body; });
 }
 
-/// Whether an impulse along `push` presses the body against what does not give way, at most so many bodies
-/// behind it.
+/// Whether an impulse along `push` presses the body against what does not give way, with at most `behind`
+/// bodies between them.
 bool is_backed(std::uint32_t body, Vec3 push, int behind, const Bodies& bodies, const Impacts& impacts) {
   const auto first =
       std::lower_bound(impacts.supports.begin(), impacts.supports.end(), body,
@@ -60,7 +60,7 @@ bool is_backed(std::uint32_t body, Vec3 push, int behind, const Bodies& bodies, 
   return false;
 }
 
-/// Lanes that have restitution, by the row of their manifold; -1 elsewhere. False if there are none.
+/// Finds lanes that have restitution, by the row of their manifold; -1 elsewhere. False if there are none.
 bool find_lanes(const BodyContacts& contacts, const std::vector<Manifold>& manifolds,
                 std::vector<std::int32_t>& lane_of) {
   bool any = false;
@@ -109,7 +109,7 @@ void find_backed_bodies(const std::vector<Manifold>& manifolds, const Bodies& bo
   }
 }
 
-/// Where bodies are in a crowd, only what did not touch in the last step bounces.
+/// Where bodies are in a dense pile, only pairs that did not touch in the last step bounce.
 void filter_dense_piles(const std::vector<Manifold>& manifolds, const Bodies& bodies, Impacts& impacts) {
   const auto is_in_dense_pile = [&](std::uint32_t body) {
     return is_moved(bodies, body) && impacts.pairs_begin[body + 1] - impacts.pairs_begin[body] >= kDensePile;
@@ -143,7 +143,7 @@ Real least_speed(const ImpactPair& pair) {
   return pair.in_dense_pile ? kLeastImpactSpeedInPile : kLeastImpactSpeed;
 }
 
-/// When a point of a lane meets, from `since` on and no slower than `least`: see the head of hits.h.
+/// When a point of a lane meets, from `since` on and no slower than `least`: see solver/contact/impacts.h.
 Real impact_time(Real gap, Real v, Real a, Real since, Real h, Real least) {
   const auto speed = [&](Real t) { return v + a * (t - Real(0.5) * h); };
   const Real b = v - Real(0.5) * a * h;
@@ -156,7 +156,8 @@ Real impact_time(Real gap, Real v, Real a, Real since, Real h, Real least) {
   const Real root = std::sqrt(square);
   if (root <= u) return Impacts::kNever;
   const Real time = since + Real(2) * gap_since / (root - u);
-  // What rounding puts off until just after the end would be stopped by the relaxation of this substep.
+  // An impact that rounding delays until just after the end would be stopped by the relaxation of this
+  // substep.
   return time <= (Real(1) + kTimeShare) * h ? time : Impacts::kNever;
 }
 
@@ -189,7 +190,7 @@ Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep&
   return earliest;
 }
 
-/// Whether no point of the body is as fast as half of what bounces: what rests is not looked at.
+/// Whether no point of the body is as fast as half of what bounces. Resting pairs are not tested.
 bool is_slow(const Bodies& bodies, std::uint32_t body) {
   constexpr Real kSlow = Real(0.5) * kLeastImpactSpeed;
   const state::FreeMotionRecord motion = state::motion_before_contacts(bodies, body);
@@ -197,7 +198,7 @@ bool is_slow(const Bodies& bodies, std::uint32_t body) {
   return length(motion.v) + turning < kSlow;
 }
 
-/// The pair's next time.
+/// The time of the pair's next impact.
 Real time_of(const ImpactPair& pair, const ContactStep& step, const BodyContacts& contacts,
              const Bodies& bodies, const Impacts& impacts) {
   if (pair.count >= (pair.in_dense_pile ? kMostImpactsInPile : kMostImpacts)) return Impacts::kNever;
@@ -216,7 +217,7 @@ void await(std::uint32_t index, Real time, Impacts& impacts) {
   std::push_heap(impacts.queue.begin(), impacts.queue.end(), is_later);
 }
 
-/// What else the bodies of a hit will meet.
+/// Predicts what else the bodies of an impact will meet.
 void predict_next(std::uint32_t body, const ContactStep& step, const BodyContacts& contacts,
                   const Bodies& bodies, Impacts& impacts) {
   for (std::uint32_t k = impacts.pairs_begin[body]; k < impacts.pairs_begin[body + 1]; ++k) {
@@ -226,7 +227,7 @@ void predict_next(std::uint32_t body, const ContactStep& step, const BodyContact
   }
 }
 
-/// Null if it was not struck.
+/// Null if the body had no impact.
 template <class AnyImpacts>
 auto find_hooked_impact(std::uint32_t body, AnyImpacts& impacts) -> decltype(impacts.hooked_impacts.data()) {
   const auto at = std::find_if(impacts.hooked_impacts.begin(), impacts.hooked_impacts.end(),
@@ -234,7 +235,7 @@ auto find_hooked_impact(std::uint32_t body, AnyImpacts& impacts) -> decltype(imp
   return at != impacts.hooked_impacts.end() ? &*at : nullptr;
 }
 
-/// Counts a hit of a body on hooks, that was so before it.
+/// Counts an impact of a body on hooks; `before` is its state before the impact.
 void note_hooked_impact(const HookedImpact& before, Real time, Impacts& impacts) {
   HookedImpact* impacted = find_hooked_impact(before.body, impacts);
   if (impacted == nullptr) impacted = &impacts.hooked_impacts.emplace_back(before);
@@ -242,7 +243,7 @@ void note_hooked_impact(const HookedImpact& before, Real time, Impacts& impacts)
   impacted->time_sum += time;
 }
 
-/// Whether what the hits changed goes against a lock of the hook, at more than this share of the speeds.
+/// Whether the change by the impacts goes against a lock of the hook, at more than this share of the speeds.
 bool goes_against(const Hook& hook, const Bodies& bodies, double h, const Impacts& impacts) {
   constexpr double kShare = 0.1;
   const auto change_of = [&](std::uint32_t body) {
@@ -262,7 +263,7 @@ bool goes_against(const Hook& hook, const Bodies& bodies, double h, const Impact
   const auto speed = static_cast<double>(std::max(length(a.v), length(b.v)));
   const auto size = static_cast<double>(std::max(size_of(hook.a.body), size_of(hook.b.body)));
   std::array<JointRow, Hook::kMaxRows> rows;
-  Hook copy = hook;  // its values are those of the last substep still
+  Hook copy = hook;  // its values are still those of the last substep
   const int count =
       make_joint_rows(copy, joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body), h, rows);
   return std::any_of(rows.begin(), rows.begin() + count, [&](const JointRow& row) {
@@ -301,7 +302,7 @@ bool predict_impacts(const ContactStep& step, BodyContacts& contacts, Bodies& bo
   for (const std::uint32_t body : impacts.impacted) impacts.since[body] = Real(0);
   impacts.impacted.clear();
   impacts.hooked_impacts.clear();
-  // An impulse that is repeated and then loses its row in a hit would be one too many.
+  // If an impulse is repeated and its row then removed by an impact, it would act once too often.
   for (const ImpactPair& pair : impacts.pairs) {
     if (is_slow(bodies, pair.a) && is_slow(bodies, pair.b)) continue;
     for (const ContactLane& lane : lanes_of(pair, impacts)) drop_warm_start(lane, contacts, bodies);
@@ -348,7 +349,7 @@ void resolve_impact(const NextImpact& impact, const ContactStep& step, const sta
   ++pair.count;
   if (pair.a_is_hooked) note_hooked_impact(a_before, impact.time, impacts);
   if (pair.b_is_hooked) note_hooked_impact(b_before, impact.time, impacts);
-  // What stands is not struck: others come upon it as before.
+  // What stands takes no impact: others meet it as before.
   for (const std::uint32_t body : {pair.a, pair.b}) {
     if (!is_moved(bodies, body)) continue;
     impacts.since[body] = impact.time;
