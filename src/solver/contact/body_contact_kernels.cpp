@@ -1,4 +1,4 @@
-/// Contact rows over lanes, then the dispatch. The arithmetic stands in body_contact_rows.h.
+/// Contact rows over lanes, then the dispatch. The arithmetic stands in solver/contact/body_contact_rows.h.
 
 #include "solver/contact/body_contact_kernels.h"
 
@@ -11,7 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// After Highway, which includes this file anew for each instruction set; numbers before what uses them.
+// Included after Highway, which includes this file again for each instruction set. Numbers come before what
+// uses them.
 // clang-format off
 #include "solver/simd/vectors.h"
 #include "solver/contact/body_contact_rows.h"

@@ -21,7 +21,7 @@ bool has_like_masses(const Articulation& tree, const state::Bodies& bodies) {
   return most <= static_cast<Real>(kApproximateMasses) * least;
 }
 
-/// It rubs, and is not driven.
+/// Whether the joint has friction and is not driven.
 bool rubs(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& joint) {
   bool found = false;
   for (int r = joint.first; r < joint.first + joint.count; ++r) {
@@ -33,7 +33,7 @@ bool rubs(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& j
   return found;
 }
 
-/// Its locks held in the last substep.
+/// Whether its locks held in the last substep.
 bool held(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& joint) {
   for (int r = joint.first; r < joint.first + joint.count; ++r) {
     const wide::TreeRowForm& row = form.rows[r];
@@ -44,7 +44,7 @@ bool held(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& j
   return true;
 }
 
-/// Whether `holds(hook, form, joint)` of each joint.
+/// Whether `holds(hook, form, joint)` for each joint.
 template <class Holds>
 bool all_joints(const Articulation& tree, const std::vector<Hook>& hooks, Holds&& holds) {
   const wide::TreeForm& form = tree.tree.form;

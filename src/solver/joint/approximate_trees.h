@@ -3,24 +3,24 @@
 #include "solver/joint/articulations.h"
 
 /// \file
-/// Trees of which friction need not be exact: ragdolls.
+/// Trees whose friction need not be exact: ragdolls.
 
 namespace hooke::solver {
 
-inline constexpr double kApproximateError =
-    1e-3;  ///< Of a lock, from which on a tree is not loose [m or rad].
-inline constexpr double kApproximateMasses =
-    30;  ///< Ratio of the heaviest to the lightest, up to which it is.
+/// Error of a lock, from which on a tree is not approximate [m or rad].
+inline constexpr double kApproximateError = 1e-3;
+/// Ratio of the heaviest to the lightest body, up to which a tree is a ragdoll.
+inline constexpr double kApproximateMasses = 30;
 
-/// Whether a tree is a ragdoll. Nothing hangs on it and it hangs on nothing: its root moves; its masses
-/// differ by kLooseMasses at most; every joint rubs, and nothing drives one.
+/// Whether a tree is a ragdoll. Nothing hangs on it and it hangs on nothing: its root moves. Its masses
+/// differ by kApproximateMasses at most. Every joint has friction, and nothing drives one.
 [[nodiscard]] bool is_ragdoll(const Articulation& tree, const std::vector<state::Hook>& hooks,
                               const state::Bodies& bodies);
 
-/// Whether a ragdoll may be solved as a loose tree in this step: with viscous friction, limits that are met a
-/// little late, and rows about the start of the substep only (wide/trees.h). In the last substep no lock was
-/// off by kLooseError. It depends on the state alone, which a snapshot has: a tree is exact for as long as
-/// its error asks for it.
+/// Whether a ragdoll may be solved as an approximate tree in this step: with viscous friction, limits that
+/// act a little late, and rows about the start of the substep only (solver/joint/tree_kernels.h). In the last
+/// substep no lock was off by kApproximateError. It depends on the state alone, which a snapshot has: a tree
+/// is exact for as long as its error demands it.
 [[nodiscard]] bool is_approximate(const Articulation& ragdoll, const std::vector<state::Hook>& hooks);
 
 }  // namespace hooke::solver

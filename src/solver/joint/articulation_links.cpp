@@ -19,7 +19,7 @@ using state::Hook;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// An equal part of a body moves as the body does.
+/// Divides a body into equal parts, each of which moves as the body does.
 void divide(double parts, JointBody& body) {
   if (parts == 1) return;
   const double root = std::sqrt(parts);
@@ -28,7 +28,7 @@ void divide(double parts, JointBody& body) {
   body.omega_scaled = (1 / root) * body.omega_scaled;
 }
 
-/// Both links have one velocity.
+/// Makes the rows of a weld: both links have one velocity.
 void make_weld(const Articulation::Joint& joint, Articulation& art) {
   const std::array<DVec3, 3> axes = {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}};
   for (int k = 0; k < kWeldRows; ++k) {
@@ -83,15 +83,15 @@ JointBody moved(const Link& link, double h) {
   return body;
 }
 
-/// What the gap of a joint is small against: its levers on bodies that move [m].
+/// The length that a joint's gap is compared with: its levers on bodies that move [m].
 double size_of(const Hook& hook, const Link& a, const Link& b) {
   const double size_a = a.body.inverse_mass > 0 ? length(hook.a.anchor) : 0;
   const double size_b = b.body.inverse_mass > 0 ? length(hook.b.anchor) : 0;
   return std::max(kLeastLever, size_a + size_b);
 }
 
-/// Newton: the rows about the end of the substep as it was found, where C = c + h J (v' - v) for another
-/// velocity v'. Returns the largest error of a lock.
+/// A Newton step: makes the rows about the end of the substep as it was found, where C = c + h J (v' - v) for
+/// another velocity v'. Returns the largest error of a lock.
 double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
   std::array<JointRow, Hook::kMaxRows> rows;
   double worst = 0;
@@ -103,7 +103,7 @@ double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
     make_joint_rows(hooks[joint.hook], moved(a, h), moved(b, h), h, rows);
     for (int k = 0; k < joint.count; ++k) {
       JointRow row = rows[k];
-      // An error beyond the speed limit comes back along the row it has.
+      // An error beyond the speed limit is removed along the row that exists.
       const bool limited =
           row.role == RowRole::kLock && std::abs(row.target) < 0.999 * row.rate * std::abs(row.c);
       if (limited) continue;
@@ -118,7 +118,7 @@ double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
   return worst;
 }
 
-/// Writes the stiffness of all links under the impulses of their hooks, where it grows; true if it grew so
+/// Writes the stiffness of all links under the impulses of their hooks, where it grows. True if it grew so
 /// much that a solution found without it is not to be trusted.
 bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
   std::vector<Symmetric3<double>>& found = art.stiffness_found;
@@ -187,7 +187,7 @@ bool lines_turn_farther(double angle, double h, const std::vector<Hook>& hooks, 
   });
 }
 
-/// The parts of a body differ by rounding: their mean has all of its momentum.
+/// The parts of a body differ by rounding: their mean has all its momentum.
 void store_velocities(const Articulation& art, state::Bodies& bodies) {
   for (std::size_t i = 0; i < art.links.size();) {
     const auto parts = static_cast<std::size_t>(art.parts[i]);

@@ -3,36 +3,37 @@
 #include "solver/joint/articulations.h"
 
 /// \file
-/// Articulations with loops: links and rows at the start of a substep, and what a solution says about the
-/// next. Trees have their own, side by side (wide/tree_rows.h). Equations: solver/joint/articulations.h.
+/// Articulations with loops: links and rows at the start of a substep, and what a solution means for the
+/// next. Trees have their own, side by side (solver/joint/tree_rows.h). Equations:
+/// solver/joint/articulations.h.
 
 namespace hooke::solver {
 
-/// A weld holds both links' velocities together.
+/// A weld locks the velocities of two links together.
 inline constexpr int kWeldRows = 6;
 
-/// Links, rows with the bounds they begin with, and the stiffness that the last forces gave.
+/// Loads links, rows with the bounds they begin with, and the stiffness of the last forces.
 void begin_articulation(double h, JointTables tables, Articulation& art);
 
-/// Notes the impulses of a solution. True, and with new rows or a new stiffness, if the next is needed.
+/// Notes the impulses of a solution. True, with new rows or a new stiffness, if another solution is needed.
 [[nodiscard]] bool begin_next_solution(double h, JointTables tables, Articulation& art);
 
 /// Whether a body turns by more than `angle` [rad] in the substep.
 [[nodiscard]] bool turns_farther(double angle, double h, const Articulation& art);
 
-/// Whether the line of a hook that keeps a distance does.
+/// Whether the line of a hook that keeps a distance turns by more than that.
 [[nodiscard]] bool lines_turn_farther(double angle, double h, const std::vector<state::Hook>& hooks,
                                       const Articulation& art);
 
 void store_velocities(const Articulation& art, state::Bodies& bodies);
 
-/// Velocities without the joints.
+/// Sets the velocities to those without the joints.
 void reset_velocities(Articulation& art);
 
-/// Impulses that no solution has brought within their bounds go there.
+/// Clamps impulses that no solution has brought within their bounds.
 void clamp_impulses(Articulation& art);
 
-/// Velocities of all links under the impulses of the rows that `which` picks.
+/// Adds the impulses of the rows that `which` picks to the velocities of all links.
 template <class Which>
 void apply_rows(Which&& which, Articulation& art) {
   for (const Articulation::Joint& joint : art.joints) {

@@ -17,8 +17,8 @@ const DVec3& lever_at(const Articulation::Joint& joint, std::uint32_t link, cons
   return link == joint.a ? row.j_a : row.j_b;
 }
 
-/// A motor that is at no bound holds the velocity along its axis, which gives the impulse of the spring
-/// there.
+/// Sets the impulses of springs beside motors. A motor that is at no bound holds the velocity along its axis,
+/// which gives the impulse of the spring there.
 void give_springs(Articulation& art) {
   for (const Articulation::Joint& joint : art.joints) {
     for (int i = joint.first; i + 1 < joint.first + joint.count; ++i) {
@@ -53,7 +53,7 @@ void list_free_rows(Articulation& art) {
   resize_blocks(art.blocks.free_sizes, art.blocks.pattern);
 }
 
-/// The part of a link in the block of two joints' rows.
+/// Adds the part of a link to the block of two joints' rows.
 void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
   const BlockPattern::Block& block = art.blocks.pattern.block[coupling.block];
   const Articulation::Joint& left = art.joints[block.row];
@@ -78,7 +78,7 @@ void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
   }
 }
 
-/// J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
+/// Assembles J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
 void assemble(Articulation& art) {
   art.blocks.factors.assign(art.blocks.pattern.number_count, 0.0);
   for (const Articulation::Coupling& coupling : art.blocks.couplings) add_coupling(coupling, art);
@@ -93,7 +93,7 @@ void assemble(Articulation& art) {
   }
 }
 
-/// What a row lacks of its target at the present velocities, without gamma lambda.
+/// What a row lacks to reach its target at the present velocities, without gamma lambda.
 double shortfall(const Articulation& art, const Articulation::Joint& joint, const JointRow& row) {
   const Link& a = art.links[joint.a];
   const Link& b = art.links[joint.b];
@@ -122,7 +122,7 @@ void solve_free_rows(Articulation& art) {
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);
 }
 
-/// Rows beyond a bound go to it; rows that the bound holds back are let go if `release`. True if any changed.
+/// Rows beyond a bound go to it. Rows that the bound holds back are let go if `release`. True if any changed.
 bool revise_bounds(bool release, Articulation& art) {
   bool changed = false;
   for (const Articulation::Joint& joint : art.joints) {
@@ -155,7 +155,7 @@ void solve_with_bounds(Articulation& art) {
   clamp_impulses(art);
 }
 
-/// How fast the value of a row changes, by what `v` and `omega` say of its links.
+/// How fast the value of a row changes, with the velocities `v` and `omega` of its links.
 template <class V, class Omega>
 double rate_of(const JointRow& row, const Link& a, const Link& b, V&& v, Omega&& omega) {
   return dot(row.n, v(b) - v(a)) + dot(row.j_b, omega(b)) - dot(row.j_a, omega(a));

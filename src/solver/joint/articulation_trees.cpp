@@ -1,6 +1,6 @@
-/// Trees side by side, as many as a vector has lanes. Two thirds of them need one solution, some need ten:
-/// those that need another move to lanes of their own, so that they keep nobody waiting. Read Group::solve
-/// first.
+/// Trees side by side, as many as a vector has lanes. Two thirds of them need one solution, some need ten.
+/// Those that need another one move to lanes of their own, so that they keep no other waiting. Read
+/// Group::solve first.
 
 #include "solver/joint/articulations.h"
 #include "solver/joint/joint_energy.h"
@@ -22,10 +22,11 @@ namespace {
 
 using state::Hook;
 
-constexpr std::size_t kFewestForLanes = 2;  ///< Below that one after another is faster.
-constexpr int kFewestThatStay = 3;  ///< So many solve on in their block: to move costs half a solution.
+constexpr std::size_t kFewestForLanes = 2;  ///< Below that number, solving one after another is faster.
+/// From that number on, trees are solved on in their block: moving costs half a solution.
+constexpr int kFewestThatStay = 3;
 
-/// The first `kNumbers` numbers of a struct of lanes, from one lane to another.
+/// Copies the first `kNumbers` numbers of a struct of lanes from one lane to another.
 template <std::size_t kNumbers, class Lanes>
 void copy_lane(const Lanes& from, int lane, int to_lane, Lanes& to) {
   using Lane = typename Lanes::Lane;
@@ -34,7 +35,7 @@ void copy_lane(const Lanes& from, int lane, int to_lane, Lanes& to) {
   for (std::size_t i = 0; i < kNumbers * Lanes::kCount; i += Lanes::kCount) target[i] = source[i];
 }
 
-/// Trees in lanes.
+/// A block of trees in lanes.
 template <class Kind>
 struct Block {
   static constexpr int kCount = Kind::kCount;
@@ -99,7 +100,7 @@ class Group {
     return kCount - static_cast<int>(std::count_if(block.slots.begin(), block.slots.end(), is_free));
   }
 
-  /// One solution of all lanes; those that need no other are stored and free.
+  /// Solves all lanes once. Trees that need no other solution are stored, and their lanes are free.
   void solve_block(JointTables tables, Block<Kind>& block) {
     for (int lane = 0; lane < kCount; ++lane)
       block.lanes.release[lane] = block.slots[lane].pass < kFreeBoundPasses ? 1 : 0;
@@ -124,7 +125,7 @@ class Group {
     return (grew || bent) && ++slot.solution < kMaxSolves;
   }
 
-  /// Makes its rows anew if it turns fast; whether a lock is off by too much then.
+  /// Makes the rows of a lane again if a body turns fast. Returns whether a lock is off by too much then.
   bool is_bent(const std::vector<Hook>& hooks, int lane, Block<Kind>& block) const {
     if constexpr (Kind::kApproximate)
       return false;
@@ -137,7 +138,7 @@ class Group {
     }
   }
 
-  /// The compliance of hooks that give way, in series with their rows as they have been made.
+  /// Adds the compliance of hooks that give way, in series with their rows as they have been made.
   void give_way(const Articulation& art, const std::vector<Hook>& hooks, int lane,
                 wide::TreeLanes<Kind>& lanes) const {
     if (!art.breakable) return;
@@ -152,7 +153,7 @@ class Group {
     }
   }
 
-  /// Rows of locks are not always made anew: theirs is all that they have.
+  /// Rows of locks are not always made again: the compliance of the hook is all that they have.
   static void soften(const wide::TreeRowForm& form, Lane compliance, int lane, RowLanes& row) {
     const bool is_soft =
         form.role == RowRole::kSpring || (Kind::kApproximate && form.role == RowRole::kMotor);
@@ -163,7 +164,7 @@ class Group {
       row.held_spring[lane] = (row.spring_target[lane] - row.target[lane]) / row.spring_gamma[lane];
   }
 
-  /// To a lane of those that take longer.
+  /// Moves a tree to a lane of those that take longer.
   void move_on(JointTables tables, int lane) {
     auto slot = std::find_if(late_.slots.begin(), late_.slots.end(), is_free);
     while (slot == late_.slots.end()) {
@@ -199,7 +200,7 @@ class Group {
     }
   }
 
-  /// Lane after lane of each part: a line of memory is written eight times while it is at hand.
+  /// Loads lane after lane of each part: a cache line is written eight times while it is at hand.
   void load(const std::array<const Articulation*, kCount>& trees, JointTables tables) {
     std::array<DVec3, kCount> origin = {};
     for (int lane = 0; Kind::kApproximate && lane < kCount; ++lane)
@@ -221,7 +222,8 @@ class Group {
       load_row(hook, form_->rows[r], art.tree.rows[r], fresh_.lanes.rows[r], lane);
   }
 
-  /// Of a body that tumbles, what inertia of now is found from. Places are those from `origin`.
+  /// Loads a body. For a gyroscopic turn it loads what the present inertia is found from. Positions are those
+  /// from `origin`.
   static void load_link(const state::Bodies& bodies, std::uint32_t row, DVec3 origin, LinkLanes& to,
                         int lane) {
     const bool is_gyroscopic = is_dynamic(bodies, row) && is_gyroscopic_now(bodies, row);
@@ -266,7 +268,7 @@ class Group {
     for (int k = 0; k < (turns ? 6 : 3); ++k) to.value[k][lane] = static_cast<Lane>(hook.value[k]);
   }
 
-  /// Settings of a row, and its impulse in the last substep.
+  /// Loads the settings of a row, and its impulse in the last substep.
   void load_row(const Hook& hook, const wide::TreeRowForm& form, int row, RowLanes& to, int lane) const {
     const bool is_cone = form.freedom == 6;
     const HookFreedom& freedom = hook.freedom[is_cone ? 0 : form.freedom];
@@ -324,7 +326,7 @@ class Group {
     }
   }
 
-  /// Whether a body does, or the line of a hook that keeps a distance.
+  /// Whether a body turns far, or the line of a hook that keeps a distance.
   bool turns_far(const wide::TreeLanes<Kind>& from, int lane) const {
     if (h_ * std::sqrt(from.fast[lane]) > kFarTurn) return true;
     for (std::size_t i = 0; i < form_->joints.size(); ++i) {
@@ -386,10 +388,10 @@ class Group {
   double h_ = 0;
   const wide::TreeForm* form_ = nullptr;
   Block<Kind> fresh_;  ///< Trees at their first solution.
-  Block<Kind> late_;   ///< Those that need more.
+  Block<Kind> late_;   ///< Trees that need more.
 };
 
-/// Many side by side, or one.
+/// Trees solved side by side, or one alone.
 template <class Many, class One>
 struct Pool {
   std::vector<Articulation*> trees;

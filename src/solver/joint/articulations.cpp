@@ -14,14 +14,14 @@ namespace {
 
 using state::Hook;
 
-constexpr int kMostHooks = 8;  ///< Of a body that is not divided.
+constexpr int kMostHooks = 8;  ///< Most hooks of a body that is not divided.
 constexpr int kHooksOfPart = 4;
 
 std::uint32_t link_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body) {
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
 }
 
-/// What is to be joined by rows: links, and the two of each joint.
+/// What rows are to join: the links, and the two links of each joint.
 struct Frame {
   std::vector<std::uint32_t> bodies;
   std::vector<double> parts;
@@ -35,14 +35,14 @@ struct Frame {
 /// Joints of each link, in their order.
 struct JointsOfLinks {
   std::vector<std::uint32_t> joints;
-  std::vector<std::uint32_t> begin;  ///< One more at the end.
+  std::vector<std::uint32_t> begin;  ///< Where the joints of each link begin; one more at the end.
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t link) const {
     return std::span(joints).subspan(begin[link], begin[link + 1] - begin[link]);
   }
 };
 
-/// The joint to the next link towards the root, and that link's neighbor there.
+/// A joint between a link and its child, the neighbor away from the root.
 struct Branch {
   std::uint32_t joint = 0;
   std::uint32_t child = 0;
@@ -53,10 +53,10 @@ struct Branch {
 struct ArticulationScratch::Lists {
   Frame frame;
   JointsOfLinks joints_of;
-  // Of loops.
+  // For loops.
   std::vector<int> sizes;
   BlockGraph graph;
-  // Of trees.
+  // For trees.
   std::vector<Branch> branches;
   std::vector<std::uint32_t> place;
 };
@@ -65,7 +65,7 @@ namespace {
 
 using Lists = ArticulationScratch::Lists;
 
-/// Links of all bodies of the hooks, of which those of more than `most_hooks` are divided.
+/// Makes links of all bodies of the hooks. Bodies with more than `most_hooks` hooks are divided.
 void make_frame(std::span<const std::uint32_t> hook_rows, const std::vector<Hook>& hooks,
                 const state::Bodies& bodies, int most_hooks, Frame& frame) {
   std::vector<std::uint32_t>& body_of = frame.body_of;
@@ -115,7 +115,7 @@ void list_joints_of_links(const Frame& frame, JointsOfLinks& of) {
   }
 }
 
-/// More joints than a tree of these links can have.
+/// Whether there are more joints than a tree of these links can have.
 bool has_loops(const Frame& frame, const state::Bodies& bodies) {
   const auto moves = [&](std::uint32_t link) { return is_dynamic(bodies, frame.bodies[link]); };
   std::ptrdiff_t moving = 0;
@@ -136,7 +136,7 @@ void list_couplings(const state::Bodies& bodies, Articulation& art) {
   }
 }
 
-/// Joints meet where they share a link that moves.
+/// Joins joints that share a link which moves.
 void join_joints(const Frame& frame, const JointsOfLinks& joints_of, const state::Bodies& bodies,
                  BlockGraph& graph) {
   graph.reset(frame.joints.size());
@@ -151,7 +151,7 @@ void join_joints(const Frame& frame, const JointsOfLinks& joints_of, const state
   }
 }
 
-/// Blocks of the joints' rows; false if they take more than the budget.
+/// Makes blocks of the joints' rows. False if they take more than the budget.
 bool make_blocks(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget, Lists& lists,
                  Articulation& art) {
   const Frame& frame = lists.frame;
@@ -184,7 +184,7 @@ bool make_blocks(const std::vector<Hook>& hooks, const state::Bodies& bodies, do
   return true;
 }
 
-/// What nothing moves, or else the heaviest link.
+/// The link that nothing moves, or else the heaviest one.
 std::uint32_t find_root(const Frame& frame, const state::Bodies& bodies) {
   const auto inverse_mass = [&](std::uint32_t link) {
     const std::uint32_t body = frame.bodies[link];
@@ -197,7 +197,7 @@ std::uint32_t find_root(const Frame& frame, const state::Bodies& bodies) {
   return root;
 }
 
-/// From the root on: a joint comes after the one that its parent hangs on.
+/// Lists branches from the root on: a joint comes after the joint that its parent hangs on.
 void list_branches(const Frame& frame, const JointsOfLinks& joints_of, std::uint32_t root,
                    std::vector<Branch>& branches) {
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
@@ -212,7 +212,7 @@ void list_branches(const Frame& frame, const JointsOfLinks& joints_of, std::uint
   branches.erase(branches.begin());
 }
 
-/// Rows of a joint, for the lanes: a spring and the motor beside it are one.
+/// Lists the rows of a joint for the lanes: a spring and the motor beside it are one row.
 void list_tree_rows(const Hook& hook, Articulation::Tree& tree) {
   std::array<RowKind, Hook::kMaxRows> kinds;
   const int count = list_joint_rows(hook, kinds);
@@ -227,12 +227,12 @@ void list_tree_rows(const Hook& hook, Articulation::Tree& tree) {
   }
 }
 
-/// Multiplications that eliminate a joint of n rows.
+/// Multiplications needed to eliminate a joint of n rows.
 double cost_of(double n) {
   return 91 + n * (60 + n * (6 + n / 6));
 }
 
-/// Links and joints in order of elimination; false if that takes more than the budget.
+/// Lists links and joints in order of elimination. False if that takes more than the budget.
 bool make_tree(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget, Lists& lists,
                Articulation& art) {
   auto& [frame, joints_of, sizes, graph, branches, place] = lists;
@@ -272,7 +272,7 @@ bool make_tree(const std::vector<Hook>& hooks, const state::Bodies& bodies, doub
   return budget >= 0;
 }
 
-/// Nothing in it; its memory stays.
+/// Empties it, but keeps its memory.
 void clear(Articulation& art) {
   art.bodies.clear();
   art.joints.clear();

@@ -1,4 +1,4 @@
-/// Ball hooks over lanes, then the dispatch. The arithmetic stands in ball_joint_rows.h.
+/// Ball hooks over lanes, then the dispatch. The arithmetic stands in solver/joint/ball_joint_rows.h.
 
 #include "solver/joint/ball_joint_kernels.h"
 
@@ -11,7 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// After Highway, which includes this file anew for each instruction set; numbers before what uses them.
+// Included after Highway, which includes this file again for each instruction set. Numbers come before what
+// uses them.
 // clang-format off
 #include "solver/simd/vectors.h"
 #include "solver/joint/ball_joint_rows.h"

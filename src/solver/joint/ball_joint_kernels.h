@@ -6,23 +6,24 @@
 #include <span>
 
 /// \file
-/// Kernels over blocks of ball hooks; the formulas stand in solver/joint/ball_joints.h. As in wide.h, every
-/// instruction set gives the bits of the scalar twin, and wide::use_target chooses for these kernels too.
+/// Kernels over blocks of ball hooks; the formulas stand in solver/joint/ball_joints.h. Every instruction set
+/// gives the bits of the scalar twin, and wide::use_target (solver/simd/dispatch.h) chooses the instruction
+/// set.
 
 namespace hooke::solver::wide {
 
-/// How strongly a pass takes errors back.
+/// How strongly a pass removes errors.
 struct BallPass {
   Real rate = Real(0);           ///< beta [1/s]
   Real mass_scale = Real(1);     ///< mu
   Real impulse_scale = Real(0);  ///< gamma
 };
 
-/// The impulses carried over from the last step, for blocks of one color.
+/// Applies the impulses carried over from the last step, for blocks of one color.
 void warm_start_balls(std::span<BallBlock> blocks, state::MotionRecord* motion);
-/// One pass over blocks of one color, before the bodies move.
+/// Makes one pass over blocks of one color, before the bodies move.
 void solve_balls(std::span<BallBlock> blocks, const BallPass& pass, state::MotionRecord* motion);
-/// And after.
+/// Makes one pass after the bodies have moved.
 void relax_balls(std::span<BallBlock> blocks, state::MotionRecord* motion);
 
 // The scalar twins.

@@ -1,4 +1,5 @@
-/// The arithmetic of ball hooks in numbers.h's Numbers. Included anew for each instruction set.
+/// The arithmetic of ball hooks, in Numbers of solver/simd/numbers.h. Included again for each instruction
+/// set.
 
 #if defined(HOOKE_SOLVER_JOINT_BALL_JOINT_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_JOINT_BALL_JOINT_ROWS_H
@@ -52,7 +53,7 @@ HWY_INLINE BallRows<Number> difference(const BallRows<Number>& a, const BallRows
   return {difference(a.x, b.x), difference(a.y, b.y), difference(a.z, b.z)};
 }
 
-/// sum of c[k] y^k
+/// The sum of c[k] y^k.
 template <class Number, int kCount>
 HWY_INLINE Number polynomial(const Real (&c)[kCount], Number y) {
   Number value(c[kCount - 1]);
@@ -60,11 +61,11 @@ HWY_INLINE Number polynomial(const Real (&c)[kCount], Number y) {
   return value;
 }
 
-/// How far `arm` moves when it is turned by the rotation vector theta. More than a whole turn in one step
-/// counts as none.
+/// How far `arm` moves when the rotation vector theta turns it. More than a whole turn in one step counts as
+/// none.
 template <class Number>
 HWY_INLINE Triple<Number> turned_by(const Triple<Number>& theta, const Triple<Number>& arm) {
-  // sin x / x and cos x in x^2, up to x = pi: 1e-8.
+  // sin x / x and cos x in powers of x^2, up to x = pi: error 1e-8.
   constexpr Real kSine[] = {Real(1),
                             Real(-1.0 / 6),
                             Real(1.0 / 120),
@@ -115,7 +116,7 @@ HWY_INLINE Scale<Number> mass_of(Number w, const BallRows<Number>& a, const Ball
       s * c_x, s * c_y, s * c_z, s * (xx * zz - xz * xz), s * (xy * xz - xx * yz), s * (xx * yy - xy * xy)};
 }
 
-/// What three impulses do to the bodies' rotation.
+/// Applies three impulses to the bodies' rotation.
 template <class Number, bool kAnchored>
 HWY_INLINE void turn(const Triple<Number>& p, const BallRows<Number>& a, const BallRows<Number>& b,
                      Bodies<Number, kAnchored>& bodies) {
@@ -124,7 +125,7 @@ HWY_INLINE void turn(const Triple<Number>& p, const BallRows<Number>& a, const B
   bodies.turn(p.z, a.z, b.z);
 }
 
-/// And to their velocity.
+/// Applies them to the bodies' velocity.
 template <class Number, bool kAnchored>
 HWY_INLINE void push(const Triple<Number>& p, const BallBlock& block, int lane,
                      Bodies<Number, kAnchored>& bodies) {
@@ -139,7 +140,7 @@ HWY_INLINE Triple<Number> parting(const BallRows<Number>& a, const BallRows<Numb
              difference(b.rates(bodies.b.omega), a.rates(bodies.a.omega)));
 }
 
-/// What is left of `change` where the impulse `before` may not become larger than the hook takes.
+/// The part of `change` that keeps the impulse `before` within what the hook can take.
 template <class Number>
 HWY_INLINE Triple<Number> capped(const Triple<Number>& before, const Triple<Number>& change,
                                  const BallBlock& block, int lane) {
@@ -151,7 +152,7 @@ HWY_INLINE Triple<Number> capped(const Triple<Number>& before, const Triple<Numb
   return {choose(over, less.x, change.x), choose(over, less.y, change.y), choose(over, less.z, change.z)};
 }
 
-/// A hook that needs more than it takes, as it did in the last substep, breaks.
+/// A hook that needs more than it can take, as in the last substep too, breaks.
 template <class Number>
 HWY_INLINE void note_need(const Triple<Number>& needed, BallBlock& block, int lane) {
   const Number zero(Real(0));
@@ -170,7 +171,7 @@ HWY_INLINE void note_need(const Triple<Number>& needed, BallBlock& block, int la
   write(choose(breaks, zero, strength), block.strength + lane);
 }
 
-/// Start of a step, in which bodies carry nothing over yet: the impulses of the last substep.
+/// Applies the impulses of the last substep at the start of a step, in which bodies carry nothing over yet.
 template <class Number, bool kAnchored>
 HWY_INLINE void warm_start_ball_lanes(BallBlock& block, int lane, Real* motion) {
   MovingBodies<Number, kAnchored> pair(block, lane, motion);

@@ -28,11 +28,11 @@ bool may_be_in_block(const Bodies& bodies, std::uint32_t body) {
   return body != HookPlace::kWorld && (!is_dynamic(bodies, body) || !is_gyroscopic(bodies.mass[body]));
 }
 
-/// A hook as the block sees it.
+/// A hook as the block has it.
 struct BallEnds {
   const HookPlace& a;
   const HookPlace& b;
-  Real sign = Real(1);  ///< Of impulses and gaps: -1 where the ends have changed places.
+  Real sign = Real(1);  ///< Sign of impulses and gaps: -1 where the ends are swapped.
   bool anchored = false;
 };
 
@@ -41,7 +41,7 @@ BallEnds ends_of(const Hook& hook, const Bodies& bodies) {
   return {hook.a, hook.b, Real(1), !is_dynamic(bodies, hook.b.body)};
 }
 
-/// The axes along which a hook's rows stand: those of its a.
+/// The axes along which a hook's rows are: those of its end a.
 Mat3 row_axes(const Hook& hook, const Bodies& bodies) {
   return matrix_of(normalize(bodies.rotation[hook.a.body] * hook.a.axes));
 }
@@ -67,7 +67,7 @@ void put_scale(const Bodies& bodies, std::uint32_t body, Real (&to)[6][kLanes], 
   put<6>({s.xx, s.xy, s.xz, s.yy, s.yz, s.zz}, to, lane);
 }
 
-/// From the center of mass to the anchor at the start of the step.
+/// The vector from the center of mass to the anchor at the start of the step.
 DVec3 arm_of(const HookPlace& end, const Bodies& bodies) {
   return rotate(math::in_double(bodies.rotation[end.body]), end.anchor);
 }
@@ -96,7 +96,7 @@ void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int l
   hook.value[2] = static_cast<double>(error.z);
 }
 
-/// The block of `count` hooks of hook_of from `begin`.
+/// Fills the block with `count` hooks of hook_of from `begin` on.
 void fill_block(Real h, const BallJoints& joints, std::size_t begin, std::size_t count,
                 std::vector<Hook>& hooks, const Bodies& bodies, BallBlock& block) {
   const auto rows = std::span(joints.hook_of).subspan(begin, count);
@@ -136,7 +136,8 @@ void for_each_range(parallel::ThreadPool& pool, BallJoints& joints, SweepOrder o
   });
 }
 
-/// Blocks of the hooks of one color that are awake: those with two bodies that move, then the others.
+/// Plans the blocks of the hooks of one color that are awake: first those with two bodies that move, then the
+/// others.
 void plan_color(int color, const std::vector<Hook>& hooks, const Bodies& bodies, BallJoints& joints) {
   for (const bool anchored : {false, true}) {
     std::size_t begin = joints.hook_of.size();

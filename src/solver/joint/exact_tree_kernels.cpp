@@ -1,4 +1,5 @@
-/// Trees in double over lanes, then the dispatch. The arithmetic stands in tree_rows.h and tree_sweep.h.
+/// Trees in double over lanes, then the dispatch. The arithmetic stands in solver/joint/tree_rows.h and
+/// solver/joint/tree_sweep.h.
 
 #include "solver/joint/tree_kernels.h"
 #include "solver/simd/dispatch.h"
@@ -10,7 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// After Highway, which includes this file anew for each instruction set; numbers before what uses them.
+// Included after Highway, which includes this file again for each instruction set. Numbers come before what
+// uses them.
 // clang-format off
 #include "solver/simd/double_vectors.h"
 #include "solver/joint/tree_rows.h"

@@ -13,38 +13,40 @@
 #include <vector>
 
 /// \file
-/// Hooks that break: docs/decisions/0029-hooks-that-break.md. Of what is solved as a whole, a hook that needs
-/// more than it can take is put in series with a dashpot for the rest of that substep, and everything is
-/// solved again, so that nobody else feels a blow that the hook cannot pass on. The dashpot is chosen so that
-/// the hook takes what it can: with the relative speed s that is left where the hook takes nothing at all,
+/// Hooks that break: docs/decisions/0029-hooks-that-break.md. Where joints are solved as a whole, a hook that
+/// needs more than it can take is put in series with a dashpot for the rest of that substep. Then everything
+/// is solved again, so that no other part feels an impulse that the hook cannot pass on. The dashpot is
+/// chosen so that the hook takes what it can. With the relative speed s that is left where the hook takes
+/// nothing at all, it is
 ///
-///   gamma = s / (h F),   which takes h F as s does not change, and less where it does.
+///   gamma = s / (h F),   which takes h F if s does not change, and less if it does,
 ///
-/// and once more with the speed that is left then. A dashpot takes energy and never gives any, whatever the
-/// speeds turn out to be. Then the hook is broken.
+/// and it is set once more with the speed that is left then. A dashpot takes energy and never gives any,
+/// whatever the speeds turn out to be. Then the hook is broken.
 
 namespace hooke::solver {
 
-/// What a solution says that a hook takes in a substep.
+/// What a hook takes in a substep, by a solution.
 struct HookLoad {
   double impulse = 0;          ///< [N s]
   double angular_impulse = 0;  ///< [N m s]
 };
 
-/// Looks at the hooks of `rows` after a solution that gave load_of(hook row): of those that need too much,
-/// the ones that need most give way; the dashpots of those that gave way before are set. `round` counts calls
-/// in a substep of length h [s]. True if the solution must be repeated.
+/// Checks the hooks of `rows` after a solution that gave load_of(hook row). Of the hooks that need too much,
+/// those that need most give way. The dashpots of those that gave way before are set. `round` counts calls in
+/// a substep of length h [s]. True if the solution must be repeated.
 template <class LoadOf>
 [[nodiscard]] bool give_way(double h, std::span<const std::uint32_t> rows, int round,
                             std::vector<state::Hook>& hooks, LoadOf&& load_of);
 
-/// Bodies and hooks of articulations before a solution, to be solved again from.
+/// State of bodies and hooks of articulations before a solution, from which they can be solved again.
 class BreakScratch {
  public:
   void clear();
-  /// Notes articulation `index` before it is solved.
+  /// Saves the state of articulation `index` before it is solved.
   void note(std::uint32_t index, const Articulation& articulation, const JointTables& tables);
-  /// After those that were noted have been solved: puts those back of which a hook gives way, and says which.
+  /// Called after the saved articulations have been solved. Puts back those of which a hook gives way, and
+  /// returns them.
   std::span<const std::uint32_t> give_way(double h, const JointTables& tables);
 
  private:
@@ -76,23 +78,24 @@ class BreakScratch {
   std::vector<Group> groups_;
   std::vector<SavedBody> bodies_;
   std::vector<SavedHook> hooks_;
-  std::vector<std::uint32_t> rows_;  ///< As hooks_.
+  std::vector<std::uint32_t> rows_;  ///< Rows of `hooks_`.
   std::vector<std::uint32_t> again_;
 };
 
-/// How many calls of give_way look for those that need most; after that, all that need too much give way.
+/// Number of calls of give_way that look for those that need most. After that, all that need too much give
+/// way.
 inline constexpr int kMostBreakRounds = 16;
-/// Those that need as much as the one that needs most, to this share, give way together.
+/// Hooks that need as much as the one that needs most, to this share, give way together.
 inline constexpr double kAlikeInNeed = 0.999;
 
-/// What a hook needs in a substep of length h [s], over what it can take.
+/// What a hook needs in a substep of length h [s], divided by what it can take.
 [[nodiscard]] double need_of(const state::Hook& hook, const HookLoad& load, double h);
 
-/// Lets a hook take nothing, and notes what it needed.
+/// Makes a hook take nothing, and notes what it needed.
 void let_go(double h, double need, const HookLoad& load, state::Hook& hook);
 
-/// Sets the dashpot of a hook that gives way by the speed that is left, as the `load` says that it took with
-/// the dashpot it had. False if it holds, or takes what it can.
+/// Sets the dashpot of a hook that gives way by the speed that is left. That speed follows from the `load`
+/// that the hook took with its old dashpot. False if the hook holds, or takes what it can.
 bool set_dashpot(const HookLoad& load, state::Hook& hook);
 
 template <class LoadOf>

@@ -18,7 +18,7 @@ using state::HookPlace;
 
 constexpr int kGrain = 32;
 
-/// The velocities of a joint's ends, from the columns and back.
+/// The velocities of a joint's ends, read from the columns and written back.
 struct Ends {
   JointBody a;
   JointBody b;
@@ -54,7 +54,7 @@ void add(const JointImpulse& p, JointImpulse& sum) {
   sum.angular_b += p.angular_b;
 }
 
-/// K of joint_nets.h.
+/// K of solver/joint/iterative_joints.h.
 double diagonal_of(const JointRow& row, const Ends& ends, const ExtraHooks& extra_hooks) {
   const auto part = [&](const JointBody& body, DVec3 j) {
     return body.inverse_mass > 0 ? body.inverse_mass * dot(row.n, row.n) + dot(j, j) : 0;
@@ -82,7 +82,7 @@ double solve_row(const JointRow& row, const Ends& ends, double diagonal, double 
   return std::clamp(lambda + change, row.low, row.high) - lambda;
 }
 
-/// Calls visit(i) for every hook of the net that holds a body awake, color after color.
+/// Calls visit(i) for every iterative joint that holds a body awake, color after color.
 template <class Visit>
 void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, const state::Bodies& bodies,
                     const IterativeJoints& iterative, SweepOrder order, Visit&& visit) {
@@ -96,7 +96,7 @@ void for_each_joint(parallel::ThreadPool& pool, const std::vector<Hook>& hooks, 
   });
 }
 
-/// Rows of now, and the impulses that carry over along them.
+/// Makes the present rows, and applies along them the impulses that carry over.
 void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, IterativeJoints& iterative) {
   Ends ends = {joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body)};
   std::array<JointRow, Hook::kMaxRows> rows;
@@ -111,7 +111,7 @@ void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, IterativeJo
   store_velocity(ends.b, hook.b.body, bodies);
 }
 
-/// What the rows of a hook take.
+/// The load that the rows of a hook take.
 HookLoad load_of(std::span<const JointRow> rows, const Hook& hook) {
   DVec3 linear;
   DVec3 angular;
@@ -122,7 +122,7 @@ HookLoad load_of(std::span<const JointRow> rows, const Hook& hook) {
   return {length(linear), length(angular)};
 }
 
-/// Takes from the impulses of a hook what is more than it can take.
+/// Removes from the impulses of a hook what is more than it can take.
 void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImpulse& done, Hook& hook) {
   if (!hook.broken && !(need > 1)) return;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -134,7 +134,7 @@ void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImp
   }
 }
 
-/// Returns what the hook needed.
+/// Solves the rows of a joint once. Returns what the hook needed.
 HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
                      state::Bodies& bodies, IterativeJoints& iterative) {
   Ends ends;
@@ -165,7 +165,7 @@ HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order
   return load;
 }
 
-/// Sweeps need more than there is now and then, until they have settled: two substeps in a row count.
+/// Sweeps sometimes need more than there is, until they have converged: two consecutive substeps count.
 void note_need(double h, const HookLoad& load, Hook& hook) {
   const HookLoad last = {static_cast<double>(hook.last_impulse),
                          static_cast<double>(hook.last_angular_impulse)};

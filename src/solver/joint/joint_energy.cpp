@@ -19,8 +19,8 @@ struct Mover {
   std::uint32_t row = 0;
   double mass = 0;
   DVec3 center, v;
-  DVec3 omega;              ///< By the angular momentum, which is what a body that tumbles has.
-  DVec3 momentum;           ///< Angular.
+  DVec3 omega;              ///< From the angular momentum, which is what a body in a gyroscopic turn has.
+  DVec3 momentum;           ///< Angular momentum.
   Symmetric3<double> root;  ///< S = I^(-1/2) of now.
 
   [[nodiscard]] DVec3 momentum_at(DVec3 spin) const {
@@ -52,7 +52,7 @@ Mover mover_of(std::uint32_t row, const JointBody& body, const state::Bodies& bo
 template <class Visit>
 void for_moving(const Articulation& art, const state::Bodies& bodies, Visit&& visit) {
   for (std::size_t i = 0; i < art.bodies.size(); ++i) {
-    if (i > 0 && art.bodies[i] == art.bodies[i - 1]) continue;  // a part of the same
+    if (i > 0 && art.bodies[i] == art.bodies[i - 1]) continue;  // a part of the same body
     const JointBody body = joint_body_now(bodies, art.bodies[i]);
     if (body.inverse_mass > 0) visit(mover_of(art.bodies[i], body, bodies));
   }
@@ -64,7 +64,7 @@ struct Twist {
   [[nodiscard]] DVec3 at(DVec3 place) const { return v + cross(omega, place - center); }
 };
 
-/// |r|^2 - r r^T, `mass` times.
+/// The matrix |r|^2 - r r^T, `mass` times.
 Symmetric3<double> inertia_about(double mass, DVec3 r) {
   const double square = length_squared(r);
   return {mass * (square - r.x * r.x), -mass * r.x * r.y, -mass * r.x * r.z,
@@ -85,7 +85,7 @@ Twist common_motion(const BodySums& sums, const Articulation& art, const state::
   return all;
 }
 
-/// That of the body that nothing moves, or of all together.
+/// The motion of the body that nothing moves, or the common motion of all.
 Twist reference_of(const BodySums& sums, const Articulation& art, const state::Bodies& bodies) {
   for (const std::uint32_t row : art.bodies) {
     const JointBody body = joint_body_now(bodies, row);
@@ -94,17 +94,17 @@ Twist reference_of(const BodySums& sums, const Articulation& art, const state::B
   return common_motion(sums, art, bodies);
 }
 
-/// The share s in [0, 1] of the motion beside the reference with which the energy is `most`: the root of a
-/// quadratic a s^2 + b s + c = most.
+/// The share s in [0, 1] of the motion relative to the reference with which the energy is `most`: the root of
+/// a quadratic a s^2 + b s + c = most.
 double share_with(double most, double a, double b, double c) {
   if (!(most > c)) return 0;
   const double root = std::sqrt(b * b + 4 * a * (most - c));
-  // Without cancellation, whatever the sign of b.
+  // This form has no cancellation, whatever the sign of b.
   const double share = b > 0 ? 2 * (most - c) / (root + b) : (root - b) / (2 * a);
   return share < 1 ? share : 1;
 }
 
-/// Until the kinetic energy is `most`. Returns the share.
+/// Slows the bodies down until the kinetic energy is `most`. Returns the share.
 double slow_down(const Articulation& art, const Twist& reference, double most, state::Bodies& bodies) {
   double a = 0;
   double b = 0;
@@ -132,7 +132,7 @@ double slow_down(const Articulation& art, const Twist& reference, double most, s
   return share;
 }
 
-/// The sum of what the hooks remember, which they forget; the first that is one remembers from now on.
+/// Sums what the hooks store, and resets it. The first hook that is no weld stores the sum from now on.
 state::Hook* collect_debt(const Articulation& art, std::vector<state::Hook>& hooks, double& debt) {
   state::Hook* first = nullptr;
   for (const Articulation::Joint& joint : art.joints) {

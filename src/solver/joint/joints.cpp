@@ -59,14 +59,14 @@ bool any_awake(const Articulation& articulation, const state::Bodies& bodies) {
                      [&](std::uint32_t body) { return gives_way(bodies, body); });
 }
 
-/// Whether it is solved with what touches it.
+/// Whether the articulation is solved with what touches it.
 bool is_in_coupled_group(const Articulation& articulation, const std::vector<Hook>& hooks) {
   const auto joint = std::find_if(articulation.joints.begin(), articulation.joints.end(),
                                   [](const Articulation::Joint& j) { return !j.is_weld(); });
   return joint != articulation.joints.end() && hooks[joint->hook].route == state::JointRoute::kCoupled;
 }
 
-/// Those awake; trees of a kind together.
+/// Solves the articulations that are awake; trees of a kind together.
 void solve_articulations(double h, std::span<const std::uint32_t> order,
                          std::vector<Articulation>& articulations, SolveScratch& scratch,
                          JointTables tables) {
@@ -79,7 +79,7 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
     Articulation& art = articulations[i];
     if (!any_awake(art, tables.bodies)) continue;
     if (is_in_coupled_group(art, tables.hooks)) {
-      reset_energy(art, tables.hooks);  // others solve it for now
+      reset_energy(art, tables.hooks);  // others solve it in this step
       continue;
     }
     if (art.has_loops()) {
@@ -92,7 +92,7 @@ void solve_articulations(double h, std::span<const std::uint32_t> order,
   solve();
 }
 
-/// The same, until no hook needs more than it can take.
+/// Does the same, until no hook needs more than it can take.
 void solve_with_breaks(double h, std::span<const std::uint32_t> order,
                        std::vector<Articulation>& articulations, SolveScratch& scratch, JointTables tables) {
   scratch.breaks.clear();
@@ -107,7 +107,7 @@ void solve_with_breaks(double h, std::span<const std::uint32_t> order,
   }
 }
 
-/// Brings trees of one form together. What has loops has no form, and comes first.
+/// Brings trees of one form together. An articulation with loops has no form, and comes first.
 void sort_articulations(std::vector<Articulation>& articulations, std::vector<std::uint32_t>& order) {
   const auto form = [&](std::uint32_t i) -> const wide::TreeForm& { return articulations[i].tree.form; };
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t k) {
@@ -152,7 +152,7 @@ void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, d
   count_hooks(rest, hooks, bodies, degree);
   balls.clear();
   others.clear();
-  // Blocks know no crowds.
+  // Blocks cannot solve bodies with many hooks.
   const auto has_many_hooks = [&](std::uint32_t body) {
     return is_dynamic(bodies, body) && joints.build.degree[body] > kMostFreeHooks;
   };

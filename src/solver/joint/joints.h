@@ -18,12 +18,12 @@
 #include <vector>
 
 /// \file
-/// Hooks between bodies. Groups that can be solved exactly within a budget are articulations; larger nets are
-/// rows in colors.
+/// Hooks between bodies. Groups that can be solved exactly within a budget are articulations; larger ones are
+/// iterative joints, rows in colors.
 ///
 /// The order of calls:
 ///   build_joints                                            when hooks or bodies came or went
-///   judge_ragdolls, before contacts are looked for          once a step
+///   evaluate_ragdolls, before contacts are detected         once a step
 ///   prepare_joints                                          once a step
 ///   [solve_joints, then bodies move, then relax_joints]     each substep
 ///   finish_joints                                           once a step
@@ -37,20 +37,21 @@ struct SolveScratch {
   BreakScratch breaks;
 };
 
-/// Hooks that share bodies which forces move, directly or through others; groups in order of their first.
+/// Hooks that share bodies which forces move, directly or through others. Groups are in order of their first
+/// hook.
 struct HookGroups {
   std::vector<std::uint32_t> hooks;  ///< Rows, group after group; in each, in their order.
-  std::vector<std::size_t> begin;    ///< Of each group; one more at the end.
+  std::vector<std::size_t> begin;    ///< Where each group begins; one more at the end.
 };
 
-/// Memory of build_joints: a hook that breaks allocates nothing.
+/// Memory of build_joints, so that a hook that breaks allocates nothing.
 struct BuildScratch {
   base::DisjointSets sets;
-  std::vector<std::uint32_t> group_of;  ///< Of each body that is the root of its set.
+  std::vector<std::uint32_t> group_of;  ///< Group of each body that is the root of its set.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> grouped;
   HookGroups groups;
   ArticulationScratch articulation;
-  std::vector<std::uint32_t> rest;  ///< Hooks of no articulation.
+  std::vector<std::uint32_t> rest;  ///< Rows of hooks of no articulation.
   std::vector<std::uint32_t> balls;
   std::vector<std::uint32_t> others;
   std::vector<int> degree;
@@ -58,13 +59,15 @@ struct BuildScratch {
 };
 
 struct Joints {
-  std::vector<Articulation> articulations;  ///< Those of `order`, then some that only keep their memory.
-  std::vector<std::uint32_t> order;         ///< Articulations: those with loops first, then trees by kind.
-  BallJoints
-      balls;  ///< Plain balls in none of them, and at no crowded body (solver/joint/iterative_joints.h).
-  IterativeJoints iterative;  ///< All others that are in none of them.
-  std::vector<std::uint8_t>
-      in_ragdoll;  ///< By body row: 1 for members of ragdolls (solver/joint/approximate_trees.h).
+  /// Those of `order`, then some that only keep their memory.
+  std::vector<Articulation> articulations;
+  std::vector<std::uint32_t> order;  ///< Articulations: those with loops first, then trees by kind.
+  /// Plain balls outside articulations, at no body with more than kMostFreeHooks hooks
+  /// (solver/joint/iterative_joints.h).
+  BallJoints balls;
+  IterativeJoints iterative;  ///< All other hooks outside articulations.
+  /// By body row: 1 for members of ragdolls (solver/joint/approximate_trees.h).
+  std::vector<std::uint8_t> in_ragdoll;
   std::vector<SolveScratch> scratch;
   BuildScratch build;
 };
@@ -73,28 +76,29 @@ struct Joints {
 inline constexpr double kArticulationBudget = 2e6;
 
 /// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
-/// Groups that cost more than `budget` multiplications go into the net.
+/// Groups that cost more than `budget` multiplications become iterative joints.
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints);
 
-/// Which trees are ragdolls, and which of those are loose in this step (solver/joint/approximate_trees.h).
+/// Finds which trees are ragdolls, and which of those are approximate in this step
+/// (solver/joint/approximate_trees.h).
 void evaluate_ragdolls(parallel::ThreadPool& pool, const std::vector<state::Hook>& hooks,
                        const state::Bodies& bodies, Joints& joints);
 
-/// Start of a step of substeps of length h [s]: no impulse yet.
+/// Called at the start of a step of substeps of length h [s]: no hook has an impulse yet.
 void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks,
                     const state::Bodies& bodies, Joints& joints);
 
-/// The rows of a substep of length h [s], with their errors removed. Groups asleep are left alone.
+/// Solves the rows of a substep of length h [s], with removal of their errors. Sleeping groups are skipped.
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
                   Joints& joints);
 
-/// After bodies have moved: takes back the velocity that removing errors has added. Only nets need it.
-/// Adds up the impulses of the substep and marks hooks that break.
+/// Called after bodies have moved: removes the velocity that removal of errors has added. Only iterative
+/// joints need it. Adds up the impulses of the substep and marks hooks that break.
 void relax_joints(parallel::ThreadPool& pool, Real h, std::vector<state::Hook>& hooks, state::Bodies& bodies,
                   Joints& joints);
 
-/// End of a step of length dt [s] in `substeps`: mean forces.
+/// Computes mean forces, at the end of a step of length dt [s] in `substeps`.
 void finish_joints(parallel::ThreadPool& pool, Real dt, int substeps, const state::Bodies& bodies,
                    const Joints& joints, std::vector<state::Hook>& hooks);
 

@@ -6,15 +6,16 @@
 #include <vector>
 
 /// \file
-/// Trees of bodies and joints, of one form, side by side: one in each lane. Their rows, and one solution of
-/// all of them for given bounds. Equations: solver/joint/articulations.h and solver/joint_rows/joint_rows.h.
+/// Trees of bodies and joints of one form, side by side: one in each lane. These kernels make their rows, and
+/// solve all of them once for given bounds. Equations: solver/joint/articulations.h and
+/// solver/joint_rows/joint_rows.h.
 
 namespace hooke::solver::wide {
 
-inline constexpr int kMostTreeRows =
-    13;  ///< Of a joint: each freedom a limit and something else, and a cone.
+/// Rows of a joint: for each freedom a limit and something else, and a cone.
+inline constexpr int kMostTreeRows = 13;
 
-/// What is the same for a row in all lanes.
+/// The properties of a row that are the same in all lanes.
 struct TreeRowForm {
   int freedom = 0;
   RowRole role = RowRole::kLock;
@@ -24,7 +25,7 @@ struct TreeRowForm {
 
   [[nodiscard]] bool turns() const { return freedom >= 3; }
   [[nodiscard]] bool bounded() const { return role == RowRole::kMotor || role == RowRole::kLimit; }
-  /// It is not there while it is at a bound.
+  /// Whether the row is absent while it is at a bound.
   [[nodiscard]] bool drops() const { return bounded() && !sprung; }
 };
 
@@ -34,14 +35,14 @@ struct TreeJoint {
   bool parent_moves = true;
   bool child_is_b = false;
   HookKind kind = HookKind::kBall;
-  bool turns = false;  ///< Rows need its angles.
-  int first = 0;       ///< Of its rows, those of ways first.
+  bool turns = false;  ///< Its rows need the angles.
+  int first = 0;       ///< Index of its first row; rows of translations come first.
   int count = 0;
 
   auto operator<=>(const TreeJoint&) const = default;
 };
 
-/// In order of elimination; the root is one link more than there are joints.
+/// Joints in order of elimination; there is one link more than joints, the root.
 struct TreeForm {
   std::vector<TreeJoint> joints;
   std::vector<TreeRowForm> rows;
@@ -49,22 +50,23 @@ struct TreeForm {
   auto operator<=>(const TreeForm&) const = default;
 };
 
-/// A loose tree is solved once where others go on until every row is within its bounds. Friction that slides
-/// is viscous: with the speed |v| of the last substep, at least kLooseSlide and kLooseJolt times that before
-/// the joints are solved,
+/// An approximate tree is solved once, where others go on until every row is within its bounds. Friction that
+/// slides is viscous: with the speed |v| of the last substep, at least kApproximateSlide and kApproximateJolt
+/// times that before the joints are solved,
 ///
 ///   gamma = |v| / high,   so that lambda = -v / gamma is `high` where the speed stays,
 ///
-/// and it is at its bound only if that asks for more than kLooseFriction times as much, as where a jolt sets
-/// it sliding. Limits are met, and let go, in the next substep where that makes kLooseSpeed or less.
+/// and it is at its bound only if that demands more than kApproximateFriction times as much, as where a jolt
+/// makes it slide. Limits act, and are let go, in the next substep where that causes a speed of
+/// kApproximateSpeed or less.
 inline constexpr double kApproximateSlide = 0.05;  ///< [m/s] or [rad/s]
 inline constexpr double kApproximateJolt = 0.25;
 inline constexpr double kApproximateFriction = 3;
 inline constexpr double kApproximateSpeed = 0.2;  ///< [m/s] or [rad/s]
 
-/// How trees are solved, and how many side by side: one vector of the widest set of instructions, several of
-/// others. Of exact ones the numbers are double in both precisions of the engine. `kCompliance` is a share of
-/// each diagonal, above rounding.
+/// How trees are solved, and how many side by side: one vector of the widest instruction set, several of
+/// others. Exact trees use double in both precisions of the engine. `kCompliance` is a share of each
+/// diagonal, above rounding.
 struct ExactTrees {
   using Lane = double;
   static constexpr int kCount = 8;
@@ -84,13 +86,13 @@ struct ApproximateTree : ApproximateTrees {
   static constexpr int kCount = 1;
 };
 
-/// A body. Lower triangles of 6 x 6 matrices stand row by row.
+/// A body in lanes. Lower triangles of 6 x 6 matrices are stored row by row.
 template <class Kind>
 struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLinkLanes {
   using Lane = typename Kind::Lane;
   static constexpr int kCount = Kind::kCount;
 
-  // As JointBody. Of bodies that tumble (`tumbles` is 1) the last three are found from what stands below.
+  // As JointBody. If `is_gyroscopic` is 1, the last three are found from the columns below.
   Lane center[3][kCount], v[3][kCount];
   Lane inverse_mass[kCount], mass[kCount];  ///< Both 0 where nothing moves it.
   Lane rotation[4][kCount], scale[6][kCount], omega_before[3][kCount];
@@ -98,15 +100,15 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLinkLanes {
 
   Lane stiffness[6][kCount];  ///< h^2 S K S
   Lane turning[6][kCount];    ///< 1 + 1.2 G: inertia in scaled coordinates.
-  Lane omega[3][kCount];      ///< Scaled, without the joints.
+  Lane omega[3][kCount];      ///< Scaled angular velocity without the joints.
 
-  Lane v_now[3][kCount], omega_now[3][kCount];     ///< The result.
+  Lane v_now[3][kCount], omega_now[3][kCount];     ///< Resulting velocities.
   Lane principal[4][kCount], inertia[3][kCount];   ///< As BodyMass.
   Lane step_scale[6][kCount];                      ///< S of the start of the step.
-  Lane a[21][kCount], g[6][kCount], u[6][kCount];  ///< Of the elimination, as tree_sweep.h has it.
+  Lane a[21][kCount], g[6][kCount], u[6][kCount];  ///< Elimination: solver/joint/tree_sweep.h.
 };
 
-/// A hook.
+/// A hook in lanes.
 template <class Kind>
 struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeJointLanes {
   using Lane = typename Kind::Lane;
@@ -114,35 +116,36 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeJointLanes {
 
   Lane anchor_a[3][kCount], anchor_b[3][kCount];  ///< As HookPlace.
   Lane axes_a[4][kCount], axes_b[4][kCount];
-  Lane value[6][kCount];    ///< Of the freedoms: before, then now.
-  Lane impulse[3][kCount];  ///< On b, of the substep before, then of this one [N s].
+  Lane value[6][kCount];    ///< Value of each freedom: before, then now.
+  Lane impulse[3][kCount];  ///< Impulse on b, of the substep before, then of this one [N s].
   Lane angular[3][kCount];
 };
 
-/// A row. Its direction is that of the child's motion: `child` and `parent` have opposite signs.
+/// A row in lanes. Its direction is that of the child's motion: `child` and `parent` have opposite signs.
 template <class Kind>
 struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeRowLanes {
   using Lane = typename Kind::Lane;
   static constexpr int kCount = Kind::kCount;
 
-  Lane n[3][kCount];  ///< On the child, minus that on the parent; of an angle its axis, which acts so.
+  /// Direction on the child, minus that on the parent. For an angle it is the axis, with the same signs.
+  Lane n[3][kCount];
   Lane child[3][kCount], parent[3][kCount];
-  Lane gamma[kCount], target[kCount];  ///< Where it is at no bound.
+  Lane gamma[kCount], target[kCount];  ///< While it is at no bound.
   Lane goal[kCount];                   ///< Setting of locks and springs.
-  // If it is bounded.
-  Lane low[kCount], high[kCount], bound[kCount];  ///< Of impulses; -1, 0 or 1.
+  // Only if the row is bounded.
+  Lane low[kCount], high[kCount], bound[kCount];  ///< Bounds of impulses; -1, 0 or 1.
   Lane lower[kCount], upper[kCount];              ///< Settings of limits.
-  Lane freed[kCount];  ///< 1 once it was let go: when it comes to a bound again it stays.
-  // If it is a motor or a spring.
+  Lane freed[kCount];  ///< 1 once it was let go: when it comes to a bound again, it stays.
+  // Only for a motor or a spring.
   Lane speed[kCount];                                ///< Setting of motors.
   Lane stiffness[kCount], damping[kCount];           ///< Settings of springs.
-  Lane start[kCount];                                ///< Of springs: value minus goal, as it stands.
-  Lane spring_gamma[kCount], spring_target[kCount];  ///< Of the spring beside a motor.
+  Lane start[kCount];                                ///< Spring value minus goal, at present.
+  Lane spring_gamma[kCount], spring_target[kCount];  ///< Spring beside a motor.
   Lane held_spring[kCount];                          ///< The spring's impulse while the motor holds.
 
-  Lane lambda[kCount], spring_lambda[kCount];  ///< Impulses; before: of the last substep.
+  Lane lambda[kCount], spring_lambda[kCount];  ///< Impulses; before that, those of the last substep.
 
-  // Of the elimination: D^-1 W, V, z, 1 / d, K.
+  // Numbers of the elimination: D^-1 W, V, z, 1 / d, K.
   Lane w[6][kCount], v[6][kCount], z[kCount], inverse[kCount], l[kMostTreeRows][kCount];
   Lane change[kCount];
 };
@@ -156,38 +159,38 @@ struct TreeLanes {
   // Results.
   Lane changed[kCount];  ///< 1 where a row came to a bound or left it.
   Lane grew[kCount];     ///< 1 where a stiffness grew, so that the solution is not to be trusted.
-  Lane fast[kCount];     ///< Square of how fast the fastest body turns [(rad/s)^2].
+  Lane fast[kCount];     ///< Square of the speed at which the fastest body turns [(rad/s)^2].
 
   std::vector<TreeLinkLanes<Kind>> links;
   std::vector<TreeJointLanes<Kind>> joints;
   std::vector<TreeRowLanes<Kind>> rows;
 };
 
-// Vectors are loaded from these as from aligned memory.
+// Vectors are loaded from these arrays as from aligned memory.
 static_assert(alignof(TreeLanes<ExactTrees>) == sizeof(ExactTrees::Lane) * ExactTrees::kCount);
 static_assert(alignof(TreeLanes<ApproximateTrees>) ==
               sizeof(ApproximateTrees::Lane) * ApproximateTrees::kCount);
 
-/// The rows of a substep of length h [s], with the bounds they begin with, and the stiffness by the last
-/// forces.
+/// Makes the rows of a substep of length h [s], with the bounds they begin with, and the stiffness by the
+/// last forces.
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ExactTree>& tree);
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
 void make_tree_rows(double h, const TreeForm& form, TreeLanes<ApproximateTree>& tree);
 
-/// Impulses and velocities with the rows' bounds, then the bounds that they ask for; where none changes, the
-/// stiffness by the forces found.
+/// Finds impulses and velocities with the rows' bounds, then the bounds that they need. Where none changes,
+/// also the stiffness by the forces found.
 void solve_trees(double h, const TreeForm& form, TreeLanes<ExactTrees>& trees);
 void solve_trees(double h, const TreeForm& form, TreeLanes<ExactTree>& tree);
 void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTrees>& trees);
 void solve_trees(double h, const TreeForm& form, TreeLanes<ApproximateTree>& tree);
 
-/// One lane's rows anew about the end of the substep, as the velocities found say. Returns the largest error
-/// of a lock, over the levers or in rad.
+/// Makes one lane's rows again about the end of the substep, by the velocities found. Returns the largest
+/// error of a lock, over the levers or in rad.
 double make_tree_rows_ahead(double h, const TreeForm& form, int lane, TreeLanes<ExactTrees>& trees);
 double make_tree_rows_ahead(double h, const TreeForm& form, int lane, TreeLanes<ExactTree>& tree);
 
-/// One lane's impulses within their bounds, and the velocities that they give.
+/// Clamps one lane's impulses to their bounds, and finds the velocities that they give.
 void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ExactTrees>& trees);
 void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ExactTree>& tree);
 void clamp_tree_impulses(double h, const TreeForm& form, int lane, TreeLanes<ApproximateTrees>& trees);

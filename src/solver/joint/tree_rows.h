@@ -1,5 +1,5 @@
-/// Rows of trees of joints, in numbers.h's Numbers, as solver/joint_rows/joint_rows.h has them. Included anew
-/// for each instruction set.
+/// Rows of trees of joints, in Numbers of solver/simd/numbers.h, as solver/joint_rows/joint_rows.h has them.
+/// Included again for each instruction set.
 
 #if defined(HOOKE_SOLVER_JOINT_TREE_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_JOINT_TREE_ROWS_H
@@ -56,7 +56,7 @@ class TreeRows {
     }
   }
 
-  /// About the end of the substep, where C = c + h J (v' - v) for another velocity v'.
+  /// Makes rows about the end of the substep, where C = c + h J (v' - v) for another velocity v'.
   HWY_INLINE Number make_ahead() {
     Number worst(0.0);
     for (std::size_t i = 0; i < form_.joints.size(); ++i) {
@@ -79,7 +79,7 @@ class TreeRows {
                       dot(now.j_a, get3<Number>(link_of_a.omega_now, lane_));
         if (!row_form.turns()) rate = rate + dot(now.n, v);
         const Number displacement = Number(h_) * rate;
-        // An error beyond the speed limit comes back along the row it has.
+        // An error beyond the speed limit is removed along the row that exists.
         if (row_form.role == RowRole::kLock) {
           const Number size_of_c = size_of_number(now.c);
           if (any(above(Number(0.999) * now.rate * size_of_c, size_of_number(now.target)))) continue;
@@ -93,7 +93,7 @@ class TreeRows {
     return worst;
   }
 
-  /// Impulses within their bounds, the velocities that they give, and the stiffness.
+  /// Clamps impulses to their bounds, and finds the velocities that they give and the stiffness.
   HWY_INLINE void clamp() {
     const Number zero(0.0);
     for (Link& link : trees_.links) {
@@ -131,9 +131,9 @@ class TreeRows {
   }
 
  private:
-  /// A row as it stands, on b.
+  /// A row as it is now, on b.
   struct RowNow {
-    Triple<Number> n, j_a, j_b;  ///< `n` the axis of an angle.
+    Triple<Number> n, j_a, j_b;  ///< `n` is the axis of an angle.
     Number c, rate, target, gamma;
     Number spring_rate, spring_target, spring_gamma;
   };
@@ -153,7 +153,8 @@ class TreeRows {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3]), at(from[4]), at(from[5])};
   }
 
-  /// S = I^(-1/2) in world axes; of a body that tumbles of now, as state::Bodies have it of the step's start.
+  /// Finds S = I^(-1/2) in world axes. For a gyroscopic turn it is that of now; state::Bodies have that of
+  /// the step's start.
   HWY_INLINE void find_inertia(Link& link) const {
     const Number zero(0.0);
     const Quad<Number> rotation = normalized(get4(link.rotation));
@@ -220,7 +221,7 @@ class TreeRows {
     const Number zero(0.0);
     return {get3<Number>(link.center, lane_), {zero, zero, zero}, get4(link.rotation), get6(link.scale)};
   }
-  /// As it will be at the end of the substep with the velocity that was found.
+  /// The end as it will be at the end of the substep with the velocity that was found.
   HWY_INLINE JointEnd<Number> end_ahead(const Link& link) const {
     JointEnd<Number> end = end_now(link);
     end.ahead = scaled(Number(h_), get3<Number>(link.v_now, lane_));
@@ -230,7 +231,7 @@ class TreeRows {
     return end;
   }
 
-  /// Freedoms of now; notes their values.
+  /// Finds the present freedoms and notes their values.
   HWY_INLINE Freedoms<Number> find(const TreeJoint& shape, Joint& joint, const JointEnd<Number>& a,
                                    const JointEnd<Number>& b) const {
     const HookFrame<Number> frame = {get3<Number>(joint.anchor_a, lane_), get3<Number>(joint.anchor_b, lane_),
@@ -254,7 +255,7 @@ class TreeRows {
     return {Number(kPushSpeed) + root(dot(v, v)), Number(kPushSpeed) + root(dot(turn, turn))};
   }
 
-  /// What the gap of a joint is small against: its levers on bodies that move [m].
+  /// The length that a joint's gap is compared with: its levers on bodies that move [m].
   HWY_INLINE Number size_of(const Joint& joint, const Link& a, const Link& b) const {
     const Number zero(0.0);
     const auto lever = [&](const Lane(&anchor)[3][kCount], const Link& link) HWY_ATTR {
@@ -338,7 +339,7 @@ class TreeRows {
     put(quotient(now.spring_target - now.target, now.spring_gamma), row.held_spring);
   }
 
-  /// The one where it ended the last substep.
+  /// Sets the bound of a row to that where it ended the last substep.
   HWY_INLINE void first_bound(const TreeRowForm& form, const RowNow& now, Row& row) const {
     if (!form.bounded()) return;
     const Number zero(0.0);
@@ -353,7 +354,7 @@ class TreeRows {
     put(choose(above(last, nearly), one, choose(above(zero - nearly, last), zero - one, zero)), row.bound);
   }
 
-  /// How fast friction may slide in this substep: as in the last one, or what a jolt asks for.
+  /// How fast friction may slide in this substep: as in the last one, or as a jolt demands.
   HWY_INLINE Number slide_of(const TreeRowForm& form, const Number& last, const RowNow& now, const Link& a,
                              const Link& b) const {
     Number rate =
@@ -364,8 +365,8 @@ class TreeRows {
     return larger(larger(size_of_number(last), jolt), Number(kApproximateSlide));
   }
 
-  /// Of a loose tree: friction that slides is viscous, and one row with the spring beside it. It slides at
-  /// `speed`.
+  /// In an approximate tree, friction that slides is viscous, and one row with the spring beside it. It
+  /// slides at `speed`.
   HWY_INLINE void soften_motor(const TreeRowForm& form, const Number& speed, Row& row) const {
     const Number zero(0.0);
     Number gamma = quotient(speed, at(row.high));

@@ -1,5 +1,5 @@
-/// The geometric stiffness of links in numbers.h's Numbers, as solver/joint_rows/geometric_stiffness.h has
-/// it. Included anew for each instruction set.
+/// The geometric stiffness of links in Numbers of solver/simd/numbers.h, as
+/// solver/joint_rows/geometric_stiffness.h has it. Included again for each instruction set.
 
 #if defined(HOOKE_SOLVER_JOINT_TREE_STIFFNESS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_JOINT_TREE_STIFFNESS_H
@@ -29,7 +29,7 @@ class TreeStiffness {
   HWY_INLINE TreeStiffness(double h, const TreeForm& form, TreeLanes<Kind>& trees, int lane)
       : form_(form), trees_(trees), lane_(lane), h_(h) {}
 
-  /// Where `only` is above 0, the stiffness under the impulses of the joints, if it is more than before.
+  /// Where `only` is above 0, sets the stiffness under the impulses of the joints, if it is more than before.
   /// Returns 1 where it grew so much that a solution found without it is not to be trusted.
   HWY_INLINE Number stiffen(const Number& only) {
     const Number zero(0.0);
@@ -64,8 +64,8 @@ class TreeStiffness {
   }
   static HWY_INLINE Number trace_of(const Scale<Number>& m) { return m.xx + m.yy + m.zz; }
 
-  /// Whether any stiffness may be more than what is left explicit, even where a solution is repeated for it:
-  /// its trace is at most h^2 tr S^2 times the sum of |r| |F|.
+  /// Whether any stiffness may be more than what is left explicit, even where a solution is repeated for it.
+  /// Its trace is at most h^2 tr S^2 times the sum of |r| |F|.
   HWY_INLINE bool matters() {
     const Number zero(0.0);
     for (Link& link : trees_.links) {
@@ -98,7 +98,7 @@ class TreeStiffness {
     write(at(link.u[0]) + size, link.u[0] + lane_);
   }
 
-  /// The part of one joint, in `g` of the link.
+  /// Adds the part of one joint to `g` of the link.
   HWY_INLINE void add_to(const Lane (&anchor)[3][kCount], const Triple<Number>& force, Link& link) const {
     const Number zero(0.0);
     const Quad<Number> rotation = {at(link.rotation[0]), at(link.rotation[1]), at(link.rotation[2]),

@@ -1,8 +1,8 @@
-/// Trees of joints in numbers.h's Numbers. Included anew for each instruction set.
+/// Trees of joints in Numbers of solver/simd/numbers.h. Included again for each instruction set.
 ///
-/// Unknown are what the joints change of each link's velocity, u, and the impulses lambda of their rows. A
-/// link that is eliminated has A u = g + C^T lambda + what its own children do, with A = diag(m, 1 + 1.2 G)
-/// and C its side of the joint to its parent, of which P is the other side:
+/// The unknowns are u, by which the joints change each link's velocity, and the impulses lambda of their
+/// rows. A link that is eliminated has A u = g + C^T lambda + what its own children do, with A = diag(m, 1 +
+/// 1.2 G) and C its side of the joint to its parent. P is the parent's side:
 ///
 ///   C u + P u_parent + gamma lambda = b,   b = target - C v - P v_parent
 ///
@@ -13,7 +13,7 @@
 ///   on the way back     lambda = K^-T D^-1 (z - V u_parent),   u = L^-T E^-1 (y + W lambda)
 ///
 /// Everything that is added is positive: nothing cancels. A row at a bound has C = P = 0, gamma = 1 and b =
-/// 0, and its impulse is in g of both links; where that is so in all lanes it is left out, which changes
+/// 0, and its impulse is in g of both links. Where that is so in all lanes, the row is left out. That changes
 /// nothing but signs of zeros, and those end in sums with +0. A pivot that is not positive counts as
 /// infinite.
 
@@ -36,12 +36,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-/// Where (row, column) of a lower triangle stands.
+/// Index of (row, column) in a lower triangle.
 constexpr int triangle_at(int row, int column) {
   return row * (row + 1) / 2 + column;
 }
 
-/// Where it stands among the six numbers of a Scale.
+/// Index of (row, column) among the six numbers of a Scale.
 constexpr int kSymmetricAt[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
 template <class Number>
@@ -55,7 +55,7 @@ template <class Number>
 struct LinkFactor {
   Number a[21];
 
-  /// From column kColumn on; a recursion, as compilers do not unroll three loops in each other.
+  /// Factors from column kColumn on. It is a recursion, as compilers do not unroll three loops in each other.
   template <int kColumn = 0>
   HWY_INLINE void factor() {
     if constexpr (kColumn < 6) {
@@ -78,14 +78,14 @@ struct LinkFactor {
     }
   }
 
-  /// x := L^-1 x, of which the first kFrom are zero.
+  /// Computes x := L^-1 x, where the first kFrom are zero.
   template <int kFrom>
   HWY_INLINE void substitute(Number (&x)[6]) const {
     for (int i = kFrom + 1; i < 6; ++i) {
       for (int k = kFrom; k < i; ++k) x[i] = x[i] - a[triangle_at(i, k)] * x[k];
     }
   }
-  /// x := L^-T x
+  /// Computes x := L^-T x.
   HWY_INLINE void substitute_back(Number (&x)[6]) const {
     for (int i = 4; i >= 0; --i) {
       for (int k = i + 1; k < 6; ++k) x[i] = x[i] - a[triangle_at(k, i)] * x[k];
@@ -130,7 +130,7 @@ class TreeSweep {
   HWY_INLINE Number at(const Lane (&lanes)[kCount]) const { return get<Number>(lanes + lane_); }
   HWY_INLINE void put(const Number& value, Lane (&lanes)[kCount]) const { write(value, lanes + lane_); }
 
-  // Number after number: GCC makes a slow memcpy of a loop.
+  // Loads number after number: GCC makes a slow memcpy of a loop.
   template <int kSize>
   HWY_INLINE void load(const Lane (&from)[kSize][kCount], Number (&to)[kSize]) const {
     load(from, to, std::make_index_sequence<kSize>());
@@ -186,7 +186,7 @@ class TreeSweep {
     return turns ? angular : a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + angular;
   }
 
-  /// What a row's two sides move by, with velocities of the links.
+  /// The speed of a row's two sides relative to each other, with velocities of the links.
   HWY_INLINE Number rate(const Row& row, bool turns, const Lane (&v)[3][kCount],
                          const Lane (&omega)[3][kCount], const Lane (&v_parent)[3][kCount],
                          const Lane (&omega_parent)[3][kCount]) const {
@@ -212,7 +212,7 @@ class TreeSweep {
     return choose(above(bound, zero), at(row.high), choose(above(zero, bound), at(row.low), between));
   }
 
-  /// The factors of one row of S, from `w` = L^-1 C^T and its own b and V, above those that `list` has
+  /// Adds the factors of one row of S, from `w` = L^-1 C^T and its own b and V, to those that `list` has
   /// already.
   HWY_INLINE void add_row(const Row* const* list, int count, const Number (&w)[6], bool turns,
                           Number diagonal, Number z, Number (&v)[6], Row& row) const {
@@ -349,7 +349,7 @@ class TreeSweep {
     }
   }
 
-  /// (rad/s)^2
+  /// Square of the link's angular velocity [(rad/s)^2].
   HWY_INLINE Number turn_squared(const Link& link) const {
     const Number zero(0.0);
     const Scale<Number> scale = {at(link.scale[0]), at(link.scale[1]), at(link.scale[2]),
@@ -384,7 +384,7 @@ class TreeSweep {
     finish(x, link);
   }
 
-  /// Impulses, and bounds for the next solution.
+  /// Stores impulses, and finds bounds for the next solution.
   HWY_INLINE void revise(const TreeJoint& joint, const Link& link, const Number& release,
                          TreeJointLanes<Kind>& hook, Number& changed) const {
     const Number zero(0.0);
@@ -409,7 +409,7 @@ class TreeSweep {
     put3(scaled(sign, angular), hook.angular, lane_);
   }
 
-  /// Impulses of a row, with its spring's, that has bounds; `lambda` is what was found for it.
+  /// Impulse of a row with bounds, together with its spring's; `lambda` is what was found for it.
   HWY_INLINE Number revise_bound(const TreeRowForm& form, Row& row, const Number& lambda,
                                  const Number& release, Number& changed, const Number& rate_now) const {
     const Number zero(0.0);
@@ -420,7 +420,7 @@ class TreeSweep {
     if (form.sprung) {
       Number beside = fixed;
       if constexpr (Kind::kApproximate) {
-        // Friction is one row with the spring.
+        // Friction and the spring are one row.
         beside = quotient(at(row.spring_target) - rate_now, at(row.spring_gamma));
         own = lambda - beside;
       }
@@ -436,7 +436,7 @@ class TreeSweep {
     return form.sprung ? given + spring : given;
   }
 
-  /// -1, 0 or 1 for a row that has found `own`, and `lacks` so much speed.
+  /// Bound -1, 0 or 1 of a row that has found the impulse `own`, and whose speed `lacks` so much.
   HWY_INLINE Number next_bound(const TreeRowForm& form, Row& row, const Number& own, const Number& release,
                                const Number& lacks) const {
     const Number zero(0.0);
