@@ -107,7 +107,6 @@ struct CoupledContact {
 /// A share of 1e-6 of each hook row's diagonal, 1e-10 of a motor's, is added as compliance. It decides what
 /// loops of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b
 /// across the rope. The direction of the rope at b is that of its points, blended along the segment.
-/// across the rope, whose direction at b is that of its points blended along the segment.
 struct CoupledGroup {
   std::vector<std::uint32_t> rope_systems;      ///< Rope systems, in order.
   std::vector<std::uint32_t> points;            ///< Particles of no rope, in order of rows.

@@ -61,7 +61,6 @@ struct Link {
 ///
 /// Sources: Baraff 1996, "Linear-time dynamics using Lagrange multipliers"; geometric stiffness after
 /// Tournier et al. 2015, "Stable constrained dynamics".
-/// Tournier et al. 2015, "Stable constrained dynamics".
 struct Articulation {
   static constexpr std::uint32_t kWeld = 0xFFFFFFFF;
   static constexpr std::int8_t kGiven = 2;  ///< A spring whose impulse the motor beside it determines.
