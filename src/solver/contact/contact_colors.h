@@ -16,10 +16,15 @@ struct ContactColors {
     bool direct = false;    ///< Its island is direct (solver/coupled/direct_islands.h).
   };
 
-  std::vector<Member> members;   ///< Color after color; in each, those of hard islands come last, before that
-                                 ///< pairs that both move first, then more points before fewer, then the
-                                 ///< order of the manifolds.
-  std::vector<int> begin = {0};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
+  /// Color after color. In each color those of direct islands come last; before that, pairs that both move
+  /// come first, then more points before fewer, then the order of the manifolds.
+  std::vector<Member> members;
+  std::vector<int> begin = {0};     ///< Color c is [begin[c], begin[c + 1]). No color is empty.
+  std::vector<std::uint8_t> moves;  ///< Whether contacts move a body, by body row.
+  std::vector<std::uint64_t> used;  ///< Colors of a body, by body row.
+  std::vector<int> color;           ///< Color of each manifold as taken; -1 if it has no rows.
+  std::vector<int> next_slot;       ///< Where the next member of each kind goes.
+};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
   std::vector<std::uint8_t> moves;   ///< Whether contacts move a body, by body row.
   std::vector<std::uint64_t> used;   ///< Colors of a body, by body row.
   std::vector<int> color;            ///< Of each manifold, as taken; -1: has no rows.
