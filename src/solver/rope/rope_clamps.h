@@ -6,18 +6,18 @@
 #include <vector>
 
 /// \file
-/// Clamps of ropes: two neighboring points or more that one thing holds, by pins, by ball hooks to the world
-/// or by ball hooks to the same body. What lies between them neither bends nor twists.
+/// Clamps of ropes: two or more neighboring points that one thing holds, by pins, by ball hooks to the world
+/// or by ball hooks to the same body. The rope neither bends nor twists between them.
 
 namespace hooke::solver {
 
 /// What holds a particle.
 struct Holder {
   bool holds = false;
-  std::uint32_t body = state::HookPlace::kWorld;  ///< Row.
+  std::uint32_t body = state::HookPlace::kWorld;  ///< Row of the body.
 };
 
-/// Of every particle; of several the first counts, pins before hooks.
+/// Lists the holder of every particle. Where there are several the first counts, pins before hooks.
 [[nodiscard]] std::vector<Holder> list_holders(const state::Tables& tables);
 
 /// Calls visit(first, last, holder) for the nodes of each clamp of a rope.

@@ -1,4 +1,5 @@
-/// Ropes over lanes, then the dispatch. The arithmetic stands in rope_sweep.h and rope_lines.h.
+/// Ropes over lanes, then the dispatch. The arithmetic stands in solver/rope/rope_sweep.h and
+/// solver/rope/rope_records.h.
 
 #include "solver/rope/rope_kernels.h"
 

@@ -1,5 +1,5 @@
-/// Nodes of ropes from the tables' lines of four numbers to lanes of double and back. Included anew for each
-/// instruction set.
+/// Moves nodes of ropes from the tables' records of four numbers to lanes of double and back. Included anew
+/// for each instruction set.
 
 #if defined(HOOKE_SOLVER_ROPE_ROPE_RECORDS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_ROPE_ROPE_RECORDS_H
@@ -16,14 +16,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-/// Four numbers from each of different places.
+/// Reads four numbers from a different position for each lane.
 HWY_INLINE void read_record(const Real* base, const std::uint32_t* line, Quad<double>& value) {
   const Real* from = base + *line;
   value = {static_cast<double>(from[0]), static_cast<double>(from[1]), static_cast<double>(from[2]),
            static_cast<double>(from[3])};
 }
 
-/// Four numbers of each lane as they are stored.
+/// Four numbers of each lane in the type in which they are stored.
 template <class Number>
 struct StoredRecords {
   alignas(64) Real of[kLanesOf<Number>][4];
@@ -35,7 +35,7 @@ HWY_INLINE void round_record(const Quad<double>& value, StoredRecords<double>& r
   records.of[0][3] = static_cast<Real>(value.w);
 }
 
-/// Ropes of the lanes from `lane` on.
+/// Loads and stores the ropes of the lanes from `lane` on.
 template <class Number, int kCount>
 class RopeTransfer {
  public:
@@ -55,7 +55,7 @@ class RopeTransfer {
  private:
   static constexpr int kWide = kLanesOf<Number>;
 
-  /// Where each lane's row is in a table of rows of `stride` numbers.
+  /// Where each lane's first record is in a table whose records have `stride` numbers.
   struct Records {
     std::uint32_t of[kWide];
 
@@ -87,7 +87,7 @@ class RopeTransfer {
     }
   }
 
-  /// Four at a time, as many as there are of them.
+  /// Reads tensions four at a time while there are four left.
   HWY_INLINE void load_tensions(RopeLanes<kCount>& ropes) const {
     const Number zero(0.0);
     const std::size_t count = ropes.segments.size();

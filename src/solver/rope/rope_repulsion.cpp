@@ -35,7 +35,8 @@ void gather(const state::Tables& t, Repulsion& memory) {
   }
 }
 
-/// In ranges: how near points must be to push each other in this substep, and to be noted for it.
+/// Distances in ranges: points nearer than kNear may push each other in this substep, those nearer than
+/// kNoted are noted for it.
 constexpr double kNear = 1.5;
 constexpr double kNoted = 2;
 
@@ -50,7 +51,8 @@ bool are_adjacent(const Point& a, const Point& b) {
   return a.object == b.object && std::abs(a.arc - b.arc) < kTurn * a.range;
 }
 
-/// Whether no two points that are not noted can be near: none has moved too far against all others.
+/// Whether the notes are still complete: no point has moved so far against the others that two points
+/// without a note can be near.
 bool are_known(const Repulsion& memory) {
   if (memory.found_at.size() != memory.places.size()) return false;
   DVec3 drift;
@@ -62,7 +64,7 @@ bool are_known(const Repulsion& memory) {
   return 2 * std::sqrt(largest_square) < (kNoted - kNear) * largest_range(memory.points);
 }
 
-/// Notes what may push each point in `range` until one has moved too far.
+/// Notes what may push each point in `range`. The notes hold until a point has moved too far.
 void find_others(parallel::Range range, double reach, const Repulsion& memory, Repulsion::Part& part) {
   part.end.clear();
   part.others.clear();
@@ -77,8 +79,8 @@ void find_others(parallel::Range range, double reach, const Repulsion& memory, R
   }
 }
 
-/// Calls `visit(i, j, offset)` for each point i in `range` and each j noted for it that may be moved; the
-/// offset is from j to i.
+/// Calls `visit(i, j, offset)` for each point i in `range` and each j noted for it, if either can move. The
+/// offset goes from j to i.
 template <class Visit>
 void for_each_other(parallel::Range range, const Repulsion& memory, const Repulsion::Part& part,
                     Visit&& visit) {
@@ -93,7 +95,7 @@ void for_each_other(parallel::Range range, const Repulsion& memory, const Repuls
   }
 }
 
-/// Lists what pushes each point in `range`.
+/// Lists the pairs that push each point in `range`.
 void find_pairs(parallel::Range range, Real h, Repulsion& memory, Repulsion::Part& part) {
   part.pairs.clear();
   for_each_other(range, memory, part, [&](std::uint32_t i, std::uint32_t j, DVec3 offset) {
@@ -104,7 +106,7 @@ void find_pairs(parallel::Range range, Real h, Repulsion& memory, Repulsion::Par
     const double square = length_squared(offset);
     if (!(square < near * near)) return;
     const double distance = std::sqrt(square);
-    // Two points at one place go apart along x.
+    // Two points at the same place move apart along x.
     const DVec3 normal = distance > 0 ? (1 / distance) * offset : DVec3{i < j ? -1.0 : 1.0, 0, 0};
     Pair pair = {.point = i, .other = j, .normal = vector_cast<Real>(normal), .range = r};
     pair.strength = a.root_strength * b.root_strength;
@@ -168,7 +170,7 @@ double repulsion_energy(const state::Tables& tables) {
     const Point& b = memory.points[j];
     const auto strength = static_cast<double>(a.root_strength * b.root_strength);
     const double range = static_cast<double>(a.range + b.range) / 2;
-    // Of two at one place it is infinite.
+    // The energy of two points at the same place is infinite.
     energy += elements::repulsion_energy(strength, range, std::max(length(offset), 1e-3 * range));
   });
   return energy;

@@ -13,10 +13,10 @@ namespace {
 using V = DVec3;
 using M = math::Symmetric3<double>;
 
-constexpr double kStiffnessOnBody = 10;   ///< rho of a point over the heaviest mass that it touches.
-constexpr double kMostStiffness = 1e6;    ///< The same over its own mass: inverting loses the square of it.
-constexpr double kTetherRecovery = 10;    ///< Share of what a tether is too long by, per second [1/s].
-constexpr double kTetherSpeed = 0.1;      ///< At most [m/s].
+constexpr double kStiffnessOnBody = 10;   ///< Ratio of a point's rho to the heaviest mass that it touches.
+constexpr double kMostStiffness = 1e6;    ///< Largest ratio to its own mass: inverting loses its square.
+constexpr double kTetherRecovery = 10;    ///< Share of a tether's excess length taken back per second [1/s].
+constexpr double kTetherSpeed = 0.1;      ///< Largest speed of that [m/s].
 constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
 
 V across(V n, V v) {
@@ -38,17 +38,18 @@ wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const R
           e.tension_bound};
 }
 
-/// How fast a contact would open, with its gap as speed.
+/// Speed at which a contact opens, with its gap as speed.
 double closing_speed_of(const RopeContactRow& t, V u, double h) {
   return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
 }
 
-/// What friction did while it slid: it drives where N was not right yet, or the way has turned.
+/// Whether friction that slides drives its node: it does where N was not right yet, or the sliding has
+/// turned.
 bool drives_by_friction(const RopeContactRow& t, V sliding) {
   return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
 }
 
-/// Friction that a contact starts from: what it did in the last substep, of the size that N allows now.
+/// Friction that a contact starts from: that of the last substep, as far as N allows it now.
 V carried_friction(const RopeContactRow& t) {
   const double most = t.friction * t.normal;
   const double size = length(t.f0);
@@ -61,14 +62,14 @@ void slide(V trial, double size, RopeContactRow& t) {
   t.against = (1.0 / size) * trial;
 }
 
-/// Of a change of the trial force across its direction, what the friction of a node that slides gets.
+/// Change of a sliding node's friction for each unit by which the trial force changes across its direction.
 double turned_share(const RopeContactRow& t) {
   return t.trial > 0 ? t.friction * t.normal / t.trial : 0;
 }
 
-/// Friction of an active contact: holds with f0 - rho u_t up to mu N, and is mu N along that beyond: the
-/// nearest force that Coulomb's cone allows. What is `dragged` is so by mu N over its speed, which never
-/// drives, but takes many solutions to come to the force.
+/// Updates the friction of an active contact. It holds with f0 - rho u_t up to mu N; beyond that it is mu N
+/// in the same direction, the nearest force that Coulomb's cone allows. A `dragged` contact has mu N over
+/// its speed instead, which never drives, but takes many solutions to come to the force.
 void update_friction(RopeContactRow& t, V sliding) {
   const double most = t.friction * t.normal;
   if (t.dragged) {
@@ -92,7 +93,7 @@ double drag_of(const RopeContactRow& t, V u) {
   return speed * t.rho > t.friction * t.normal ? t.friction * t.normal / speed : t.rho;
 }
 
-/// True if it came into effect or out of it, or if its friction is not yet what its force allows.
+/// Returns whether the contact switched on or off, or its friction is not yet what its force allows.
 bool update_point_contact_row(double h, bool let_go, V u, RopeContactRow& t) {
   const bool was_active = t.active;
   const double drag = t.drag;
@@ -114,8 +115,8 @@ wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, doub
           true};
 }
 
-/// A force across the normal of before, across the one of now: of the same size, as its node has gone round
-/// what it touches; but of a new place only what is across there too.
+/// Turns a force from across the last normal to across the present one. It keeps its size while its node
+/// goes round what it touches; at a new place only the part that is across there too remains.
 V friction_across(V n, V force) {
   constexpr double kSamePlace = 0.95;  // cosine of the turn
   const V now = across(n, force);
@@ -142,12 +143,12 @@ RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, c
   const double size = length(t.f0);
   t.normal = t.n0;
   if (size > 0 && size >= kSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
-  // Held in the first solution, a whole rope would stop.
+  // A whole rope would stop if it were held in the first solution.
   if (!(t.friction > 0)) t.slides = true;
   return t;
 }
 
-/// A tether that is a spring row from a free particle to a pin.
+/// Loads a tether: a spring row from a free particle to a pin.
 RopeContactRow load_tether(std::uint32_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Springs& springs = tables.springs;
   const std::uint32_t particle = springs.particle_a[row];
@@ -162,7 +163,7 @@ RopeContactRow load_tether(std::uint32_t row, std::uint32_t node, double h, cons
   t.surface = vector_cast<double>(tables.particles.velocity[pin].v);
   const double slack = static_cast<double>(springs.rest_length[row]) - distance;
   t.active = slack <= 0;
-  // A heavy body drawn back at once would get energy by it.
+  // A heavy body that is drawn back at once would gain energy by it.
   t.separation = slack > 0 ? slack : h * std::max(slack * kTetherRecovery, -kTetherSpeed);
   return t;
 }
@@ -288,7 +289,7 @@ RopeSetting first_setting(std::span<const RopeContactRow> contact_rows, double r
   if (std::any_of(contact_rows.begin(), contact_rows.end(), [](const RopeContactRow& t) { return t.active; }))
     return {.compliance = kComplianceInContact};
   RopeSetting setting = {.compliance = kComplianceInAir};
-  // The line of a rope that is folded to less than a quarter of its length means nothing.
+  // The line between the ends means nothing if the rope is folded to less than a quarter of its length.
   const double square = length_squared(line);
   if (square >= rest * rest / 16) setting.turning = (1.0 / square) * cross(line, speed);
   return setting;
@@ -314,8 +315,8 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
   e.compliance = math::axial(e.n, 1.0 / e.along, 1.0 / e.across);
 }
 
-/// What slides is free along its way. Beside it a change of velocity turns the force: mu N for each of the
-/// trial force.
+/// A contact that slides is free in its direction. Beside it a change of velocity turns the force: by mu N
+/// over the trial force.
 M contact_stiffness(const RopeContactRow& t) {
   if (!t.slides || t.of_point || t.dragged)
     return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho);

@@ -12,89 +12,89 @@
 #include <vector>
 
 /// \file
-/// Ropes in solver form: what solving them alone (chains.cpp) and with what they hang on (bundles.cpp) have
-/// in common. Equations: chains.h.
+/// Ropes in solver form: what is common to solving them alone (solver/rope/rope_systems.cpp) and in coupled
+/// groups (solver/coupled/coupled_groups.cpp). Equations: solver/rope/rope_systems.h.
 
 namespace hooke::solver {
 
-inline constexpr double kComplianceInAir = 1e-7;  ///< Over the lighter end's mass.
+inline constexpr double kComplianceInAir = 1e-7;  ///< chi; divided by the lighter end's mass.
 inline constexpr double kComplianceInContact =
     1e-5;  ///< Rigid segments between stuck nodes are undetermined.
 
 struct RopeNode {
   DVec3 x, v_free, v_before;         ///< Position, velocity with forces, velocity before forces.
-  double mass = 0, w = 0;            ///< w = 0: held.
-  DVec3 u;                           ///< The result.
-  DVec3 target;                      ///< v*: free velocity with the contact's pull.
+  double mass = 0, w = 0;            ///< The node is held where w = 0.
+  DVec3 u;                           ///< Velocity, the result.
+  DVec3 target;                      ///< v*: free velocity with what contacts do to it.
   math::Symmetric3<double> inverse;  ///< W
 };
 
 struct RopeSegment {
-  std::uint32_t a = 0;  ///< Node; b is the next one.
+  std::uint32_t a = 0;  ///< First node; b is the next one.
   DVec3 n, offset;
   math::Symmetric3<double> compliance;  ///< E
-  DVec3 q;                              ///< Impulse.
+  DVec3 q;                              ///< Impulse of the segment.
   wide::SegmentTraits<double> traits = {};
   double tension_bound = 0;      ///< T+
-  double along = 0, across = 0;  ///< Of E^-1.
+  double along = 0, across = 0;  ///< Stiffness along n and across it, E^-1.
   bool limited = false;
 };
 
-/// A bend's moment is that of the change c of direction at the substep's start, of the growth of its rate r
-/// since before the substep, and of a little of r itself: B (c + h beta (r - r0) + h delta r). Newmark's beta
-/// keeps the energy of any stiffness, delta takes that of what swings faster than substeps follow (Newmark
-/// 1959, "A method of computation for structural dynamics"). What whips, so that its segments are linearized
-/// anew, is bent with c of the substep's end, which takes more.
+/// The moment of a bend follows from the change c of direction at the substep's start, from the growth of
+/// its rate r since before the substep, and from a little of r itself: B (c + h beta (r - r0) + h delta r).
+/// Newmark's beta keeps the energy of any stiffness; delta takes the energy of what swings faster than
+/// substeps follow (Newmark 1959, "A method of computation for structural dynamics"). A rope that whips has
+/// its segments linearized anew. Its bends then use c of the substep's end, which takes more energy.
 inline constexpr double kBendNewmark = 0.25;
 inline constexpr double kBendDamping = 0.03;
 
-/// Resistance to bending at an inner node: the change of direction there, m_e - m_d of the two segments'
-/// vectors over their lengths, which is 2 sin(angle / 2).
+/// Resistance to bending at an inner node. The change of direction there is m_e - m_d, with the two
+/// segments' vectors over their lengths; its size is 2 sin(angle / 2).
 struct RopeBend {
   std::uint32_t node = 0;
   double before = 0, behind = 0;  ///< 1 / length of the segments [1/m].
   double stiffness = 0;           ///< EI over the length that bends here [N m].
   double damping = 0;             ///< [N m s]
   double gamma = 0;
-  DVec3 target;   ///< Of the rate at which the change of direction grows.
+  DVec3 target;   ///< Target of the rate at which the change of direction grows.
   DVec3 impulse;  ///< [N m s]
 
-  /// Moment per rate, over h, in a substep of length h [s].
+  /// Moment per rate in a substep of length h [s]: [N m s].
   [[nodiscard]] double resistance(double h, bool whips) const {
     return damping + (whips ? 1 : kBendNewmark + kBendDamping) * h * stiffness;
   }
 };
 
-/// A contact of a node, or a tether: what holds a point within a distance of its pin holds it as a plane
-/// across its way would, without friction.
+/// A contact of a node, or a tether. A tether holds a point within a distance of its pin: it acts like a
+/// plane across the line to the pin, without friction.
 struct RopeContactRow {
   static constexpr std::uint32_t kTether = 0xFFFFFFFF;
 
   std::uint32_t row = 0, node = 0;
-  double rho = 0;  ///< How hard it holds [kg].
+  double rho = 0;  ///< Contact stiffness [kg].
   DVec3 n, f0, f;
   DVec3 against;     ///< Direction of friction on a node that slides.
-  double trial = 0;  ///< Of such a one: size of what would have held it [N s].
-  DVec3 surface;     ///< Velocity of what is touched, at the contact [m/s].
-  int body = -1;     ///< Of a net, whose velocity is solved for; -1: `surface` is given.
-  DVec3 lever;       ///< From that body's center [m].
-  DVec3 belt;        ///< Velocity of the surface against that body [m/s].
+  double trial = 0;  ///< Size of the impulse that would have held a sliding node [N s].
+  DVec3 surface;     ///< Velocity of the touched surface at the contact [m/s].
+  int body = -1;     ///< A body of a coupled group whose velocity is solved for; -1: `surface` is given.
+  DVec3 lever;       ///< Offset of the contact from that body's center [m].
+  DVec3 belt;        ///< Velocity of the surface relative to that body [m/s].
   double separation = 0, friction = 0, n0 = 0, normal = 0;
   bool active = false, slides = false;
-  bool let_go = false;    ///< For the rest of the substep: it pulled too often.
-  bool dragged = false;   ///< The same of friction that drove.
-  bool of_point = false;  ///< Of a particle that is no rope's.
-  double drag = 0;  ///< Of such a one, or one that slides: rho across the normal, mu N over its speed [kg].
+  bool let_go = false;    ///< No contact for the rest of the substep: it pulled too often.
+  bool dragged = false;   ///< Friction acts as drag for the rest of the substep: it drove.
+  bool of_point = false;  ///< Whether the particle belongs to no rope.
+  double drag = 0;  ///< Friction over speed of a point or dragged contact: rho, or mu N over speed [kg].
 };
 
 /// How a rope's segments are linearized.
 struct RopeSetting {
   double compliance = kComplianceInAir;
   DVec3 turning = {};  ///< Angular velocity of the line between the rope's ends [rad/s].
-  bool first = true;   ///< At the start of the substep; later about the last result.
+  bool first = true;   ///< At the start of the substep; later rows are linearized about the last result.
 };
 
-/// Ropes in a row: the nodes and segments of one, then of the next.
+/// Several ropes in sequence: the nodes and segments of one, then of the next.
 struct RopeScratch {
   std::vector<RopeNode> nodes;
   std::vector<RopeSegment> segments;
@@ -109,41 +109,41 @@ struct RopeScratch {
   }
 };
 
-inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that it holds.
-inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back what is left, as speed.
+inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that the contact holds.
+inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back the rest, as speed.
 inline constexpr double kReportedError = 0.01;
 inline constexpr int kMostRopeSolves = 8;
 inline constexpr int kLeastContactSolves = 2;
 inline constexpr int kSlidingSolves = 4;
 inline constexpr double kSlidingShare =
-    0.9999;                                    ///< Of mu N: a node whose friction was this large was sliding.
+    0.9999;  ///< Share of mu N: a node whose friction was this large was sliding.
 inline constexpr double kConvergedDrag = 0.1;  ///< Share by which drag may still change.
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
 void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityRecord>& before, double h,
                const state::Tables& tables, RopeScratch& s);
 
-/// What stays of a segment; `lighter` is the mass of its lighter end [kg].
+/// The constants of a segment; `lighter` is the mass of its lighter end [kg].
 [[nodiscard]] wide::SegmentTraits<double> segment_traits(std::size_t row, double lighter, double h,
                                                          const state::Segments& segments);
 
-/// Appends the contacts of a rope whose nodes begin at `first_node`; those of held nodes are left out.
+/// Appends the contacts of a rope whose nodes begin at `first_node`, except those of held nodes.
 void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
                        const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
-/// Appends the contacts of one particle that is no rope's, `node` of the number `index`: rows [first, end),
-/// and the tethers that hold it, rows of springs. Overlap does not become speed
+/// Appends the contacts of `node`, one particle outside of ropes with the number `index`: contact rows
+/// [first, end), and the tethers that hold it, rows of springs. Overlap does not become speed
 /// (solver/soft/particle_contact_solve.h). `heaviest` is the mass of what else presses on it [kg].
 void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
                              std::span<const std::uint32_t> tethers, double heaviest, double h,
                              const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
-/// Bending between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only half a
-/// segment bends.
+/// Loads the bend between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only
+/// half a segment bends.
 [[nodiscard]] RopeBend load_bend(const RopeSystem& rope_system, std::size_t row,
                                  const state::Segments& segments);
 
-/// Mass of the lighter of two nodes that move; 1 if neither does [kg]. Inverse masses are 0 of what is held.
+/// Mass of the lighter of two nodes that move; 1 if neither does [kg]. The inverse mass of a held node is 0.
 [[nodiscard]] inline double lighter_end(double mass_a, double inverse_a, double mass_b, double inverse_b) {
   constexpr double kHeld = std::numeric_limits<double>::infinity();
   const double m = std::min(inverse_a > 0 ? mass_a : kHeld, inverse_b > 0 ? mass_b : kHeld);
@@ -155,7 +155,7 @@ void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::siz
   return std::max(0.0, static_cast<double>(segments.tension[row]));
 }
 
-/// One node, as load_rope makes it.
+/// Loads one node, as load_rope does.
 [[nodiscard]] inline RopeNode load_node(std::uint32_t particle, Vec3 before,
                                         const state::Particles& particles) {
   return {.x = vector_cast<double>(particles.position[particle].x),
@@ -168,7 +168,7 @@ void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::siz
           .inverse = {}};
 }
 
-/// How a rope of length `rest` [m] is linearized at the start of a substep; `line` and `speed` go from its
+/// How a rope of length `rest` [m] is linearized at the start of a substep. `line` and `speed` go from its
 /// first node to its last.
 [[nodiscard]] RopeSetting first_setting(std::span<const RopeContactRow> contact_rows, double rest, DVec3 line,
                                         DVec3 speed);
@@ -176,20 +176,20 @@ void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::siz
 [[nodiscard]] RopeSetting first_setting(std::size_t first_node, std::size_t first_segment,
                                         std::size_t first_contact_row, const RopeScratch& s);
 
-/// The segment's equation u_b - u_a = offset + compliance q.
+/// Sets up the segment's equation u_b - u_a = offset + compliance q.
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                RopeSegment& segment);
 
-/// Bends of a rope whose nodes begin at `first_node`.
+/// Appends the bends of a rope whose nodes begin at `first_node`.
 void load_bends(const RopeSystem& rope_system, std::size_t first_node, const state::Segments& segments,
                 RopeScratch& s);
-/// The bend's equation r = target - gamma * impulse in a substep of length h [s].
+/// Sets up the bend's equation r = target - gamma * impulse in a substep of length h [s].
 void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes, RopeBend& bend);
 
-/// W and v* of every node, with what touches it.
+/// Finds W and v* of every node, with its contacts.
 void constrain_nodes(double h, RopeScratch& s);
 
-/// Calls visit(touches) for those of each node that has any; they are in order of nodes.
+/// Calls visit(rows) with the contact rows of each node that has any; rows are in order of nodes.
 template <class Visit>
 void for_each_node_in_contact(std::span<RopeContactRow> contact_rows, Visit&& visit) {
   for (std::size_t first = 0; first < contact_rows.size();) {
@@ -200,7 +200,7 @@ void for_each_node_in_contact(std::span<RopeContactRow> contact_rows, Visit&& vi
   }
 }
 
-/// A node with what touches it: its mass with their grips, and the impulse that makes it go v*.
+/// What the contacts make of a node: its mass with their stiffness, and the impulse that gives it v*.
 struct NodeConstraint {
   math::Symmetric3<double> mass;
   DVec3 impulse;
@@ -211,15 +211,16 @@ struct NodeConstraint {
 /// The mass that a contact adds to its node: the change of the impulse on it per velocity.
 [[nodiscard]] math::Symmetric3<double> contact_stiffness(const RopeContactRow& contact_row);
 
-/// The impulse of a contact on its node, less what `grip_of` says of velocities.
+/// The impulse of a contact on its node, without the part of contact_stiffness, which depends on velocities.
 [[nodiscard]] DVec3 push_of(const RopeContactRow& contact_row, double h);
 
-/// What a solution has left to do with contacts. A rope's that came into effect or out of it, or slides
-/// otherwise, is mended in the next substep if it must be; but not what is met fast, or what drives it.
+/// What contacts still lack after a solution. Rope contacts that switched on or off, or slide otherwise, are
+/// corrected in the next substep if they must be. Fast impacts and contacts that drive a rope do not wait
+/// for it.
 struct Unconverged {
   bool ropes = false, points = false;
-  bool impacts = false;  ///< One of a rope, faster than kMeetingSpeed.
-  bool pulls = false;    ///< One of a rope, across a gap, or its friction drives: it makes energy.
+  bool impacts = false;  ///< A rope meets something faster than kImpactSpeed.
+  bool pulls = false;    ///< A rope contact pulls across a gap, or its friction drives: it makes energy.
 
   void add(const Unconverged& other) {
     ropes = ropes || other.ropes;
@@ -231,25 +232,26 @@ struct Unconverged {
 
 inline constexpr double kImpactSpeed = 0.1;  ///< [m/s]
 
-/// Whether what a contact does to a mass counts: more than 1 cm/s of it. Where there is no gap a pull does
-/// none.
+/// Whether the energy that a contact gives to a mass counts: more than that of 1 cm/s. A pull where there is
+/// no gap gives none.
 [[nodiscard]] inline bool is_work(double energy, double mass) {
   constexpr double kLeastEnergy = 0.5e-4;
   return energy > kLeastEnergy * mass;
 }
 
-/// The contact's force that follows from u, of a rope. Where contacts may only `let_go`, none comes into
-/// effect any more, so that the last solution has none that pulls.
+/// Updates a rope contact's force by u. Where contacts may only `let_go`, none comes into effect any more,
+/// so that none pulls in the last solution.
 Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, RopeContactRow& contact_row);
 
-/// The same for all, of points too.
+/// Updates all contacts likewise, also those of points.
 [[nodiscard]] Unconverged update_contact_rows(double h, bool let_go, RopeScratch& s);
 
-/// Largest relative length error left in a rope; raises T+ and moves segments onto or off their limits.
+/// Returns the largest relative length error left in a rope; raises T+ and moves segments onto or off their
+/// limits.
 double check_segments(const RopeSetting& setting, double h, const std::vector<RopeNode>& nodes,
                       std::span<RopeSegment> segments, bool& limits_changed);
 
-/// How many solutions a substep takes at least, by what update_touches said.
+/// How many solutions a substep takes at least, by what update_contact_rows returned.
 [[nodiscard]] int least_solves(std::span<const RopeContactRow> contact_rows, const Unconverged& unconverged);
 
 /// Whether contacts that pull are let go for good.
@@ -257,9 +259,9 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
   return solves >= kMostRopeSolves;
 }
 
-/// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its length
-/// because friction pushes nodes that no longer move against it, which makes energy: after kMostRopeSolves it
-/// is let go for this substep, and the rope gets as many solutions without.
+/// Whether to solve once more after `solves`. A rope jammed between floor and wall may not come to its
+/// length because friction pushes nodes that no longer move against it, which makes energy. After
+/// kMostRopeSolves friction is let go for this substep, and the rope gets as many solutions without it.
 [[nodiscard]] bool solve_again(int solves, double error, bool pulls, std::span<RopeContactRow> contact_rows);
 
 [[nodiscard]] bool is_finite(const RopeScratch& s);

@@ -1,5 +1,5 @@
-/// A rope's segment in numbers.h's Numbers: its equation, and what is left of it after a solution. Equations:
-/// solver/rope/rope_systems.h. Included anew for each instruction set.
+/// The equation of a rope's segment, and its errors after a solution, in the Numbers of
+/// solver/simd/numbers.h. Equations: solver/rope/rope_systems.h. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_ROPE_ROPE_SEGMENTS_H
@@ -17,18 +17,19 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 constexpr double kWaveDamping = 0.2;       ///< Share of the geometric stiffness that damps waves.
-constexpr double kTransverseFloor = 1e-5;  ///< Of the lighter end's mass; keeps slack segments defined.
+constexpr double kTransverseFloor = 1e-5;  ///< Share of the lighter end's mass; keeps slack segments defined.
 constexpr double kLimitTolerance = 1e-4;
-constexpr double kFirmer = 1.0001;    ///< Than its stiffness says, by the most that `along` may be.
-constexpr double kNoLength = 1e-100;  ///< Shorter has no direction [m].
+constexpr double kFirmer = 1.0001;  ///< A resistance that exceeds `most_along` by this factor counts as firm.
+constexpr double kNoLength = 1e-100;  ///< A shorter vector has no direction [m].
 
 template <class Number>
 struct SegmentState {
-  Triple<Number> line, relative, before;  ///< x_b - x_a, u_b - u_a, and that before this substep's forces.
+  Triple<Number> line, relative, before;  ///< x_b - x_a; u_b - u_a, also before this substep's forces.
   Number limited, tension_bound;          ///< 1 or 0; T+, not negative.
 };
 
-/// q = K (u_b - u_a - offset), K = `along` n, `across` beside it: 1 / gamma and beta.
+/// q = K (u_b - u_a - offset), where K is `along` in the direction of n and `across` beside it: 1 / gamma
+/// and beta.
 template <class Number>
 struct SegmentRow {
   Triple<Number> n, offset;
@@ -36,17 +37,17 @@ struct SegmentRow {
   Number along, across;
 };
 
-/// What the segments of a rope have in common; h and 1 / h.
+/// What the segments of a rope have in common, with h and 1 / h.
 template <class Number>
 struct RopeTerms {
   Number h, per_h;
-  Number compliance, most_along;  ///< chi; `along` over the lighter mass, at most, 1 / chi.
+  Number compliance, most_along;  ///< chi; the largest `along` over the lighter mass, 1 / chi.
   Number first;                   ///< 1 or 0.
   Triple<Number> turning;
-  bool limits;  ///< Whether any of them has a largest length.
+  bool limits;  ///< Whether any segment has a largest length.
 };
 
-/// 1 for yes, 0 for no.
+/// Gives 1 for yes and 0 for no.
 template <class Number>
 HWY_INLINE Number one_if_above(Number a, Number b) {
   return choose(above(a, b), Number(1.0), Number(0.0));
@@ -65,7 +66,7 @@ struct Direction {
   Number length, quotient;  ///< The latter is 1 / divisor.
 };
 
-/// Down if there is none.
+/// The direction points down where the vector has none.
 template <class Number>
 HWY_INLINE Direction<Number> direction_of(const Triple<Number>& d, Number divisor) {
   const Number none(kNoLength);
@@ -81,13 +82,13 @@ HWY_INLINE Direction<Number> direction_of(const Triple<Number>& d, Number diviso
   return result;
 }
 
-/// What a segment may not be firmer than: chi as a stiffness.
+/// The largest stiffness that a segment may have: chi as a stiffness.
 template <class Number>
 HWY_INLINE Number most_along(const SegmentTraits<Number>& traits, const RopeTerms<Number>& terms) {
   return terms.most_along * traits.lighter;
 }
 
-/// How long it should be without a force.
+/// The length that a segment should have without a force.
 template <class Number>
 HWY_INLINE Number target_length(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                                 const RopeTerms<Number>& terms) {
@@ -95,7 +96,7 @@ HWY_INLINE Number target_length(const SegmentState<Number>& at, const SegmentTra
   return choose(above(at.limited, Number(0.0)), traits.limit, traits.rest);
 }
 
-/// The stiffness along, and b, of one that may be at its limit.
+/// Sets the stiffness along a segment that may be at its limit, and returns its b.
 template <class Number>
 HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                           const RopeTerms<Number>& terms, SegmentRow<Number>& row) {
@@ -107,7 +108,7 @@ HWY_INLINE Number stiffen(const SegmentState<Number>& at, const SegmentTraits<Nu
   return choose(limited, terms.per_h, traits.bias);
 }
 
-/// At the start of the substep.
+/// Linearizes a segment at the start of the substep.
 template <class Number>
 HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
                                                const SegmentTraits<Number>& traits,
@@ -130,7 +131,7 @@ HWY_INLINE SegmentRow<Number> linearized_first(const SegmentState<Number>& at,
   return row;
 }
 
-/// About the last result.
+/// Linearizes a segment about the last result.
 template <class Number>
 HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
                                                const SegmentTraits<Number>& traits,
@@ -148,7 +149,7 @@ HWY_INLINE SegmentRow<Number> linearized_again(const SegmentState<Number>& at,
   return row;
 }
 
-/// Lanes that are at the start of the substep may stand beside others.
+/// Linearizes every lane: those at the start of the substep may stand beside others.
 template <class Number>
 HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                                          const RopeTerms<Number>& terms, bool all_first) {
@@ -164,10 +165,10 @@ HWY_INLINE SegmentRow<Number> linearized(const SegmentState<Number>& at, const S
 template <class Number>
 struct SegmentCheck {
   Number tension_bound, limited;
-  Number error, limit_changed;  ///< Of the length, relative; 1 or 0.
+  Number error, limit_changed;  ///< Relative error of the length; 1 or 0.
 };
 
-/// Onto its limit, or off it.
+/// Moves a segment onto its limit or off it.
 template <class Number>
 HWY_INLINE void check_limit(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                             Number length, Number pull, const RopeTerms<Number>& terms,
@@ -181,8 +182,8 @@ HWY_INLINE void check_limit(const SegmentState<Number>& at, const SegmentTraits<
   check.limited = choose(above(check.limit_changed, zero), over, at.limited);
 }
 
-/// After a solution, `at` with its velocities; `pull` is n.q, `opening` n.(u_b - u_a), with n as it was
-/// linearized.
+/// Evaluates a segment after a solution. `at` has its new velocities, `pull` is n.q and `opening` is n.(u_b
+/// - u_a), with n as it was linearized.
 template <class Number>
 HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const SegmentTraits<Number>& traits,
                                         Number pull, Number opening, const RopeTerms<Number>& terms) {

@@ -1,14 +1,15 @@
-/// A Newton step of ropes in numbers.h's Numbers. Included anew for each instruction set.
+/// A Newton step of ropes in the Numbers of solver/simd/numbers.h. Included anew for each instruction set.
 ///
-/// With q = K (u_b - u_a - o), K = E^-1 = k n n^T + b 1, put into the momentum of the nodes, what is left is
-/// a matrix of 3 x 3 blocks over the nodes' velocities u, in which a node meets the next two: bends span
-/// three nodes. Nodes are eliminated in order, in one pass with the linearization; the way back finds u, then
-/// q.
+/// Put q = K (u_b - u_a - o) with K = E^-1 = k n n^T + b 1 into the momentum of the nodes. What is left is a
+/// matrix of 3 x 3 blocks over the nodes' velocities u, in which a node is coupled to the next two: bends
+/// span three nodes. Nodes are eliminated in order, in one pass with the linearization. The backward pass
+/// finds u, then q.
 ///
-/// A node with the diagonal S + K and the right side f - K o meets the next by -K + F and the one behind that
-/// by c; S, F and c are of masses, contacts, bends and of what is eliminated already. k may be 1e7 times as
-/// large as S: differences of both would lose that many digits. So its rank of one is kept apart, and only
-/// multiplies what is small; that which S has of the node before likewise. With B = F - b 1 and
+/// A node has the diagonal S + K and the right side f - K o. Its block with the next node is -K + F, and its
+/// block with the one behind that is c. S, F and c come from masses, contacts, bends and the nodes
+/// eliminated already. k may be 1e7 times as large as S: differences of both would lose that many digits. So
+/// its part of rank one is kept apart and only multiplies what is small. The same holds for the part that S
+/// has from the node before. With B = F - b 1 and
 ///
 ///   P = (S + b 1)^-1,  r = P n,  t' = n + B^T r,  tau = k / (1 + k n.r),
 ///   eta = r.(f - b o) + n.o,   z = P (f - b o) - tau eta r                (u, if the next two nodes stood)
@@ -21,7 +22,7 @@
 ///   on the way back         w = u_next - o,  g = f + b w - F u_next - c u_second,  delta = r.g - n.w,
 ///                           u = P g - tau delta r,  n.q = -tau delta - b n.(u - w)
 ///
-/// A node that is held has P = 0 and its velocity: then tau = k, eta = n.(u + o), delta = n.(u - w).
+/// A node that is held has P = 0 and its given velocity: then tau = k, eta = n.(u + o), delta = n.(u - w).
 
 #if defined(HOOKE_SOLVER_ROPE_ROPE_SWEEP_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_ROPE_ROPE_SWEEP_H
@@ -61,7 +62,7 @@ template <class Number>
 HWY_INLINE Columns3<Number> product(const Scale<Number>& a, const Columns3<Number>& b) {
   return {a.times(b.x), a.times(b.y), a.times(b.z)};
 }
-/// a^T b of what is symmetric.
+/// a^T b, where the product is symmetric.
 template <class Number>
 HWY_INLINE Scale<Number> symmetric_product(const Columns3<Number>& a, const Columns3<Number>& b) {
   return {dot(a.x, b.x), dot(a.x, b.y), dot(a.x, b.z), dot(a.y, b.y), dot(a.y, b.z), dot(a.z, b.z)};
@@ -77,7 +78,7 @@ HWY_INLINE Scale<Number> difference(const Scale<Number>& a, const Scale<Number>&
   return {a.xx - b.xx, a.xy - b.xy, a.xz - b.xz, a.yy - b.yy, a.yz - b.yz, a.zz - b.zz};
 }
 
-/// [v] m [v]^T, where [v] w = v x w: what a^2 v v^T adds to the cofactors of m is a^2 times this.
+/// [v] m [v]^T, where [v] w = v x w. Adding a^2 v v^T to m adds a^2 times this to the cofactors of m.
 template <class Number>
 HWY_INLINE Scale<Number> across(const Triple<Number>& v, const Scale<Number>& m) {
   const Columns3<Number> columns = full(m);
@@ -113,7 +114,7 @@ HWY_INLINE void put9(const Columns3<Number>& m, double (&to)[3][3][kCount], int 
   put3(m.z, to[2], i);
 }
 
-/// One lane, or vector of lanes, of the ropes.
+/// Sweeps over one lane, or one vector of lanes, of the ropes.
 template <class Number, int kCount, bool kBends>
 class RopeSweep {
  public:
@@ -136,7 +137,8 @@ class RopeSweep {
   }
 
  private:
-  /// A node while it is eliminated: the diagonal, mass + share 1 + firm way way^T, and the right side.
+  /// A node while it is eliminated: the diagonal, mass + share 1 + firm direction direction^T, and the right
+  /// side.
   struct Pivot {
     Scale<Number> mass;
     Number share;
@@ -160,12 +162,12 @@ class RopeSweep {
             get<Number>(s.limited + lane_), get<Number>(s.tension_bound + lane_)};
   }
 
-  /// 1 where a node moves, else 0.
+  /// Gives 1 where a node moves, else 0.
   HWY_INLINE Number moves(std::size_t i) const {
     return one_if_above(get<Number>(traits_.rows[i].w + lane_), Number(0.0));
   }
 
-  /// Adds a node's own mass and impulse, with what touches it.
+  /// Adds a node's own mass and impulse, with those of its contacts and anchors.
   HWY_INLINE void add_own(std::size_t i, Pivot& pivot) const {
     const Number mass = get<Number>(traits_.rows[i].mass + lane_);
     pivot.share = pivot.share + mass;
@@ -195,13 +197,14 @@ class RopeSweep {
     return {row.n, row.offset, row.n_offset, row.along - row.across, row.across};
   }
 
-  /// How nodes meet but for segments: a node and the next, the next two, and the outer ones.
+  /// Blocks between nodes that segments do not make: of a node and the next, of the next two, and of the
+  /// outer ones.
   struct OffDiagonal {
     Columns3<Number> next, following;
     Number outer;
   };
 
-  /// The bend of the three nodes from i on.
+  /// Adds the bend of the three nodes from i on.
   HWY_INLINE void add_bend(std::size_t i, Pivot& here, Pivot& next, Pivot& second,
                            OffDiagonal& off_diagonal) const {
     const RopeBendLanes<kCount>& bend = traits_.bends[i];
@@ -269,9 +272,10 @@ class RopeSweep {
     put3(choose3(moves(last), u, get3<Number>(node.v_free, lane_)), node.u, lane_);
   }
 
-  /// Of a node's diagonal with b 1. With S0 what of it is not firm, A0 its cofactors, D0 its determinant:
-  /// A = A0 + tau [t] S0 [t]^T, D = D0 + tau t.A0 t. Behind a node that is held tau is all of k, and
-  /// cofactors of the sum would be what is left of numbers 1e14 times as large.
+  /// Cofactors A and determinant D of a node's diagonal with b 1. S0 is its part that is not firm, A0 the
+  /// cofactors of S0, D0 their determinant: A = A0 + tau [t] S0 [t]^T, D = D0 + tau t.A0 t. Behind a node
+  /// that is held tau is all of k, and cofactors of the sum would be differences of numbers 1e14 times as
+  /// large.
   struct Cofactors {
     Scale<Number> a;
     Number determinant;
@@ -300,7 +304,7 @@ class RopeSweep {
     return {scaled(per_d, a), scaled(per_d, an), k * d * (per_both * d)};
   }
 
-  /// Notes what the way back needs; adds what is left to the next two nodes.
+  /// Stores what the backward pass needs, and adds what is left to the next two nodes.
   HWY_INLINE void eliminate(std::size_t i, const Segment& segment, const Pivot& here, Pivot& next,
                             Pivot& second, OffDiagonal& off_diagonal) {
     const auto& [n, o, n_o, k, b] = segment;
@@ -418,7 +422,7 @@ class RopeSweep {
 
   struct Results {
     Number error, changed;
-    Number sum;  ///< Of all velocities' components: finite if they are.
+    Number sum;  ///< Sum of all velocities' components: finite if they are.
   };
 
   HWY_INLINE void check_segment(std::size_t i, Number pull, Number opening, const Triple<Number>& relative,
@@ -428,7 +432,7 @@ class RopeSweep {
     const SegmentState<Number> at = state_of(i, relative);
     SegmentCheck<Number> check = checked(at, traits_of(i), pull, opening, terms_);
     if (traits_.pinned[i] != 0 && traits_.pinned[i + 1] != 0) {
-      // Between two nodes that do not move no length is wrong.
+      // Between two nodes that do not move, any length is right.
       const Number zero(0.0);
       const auto either_moves = above(moves(i) + moves(i + 1), zero);
       check.error = choose(either_moves, check.error, zero);

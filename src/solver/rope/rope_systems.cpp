@@ -1,5 +1,6 @@
-/// Ropes side by side, as many as a vector has lanes: load them, take Newton steps until each is as long as
-/// its forces say, write them back. The steps themselves are in wide/rope_sweep.h. Read Group::solve first.
+/// Solves ropes side by side, as many as a vector has lanes: loads them, takes Newton steps until each is as
+/// long as its forces say, and writes them back. The steps themselves are in solver/rope/rope_sweep.h. Read
+/// Group::solve first.
 
 #include "solver/rope/rope_systems.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 using wide::RopeLanes;
 
-constexpr int kFewestForLanes = 2;  ///< Below that one after another is faster.
+constexpr int kFewestForLanes = 2;  ///< For fewer ropes, one after another is faster.
 
 struct Source {
   std::span<const RopeAnchor> anchors;
@@ -31,13 +32,13 @@ struct Source {
 /// A ball hook at a node, as rows of a substep.
 struct AnchorRows {
   std::uint32_t node = 0, hook = 0;
-  double sign = 1;  ///< How the rows' speed goes with the node's: 1 as end b, -1 as a.
+  double sign = 1;  ///< Sign of the node's speed in the rows: 1 as end b, -1 as a.
   std::array<JointRow, 3> rows = {};
-  std::array<double, 3> gamma = {};  ///< Compliance of each.
+  std::array<double, 3> gamma = {};  ///< Compliance of each row.
 };
 
-/// Up to kCount ropes of equally many nodes, and what stays of them until a table's rows change. Lanes
-/// without a rope repeat the first.
+/// Up to kCount ropes of equally many nodes, and their constants, which hold until a table's rows change.
+/// Lanes without a rope repeat the first.
 template <int kCount>
 class Members {
  public:
@@ -106,12 +107,12 @@ class Members {
   }
 
   std::vector<RopeSystem*> rope_systems_;
-  std::uint64_t revision_ = 0;  ///< Sum of both, which only grow; clamps are of hooks too.
+  std::uint64_t revision_ = 0;  ///< Sum of both revisions, which only grow; clamps depend on hooks too.
   double h_ = 0;
   wide::RopeTraits<kCount> traits_;
 };
 
-/// The solution of members.
+/// Solves the ropes of one Members.
 template <int kCount>
 class Group {
  public:
@@ -190,7 +191,7 @@ class Group {
       load_anchor(source.anchors[i], members.traits().rows[source.anchors[i].node].w[lane], lane, source);
   }
 
-  /// How the first step is linearized.
+  /// Chooses how the first step is linearized.
   void begin(const RopeSystem& rope_system, double rest, int lane, const Source& source) {
     const std::size_t first = rope_system.first_particle;
     const std::size_t last = first + rope_system.node_count - 1;
@@ -204,7 +205,7 @@ class Group {
     put(setting.turning, ropes_.turning, lane);
   }
 
-  /// `w` is the inverse mass of its node.
+  /// `w` is the inverse mass of the anchor's node.
   void load_anchor(const RopeAnchor& anchor, double w, int lane, const Source& source) {
     if (!(w > 0)) return;
     state::Hook& hook = source.tables.hooks[anchor.hook];
@@ -222,7 +223,7 @@ class Group {
     anchors_[lane].push_back(made);
   }
 
-  /// Node i of a lane as the functions of contacts take it.
+  /// Node i of a lane in the form that the functions of contacts take.
   [[nodiscard]] RopeNode node_at(const wide::RopeTraits<kCount>& traits, std::uint32_t i, int lane) const {
     RopeNode one;
     one.v_free = get(ropes_.nodes[i].v_free, lane);
@@ -254,8 +255,8 @@ class Group {
     }
   }
 
-  /// From now on `holds` counts for a node; nothing touches it yet. A sum with -0 is what it was to the bit,
-  /// so that no lane feels what touches another.
+  /// From now on `constraints` counts for a node, still without any. A sum with -0 keeps its bits, so that
+  /// no lane depends on contacts of another.
   void note_constrained(std::uint32_t i) {
     if (ropes_.constrained[i] != 0) return;
     ropes_.constrained[i] = 1;
@@ -333,12 +334,12 @@ bool fits(const RopeSystem& a, const RopeSystem& b) {
   return a.node_count == b.node_count && (a.bend_stiffness > 0) == (b.bend_stiffness > 0);
 }
 
-/// Ropes solved in one way, group after group.
+/// Ropes that are solved in one way, group after group.
 template <int kCount>
 struct GroupList {
-  Group<kCount> group;  ///< Memory of the one that is being solved.
+  Group<kCount> group;  ///< Memory of the group that is being solved.
   std::vector<Members<kCount>> members;
-  std::size_t used = 0;  ///< In this substep.
+  std::size_t used = 0;  ///< Number of `members` in this substep.
 
   void solve(const std::vector<RopeSystem*>& rope_systems, const Source& source) {
     if (used == members.size()) members.emplace_back();

@@ -15,7 +15,7 @@ using state::Tables;
 using state::TwistClamp;
 using state::TwistSpan;
 
-/// 1 + cos of the sharpest bend that counts, 172 degrees: the curvature of a fold is infinite.
+/// 1 + cos of the sharpest bend that counts, 172 degrees: a fold would have infinite curvature.
 constexpr double kSharpest = 0.01;
 
 /// A segment as it lies now.
@@ -33,14 +33,14 @@ Edge edge_of(const Tables& t, const TwistSpan& span, std::uint32_t segment) {
   return {segment, l, l > 0 ? (1 / l) * e : DVec3{}};
 }
 
-/// The director of a clamp in the world, across the segment as it lies now.
+/// The present director of a clamp in the world, across its segment.
 DVec3 director_now(const Tables& t, const TwistClamp& clamp, DVec3 tangent) {
   const Quaternion<double> turn = joint_body_now(t.bodies, clamp.body).rotation;
   return transport(rotate(turn, clamp.tangent), tangent, rotate(turn, clamp.director));
 }
 
-/// Calls visit(before, behind) for each corner between the segments of the clamps; segments of no length have
-/// no direction and are left out.
+/// Calls visit(before, behind) for each corner between the segments of the clamps. Segments of no length
+/// have no direction and are left out.
 template <class Visit>
 void for_each_corner(const Tables& t, const TwistSpan& span, Visit&& visit) {
   Edge before = edge_of(t, span, span.a.segment);
@@ -52,7 +52,7 @@ void for_each_corner(const Tables& t, const TwistSpan& span, Visit&& visit) {
   }
 }
 
-/// The angle from a director that was carried along to that of the last clamp.
+/// The angle from a transported director to that of the last clamp.
 double angle_at_end(const Tables& t, const TwistSpan& span, DVec3 tangent, DVec3 carried) {
   const DVec3 end = director_now(t, span.b, tangent);
   const double angle = math::atan2(dot(tangent, cross(carried, end)), dot(carried, end));
@@ -67,7 +67,7 @@ std::uint32_t first_particle(const Tables& t, const TwistSpan& span) {
   return t.objects[span.object].particles.first + span.a.segment;
 }
 
-/// C' of the row's directions.
+/// C' in the directions of the row.
 double rate_of(const Tables& t, const TwistSpan& span, const TwistRow& row) {
   const auto omega = [&](const TwistClamp& clamp) {
     const JointBody body = joint_body_now(t.bodies, clamp.body);
@@ -105,7 +105,7 @@ void turn_body(const TwistClamp& clamp, DVec3 impulse, Tables& t) {
   set_joint_velocity(body, body.v, body.omega_scaled + body.scale * impulse, clamp.body, t.bodies);
 }
 
-/// What the world holds has its director carried along as pins move.
+/// Turns the director of what the world holds as pins move.
 void follow_pins(DVec3 tangent, TwistClamp& clamp) {
   if (clamp.slot != 0) return;
   clamp.director = normalize(transport(clamp.tangent, tangent, clamp.director));
@@ -117,7 +117,7 @@ double implicit_share(double stiffness) {
   return stiffness > 1 ? 1 - 1 / stiffness : 0;
 }
 
-/// Where the span stands, and the impulse that it asks for.
+/// Finds the present twist of the span, and the impulse for it.
 void load_impulse(double h, const Tables& t, const TwistRow& row, TwistSpan& span) {
   span.impulse = 0;
   span.implicit = false;

@@ -1,4 +1,4 @@
-/// rope_lines.h for vectors of double. Included anew for each instruction set.
+/// solver/rope/rope_records.h for vectors of double. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_ROPE_ROPE_VECTORS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_ROPE_ROPE_VECTORS_H
@@ -17,7 +17,7 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 constexpr int kDoubles = hn::MaxLanes(DoubleLanes());
-using HalfLanes = hn::CappedTag<float, kDoubles>;  ///< As many floats.
+using HalfLanes = hn::CappedTag<float, kDoubles>;  ///< As many floats as doubles.
 constexpr HalfLanes kHalfTag;
 
 HWY_INLINE void read_record(const float* base, const std::uint32_t* record, Quad<WideDouble>& value) {
@@ -46,7 +46,7 @@ HWY_INLINE void round_record(const Quad<WideDouble>& value, StoredRecords<WideDo
     auto z = hn::DemoteTo(kHalfTag, value.z.raw);
     auto w = hn::DemoteTo(kHalfTag, value.w.raw);
     transpose(kHalfTag, x, y, z, w);
-    // The k-th line of a vector is that of lane 4 k and up.
+    // The k-th record of x is that of lane 4 k, of y that of lane 4 k + 1, and so on.
     constexpr std::uint32_t kRecords[8] = {0, 4, 8, 12, 16, 20, 24, 28};
     store_records(kHalfTag, x, records.of[0], kRecords);
     store_records(kHalfTag, y, records.of[0], kRecords + 1);

@@ -1,4 +1,4 @@
-/// Which parts of ropes are held against twist.
+/// Finds which parts of ropes are held against twist.
 
 #include "math/rotation.h"
 #include "solver/joint_rows/joint_rows.h"
@@ -59,7 +59,7 @@ void set_directors(const Tables& t, double angle, TwistSpan& span) {
   span.angle = span.expected = angle;
 }
 
-/// The twist of each segment per length [rad/m], as the spans were.
+/// The twist of each segment per length [rad/m], as the earlier spans had it.
 std::vector<double> twist_rates(const Tables& t, std::uint32_t object, const std::vector<TwistSpan>& spans) {
   const state::Deformable& rope = t.objects[object];
   std::vector<double> rates(rope.segments.count, static_cast<double>(rope.twist_rate));
@@ -71,7 +71,7 @@ std::vector<double> twist_rates(const Tables& t, std::uint32_t object, const std
   return rates;
 }
 
-/// The span between two clamps: as it was, or made anew.
+/// The span between two clamps: an earlier one, or a new one.
 TwistSpan span_between(const Tables& t, std::uint32_t object, const TwistClamp& a, const TwistClamp& b,
                        const std::vector<TwistSpan>& before) {
   const auto was = std::find_if(before.begin(), before.end(), [&](const TwistSpan& span) {
