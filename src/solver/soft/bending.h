@@ -12,16 +12,18 @@ namespace hooke::solver {
 
 /// 16 bends of one color. The last block of a color may hold fewer: copies of its last row fill it.
 struct BendBlock {
-  /// Where the lines of a row's particles begin, as in SpringBlock: both ends of the edge, both wings.
+  /// Where the records of a row's particles begin, as in SpringBlock: both ends of the edge, then both
+  /// wings.
   std::uint32_t record[4][kLanes];
   Real rest_angle[kLanes];
   Real bias[kLanes];   ///< b = k / (c + h k) [1/s]; written by prepare_bends.
   Real gamma[kLanes];  ///< 1 / (h (c + h k)); written by prepare_bends.
 };
 
-/// What prepare_bends makes the coefficients of a block from. Unlike springs, bends of one cloth differ.
+/// The laws from which prepare_bends makes the coefficients of a block. Unlike springs, bends of one cloth
+/// differ.
 struct BendLaws {
-  std::uint32_t row[kLanes];  ///< Of the table; lanes that fill a block have that of the row they copy.
+  std::uint32_t row[kLanes];  ///< Row of the table; lanes that fill a block have that of the row they copy.
   Real stiffness[kLanes];
   Real damping[kLanes];
 };
@@ -39,11 +41,11 @@ struct BendBlocks {
   std::vector<BendPass> passes;
 };
 
-/// Colors the rows by angle greedily in the order of the table, 16 to a block. Isometric ones are hinges, see
-/// solver/soft/isometric_bending.h.
+/// Colors the bends by angle greedily in the order of the table, 16 to a block. Isometric bends are solved
+/// elsewhere, see solver/soft/isometric_bending.h.
 void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks& blocks);
 
-/// b and gamma of every row for a substep of `h` [s].
+/// Sets b and gamma of every row for a substep of `h` [s].
 void prepare_bends(BendBlocks& bends, Real h);
 
 /// Turns each pair of triangles towards its rest angle, as an implicit Euler step of E = k (theta -
@@ -52,12 +54,12 @@ void prepare_bends(BendBlocks& bends, Real h);
 /// Constraint   C = theta - theta_0 in (-pi, pi], gradients G_i over the four particles (elements/dihedral.h)
 /// Impulse      lambda = -(sum G_i . v_i + b C) / (sum w_i |G_i|^2 + gamma),  v_i += w_i lambda G_i
 ///
-/// With e = x_1 - x_0, l = |e|, d_i = x_i - x_0, n_a = e x d_2, n_b = d_3 x e, u = n / |n|^2 and
-/// alpha = d_2 . e / l^2, beta = d_3 . e / l^2 (where the wings' heights stand on the edge):
+/// With e = x_1 - x_0, l = |e|, d_i = x_i - x_0, n_a = e x d_2, n_b = d_3 x e, u = n / |n|^2 and alpha = d_2
+/// . e / l^2, beta = d_3 . e / l^2 (the places on the edge from which the wings' heights rise):
 ///
 ///     theta = atan2(-l n_a . d_3, n_a . n_b)
-///     G_0 = l [(1 - alpha) u_a + (1 - beta) u_b],  G_1 = l (alpha u_a + beta u_b),  G_2 = -l u_a,  G_3 = -l
-///     u_b
+///     G_0 = l [(1 - alpha) u_a + (1 - beta) u_b],  G_1 = l (alpha u_a + beta u_b),
+///     G_2 = -l u_a,  G_3 = -l u_b
 ///
 /// The multiplier starts from zero each substep. Degenerate triangles are left alone. `blocks` lies within
 /// one pass.

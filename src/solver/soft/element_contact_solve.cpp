@@ -19,7 +19,7 @@ Real inverse_mass_of(const ElementContact& contact, const state::Particles& part
 }
 
 constexpr int kSweeps = 2;
-constexpr Real kFar = Real(1e6);  ///< Separation of a row that does not hold now, at least [m].
+constexpr Real kFar = Real(1e6);  ///< Least separation of a row that does not hold now [m].
 
 void push(const ElementContact& contact, Vec3 impulse, state::Tables& t) {
   for (std::uint32_t i = 0; i < contact.count; ++i) {
@@ -29,7 +29,7 @@ void push(const ElementContact& contact, Vec3 impulse, state::Tables& t) {
   if (gives_way(t.bodies, contact.body)) push_body(contact.body, -impulse, contact.lever, t.bodies);
 }
 
-/// Velocity of the place against the surface.
+/// Velocity of the contact's place relative to the surface.
 Vec3 velocity_of(const ElementContact& contact, const state::Tables& t) {
   Vec3 v = -(state::velocity_now(t.bodies, contact.body, contact.lever) + contact.belt_velocity);
   for (std::uint32_t i = 0; i < contact.count; ++i)

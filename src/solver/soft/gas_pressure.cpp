@@ -10,7 +10,7 @@ double filled_volume(const state::Deformable& object, double volume) {
   return std::max(volume, 1e-3 * object.gas_volume);
 }
 
-/// What a unit of impulse of the gas makes of the rate at which the volume grows, and that rate without it.
+/// The rate at which the volume grows without the gas, and what a unit of the gas's impulse adds to it.
 struct Response {
   double rate = 0, mobility = 0;
 };
@@ -21,7 +21,8 @@ GasVolume::Push& push_on(std::uint32_t body, std::vector<GasVolume::Push>& pushe
   return known != pushes.end() ? *known : pushes.emplace_back(GasVolume::Push{body, {}, {}});
 }
 
-/// Along the normal of what a particle is pressed against, that decides, not the particle.
+/// Takes account of a particle that is pressed against a body: along the normal the body decides, not the
+/// particle.
 void hold(const state::Contacts& contacts, std::size_t row, DVec3 v, double w, DVec3 gradient,
           std::vector<GasVolume::Push>& pushes, Response& response) {
   const DVec3 n = vector_cast<double>(contacts.normal[row]);
@@ -56,7 +57,7 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
     const DVec3 xa = x(a);
     const DVec3 ab = x(b) - xa;
     const DVec3 ac = x(c) - xa;
-    // A sixth of twice the area to each corner: over a closed surface that is the gradient.
+    // Each corner gets a sixth of twice the area: over a closed surface that is the gradient.
     const DVec3 sixth = (1.0 / 6) * cross(ab, ac);
     out.volume += dot(xa, sixth);
     for (const std::uint32_t p : {a, b, c}) out.gradient[p - first] += sixth;

@@ -17,7 +17,7 @@ struct GasVolume {
   double volume = 0;
   std::vector<DVec3> gradient;
 
-  /// What the gas pushes on a body through the particles that touch it, for each unit of impulse.
+  /// The push of the gas on a body through the particles that touch it, for each unit of impulse.
   struct Push {
     std::uint32_t body = 0;
     DVec3 force;   ///< [m^2]
@@ -26,12 +26,13 @@ struct GasVolume {
   std::vector<Push> pushes;  ///< Scratch of press_gas.
 };
 
-/// Refills `out`. Sums in the order of the table, in double: differences of volumes are small.
+/// Measures the gas into `out`. Sums are taken in the order of the table, in double: differences of volumes
+/// are small.
 void measure_gas(const state::Deformable& object, const state::Triangles& triangles,
                  const state::Particles& particles, GasVolume& out);
 
 /// Pressure above that of the air around [Pa], of a gas that keeps its temperature: gas / V - p_0. Below a
-/// thousandth of the volume it was filled at, it grows no more.
+/// thousandth of the volume at which it was filled, the pressure grows no more.
 [[nodiscard]] double gas_pressure(const state::Deformable& object, double volume);
 
 /// Pushes the cloth outward by one row for the whole volume, implicit, so that no gas is too stiff. With A_i
@@ -39,13 +40,13 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
 ///
 ///     L = h (p - h k sum A_i . v_i) / (1 + h^2 k S),   v_i += w_i L A_i
 ///
-/// A particle that is pressed against a shape does not give way along the normal n: there the shape's
-/// velocity and, in S, its inverse mass and inertia count (of a particle's first contact). As if it could,
-/// gas under a load is softer than its law by up to the pressed part of S: the light skin would give way to
-/// it first, and then be pushed back.
+/// A particle that is pressed against a shape does not give way along the normal n. There the shape's
+/// velocity counts, and in S its inverse mass and inertia (those of a particle's first contact). If the
+/// particle counted as free, a gas under a load would be softer than its law by up to the pressed part of S:
+/// the light skin would give way to the gas first, and then be pushed back.
 ///
-/// The gas law rather than a volume that is kept (V = p V_0, Macklin and Mueller): a ball has a pressure in
-/// pascals, which is what a gauge reads and what decides how far it gives way. `scratch` is refilled.
+/// The gas law is used rather than a constant volume (V = p V_0, Macklin and Mueller): a ball has a pressure
+/// in pascals, which a gauge reads and which decides how far it gives way. `scratch` is refilled.
 void press_gas(const state::Deformable& object, const state::Triangles& triangles,
                const state::Contacts& contacts, const state::Bodies& bodies, double h, GasVolume& scratch,
                state::Particles& particles);

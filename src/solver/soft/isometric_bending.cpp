@@ -19,7 +19,7 @@ Pair ordered(std::uint32_t a, std::uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Springs that a hinge can hold, by their two particles.
+/// Springs that an element can hold, by their two particles.
 class SpringsByEnds {
  public:
   explicit SpringsByEnds(const state::Springs& springs) {
@@ -31,7 +31,7 @@ class SpringsByEnds {
     std::sort(rows_.begin(), rows_.end());
   }
 
-  /// The first that is in no hinge yet, which it then is.
+  /// Takes the first spring that is in no element yet.
   std::optional<std::uint32_t> take(std::uint32_t a, std::uint32_t b,
                                     std::vector<std::uint8_t>& taken) const {
     const Pair ends = ordered(a, b);
@@ -79,7 +79,7 @@ void set_lane(const IsometricBend& isometric, const state::Bends& bends, std::si
   stiffness[lane] = bends.stiffness[isometric.bend];
 }
 
-/// Of a bend, k sum |weight|^2 [N/m]: over the mass of a point the square of how fast it acts.
+/// k sum |weight|^2 of a bend [N/m]: over the mass of a point it is the square of the bend's frequency.
 Real resistance(const state::Bends& bends, std::uint32_t row) {
   Real sum = Real(0);
   for (const Real weight : bends.weights[row]) sum += weight * weight;
@@ -150,7 +150,7 @@ std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {
   prepare_springs(isometric_bends.materials, h);
   for (IsometricBendPass& pass : isometric_bends.passes) {
-    const Real mass = isometric_bends.materials[pass.edge].damped_mass;  // of the same cloth
+    const Real mass = isometric_bends.materials[pass.edge].damped_mass;  // all of one cloth
     const Real most = most_damping(mass, pass.stiffest, h) / pass.stiffest;
     const Real damped = Real(1) / (std::min(pass.damping, most) + h);
     pass.softness = {.bias = Real(1) / h, .damped_bias = damped, .gamma_share = h * damped};

@@ -10,22 +10,23 @@
 #include <vector>
 
 /// \file
-/// A hinge is an isometric bend with the spring along its edge and the one between its wings, if there are
-/// any: three rows over the same four particles, which are read and written once for all of them.
+/// An isometric bending element is an isometric bend with the spring along its edge and the spring between
+/// its wings, where there are such springs. Its up to three rows act on the same four particles, which are
+/// read and written once for all of them.
 
 namespace hooke::solver {
 
-/// 16 hinges of one color whose springs are of the same materials. The last block of a pass may hold fewer:
-/// copies of its last hinge fill it.
+/// 16 elements of one color whose springs are of the same materials. The last block of a pass may hold
+/// fewer: copies of its last element fill it.
 struct alignas(64) IsometricBendBlock {
-  std::uint32_t record[4][kLanes];  ///< Where the lines of a hinge's particles begin, as in BendBlock.
+  std::uint32_t record[4][kLanes];  ///< Where the records of an element's particles begin, as in BendBlock.
   Real edge_length[kLanes];         ///< L of the spring along the edge [m].
-  Real wing_length[kLanes];         ///< L of the one between the wings [m].
+  Real wing_length[kLanes];         ///< L of the spring between the wings [m].
   Real weight[3][kLanes];           ///< K_1, K_2, K_3 of elements::isometric_bend; K_0 is minus their sum.
-  Real gamma[kLanes];               ///< 1 / (h^2 k) [1/kg]; written by prepare_hinges.
+  Real gamma[kLanes];               ///< 1 / (h^2 k) [1/kg]; written by prepare_isometric_bends.
 };
 
-/// What all bends of a pass have in common, in a substep of h; written by prepare_hinges.
+/// What all bends of a pass have in common in a substep of h; written by prepare_isometric_bends.
 struct IsometricBendSoftness {
   Real bias = Real(0);         ///< 1 / h [1/s]
   Real damped_bias = Real(0);  ///< 1 / (tau + h) [1/s]; equal to `bias` without damping.
@@ -34,19 +35,19 @@ struct IsometricBendSoftness {
   [[nodiscard]] bool is_damped() const { return damped_bias != bias; }
 };
 
-/// Blocks [first, end) hold hinges of one color: no two share a particle.
+/// Blocks [first, end) hold elements of one color: no two share a particle.
 struct IsometricBendPass {
-  std::uint32_t edge = 0;   ///< Material of the springs along edges; kNoSpring.
-  std::uint32_t wings = 0;  ///< Material of those between wings; kNoSpring.
+  std::uint32_t edge = 0;   ///< Material of the springs along edges, or kNoSpring.
+  std::uint32_t wings = 0;  ///< Material of the springs between wings, or kNoSpring.
   Real damping = Real(0);   ///< tau of the bends [s].
   Real stiffest = Real(0);  ///< Largest k sum |weight|^2 of its rows [N/m].
   int first = 0;
   int end = 0;
-  int last_count = kLanes;  ///< Hinges in the last block.
+  int last_count = kLanes;  ///< Elements in the last block.
   IsometricBendSoftness softness = {};
 };
 
-/// The first material of all, that of springs that are not there.
+/// The first of all materials stands for springs that do not exist.
 inline constexpr std::uint32_t kNoSpring = 0;
 
 struct IsometricBendBlocks {
@@ -56,24 +57,24 @@ struct IsometricBendBlocks {
   std::vector<IsometricBendPass> passes;
 };
 
-/// Makes hinges of the isometric bends and of the springs that lie along their edges or between their wings.
-/// Returns, by row of `springs`, whether it is in a hinge.
+/// Makes elements of the isometric bends and of the springs that lie along their edges or between their
+/// wings. Returns, by row of `springs`, whether the spring is in an element.
 std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
                                                       const state::Springs& springs, int particle_count,
                                                       IsometricBendBlocks& isometric_bends);
 
-/// The coefficients of every row for a substep of `h` [s].
+/// Sets the coefficients of every row for a substep of `h` [s].
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h);
 
-/// Solves the rows of each hinge one after another, the bend first, the spring along the edge last. Springs
-/// as in solver/soft/spring_solve.h; the bend is an implicit Euler step of E = k |q|^2 / 2, q = sum K_i x_i,
-/// r = dq/dt:
+/// Solves the rows of each element one after another, the bend first, the spring along the edge last.
+/// Springs are solved as in solver/soft/spring_solve.h. The bend is an implicit Euler step of E = k |q|^2 /
+/// 2, where q = sum K_i x_i and r = dq/dt:
 ///
 ///     lambda = -(r + q / h) / (sum w_i K_i^2 + 1 / (h^2 k)),  v_i += w_i K_i lambda
 ///
 /// The friction k tau d|q|/dt acts along q only, where 1 / (tau + h) and 1 / (h (tau + h) k) stand for 1 / h
-/// and 1 / (h^2 k): friction of all of r would brake a bent cloth that turns as a whole. The step itself does
-/// so by a little: of a spin omega it takes 2 h E omega in each second.
+/// and 1 / (h^2 k). Friction of all of r would brake a bent cloth that turns as a whole. The step itself
+/// does so by a little: of a spin omega it takes 2 h E omega in each second.
 ///
 /// `blocks` lies within one pass.
 void solve_isometric_bends(const IsometricBendBlocks& isometric_bends, const IsometricBendPass& pass,

@@ -1,4 +1,5 @@
-/// Hinges over lanes, then the dispatch. The arithmetic stands in hinge_rows.h.
+/// Isometric bending elements over lanes, then the dispatch. The arithmetic stands in
+/// solver/soft/isometric_bending_rows.h.
 
 #include "solver/soft/isometric_bending_kernels.h"
 

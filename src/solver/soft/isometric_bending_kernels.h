@@ -11,10 +11,10 @@ using IsometricBendRun = Run<IsometricBendBlock>;
 struct IsometricBendMaterials {
   const IsometricBendSoftness& bend;
   const SpringMaterial& edge;
-  const SpringMaterial* wings;  ///< Null where none of the hinges has a spring there.
+  const SpringMaterial* wings;  ///< Null where no element of the run has a spring there.
 };
 
-/// One pass over a run; the formulas stand in solver/soft/isometric_bending.h.
+/// Solves one pass over a run; the formulas stand in solver/soft/isometric_bending.h.
 void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
                            state::Particles& particles);
 void solve_isometric_bends_scalar(const IsometricBendRun& run, const IsometricBendMaterials& materials,

@@ -1,4 +1,5 @@
-/// Hinges in numbers.h's Numbers. Included anew for each instruction set.
+/// Isometric bending elements in the Numbers of solver/simd/numbers.h. Included anew for each instruction
+/// set.
 
 #if defined(HOOKE_SOLVER_SOFT_ISOMETRIC_BENDING_ROWS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_SOFT_ISOMETRIC_BENDING_ROWS_H
@@ -16,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-/// A spring between two particles, `d` from b to a.
+/// Solves a spring between two particles; `d` goes from b to a.
 template <class Number>
 HWY_INLINE void solve_spring(const Triple<Number>& d, Number rest_length, const SpringMaterial& material,
                              Quad<Number>& a, Quad<Number>& b) {
@@ -38,7 +39,7 @@ HWY_INLINE void solve_spring(const Triple<Number>& d, Number rest_length, const 
   b = {b.x + s_b * d.x, b.y + s_b * d.y, b.z + s_b * d.z, b.w};
 }
 
-/// The impulse of a bend of the curvature q and its rate, `w` the sum of w_i K_i^2.
+/// The impulse of a bend with the curvature q and its rate; `w` is the sum of w_i K_i^2.
 template <class Number, bool kDamped>
 HWY_INLINE Triple<Number> bend_impulse(const Triple<Number>& q, const Triple<Number>& rate, Number w,
                                        Number gamma, const IsometricBendSoftness& softness) {
@@ -56,7 +57,7 @@ HWY_INLINE Triple<Number> bend_impulse(const Triple<Number>& q, const Triple<Num
   return sum(p, scaled(choose(above(q2, zero), more, zero), q));
 }
 
-/// The hinges of a block from `lane` on, one for each lane of a Number.
+/// Solves the elements of a block from `lane` on, one for each lane of a Number.
 template <class Number, bool kWings, bool kDamped>
 HWY_INLINE void solve_isometric_bend_lanes(const IsometricBendBlock& block, int lane,
                                            const IsometricBendMaterials& materials, const Real* position,
@@ -77,7 +78,8 @@ HWY_INLINE void solve_isometric_bend_lanes(const IsometricBendBlock& block, int 
   const Number k3 = get<Number>(block.weight[2] + lane);
   const Number k0 = Number(Real(0)) - (k1 + k2 + k3);
   const Number w = k0 * k0 * v0.w + k1 * k1 * v1.w + k2 * k2 * v2.w + k3 * k3 * v3.w;
-  // By differences from the first particle, as positions are: what the four have in common has no say.
+  // Takes differences from the first particle, as for positions: a common velocity of the four has no
+  // effect.
   const auto from_first = [&](const Quad<Number>& v) HWY_ATTR {
     return Triple<Number>{v.x - v0.x, v.y - v0.y, v.z - v0.z};
   };

@@ -1,6 +1,6 @@
 #include "solver/soft/isometric_bending_rows.h"
 
-// One lane at a time, in either precision.
+// Solves one lane at a time, in either precision.
 
 namespace hooke::solver::wide {
 

@@ -20,8 +20,7 @@ void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Veloci
   contacts.normal_force[row] += change / (h * particle.inverse_mass);
 }
 
-/// Calls solve(first, end) with the rows of each particle that belongs to the range, is no rope's, and is
-/// free.
+/// Calls solve(first, end) with the rows of each free particle that belongs to the range and to no rope.
 template <class Solve>
 void for_particles(const std::vector<state::Deformable>& objects, parallel::Range range,
                    const state::Contacts& contacts, const state::Particles& particles, Solve&& solve) {
@@ -36,7 +35,7 @@ void for_particles(const std::vector<state::Deformable>& objects, parallel::Rang
   }
 }
 
-/// Rows [first, end) of one particle.
+/// Solves rows [first, end) of one particle.
 void solve_rows(std::size_t first, std::size_t end, Real h, state::Contacts& contacts,
                 state::Particles& particles) {
   for (std::size_t i = first; i < end; ++i) {

@@ -10,10 +10,10 @@
 
 namespace hooke::solver {
 
-constexpr double kPushOutSpeed = 1;  ///< Overlap of particles leaves no faster than this [m/s].
+constexpr double kPushOutSpeed = 1;  ///< Overlap of particles is undone no faster than this [m/s].
 
-/// Contacts of cloth, solids and loose particles with bodies; those of ropes are solved inside the rope. With
-/// v the velocity of the particle against the surface that it touches:
+/// Solves contacts of cloth, solids and loose particles with bodies; contacts of ropes are solved inside the
+/// rope system. With v the velocity of the particle relative to the surface that it touches:
 ///
 ///   apart (s > 0)   n.v >= -s/h: the particle reaches the surface in this substep and no farther
 ///   overlapping     n.v >= 0, and the position is moved out by at most kPushOutSpeed h: overlap never
@@ -22,15 +22,15 @@ constexpr double kPushOutSpeed = 1;  ///< Overlap of particles leaves no faster 
 ///
 /// Rows of one particle are solved in order, twice when there are several. Ranges may begin anywhere: a
 /// particle's rows belong to the range that holds the first of them. Particles that touch a body which gives
-/// way are solved with it (solver/coupled/coupled_groups.h).
+/// way are solved in a coupled group instead (solver/coupled/coupled_groups.h).
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
                     const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles);
 
-/// Whether any of the rows [first, end) is with a body that gives way.
+/// Whether any of the rows [first, end) has a body that gives way.
 [[nodiscard]] bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts,
                                           std::size_t first, std::size_t end);
 
-/// Moves the particle of a row out of what it overlaps.
+/// Moves the particle of a row out of the body that it overlaps.
 void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles);
 
 }  // namespace hooke::solver

@@ -1,7 +1,7 @@
 /// The kernels in one source for every instruction set, then their dispatch.
 ///
-/// A particle is one 16-byte line {x, y, z, w}; see lines.h. Of positions a row needs only differences, which
-/// are taken before the transposition.
+/// A particle is one 16-byte record {x, y, z, w}; see solver/simd/records.h. A row needs only differences of
+/// positions, which are taken before the transposition.
 
 #include "solver/soft/particle_kernels.h"
 
@@ -47,12 +47,12 @@ void move_here(float h, parallel::Range rows, state::Particles& particles) {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// A vector in space per row.
+/// One vector in space for each row.
 struct Vectors {
   Vector x, y, z;
 };
 
-/// kWidth rows between their loads and their stores.
+/// The values of kWidth rows between their loads and their stores.
 struct Rows {
   Vector dx, dy, dz, s;
   Columns v_a, v_b;  ///< Velocities, and inverse masses in w.
@@ -132,9 +132,9 @@ HWY_INLINE BlockLanes<Block> lanes_at(const Run<Block>& run, int vector) {
   return {&run.blocks[vector * kWidth / kLanes], vector * kWidth % kLanes};
 }
 
-/// Solves `kCount` vectors in three stages, not one after the other: the processor works on one while it
-/// waits for the roots and quotients of the other. All loads come before the first store, so the copies of
-/// the last row that fill a partial block store what that row stores.
+/// Solves `kCount` vectors in three stages together: the processor works on one while it waits for the roots
+/// and quotients of the other. All loads come before the first store, so the copies of the last row that
+/// fill a partial block store what that row stores.
 template <int kCount, bool kOneSided, bool kAnchored, bool kRigid>
 HWY_INLINE void solve_vectors(const BlockLanes<SpringBlock> (&at)[kCount], const Law& law,
                               const float* position, float* velocity) {
@@ -236,7 +236,7 @@ HWY_INLINE Vector wrapped_error(Vector angle, Vector rest_angle) {
   return hn::IfThenElse(hn::Le(c, hn::Set(kTag, -kPi)), hn::Add(c, turn), c);
 }
 
-/// A vector of bend rows between its loads and its stores; the names are those of solver/soft/bending.h.
+/// A vector of bend rows between its loads and its stores, with the names of solver/soft/bending.h.
 struct BendVectors {
   Vector l, l2, inverse_aa, inverse_bb;
   Vector error;            ///< theta - theta_0
@@ -282,8 +282,8 @@ HWY_INLINE Vector rate_of(Vectors g, const Columns& v) {
   return dot(g, {v.x, v.y, v.z});
 }
 
-/// Velocities are loaded only now, when most of what positions needed is out of the registers. Rows without
-/// extent have no gradients, so that their impulse is zero whatever s.
+/// Velocities are loaded only now, when most numbers that positions needed have left the registers. Rows
+/// without extent have no gradients, so that their impulse is zero whatever s is.
 HWY_INLINE void compute_impulses(BlockLanes<BendBlock> at, const float* velocity, BendVectors& rows) {
   rows.v0 = load_columns(velocity, at.block->record[0] + at.first);
   rows.v1 = load_columns(velocity, at.block->record[1] + at.first);
@@ -321,7 +321,7 @@ void solve_bends_here(const BendRun& run, const state::PositionRecord* positions
   auto* velocity = reinterpret_cast<float*>(velocities);
   const int vectors = count_vectors(run);
   for (int i = 0; i < vectors; i += 2) {
-    // The last of an odd number is solved twice: both store the same.
+    // The last of an odd number of vectors is solved twice: both store the same.
     const bool is_pair = i + 1 < vectors;
     const BlockLanes<BendBlock> at = lanes_at(run, i);
     const BlockLanes<BendBlock> next = lanes_at(run, is_pair ? i + 1 : i);

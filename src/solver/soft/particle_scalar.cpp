@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-// The order of every operation here is that of kernels.cpp.
+// Every operation here has the order of solver/soft/particle_kernels.cpp.
 
 namespace hooke::solver::wide {
 

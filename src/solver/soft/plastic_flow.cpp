@@ -56,8 +56,8 @@ math::Symmetric3<T> square_of(const Matrix3<T>& a) {
   return {dot(a.x, a.x), dot(a.x, a.y), dot(a.x, a.z), dot(a.y, a.y), dot(a.y, a.z), dot(a.z, a.z)};
 }
 
-/// Whether the shape at rest that these gradients belong to is near enough to that when it was made. With the
-/// edges e_k of that, F_p^-T = sum b_k e_k^T.
+/// Whether the shape at rest of these gradients is near enough to the shape in which it was made. With the
+/// edges e_k of the latter, F_p^-T = sum b_k e_k^T.
 bool is_in_reach(const std::array<DVec3, 3>& b, const std::array<Vec3, 3>& edges) {
   Matrix3<double> p = {{}, {}, {}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -65,11 +65,12 @@ bool is_in_reach(const std::array<DVec3, 3>& b, const std::array<Vec3, 3>& edges
     p = p + Matrix3<double>{e.x * b[k], e.y * b[k], e.z * b[k]};
   }
   const auto squares = [](const Matrix3<double>& m) { return elements::contract(m, m); };
-  // Of determinant 1: its inverse is the transposed matrix of cofactors. NaN is not in reach.
+  // The determinant is 1, so that the inverse is the transposed matrix of cofactors. NaN is not in reach.
   return squares(p) <= kMostPlastic && squares(elements::cofactors(p)) <= kMostPlastic;
 }
 
-/// The gradients after the flow for a gradient F_e whose |dev C|^2 is to fall to `limit`; false if they stay.
+/// Finds the gradients after the flow for a gradient F_e whose |dev C|^2 is to fall to `limit`; false if
+/// they stay.
 bool flow(const Mat3& f, double limit, const std::array<Vec3, 3>& edges, std::array<Vec3, 3>& gradients) {
   const Matrix3<double> exact = {vector_cast<double>(f.x), vector_cast<double>(f.y),
                                  vector_cast<double>(f.z)};

@@ -24,7 +24,7 @@ DVec3 position_at(const Particles& particles, std::uint32_t p, double ahead) {
 
 /// Sums over all points about their center of mass.
 struct Moments {
-  DVec3 velocity = {};                    ///< Of the center [m/s].
+  DVec3 velocity = {};                    ///< Velocity of the center [m/s].
   DVec3 angular_momentum = {};            ///< [kg m^2/s]
   math::Symmetric3<double> inertia = {};  ///< [kg m^2]
 };
@@ -53,7 +53,7 @@ Moments moments_of(const Deformable& object, const Particles& particles, DVec3 c
   Moments sum;
   DVec3 momentum;
   math::Symmetric3<double>& inertia = sum.inertia;
-  // Points that have met in one line would have no inertia about it.
+  // Without this, points that lie in one line would have no inertia about it.
   inertia = math::Symmetric3<double>::diagonal(1e-12 * object.rest_shape->inertia);
   for (std::uint32_t row = object.particles.first; row < object.particles.end(); ++row) {
     const double m = mass_at(particles, row);
@@ -78,7 +78,7 @@ DVec3 torque_of(const DMat3& a, const DMat3& turn) {
   return {b.z.y - b.y.z, b.x.z - b.z.x, b.y.x - b.x.y};
 }
 
-/// A point's own velocity, or that of what hangs on it, less u.
+/// Takes the velocity u from a point: all of it, or less where something hangs on the point.
 void slow_down(Particles& particles, std::uint32_t row, DVec3 u) {
   state::VelocityRecord& record = particles.velocity[row];
   const double share = static_cast<double>(record.inverse_mass) * mass_at(particles, row);

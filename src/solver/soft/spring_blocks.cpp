@@ -11,7 +11,7 @@ namespace {
 
 using state::SpringClass;
 
-/// Where a row goes: passes are sorted by class, then color, then material.
+/// The position of a row: passes are sorted by class, then color, then material.
 struct Place {
   SpringClass kind;
   int color;

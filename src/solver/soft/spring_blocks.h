@@ -12,15 +12,15 @@
 #include <vector>
 
 /// \file
-/// Springs as the kernels want them: blocks of 16 rows that share no particle, blocks of one color after
-/// another.
+/// Springs in the order of the kernels: blocks of 16 rows that share no particle, and the blocks of one
+/// color after another.
 
 namespace hooke::solver {
 
 /// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
 /// fill it.
 struct SpringBlock {
-  std::uint32_t record_a[kLanes];  ///< 4 times the row of particle a: where its line begins, in numbers.
+  std::uint32_t record_a[kLanes];  ///< 4 times the row of particle a: where its record begins, in numbers.
   std::uint32_t record_b[kLanes];
   Real rest_length[kLanes];
 };
@@ -30,13 +30,13 @@ struct SpringMaterial {
   Real stiffness = Real(0);
   Real damping = Real(0);
   Real damped_mass = std::numeric_limits<Real>::infinity();
-  bool one_sided = false;  ///< Only pulls.
+  bool one_sided = false;  ///< The spring only pulls.
   bool anchored = false;   ///< Particle b is pinned and not written.
   state::SpringForm form = state::SpringForm::kExplicit;
   Real bias = Real(0);   ///< b = k / (c + h k) [1/s]; written by prepare_springs.
   Real gamma = Real(0);  ///< 1 / (h (c + h k)) [1/kg]; written by prepare_springs.
-  /// What is rigid takes back no more than this [m] of its error in a substep, and no more of how fast that
-  /// grows than in `recovery_time` [s]. Written by prepare_springs.
+  /// A rigid spring takes back at most this [m] of its error in a substep, and of the error's growth at most
+  /// that of `recovery_time` [s]. Written by prepare_springs.
   Real recovery = kWhole;
   Real recovery_time = Real(0);
 
@@ -47,9 +47,9 @@ struct SpringMaterial {
   friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
 };
 
-inline constexpr Real kRecoverySpeed = Real(100);  ///< [m/s]; less lets through what flies into a net.
+inline constexpr Real kRecoverySpeed = Real(100);  ///< [m/s]; less lets through what flies into a cloth net.
 
-/// What an implicit Euler step of h [s] makes of a stiffness k and a damping c, see
+/// The coefficients of an implicit Euler step of h [s] for a stiffness k and a damping c, see
 /// solver/soft/spring_solve.h.
 struct Softness {
   Real bias = Real(0);  ///< b = k / (c + h k) [1/s]; 1 / h where k is infinite, 0 where both are zero.
@@ -58,7 +58,8 @@ struct Softness {
 };
 [[nodiscard]] Softness softness(Real stiffness, Real damping, Real h);
 
-/// Blocks [first, end) hold rows of one color and one material: no two rows share a particle that is written.
+/// Blocks [first, end) hold rows of one color and one material: no two rows share a particle that is
+/// written.
 struct SpringPass {
   std::uint32_t material = 0;
   int first = 0;
@@ -70,24 +71,24 @@ struct SpringPass {
 struct SpringBlocks {
   std::vector<SpringBlock> blocks;
   std::vector<SpringMaterial> materials;
-  std::vector<SpringPass> passes;  ///< In the order they are solved; passes of one color follow each other.
+  std::vector<SpringPass> passes;  ///< In the order of the solution; passes of one color follow each other.
 };
 
-/// Colors the rows of each class greedily in the order of the table, 16 to a block. Left out are rows that
-/// `taken` marks, if it has any, and tethers whose anchor is not pinned.
+/// Colors the rows of each class greedily in the order of the table, 16 to a block. It leaves out rows that
+/// `taken` marks, if there are marks, and tethers whose anchor is not pinned.
 void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
                          std::span<const std::uint8_t> taken, SpringBlocks& blocks);
 
-/// The material of a row, by its place in the list.
+/// The material of a row, as its index in the list.
 std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,
                                    std::vector<SpringMaterial>& materials);
 
-/// Largest c of a damper beside a spring k that counts in one pass over a sheet of points of a mass, see
-/// solver/soft/spring_solve.h: m / 2 h or 10 h k, whichever is more. Of 1000 random sheets 8 pass any speed
-/// without it, 5 with ten times as much, none with twice as much.
+/// Largest c of a damper beside a spring k that counts in one pass over a sheet of points of a mass: m / 2 h
+/// or 10 h k, whichever is more. See solver/soft/spring_solve.h. Of 1000 random sheets 8 pass any speed
+/// without this limit, 5 with ten times as much, none with twice as much.
 [[nodiscard]] Real most_damping(Real mass, Real stiffness, Real h);
 
-/// b and gamma of every material for a substep of `h` [s].
+/// Sets b and gamma of every material for a substep of `h` [s].
 void prepare_springs(std::vector<SpringMaterial>& materials, Real h);
 
 }  // namespace hooke::solver

@@ -11,10 +11,12 @@ namespace {
 
 using state::SpringForm;
 
-/// Rows whose direction is predicted or whose damping is isotropic: one at a time, in any build.
+/// Solves rows whose direction is predicted or whose damping is isotropic, one at a time, in any build.
 ///
-/// Predicted    d, C at x + h v; the bias then holds h n . v already:  lambda = -(b C + (1 - b h) n . dv) /
-/// (w + gamma) Isotropic    the transverse relative velocity is damped too:  p_t = -dv_t / (w + 1 / (h c))
+/// Predicted    d, C at x + h v; the bias then holds h n . v already:
+///   lambda = -(b C + (1 - b h) n . dv) / (w + gamma)
+/// Isotropic    the transverse relative velocity is damped too:
+///   p_t = -dv_t / (w + 1 / (h c))
 void solve_general(const SpringBlock& block, int count, const SpringMaterial& material, Real h,
                    state::Particles& particles) {
   const bool predicted =

@@ -43,8 +43,8 @@ Real inverse_or_infinite(Real x) {
   return x > Real(0) ? Real(1) / x : std::numeric_limits<Real>::infinity();
 }
 
-/// Of every mode of a tetrahedron's shear, with the share of its corners' masses that is its own: w^2 <= 2 mu
-/// V lambda_max(sum b b^T / m). The trace bounds lambda_max.
+/// The largest mu with which all modes of a tetrahedron's shear are stable, with its own share of its
+/// corners' masses: w^2 <= 2 mu V lambda_max(sum b b^T / m). The trace bounds lambda_max.
 Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const std::vector<Real>& volume_at,
                  const state::Particles& particles) {
   const state::Tetrahedra::Corners& c = t.corners[row];
@@ -102,7 +102,7 @@ Real shear_modulus_of(const TetrahedronLaw& law, Real h) {
 
 void prepare_tetrahedron(const TetrahedronLaw& law, Real h, TetrahedronRow& row) {
   const Real shear = shear_modulus_of(law, h);
-  const Real stiffness = h * law.volume;  // times a modulus and a time: 1 / gamma
+  const Real stiffness = h * law.volume;  // Times a modulus and a time it is 1 / gamma.
   const Real damping = stiffness * law.damping_time;
   row.shift = Real(1) + shear / law.volume_modulus;
   row.gamma_volume = Real(1) / (stiffness * h * law.volume_modulus);
@@ -122,7 +122,7 @@ void prepare_tetrahedra(TetrahedronRows& tetrahedra, Real h) {
 
 namespace {
 
-/// The stress impulse T of the two constraints, for a rate F'.
+/// The stress impulse T of the two constraints for a rate F'.
 Mat3 elastic_impulse(const TetrahedronRow& row, Real inverse_h, const Mat3& f, const Mat3& rate,
                      const Symmetric& b) {
   const Real size = std::sqrt(contract(f, f));
@@ -144,7 +144,7 @@ Mat3 elastic_impulse(const TetrahedronRow& row, Real inverse_h, const Mat3& f, c
   return l_h * g_h + l_d * g_d;
 }
 
-/// One row of the viscosity: adds its impulse to `sum`, what it changes to `rate`.
+/// Solves one row of the viscosity: adds its impulse to `sum` and its change to `rate`.
 void damp_row(const Mat3& gradient, Real gamma, const Symmetric& b, Mat3& rate, Mat3& sum) {
   const Mat3 response = times(gradient, b);
   const Real impulse = -contract(gradient, rate) / (contract(gradient, response) + gamma);
@@ -161,11 +161,11 @@ Mat3 viscous_impulse(const TetrahedronRow& row, const Mat3& f, Mat3 rate, const 
   const Vec3 columns[3] = {f.x, f.y, f.z};
   for (int k = 0; k < 3; ++k) {
     for (int l = k; l < 3; ++l) {
-      // That of E_kl has f_l / 2 in column k and f_k / 2 in column l.
+      // The gradient of E_kl has f_l / 2 in column k and f_k / 2 in column l.
       Vec3 g[3] = {};
       g[k] += Real(0.5) * columns[l];
       g[l] += Real(0.5) * columns[k];
-      // E_kl and E_lk are two of the nine, and one row.
+      // E_kl and E_lk are two of the nine components, but one row.
       const Real share = k == l ? Real(0.5) : Real(0.25);
       damp_row({g[0], g[1], g[2]}, share * softening * row.gamma_rate, b, rate, sum);
     }
@@ -173,7 +173,7 @@ Mat3 viscous_impulse(const TetrahedronRow& row, const Mat3& f, Mat3 rate, const 
   return sum;
 }
 
-/// What the corners of a row are and do.
+/// The state and the motion of a row's corners.
 struct Corners {
   std::array<Vec3, 4> x, v, b;
   std::array<Real, 4> w = {};
