@@ -50,7 +50,8 @@ void gather_loads(const state::Particles& particles, Real share, parallel::Range
 }
 
 void push_particles(const AirLoads& loads, parallel::Range range, state::Particles& particles) {
-  // As plain numbers, which compilers take by the vector: the inverse masses beside the velocities get zero.
+  // Written as plain numbers, which compilers handle by the vector: the inverse masses beside the velocities
+  // get zero.
   static_assert(sizeof(AirRecord) == sizeof(state::VelocityRecord));
   const Real* change = &loads.change[range.begin].v.x;
   Real* velocity = &particles.velocity[range.begin].v.x;

@@ -1,4 +1,5 @@
-/// The air over lanes, then the dispatch. The arithmetic stands in air_triangles.h.
+/// The air over lanes, then the dispatch. The arithmetic stands in solver/air/air_triangles.h and
+/// solver/air/air_segments.h.
 
 #include "solver/air/air_kernels.h"
 

@@ -1,7 +1,7 @@
 #include "solver/air/air_segments.h"
 #include "solver/air/air_triangles.h"
 
-// One lane at a time, in either precision.
+// Works on one lane at a time, in either precision.
 
 namespace hooke::solver::wide {
 

@@ -1,4 +1,5 @@
-/// The air on the segments of a rope in numbers.h's Numbers. Included anew for each instruction set.
+/// The air on the segments of a rope in the Numbers of solver/simd/numbers.h. Included anew for each
+/// instruction set.
 
 #if defined(HOOKE_SOLVER_AIR_AIR_SEGMENTS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_AIR_AIR_SEGMENTS_H
@@ -33,9 +34,9 @@ HWY_INLINE Quad<Number> quad_at(const Real* base, const std::uint32_t* line) {
   return q;
 }
 
-/// Segments from the i-th on, one for each lane, and their first nodes. The first lane of `on_end` is what
-/// the segment before them changes their first node's velocity by; afterwards what the last of them does to
-/// its end.
+/// Pushes the segments from the i-th on, one for each lane, and their first nodes. The first lane of
+/// `on_end` has the change that the segment before makes to the velocity of the first node. Afterwards it
+/// has the change that the last of these segments makes to its end.
 template <class Number>
 HWY_INLINE void push_segment_lanes(const SegmentAir& air, std::uint32_t i, Triple<Number>& on_end) {
   std::uint32_t a[kLanesOf<Number>];
@@ -65,7 +66,7 @@ HWY_INLINE void push_segment_lanes(const SegmentAir& air, std::uint32_t i, Tripl
   write_quad(Quad<Number>{v.x, v.y, v.z, v_a.w}, air.velocity, a);
 }
 
-/// Every segment sees the velocities from before: its end is written with the next one.
+/// Every segment sees the velocities from before: the velocity of its end is written with the next segment.
 template <class Number>
 HWY_INLINE void push_segments_with(const SegmentAir& air) {
   const Number zero(Real(0));

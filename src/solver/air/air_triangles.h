@@ -1,4 +1,4 @@
-/// The air on triangles in numbers.h's Numbers. Included anew for each instruction set.
+/// The air on triangles in the Numbers of solver/simd/numbers.h. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_AIR_AIR_TRIANGLES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_AIR_AIR_TRIANGLES_H
@@ -23,8 +23,8 @@ HWY_INLINE Triple<Number> read_record(const Real* base, const std::uint32_t* rec
   return {q.x, q.y, q.z};
 }
 
-/// Triangles from `row` on, one for each lane. With N the sum of the normal's parts, twice the area long, and
-/// c = |N.u| / |N|, the impulse on a corner is
+/// Loads the triangles from `row` on, one for each lane. N is the normal, twice the area long, and
+/// c = |N.u| / |N|. The impulse on a corner is
 ///
 ///     h rho / 12 |N.u| ((C_d - C_l c / |u|) u + C_l |u| n) / max(1, h rho |N.u| (C_d + C_l) / 4 m)
 template <class Number>
@@ -57,11 +57,11 @@ HWY_INLINE void load_triangle_lanes(const TriangleAir& air, std::uint32_t row) {
   const Number limit = choose(above(rate, mass), quotient(rate, mass), one);
   const Number lift(air.lift);
   const Number strength = quotient(Number(air.h * air.density / Real(12)) * across, limit);
-  // The normal on the side that the air comes out of.
+  // The normal points to the side on which the air comes out.
   const Number turned = choose(above(zero, through), zero - per_size, per_size);
   const Triple<Number> impulse = scaled(strength, sum(scaled(Number(air.drag) - lift * quotient(c, speed), u),
                                                       scaled(lift * speed * turned, normal)));
-  // Without area or flow there is none, and the quotients mean nothing.
+  // Without area or flow there is no impulse, and the quotients mean nothing.
   const auto loaded = above(smaller(size, speed), zero);
   write_quad(Quad<Number>{choose(loaded, impulse.x, zero), choose(loaded, impulse.y, zero),
                           choose(loaded, impulse.z, zero), zero},

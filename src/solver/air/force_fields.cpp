@@ -10,7 +10,7 @@ namespace hooke::solver {
 
 namespace {
 
-/// `v` turned about the flux density b by the angle a charge of q/m turns in h.
+/// Turns `v` about the flux density b by the angle by which a charge of q/m turns in h.
 Vec3 turn(Vec3 v, DVec3 b, double charge_per_mass, double h) {
   const double size = length(b);
   if (!(size > 0)) return v;

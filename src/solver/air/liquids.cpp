@@ -14,17 +14,17 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A part of a simplex: its share of the whole, and the integral of the corners' shape functions over it, as
-/// shares of the whole too.
+/// A part of a simplex: its share of the whole, and the integral of the corners' shape functions over it,
+/// also as shares of the whole.
 template <std::size_t kCorners>
 struct Part {
   double share = 0;
   std::array<double, kCorners> of_corner = {};
 };
 
-using Weights = std::array<double, 4>;  // of a point in a tetrahedron
+using Weights = std::array<double, 4>;  // Weights of a point in a tetrahedron.
 
-/// On the edge from corner a to corner b, which lies above: where it goes through the surface.
+/// The point at which the edge from corner a to corner b, which lies above, crosses the surface.
 Weights crossing(const std::array<double, 4>& depth, std::size_t a, std::size_t b) {
   const double t = depth[a] / (depth[a] - depth[b]);
   Weights weights = {};
@@ -45,8 +45,8 @@ Weights corner(std::size_t i) {
   return weights;
 }
 
-/// What is cut off at corner a by the surface: the part below it where a is below and the others are above,
-/// that above it where a alone is above.
+/// Adds the tip that the surface cuts off at corner a, times `sign`. The tip is below the surface where a is
+/// below and the others are above, and above the surface where a alone is above.
 void add_tip(const std::array<double, 4>& depth, std::size_t a, double sign, Part<4>& part) {
   std::array<Weights, 4> corners = {corner(a)};
   double share = sign;
@@ -59,7 +59,7 @@ void add_tip(const std::array<double, 4>& depth, std::size_t a, double sign, Par
   add_tetrahedron(share, corners, part);
 }
 
-/// The wedge below the surface where a and b are below, c and d above: three tetrahedra.
+/// Adds the wedge below the surface where a and b are below, c and d above: three tetrahedra.
 void add_wedge(const std::array<double, 4>& depth, std::array<std::size_t, 4> order, Part<4>& part) {
   const auto [a, b, c, d] = order;
   const Weights ac = crossing(depth, a, c);
@@ -92,13 +92,13 @@ struct Loads {
   const state::Particles& particles;
   std::vector<LiquidLoad>& loads;
 
-  /// In the world.
+  /// Place of a particle in the world.
   [[nodiscard]] DVec3 place(std::uint32_t p) const {
     return object.origin + vector_cast<double>(particles.position[p].x);
   }
   [[nodiscard]] LiquidLoad& of(std::uint32_t p) const { return loads[p - object.particles.first]; }
 
-  /// `scale`: of the volume displaced over that of the ball.
+  /// Adds a ball; `scale` is the displaced volume over that of the ball.
   void add_ball(std::uint32_t p, double radius, double scale = 1) const {
     const double cap = std::clamp(radius + surface.depth(place(p)), 0.0, 2 * radius);
     const double volume = scale * geometry::cap_volume(radius, cap);
@@ -108,7 +108,7 @@ struct Loads {
     load.push += volume * surface.up;
   }
 
-  /// Volume at a particle that comes and goes over the thickness of the particle.
+  /// Adds a volume at a particle that comes and goes over the thickness of the particle.
   void add_volume(std::uint32_t p, double volume) const {
     const double r = radius(p);
     add_ball(p, r, volume / geometry::cap_volume(r, 2 * r));
@@ -120,7 +120,7 @@ struct Loads {
       const std::array<std::uint32_t, 4> row = {a, b, c, d};
       const std::array<DVec3, 4> x = {place(a), place(b), place(c), place(d)};
       const double volume = dot(x[1] - x[0], cross(x[2] - x[0], x[3] - x[0])) / 6;
-      if (!(volume > 0)) continue;  // turned inside out for now
+      if (!(volume > 0)) continue;  // It is inside out for now.
       const Part<4> part =
           part_below({surface.depth(x[0]), surface.depth(x[1]), surface.depth(x[2]), surface.depth(x[3])});
       const bool cut = part.share > 0 && part.share < 1;
@@ -134,11 +134,11 @@ struct Loads {
     }
   }
 
-  /// The pressure on one triangle from its right-hand side, which is outside.
+  /// Adds the pressure on one triangle from its right-hand side, which is outside.
   void press(const std::array<std::uint32_t, 3>& row) const {
     const std::array<DVec3, 3> x = {place(row[0]), place(row[1]), place(row[2])};
     const DVec3 area = 0.5 * cross(x[1] - x[0], x[2] - x[0]);
-    std::array<std::array<double, 3>, 4> weights = {};  // of the corners of what is below
+    std::array<std::array<double, 3>, 4> weights = {};  // Weights of the corners of the part below.
     std::array<double, 4> depth = {};
     std::size_t count = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -159,7 +159,7 @@ struct Loads {
                  count == 3 && weights[0][0] == 1 && weights[1][1] == 1 && weights[2][2] == 1);
   }
 
-  /// Over a triangle of area A the integral of a product of two linear functions is A / 12 times the sum of
+  /// Over a triangle of area A, the integral of a product of two linear functions is A / 12 times the sum of
   /// the products at its corners and the product of the sums.
   void press_part(const std::array<std::uint32_t, 3>& row, DVec3 area,
                   const std::array<std::array<double, 3>, 3>& at, const std::array<double, 3>& depth,
@@ -182,7 +182,7 @@ struct Loads {
       const auto [a, b, c] = triangles.corners[i];
       press({a, b, c});
     }
-    // What is displaced, for the drag, belongs to all of the skin alike.
+    // For the drag, the displaced volume belongs to all points of the skin alike.
     double volume = 0;
     for (const LiquidLoad& load : loads) volume += dot(load.push, surface.up);
     for (LiquidLoad& load : loads) load.volume = std::max(volume, 0.0) / static_cast<double>(loads.size());

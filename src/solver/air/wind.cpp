@@ -26,7 +26,8 @@ double smooth(double t) {
   return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-/// Cell number and place in the cell of one coordinate. Far away or not finite: the cell at zero.
+/// Cell number, and place in the cell, of one coordinate. A coordinate that is far away or not finite gets
+/// the cell at zero.
 struct Cell {
   std::int64_t index = 0;
   double weight = 0;
@@ -59,7 +60,7 @@ Gust smooth_gust(const WindDesc& wind, DVec3 place, double time) {
   return sum;
 }
 
-/// The paper's eq. 9: rand(1..100) drawn for each step, here over 100.
+/// The paper's eq. 9: rand(1..100) drawn for each step, here divided by 100.
 Gust paper_gust(const WindDesc& wind, std::uint64_t step) {
   const std::uint64_t bits = mix(mix(wind.seed) + step);
   return {0.01 * static_cast<double>(1 + bits % 100), 0.01 * static_cast<double>(1 + (bits >> 32) % 100)};
