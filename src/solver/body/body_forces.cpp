@@ -11,19 +11,19 @@ namespace hooke::solver {
 
 namespace {
 
-/// One body in the middle of a step.
+/// The state of one body in the middle of a step.
 struct BodyNow {
   std::uint32_t row = 0;
-  DVec3 center = {};  ///< Of mass [m].
+  DVec3 center = {};  ///< Center of mass [m].
   Quat rotation = {};
-  double mass = 0;  ///< [kg]
+  double mass = 0;  ///< Mass [kg].
   DVec3 v = {};
   Vec3 omega = {};
 };
 
 struct Push {
-  DVec3 force = {};   ///< At the center of mass [N].
-  DVec3 torque = {};  ///< [N m]
+  DVec3 force = {};   ///< Force at the center of mass [N].
+  DVec3 torque = {};  ///< Torque [N m].
 };
 
 BodyNow body_now(const state::Bodies& bodies, std::uint32_t row) {
@@ -37,7 +37,7 @@ BodyNow body_now(const state::Bodies& bodies, std::uint32_t row) {
           .omega = bodies.scale[row] * m.omega_scaled};
 }
 
-/// From the body's center of mass.
+/// A shape of the body, placed relative to the body's center of mass.
 geometry::PlacedShape placed(const BodyNow& body, const state::Colliders& colliders, std::uint32_t collider) {
   const Quaternion<double> rotation = math::in_double(body.rotation);
   const state::ColliderShape& own = colliders.shape[collider];
@@ -49,7 +49,7 @@ geometry::PlacedShape placed(const BodyNow& body, const state::Colliders& collid
 
 /// The rotation by which the unit vector `up` becomes the y axis.
 Quaternion<double> turn_to_y(DVec3 up) {
-  if (up.y < -1 + 1e-12) return {1, 0, 0, 0};  // half a turn about x
+  if (up.y < -1 + 1e-12) return {1, 0, 0, 0};  // Half a turn about x.
   return normalize(Quaternion<double>{-up.z, 0, up.x, 1 + up.y});
 }
 
@@ -58,7 +58,7 @@ void add_liquid(const FieldDesc& liquid, const BodyNow& body, const Surroundings
   const LiquidSurface surface(liquid, around.desc.gravity);
   const double level = surface.depth(body.center);
   if (level + static_cast<double>(bodies.traits[body.row].radius) <= 0) return;
-  // Shapes are cut across y: the body is looked at with the surface turned to that.
+  // Shapes are cut across y: the body is rotated so that the surface lies across y.
   const Quaternion<double> turn = turn_to_y(surface.up);
   geometry::Immersion all;
   for (const std::uint32_t c : state::colliders_of(bodies, body.row)) {

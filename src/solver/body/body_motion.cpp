@@ -23,22 +23,22 @@ Vec3 in_axes(Quat axes, Vec3 diagonal, Vec3 x) {
   return rotate(axes, {diagonal.x * local.x, diagonal.y * local.y, diagonal.z * local.z});
 }
 
-/// 1/I, and zero where nothing turns.
+/// 1/I, or zero about axes about which nothing turns.
 Vec3 inverse_inertia(const BodyMass& mass) {
   const auto inverse = [](Real i) { return i > Real(0) ? Real(1) / i : Real(0); };
   return {inverse(mass.inertia.x), inverse(mass.inertia.y), inverse(mass.inertia.z)};
 }
 
-/// S^(-1) x: from a change of omega_scaled to one of L. Zero if S has no inverse.
+/// S^(-1) x turns a change of omega_scaled into one of L. It is zero if S has no inverse.
 Vec3 momentum_of(const math::Symmetric3<Real>& scale, Vec3 x) {
   if (x == Vec3{} || !(scale.xx > Real(0))) return {};
   return math::inverse(scale) * x;
 }
 
-/// A free body about its center.
+/// A free body that turns about its center.
 struct FreeTurn {
   Quat axes = {};
-  Vec3 inverse = {};  ///< Of the inertia.
+  Vec3 inverse = {};  ///< 1 / I about each principal axis.
   Vec3 momentum = {};
 };
 
@@ -68,17 +68,17 @@ Vec3 omega_of(const wide::TurnLanes& turns, int lane) {
   return {turns.omega[0][lane], turns.omega[1][lane], turns.omega[2][lane]};
 }
 
-/// The turn about one of the principal axes by `turn_per_momentum` times the part of L along it.
+/// Rotates about one of the principal axes by `turn_per_momentum` times the part of L along it.
 Quaternion<double> turned_about(int axis, Quaternion<double> axes, DVec3 momentum, double turn_per_momentum) {
   const DVec3 local = rotate(conjugate(axes), momentum);
   const std::array<DVec3, 3> turns = {DVec3{local.x, 0, 0}, DVec3{0, local.y, 0}, DVec3{0, 0, local.z}};
   return axes * math::quaternion_of(turn_per_momentum * turns[static_cast<std::size_t>(axis)]);
 }
 
-/// Turned on, so that L has the energy it should. In the body's own axes |L|^2 = sum L_i^2 and 2 E = sum c_i
-/// L_i^2 are linear in the squares: the nearest ones that have both, and none of which is negative, are
-/// taken. What is nearly right stays: the root of what rounding leaves of a square spun a ladder that leaned,
-/// at rest, about its own axis.
+/// Rotates further so that L has the energy it should have. In the body's own axes |L|^2 = sum L_i^2 and 2 E
+/// = sum c_i L_i^2 are linear in the squares. The nearest squares that fulfill both, none of them negative,
+/// are taken. What is nearly right stays: otherwise the root of a square's rounding error spun a ladder,
+/// which leaned at rest, about its own axis.
 Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 momentum, double twice_energy) {
   constexpr double kLeast = 1e-4;
   const double size = length(momentum);
@@ -86,7 +86,7 @@ Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 mome
   const DVec3 square = {l.x * l.x, l.y * l.y, l.z * l.z};
   const double mean = (c.x + c.y + c.z) / 3;
   const DVec3 slope = c - DVec3{mean, mean, mean};
-  const DVec3 free = {c.z - c.y, c.x - c.z, c.y - c.x};  // changes neither
+  const DVec3 free = {c.z - c.y, c.x - c.z, c.y - c.x};  // This direction changes neither sum.
   if (!(length_squared(slope) > 0)) return axes;
   const double lacks = twice_energy / (size * size) - dot(c, square);
   if (std::abs(lacks) <= kLeast * dot(c, square)) return axes;
@@ -105,8 +105,9 @@ Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 mome
   return axes * conjugate(normalize(Quaternion<double>{across.x, across.y, across.z, 1 + dot(l, goal)}));
 }
 
-/// The same for a fast turn, of which the midpoint rule makes energy out of nothing: as a symmetric top about
-/// the axis that is least like the others, exactly, between two halves of what sets those apart.
+/// Mean velocity of a fast turn, for which the midpoint rule makes energy out of nothing. The body turns
+/// exactly, as a symmetric top about the axis that is least like the others, between two halves of the turn
+/// by which the others differ.
 Vec3 split_velocity(const FreeTurn& turn, Real h) {
   const auto& [axes, inverse, momentum] = turn;
   const DVec3 c = vector_cast<double>(inverse);
@@ -133,18 +134,18 @@ Vec3 split_velocity(const FreeTurn& turn, Real h) {
   return vector_cast<Real>((1 / step) * math::turn_between(before, q, step * now));
 }
 
-/// Too small a speed to keep: nothing may decay into denormals.
+/// Sets speeds to zero that are too small to keep: nothing may decay into denormals.
 Vec3 flushed(Vec3 v) {
   const auto flush = [](Real x) { return std::abs(x) < Real(1e-20) ? Real(0) : x; };
   return {flush(v.x), flush(v.y), flush(v.z)};
 }
 
-/// Mean velocities of up to kLanes bodies, the slow ones side by side.
+/// Finds mean velocities of up to kLanes bodies, the slow ones side by side.
 class MeanVelocities {
  public:
   explicit MeanVelocities(Real h) : h_(h) {}
 
-  /// Of the body that is `place` of them.
+  /// Adds the body at position `place` among them.
   void add(std::size_t place, const FreeTurn& turn) {
     if (is_slow(turn, h_)) {
       place_[static_cast<std::size_t>(count_)] = place;
@@ -172,7 +173,8 @@ Real angular_damping(std::uint32_t i, Real h, const Bodies& bodies) {
   return Real(1) / (Real(1) + h * bodies.traits[i].angular_damping);
 }
 
-/// External torque, damping, and what contacts did in the substep before, of a body that tumbles.
+/// Changes L of a body that makes a gyroscopic turn, by external torque, damping, and the contacts of the
+/// substep before.
 void turn_momentum(std::uint32_t i, const BodyStep& step, Bodies& bodies) {
   Vec3& momentum = bodies.angular_momentum[i];
   const Vec3 by_contacts = bodies.motion[i].omega_scaled - bodies.free_motion[i].omega_scaled;
@@ -180,8 +182,8 @@ void turn_momentum(std::uint32_t i, const BodyStep& step, Bodies& bodies) {
   momentum = angular_damping(i, step.h, bodies) * (momentum + step.h * bodies.torque[i]);
 }
 
-/// omega_scaled after external torque, damping and the free motion of the substep, with mean velocity `omega`
-/// if the body tumbles.
+/// omega_scaled after external torque, damping and the free motion of the substep. A body that makes a
+/// gyroscopic turn has the mean velocity `omega`.
 Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 omega, const Bodies& bodies) {
   const math::Symmetric3<Real>& scale = bodies.scale[i];
   if (is_gyroscopic_now(bodies, i)) return momentum_of(scale, omega);
@@ -189,7 +191,7 @@ Vec3 turned(std::uint32_t i, const BodyStep& step, Vec3 omega, const Bodies& bod
          (bodies.motion[i].omega_scaled + scale * (step.h * bodies.torque[i]));
 }
 
-/// `omega` as turned has it.
+/// Accelerates a body; `omega` has the meaning it has in `turned`.
 void accelerate_body(std::uint32_t i, const BodyStep& step, Vec3 omega, Bodies& bodies) {
   MotionRecord& m = bodies.motion[i];
   state::FreeMotionRecord& free = bodies.free_motion[i];
@@ -204,8 +206,8 @@ void accelerate_body(std::uint32_t i, const BodyStep& step, Vec3 omega, Bodies& 
   m.omega_scaled = free.omega_scaled + turn_by_contacts;
 }
 
-/// L, with what contacts have yet to add to it, becomes smaller where it has more energy than it had when the
-/// body stood in `before`.
+/// Makes L, together with what contacts have yet to add to it, smaller where its energy is larger than with
+/// the body's rotation `before`.
 void keep_rotational_energy(std::uint32_t row, Quat before, Bodies& bodies) {
   const Vec3 pending =
       momentum_of(bodies.scale[row], bodies.motion[row].omega_scaled - bodies.free_motion[row].omega_scaled);
@@ -219,7 +221,7 @@ void keep_rotational_energy(std::uint32_t row, Quat before, Bodies& bodies) {
   if (has > had) bodies.angular_momentum[row] = std::sqrt(had / has) * momentum - pending;
 }
 
-/// From which on its inertia may be another [rad].
+/// From this rotation on the inertia of a body may differ [rad].
 constexpr Real kLeastTurn = Real(0.02);
 
 /// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
@@ -245,8 +247,9 @@ math::Symmetric3<Real> spinning_scale(const Bodies& bodies, std::uint32_t i) {
           s + more * axis.y * axis.y, more * axis.y * axis.z, s + more * axis.z * axis.z};
 }
 
-/// The turn of the step so far becomes one about a single axis from its start. Its energy is that of L, but
-/// no more than rows know: where a hit turned the body over within the substep, L tells of another time.
+/// Freezes the inertia: the rotation of the step so far becomes one about a single axis from its start. Its
+/// energy is that of L, but no more than rows know: where an impact turned the body over within the substep,
+/// L belongs to another time.
 void begin_frozen_inertia(std::uint32_t i, Vec3 momentum, const math::Symmetric3<Real>& now, Quat start,
                           Bodies& bodies) {
   const math::Symmetric3<Real>& scale = bodies.scale[i];
@@ -264,7 +267,8 @@ void begin_frozen_inertia(std::uint32_t i, Vec3 momentum, const math::Symmetric3
   bodies.frozen_inertia[i].on = true;
 }
 
-/// The inertia is not turned exactly as the body is: the rotational energy decides how fast it is.
+/// Ends a step with frozen inertia. The inertia was not turned exactly as the body was: the
+/// rotational energy decides how fast the body turns.
 void finish_frozen_inertia(std::uint32_t i, Bodies& bodies) {
   const MotionRecord& m = bodies.motion[i];
   bodies.rotation[i] = normalize(math::quaternion_of(bodies.scale[i] * m.theta_scaled) * bodies.rotation[i]);
@@ -389,13 +393,13 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
     const Vec3 turn = bodies.scale[i] * (h * m.omega_scaled);
     const Quat before = bodies.rotation[i];
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * before);
-    // Far from where it would have turned freely, L stands for any energy.
+    // Far from the free rotation, L would stand for any energy.
     if (length_squared(turn) > kFarTurn * kFarTurn) keep_rotational_energy(i, before, bodies);
   }
 }
 
 bool outgrows_rows(const Bodies& bodies, std::uint32_t row, Real h) {
-  constexpr Real kMostTurn = Real(1.5);  // [rad]; after half a turn all is as it was
+  constexpr Real kMostTurn = Real(1.5);  // [rad]; after half a turn all is as it was.
   const Vec3 turn = h * bodies.angular_velocity[row];
   if (!gives_way(bodies, row) || !is_gyroscopic(bodies.mass[row])) return false;
   const Real angle = length(turn);

@@ -12,8 +12,8 @@ namespace hooke::solver {
 namespace {
 
 struct Pull {
-  DVec3 force = {};   ///< [N]
-  DVec3 torque = {};  ///< [N m]
+  DVec3 force = {};   ///< Force [N].
+  DVec3 torque = {};  ///< Torque [N m].
 };
 
 /// Share of a rate omega^2 [1/s^2] that a substep of length h follows.
@@ -44,7 +44,7 @@ Dipole dipole_of(const state::Bodies& bodies, std::uint32_t row) {
           .inverse_inertia = inverse_inertia_across(bodies.mass[row], moment)};
 }
 
-/// On `own`, by another dipole.
+/// What another dipole does to `own`.
 Pull pull_of_pair(const Dipole& own, const Dipole& other, double h) {
   const DVec3 d = own.center - other.center;
   const double r = length(d);

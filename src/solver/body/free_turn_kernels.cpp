@@ -1,4 +1,4 @@
-/// Free turns over lanes, then the dispatch. The arithmetic stands in free_turn_lanes.h.
+/// Gyroscopic turns over lanes, then the dispatch. The arithmetic stands in solver/body/free_turn_lanes.h.
 
 #include "solver/body/free_turn_kernels.h"
 

@@ -1,4 +1,5 @@
-/// The midpoint rule for free turns in numbers.h's Numbers. Included anew for each instruction set.
+/// The midpoint rule for gyroscopic turns in the Numbers of solver/simd/numbers.h. Included anew for each
+/// instruction set.
 
 #if defined(HOOKE_SOLVER_BODY_FREE_TURN_LANES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_BODY_FREE_TURN_LANES_H
@@ -31,7 +32,7 @@ HWY_INLINE Triple<Number> entrywise(const Triple<Number>& a, const Triple<Number
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// As math::quaternion_of up to a quarter radian, by the same terms.
+/// Does the same as math::quaternion_of up to a quarter radian, by the same terms.
 template <class Number>
 HWY_INLINE Quad<Number> small_turn(const Triple<Number>& phi) {
   const Triple<Number> half = scaled(Number(Real(0.5)), phi);

@@ -1,6 +1,6 @@
 #include "solver/body/free_turn_lanes.h"
 
-// One lane at a time, in either precision.
+// Works on one lane at a time, in either precision.
 
 namespace hooke::solver::wide {
 
