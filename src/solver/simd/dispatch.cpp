@@ -24,7 +24,8 @@ std::vector<std::string> targets() {
   std::vector<std::string> names;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
     names.insert(names.begin(), name_of(target));
-  // Highway's lanes of one, where it has them, are not what "scalar" stands for: the code without Highway.
+  // Highway's lanes of one, where it has them, are not what "scalar" stands for, which is the code without
+  // Highway.
   std::erase(names, "scalar");
   names.insert(names.begin(), "scalar");
   return names;

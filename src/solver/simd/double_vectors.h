@@ -1,4 +1,4 @@
-/// Vectors of double as the Numbers of numbers.h. Included anew for each instruction set.
+/// Vectors of double as the Numbers of solver/simd/numbers.h. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_SIMD_DOUBLE_VECTORS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_SIMD_DOUBLE_VECTORS_H

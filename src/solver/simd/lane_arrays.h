@@ -7,7 +7,7 @@
 #include <array>
 
 /// \file
-/// Vectors, quaternions and matrices to and from arrays of lanes.
+/// Moves vectors, quaternions and matrices to and from arrays of lanes.
 
 namespace hooke::solver {
 

@@ -7,15 +7,16 @@
 
 namespace hooke::solver {
 
-/// Rows in a block. Floats of the widest instruction set fill one vector with them; others take several.
+/// Rows in a block. Floats of the widest instruction set fill one vector with them; other sets take several
+/// vectors.
 inline constexpr int kLanes = 16;
 
 namespace wide {
 
-/// Systems in double that are solved side by side, ropes and trees: one vector of the widest set.
+/// Systems in double that are solved side by side, ropes and trees. They fill one vector of the widest set.
 inline constexpr int kDoubleLanes = 8;
 
-/// Blocks that share no written particle; the last holds `last_count` rows.
+/// Blocks that share no particle which is written; the last block holds `last_count` rows.
 template <class Block>
 struct Run {
   std::span<const Block> blocks;

@@ -1,8 +1,9 @@
-/// Arithmetic once for one lane (Number is Real or double) and for a vector of lanes.
-/// Included anew for each instruction set: Highway compiles what stands between its two macros for the set in
-/// turn.
+/// Arithmetic that is written once for one lane (Number is Real or double) and for a vector of lanes.
+/// Included anew for each instruction set: Highway compiles what stands between its two macros for one set
+/// after another.
 ///
-/// A Number has + - *, Number(Real), and these functions, given below for one lane, in vectors.h and
+/// A Number has + - *, Number(Real), and these functions. They are given below for one lane, and in
+/// solver/simd/vectors.h and solver/simd/double_vectors.h for vectors:
 /// double_vectors.h for vectors:
 ///   read, write      from and to consecutive lanes; read_anywhere from unaligned ones
 ///   moved_on         lanes one further, the first from the first of `carried`, which gets the last
@@ -46,7 +47,7 @@ struct Quad {
   Number x, y, z, w;
 };
 
-/// The half of a line that rows write, and the half they only read.
+/// Velocity is the half of a motion record that rows write, Displacement the half that they only read.
 template <class Number>
 struct Velocity {
   Triple<Number> v, omega;
@@ -64,7 +65,7 @@ template <std::floating_point Lane>
 HWY_INLINE void write(Lane value, Lane* to) {
   *to = value;
 }
-/// The same where lanes are not aligned.
+/// Does the same where lanes are not aligned.
 HWY_INLINE void read_anywhere(const Real* from, Real& to) {
   to = *from;
 }
@@ -99,7 +100,7 @@ HWY_INLINE void read_quad(const Real* base, const std::uint32_t* record, Quad<Re
   const Real* from = base + *record;
   q = {from[0], from[1], from[2], from[3]};
 }
-/// The first three numbers of one line less those of another.
+/// The first three numbers of one record less those of another.
 HWY_INLINE void read_offset(const Real* base, const std::uint32_t* to, const std::uint32_t* from,
                             Triple<Real>& offset) {
   const Real* end = base + *to;
@@ -117,7 +118,7 @@ HWY_INLINE void write_quad(const Quad<Real>& q, Real* base, const std::uint32_t*
 template <class Number>
 constexpr int kLanesOf = 1;
 
-/// Whether its lanes are float.
+/// Whether the lanes of a Number are float.
 template <class Number>
 constexpr bool kIsSingle = std::same_as<Number, float>;
 
@@ -128,7 +129,7 @@ HWY_INLINE Number get(const Lane* from) {
   return value;
 }
 
-/// Lanes of a vector quantity, from lane `i` on.
+/// Moves the lanes of a vector quantity, from lane `i` on.
 template <class Number, class Lane, std::size_t kCount>
 HWY_INLINE Triple<Number> get3(const Lane (&from)[3][kCount], int i) {
   return {get<Number>(from[0] + i), get<Number>(from[1] + i), get<Number>(from[2] + i)};
@@ -179,7 +180,7 @@ HWY_INLINE void take(Number s, const Triple<Number>& a, Triple<Number>& to) {
   to = {to.x - s * a.x, to.y - s * a.y, to.z - s * a.z};
 }
 
-/// Reads the bodies' lines, the three quarters of each that rows look at.
+/// Reads the motion records of bodies: the three quarters of each that rows need.
 template <class Number>
 HWY_INLINE void read_motion(const Real* base, const std::uint32_t* record, Velocity<Number>& motion,
                             Displacement<Number>& moved) {
@@ -198,7 +199,7 @@ HWY_INLINE void write_motion(const Velocity<Number>& motion, const Displacement<
   write_quad(Quad<Number>{motion.omega.y, motion.omega.z, moved.dx.x, moved.dx.y}, base + 4, record);
 }
 
-/// Where free lines begin, from where motion lines do.
+/// Where free-motion records begin, by where motion records begin.
 template <class Number>
 struct FreeMotionRecords {
   std::uint32_t at[kLanesOf<Number>];
@@ -225,12 +226,12 @@ HWY_INLINE void write_free(const Velocity<Number>& motion, Real* base, const std
   write_quad(Quad<Number>{motion.omega.y, motion.omega.z, zero, zero}, base + 4, free.at);
 }
 
-/// Two bodies of the lanes from `lane` on, and how rows push them. B of an anchored block is only read.
+/// Two bodies of the lanes from `lane` on, and how rows push them. Body b of an anchored block is only read.
 template <class Number, bool kAnchored>
 struct Bodies {
   Velocity<Number> a, b;
 
-  /// Relative velocity along a row of Jacobians j_a, j_b, its linear part given.
+  /// Relative velocity along a row of Jacobians j_a, j_b whose linear part is given.
   HWY_INLINE Number rate(Number linear, const Triple<Number>& j_a, const Triple<Number>& j_b) const {
     return linear + (dot(j_b, b.omega) - dot(j_a, a.omega));
   }
@@ -244,7 +245,7 @@ struct Bodies {
   }
 };
 
-/// What the lines of two bodies say, and how it gets back there.
+/// The contents of two bodies' motion records, and how they are written back.
 template <class Number, bool kAnchored>
 struct MovingBodies {
   Bodies<Number, kAnchored> velocity;

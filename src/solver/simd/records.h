@@ -1,5 +1,5 @@
-/// Lines of four numbers, loaded whole and transposed in registers: hardware gathers are slower than this on
-/// every machine measured. Included anew for each instruction set.
+/// Records of four numbers, loaded whole and transposed in registers: hardware gathers are slower than this
+/// on every machine measured. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_SIMD_RECORDS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_SIMD_RECORDS_H
@@ -26,9 +26,9 @@ using Line = hn::FixedTag<float, 4>;
 
 constexpr Lanes kTag;
 constexpr int kWidth = hn::MaxLanes(Lanes());
-constexpr int kRecordCount = kWidth / 4;  // lines in one vector
+constexpr int kRecordCount = kWidth / 4;  // Records in one vector.
 
-/// A vector whose k-th line begins at number index[4 k] of `base`, anywhere.
+/// Loads a vector whose k-th record begins at number index[4 k] of `base`, anywhere.
 template <class D>
 HWY_INLINE hn::Vec<D> load_records(D tag, const float* base, const std::uint32_t* index) {
   if constexpr (hn::MaxLanes(D()) == 4) {
@@ -40,7 +40,7 @@ HWY_INLINE hn::Vec<D> load_records(D tag, const float* base, const std::uint32_t
   }
 }
 
-/// Four vectors of lines to four of components, and back: the transposition is its own inverse.
+/// Turns four vectors of records into four of components, and back: the transposition is its own inverse.
 template <class D>
 HWY_INLINE void transpose(D tag, hn::Vec<D>& r0, hn::Vec<D>& r1, hn::Vec<D>& r2, hn::Vec<D>& r3) {
   const hn::Repartition<double, D> pairs;
@@ -66,7 +66,7 @@ HWY_INLINE void store_records(D tag, hn::Vec<D> records, float* base, const std:
   }
 }
 
-/// Components of kWidth lines.
+/// The components of kWidth records.
 struct Columns {
   Vector x, y, z, w;
 };
@@ -78,7 +78,8 @@ HWY_INLINE Columns load_columns(const float* base, const std::uint32_t* index) {
   return c;
 }
 
-/// Components of lines less others, subtracted before the transposition, which is one less then.
+/// The components of records less others. The difference is taken before the transposition, which saves one
+/// transposition.
 HWY_INLINE Columns load_offsets(const float* base, const std::uint32_t* to, const std::uint32_t* from) {
   const auto offset = [&](int j) HWY_ATTR {
     return hn::Sub(load_records(kTag, base, to + j), load_records(kTag, base, from + j));

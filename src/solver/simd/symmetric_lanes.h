@@ -1,4 +1,4 @@
-/// Symmetric matrices in numbers.h's Numbers. Included anew for each instruction set.
+/// Symmetric matrices in the Numbers of solver/simd/numbers.h. Included anew for each instruction set.
 
 #if defined(HOOKE_SOLVER_SIMD_SYMMETRIC_LANES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_SIMD_SYMMETRIC_LANES_H
@@ -36,7 +36,7 @@ template <class Number>
 HWY_INLINE Number determinant(const Scale<Number>& m, const Scale<Number>& cofactors) {
   return m.xx * cofactors.xx + m.xy * cofactors.xy + m.xz * cofactors.xz;
 }
-/// By cofactors, as math::inverse; what stands there is not compiled for the instruction set.
+/// Inverts by cofactors as math::inverse does, which is not compiled for the instruction set.
 template <class Number>
 HWY_INLINE Scale<Number> inverse(const Scale<Number>& m) {
   const Scale<Number> a = cofactors(m);

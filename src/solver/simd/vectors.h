@@ -1,7 +1,7 @@
-/// Vectors of lanes as the Numbers of numbers.h. Included anew for each instruction set.
+/// Vectors of lanes as the Numbers of solver/simd/numbers.h. Included anew for each instruction set.
 ///
-/// A body is one line of 16 numbers; the three quarters that rows read are loaded and transposed one after
-/// the other, as lines of four.
+/// A body has one motion record of 16 numbers. The three quarters that rows read are loaded and transposed
+/// one after the other, as records of four.
 
 #if defined(HOOKE_SOLVER_SIMD_VECTORS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_SIMD_VECTORS_H
@@ -18,12 +18,12 @@ namespace hooke::solver::wide::HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// Two vectors in flight as one number, where a block has as many: the processor works on one while it waits
-/// for the other.
+/// Two vectors in flight count as one number, where a block has as many: the processor works on one while it
+/// waits for the other.
 constexpr int kVectors = kWidth < kLanes ? 2 : 1;
 constexpr int kStride = kVectors * kWidth;
 
-/// Of a vector turned by one lane: 15 0 1 2 for 16.
+/// Lane indices of a vector turned by one lane: 15 0 1 2 for 16.
 struct LaneBefore {
   std::int32_t of[kWidth];
 
