@@ -30,7 +30,7 @@ void list_updates(BlockPattern& p) {
   }
 }
 
-/// L D L^T of one dense block in place.
+/// Factors one dense block in place: L D L^T.
 void factor_diagonal(double sign, double* a, int n) {
   for (int j = 0; j < n; ++j) {
     double pivot = a[j * n + j];
@@ -45,7 +45,7 @@ void factor_diagonal(double sign, double* a, int n) {
   }
 }
 
-/// B := B L^-T D^-1 for a block of m rows below the diagonal block of n.
+/// Computes B := B L^-T D^-1 for a block of m rows below the diagonal block of n.
 void factor_below(const double* diagonal, int n, double* b, int m) {
   for (int r = 0; r < m; ++r) {
     double* x = b + static_cast<std::ptrdiff_t>(r) * n;
@@ -56,7 +56,7 @@ void factor_below(const double* diagonal, int n, double* b, int m) {
   }
 }
 
-/// What is below the diagonal in a column: its blocks stand one after the other.
+/// The part of a column below its diagonal: its blocks stand one after the other.
 struct ColumnBelow {
   const double* numbers;
   std::size_t rows = 0;
@@ -71,7 +71,7 @@ ColumnBelow below_diagonal(const BlockPattern& p, int column, std::span<const do
   return {numbers.data() + diagonal.offset + n * n, rows};
 }
 
-/// D L^T of a column below its diagonal, by rows.
+/// Computes D L^T of a column below its diagonal, by rows.
 void scale_transposed(const double* diagonal, std::size_t n, const ColumnBelow& below,
                       std::vector<double>& scaled) {
   scaled.resize(n * below.rows);
@@ -92,8 +92,8 @@ void subtract_row(const double* x, std::size_t n, const double* y, std::size_t s
   for (int c = 0; c < kWidth; ++c) target[c] = sum[c];
 }
 
-/// Subtracts left D right^T from the target; `scaled` by scale_transposed. Several numbers are summed side by
-/// side, which compilers may not do with one sum.
+/// Subtracts left D right^T from the target; `scaled` comes from scale_transposed. Several numbers are
+/// summed side by side, which compilers may not do with a single sum.
 void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, const ColumnBelow& below,
                       const std::vector<double>& scaled, std::span<double> numbers) {
   const BlockPattern::Block& left = p.block[u.left];
@@ -113,7 +113,7 @@ void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, cons
   }
 }
 
-/// x := L^-1 x.
+/// Computes x := L^-1 x.
 void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
   for (int j = 0; j < p.node_count(); ++j) {
     const int n = p.size[j];
@@ -132,7 +132,7 @@ void substitute_forward(const BlockPattern& p, std::span<const double> numbers, 
   }
 }
 
-/// x := L^-T D^-1 x.
+/// Computes x := L^-T D^-1 x.
 void substitute_back(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
   for (int j = p.node_count() - 1; j >= 0; --j) {
     const int n = p.size[j];
@@ -163,7 +163,7 @@ void BlockGraph::sort() {
   for (std::size_t i = 0; i < count_; ++i) base::sort_unique(neighbors_[i]);
 }
 
-/// Its neighbors become adjacent to each other.
+/// Eliminates a node, whereby its neighbors become adjacent to each other.
 void BlockGraph::eliminate_node(std::uint32_t node) {
   const std::vector<std::uint32_t>& clique = neighbors_[node];
   for (const std::uint32_t i : clique) {

@@ -7,11 +7,11 @@
 #include <vector>
 
 /// \file
-/// Symmetric matrices of small dense blocks, positive definite or quasi-definite: an order of elimination
-/// with little fill, found once, then the factors L D L^T and their solution as a fixed list of operations,
-/// in double. Neither depends on anything but the matrix. Quasi-definite matrices (a positive and a negative
-/// definite diagonal part) have these factors in any order (Vanderbei 1995, "Symmetric quasi-definite
-/// matrices").
+/// Symmetric matrices of small dense blocks, positive definite or quasi-definite, in double. An order of
+/// elimination with little fill is found once. The factors L D L^T and their solution then are a fixed list
+/// of operations. Neither depends on anything but the matrix. Quasi-definite matrices (a positive and a
+/// negative definite diagonal part) have these factors in any order (Vanderbei 1995, "Symmetric
+/// quasi-definite matrices").
 
 namespace hooke::solver {
 
@@ -21,33 +21,33 @@ struct BlockPattern {
   struct Block {
     std::uint32_t row = 0;
     std::uint32_t column = 0;
-    std::uint32_t offset = 0;  ///< Of its first number.
+    std::uint32_t offset = 0;  ///< Position of its first number.
   };
-  /// target -= left D right^T, D that of the column of both.
+  /// target -= left D right^T, where D belongs to the column of both.
   struct Update {
     std::uint32_t left = 0, right = 0, target = 0;  ///< Blocks.
   };
 
-  std::vector<std::uint32_t> order;         ///< The node that is eliminated i-th.
-  std::vector<int> size;                    ///< Of block row i.
-  std::vector<std::int8_t> sign;            ///< Of block row i's pivots: 1, or -1 by set_signs.
-  std::vector<int> first;                   ///< Of block row i's numbers in a vector; one more at the end.
-  std::vector<Block> block;                 ///< By column, the diagonal first.
-  std::vector<std::uint32_t> column_begin;  ///< Of blocks; one more at the end.
-  std::vector<Update> update;               ///< By column.
-  std::vector<std::uint32_t> update_begin;  ///< Of each column; one more at the end.
-  std::uint32_t number_count = 0;           ///< Of all blocks.
+  std::vector<std::uint32_t> order;  ///< The node that is eliminated i-th.
+  std::vector<int> size;             ///< Size of each block row.
+  std::vector<std::int8_t> sign;     ///< Sign of each block row's pivots: 1, or -1 by set_signs.
+  std::vector<int> first;            ///< First number of each block row in a vector; one more at the end.
+  std::vector<Block> block;          ///< Blocks by column, the diagonal first.
+  std::vector<std::uint32_t> column_begin;  ///< First block of each column; one more at the end.
+  std::vector<Update> update;               ///< Updates by column.
+  std::vector<std::uint32_t> update_begin;  ///< First update of each column; one more at the end.
+  std::uint32_t number_count = 0;           ///< Numbers in all blocks.
   double operations = 0;                    ///< Multiplications of one factorization.
 
   [[nodiscard]] int node_count() const { return static_cast<int>(size.size()); }
 };
 
-/// Which nodes of a matrix meet, and the memory to find an order of elimination with.
+/// The graph of the nodes of a matrix that share a block, and the memory to find an order of elimination.
 class BlockGraph {
  public:
-  /// `count` nodes that meet no other.
+  /// Starts with `count` nodes without neighbors.
   void reset(std::size_t count);
-  /// Nodes a and b meet. Each pair may be told often; a node and itself never.
+  /// Makes nodes a and b neighbors. Each pair may be told often; a node and itself never.
   void join(std::uint32_t a, std::uint32_t b) {
     neighbors_[a].push_back(b);
     neighbors_[b].push_back(a);
@@ -64,19 +64,20 @@ class BlockGraph {
   void eliminate_node(std::uint32_t node);
 
   std::size_t count_ = 0;
-  /// Of each node; once that is eliminated: those left that were adjacent to it by then, its column of the
-  /// factor.
+  /// Neighbors of each node. Once a node is eliminated, they are the remaining nodes that were adjacent to
+  /// it by then, its column of the factor.
   std::vector<std::vector<std::uint32_t>> neighbors_;
   // Scratch, to be used again.
   std::vector<std::pair<std::size_t, std::uint32_t>> queue_;  ///< A heap, with entries that are out of date.
-  std::vector<std::uint8_t> eliminated_;                      ///< Of each node.
+  std::vector<std::uint8_t> eliminated_;                      ///< By node.
   std::vector<std::uint32_t> joined_;
   std::vector<std::uint32_t> place_;
   std::vector<int> sizes_in_order_;
 };
 
-/// Replaces `pattern`: minimum degree, ties to the lowest node: chains and trees have no fill. Uses the graph
-/// up. False, and a pattern of no use, if one factorization takes more than `budget` multiplications.
+/// Replaces `pattern` by minimum degree, with ties to the lowest node: chains and trees have no fill. It
+/// uses the graph up. It returns false, and a pattern of no use, if one factorization takes more than
+/// `budget` multiplications.
 [[nodiscard]] bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double budget,
                                       BlockPattern& pattern);
 
@@ -87,14 +88,14 @@ void resize_blocks(std::span<const int> sizes, BlockPattern& pattern);
 /// positive.
 void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& pattern);
 
-/// The block (row, column), which exists; row >= column.
+/// The block (row, column), which must exist; row >= column.
 [[nodiscard]] std::uint32_t find_block(const BlockPattern& pattern, std::uint32_t row, std::uint32_t column);
 
-/// A = L D L^T in place: L below the diagonals (unit lower triangles), D on them. A pivot that has not the
-/// sign of its row counts as infinite, so that its row gets zero. `scaled` is scratch.
+/// Factors A = L D L^T in place: L below the diagonals (unit lower triangles), D on them. A pivot without
+/// the sign of its row counts as infinite, so that its row gets zero. `scaled` is scratch.
 void factor(const BlockPattern& pattern, std::span<double> numbers, std::vector<double>& scaled);
 
-/// x := A^-1 x, by the factors.
+/// Computes x := A^-1 x by the factors.
 void solve(const BlockPattern& pattern, std::span<const double> numbers, std::span<double> x);
 
 }  // namespace hooke::solver

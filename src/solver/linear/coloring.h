@@ -6,12 +6,13 @@
 #include <vector>
 
 /// \file
-/// Greedy coloring: rows of one color share nothing that they write, so they may be solved side by side.
+/// Greedy coloring: rows of one color share nothing that they write, so that they may be solved side by
+/// side.
 
 namespace hooke::solver {
 
-/// The smallest color in 0..63 that no particle of a row uses yet, and marks it; 64 and above mean a row
-/// alone in its color (a hub of more than 64 rows). `used[particle]` is a bit mask.
+/// Returns the smallest color in 0..63 that no particle of a row uses yet, and marks it. 64 and above mean a
+/// row alone in its color (a hub of more than 64 rows). `used[particle]` is a bit mask.
 int take_color(std::vector<std::uint64_t>& used, const std::uint32_t* particles, int count);
 
 /// The color of each row of four particles, greedily in the order of the table.
