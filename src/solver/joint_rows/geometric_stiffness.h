@@ -4,14 +4,14 @@
 #include "solver/joint_rows/joint_rows.h"
 
 /// \file
-/// A force on a body at a lever turns it back as it turns: a spring, which light bodies under load must carry
-/// implicitly. Equations: solver/joint/articulations.h.
+/// A force on a body at a lever turns the body back as it rotates. That is a spring, which light bodies
+/// under load must carry implicitly. Equations: solver/joint/articulations.h.
 
 namespace hooke::solver {
 
 inline constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left explicit.
 inline constexpr double kStiffnessDamping = 0.2;  ///< Share of the rest that acts on the velocity too.
-inline constexpr double kStiffnessGrowth = 1.5;   ///< From which on a solution is repeated with it.
+inline constexpr double kStiffnessGrowth = 1.5;   ///< Growth beyond which a solution is repeated with it.
 
 inline double trace(const math::Symmetric3<double>& m) {
   return m.xx + m.yy + m.zz;
@@ -21,7 +21,7 @@ inline math::Symmetric3<double> scaled(double s, const math::Symmetric3<double>&
   return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
 }
 
-/// That of force `force` on `body` at lever r, in scaled coordinates times h^2.
+/// Stiffness of force `force` on `body` at lever r, in scaled coordinates times h^2.
 inline math::Symmetric3<double> stiffness_of(DVec3 r, DVec3 force, const JointBody& body, double h) {
   const DVec3 s = normalize(r) + normalize(force);
   const double size = 0.25 * h * h * length(r) * length(force);

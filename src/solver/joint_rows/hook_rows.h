@@ -10,13 +10,15 @@
 
 namespace hooke::solver {
 
-/// The share of a hook row's diagonal that it has as compliance.
+/// Compliance of a hook row as a share of its diagonal.
 inline constexpr double kHookCompliance = 1e-6;
 
-/// An end of a hook now: of a body, the world, or the place between particles, which has no rotation.
+/// The present state of a hook's end: a body, the world, or a place between particles, which has no
+/// rotation.
 [[nodiscard]] JointBody joint_end(const state::Tables& tables, const state::HookPlace& place);
 
-/// Rows of a hook (joint_rows.h) between ends of which some have their motion given: that is in the targets.
+/// Makes the rows of a hook (solver/joint_rows/joint_rows.h) between ends of which some have their motion
+/// given. The targets contain that motion.
 int make_rows(state::Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
               std::span<JointRow, state::Hook::kMaxRows> rows);
 

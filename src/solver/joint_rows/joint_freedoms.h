@@ -1,5 +1,6 @@
-/// What the freedoms of a hook are worth and along what they change, in numbers.h's Numbers: as
-/// solver/joint_rows/joint_rows.h has them. Included anew for each instruction set.
+/// Values of a hook's freedoms, and the directions along which they change, in the Numbers of
+/// solver/simd/numbers.h, as solver/joint_rows/joint_rows.h has them. Included anew for each instruction
+/// set.
 
 #if defined(HOOKE_SOLVER_JOINT_ROWS_JOINT_FREEDOMS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HOOKE_SOLVER_JOINT_ROWS_JOINT_FREEDOMS_H
@@ -19,13 +20,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-// The freedoms of a hook, and two more of balls.
+// The freedoms of a hook have numbers from 0 to 5; balls have a cone and a twist besides.
 constexpr int kTwistFreedom = 3;
 constexpr int kConeFreedom = 6;
 constexpr int kBallTwist = 7;
 constexpr int kFreedomCount = 8;
 
-/// An end of a joint, as JointBody.
+/// An end of a joint, as JointBody has it.
 template <class Number>
 struct JointEnd {
   Triple<Number> center, ahead;
@@ -33,7 +34,7 @@ struct JointEnd {
   Scale<Number> scale;
 };
 
-/// Where a hook holds its ends, as HookPlace.
+/// The places and axes by which a hook holds its ends, as HookPlace has them.
 template <class Number>
 struct HookFrame {
   Triple<Number> anchor_a, anchor_b;
@@ -44,7 +45,7 @@ struct HookFrame {
 template <class Number>
 struct Freedoms {
   bool is_ball;
-  Triple<Number> r_a, r_b;  ///< From the centers of mass to b's anchor.
+  Triple<Number> r_a, r_b;  ///< Offsets from the centers of mass to b's anchor.
   Triple<Number> axis[kFreedomCount];
   Number value[kFreedomCount];
 };
@@ -54,7 +55,7 @@ HWY_INLINE Number size_of_number(const Number& x) {
   return larger(x, Number(0.0) - x);
 }
 
-/// Nearest to an angle; adding 1.5 * 2^52, or 2^23 to a float, leaves a whole number.
+/// The whole turns nearest to an angle. Adding 1.5 * 2^52, or 2^23 to a float, leaves a whole number.
 template <class Number>
 HWY_INLINE Number whole_turns_of(const Number& angle) {
   constexpr double kTurn = 0x1.921fb54442d18p+2;
@@ -62,7 +63,7 @@ HWY_INLINE Number whole_turns_of(const Number& angle) {
   return Number(kTurn) * ((Number(1 / kTurn) * angle + magic) - magic);
 }
 
-/// p := p x + c, coefficient after coefficient.
+/// Computes p := p x + c, coefficient after coefficient.
 template <class Number, int kSize>
 HWY_INLINE Number polynomial(const Number& x, const double (&coefficients)[kSize]) {
   Number p(coefficients[0]);
@@ -70,8 +71,8 @@ HWY_INLINE Number polynomial(const Number& x, const double (&coefficients)[kSize
   return p;
 }
 
-/// The angle from the x axis to (x, y) within 4e-16 rad; (0, 0) gives 0. A rational function of Cephes
-/// (Moshier 1989) on [-0.21, 0.66], to which quotients of up to 1 are brought by a turn of 45 degrees.
+/// The angle from the x axis to (x, y) within 4e-16 rad; (0, 0) gives 0. It is a rational function of Cephes
+/// (Moshier 1989) on [-0.21, 0.66], to which quotients of up to 1 are brought by a rotation of 45 degrees.
 template <class Number>
 HWY_INLINE Number angle_of(const Number& y, const Number& x) {
   constexpr double kAbove[5] = {-8.750608600031904122785e-1, -1.615753718733365076637e1,
@@ -123,7 +124,7 @@ HWY_INLINE Triple<Number> rotated(const Quad<Number>& q, const Triple<Number>& v
   return sum(v, sum(scaled(q.w, t), cross(u, t)));
 }
 
-/// The turn by |phi| about phi, up to some turns: an eighth of it by the series, three times doubled.
+/// The rotation by |phi| about phi, up to some turns: an eighth of it by the series, three times doubled.
 template <class Number>
 HWY_INLINE Quad<Number> quaternion_of(const Triple<Number>& phi) {
   constexpr double kSine[4] = {-1.0 / 5040, 1.0 / 120, -1.0 / 6, 1};
@@ -136,7 +137,7 @@ HWY_INLINE Quad<Number> quaternion_of(const Triple<Number>& phi) {
   return normalized(q);
 }
 
-/// Along v; zero for none.
+/// The direction of v; zero for none.
 template <class Number>
 HWY_INLINE Triple<Number> unit_of(const Triple<Number>& v, const Number& length) {
   const Number zero(0.0);
@@ -154,8 +155,8 @@ HWY_INLINE Axes<Number> axes_of(const Quad<Number>& q) {
   return {rotated(q, {one, zero, zero}), rotated(q, {zero, one, zero}), rotated(q, {zero, zero, one})};
 }
 
-/// The rotation from a's axes to b's as angles about a's x, then y, then b's z. They go on beyond whole
-/// turns: of those that look alike, the ones next to the last.
+/// Takes the rotation from a's axes to b's apart as angles about a's x, then y, then b's z. They go on
+/// beyond whole turns: of equivalent angles, those next to the last values are taken.
 template <class Number>
 HWY_INLINE void take_apart(const Axes<Number>& a, const Axes<Number>& b, const Triple<Number>& before,
                            Freedoms<Number>& f) {
@@ -182,7 +183,7 @@ HWY_INLINE void take_apart(const Axes<Number>& a, const Axes<Number>& b, const T
   f.value[5] = f.value[5] + whole_turns_of(before.z - f.value[5]);
 }
 
-/// Rotation vector, cone and twist of a ball.
+/// Finds the rotation vector, cone and twist of a ball.
 template <class Number>
 HWY_INLINE void take_apart_ball(const Axes<Number>& a, const Quad<Number>& q_a, const Quad<Number>& q_b,
                                 Freedoms<Number>& f) {
@@ -211,7 +212,7 @@ HWY_INLINE void take_apart_ball(const Axes<Number>& a, const Quad<Number>& q_a, 
   f.axis[kBallTwist] = scaled(quotient(two, larger(dot(both, both), Number(kLeastCosine))), both);
 }
 
-/// Angles only if something depends on them; `before` are those of the last time.
+/// Finds angles only if something depends on them; `before` are those of the last time.
 template <class Number>
 HWY_INLINE Freedoms<Number> find_freedoms(HookKind kind, bool turns, const HookFrame<Number>& hook,
                                           const JointEnd<Number>& a, const JointEnd<Number>& b,

@@ -21,19 +21,19 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// Of a lock's levers, and of its angles: errors about as large as directions kept in Reals have. Locks that
-/// say the same twice, as those of a row of hinges between two walls do, would strain to remove them. Points
+/// Errors of a lock, over its levers or as angles, about as large as those of directions kept in Reals.
+/// Redundant locks, such as those of a row of hinges between two walls, would strain to remove them. Points
 /// do not turn.
 constexpr double kRounding = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
-// The freedoms of a hook, and two more of balls.
+// The freedoms of a hook have numbers from 0 to 5. Balls have a cone besides; their twist has number 3.
 constexpr int kTwist = 3;
 constexpr int kCone = 6;
 constexpr int kFreedoms = 7;
 
 /// Directions and values of a hook's freedoms.
 struct Freedoms {
-  DVec3 r_a, r_b;  ///< From the centers of mass to b's anchor.
+  DVec3 r_a, r_b;  ///< Offsets from the centers of mass to b's anchor.
   std::array<DVec3, kFreedoms> axis;
   std::array<double, kFreedoms> value = {};
 };
@@ -62,7 +62,7 @@ void for_each_row(const Hook& hook, Visit&& visit) {
   if (std::isfinite(hook.cone)) visit(kCone, RowRole::kLimit);
 }
 
-/// The rotation from a's axes to b's as angles about a's x, then y, then b's z.
+/// Takes the rotation from a's axes to b's apart as angles about a's x, then y, then b's z.
 void take_apart(const DMat3& a, const DMat3& b, Freedoms& f) {
   const DMat3 r = transpose(a) * b;
   const double alpha = math::atan2(-r.z.y, r.z.z);
@@ -79,7 +79,7 @@ void take_apart(const DMat3& a, const DMat3& b, Freedoms& f) {
   f.axis[5] = scale * cross(a.x, y);
 }
 
-/// Rotation vector, cone and twist of a ball.
+/// Finds the rotation vector of a ball.
 void take_apart_ball(const DMat3& axes_a, DQuat a, DQuat b, Freedoms& f) {
   DQuat q = conjugate(a) * b;
   if (q.w < 0) q = {-q.x, -q.y, -q.z, -q.w};
@@ -98,7 +98,7 @@ DVec3 x_axis(DQuat q) {
   return rotate(q, DVec3{1, 0, 0});
 }
 
-/// The twist of a ball in place of the first component of its rotation vector.
+/// Puts the twist of a ball in place of the first component of its rotation vector.
 void take_twist(DQuat a, DQuat b, Freedoms& f) {
   const DQuat q = conjugate(a) * b;
   const DVec3 sum = x_axis(a) + x_axis(b);
@@ -113,7 +113,7 @@ void take_cone(DQuat a, DQuat b, Freedoms& f) {
   f.axis[kCone] = normalize(across);
 }
 
-/// Angles go on beyond whole turns: of those that look alike, the one next to the last.
+/// Angles go on beyond whole turns: of equivalent angles, the one next to the last value is taken.
 void count_turns(const Hook& hook, Freedoms& f) {
   for (int i = 3; i < 6; ++i) f.value[i] += math::whole_turns(hook.value[i] - f.value[i]);
 }
@@ -158,7 +158,7 @@ void make_spring(const HookSpring& spring, double h, JointRow& row) {
   row.target = -row.rate * row.c;
 }
 
-/// An error of which those much smaller than `rounding` count little.
+/// Weakens an error that is much smaller than `rounding`.
 double without_rounding(double c, double rounding) {
   return c == 0 ? 0 : c * std::abs(c) / (std::abs(c) + rounding);
 }

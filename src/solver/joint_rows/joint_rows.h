@@ -12,7 +12,8 @@
 #include <span>
 
 /// \file
-/// From a hook between bodies to rows: what its freedoms are worth now, and along what they change.
+/// From a hook between bodies to rows: the present values of its freedoms, and the directions along which
+/// they change.
 
 namespace hooke::solver {
 
@@ -23,17 +24,17 @@ enum class RowRole : std::uint8_t {
   kLimit,
 };
 
-/// One row: find an impulse lambda in [low, high] such that
+/// One row asks for an impulse lambda in [low, high] such that
 ///
 ///   n.(v_b - v_a) + j_b.omega~_b - j_a.omega~_a + gamma lambda = target,
 ///
 /// or lambda is at a bound and the left side is beyond the target on that side.
 struct JointRow {
-  DVec3 n = {};     ///< Zero for angles.
-  DVec3 axis = {};  ///< Of an angle; zero for ways.
+  DVec3 n = {};     ///< Direction; zero for angles.
+  DVec3 axis = {};  ///< Axis of an angle; zero for displacements.
   DVec3 j_a = {};   ///< S_a (r_a x n), or S_a axis.
   DVec3 j_b = {};
-  double c = 0;      ///< Value minus target [m or rad]; of a limit, the gap to the nearer bound.
+  double c = 0;      ///< Value minus target [m or rad]; for a limit, the gap to the nearer bound.
   double start = 0;  ///< c at the start of the substep.
   double rate = 0;   ///< b: share of c that the target takes back, per time [1/s].
   double target = 0;
@@ -43,72 +44,72 @@ struct JointRow {
   RowRole role = RowRole::kLock;
 };
 
-/// What a row is for.
+/// The purpose of a row.
 struct RowKind {
   int freedom = 0;  ///< 0 to 5 as in state::Hook; 6 is the cone of a ball.
   RowRole role = RowRole::kLock;
   [[nodiscard]] bool turns() const { return freedom >= 3; }
 };
 
-/// How many rows a hook has. It depends on its settings only, not on how its ends stand.
+/// How many rows a hook has. It depends on its settings only, not on the state of its ends.
 [[nodiscard]] int count_joint_rows(const state::Hook& hook);
 
-/// Whether its rows need the angles of its freedoms.
+/// Whether the rows of a hook need the angles of its freedoms.
 [[nodiscard]] bool rows_turn(const state::Hook& hook);
 
-/// The kinds of these rows, ways before angles; returns how many they are.
+/// Lists the kinds of these rows, displacements before angles; returns how many they are.
 int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMaxRows> kinds);
 
-/// The rows of a hook for a substep of length h [s], as many as count_joint_rows says; notes the values of
-/// its freedoms in the hook.
+/// Makes the rows of a hook for a substep of length h [s], as many as count_joint_rows says; stores the
+/// values of its freedoms in the hook.
 ///
-/// Impulses of ways act on both ends at b's anchor, so that the hook's total moment is zero to rounding even
-/// while the anchors are apart. Errors are removed within the substep (b = 1/h), at 10 m/s or 10 rad/s more
-/// than the ends move already, at most. Limits stop within the substep what would cross them; what is beyond
-/// one comes back by a fifth in each substep, at 2 m/s or 2 rad/s at most, as the speed stays with the
-/// bodies. Springs as in solver/soft/spring_solve.h. Angles are those of the rotation taken apart about a's
-/// x, then y, then b's z; their rates are the dual basis of these axes, which ends where the second angle
-/// comes to 87 degrees. A ball's spring and friction act on the rotation vector, its cone on the angle
-/// between the x axes, its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b). Rows of a hook that
-/// gives way have its compliance in series (solver/joint/hook_breaks.h).
+/// Impulses along displacements act on both ends at b's anchor, so that the hook's total moment is zero to
+/// rounding even while the anchors are apart. Errors are removed within the substep (b = 1/h), at most 10
+/// m/s or 10 rad/s faster than the ends move already. Limits stop within the substep what would cross them.
+/// What is beyond a limit comes back by a fifth in each substep, at 2 m/s or 2 rad/s at most, because the
+/// bodies keep that speed. Springs act as in solver/soft/spring_solve.h. Angles are those of the rotation
+/// taken apart about a's x, then y, then b's z. Their rates are the dual basis of these axes, which ends
+/// where the second angle comes to 87 degrees. A ball's spring and friction act on the rotation vector, its
+/// cone on the angle between the x axes, and its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b).
+/// Rows of a hook that gives way have its compliance in series (solver/joint/hook_breaks.h).
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
-inline constexpr double kNoHold = 1e15;       ///< Compliance of a hook that takes nothing [1/kg, 1/(kg m^2)].
-inline constexpr double kNoSpeed = 1e-9;      ///< [m/s] or [rad/s], as rounding leaves it.
-inline constexpr double kPushSpeed = 10;      ///< [m/s] or [rad/s]
-inline constexpr double kLimitShare = 0.2;    ///< Of what is beyond a limit, taken back in a substep.
-inline constexpr double kLimitSpeed = 2;      ///< [m/s] or [rad/s]
-inline constexpr double kLeastCosine = 0.05;  ///< Of the second angle, below which rates stay as they are.
-inline constexpr double kLeastLever = 0.01;   ///< That a gap is small against [m].
-inline constexpr double kFastTurn = 0.03;     ///< In a substep, from which on rows are not straight [rad].
+inline constexpr double kNoHold = 1e15;       ///< Compliance of a hook without hold [1/kg, 1/(kg m^2)].
+inline constexpr double kNoSpeed = 1e-9;      ///< Speed that rounding leaves [m/s] or [rad/s].
+inline constexpr double kPushSpeed = 10;      ///< Largest correction of an error [m/s] or [rad/s].
+inline constexpr double kLimitShare = 0.2;    ///< Share of what is beyond a limit that a substep takes back.
+inline constexpr double kLimitSpeed = 2;      ///< Largest speed of that [m/s] or [rad/s].
+inline constexpr double kLeastCosine = 0.05;  ///< Cosine of the second angle below which rates stay as is.
+inline constexpr double kLeastLever = 0.01;   ///< Least lever against which a gap is small [m].
+inline constexpr double kFastTurn = 0.03;     ///< Turn in a substep beyond which rows are not straight [rad].
 inline constexpr double kLargeError = 2e-4;   ///< Gap of a joint over its levers, or its angle [rad].
 
 /// -1 below the bounds, 1 above them.
 [[nodiscard]] std::int8_t side_of(double value, double low, double high);
 
 /// How often free rows are solved anew while rows go to their bounds and are let go again, and how often in
-/// all: after that they only go.
+/// all. After the former number rows only go to their bounds.
 inline constexpr int kFreeBoundPasses = 4;
 inline constexpr int kMostBoundPasses = 16;
 
 /// How often an articulation is solved with bounds in a substep, with rows or a stiffness made anew.
 inline constexpr int kMaxSolves = 4;
 
-/// Whether a row stays at its bound (-1 or 1) that `lacks` so much speed there [m/s].
+/// Whether a row stays at its bound (-1 or 1) if its speed there `lacks` so much [m/s].
 [[nodiscard]] bool stays_at(std::int8_t bound, double lacks);
 
-/// The bound at which a row begins a substep: the one where it ended the last, with the impulse `last`.
+/// The bound at which a row begins a substep: the one at which it ended the last, with the impulse `last`.
 [[nodiscard]] std::int8_t first_bound(const JointRow& row, double last);
 
-/// How far b's anchor is from the nearest place that locks and limits leave to it [m].
+/// Distance of b's anchor from the nearest place that locks and limits leave to it [m].
 [[nodiscard]] double joint_gap(const state::Hook& hook, const JointBody& a, const JointBody& b);
 
-/// Adds the impulses of a substep of length h [s] to those of the step. A hook that gave way in it is broken:
-/// it takes nothing from then on.
+/// Adds the impulses of a substep of length h [s] to those of the step. A hook that gave way in the substep
+/// is broken: it takes nothing from then on.
 void add_up_impulses(Real h, state::Hook& hook);
 
-/// Notes the impulses of a substep in the hook.
+/// Stores the impulses of a substep in the hook.
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, state::Hook& hook);
 
 }  // namespace hooke::solver

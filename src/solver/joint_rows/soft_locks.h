@@ -4,14 +4,14 @@
 
 namespace hooke::solver {
 
-/// How nets of hooks take errors back; see solver/joint/iterative_joints.h.
+/// How iterative joints take errors back; see solver/joint/iterative_joints.h.
 struct LockSoftness {
   double rate = 0;           ///< b [1/s]
   double mass_scale = 1;     ///< mu
   double impulse_scale = 0;  ///< gamma
 };
 
-/// For substeps of length h [s].
+/// The softness for substeps of length h [s].
 inline LockSoftness lock_softness(double h) {
   constexpr double kHertz = 60;
   constexpr double kDampingRatio = 5;
