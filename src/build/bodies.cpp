@@ -21,14 +21,14 @@ using geometry::MassProperties;
 using state::ColliderShape;
 using state::Tables;
 
-// Of solids that are taken apart to move.
-constexpr Real kConcavity = Real(0.001);  ///< Depth that parts may dip below their hulls, of the diagonal.
+// Limits for solids that are taken apart to move.
+constexpr Real kConcavity = Real(0.001);  ///< Depth that parts may dip below their hulls, over the diagonal.
 constexpr int kMostParts = 64;
 
 struct Part {
   PartDesc desc;
   ColliderShape shape;
-  MassProperties solid;  // of density 1, in the body's frame
+  MassProperties solid;  // Density 1, in the body's frame.
 };
 
 void check_surface(const ContactDesc& contact, const std::string& prefix, Checks& checks) {
@@ -89,7 +89,7 @@ MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
   return geometry::moved(solid, part.rotation, vector_cast<double>(part.position));
 }
 
-/// The convex parts of a mesh, made where the tables have none.
+/// Makes the convex parts of a mesh where the tables have none.
 Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t) {
   const std::uint32_t row = t.mesh_slots.find(mesh);
   if (!t.convex_parts[row].empty()) return {};
@@ -112,8 +112,8 @@ Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t)
   return {};
 }
 
-/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole; of its parts
-/// where its surface crosses itself so that it bounds no matter.
+/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole. Where its
+/// surface crosses itself, so that it bounds no matter, it has the mass of its parts.
 Result<void> add_convex_parts(Part whole, const std::string& where, Tables& t, std::vector<Part>& parts) {
   const MeshId id = whole.desc.shape.mesh;
   if (const Result<void> made = make_convex_parts(id, where, t); !made) return made.error();
@@ -159,7 +159,7 @@ Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
   return parts;
 }
 
-/// Mass, center and principal inertia of all parts; only the center for a body that nothing moves.
+/// Mass, center and principal inertia of all parts; for a body that nothing moves only the center.
 state::BodyMass mass_of_parts(const BodyDesc& desc, const std::vector<Part>& parts) {
   if (desc.kind != BodyKind::kDynamic) return {};
   MassProperties whole;
@@ -225,7 +225,7 @@ void make_room(Table& table, std::size_t more) {
   Table::for_each_column(table, [&](auto& column) { base::make_room(column, more); });
 }
 
-/// For a body and its colliders; what is added then cannot fail for want of memory.
+/// Makes room for a body and its colliders, so that adding them cannot fail for want of memory.
 void make_room_for_body(Tables& t, std::size_t colliders) {
   make_room(t.bodies, 1);
   make_room(t.colliders, colliders);

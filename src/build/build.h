@@ -10,7 +10,7 @@
 #include <vector>
 
 /// \file
-/// From descriptions to rows. Each function checks the whole description first and appends only then: on an
+/// From descriptions to rows. Each function checks the whole description before it appends anything: on an
 /// Error the tables are unchanged. The new object is the last of `tables.objects`; its slot is not set.
 
 namespace hooke::build {
@@ -20,24 +20,24 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables);
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables);
 Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
 
-/// The row of the new body; its slot is not set.
+/// Returns the row of the new body; its slot is not set.
 Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
-/// What colliders keep of a shape; the hull of a mesh is made where the tables have none. `where` begins the
-/// place of an Error, like "body.".
+/// Makes the part of a shape that colliders keep, with the hull of a mesh where the tables have none.
+/// `where` begins the place of an Error, like "body.".
 [[nodiscard]] Result<state::ColliderShape> make_shape(const Shape& shape, const std::string& where,
                                                       const state::Tables& tables);
-/// Leaves holes in the tables of bodies and colliders, and forgets the pairs of their colliders. `goes` says
-/// which bodies go, by row.
+/// Removes bodies, which leaves holes in the tables of bodies and colliders, and drops the pairs of their
+/// colliders. `goes` says by row which bodies go.
 void remove_bodies(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 
 /// The new hook is the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
 
-/// The number of new hooks; they are the last of `tables.hooks`, their slots are not set.
+/// Returns the number of new hooks. They are the last of `tables.hooks`, and their slots are not set.
 Result<std::uint32_t> sew(const SeamDesc& desc, state::Tables& tables);
 
-/// The one freedom of a kDistance hook whose anchors were `distance` apart [m]: its target becomes a length,
-/// and where nothing is said it is a rod.
+/// The one freedom of a kDistance hook whose anchors were `distance` apart [m]. Its target becomes a length,
+/// and without other settings it is a rod.
 [[nodiscard]] HookFreedom line_freedom(HookFreedom line, Real distance);
 /// Whether bounds leave one value only.
 [[nodiscard]] bool is_closed(const HookLimits& limits);

@@ -13,7 +13,7 @@
 
 namespace hooke::build {
 
-/// Collects the first thing wrong with a description. Every check names the field; later checks do nothing.
+/// Collects the first error of a description. Every check names the field; later checks do nothing.
 class Checks {
  public:
   explicit Checks(std::string object) : object_(std::move(object)) {}
@@ -28,12 +28,12 @@ class Checks {
   Checks& not_negative(const std::string& field, double value) {
     return require(value >= 0 && std::isfinite(value), field, value, "must be zero or positive and finite");
   }
-  /// A stiffness: positive, or kRigid.
+  /// A stiffness must be positive, or kRigid.
   Checks& stiffness(const std::string& field, double value) {
     return require(value > 0 && (value <= as_real(limits::kStiffness) || std::isinf(value)), field, value,
                    value > 0 ? "must be at most 1e30, or rigid" : "must be positive, or rigid");
   }
-  /// The same, or zero.
+  /// A stiffness may also be zero.
   Checks& stiffness_or_none(const std::string& field, double value) {
     return value == 0 ? *this : stiffness(field, value);
   }
@@ -45,7 +45,7 @@ class Checks {
   Checks& finite(const std::string& field, Vector3<T> value) {
     return require(is_finite(value), field, "must be finite");
   }
-  /// Each component from -most to most.
+  /// Each component must be from -most to most.
   Checks& within(const std::string& field, DVec3 value, double most, const char* unit = "");
   Checks& within(const std::string& field, Vector3<float> value, double most, const char* unit = "") {
     return within(field, vector_cast<double>(value), most, unit);
@@ -63,7 +63,7 @@ class Checks {
   Checks& mass(const std::string& field, double value) {
     return in_range(field, value, limits::kLeastMass, limits::kMass);
   }
-  /// Zero or more.
+  /// A value must be from zero to `most`.
   Checks& up_to(const std::string& field, double value, double most) {
     return in_range(field, value, 0, most);
   }
@@ -72,7 +72,7 @@ class Checks {
   [[nodiscard]] Result<void> result() const { return error_ ? Result<void>(*error_) : Result<void>(); }
 
  private:
-  /// The number of type Real that is nearest to a bound, above it or not, meets it too.
+  /// A bound is also fulfilled by the nearest number of type Real, above it or not.
   static double as_real(double bound) {
     return std::max(bound, static_cast<double>(static_cast<Real>(bound)));
   }
@@ -84,11 +84,11 @@ class Checks {
   std::optional<Error> error_;
 };
 
-/// Whether it can be normalized.
+/// Whether a quaternion can be normalized.
 [[nodiscard]] inline bool is_rotation(Quat q) {
   const auto square = [](Real part) { return static_cast<double>(part) * static_cast<double>(part); };
   const double squared = square(q.x) + square(q.y) + square(q.z) + square(q.w);
-  // Of the squares that are taken in float.
+  // Bounds of the squares, which are taken in float.
   return squared >= 1e-30 && squared <= 1e30;
 }
 

@@ -1,4 +1,4 @@
-/// Cloth from a grid or a mesh: points with mass by area, springs of three classes, bends, triangles,
+/// Makes cloth from a grid or a mesh: points with mass by area, springs of three classes, bends, triangles,
 /// tethers.
 
 #include "build/build.h"
@@ -112,13 +112,13 @@ double area_of(const Surface& s, const Triangle& t) {
   return 0.5 * length(cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]));
 }
 
-/// Share of the whole area that belongs to each point, and the whole [m^2].
+/// Share of the whole area that belongs to each point; `total` is the whole [m^2].
 std::vector<double> area_shares(const Surface& s, double& total) {
   std::vector<double> share(s.points.size(), 0.0);
   for (const Triangle& t : s.triangles) {
     for (const std::uint32_t p : t) share[p] += area_of(s, t) / 3.0;
   }
-  if (s.is_grid) {  // by cells, so that corners have exactly 1/4 and rims 1/2 of an inner point's share
+  if (s.is_grid) {  // Sums by cells, so that corners have exactly 1/4 and rims 1/2 of an inner point's share.
     const auto rim = [](int i, int count) { return i == 0 || i + 1 == count ? 0.5 : 1.0; };
     for (int row = 0; row < s.rows; ++row) {
       for (int column = 0; column < s.columns; ++column) {
@@ -147,8 +147,8 @@ SpringRow spring(const Surface& s, std::uint32_t a, std::uint32_t b, SpringClass
           .kind = kind};
 }
 
-/// Along rows and columns, across cells, to second neighbors: n(m-1)+m(n-1), 2(n-1)(m-1), n(m-2)+m(n-2)
-/// springs.
+/// Springs along rows and columns, across cells, and to second neighbors: n(m-1)+m(n-1), 2(n-1)(m-1) and
+/// n(m-2)+m(n-2) springs.
 std::vector<SpringRow> grid_springs(const Surface& s, const ClothDesc& desc) {
   std::vector<SpringRow> rows;
   const auto add = [&](int column, int row, int right, int down, SpringClass kind) {
@@ -178,9 +178,9 @@ bool is_longest(const Surface& s, const Triangle& t, double edge) {
   return true;
 }
 
-/// One spring per edge whatever the number of its triangles. Across an inner edge that is the longest of both
-/// its triangles the two form a cell, and the spring between their far corners resists shear; across others
-/// it bends.
+/// Makes one spring for each edge, whatever the number of its triangles. Where an inner edge is the longest
+/// of both its triangles, the two form a cell, and the spring between their far corners resists shear.
+/// Across other inner edges that spring resists bending.
 std::vector<SpringRow> mesh_springs(const Surface& s, const ClothDesc& desc) {
   std::vector<SpringRow> rows;
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
@@ -215,7 +215,7 @@ void append_springs(const Surface& s, const ClothDesc& desc, double mass, state:
   }
 }
 
-/// Isometric bends know no form at rest but flat.
+/// Isometric bends need a form at rest that is flat.
 Result<void> check_flat(const Surface& s) {
   constexpr double kFlat = 0.01;  // [rad]
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
@@ -233,10 +233,10 @@ Result<void> check_flat(const Surface& s) {
   return {};
 }
 
-/// Stiffness |e|^2 B / (A_1 + A_2) of E = k C^2 / 2 for a flexural rigidity B: hinges of length |e| across
-/// strips of the width (A_1 + A_2) / |e| bend a sheet of squares about its lines, and one of equilateral
-/// triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does.
-/// An isometric bend, |q| = |e| theta, has the same energy by a stiffness B / (A_1 + A_2).
+/// Appends bends of the stiffness |e|^2 B / (A_1 + A_2) of E = k C^2 / 2 for a flexural rigidity B. Folds of
+/// length |e| across strips of the width (A_1 + A_2) / |e| then bend a sheet of squares about its lines, and
+/// one of equilateral triangles about any line (Seung and Nelson 1988), as a plate of that rigidity does. An
+/// isometric bend, |q| = |e| theta, has the same energy with a stiffness B / (A_1 + A_2).
 void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables) {
   const bool isometric = desc.bend == ClothDesc::Bend::kIsometric;
   if (!isometric && desc.bend != ClothDesc::Bend::kAngle) return;
@@ -307,7 +307,8 @@ void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   }
 }
 
-/// What pressure times volume the gas keeps, and the volume; an error for a surface that holds none.
+/// Finds the product of pressure and volume that the gas keeps, and the volume; an error for a surface that
+/// encloses none.
 Result<void> fill_with_gas(const Surface& s, double pressure, state::Deformable& object) {
   double volume = 0;
   for (const Triangle& t : s.triangles) {

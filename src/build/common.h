@@ -19,9 +19,9 @@ struct Points {
   std::vector<Real> viscous_drag;
   std::vector<Real> drag_area;
   std::vector<Real> radius;
-  std::vector<std::uint32_t> row_of;  ///< Where each point's row goes.
+  std::vector<std::uint32_t> row_of;  ///< Row of each point.
 
-  /// `count` points with everything zero and rows in the same order.
+  /// Makes `count` points with all values zero and rows in the same order.
   explicit Points(std::size_t count);
 };
 
@@ -29,12 +29,12 @@ struct Points {
 void check_points(Checks& checks, const std::vector<PinDesc>& pins, const std::vector<LoadDesc>& loads,
                   std::size_t count);
 
-/// Total mass per point with its loads.
+/// Adds loads to the mass of each point.
 void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass);
 
-/// Appends a deformable with these points; its other rows begin at the ends of their tables and are still
-/// empty. Origin: the middle of the points' bounding box, rounded to whole meters, so that offsets are small
-/// and exact to shift.
+/// Appends a deformable with these points. Its other rows begin at the ends of their tables and are still
+/// empty. Its origin is the middle of the points' bounding box, rounded to whole meters, so that offsets are
+/// small and exact to shift.
 state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
                                  state::Tables& tables);
 

@@ -14,12 +14,12 @@ using state::NamedPlace;
 using state::NamedPlaces;
 using state::Tables;
 
-/// A side, an edge or a corner of a box or grid: which end along each axis, 0 for the middle.
+/// A side, an edge or a corner of a box or grid: by its end along each axis, with 0 for the middle.
 struct Side {
   std::array<int, 3> end = {};
 };
 
-/// From the words for both ends of the axes, the one that is up and down first: "top_left_front".
+/// Joins the words for the ends of the axes, the vertical axis first: "top_left_front".
 std::string name_of(const Side& side) {
   struct Word {
     int axis;
@@ -36,7 +36,7 @@ std::string name_of(const Side& side) {
   return name.empty() ? "center" : name;
 }
 
-/// Sides along the axes, in the order left, right, bottom, top, back, front; of the first `axes` axes.
+/// Sides along the first `axes` axes, in the order left, right, bottom, top, back, front.
 std::vector<Side> faces(int axes) {
   std::vector<Side> result;
   for (int axis = 0; axis < axes; ++axis) {
@@ -45,7 +45,7 @@ std::vector<Side> faces(int axes) {
   return result;
 }
 
-/// Where sides of all of the first `axes` axes meet.
+/// Corners, where sides of all of the first `axes` axes meet.
 std::vector<Side> corners(int axes) {
   std::vector<Side> result;
   for (int corner = 0; corner < 1 << axes; ++corner) {
@@ -56,7 +56,7 @@ std::vector<Side> corners(int axes) {
   return result;
 }
 
-/// What lies at a side of a lattice of so many points along its axes, the first fastest: a point, or the
+/// The place at a side of a lattice with so many points along its axes, the first fastest: a point, or the
 /// middle between two or four.
 NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) {
   NamedPlace place = {.name = name_of(side)};
@@ -68,7 +68,7 @@ NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) 
     if (twice % 2 != 0) along[axis].push_back(twice / 2 + 1);
   }
   const std::size_t count = along[0].size() * along[1].size() * along[2].size();
-  HOOKE_ASSERT(count <= place.points.size());  // the center of an odd box is a point of its own
+  HOOKE_ASSERT(count <= place.points.size());  // The center of an odd box is a point of its own.
   std::size_t used = 0;
   for (const std::uint32_t z : along[2]) {
     for (const std::uint32_t y : along[1]) {
@@ -81,7 +81,7 @@ NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) 
   return place;
 }
 
-/// Half the size of the shapes whose sides have names; zero for others.
+/// Half the size of a shape whose sides have names; zero for others.
 Vec3 half_size(const Shape& shape) {
   switch (shape.kind) {
     case ShapeKind::kBox:
@@ -107,7 +107,7 @@ std::vector<Side> sides_of(ShapeKind kind) {
   return sides;
 }
 
-/// Appends those whose names are still free.
+/// Appends the places whose names are still free.
 void append_missing(const NamedPlaces& more, NamedPlaces& places) {
   for (const NamedPlace& place : more) {
     const auto same = [&](const NamedPlace& one) { return one.name == place.name; };
@@ -115,7 +115,7 @@ void append_missing(const NamedPlaces& more, NamedPlaces& places) {
   }
 }
 
-/// A place between rows of an object, by the maker's numbers of its points.
+/// Turns a place between rows of an object into one with the maker's numbers of its points.
 NamedPlace from_rows(const state::HookPlace& rows, const state::Deformable& object, const Tables& t) {
   NamedPlace place;
   for (std::uint32_t i = 0; i < rows.particle_count; ++i) {
@@ -183,7 +183,7 @@ NamedPlaces connection_points_of_grid(std::uint32_t columns, std::uint32_t rows)
   NamedPlaces places;
   const auto add = [&](Side side) {
     NamedPlace place = lattice_point({columns, rows, 1}, side);
-    side.end[1] = -side.end[1];  // rows count downward
+    side.end[1] = -side.end[1];  // Rows of points count downward.
     place.name = name_of(side);
     places.push_back(place);
   };

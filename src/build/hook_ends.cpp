@@ -19,7 +19,7 @@ using state::Tables;
 /// The nearest place found so far, between particles of one object.
 struct Nearest {
   const Tables& t;
-  DVec3 wanted = {};  ///< From the object's origin [m].
+  DVec3 wanted = {};  ///< Offset from the object's origin [m].
   HookPlace place = {};
   double distance_squared = HUGE_VAL;
 
@@ -74,7 +74,7 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
     const state::Triangles::Corners& c = t.triangles.corners[object.triangles.first + i];
     nearest.try_triangle(c.a, c.b, c.c);
   }
-  if (object.rest_shape && object.skin) {  // vertices of the skin are points
+  if (object.rest_shape && object.skin) {  // Vertices of the skin are points of the solid.
     const auto row = [&](std::uint32_t vertex) {
       return row_of(t, object, object.skin->vertices[vertex].points[0]);
     };
@@ -86,7 +86,7 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
   for (std::uint32_t i = 0; i < object.particles.count; ++i) nearest.try_particle(object.particles.first + i);
 }
 
-/// The rows of a named place.
+/// Finds the rows of a named place.
 HookPlace rows_of(const state::NamedPlace& named, const Deformable& object, const Tables& t) {
   HookPlace place;
   for (std::size_t i = 0; i < named.points.size(); ++i) {

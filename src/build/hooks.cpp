@@ -49,7 +49,7 @@ void check_freedom(const HookFreedom& freedom, const std::string& field, Checks&
   check_motor(freedom.motor, field + ".motor.", checks);
 }
 
-/// True if `second` says which way the second axis points.
+/// Whether `second` defines the direction of the second axis.
 bool is_across(Vec3 axis, Vec3 second) {
   const DVec3 a = normalize(vector_cast<double>(axis));
   const DVec3 b = normalize(vector_cast<double>(second));
@@ -63,7 +63,8 @@ DVec3 some_direction_across(DVec3 x) {
   return size.y <= size.z ? DVec3{0, 1, 0} : DVec3{0, 0, 1};
 }
 
-/// The hook's axes in the world: x along `axis`, y or z (wheels) along what `second_axis` has across it.
+/// The hook's axes in the world: x along `axis`, and y (for wheels z) along the part of `second_axis` across
+/// it.
 DMat3 axes_of(const HookDesc& desc) {
   const DVec3 x = normalize(vector_cast<double>(desc.axis));
   const DVec3 second = desc.second_axis ? vector_cast<double>(*desc.second_axis) : some_direction_across(x);
@@ -105,7 +106,7 @@ void place(const state::Bodies& bodies, DVec3 anchor, DQuat axes, HookPlace& end
 
 constexpr HookFreedom kLocked = {.locked = true};
 
-/// What a kind leaves free. `distance` is that of the two anchors [m].
+/// The freedoms that a kind leaves. `distance` is that of the two anchors [m].
 std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
   const HookFreedom moving = {.limits = desc.limits, .spring = desc.spring, .motor = desc.motor};
   switch (desc.kind) {
@@ -138,7 +139,7 @@ std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
   return desc.freedoms;
 }
 
-/// Bounds that leave one value only are a lock.
+/// Makes a lock of bounds that leave one value only.
 void lock_closed_limits(HookFreedom& freedom) {
   if (!is_closed(freedom.limits)) return;
   freedom = {.locked = true, .limits = freedom.limits, .spring = {.target = freedom.limits.lower}};
@@ -154,7 +155,7 @@ bool is_dynamic(const Tables& t, std::uint32_t body) {
   return body != HookPlace::kWorld && t.bodies.traits[body].kind == BodyKind::kDynamic;
 }
 
-/// Whether a hook of this kind can hold these two.
+/// Checks whether a hook of this kind can hold these two ends.
 Result<void> check_ends(HookKind kind, const HookPlace& a, const HookPlace& b, const Tables& t) {
   const auto wrong = [](const char* where, const char* what) {
     return Error{ErrorCode::kOutOfRange, where, what};
@@ -195,7 +196,7 @@ DVec3 wanted_anchor_b(const HookDesc& desc) {
   return desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
 }
 
-/// Points and named places are held where they are, and what they are hooked to at the same place.
+/// Points and named places are held where they are. The other end is held at the same place.
 Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
   Anchors anchors = {a.is_given ? a.position : desc.anchor, b.is_given ? b.position : wanted_anchor_b(desc)};
   if (desc.kind == HookKind::kDistance || desc.kind == HookKind::kRopeSlide) return anchors;
@@ -204,7 +205,7 @@ Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
   return anchors;
 }
 
-/// Where an end begins to look for the nearest place: at the other end, if that is named, or at the anchor.
+/// Where the search for an end's nearest place begins: at the other end, if that is named, or at the anchor.
 Result<DVec3> search_start(const HookEnd& other, DVec3 anchor, const char* where, const Tables& t) {
   if (other.connection_point.empty()) return anchor;
   const Result<FoundEnd> found = find_end(other, anchor, where, t);
@@ -212,14 +213,14 @@ Result<DVec3> search_start(const HookEnd& other, DVec3 anchor, const char* where
   return found.value().position;
 }
 
-/// Both points of the segment at which the hook begins; solver::slide_hooks gives them their weights.
+/// Takes both points of the segment at which the hook begins; solver::slide_hooks gives them their weights.
 void begin_slide(const Tables& t, Hook& hook) {
   const state::Deformable& rope = t.objects[hook.a.object];
   const std::uint32_t first = std::min(hook.a.particle[0], rope.particles.end() - 2);
   hook.a.particle = {first, first + 1};
   hook.a.weight = {Real(1), Real(0)};
   hook.a.particle_count = 2;
-  hook.a.axes = {};  // x along the rope: solver::turn_of_slide
+  hook.a.axes = {};  // x along the rope: solver::slide_rotation
 }
 
 }  // namespace

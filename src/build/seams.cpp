@@ -1,4 +1,4 @@
-/// Seams: two lines of points, and the stitches that hold them together.
+/// Makes seams: two edges of points, and the stitches that hold them together.
 
 #include "build/build.h"
 #include "build/checks.h"
@@ -29,24 +29,23 @@ struct NamedLine {
 struct Thread {
   std::uint32_t object = 0;
   std::vector<std::uint32_t> rows = {};
-  std::vector<DVec3> places = {};  ///< [m]
-  std::vector<double> share = {};  ///< 0 at the first point, 1 at the last.
-  double length = 0;               ///< [m]
+  std::vector<DVec3> places = {};  ///< Place of each point [m].
+  std::vector<double> share = {};  ///< Share of the length: 0 at the first point, 1 at the last.
+  double length = 0;               ///< Length of the edge [m].
 
   [[nodiscard]] std::size_t segments() const { return rows.size() - 1; }
   [[nodiscard]] bool is_closed() const { return rows.front() == rows.back(); }
 };
 
-/// Where the lines are held together: at a share of the length of a.
+/// A place at which the edges are held together, at a share of the length of a.
 struct Stitch {
   double share = 0;
   HookPlace a, b;
 };
 
-// -- Edges of cloths.
-// -----------------------------------------------------------------------------------------
+// -- Edges of cloths. --------------------------------------------------------------------------------------
 
-/// Borders of a cloth, closed, each from its lowest point as its triangles run.
+/// Closed borders of a cloth. Each runs from its lowest point in the direction of its triangles.
 std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
   std::vector<std::uint32_t> point_of(object.particles.count);
   for (std::uint32_t i = 0; i < object.particles.count; ++i)
@@ -83,7 +82,7 @@ std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
   return borders;
 }
 
-/// Points first, first + stride, ... of a grid.
+/// The points first, first + stride, ... of a grid.
 Line grid_line(std::uint32_t first, std::uint32_t stride, std::uint32_t count) {
   Line line(count);
   for (std::uint32_t i = 0; i < count; ++i) line[i] = first + i * stride;
@@ -108,8 +107,7 @@ std::vector<NamedLine> edges_of(const Deformable& object, const Tables& t) {
   return edges;
 }
 
-// -- Lines as they are now.
-// -----------------------------------------------------------------------------------------
+// -- Lines as they are now. --------------------------------------------------------------------------------
 
 Result<Line> find_line(const SeamEdge& edge, const Deformable& object, const char* where, const Tables& t) {
   if (edge.edge.empty() == edge.points.empty())
@@ -152,12 +150,11 @@ Result<Thread> find_thread(const SeamEdge& edge, const char* where, const Tables
   return thread;
 }
 
-// -- Which place of one meets which of the other.
-// --------------------------------------------------------------
+// -- Which place of one thread belongs to which of the other. -----------------------------------------------
 
-/// The place at a share of a thread's length: a point, or one on a segment.
+/// The place at a share of a thread's length: a point, or a place on a segment.
 HookPlace place_at(const Thread& thread, double share) {
-  constexpr double kAtPoint = 1e-4;  // of the segment: what rounding may put beside a point
+  constexpr double kAtPoint = 1e-4;  // Share of the segment: as much as rounding may put beside a point.
   const auto after = std::upper_bound(thread.share.begin() + 1, thread.share.end() - 1, share);
   const auto last = static_cast<std::size_t>(after - thread.share.begin());
   const double span = thread.share[last] - thread.share[last - 1];
@@ -182,7 +179,7 @@ DVec3 position_at(const Thread& thread, double share) {
   return thread.places[last - 1] + along * (thread.places[last] - thread.places[last - 1]);
 }
 
-/// The other way round.
+/// Runs a thread in the other direction.
 Thread reversed(Thread thread) {
   std::reverse(thread.rows.begin(), thread.rows.end());
   std::reverse(thread.places.begin(), thread.places.end());
@@ -191,7 +188,7 @@ Thread reversed(Thread thread) {
   return thread;
 }
 
-/// A closed thread, begun at another of its points.
+/// Begins a closed thread at another of its points.
 Thread begun_at(const Thread& thread, std::size_t first) {
   Thread backward = {.object = thread.object, .length = thread.length};
   const std::size_t count = thread.segments();
@@ -205,7 +202,7 @@ Thread begun_at(const Thread& thread, std::size_t first) {
   return backward;
 }
 
-/// How far the threads are apart [m^2]: at their ends, or at quarters of their lengths.
+/// Sum of the squared distances of two threads [m^2], at their ends or at quarters of their lengths.
 double distance_squared(const Thread& a, const Thread& b) {
   double sum = 0;
   for (const double share : a.is_closed() ? std::array{0.25, 0.75} : std::array{0.0, 1.0})
@@ -213,7 +210,7 @@ double distance_squared(const Thread& a, const Thread& b) {
   return sum;
 }
 
-/// b begun and directed as it lies beside a.
+/// Begins and directs b as it lies beside a.
 Thread aligned(const Thread& a, Thread b) {
   if (a.is_closed()) {
     const auto nearer = [&](const DVec3& p, const DVec3& q) {
@@ -233,8 +230,8 @@ bool holds(const HookPlace& place, std::uint32_t particle) {
   return false;
 }
 
-/// Each point of the finer thread at its place on the other one, and points of that one that would be held
-/// nowhere. Places that already share a point need no stitch.
+/// Stitches each point of the finer thread to its place on the other thread, and points of the other that
+/// would not be held otherwise. Places that already share a point need no stitch.
 std::vector<Stitch> find_stitches(const Thread& a, const Thread& b) {
   const bool a_is_finer = a.rows.size() >= b.rows.size();
   const Thread& fine = a_is_finer ? a : b;
@@ -258,7 +255,7 @@ std::vector<Stitch> find_stitches(const Thread& a, const Thread& b) {
   return stitches;
 }
 
-/// The share of the seam's length that a stitch holds: half the ways to its neighbors.
+/// The share of the seam's length that a stitch holds: half the distances to its neighbors.
 double share_of(const std::vector<Stitch>& stitches, std::size_t i, bool closed) {
   const std::size_t count = stitches.size();
   double before = i > 0 ? stitches[i - 1].share : 0.0;

@@ -1,4 +1,4 @@
-/// Solids from a box of cells, from a closed mesh, or from tetrahedra as given.
+/// Makes solids from a box of cells, from a closed mesh, or from given tetrahedra.
 
 #include "build/build.h"
 #include "build/common.h"
@@ -26,12 +26,12 @@ constexpr double kMostCells = 1 << 20;
 constexpr std::size_t kMostTetrahedra = std::size_t{1} << 24;
 /// Volume of a tetrahedron over the cube of its longest edge; 0.118 where all edges are equal.
 constexpr double kFlattest = 1e-5;
-constexpr double kSmallest = 1e-15;  ///< Volume of a tetrahedron: less is lost in float [m^3].
+constexpr double kSmallest = 1e-15;  ///< Smallest volume of a tetrahedron: less is lost in float [m^3].
 
 struct SolidBody {
-  TetrahedralMesh mesh;       ///< In the world. Without tetrahedra where only its points count.
-  double volume = 0;          ///< That the density is of [m^3].
-  std::vector<double> share;  ///< Of the mass, at each point.
+  TetrahedralMesh mesh;       ///< Mesh in the world; without tetrahedra where only its points count.
+  double volume = 0;          ///< Volume to which the density applies [m^3].
+  std::vector<double> share;  ///< Share of the mass at each point.
   std::shared_ptr<const state::Skin> skin;
 };
 
@@ -39,7 +39,7 @@ bool is_matched(const SolidDesc& desc) {
   return desc.elasticity == SolidDesc::Elasticity::kShapeMatching;
 }
 
-/// Neither a mesh nor tetrahedra as given.
+/// Whether a solid is given neither by a mesh nor by tetrahedra nor by points.
 bool is_box(const SolidDesc& desc) {
   return !desc.mesh && desc.tetrahedra.empty() && desc.points.empty();
 }
@@ -91,7 +91,7 @@ TetrahedralMesh fill_box(const SolidDesc& desc) {
   return geometry::fill_cells(grid);
 }
 
-/// Checks tetrahedra as given, and turns those around that are inside out.
+/// Checks given tetrahedra, and turns those around that are inside out.
 Result<TetrahedralMesh> take_given(const SolidDesc& desc) {
   TetrahedralMesh mesh;
   Checks checks("solid");
@@ -137,7 +137,7 @@ double volume_of(const TetrahedralMesh& mesh) {
   return sum;
 }
 
-/// The outer points and the faces between them.
+/// The skin of a solid: its outer points and the faces between them.
 std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
   auto skin = std::make_shared<state::Skin>();
   std::vector<std::uint32_t> number(mesh.points.size(), geometry::kNone);
@@ -154,7 +154,7 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
   return skin;
 }
 
-/// The vertices of `surface` where they lie in the lattice.
+/// The skin whose vertices are those of `surface`, where they lie in the lattice.
 std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const MeshDesc& surface) {
   std::vector<DVec3> places;
   for (const Vec3& p : surface.positions) places.push_back(vector_cast<double>(p));
@@ -168,7 +168,7 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const Me
   return skin;
 }
 
-/// A quarter of each tetrahedron to each of its corners.
+/// Gives a quarter of each tetrahedron to each of its corners.
 std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0.0);
   const double whole = volume_of(mesh);
@@ -178,7 +178,7 @@ std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   return share;
 }
 
-/// The vertices of a closed surface, by their shares of its area.
+/// Takes the vertices of a closed surface as points, with their shares of its area.
 Result<SolidBody> take_vertices(const MeshDesc& surface) {
   SolidBody body;
   body.volume = geometry::compute_signed_volume(surface.positions, surface.triangles);
@@ -206,7 +206,7 @@ Result<SolidBody> take_vertices(const MeshDesc& surface) {
   return body;
 }
 
-/// Points alone, of equal masses.
+/// Takes points alone, with equal masses.
 Result<SolidBody> take_points(const SolidDesc& desc) {
   Checks checks("solid");
   checks.require(desc.total_mass.has_value(), "total_mass", "is needed for points without tetrahedra");
@@ -221,7 +221,7 @@ Result<SolidBody> take_points(const SolidDesc& desc) {
   return body;
 }
 
-/// The inside of a mesh as a lattice of tetrahedra.
+/// Fills the inside of a mesh with a lattice of tetrahedra.
 Result<SolidBody> fill_mesh(const SolidDesc& desc, const MeshDesc& surface) {
   Result<TetrahedralMesh> filled = geometry::fill_solid(surface, static_cast<double>(desc.cell));
   if (!filled) return Error{filled.error().code, "solid." + filled.error().where, filled.error().message};
@@ -233,7 +233,7 @@ Result<SolidBody> fill_mesh(const SolidDesc& desc, const MeshDesc& surface) {
   return body;
 }
 
-/// A box of cells, or tetrahedra as given.
+/// Takes a box of cells, or given tetrahedra.
 Result<SolidBody> take_tetrahedra(const SolidDesc& desc) {
   Result<TetrahedralMesh> mesh = is_box(desc) ? Result<TetrahedralMesh>(fill_box(desc)) : take_given(desc);
   if (!mesh) return mesh.error();
@@ -323,7 +323,7 @@ std::shared_ptr<const state::RestEdges> rest_edges_of(const TetrahedralMesh& mes
   return edges;
 }
 
-/// The form that points are drawn to; an error where it could not tell how it is turned.
+/// The form to which points are drawn; an error where it could not tell how it is rotated.
 Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& points, const SolidDesc& desc,
                                                               double volume) {
   auto rest = std::make_shared<state::RestShape>();
@@ -343,7 +343,7 @@ Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& poin
     rest->inertia += dot(q, weighed);
     rest->place.push_back(q);
   }
-  constexpr double kFlat = 1e-9;  // a thickness of about 1e-4 of the size
+  constexpr double kFlat = 1e-9;  // A thickness of about 1e-4 of the size.
   if (!(determinant(second) > kFlat * rest->inertia * rest->inertia * rest->inertia))
     return Error{ErrorCode::kOutOfRange, "solid.points", "must not lie in one plane"};
   const double w = 2 * std::numbers::pi * static_cast<double>(desc.match_hz);

@@ -24,10 +24,10 @@ struct TetherSurface {
   bool is_flat = false;
 };
 
-/// From each point to its nearest pin and to a second one; none for pins themselves and for points that no
-/// pin holds. First all nearest ones, then the others. Of up to 8 pins the second is the next nearest, of
-/// more the nearest of those on the other side of the point: what hangs between two sides must not slip to
-/// one of them.
+/// Tethers each point to its nearest pin and to a second one, except pins themselves and points that no pin
+/// holds. All nearest ones come first, then the others. For up to 8 pins the second is the next nearest; for
+/// more it is the nearest of those on the other side of the point: what hangs between two sides must not
+/// slip to one of them.
 [[nodiscard]] std::vector<Tether> find_tethers(const TetherSurface& surface,
                                                std::span<const std::uint32_t> pins);
 
