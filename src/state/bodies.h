@@ -16,101 +16,112 @@
 
 namespace hooke::state {
 
-/// How a body moves within a step: what the solver reads and writes, in one cache line.
+/// What the solver reads and writes of the motion of one body within a step, in one cache line.
 ///
 /// Angular columns are scaled by the root of the inertia, which is constant within a step: with world inertia
 /// I and S = I^(-1/2), omega_scaled = S^(-1) omega and theta_scaled = S^(-1) theta, where theta is the
-/// rotation since the start of the step. Then a row with direction n at lever r has the angular Jacobian
-/// j = S (r x n), an impulse lambda changes omega_scaled by lambda j, and the effective mass needs only
-/// |j|^2. (docs/notation.md)
+/// rotation since the start of the step. Then a row with direction n at lever r has the angular Jacobian j =
+/// S (r x n), an impulse lambda changes omega_scaled by lambda j, and the effective mass needs only |j|^2.
+/// (docs/notation.md)
 struct alignas(16 * sizeof(Real)) MotionRecord {
   Vec3 v = {};                  ///< Velocity of the center of mass [m/s].
-  Vec3 omega_scaled = {};       ///< [sqrt(J)]
-  Vec3 dx = {};                 ///< Of the center of mass, since the start of the step [m].
-  Vec3 theta_scaled = {};       ///< [sqrt(kg) m]
-  Real inverse_mass = Real(0);  ///< [1/kg]; 0: nothing moves the body, and no kernel writes its line.
+  Vec3 omega_scaled = {};       ///< Scaled angular velocity [sqrt(J)].
+  Vec3 dx = {};                 ///< Displacement of the center of mass since the start of the step [m].
+  Vec3 theta_scaled = {};       ///< Scaled rotation since the start of the step [sqrt(kg) m].
+  Real inverse_mass = Real(0);  ///< [1/kg]; 0: nothing moves the body, and no kernel writes its record.
   Real padding[3] = {};
 };
 
-/// Mass of a body about its center, in its own frame. All zero for bodies that nothing moves.
+/// Mass of a body about its center, in its own frame. All values are zero for bodies that nothing moves.
 struct BodyMass {
   Vec3 center = {};             ///< Center of mass in the body's frame [m].
-  Quat principal = {};          ///< From the principal axes of inertia to the body's frame.
-  Vec3 inertia = {};            ///< About the principal axes [kg m^2].
+  Quat principal = {};          ///< Rotation from the principal axes of inertia to the body's frame.
+  Vec3 inertia = {};            ///< Moments of inertia about the principal axes [kg m^2].
   Real mass = Real(0);          ///< [kg]
   Real inverse_mass = Real(0);  ///< [1/kg]
 };
 
-/// The velocities a body would have, had the contact rows of this substep done nothing. The difference to its
-/// line is what they did, and the warm start of the next substep. Laid out as the first half of a MotionLine.
+/// The velocities that a body would have if the contact rows of this substep had done nothing. The motion
+/// record less these is what the rows did, and it is the warm start of the next substep. The layout is that
+/// of the first half of a MotionRecord.
 struct alignas(8 * sizeof(Real)) FreeMotionRecord {
-  Vec3 v = {};             ///< [m/s]
-  Vec3 omega_scaled = {};  ///< [sqrt(J)]
+  Vec3 v = {};             ///< Velocity of the center of mass [m/s].
+  Vec3 omega_scaled = {};  ///< Scaled angular velocity [sqrt(J)].
   Real padding[2] = {};
 };
 
-/// A body that turns so far within the step that its inertia in world axes changes, and touches something in
-/// it: its contacts are solved with the inertia at the time of the first of them, and between contacts its
-/// angular velocity stays. Its energy is then what contacts leave it; not so its angular momentum. One that
-/// touches something and was not foreseen to turn so far, does so from the substep on in which it has. One
-/// that spins so far on hooks keeps its angular velocity too, but for what rows do.
+/// A body has frozen inertia when it rotates so far within the step that its inertia in world axes changes,
+/// and touches something in that step. Its contacts are then solved with the inertia at the time of the first
+/// contact, and its angular velocity stays between contacts. So contacts alone decide its energy, but not its
+/// angular momentum. A touching body that was not foreseen to rotate so far gets frozen inertia in the
+/// substep in which it has. A body that spins so far on hooks keeps its angular velocity too, except for what
+/// rows change.
 struct FrozenInertia {
   bool on = false;
-  bool touches = false;    ///< It tumbles, and has contacts in this step.
-  bool hooked = false;     ///< It spins on hooks: with the mean inertia of its turn.
-  Vec3 until_impact = {};  ///< [rad]
+  bool touches = false;    ///< The body makes a gyroscopic turn and has contacts in this step.
+  bool hooked = false;     ///< The body spins on hooks; it has the mean inertia of its rotation.
+  Vec3 until_impact = {};  ///< Rotation until the first contact [rad].
 };
 
-/// What the step asks about a body once.
+/// Properties of a body that the step reads but does not change.
 struct BodyTraits {
   BodyKind kind = BodyKind::kStatic;
-  bool alive = false;  ///< False: a hole.
+  bool alive = false;  ///< False: the row is a hole.
   bool collides = true;
   bool sensor = false;
   bool bullet = false;
   bool can_sleep = true;
   bool reports_contacts = false;
-  Real hit_speed = kRigid;  ///< From which on hits are reported [m/s].
+  Real hit_speed = kRigid;  ///< Approach speed from which hits are reported [m/s].
   Real linear_damping = Real(0);
   Real angular_damping = Real(0);
   Real gravity_scale = Real(1);
   Real drag_coefficient = Real(0);
   Real magnus_volume = Real(0);  ///< Magnus coefficient times the volume of the shapes [m^3].
-  Vec3 dipole_moment = {};       ///< In the body's frame [A m^2].
-  Real radius = Real(0);         ///< Of the smallest sphere about the center of mass around all shapes [m].
-  Real inner_radius = Real(0);   ///< Of a sphere that fits into the largest shape [m]: how thin it is.
+  Vec3 dipole_moment = {};       ///< Dipole moment in the body's frame [A m^2].
+  Real radius = Real(0);         ///< Radius of the smallest sphere about the center of mass that holds all
+                                 ///< shapes [m].
+  Real inner_radius = Real(0);   ///< Radius of a sphere that fits into the largest shape, which says how thin
+                                 ///< the body is [m].
   FilterDesc filter = {};
 };
 
 /// Columns of equal length; row i describes body i.
 struct Bodies {
-  static constexpr std::int8_t kNew = 127;  ///< A hardness.
+  static constexpr std::int8_t kNew = 127;  ///< A value of direct_state.
 
   std::vector<MotionRecord> motion;
-  std::vector<DVec3> center;           ///< Of mass, at the start of the step [m].
-  std::vector<Quat> rotation;          ///< Of the body's frame, at the start of the step; of bodies
-                                       ///< that tumble, now (solver/body/body_motion.h).
-  std::vector<Vec3> angular_momentum;  ///< About the center of mass [kg m^2/s]: the state of rotation.
-  std::vector<Vec3> angular_velocity;  ///< At the start of the step [rad/s]; of kinematic bodies as given.
+  std::vector<DVec3> center;           ///< Center of mass at the start of the step [m].
+  std::vector<Quat> rotation;          ///< Rotation of the body's frame at the start of the step; for bodies
+                                       ///< in a gyroscopic turn, the rotation now
+                                       ///< (solver/body/body_motion.h).
+  std::vector<Vec3> angular_momentum;  ///< Angular momentum about the center of mass [kg m^2/s]: the state of
+                                       ///< rotation.
+  std::vector<Vec3> angular_velocity;  ///< Angular velocity at the start of the step [rad/s]; for kinematic
+                                       ///< bodies, as given.
   std::vector<math::Symmetric3<Real>> scale;  ///< S = I^(-1/2) in world axes; written by prepare_bodies.
-  std::vector<FrozenInertia> frozen_inertia;  ///< Written by detect, and by keep_inertia.
+  std::vector<FrozenInertia> frozen_inertia;  ///< Written by begin_motion and freeze_inertia
+                                              ///< (world/impact_clamp.h).
   std::vector<BodyMass> mass;
   std::vector<BodyTraits> traits;
-  std::vector<Vec3> force;                    ///< External, for the current step [N]; cleared by finish.
-  std::vector<Vec3> torque;                   ///< External, for the current step [N m]; cleared by finish.
-  std::vector<FreeMotionRecord> free_motion;  ///< Lives for one substep; written by the solver.
+  std::vector<Vec3> force;                    ///< External force for the current step [N]; cleared by finish.
+  std::vector<Vec3> torque;                   ///< External torque for the current step [N m]; cleared by
+                                              ///< finish.
+  std::vector<FreeMotionRecord> free_motion;  ///< Used within one substep; written by the solver.
   std::vector<Real> rest_time;                ///< Time spent slower than the sleep threshold [s].
   std::vector<std::uint8_t> asleep;
   std::vector<std::uint8_t> slept;        ///< `asleep` at the end of the last step; written by gather_events.
-  std::vector<std::int8_t> direct_state;  ///< Whether its contacts are solved directly, and since when
-                                          ///< (solver/coupled/direct_islands.h); kNew before its first step.
+  std::vector<std::int8_t> direct_state;  ///< Whether the contacts of the body are solved directly, and since
+                                          ///< when (solver/coupled/direct_islands.h); kNew before its first
+                                          ///< step.
   std::vector<std::uint32_t> first_collider;  ///< The body's colliders are consecutive rows.
   std::vector<std::uint32_t> collider_count;
-  std::vector<std::uint32_t> slot;  ///< Of its id.
-  std::vector<MotionDesc> path;     ///< Of kinematic bodies.
+  std::vector<std::uint32_t> slot;  ///< Slot of the body's id.
+  std::vector<MotionDesc> path;     ///< Path of a kinematic body.
   std::vector<DVec3> path_start;    ///< Where the center was when the path began [m].
-  std::vector<double> path_time;    ///< When it began [s].
-  std::vector<std::shared_ptr<const NamedPlaces>> connection_points;  ///< Its own; null for none.
+  std::vector<double> path_time;    ///< Time when the path began [s].
+  std::vector<std::shared_ptr<const NamedPlaces>> connection_points;  ///< The body's own named places; null
+                                                                      ///< for none.
 
   [[nodiscard]] int count() const { return static_cast<int>(motion.size()); }
 
@@ -152,8 +163,8 @@ inline bool gives_way(const Bodies& bodies, std::uint32_t body) {
   return is_dynamic(bodies, body) && bodies.asleep[body] == 0;
 }
 
-/// How a body moves after accelerate_bodies but for what that repeats of the contacts of the last substep,
-/// which the solver may yet take back.
+/// The motion of a body after accelerate_bodies, without the contact impulses of the last substep that were
+/// applied again. The solver may still take those back.
 inline FreeMotionRecord motion_before_contacts(const Bodies& bodies, std::uint32_t body) {
   const MotionRecord& m = bodies.motion[body];
   if (gives_way(bodies, body)) return bodies.free_motion[body];
@@ -183,24 +194,24 @@ inline RowRange colliders_of(const Bodies& bodies, std::uint32_t body) {
   return {first, first + bodies.collider_count[body]};
 }
 
-/// Velocity of the point at `anchor` from the center of mass, at the start of the step [m/s].
+/// Velocity at the start of the step of the point at `anchor` from the center of mass [m/s].
 inline Vec3 velocity_at(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
   return bodies.motion[body].v + cross(bodies.angular_velocity[body], anchor);
 }
 
-/// The same in the middle of a step.
+/// Velocity of that point in the middle of a step [m/s].
 inline Vec3 velocity_now(const Bodies& bodies, std::uint32_t body, Vec3 anchor) {
   const MotionRecord& m = bodies.motion[body];
   return m.v + cross(bodies.scale[body] * m.omega_scaled, anchor);
 }
 
-/// What FilterDesc says of two bodies.
+/// Whether two bodies may collide by their FilterDesc.
 inline bool filters_agree(const FilterDesc& a, const FilterDesc& b) {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-/// Ends a body's sleep, and its rest before that.
+/// Wakes a body and sets its rest time to zero.
 inline void wake(Bodies& bodies, std::uint32_t body) {
   bodies.asleep[body] = 0;
   bodies.rest_time[body] = Real(0);

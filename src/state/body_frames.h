@@ -30,14 +30,14 @@ inline Pose frame_of_collider(const Bodies& bodies, const Colliders& colliders, 
           rotation * colliders.rotation[row]};
 }
 
-/// Whether the axis of a free body's rotation visibly moves.
+/// Whether a free rotation of the body visibly moves its axis.
 inline bool is_gyroscopic(const BodyMass& mass) {
   const auto [least, most] = std::minmax({mass.inertia.x, mass.inertia.y, mass.inertia.z});
   return most > Real(1.02) * least;
 }
 
-/// Whether the body tumbles in this step. In the middle of a step the column of rotations is up to date for
-/// such bodies; others turn at its end.
+/// Whether the body makes a gyroscopic turn in this step. The column of rotations is up to date in the middle
+/// of a step for such bodies; others rotate at the end of the step.
 inline bool is_gyroscopic_now(const Bodies& bodies, std::uint32_t row) {
   return is_gyroscopic(bodies.mass[row]) && !bodies.frozen_inertia[row].on;
 }
@@ -51,7 +51,7 @@ inline Pose pose_now(const Bodies& bodies, std::uint32_t row) {
   return {center, math::quaternion_of(bodies.scale[row] * m.theta_scaled) * bodies.rotation[row]};
 }
 
-/// The same after `time` [s] more of motion_before_contacts.
+/// Center of mass and rotation after `time` [s] more of motion_before_contacts.
 inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
   const FreeMotionRecord motion = motion_before_contacts(bodies, row);
   const Pose now = pose_now(bodies, row);
@@ -59,20 +59,20 @@ inline Pose pose_after(const Bodies& bodies, std::uint32_t row, Real time) {
           math::quaternion_of(bodies.scale[row] * (time * motion.omega_scaled)) * now.rotation};
 }
 
-/// How far a place on a body has gone since the start of the step, along the body's line.
+/// Displacement of a point of a body since the start of the step, to first order in the rotation.
 inline Vec3 displacement_of(const Bodies& bodies, std::uint32_t row, Vec3 lever) {
   const MotionRecord& m = bodies.motion[row];
   const Vec3 turn = m.inverse_mass > Real(0) ? bodies.scale[row] * m.theta_scaled : m.theta_scaled;
   return m.dx + cross(turn, lever);
 }
 
-/// Of B's place against A's, at a point of a manifold.
+/// Displacement of B's point relative to A's, at a point of a manifold.
 inline Vec3 displacement_between(const Bodies& bodies, const Manifold& m, const ContactPoint& point) {
   return displacement_of(bodies, m.body_b, point.anchor_b) -
          displacement_of(bodies, m.body_a, point.anchor_a);
 }
 
-/// L = R I R^T omega, of a body whose frame is turned by `rotation`.
+/// L = R I R^T omega, for a body whose frame is rotated by `rotation`.
 inline Vec3 angular_momentum_of(const BodyMass& mass, Quat rotation, Vec3 omega) {
   const Quat axes = rotation * mass.principal;
   const Vec3 local = rotate(conjugate(axes), omega);

@@ -10,7 +10,7 @@ namespace hooke::state {
 
 namespace {
 
-// Each returns what is wrong, or null.
+// Each function returns what is wrong, or null.
 
 template <class Table>
 bool columns_agree(const Table& table) {

@@ -14,12 +14,13 @@
 
 namespace hooke::state {
 
-/// What is particular to the shape of a collider.
+/// Data of a collider that depend on the kind of its shape.
 struct ColliderShape {
   Shape shape = {};
-  std::shared_ptr<const Mesh> mesh;                  ///< kMesh.
-  std::shared_ptr<const geometry::ConvexHull> hull;  ///< kHull, and kBox as the hull it is.
-  std::shared_ptr<const Mesh> whole = {};  ///< kHull: the concave solid that it is a part of, or null.
+  std::shared_ptr<const Mesh> mesh;                  ///< Set for kMesh.
+  std::shared_ptr<const geometry::ConvexHull> hull;  ///< Set for kHull, and for kBox as the hull that it is.
+  std::shared_ptr<const Mesh> whole = {};  ///< For kHull: the concave solid that the hull is a part of, or
+                                           ///< null.
 };
 
 /// Shapes of bodies, in columns. A body's colliders are consecutive rows; a removed body leaves holes.
@@ -28,10 +29,11 @@ struct Colliders {
 
   std::vector<std::uint32_t> body;  ///< Row of the body; kNoBody for a hole.
   std::vector<ColliderShape> shape;
-  std::vector<Vec3> position;  ///< Of the shape's frame, from the body's center of mass, in its frame [m].
-  std::vector<Quat> rotation;  ///< Of the shape's frame in the body's.
+  std::vector<Vec3> position;  ///< Position of the shape's frame from the body's center of mass, in the
+                               ///< body's frame [m].
+  std::vector<Quat> rotation;  ///< Rotation of the shape's frame in the body's.
   std::vector<ContactDesc> surface;
-  std::vector<geometry::Box> bounds;  ///< In the world, with margin, rounded outward; written by detect.
+  std::vector<geometry::Box> bounds;  ///< Box in the world, with margin, rounded outward; written by detect.
 
   [[nodiscard]] int count() const { return static_cast<int>(body.size()); }
 

@@ -14,40 +14,42 @@
 
 namespace hooke::state {
 
-/// Where two colliders are closest or overlap.
+/// A place where two colliders are closest or overlap.
 struct ContactPoint {
-  Vec3 anchor_a = {};             ///< On A, from A's center of mass, in world axes [m].
-  Vec3 anchor_b = {};             ///< On B, from B's center of mass, in world axes [m].
-  Real separation = Real(0);      ///< Along the normal; negative: overlap [m].
-  Real normal_impulse = Real(0);  ///< Of the last substep [N s], 0 or more.
-  std::uint32_t key = 0;          ///< Features of A and B that meet here: the same from step to step.
+  Vec3 anchor_a = {};             ///< Point on A, from A's center of mass, in world axes [m].
+  Vec3 anchor_b = {};             ///< Point on B, from B's center of mass, in world axes [m].
+  Real separation = Real(0);      ///< Gap along the normal; negative: overlap [m].
+  Real normal_impulse = Real(0);  ///< Impulse of the last substep [N s], 0 or more.
+  std::uint32_t key = 0;          ///< Names the features of A and B that meet here; it stays the same from
+                                  ///< step to step.
 };
 
-/// Up to four points with one normal. A convex pair has one at most; a body on a mesh has one per patch.
+/// Up to four points with one normal. A pair of convex shapes has at most one manifold; a body on a mesh has
+/// one per patch.
 struct Manifold {
   static constexpr int kMaxPoints = 4;
-  static constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;  ///< Of a manifold that has never had points.
+  static constexpr std::uint32_t kNoPatch = 0xFFFFFFFF;  ///< Patch of a manifold that has never had points.
 
-  std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
+  std::uint32_t collider_a = 0;  ///< Row; smaller than collider_b.
   std::uint32_t collider_b = 0;
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
   std::uint32_t patch = 0;  ///< 0, or the lowest triangle of the patch of a mesh.
   std::int32_t point_count = 0;
-  Vec3 normal = {};  ///< From A to B, unit.
+  Vec3 normal = {};  ///< Unit vector from A to B.
   std::array<ContactPoint, kMaxPoints> point = {};
-  // Impulses of the last substep, carried over for the next step's warm start.
-  Vec3 friction_impulse = {};    ///< On B, across the normal [N s].
-  Real twist_impulse = Real(0);  ///< About the normal [N m s].
+  // Impulses of the last substep are carried over for the next step's warm start.
+  Vec3 friction_impulse = {};    ///< Impulse on B, across the normal [N s].
+  Real twist_impulse = Real(0);  ///< Impulse about the normal [N m s].
   Vec3 rolling_impulse = {};     ///< [N m s]
-  // Surface of the pair, from its materials.
+  // The surface values of the pair come from its materials.
   Real friction = Real(0);
   Real static_friction = Real(0);
   Real restitution = Real(0);
   Real rolling_friction = Real(0);   ///< [m]
   Real spinning_friction = Real(0);  ///< [m]
-  Vec3 surface_velocity = {};        ///< Of B's surface relative to A's, in world axes [m/s].
-  Real largest_impulse = Real(0);    ///< Of all points in one substep of the last step [N s].
+  Vec3 surface_velocity = {};        ///< Velocity of B's surface relative to A's, in world axes [m/s].
+  Real largest_impulse = Real(0);    ///< Largest sum over all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
   ContactRefresh refresh = ContactRefresh::kAtStart;  ///< As its pair; each substep: may have no points now.
   ContactRoute route = ContactRoute::kSoft;           ///< How it is solved in this step; see solver/routes.h.
@@ -65,46 +67,48 @@ inline std::uint32_t pushing_points(const Manifold& m) {
   return count;
 }
 
-/// Sum over its points of the last substep [N s].
+/// Sum of the impulses of its points in the last substep [N s].
 inline Real normal_impulse(const Manifold& m) {
   Real sum = Real(0);
   for (std::int32_t i = 0; i < m.point_count; ++i) sum += m.point[static_cast<std::size_t>(i)].normal_impulse;
   return sum;
 }
 
-/// A place for a point of a manifold that is solved with what one of its bodies hangs on, in place of the
-/// rows that others have (solver/coupled/load_bearing_contacts.h).
+/// A record for a point of a manifold that is solved with what one of its bodies hangs on. It replaces the
+/// rows of other contacts (solver/coupled/load_bearing_contacts.h).
 struct LoadBearingContact {
-  std::uint32_t pair = 0;      ///< Row.
-  std::uint32_t manifold = 0;  ///< Row: the only one of the pair.
-  std::int32_t point = 0;      ///< Of Manifold::kMaxPoints; the manifold may have fewer now.
+  std::uint32_t pair = 0;      ///< Row of the pair.
+  std::uint32_t manifold = 0;  ///< Row of the manifold, which is the only one of the pair.
+  std::int32_t point = 0;      ///< Index below Manifold::kMaxPoints; the manifold may have fewer points now.
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
-  Real load = Real(0);          ///< What is lifted where they leave each other [kg].
-  Real separation = Real(0);    ///< Where the bodies were at the start of the step, along their lines [m].
-  Real normal_force = Real(0);  ///< In the last particle substep [N].
-  Vec3 friction_force = {};     ///< On B [N].
+  Real load = Real(0);          ///< Mass that is lifted when the bodies separate [kg].
+  Real separation = Real(0);    ///< Gap with the bodies where they were at the start of the step, to first
+                                ///< order in their rotations [m].
+  Real normal_force = Real(0);  ///< Force in the last particle substep [N].
+  Vec3 friction_force = {};     ///< Friction on B [N].
   bool slides = false;
-  Real largest_force = Real(0);  ///< Along the normal, in this step [N].
+  Real largest_force = Real(0);  ///< Largest normal force in this step [N].
 };
 
-/// How two bodies moved since something was looked at.
+/// Motion of two bodies since their last exact test.
 struct Drift {
-  Vec3 displacement = {};  ///< Of B's center against A's [m].
-  Vec3 angle_a = {};       ///< [rad]
+  Vec3 displacement = {};  ///< Displacement of B's center relative to A's [m].
+  Vec3 angle_a = {};       ///< Rotation of A [rad].
   Vec3 angle_b = {};
 };
 
 /// Two colliders whose boxes overlap. Rows stand in order of (collider_a, collider_b).
 struct Pair {
-  std::uint32_t collider_a = 0;  ///< Row; less than collider_b.
+  std::uint32_t collider_a = 0;  ///< Row; smaller than collider_b.
   std::uint32_t collider_b = 0;
-  // What the last exact test found, so that the next can be skipped or begin where it ended.
-  Real gap = Real(0);      ///< Separation then, less what the bodies moved since; negative: overlap [m].
-  Drift drift = {};        ///< Since then.
-  std::uint32_t axis = 0;  ///< Features that separated or touched: narrow phase's own code.
+  // The result of the last exact test is kept so that the next one can be skipped or start from it.
+  Real gap = Real(0);      ///< Separation at that test, less what the bodies moved since; negative: overlap
+                           ///< [m].
+  Drift drift = {};        ///< Motion since that test.
+  std::uint32_t axis = 0;  ///< Code of the narrow phase for the features that separated or touched.
   bool tested = false;     ///< False until the first exact test.
-  // Its manifolds of this step.
+  // The fields below describe the manifolds of this step.
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
   Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
@@ -113,7 +117,7 @@ struct Pair {
   [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
 };
 
-/// Where the narrow phase saw a body last.
+/// Pose of a body when the narrow phase last read it.
 struct SeenPose {
   DVec3 center = {};
   Quat rotation = {};
@@ -122,18 +126,20 @@ struct SeenPose {
 /// Pairs whose bodies all rest; see state/sleeping_pairs.h.
 struct SleepingPairs {
   std::vector<Pair> pair;              ///< In order of colliders; first_manifold counts in `manifold`.
-  std::vector<Manifold> manifold;      ///< In order of pair, then patch; some may belong to no pair any more.
-  std::vector<std::uint32_t> of_body;  ///< Number of pairs, by row of body; may be too short for new ones.
-  std::uint32_t contacts = 0;          ///< Points that push.
-  std::size_t waiting = 0;             ///< Pairs at rest that were not parked in the last step.
+  std::vector<Manifold> manifold;      ///< In order of pair, then patch; some may no longer belong to a pair.
+  std::vector<std::uint32_t> of_body;  ///< Number of sleeping pairs of each body, by its row; may be too
+                                       ///< short for new bodies.
+  std::uint32_t contacts = 0;          ///< Number of points that push.
+  std::size_t waiting = 0;             ///< Number of pairs at rest that were not put to sleep in the last
+                                       ///< step.
 };
 
 struct Pairs {
   std::vector<Pair> pair;
   std::vector<Manifold> manifold;                ///< In order of pair, then patch.
-  std::vector<LoadBearingContact> load_bearing;  ///< In order of manifold and point; of this step only.
-  std::vector<SeenPose> seen;                    ///< Of each body.
-  SleepingPairs sleeping;                        ///< Not among those above.
+  std::vector<LoadBearingContact> load_bearing;  ///< In order of manifold and point; valid in this step only.
+  std::vector<SeenPose> seen;                    ///< One for each body.
+  SleepingPairs sleeping;                        ///< These pairs are not among those above.
 };
 
 }  // namespace hooke::state

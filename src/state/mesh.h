@@ -10,13 +10,13 @@
 
 namespace hooke::state {
 
-/// Triangles that bodies and cloths share; never changes after it was made.
+/// Triangles that bodies and cloths share. A Mesh never changes after it was made.
 struct Mesh {
   MeshDesc desc;
-  geometry::Bvh bvh;  ///< Over `desc.triangles`.
-  BspTree planes;     ///< With MeshTree::kPlanes; else without nodes.
+  geometry::Bvh bvh;  ///< Tree of boxes over `desc.triangles`.
+  BspTree planes;     ///< BSP tree with MeshTree::kPlanes; otherwise it has no nodes.
   geometry::Protrusions protrusions;
-  std::uint64_t hash = 0;  ///< Of `desc`.
+  std::uint64_t hash = 0;  ///< Hash of `desc`.
 
   [[nodiscard]] bool is_solid() const { return !planes.nodes.empty(); }
 };

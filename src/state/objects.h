@@ -11,11 +11,11 @@
 #include <vector>
 
 /// \file
-/// What the tables of rows belong to: deformable objects, pins, fields.
+/// The owners of rows in the tables: deformable objects, pins, fields.
 
 namespace hooke::state {
 
-inline constexpr double kAirPressure = 101325;  ///< Of the air around closed cloths [Pa].
+inline constexpr double kAirPressure = 101325;  ///< Pressure of the air around closed cloths [Pa].
 
 /// Rows [first, first + count) of a table.
 struct Rows {
@@ -25,34 +25,37 @@ struct Rows {
   [[nodiscard]] std::uint32_t end() const { return first + count; }
 };
 
-/// Vertices that a solid carries along, and the triangles between them. Never changes after it was made.
+/// Vertices that follow the points of a solid, and the triangles between them. A Skin never changes after it
+/// was made.
 struct Skin {
   struct Anchor {
-    std::array<std::uint32_t, 4> points = {};  ///< Of the solid, in the maker's order.
-    std::array<Real, 4> weights = {};          ///< With the sum 1.
+    std::array<std::uint32_t, 4> points = {};  ///< Points of the solid, in the maker's order.
+    std::array<Real, 4> weights = {};          ///< Weights of the points, with the sum 1.
   };
   std::vector<Anchor> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A place of an object under its name (ConnectionPointDesc). Never changes after it was made.
+/// A named place of an object (ConnectionPointDesc). It never changes after it was made.
 struct NamedPlace {
   std::string name;
-  Vec3 position = {};                        ///< Of a body: from its center of mass, in its frame [m].
-  std::array<std::uint32_t, 4> points = {};  ///< Of a deformable: points in the maker's order,
-  std::array<Real, 4> weights = {};          ///< with the sum 1; 0 for places that are not used.
+  Vec3 position = {};                        ///< For a body: offset from its center of mass, in its frame
+                                             ///< [m].
+  std::array<std::uint32_t, 4> points = {};  ///< For a deformable: points in the maker's order.
+  std::array<Real, 4> weights = {};          ///< Weights of the points, with the sum 1; 0 for entries that
+                                             ///< are not used.
 };
 using NamedPlaces = std::vector<NamedPlace>;
 
 /// x_b - x_a, x_c - x_a, x_d - x_a of each tetrahedron when it was made [m].
 using RestEdges = std::vector<std::array<Vec3, 3>>;
 
-/// The form at rest of a solid that is matched to it (solver/soft/shape_matching.h). Never changes after it
-/// was made.
+/// The rest shape of a solid that is solved by shape matching (solver/soft/shape_matching.h). It never
+/// changes after it was made.
 struct RestShape {
-  std::vector<DVec3> place;  ///< Of each row, from the center of mass [m].
-  double mass = 0;           ///< Of all points, pinned ones too [kg].
-  double volume = 0;         ///< [m^3]; 0 of points alone.
+  std::vector<DVec3> place;  ///< Rest position of each row, from the center of mass [m].
+  double mass = 0;           ///< Mass of all points, pinned ones too [kg].
+  double volume = 0;         ///< [m^3]; 0 for points alone.
   double inertia = 0;        ///< sum m q^2 [kg m^2].
   double stiffness = 0;      ///< k over mass, w^2 [1/s^2]; kRigid for a rigid body.
   double damping = 0;        ///< c over mass [1/s].
@@ -61,7 +64,7 @@ struct RestShape {
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
-  std::uint32_t slot = 0;  ///< Of its id.
+  std::uint32_t slot = 0;  ///< Slot of the object's id.
   DVec3 origin = {};       ///< Positions of its particles are offsets from here [m].
   Rows particles = {};
   Rows springs = {};
@@ -69,22 +72,24 @@ struct Deformable {
   Rows triangles = {};
   Rows segments = {};
   Rows tetrahedra = {};
-  std::shared_ptr<const Skin> skin = {};  ///< Of a solid.
+  std::shared_ptr<const Skin> skin = {};  ///< Set for a solid.
   std::shared_ptr<const NamedPlaces> connection_points = {};
-  std::shared_ptr<const RestShape> rest_shape = {};  ///< Of a solid without tetrahedra.
-  std::uint32_t columns = 0;                         ///< Of a cloth on a grid; 0 for others.
-  double gas = 0;                  ///< Of a closed cloth: absolute pressure times volume [J]; 0 without.
-  double gas_volume = 0;           ///< V when it was filled [m^3].
-  Real bend_stiffness = Real(0);   ///< Of a rope: EI [N m^2].
-  Real bend_damping = Real(0);     ///< Over EI [s].
-  Real twist_stiffness = Real(0);  ///< Of a rope: GJ [N m^2].
-  Real twist_rate = Real(0);       ///< Twist per length that it was made with [rad/m]; 0 once spans have it.
-  Real yield_angle = kRigid;       ///< Of a cloth's bends [rad].
-  Real yield_stress = kRigid;      ///< Of a solid [Pa].
-  std::shared_ptr<const RestEdges> rest_edges = {};  ///< Of a solid that yields; by its tetrahedra.
-  bool touches_ropes = false;         ///< Of a rope: it touches those that do so too, and itself.
-  Real repulsion_strength = Real(0);  ///< Of a rope [N m^2]; 0: none.
-  Real repulsion_range = Real(0);     ///< [m]
+  std::shared_ptr<const RestShape> rest_shape = {};  ///< Set for a solid without tetrahedra.
+  std::uint32_t columns = 0;                         ///< Number of columns of a cloth on a grid; 0 for
+                                                     ///< others.
+  double gas = 0;                  ///< For a closed cloth, absolute pressure times volume [J]; 0 without gas.
+  double gas_volume = 0;           ///< Volume V when the cloth was filled [m^3].
+  Real bend_stiffness = Real(0);   ///< EI of a rope [N m^2].
+  Real bend_damping = Real(0);     ///< Damping of bends over EI [s].
+  Real twist_stiffness = Real(0);  ///< GJ of a rope [N m^2].
+  Real twist_rate = Real(0);       ///< Twist per length that a rope was made with [rad/m]; 0 once spans have
+                                   ///< it.
+  Real yield_angle = kRigid;       ///< Yield angle of a cloth's bends [rad].
+  Real yield_stress = kRigid;      ///< Yield stress of a solid [Pa].
+  std::shared_ptr<const RestEdges> rest_edges = {};  ///< Set for a solid that yields; by its tetrahedra.
+  bool touches_ropes = false;         ///< The rope touches itself and all ropes that have this flag.
+  Real repulsion_strength = Real(0);  ///< Repulsion of a rope [N m^2]; 0: none.
+  Real repulsion_range = Real(0);     ///< Range of the repulsion [m].
   Real friction = Real(0);
   Real drag_coefficient = Real(0);
   Real lift_coefficient = Real(0);
@@ -95,12 +100,12 @@ struct Deformable {
   }
 };
 
-/// A point that is held, and how it moves.
+/// A point that is held, and the motion it is given.
 struct Pin {
   std::uint32_t object = 0;  ///< Row of the deformable.
   std::uint32_t particle = 0;
-  DVec3 start = {};         ///< Where it was when the motion began [m].
-  double start_time = 0.0;  ///< [s]
+  DVec3 start = {};         ///< Position when the motion began [m].
+  double start_time = 0.0;  ///< Time when the motion began [s].
   MotionDesc motion = {};
 };
 
@@ -109,7 +114,7 @@ struct Field {
   std::uint32_t slot = 0;
 };
 
-/// One of the two is a function.
+/// Exactly one of the two laws is a function.
 struct ForceLawEntry {
   ForceLaw law = {};
   BodyForceLaw body_law = {};

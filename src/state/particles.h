@@ -10,14 +10,15 @@
 
 namespace hooke::state {
 
-/// Where a particle is, in one load.
+/// Position and contact radius of a particle, in one load.
 struct alignas(4 * sizeof(Real)) PositionRecord {
   Vec3 x = {};            ///< Position [m], an offset from the origin of the owning object.
   Real radius = Real(0);  ///< Contact radius [m].
 };
 
-/// How it moves, in one load and store. The inverse mass stands beside the velocity that it turns impulses
-/// into: of positions the solver then needs only differences (docs/decisions/0003-spring-kernel.md).
+/// Velocity and inverse mass of a particle, in one load and store. The inverse mass stands beside the
+/// velocity, because it turns impulses into velocity. Of positions the solver then needs only differences
+/// (docs/decisions/0003-spring-kernel.md).
 struct alignas(4 * sizeof(Real)) VelocityRecord {
   Vec3 v = {};                  ///< Velocity [m/s].
   Real inverse_mass = Real(0);  ///< w [1/kg]; 0 holds the particle still.
@@ -27,13 +28,13 @@ struct alignas(4 * sizeof(Real)) VelocityRecord {
 struct Particles {
   std::vector<PositionRecord> position;
   std::vector<VelocityRecord> velocity;
-  std::vector<Real> mass;          ///< [kg], also of pinned particles.
+  std::vector<Real> mass;          ///< Mass [kg], also of pinned particles.
   std::vector<Real> charge;        ///< [C]
-  std::vector<Real> viscous_drag;  ///< Share of the object's air friction [N s/m].
+  std::vector<Real> viscous_drag;  ///< The particle's share of the object's air friction [N s/m].
   std::vector<Real> drag_area;     ///< Cd A / 2 of the particle as a sphere [m^2].
   std::vector<Vec3> force;         ///< External force for the current step [N]; cleared by finish.
   std::vector<std::uint32_t>
-      row_of;  ///< From the maker's order to rows, both relative to the object's first row.
+      row_of;  ///< Maps the maker's order to rows, both relative to the object's first row.
 
   [[nodiscard]] int count() const { return static_cast<int>(position.size()); }
 

@@ -8,7 +8,7 @@ namespace hooke::state {
 
 namespace {
 
-/// Resting pairs that are parked at once, in parts of those that are.
+/// Resting pairs are put to sleep when they are at least one part in so many of the sleeping pairs.
 constexpr std::size_t kSleepingShare = 8;
 
 struct PairTable {
@@ -57,7 +57,7 @@ void split(Goes&& goes, std::vector<Pair>& pairs, std::vector<Pair>& moved) {
   });
 }
 
-/// What leaves a table, or enters it, by body and by point.
+/// Counts the pairs that leave or enter the sleeping table, by body, and their points.
 void count_sleeping(std::span<const Pair> moved, const std::vector<Manifold>& manifolds, bool enters,
                     const Colliders& colliders, SleepingPairs& sleeping) {
   for (const Pair& pair : moved) {
@@ -68,7 +68,7 @@ void count_sleeping(std::span<const Pair> moved, const std::vector<Manifold>& ma
   }
 }
 
-/// Leaves no gaps where pairs were.
+/// Closes the gaps that removed pairs left.
 void close_gaps(Pairs& pairs, SleepingPairScratch& scratch) {
   const std::vector<Pair> no_pairs;
   merge({pairs.pair, pairs.manifold}, {no_pairs, pairs.manifold}, scratch.pair, scratch.manifold);
@@ -112,7 +112,7 @@ void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs&
   sleeping.of_body.resize(bodies.traits.size());
   split(may_sleep, pairs.pair, scratch.moved);
   for (const Pair& pair : scratch.moved) {
-    // Marks of the step are taken off by who made them, who will not find these.
+    // Whoever set the marks of this step also clears them, but will not find these manifolds.
     for (std::uint32_t i = 0; i < pair.manifold_count; ++i)
       pairs.manifold[pair.first_manifold + i].route = ContactRoute::kSoft;
   }

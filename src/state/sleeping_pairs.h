@@ -11,38 +11,38 @@
 #include <vector>
 
 /// \file
-/// Pairs whose bodies all rest stand in tables of their own, so that a step costs what moves and not what
-/// there is. Whoever asks for all contacts looks at both.
+/// Pairs whose bodies all rest stand in tables of their own, so that a step costs only what moves. Code that
+/// needs all contacts must read both tables.
 ///
-/// Each of them is as it was when it was parked: what is at rest makes no new manifolds. So a step is the
-/// same wherever they stand.
+/// A sleeping pair stays as it was when it was put to sleep, because bodies at rest make no new manifolds. So
+/// a step has the same result in whichever table pairs stand.
 
 namespace hooke::state {
 
 /// Whether the body stays where it is in this step.
 [[nodiscard]] bool stands(const Bodies& bodies, std::uint32_t body);
 
-/// Whether the manifolds of a pair stay those of the last step: it was tested, and both bodies stand.
+/// Whether a pair keeps the manifolds of the last step: it was tested, and both bodies stand.
 [[nodiscard]] bool rests(const Bodies& bodies, const Colliders& colliders, const Pair& pair);
 
-/// Rows stand in this order.
+/// Rows of pairs stand in this order.
 [[nodiscard]] inline bool comes_before(const Pair& p, const Pair& q) {
   return p.collider_a != q.collider_a ? p.collider_a < q.collider_a : p.collider_b < q.collider_b;
 }
 
-/// Memory for those below.
+/// Memory for the functions below.
 struct SleepingPairScratch {
   std::vector<Pair> moved = {};
   std::vector<Pair> pair = {};
   std::vector<Manifold> manifold = {};
 };
 
-/// Makes room for all pairs of a step to be parked in one to come.
+/// Makes room for all pairs of a step, so that a later step can put them to sleep.
 void reserve_sleeping_pairs(Pairs& pairs, SleepingPairScratch& scratch);
 
-/// Parks pairs that rest: all of them where there are as many as in the last step, or else when there are
-/// many for those that are parked already, which have to be copied. Not those of sensors, which remember in
-/// them who is inside.
+/// Puts pairs that rest to sleep. It takes all of them if their number is that of the last step, or if they
+/// are many compared with the sleeping pairs, which have to be copied. Pairs of sensors stay awake, because
+/// they remember who is inside.
 void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs& pairs,
                         SleepingPairScratch& scratch);
 
@@ -51,10 +51,10 @@ void put_pairs_to_sleep(const Bodies& bodies, const Colliders& colliders, Pairs&
 bool wake_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, const Colliders& colliders,
                 Pairs& pairs, SleepingPairScratch& scratch);
 
-/// Removes the pairs with a body that goes; `goes` by row of body.
+/// Removes the pairs of bodies that are removed; `goes` says which, by row of body.
 void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders, Pairs& pairs);
 
-/// Calls `visit(manifold)` for all of them, parked or not, in order of pair and patch.
+/// Calls `visit(manifold)` for all manifolds, sleeping or not, in order of pair and patch.
 template <class Visit>
 void for_each_manifold(const Pairs& pairs, Visit&& visit) {
   const auto visit_pair = [&visit](const Pair& pair, const std::vector<Manifold>& manifolds) {

@@ -8,21 +8,21 @@
 
 namespace hooke::state {
 
-/// Maps ids to dense rows. Slots only grow; the generation of new slots rises when a snapshot is restored, so
+/// Maps ids to dense rows. Slots only grow. The generation of new slots rises when a snapshot is restored, so
 /// that an id made between the snapshot and its restoration never means a later object. A snapshot may be
-/// restored in another World, where ids of the first go on to mean what they meant.
+/// restored in another World, where ids of the first World keep their meaning.
 template <class IdType>
 class SlotTable {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  /// The id of a new object that lives in `row`.
+  /// Makes the id of a new object that lives in `row`.
   IdType add(std::uint32_t row) {
     entries_.push_back({row, generation_, world_});
     return id_of(static_cast<std::uint32_t>(entries_.size()));
   }
 
-  /// The row, or kNone for a null, stale or foreign id.
+  /// Returns the row, or kNone for a null, stale or foreign id.
   [[nodiscard]] std::uint32_t find(IdType id) const {
     if (id.slot == 0 || id.slot > entries_.size()) return kNone;
     const Entry& entry = entries_[id.slot - 1];
@@ -30,16 +30,16 @@ class SlotTable {
     return is_same ? entry.row : kNone;
   }
 
-  /// The id whose slot this is.
+  /// Returns the id that has this slot.
   [[nodiscard]] IdType id_of(std::uint32_t slot) const {
     const Entry& entry = entries_[slot - 1];
     return {.slot = slot, .generation = entry.generation, .world = entry.world};
   }
 
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
-  /// Room for one more.
+  /// Makes room for one more slot.
   void make_room() { base::make_room(entries_); }
-  /// Forgets the slots after the first `size`, as though they had never been.
+  /// Removes the slots after the first `size`, as though they had never been.
   void shorten(std::size_t size) { entries_.resize(size); }
 
   void move(std::uint32_t slot, std::uint32_t row) { entries_[slot - 1].row = row; }
@@ -47,7 +47,7 @@ class SlotTable {
   [[nodiscard]] std::uint32_t generation() const { return generation_; }
   void set_generation(std::uint32_t generation) { generation_ = generation; }
 
-  /// Whose table it is: ids that are made from now on say so.
+  /// The World of this table; ids that are made from now on contain it.
   [[nodiscard]] std::uint32_t world() const { return world_; }
   void set_world(std::uint32_t world) { world_ = world; }
 

@@ -8,23 +8,23 @@
 
 /// \file
 /// Rows between particles of one object, in the order they were made. The solver keeps its own colored copy
-/// (solver/soft/spring_blocks.h), made anew when rows come or go.
+/// (solver/soft/spring_blocks.h), which is rebuilt when rows are added or removed.
 
 namespace hooke::state {
 
-/// What a spring row is for. Rows of one class are solved together, classes in this order.
+/// The purpose of a spring row. Rows of one class are solved together, classes in this order.
 enum class SpringClass : std::uint8_t {
   kStretch,  ///< Along an edge, or given by the user.
   kShear,    ///< Across a cell.
   kBend,     ///< To the second neighbor.
   kTether,   ///< From a free particle (a) to a pinned one (b): only pulls; inextensible.
-  kLimit,    ///< The largest length of a stretch spring: only pulls.
+  kLimit,    ///< Largest length of a stretch spring: only pulls.
 };
 
-/// How the row's force is computed.
+/// The method that computes the force of a row.
 enum class SpringForm : std::uint8_t {
-  kExplicit,           ///< Direction at the start of the substep.
-  kPredicted,          ///< Direction where the particles are about to be.
+  kExplicit,           ///< The direction is that at the start of the substep.
+  kPredicted,          ///< The direction is that where the particles are about to be.
   kExplicitIsotropic,  ///< Damping acts on the whole relative velocity.
   kPredictedIsotropic,
 };
@@ -35,7 +35,7 @@ struct Springs {
   std::vector<Real> rest_length;  ///< L [m]; for limits and tethers the largest length.
   std::vector<Real> stiffness;    ///< k [N/m]; infinity is a rigid link.
   std::vector<Real> damping;      ///< c [N s/m]
-  std::vector<Real> damped_mass;  ///< Mass that c acts on at most, see solver/soft/spring_solve.h [kg].
+  std::vector<Real> damped_mass;  ///< Largest mass that c acts on, see solver/soft/spring_solve.h [kg].
   std::vector<SpringClass> kind;
   std::vector<SpringForm> form;
 
@@ -54,8 +54,7 @@ struct Springs {
   }
 };
 
-/// One row per inner edge that resists folding: by the angle between its triangles, or by their isometric
-/// bend.
+/// One row per inner edge that resists folding: by the angle between its triangles, or as an isometric bend.
 struct Bends {
   struct Stencil {
     std::uint32_t edge_a, edge_b;  ///< Ends of the shared edge.
@@ -65,11 +64,13 @@ struct Bends {
   std::vector<Real> rest_angle;  ///< theta_0 [rad]; 0 is flat.
   std::vector<Real> stiffness;   ///< k [N m / rad], of the energy k (theta - theta_0)^2 / 2; or k [N/m], of
                                  ///< the energy k |q|^2 / 2 of an isometric bend.
-  std::vector<Real> damping;     ///< c [N m s / rad]; of an isometric bend tau = c / k [s], of |q|.
-  std::vector<std::array<Real, 4>> weights;  ///< See elements::isometric_bend; all zero for a bend by angle.
+  std::vector<Real> damping;     ///< c [N m s / rad] of the angle; for an isometric bend tau = c / k [s], of
+                                 ///< |q|.
+  std::vector<std::array<Real, 4>> weights;  ///< Weights of elements::isometric_bend; all zero for a bend by
+                                             ///< angle.
 
   [[nodiscard]] int count() const { return static_cast<int>(stencil.size()); }
-  /// The weights of wings are never zero.
+  /// An isometric bend never has a zero weight at a wing.
   [[nodiscard]] bool is_isometric(std::size_t row) const { return weights[row][2] != Real(0); }
   [[nodiscard]] std::array<double, 4> weights_of(std::size_t row) const {
     const auto& k = weights[row];
@@ -87,13 +88,13 @@ struct Bends {
   }
 };
 
-/// Triangles of cloths: what the wind pushes and what is drawn.
+/// Triangles of cloths, which the wind pushes and which are drawn.
 struct Triangles {
   struct Corners {
     std::uint32_t a, b, c;
   };
   std::vector<Corners> corners;
-  /// Bit k: the edge from corner k to the next is counted as this triangle's, of all that share it.
+  /// Bit k says that the edge from corner k to the next belongs to this triangle, of all that share the edge.
   std::vector<std::uint8_t> own_edges;
   std::vector<Real> mass;  ///< [kg]
 
@@ -113,10 +114,11 @@ struct Segments {
   std::vector<Real> stiffness;     ///< k [N/m] of the segment; infinity is rigid.
   std::vector<Real> damping;       ///< c [N s/m] of the segment.
   std::vector<Real> length_limit;  ///< Largest length [m]; infinity for none.
-  std::vector<Real> tension;       ///< At the end of the last substep [N]; written by solve_chains.
-  std::vector<Real> mean_tension;  ///< Over the last step [N]; written by solve_chains.
+  std::vector<Real> tension;       ///< Tension at the end of the last substep [N]; written by
+                                   ///< solve_rope_systems.
+  std::vector<Real> mean_tension;  ///< Mean tension over the last step [N]; written by solve_rope_systems.
   std::vector<std::uint8_t>
-      limited;  ///< 1 while the segment is held at its largest length; written by solve_chains.
+      limited;  ///< 1 while the segment is held at its largest length; written by solve_rope_systems.
   std::vector<std::uint8_t> clamped;  ///< 1 if one thing holds both ends; written by note_clamps.
 
   [[nodiscard]] int count() const { return static_cast<int>(rest_length.size()); }

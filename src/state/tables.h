@@ -22,17 +22,18 @@
 
 namespace hooke::state {
 
-/// Everything a World holds that a copy must hold: a snapshot is a copy, a restoration an assignment, the
-/// hash a walk.
+/// Everything of a World that a copy must hold. A snapshot copies the tables, a restoration assigns them, and
+/// the state hash walks over them.
 struct Tables {
   static constexpr std::uint32_t kNoRow = 0xFFFFFFFF;
 
   WorldDesc desc;
   double time = 0.0;          ///< [s]
-  double body_substep = 0.0;  ///< Length of the last one of bodies [s]; 0 before the first step.
-  double substep = 0.0;       ///< Length of the last one [s]; 0 before the first step.
+  double body_substep = 0.0;  ///< Length of the last substep of bodies [s]; 0 before the first step.
+  double substep = 0.0;       ///< Length of the last substep of particles [s]; 0 before the first step.
   std::uint64_t step_count = 0;
-  std::uint64_t revision = 0;  ///< Grows when rows come, go or change what they join; derived tables follow.
+  std::uint64_t revision = 0;  ///< Grows when rows are added or removed or change what they join; derived
+                               ///< tables follow.
 
   std::vector<Deformable> objects;  ///< In order of creation.
   Particles particles;
@@ -41,7 +42,7 @@ struct Tables {
   Triangles triangles;
   Segments segments;
   Tetrahedra tetrahedra;
-  std::vector<TwistSpan> twists;  ///< In order of ropes, and along each.
+  std::vector<TwistSpan> twists;  ///< In order of ropes, then along each rope.
   Contacts contacts;
   std::vector<ElementContact> element_contacts;
   std::vector<RopeContact> rope_contacts;
@@ -50,17 +51,18 @@ struct Tables {
   Colliders colliders;
   Pairs pairs;
   bool any_reports = false;           ///< Some body was added that asks for contacts, hits or visitors.
-  std::vector<ContactEvent> touches;  ///< As of the last step, of those that ask; in order of creation.
-  std::vector<SensorEvent> visits;    ///< Who is in which sensor; in order of creation.
+  std::vector<ContactEvent> touches;  ///< Contacts of the last step, of bodies that ask for them; in order of
+                                      ///< creation.
+  std::vector<SensorEvent> visits;    ///< Lists who is in which sensor; in order of creation.
   std::vector<Hook> hooks;            ///< In order of creation.
-  std::uint64_t hook_revision = 0;    ///< Grows when hooks come, go or change their rows.
+  std::uint64_t hook_revision = 0;    ///< Grows when hooks are added or removed or change their rows.
   std::vector<std::uint32_t> moving_bodies;  ///< Rows of bodies that are not static, in ascending order.
   std::vector<std::uint32_t> free_bodies;    ///< Holes of the body table; the last is filled first.
   std::vector<Rows> free_colliders;          ///< Holes of the collider table.
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< By slot; null once removed.
-  /// Convex hulls of the same meshes' points; null until a body asks for one.
+  /// Convex hulls of the points of the same meshes; null until a body asks for one.
   std::vector<std::shared_ptr<const geometry::ConvexHull>> hulls;
-  /// Their convex parts; empty until a body that moves asks for them.
+  /// Convex parts of the same meshes; empty until a dynamic body asks for them.
   std::vector<std::vector<std::shared_ptr<const geometry::ConvexHull>>> convex_parts;
   std::vector<Field> fields;
   std::vector<ForceLawEntry> force_laws;
@@ -77,7 +79,7 @@ struct Tables {
   SlotTable<ForceLawId> force_law_slots;
 };
 
-/// The row of the object whose point it is; Tables::kNoRow for a stale or null reference.
+/// The row of the object that has this point; Tables::kNoRow for a stale or null reference.
 inline std::uint32_t object_row(const Tables& t, PointRef point) {
   switch (point.kind) {
     case PointRef::Kind::kRope:

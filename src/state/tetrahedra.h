@@ -13,13 +13,14 @@ namespace hooke::state {
 
 struct Tetrahedra {
   struct Corners {
-    std::uint32_t a, b, c, d;  ///< b, c, d counter-clockwise seen from a at rest: the volume is positive.
+    std::uint32_t a, b, c, d;  ///< b, c, d are counter-clockwise seen from a at rest: the volume is positive.
   };
   std::vector<Corners> corners;
-  std::vector<std::array<Vec3, 3>> shape_gradient;  ///< Of b, c, d at rest [1/m]; see elements/tetrahedron.h.
-  std::vector<Real> volume;                         ///< V at rest [m^3]
-  std::vector<Real> shear_modulus;                  ///< mu [Pa]
-  std::vector<Real> volume_modulus;                 ///< lambda [Pa], of elements::NeoHookean.
+  std::vector<std::array<Vec3, 3>> shape_gradient;  ///< Gradients of b, c, d at rest [1/m]; see
+                                                    ///< elements/tetrahedron.h.
+  std::vector<Real> volume;                         ///< Volume V at rest [m^3].
+  std::vector<Real> shear_modulus;                  ///< Shear modulus mu [Pa].
+  std::vector<Real> volume_modulus;                 ///< lambda of elements::NeoHookean [Pa].
   std::vector<Real> damping_time;                   ///< Viscosity over stiffness [s].
 
   [[nodiscard]] int count() const { return static_cast<int>(corners.size()); }
