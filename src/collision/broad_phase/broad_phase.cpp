@@ -18,8 +18,9 @@ namespace {
 constexpr int kSearchesPerBlock = 64;
 constexpr int kCandidatesPerBlock = 4096;
 
-// In mean sides of the box: how much a fat box is larger on every side, and how many steps of the last motion
-// it foresees and how much of it at most. Fatter boxes are searched for less often and overlap more in vain.
+// Sizes are in mean sides of the box: how much larger a fat box is on every side, how many steps of the last
+// motion it foresees, and at most how much of it. Fatter boxes are searched for less often, but overlap more
+// in vain.
 constexpr Real kMargin = Real(0.05);
 constexpr Real kForesight = Real(4);
 constexpr Real kMaxForesight = Real(0.75);
@@ -40,7 +41,7 @@ Box grown(const Box& box, Real margin) {
   return {box.lower - m, box.upper + m};
 }
 
-/// The box with its margin, and drawn out along its `way` of one step.
+/// The box with its margin, extended along its `displacement` in one step.
 Box fattened(const Box& box, Vec3 displacement) {
   const Real side = mean_side(box);
   const Vec3 longest = {kMaxForesight * side, kMaxForesight * side, kMaxForesight * side};
@@ -49,8 +50,8 @@ Box fattened(const Box& box, Vec3 displacement) {
   return {fat.lower + geometry::min_of(Vec3{}, drawn), fat.upper + geometry::max_of(Vec3{}, drawn)};
 }
 
-/// Whether a fat box still does for its tight one: around it, and not so much larger that a box that shrank
-/// or stopped would keep others searching in vain.
+/// Whether a fat box still fits its tight one: it must hold it, and must not be so much larger that a box
+/// that shrank or stopped would keep others searching in vain.
 bool still_fits(const Box& fat, const Box& tight) {
   return contains(fat, tight) && mean_side(fat) <= kMaxFatness * mean_side(tight);
 }
@@ -67,7 +68,7 @@ bool is_bounded(const Box& box) {
   return box.lower.x <= box.upper.x && box.lower.y <= box.upper.y && box.lower.z <= box.upper.z;
 }
 
-/// geometry::overlap without branches: of candidates, about every other one does.
+/// geometry::overlap without branches: about every other candidate overlaps.
 bool overlap_unpredictably(const Box& a, const Box& b) {
   return static_cast<bool>(
       static_cast<int>(a.lower.x <= b.upper.x) & static_cast<int>(b.lower.x <= a.upper.x) &
@@ -75,8 +76,8 @@ bool overlap_unpredictably(const Box& a, const Box& b) {
       static_cast<int>(a.lower.z <= b.upper.z) & static_cast<int>(b.lower.z <= a.upper.z));
 }
 
-/// Sorts by second, then by first, 11 bits at a time from the lowest; digits that are all alike cost nothing
-/// more than the look.
+/// Sorts by second, then by first, 11 bits at a time from the lowest. Digits that are all alike cost only the
+/// test.
 void sort_pairs(std::vector<ColliderPair>& pairs, std::vector<ColliderPair>& scratch) {
   constexpr std::size_t kFew = 512;
   constexpr std::uint32_t kDigits = 1 << 11;
@@ -107,7 +108,8 @@ std::size_t blocks_of(std::size_t count, int size) {
   return (count + static_cast<std::size_t>(size) - 1) / static_cast<std::size_t>(size);
 }
 
-/// Calls `kernel(block, begin, end)` for blocks of `size` rows: the same blocks for any number of workers.
+/// Calls `kernel(block, begin, end)` for blocks of `size` rows. The blocks are the same for any number of
+/// workers.
 template <class Kernel>
 void for_blocks(parallel::ThreadPool& pool, std::size_t count, int size, Kernel&& kernel) {
   parallel::for_ranges(pool, static_cast<int>(blocks_of(count, size)), 1, [&](parallel::Range blocks) {
@@ -275,8 +277,8 @@ void BroadPhase::mark_changed(std::uint32_t collider) {
   changed_.push_back(collider);
 }
 
-/// Whether a collider that changed and one whose fat box overlaps its own are to be reported by the first: of
-/// two that changed the lower one reports.
+/// Whether a collider that changed reports a pair with one whose fat box overlaps its own. If both changed,
+/// the lower one reports the pair.
 bool BroadPhase::is_candidate(std::uint32_t changed, std::uint32_t other) const {
   const Entry& a = entries_[changed];
   const Entry& b = entries_[other];
@@ -314,7 +316,7 @@ void BroadPhase::find_new_candidates(parallel::ThreadPool& pool) {
   sort_pairs(fresh_, sorted_);
 }
 
-/// Drops the candidates of those that changed and takes up the fresh ones, in order.
+/// Drops the candidates of colliders that changed and adds the fresh ones, in order.
 void BroadPhase::merge_candidates() {
   std::erase_if(candidates_, [&](const ColliderPair& pair) {
     return entries_[pair.first].changed || entries_[pair.second].changed;
@@ -322,7 +324,7 @@ void BroadPhase::merge_candidates() {
   sorted_.resize(candidates_.size() + fresh_.size());
   std::merge(candidates_.begin(), candidates_.end(), fresh_.begin(), fresh_.end(), sorted_.begin());
   base::take_turns(sorted_, candidates_);
-  fresh_.reserve(sorted_.capacity());  // takes turns with it where fresh pairs are sorted
+  fresh_.reserve(sorted_.capacity());  // sort_pairs swaps the two
   for (const std::uint32_t collider : changed_) entries_[collider].changed = false;
   changed_.clear();
 }

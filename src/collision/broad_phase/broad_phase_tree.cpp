@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kLeavesPerChange = 16;
 constexpr std::size_t kLeavesPerInsertion = 4;
 
-// Building is about ten times as dear as fitting and pays where searches have become this much longer.
+// Building costs about ten times as much as fitting. It pays when searches have become longer by this factor.
 constexpr double kPoorness = 1.5;
 
 double surface_of(const Box& box) {
@@ -171,8 +171,8 @@ void BroadPhaseTree::grow_ancestors(std::uint32_t node, const Box& box, std::uin
   }
 }
 
-/// Goes down where boxes grow least, to the first free lane: there a leaf costs nothing, since lanes are
-/// asked together. False where the way down is too long: then the tree is to be built anew.
+/// Descends where boxes grow least, to the first free lane. A leaf costs nothing there, because all lanes of
+/// a node are tested together. Returns false if the descent is too long; then the tree must be rebuilt.
 bool BroadPhaseTree::insert_into_nodes(const Leaf& leaf) {
   std::uint32_t node = 0;
   for (int depth = 0; depth < kMaxDepth; ++depth) {

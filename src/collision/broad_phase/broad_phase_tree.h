@@ -11,14 +11,14 @@
 
 namespace hooke::collision {
 
-/// A tree of boxes, eight children to a node, so that one test asks eight boxes at once. A leaf is a lane of
-/// a node and holds a value below 2^31. All boxes are finite; which node holds a leaf depends on history and
-/// must never show in a result.
+/// A tree of boxes, eight children to a node, so that one test compares with eight boxes at once. A leaf is a
+/// lane of a node and holds a value below 2^31. All boxes are finite. Which node holds a leaf depends on
+/// history and must never show in a result.
 ///
-/// A leaf may belong to a company: then it is not found for those of the same company, and parts of the tree
-/// where all are of it are not searched for them. Company 0 is none.
+/// A leaf may belong to a collision group. Then queries of the same group do not find it, and they skip parts
+/// of the tree in which all leaves are of that group. Group 0 is none.
 ///
-/// New leaves are loose until `update` puts them into nodes: queries are always right, but ask every loose
+/// New leaves are loose until `update` puts them into nodes. Queries are always right, but test every loose
 /// leaf. `update` costs nothing where nothing changed.
 class BroadPhaseTree {
  public:
@@ -28,40 +28,42 @@ class BroadPhaseTree {
     std::uint16_t group = 0;
   };
 
-  /// The value must not be in the tree.
+  /// Adds a leaf. Its value must not be in the tree.
   void insert(const Leaf& leaf);
-  /// `value` must be in the tree.
+  /// Removes a leaf. `value` must be in the tree.
   void erase(std::uint32_t value);
-  /// A new box for a `value` that is in the tree.
+  /// Gives a new box to a `value` that is in the tree.
   void move(std::uint32_t value, const geometry::Box& box);
-  /// As if new, but for its memory.
+  /// Resets to the state of a new object, but keeps the memory.
   void clear();
 
-  /// Puts loose leaves into nodes, fits nodes to their leaves where many changed, and builds the tree anew
-  /// where that has made it poor.
+  /// Puts loose leaves into nodes and fits nodes to their leaves where many changed. Builds the tree again if
+  /// its quality has become poor.
   void update();
 
-  /// How many leaves there are, loose ones included.
+  /// Number of leaves, loose ones included.
   [[nodiscard]] std::size_t count() const { return leaf_count_; }
-  /// Sum of the half surfaces of all inner boxes: how often random queries enter a node, up to a factor.
+  /// Sum of the half surfaces of all inner boxes. Up to a factor this is how often random queries enter a
+  /// node.
   [[nodiscard]] double cost() const;
 
-  /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order, but not for those
-  /// of `company` unless that is 0.
+  /// Calls `visit(value)` for each leaf whose box overlaps `box`, in no particular order. Leaves out those of
+  /// the collision group `group` unless that is 0.
   template <class Visit>
   void visit_overlaps(const geometry::Box& box, std::uint16_t group, Visit&& visit) const;
 
-  /// Calls `visit(value)` for each leaf with a `bound(box)` of at most `limit`, nodes from near to far. A box
-  /// inside another has no lower bound. `visit` returns the new limit, at most the old one.
+  /// Calls `visit(value)` for each leaf with a `bound(box)` of at most `limit`, nodes from near to far. The
+  /// bound of a box must be no higher than that of any box inside it. `visit` returns the new limit, at most
+  /// the old one.
   template <class Bound, class Visit>
   void visit_near(double limit, const Bound& bound, Visit&& visit) const;
 
  private:
   static constexpr int kLanes = 8;
   static constexpr std::uint32_t kLeafBit = 0x80000000;   // in Node::child: the rest is the leaf's value
-  static constexpr std::uint32_t kLooseBit = 0x80000000;  // in place_: the rest is a row of loose_
+  static constexpr std::uint32_t kLooseBit = 0x80000000;  // in slot_: the rest is a row of loose_
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
-  // Insertion goes no deeper; a build ends well before.
+  // An insertion goes no deeper than this; a build ends well before.
   static constexpr int kMaxDepth = 40;
   static constexpr int kStackSize = (kLanes - 1) * kMaxDepth + kLanes;
 
@@ -70,7 +72,7 @@ class BroadPhaseTree {
     std::array<Real, kLanes> lower_x, lower_y, lower_z;
     std::array<Real, kLanes> upper_x, upper_y, upper_z;
     std::array<std::uint32_t, kLanes> child;  // a node, or kLeafBit and a value
-    std::array<std::uint16_t, kLanes> group;  // of all leaves below; 0: of none, or not of one
+    std::array<std::uint16_t, kLanes> group;  // group of all leaves below; 0: none, or several
     std::uint32_t parent = kNone;             // node * kLanes + lane; kNone for the root
     std::int32_t count = 0;
 
@@ -79,15 +81,15 @@ class BroadPhaseTree {
     void set_box(int lane, const geometry::Box& box);
     /// The smallest box around all children.
     [[nodiscard]] geometry::Box bounds() const;
-    /// The company of all children, if it is one.
+    /// The collision group of all children, if they share one.
     [[nodiscard]] std::uint16_t common_group() const;
-    /// Bit i is set if child i overlaps `box` and is not of the company `own`.
+    /// Bit i is set if child i overlaps `box` and is not of the collision group `own`.
     [[nodiscard]] unsigned overlaps(const geometry::Box& box, std::uint16_t own) const;
   };
-  /// A node that waits for its turn.
+  /// A node that a search has still to enter.
   struct Waiting {
     std::uint32_t node = 0;
-    double bound = 0;  // no leaf below is entered before
+    double bound = 0;  // lower bound for all leaves below
   };
   /// Leaves that are to lie below a node.
   struct Task {
@@ -107,7 +109,7 @@ class BroadPhaseTree {
   void add_lane(std::uint32_t node, const Child& child);
   [[nodiscard]] Child lane_of(std::uint32_t node, int lane) const;
   void remove_lane(std::uint32_t node, int lane);
-  /// Boxes and companies above a leaf that was put into `node`, or moved there.
+  /// Extends the boxes and groups above a leaf that was put into `node`, or moved there.
   void grow_ancestors(std::uint32_t node, const geometry::Box& box, std::uint16_t group);
   bool insert_into_nodes(const Leaf& leaf);
   void fit();
@@ -117,15 +119,15 @@ class BroadPhaseTree {
 
   std::vector<Node> nodes_ = std::vector<Node>(1);  // the root is always there
   std::vector<Leaf> loose_;
-  std::vector<Task> tasks_;          // of build
-  std::vector<std::uint32_t> slot_;  // of each value: node * kLanes + lane, or kLooseBit and a row, or kNone
+  std::vector<Task> tasks_;          // work list of build
+  std::vector<std::uint32_t> slot_;  // by value: node * kLanes + lane, or kLooseBit and a row, or kNone
   std::size_t leaf_count_ = 0;
-  std::size_t change_count_ = 0;  // since the nodes were fitted
+  std::size_t change_count_ = 0;  // changes since the nodes were fitted
   double built_cost_ = 0;
 };
 
 inline unsigned BroadPhaseTree::Node::overlaps(const geometry::Box& box, std::uint16_t own) const {
-  // Written so that compilers make four or eight lanes of it, which they do not of comparisons.
+  // This form lets compilers use four or eight lanes, which they do not do for comparisons.
   const auto greater = [](Real a, Real b) { return a > b ? a : b; };
   const Vec3 lower = box.lower;
   const Vec3 upper = box.upper;

@@ -11,15 +11,16 @@ namespace {
 
 constexpr int kBinCount = 16;
 
-// From this depth on halves are taken. They end after 16 more levels, within BroadPhaseTree::kMaxDepth.
+// From this depth on leaves are split in halves. These end after 16 more levels, within
+// BroadPhaseTree::kMaxDepth.
 constexpr int kMedianDepth = 16;
 
-/// Twice the center: its order is what counts.
+/// Twice the center; only the order of the values counts.
 Vec3 center_of(const BroadPhaseTree::Leaf& leaf) {
   return leaf.box.lower + leaf.box.upper;
 }
 
-/// The axis along which the centers lie farthest apart, and the interval they fill.
+/// The axis along which the centers are spread farthest, and their interval on it.
 struct Extent {
   int axis = 0;
   Real lower = Real(0);
@@ -51,7 +52,7 @@ int find_cheapest_split(std::span<const BroadPhaseTree::Leaf> leaves, const Exte
     boxes[bin] = merge(boxes[bin], leaf.box);
     counts[bin] += 1;
   }
-  double costs[kBinCount] = {};  // of the split before this bin
+  double costs[kBinCount] = {};  // cost of the split before each bin
   Box box;
   double count = 0;
   for (int bin = 0; bin + 1 < kBinCount; ++bin) {

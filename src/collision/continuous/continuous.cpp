@@ -11,28 +11,28 @@ using parallel::for_ranges;
 using parallel::Range;
 
 constexpr int kSweepGrain = 64;
-constexpr int kMostClamps = 4;  // of a body in a step; then it stands
+constexpr int kMostClamps = 4;  // per body and step; then it stands
 
-/// An impact that was found when the bodies of its pair had given way `bends` times.
+/// An impact of a pair, found when its bodies had been clamped `clamps` times.
 struct Event {
   Impact impact = {};
   ColliderPair pair = {};
   int clamps = 0;
 
-  /// For a heap that gives the first: the last in order of time, then of pair.
+  /// Orders a heap that gives the first event: by time, then by pair.
   friend bool operator<(const Event& a, const Event& b) {
     return std::tie(a.impact.time, a.pair) > std::tie(b.impact.time, b.pair);
   }
 };
 
-/// Of some bodies that one thread looks at.
+/// Results and memory of one thread.
 struct ImpactSearch {
   PathScratch path_scratch = {};
   SweepScratch sweep = {};
   std::vector<Event> found = {};
 };
 
-/// Whether two bodies cannot pass each other in what is left of the step, as long as neither gives way.
+/// Whether two bodies cannot pass each other in the rest of the step, as long as neither is clamped.
 bool go_together(const Path& a, const Path& b, Real time) {
   return (Real(1) - time) * relative_displacement(a, b) <= kUnseenDisplacement * std::min(a.inner, b.inner);
 }
@@ -110,7 +110,7 @@ class ImpactQueue {
     for (const ImpactSearch& search : searches_) take_up(search.found);
   }
 
-  /// Returns how many of the two bodies give way.
+  /// Returns how many of the two bodies are clamped.
   std::uint32_t resolve_impact(const Event& event) {
     const std::uint32_t a = body_of(event.pair.first);
     const std::uint32_t b = body_of(event.pair.second);
@@ -123,29 +123,29 @@ class ImpactQueue {
     return (clamps_a ? 1u : 0u) + (clamps_b ? 1u : 0u);
   }
 
-  /// What is in a body's way.
+  /// The obstacle in a body's path.
   struct Push {
-    Vec3 out = {};         // away from it, unit
-    Real speed = Real(0);  // of it, along `out` [m per step]
-    bool firm = false;     // it gives no way itself, and is no lighter
+    Vec3 out = {};         // away from the obstacle, unit
+    Real speed = Real(0);  // of the obstacle, along `out` [m per step]
+    bool firm = false;     // the obstacle cannot be clamped, and is no lighter
   };
 
   [[nodiscard]] Push push_of(std::uint32_t pusher, std::uint32_t body, const Impact& impact,
                              Real sign) const {
     const Path& path = bodies_.path[pusher];
-    // A plank on ropes would throw a ton about, if that had to go as the plank does.
+    // A plank on ropes would throw a ton about, if that had to follow the plank.
     const bool firm = bodies_.stoppable[pusher] == Stoppable::kNever &&
                       bodies_.inverse_mass[pusher] <= bodies_.inverse_mass[body];
     Push push = {.out = sign * impact.normal, .firm = firm};
     const DVec3 lever =
         pose_at(bodies_.path[body], impact.time).position - pose_at(path, impact.time).position;
-    // Of two that give way, neither turns any more.
+    // If both are clamped, neither rotates any more.
     const Vec3 turning = push.firm ? cross(path.turn, vector_cast<Real>(lever)) : Vec3{};
     push.speed = dot(push.out, path.displacement + turning);
     return push;
   }
 
-  /// False if the body goes on as before.
+  /// Returns false if the body keeps its path.
   bool clamp_path(std::uint32_t body, const Push& push, Real time) {
     Path& path = bodies_.path[body];
     SweptBodies::Clamps& clamps = bodies_.clamps[body];

@@ -16,14 +16,14 @@ namespace {
 constexpr int kMaxRounds = 256;
 constexpr Real kAllowance = Real(5e-3);  // [m]
 
-/// How a collider can turn.
+/// The rotation of a collider.
 struct Spin {
   Vec3 turn = {};        // [rad per step]
-  Vec3 axis = {};        // of a shape that is round about it, through the center of mass; else zero
-  Real reach = Real(0);  // of the core from the center of mass [m]
+  Vec3 axis = {};        // axis about which the shape is round, through the center of mass; else zero
+  Real reach = Real(0);  // distance of the core's points from the center of mass [m]
   bool is_round = false;
 
-  /// How fast the core's extent along n can change [m per step].
+  /// Upper bound of the rate at which the core's extent along n can change [m per step].
   [[nodiscard]] Real rate(Vec3 n) const {
     const Real any = length(cross(n, turn));
     return reach * (is_round ? std::min(any, length(cross(axis, turn))) : any);
@@ -44,9 +44,9 @@ Spin spin_of(const SweptCollider& c) {
   return spin;
 }
 
-/// How fast two shapes can come together.
+/// Upper bound of the speed at which two shapes can come together.
 struct Closing {
-  Vec3 parting = {};  // of B's center from A's [m per step]
+  Vec3 parting = {};  // displacement of B's center relative to A's [m per step]
   Spin a = {};
   Spin b = {};
 
@@ -54,7 +54,7 @@ struct Closing {
   [[nodiscard]] Real fastest() const { return a.largest_rate() + b.largest_rate() + length(parting); }
 };
 
-/// How far two shapes are held apart, and by which direction.
+/// The gap that separates two shapes, and its direction.
 struct SeparatingGap {
   Real gap = Real(0);
   Vec3 n = {};  // from A to B
@@ -64,7 +64,7 @@ void take_better(SeparatingGap other, SeparatingGap& separating) {
   if (other.gap > separating.gap) separating = other;
 }
 
-/// By the nearest points, if those tell the direction well; false if not.
+/// Finds the gap by the nearest points. Returns false if those do not define the direction well.
 bool separate_by_distance(const Convex& a, const Convex& b, SeparatingGap& separating) {
   const Distance d = distance_between(a, b);
   if (d.cores_overlap) return false;
@@ -96,7 +96,7 @@ SeparatingGap separate_from_triangle(const Convex& triangle, const Convex& b) {
   return separating;
 }
 
-/// How near to the allowed overlap an advance ends.
+/// Distance from the allowed overlap at which an advance ends.
 Real advance_tolerance(Real allowance) {
   return Real(0.05) * allowance;
 }
@@ -114,7 +114,7 @@ std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin
     if (round == 0) target = std::min(target, separating.gap - Real(2) * tolerance);
     const Real slack = separating.gap - target;
     const Real rate = closing.along(separating.n);
-    // Whoever slides along the other at that depth does not meet it.
+    // A shape that slides along the other at that depth does not meet it.
     if (!(rate * (end - time) > std::max(slack, tolerance))) return std::nullopt;
     if (!(slack > tolerance)) break;
     time += slack / rate;
@@ -126,7 +126,7 @@ ShapeKind kind_of(const SweptCollider& c) {
   return c.colliders.shape[c.row].shape.kind;
 }
 
-/// Two convex shapes at a time, seen from A's center of mass.
+/// Two convex shapes at `time`, seen from A's center of mass.
 std::pair<Convex, Convex> convex_pair_at(const SweptCollider& a, const SweptCollider& b, Real time) {
   const Pose pose_a = pose_at(a.path, time);
   const Pose pose_b = pose_at(b.path, time);
@@ -180,8 +180,9 @@ class PairSweep {
     return place(b_.colliders, b_.row, pose_at(b_.path, time).rotation);
   }
 
-  /// In stretches in which the shape goes no farther than its size or a part of its way: those triangles that
-  /// it can reach in a stretch are swept, each only up to the earliest impact so far.
+  /// Divides the time into stretches in which the shape moves no farther than its size or a part of its
+  /// displacement. In each stretch it sweeps the triangles within reach, each only up to the earliest impact
+  /// so far.
   std::optional<Impact> sweep_mesh(const Closing& closing, Real begin, Real end) {
     constexpr Real kParts = Real(16);
     const Real displacement = closing.fastest() * (end - begin);
@@ -212,9 +213,9 @@ class PairSweep {
     return first;
   }
 
-  /// Whether the plane of a triangle alone tells that a shape does not meet it from the front for so long: it
-  /// stays over the plane, or with its middle behind one that stands. Most triangles near a fast shape need
-  /// no closer look.
+  /// Whether the plane of a triangle alone shows that a shape does not meet it from the front for so long:
+  /// the shape stays over the plane, or its middle stays behind a triangle that stands. Most triangles near a
+  /// fast shape need no closer test.
   [[nodiscard]] bool stays_beside_plane(const Closing& closing, const Convex& triangle, const Convex& b,
                                         Real duration) const {
     const Vec3 n = front_of_triangle(triangle);
@@ -225,7 +226,7 @@ class PairSweep {
     return dot(n, middle_of(b) - triangle.corners[0]) + duration * std::max(Real(0), rise) < Real(0);
   }
 
-  /// What overlaps a wall is not held apart from it by going on through the next one.
+  /// A shape that overlaps a wall is not separated from it by motion through the next wall.
   SeparatingGap separate_in_mesh(const PlacedMesh& mesh, std::uint32_t index, const Convex& b) {
     const Convex triangle = mesh.triangle(index);
     const SeparatingGap separating = separate_from_triangle(triangle, b);
@@ -234,15 +235,15 @@ class PairSweep {
     return n == separating.n ? separating : SeparatingGap{separation_along(triangle, b, n), n};
   }
 
-  /// Of the shape over the triangle's plane [m].
+  /// Height of the shape's middle over the triangle's plane [m].
   [[nodiscard]] Real height_of_middle(std::uint32_t index, Real time) const {
     const Convex triangle = mesh_at(time).triangle(index);
     return dot(front_of_triangle(triangle), middle_of(shape_at(time)) - triangle.corners[0]);
   }
 
-  /// What comes to a triangle from behind, or past its plane, goes on. But what overlapped it at `begin`, and
-  /// turns, may be so thin in between that its middle gets behind the face before the overlap grows: it meets
-  /// the face before.
+  /// A shape that comes to a triangle from behind, or past its plane, goes on. But a shape that overlapped it
+  /// at `begin`, and rotates, may be so thin in between that its middle gets behind the face before the
+  /// overlap grows. It then meets the face before that.
   [[nodiscard]] std::optional<Impact> from_front(Impact impact, std::uint32_t index, Real begin) const {
     constexpr int kHalvings = 20;
     const Vec3 front = front_of_triangle(mesh_at(impact.time).triangle(index));
@@ -287,7 +288,7 @@ Real relative_displacement(const Path& a, const Path& b) {
   const Path& large = a_is_small ? b : a;
   const Vec3 lever = vector_cast<Real>(small.center - large.center);
   const Vec3 center = small.displacement - large.displacement - cross(large.turn, lever);
-  // A point that turns by an angle leaves its tangent by up to half of the angle's square.
+  // A point that rotates by an angle leaves its tangent by up to half of the angle's square.
   const Real bend = Real(0.5) * length_squared(large.turn) * (length(lever) + small.radius);
   return length(center) + length(small.turn - large.turn) * small.radius + bend;
 }

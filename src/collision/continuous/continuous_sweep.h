@@ -12,29 +12,30 @@
 #include <vector>
 
 /// \file
-/// When two shapes in motion meet, within one step. Time is the part of the step that has gone by, in [0, 1].
+/// Finds when two moving shapes meet within one step. Time is the part of the step that has passed, in [0,
+/// 1].
 
 namespace hooke::collision {
 
-/// How a body moves through the rest of a step, evenly.
+/// The even motion of a body through the rest of a step.
 struct Path {
-  DVec3 center = {};       ///< Of mass, at `since` [m].
-  Quat rotation = {};      ///< At `since`.
-  Vec3 displacement = {};  ///< Of the center, in a whole step [m].
-  Vec3 turn = {};          ///< In a whole step, in world axes [rad].
-  Real radius = Real(0);   ///< Around the center of mass, of all its shapes [m].
-  Real inner = Real(0);    ///< Of a ball within its largest shape [m].
+  DVec3 center = {};       ///< Center of mass at `since` [m].
+  Quat rotation = {};      ///< Rotation at `since`.
+  Vec3 displacement = {};  ///< Displacement of the center in a whole step [m].
+  Vec3 turn = {};          ///< Rotation in a whole step, in world axes [rad].
+  Real radius = Real(0);   ///< Radius of all shapes around the center of mass [m].
+  Real inner = Real(0);    ///< Radius of a ball within the largest shape [m].
   Real since = Real(0);
 };
 
-/// How a body will move in the next `dt` [s] if nothing changes its velocity.
+/// The motion of a body in the next `dt` [s] if nothing changes its velocity.
 [[nodiscard]] Path path_ahead(const state::Bodies& bodies, std::uint32_t body, Real dt);
 
-/// How far a point of the smaller body can get in a step as seen from the larger one, at most [m]: little for
-/// those that fall, or ride, together.
+/// Upper bound of the displacement of a point of the smaller body in a step as seen from the larger one [m].
+/// It is small for bodies that fall or ride together.
 [[nodiscard]] Real relative_displacement(const Path& a, const Path& b);
 
-/// Where the center of mass is, and how the body is turned. Not before `since`.
+/// Center of mass and rotation of the body at `time`, which is not before `since`.
 [[nodiscard]] Pose pose_at(const Path& path, Real time);
 
 /// A collider and the path of its body.
@@ -44,39 +45,39 @@ struct SweptCollider {
   const Path& path;
 };
 
-/// How far a point of the collider's core can get in a step by turning, at most [m]: none for a ball about
-/// the center of mass, whatever its spin.
+/// Upper bound of how far a rotation can carry a point of the collider's core in a step [m]. It is zero for a
+/// ball about the center of mass, whatever its spin.
 [[nodiscard]] Real rotation_reach(const SweptCollider& collider);
 
 struct Impact {
   Real time = Real(0);
-  Vec3 normal = {};  ///< From A to B, unit.
+  Vec3 normal = {};  ///< Unit vector from A to B.
 };
 
 /// Memory for find_impact.
 struct SweepScratch {
   std::vector<std::uint32_t> triangles = {};
-  std::vector<std::uint32_t> near = {};  ///< Triangles at a place.
+  std::vector<std::uint32_t> near = {};  ///< Triangles near a position.
   ContactResult result = {};
 };
 
-/// How deep two shapes may overlap before a sweep says that they have met [m]: less than what would let them
-/// pass each other, and more than what bodies at rest on each other sink in. Shapes that slide along each
+/// Overlap of two shapes from which a sweep says that they have met [m]. It is less than what would let them
+/// pass each other, and more than the depth to which bodies at rest sink in. Shapes that slide along each
 /// other do not meet.
 [[nodiscard]] Real overlap_allowance(const SweptCollider& a, const SweptCollider& b);
 
-/// Whether one look shows that convex shapes cannot overlap by more than `allowance` [m] until the step's
-/// end: along n, a unit vector from A to B, they are too far apart for how fast they come together. If n is
-/// zero, along the line of their middles. False for other shapes.
+/// Whether a single test shows that convex shapes cannot overlap by more than `allowance` [m] until the
+/// step's end: along n, a unit vector from A to B, they are too far apart for how fast they come together. If
+/// n is zero, the line between their middles is used. False for other shapes.
 [[nodiscard]] bool are_separated(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance,
                                  Real begin);
 
-/// When the shapes first overlap by more than `allowance` [m], positive, or by more than they do at `begin`,
-/// which is not before their paths'.
-/// A mesh is met from the front only. Nothing for pairs that have no manifolds either (two meshes).
+/// When the shapes first overlap by more than `allowance` [m], which is positive, or by more than they do at
+/// `begin`, which is not before the start of their paths. A mesh can be met from the front only. Finds
+/// nothing for pairs that have no manifolds either (two meshes).
 ///
 /// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): along the direction n that
-/// holds the shapes farthest apart they cannot come together faster than
+/// separates the shapes most they cannot come together faster than
 ///
 ///   mu = n.(v_a - v_b) + |n x omega_a| r_a + |n x omega_b| r_b
 ///

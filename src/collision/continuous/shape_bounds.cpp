@@ -14,13 +14,13 @@ Vec3 absolute(Vec3 v) {
   return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
 }
 
-/// Half sizes of the world box around a box of `half_extents` turned by `rotation`.
+/// Half sizes of the world box around a box of `half_extents` rotated by `rotation`.
 Vec3 rotated_extents(Quat rotation, Vec3 half_extents) {
   const Mat3 r = matrix_of(rotation);
   return half_extents.x * absolute(r.x) + half_extents.y * absolute(r.y) + half_extents.z * absolute(r.z);
 }
 
-/// Of a disc of radius r across the unit vector `axis`: r sqrt(1 - axis_i^2).
+/// Half sizes of the box around a disc of radius r across the unit vector `axis`: r sqrt(1 - axis_i^2).
 Vec3 disc_extents(Vec3 axis, Real radius) {
   const auto side = [&](Real a) { return radius * std::sqrt(std::max(Real(0), Real(1) - a * a)); };
   return {side(axis.x), side(axis.y), side(axis.z)};
@@ -30,7 +30,7 @@ Box around(Vec3 center, Vec3 half) {
   return {center - half, center + half};
 }
 
-/// In axes parallel to the world's, about the origin of the shape's frame.
+/// The bounds in axes parallel to the world's, about the origin of the shape's frame.
 Box local_bounds(const state::ColliderShape& s, Quat rotation) {
   const Vec3 axis = rotate(rotation, Vec3{Real(0), Real(1), Real(0)});
   const Real r = s.shape.radius;
@@ -98,7 +98,7 @@ Box reach_of(const state::Colliders& colliders, std::uint32_t collider, const Pa
   const Pose pose = {path.center + vector_cast<double>(rotate(path.rotation, colliders.position[collider])),
                      path.rotation * colliders.rotation[collider]};
   const Box now = bounds_of(colliders.shape[collider], pose);
-  // No point of the body turns farther than its diameter.
+  // No point of the body moves farther by rotation than its diameter.
   const Real turn = std::min(length(path.turn), Real(2)) * path.radius;
   const Vec3 pad = {kReachMargin + turn, kReachMargin + turn, kReachMargin + turn};
   return {geometry::min_of(now.lower, now.lower + path.displacement) - pad,

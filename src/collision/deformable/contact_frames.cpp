@@ -10,7 +10,8 @@ namespace hooke::collision {
 
 namespace {
 
-constexpr Real kBoxRounding = Real(1e-4);  ///< Of a side near an object, seen from its origin, at most [m].
+constexpr Real kBoxRounding = Real(1e-4);  ///< Largest rounding of a box side near an object, seen from its
+                                           ///< origin [m].
 
 }  // namespace
 

@@ -18,27 +18,30 @@ namespace {
 using state::ElementContact;
 
 constexpr Real kSearchShare =
-    Real(0.5);  ///< Of what an edge is thinner in its middle: what protrudes so far.
-/// The depth of a gentle curve in a chord between two points, over their radius, that is not looked at: of
-/// ropes the line from node to node stays outside, of cloths it is held off by the points all the same.
+    Real(0.5);  ///< Rows are made if a shape protrudes by this share of an edge's thinning.
+/// The depth of a gentle curve in a chord between two points, over their radius, up to which it is not
+/// tested. On ropes the line from node to node stays outside; on cloths the points hold it off all the same.
 constexpr Real kRopeGentleDepth = Real(0.8);
 constexpr Real kClothGentleDepth = Real(0.4);
-constexpr Real kLeastFreeShare = Real(0.25);  ///< Of an element's points: what is pinned does not give way.
-constexpr int kMostNear = 12;                 ///< Elements under a body that is narrow.
-constexpr int kFewContacts = 12;              ///< With bodies: more take too long to be solved as one.
-constexpr int kSupportingPoints = 3;          ///< A wide body that lies on so many is carried by them.
-constexpr Real kLeastApart = Real(0.5);       ///< Overlap, over the radius, with which a contact may begin.
+constexpr Real kLeastFreeShare = Real(0.25);  ///< Share of an element's points that must be free: pinned
+                                              ///< points do not give way.
+constexpr int kMostNear = 12;                 ///< Largest number of elements near a narrow body.
+constexpr int kFewContacts = 12;              ///< With bodies; more contacts take too long to be solved as
+                                              ///< one.
+constexpr int kSupportingPoints = 3;          ///< A wide body that lies on so many points is carried by them.
+constexpr Real kLeastApart = Real(0.5);       ///< Largest overlap, over the radius, with which a contact may
+                                              ///< begin.
 constexpr Real kSameSide =
-    Real(0.9);  ///< Cosine of what a normal turns in a substep without losing its force.
-constexpr Real kNearShare = Real(0.01);  ///< Of the thickness: so near is met.
-constexpr Real kPushedApart = Real(1);   ///< Speed at which overlaps are undone in place, at most [m/s].
+    Real(0.9);  ///< Cosine of the angle that a normal may turn in a substep without losing its force.
+constexpr Real kNearShare = Real(0.01);  ///< Share of the thickness at which two count as touching.
+constexpr Real kPushedApart = Real(1);   ///< Largest speed at which overlaps are undone in place [m/s].
 
 /// A segment of a rope, or a triangle of a cloth or one of its edges.
 struct Element {
   std::uint32_t row = 0;
   std::uint32_t count = 0;
   std::array<std::uint32_t, 3> particle = {};
-  std::uint32_t edge = 0;  ///< As of InnerContact.
+  std::uint32_t edge = 0;  ///< As in state::ElementContact.
 };
 
 Element triangle_at(const state::Tables& t, std::uint32_t row) {
@@ -57,7 +60,7 @@ void for_each_element(const state::Tables& t, const state::Deformable& object, V
     visit(triangle_at(t, row));
 }
 
-/// A triangle's edges that count as its own; of a segment itself.
+/// Visits the edges that a triangle owns; for a segment, the segment itself.
 template <class Visit>
 void for_each_edge(const state::Tables& t, const Element& e, Visit&& visit) {
   if (e.count == 2) return visit(e);
@@ -74,7 +77,7 @@ Real thinning_of(const state::Deformable& object) {
   return object.kind == PointRef::Kind::kRope ? kRopeThinning : kClothThinning;
 }
 
-/// By how much an element is thinner at a place than at its points, over their radius.
+/// By how much an element is thinner at a point than at its ends, over their radius.
 Real thinning_at(const state::Deformable& object, const std::array<Real, 3>& weight) {
   Real between = Real(1);
   for (const Real w : weight) between -= w * w;
@@ -97,13 +100,13 @@ Real longest_edge_squared(const state::Tables& t, const state::Deformable& objec
   return longest;
 }
 
-/// A half-space has nothing that could pass between points; compounds stand as their parts.
+/// A half-space has nothing that could pass between points; compounds are present as their parts.
 bool can_protrude(const state::ColliderShape& shape) {
   if (shape.shape.kind == ShapeKind::kMesh) return !shape.mesh->protrusions.ends.empty();
   return shape.shape.kind != ShapeKind::kHalfSpace && shape.shape.kind != ShapeKind::kCompound;
 }
 
-/// Radius of curvature of the shape where it is most bent; 0 of an edge.
+/// Least radius of curvature of the shape; 0 for an edge.
 Real least_radius(const Shape& shape) {
   const bool is_round = shape.kind == ShapeKind::kSphere || shape.kind == ShapeKind::kCapsule;
   return is_round ? shape.radius : Real(0);
@@ -111,8 +114,8 @@ Real least_radius(const Shape& shape) {
 
 using Gaps = std::array<const ElementContactFinder::PointGap*, 3>;
 
-/// No place of the element is nearer to the shape than this: by the gradient at one of its points, or the
-/// mean of those at all.
+/// Lower bound of the distance of the element from the shape: by the gradient at one of its points, or by the
+/// mean of all gradients.
 Real least_distance(const Gaps& gaps, std::uint32_t count, std::size_t when) {
   const auto at = [&](std::uint32_t of, std::uint32_t where) {
     return gaps[of]->distance[when] + dot(gaps[of]->normal[when], gaps[where]->x[when] - gaps[of]->x[when]);
@@ -171,9 +174,9 @@ class PairSearch {
     return row != rows.end() && pair_of(*row) == pair;
   }
 
-  /// Whether points alone hold the body, as it is wide against the cloth's meshes, or near to many. Elements
-  /// that hold a body do not let go because it comes near to more of them: it would be through the cloth when
-  /// they come back.
+  /// Whether points alone hold the body, because it is wide compared with the cloth's meshes, or near to many
+  /// elements. Elements that hold a body are not dropped because it comes near to more of them: it would be
+  /// through the cloth when they come back.
   [[nodiscard]] bool is_supported_by_points() const {
     if (object_.triangles.count == 0 || !is_dynamic(t_.bodies, body_)) return false;
     const bool is_wide = t_.bodies.traits[body_].radius > longest_edge_;
@@ -216,7 +219,7 @@ class PairSearch {
     add_row(e, 0);
   }
 
-  /// A mesh knows no bounds from gradients: what its ridges and peaks protrude is seen where they are.
+  /// Gradients give no bounds for a mesh: how far its ridges and peaks protrude is measured at them.
   void search_mesh(const Element& e, Real radius, Real reach) {
     const state::Mesh& mesh = *frame_.shape->mesh;
     const auto corner = [&](std::uint32_t i) { return frame_.to_shape(position_of(t_, e.particle[i])); };
@@ -258,7 +261,7 @@ class PairSearch {
     }
   }
 
-  /// How far the nearest of an element's points is from the mesh, or `reach`.
+  /// Distance of the nearest of an element's points from the mesh, or `reach`.
   [[nodiscard]] Real nearest_point(const Element& e, const std::array<Vec3, 3>& corner, Real reach) const {
     Real least = reach;
     for (std::uint32_t i = 0; i < e.count; ++i)
@@ -284,7 +287,7 @@ class PairSearch {
          .friction = std::sqrt(object_.friction * t_.colliders.surface[collider_].friction)});
   }
 
-  /// By more than `most` nearer than the nearest point.
+  /// Whether the element is nearer than its nearest point by more than `most`.
   [[nodiscard]] bool protrudes(const Gaps& gaps, std::uint32_t count, std::size_t when, Real most) const {
     Real nearest = gaps[0]->distance[when];
     Vec3 sum = gaps[0]->x[when];
@@ -293,7 +296,7 @@ class PairSearch {
       sum += gaps[i]->x[when];
     }
     if (!(nearest - least_distance(gaps, count, when) > most)) return false;
-    // Over a curve the gradients at the points tell twice what protrudes.
+    // Over a curve the gradients at the points give twice the true protrusion.
     const Vec3 middle = (Real(1) / static_cast<Real>(count)) * sum;
     const Gap gap = gap_to_shape(*frame_.shape, middle);
     Real least = std::numeric_limits<Real>::infinity();
@@ -302,7 +305,7 @@ class PairSearch {
     return nearest - least > most;
   }
 
-  /// A point that would come into the shape is taken to slide along it.
+  /// A point that would enter the shape is taken to slide along it.
   const ElementContactFinder::PointGap& gap_of(std::uint32_t particle) {
     ElementContactFinder::PointGap& of = finder_.gaps[particle - object_.particles.first];
     if (of.pass == finder_.pass) return of;
@@ -328,16 +331,16 @@ class PairSearch {
   const state::Deformable& object_;
   std::uint32_t collider_, body_;
   const Frame& frame_;
-  Real longest_edge_;  ///< Of the object [m].
+  Real longest_edge_;  ///< Longest edge of the object [m].
   ElementContactFinder& finder_;
   Real fall_ = Real(0);
-  geometry::Box near_ = {};  ///< Elements outside stay away from the shape.
-  bool held_ = false;        ///< By an element, in the step before.
-  int near_elements_ = 0;    ///< Of those that have rows.
-  int near_points_ = 0;      ///< That touch now or at the end of the step, or nearly.
+  geometry::Box near_ = {};  ///< Elements outside this box stay away from the shape.
+  bool held_ = false;        ///< An element held the shape in the step before.
+  int near_elements_ = 0;    ///< Number of near elements that have rows.
+  int near_points_ = 0;      ///< Number of points that touch now or at the end of the step, or nearly.
 };
 
-/// Marks the rows of the last object, from `first` on.
+/// Marks whether the rows of the last object, from `first` on, are few.
 void mark_few(const state::Tables& t, std::size_t first, std::vector<ElementContact>& contacts) {
   const std::span<ElementContact> rows = std::span(contacts).subspan(first);
   const auto pressed = std::count_if(
@@ -355,7 +358,7 @@ void leave(ElementContact& row) {
   row.friction_force = {};
 }
 
-/// Ways of an element's points against the body within a substep [m].
+/// Displacements of an element's points relative to the body within a substep [m].
 struct Displacements {
   std::array<Vec3, 3> displacement = {};
   Real longest = Real(0);
@@ -372,7 +375,7 @@ Displacements displacements_of(const state::Tables& t, const ElementContact& row
   return displacements;
 }
 
-/// Whether the two cannot have met, nor will within `h`, since their distance was found.
+/// Whether the two cannot have met since their distance was found, and will not within `h`.
 bool stay_apart(const state::Tables& t, Real h, ElementContact& row) {
   if (!(row.clearance > Real(0))) return false;
   const Vec3 center =
@@ -382,7 +385,7 @@ bool stay_apart(const state::Tables& t, Real h, ElementContact& row) {
   return row.clearance > displacement;
 }
 
-/// One row while it is updated. Positions are offsets from the element's first point.
+/// The update of one row. Positions are offsets from the element's first point.
 class RowUpdate {
  public:
   RowUpdate(state::Tables& tables, ElementContact& row, Real h)
@@ -424,12 +427,12 @@ class RowUpdate {
   }
 
  private:
-  /// Of the element at the row's place.
+  /// Thickness of the element at the row's position.
   [[nodiscard]] Real thickness() const {
     return (Real(1) - thinning_at(t_.objects[row_.object], row_.weight)) * radius_;
   }
 
-  /// A body that overlaps from the start has no side yet on which it belongs.
+  /// Resets the row: a body that overlaps from the start has no side yet on which it belongs.
   void reset() {
     leave(row_);
     row_.normal = {};
@@ -441,8 +444,8 @@ class RowUpdate {
     return element;
   }
 
-  /// Place, normal and separation after a share of the way. False if the two are too far apart to meet, or
-  /// overlap.
+  /// Finds the position, normal and separation after a share of the displacement. Returns false if the two
+  /// are too far apart to meet, or overlap.
   bool find(Real share) {
     if (frame_.shape->shape.kind == ShapeKind::kMesh) return find_at_protrusion(share);
     const Convex element = element_at(share);
@@ -464,8 +467,8 @@ class RowUpdate {
     return true;
   }
 
-  /// The same at a ridge or a peak of a mesh. Behind it lies what has just come there, or is about as deep as
-  /// the skin: farther in the other sides of the mesh are nearer.
+  /// Does the same at a ridge or a peak of a mesh. An element can be behind it only if it has just come
+  /// there, or by about the skin's depth: farther in, other sides of the mesh are nearer.
   bool find_at_protrusion(Real share) {
     const state::Mesh& mesh = *frame_.shape->mesh;
     std::array<Vec3, 3> corner = {};
@@ -490,7 +493,7 @@ class RowUpdate {
     return true;
   }
 
-  /// To where they meet, as gap_on_way does for particles (particle_contacts.cpp).
+  /// Advances to where they meet, as gap_along_displacement does for particles (particle_contacts.cpp).
   void advance() {
     constexpr int kRounds = 4;
     Real share = Real(0);
@@ -511,7 +514,7 @@ class RowUpdate {
       row_.separation -= share * row_.weight[i] * dot(row_.normal, displacement_[i]);
   }
 
-  /// A point that is inside is pushed out by itself.
+  /// Whether a point is inside: such a point is pushed out by itself.
   [[nodiscard]] bool any_point_inside() const {
     for (std::uint32_t i = 0; i < row_.count; ++i) {
       const Vec3 x = frame_.to_shape(origin_ + corner_[i]);
@@ -525,7 +528,8 @@ class RowUpdate {
     return gap_to_shape(*frame_.shape, frame_.to_shape(origin_ + x));
   }
 
-  /// Where `value`, which is convex, is least between 0 and `end`: by thirds, to 1e-3 of the way.
+  /// Position between 0 and `end` of the least `value`, which is convex. Searches by thirds, to 1e-3 of the
+  /// interval.
   template <class Value>
   static Real least_of(Real end, const Value& value) {
     constexpr int kRounds = 17;
@@ -542,8 +546,8 @@ class RowUpdate {
     return Real(0.5) * (low + high);
   }
 
-  /// Of a shape that crosses the element: its deepest place, and the way out by which it came, or the nearest
-  /// if that is not `known`.
+  /// For a shape that crosses the element, finds its deepest point. The normal stays the one by which it came
+  /// if that is `known`, otherwise it is the nearest way out.
   void find_deepest(bool known) {
     const auto along = [&](Real b) {
       return row_.count == 2 ? Real(0) : least_of(Real(1) - b, [&](Real c) { return gap_at(b, c).distance; });
@@ -555,7 +559,7 @@ class RowUpdate {
     row_.separation = separation_along(element_at(Real(0)), shape_, -row_.normal) - thickness();
   }
 
-  /// Asleep too: as it lies so it stays, and what it overlaps does not throw it.
+  /// Holds for a sleeping body too: it stays as it lies, and what it overlaps does not throw it.
   [[nodiscard]] bool body_is_dynamic() const { return is_dynamic(t_.bodies, row_.body); }
   [[nodiscard]] bool pushes_body() const { return state::gives_way(t_.bodies, row_.body); }
 
@@ -583,7 +587,7 @@ class RowUpdate {
   Vec3 origin_;
   Convex shape_;
   std::array<Vec3, 3> corner_ = {};
-  std::array<Vec3, 3> displacement_ = {};  ///< Against the body, within the substep [m].
+  std::array<Vec3, 3> displacement_ = {};  ///< Displacement relative to the body within the substep [m].
   Real longest_displacement_ = Real(0);
   Real radius_ = std::numeric_limits<Real>::infinity();
   bool overlap_ = false;  ///< The shape crosses the element, and no point is inside.
@@ -602,12 +606,12 @@ void find_element_contacts(const state::Tables& t, const ElementContactQuery& qu
     if (!can_protrude(*query.frames[i].shape)) continue;
     if (longest < Real(0)) {
       longest = longest_edge_squared(t, object);
-      // Pass 0 is none; when the count comes round to it, gaps of long ago must not count as new.
+      // Pass 0 means none. When the count wraps around, gaps of earlier passes must not count as new.
       if (finder.pass > 0xF0000000) finder.gaps.clear(), finder.pass = 0;
       if (finder.gaps.size() < object.particles.count) finder.gaps.resize(object.particles.count);
     }
-    // An edge inscribed into a ball of radius R is l^2 / 8 R deep in it, an even triangle 4/3 of that, which
-    // is also by how much more it is thinner.
+    // An edge of length l that is inscribed into a ball of radius R is l^2 / 8 R deep in it, and an
+    // equilateral triangle 4/3 of that. A triangle is thinner by the same factor.
     const Real radius = t.particles.position[object.particles.first].radius;
     const Real most = (object.segments.count > 0 ? kRopeGentleDepth : kClothGentleDepth) * radius;
     if (longest < Real(8) * least_radius(shape) * most) continue;

@@ -50,13 +50,13 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint3
 }  // namespace
 
 struct ParticleContactScratch::Buffers {
-  std::vector<std::uint32_t> colliders;  // that particles may touch
+  std::vector<std::uint32_t> colliders;  // colliders that particles may touch
   std::vector<Hooked> hooked;
-  std::vector<std::uint32_t> near;       // colliders, of one object
-  std::vector<Frame> frames;             // of those
-  std::vector<std::uint32_t> triangles;  // of one query
+  std::vector<std::uint32_t> near;       // colliders near one object
+  std::vector<Frame> frames;             // frames of those
+  std::vector<std::uint32_t> triangles;  // triangles of one query
   state::Contacts contacts;              // those found; then those of the step before
-  std::vector<TriangleGap> gaps;         // of each contact with a mesh
+  std::vector<TriangleGap> gaps;         // one for each contact with a mesh
   ElementContactFinder element_finder;
 };
 
@@ -97,7 +97,7 @@ void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const
   }
 }
 
-/// Rows of both tables stand in order of their keys: one walk carries the forces over.
+/// Carries the forces over. Rows of both tables stand in order of their keys, so one walk is enough.
 void carry_forces(const state::Contacts& from, state::Contacts& to) {
   std::size_t old = 0;
   for (std::size_t row = 0; row < to.particle.size(); ++row) {
@@ -110,7 +110,7 @@ void carry_forces(const state::Contacts& from, state::Contacts& to) {
   }
 }
 
-/// Both get room for as many rows as either has had: they take turns.
+/// Both tables get room for as many rows as either has had, because they are swapped.
 void take_turns(state::Contacts& found, state::Contacts& before) {
   std::size_t room = 0;
   const auto measure = [&](const auto& column) { room = std::max(room, column.capacity()); };
@@ -127,9 +127,10 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
   contacts.separation[row] = gap.distance - radius;
 }
 
-/// The gap at x, or if a sphere there would meet the shape on its `way`, the gap where it does, less that
-/// part of the way: a plane that is right when it is touched. By conservative advancement; rounds are
-/// bounded, and what has not met the shape by then is taken where it is.
+/// Returns the gap at x. If a sphere there would meet the shape on its `displacement`, returns the gap where
+/// it meets it, less that part of the displacement: a plane that is right when it is touched. Uses
+/// conservative advancement with a bounded number of rounds; a sphere that has not met the shape by then is
+/// taken where it is.
 Gap gap_along_displacement(const state::ColliderShape& shape, Vec3 x, Vec3 displacement, Real radius) {
   constexpr int kRounds = 8;
   Gap gap = gap_to_shape(shape, x);
@@ -146,7 +147,7 @@ Gap gap_along_displacement(const state::ColliderShape& shape, Vec3 x, Vec3 displ
   return gap;
 }
 
-/// Where forces between the two act and how the body moves there, `velocity`. That is at the particle's
+/// Sets where forces between the two act and how the body moves there, `velocity`. They act at the particle's
 /// center, `arm` from the body's: a particle has no rotation that could take the torque of friction at its
 /// surface.
 void set_surface(state::Contacts& contacts, std::size_t row, Vec3 arm, Vec3 velocity, Vec3 belt_velocity) {
@@ -156,8 +157,8 @@ void set_surface(state::Contacts& contacts, std::size_t row, Vec3 arm, Vec3 velo
   contacts.surface_velocity[row] = velocity + contacts.belt_velocity[row];
 }
 
-/// The face of a triangle, or what comes behind the triangles: a ridge or a peak. That holds a point that is
-/// in front, and to which no place of the mesh around is nearer.
+/// The gap to the face of a triangle, or to a ridge or a peak, whose numbers follow the triangles. A ridge or
+/// a peak acts on a point that is in front and to which no part of the mesh around is nearer.
 TriangleGap gap_to_feature(const state::Mesh& mesh, std::uint32_t feature, Vec3 x) {
   const auto faces = static_cast<std::uint32_t>(mesh.desc.triangles.size());
   if (feature < faces) return gap_to_triangle(mesh, feature, x);
@@ -167,7 +168,7 @@ TriangleGap gap_to_feature(const state::Mesh& mesh, std::uint32_t feature, Vec3 
   return {{found->distance, found->normal}, true, kNotNearest};
 }
 
-/// Forces of the rows from `first` to `end` that do not hold any more go over to the nearest that does: the
+/// Moves the forces of the rows from `first` to `end` that no longer act to the nearest one that does: the
 /// particle has moved on from triangle to triangle.
 void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) {
   std::size_t successor = first;
@@ -185,10 +186,10 @@ void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) 
 }
 
 /// Rows from `first` on are features of one mesh near one particle, `gaps` away from it. The nearest triangle
-/// tells whether the particle is inside: then it alone pushes out. Outside, every place holds that is nearer
-/// than those around it: then nothing of the mesh is ever met too late, and sliding over the edges between
-/// triangles of a flat mesh is not felt. Right above such an edge the nearest triangle holds. A mesh that
-/// knows whether it holds the particle says so in `known`.
+/// says whether the particle is inside; then it alone pushes out. Outside, every feature acts that is nearer
+/// than those around it. So nothing of the mesh is met too late, and sliding over the edges between triangles
+/// of a flat mesh is not felt. Right above such an edge the nearest triangle acts. A mesh that can tell
+/// whether it holds the particle says so in `known`.
 void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
                       std::optional<bool> known, const Frame& frame, Real radius) {
   std::size_t nearest = 0;
@@ -198,7 +199,7 @@ void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<co
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const TriangleGap& g = gaps[i];
     any_holds = any_holds || (g.over_face && g.gap.distance >= Real(0));
-    // Of equally near triangles one that is below the particle counts, not one beside it.
+    // Of equally near triangles, one that is below the particle is chosen, not one beside it.
     const bool better = g.unsigned_distance < least || (g.unsigned_distance == least && g.over_face);
     nearest = better ? i : nearest;
     least = better ? g.unsigned_distance : least;
@@ -280,7 +281,7 @@ void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scra
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < count && same_pair(row, row - 1)) ++row;
   Frame frame;
-  std::size_t made_for = count;  // this row was `frame` made for; most of an object touch one shape
+  std::size_t made_for = count;  // row for which `frame` was made; most of an object touch one shape
   while (row < static_cast<std::size_t>(range.end)) {
     const std::size_t first = row;
     while (row < count && same_pair(row, first)) ++row;

@@ -9,7 +9,7 @@
 
 namespace hooke::collision {
 
-/// Memory of find_contacts, and what it leaves to update_contacts.
+/// Memory of find_contacts, and data that it leaves to update_contacts.
 class ParticleContactScratch {
  public:
   struct Buffers;  // particle_contacts.cpp
@@ -26,26 +26,25 @@ class ParticleContactScratch {
 };
 
 /// Finds the particles that may touch the shape of a body within the next `dt` and makes their contact rows,
-/// in order of particle, body and triangle. Rows that were there before keep their forces.
+/// in order of particle, body and triangle. Rows that existed before keep their forces.
 ///
-/// Reach: twice the way of the particle at its speed, plus those of gravity and of the body, plus 2 cm. What
-/// is pulled farther than that within one step is found one step late.
+/// The reach is twice the displacement of the particle at its speed, plus those by gravity and of the body,
+/// plus 2 cm. A particle that is pulled farther than that within one step is found one step late.
 void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& tables);
 
-/// Normal, separation and surface of each row at the present place of the particle and of the body. Where a
-/// particle comes to a convex shape within the next `h` [s], the row is that of the place where it will
-/// touch: what slides along a face, past its rim, must not be stopped by the rim's normal of before. `range`
-/// counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the range that
-/// holds the first of them.
+/// Finds the normal, separation and surface of each row from where the particle and the body are now. If a
+/// particle comes to a convex shape within the next `h` [s], the row is taken at the point where it will
+/// touch: what slides along a face, past its rim, must not be stopped by an earlier normal of the rim.
+/// `range` counts contact rows and may begin anywhere: the rows of a particle and a collider belong to the
+/// range that holds the first of them.
 void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& tables);
 
-/// Points of an object, counted within it, whose centers are less than half their radius outside a body, or
-/// inside it. In order.
+/// Points of an object, counted within it, whose centers are inside a body or less than half their radius
+/// outside it. In order.
 [[nodiscard]] std::vector<std::uint32_t> points_inside(const state::Tables& tables, std::uint32_t object,
                                                        std::uint32_t body);
 
-/// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Looks at all
-/// pairs.
+/// Deepest overlap of any particle's sphere with any colliding body [m]; 0 if there is none. Tests all pairs.
 [[nodiscard]] double largest_penetration(const state::Tables& tables);
 
 }  // namespace hooke::collision

@@ -12,19 +12,20 @@ namespace {
 
 using state::RopeContact;
 
-constexpr Real kEnd = Real(1e-5);            ///< A fraction that far from 0 or 1 is there.
-constexpr Real kClearlyNearer = Real(1e-3);  ///< Sine of the slope towards a neighbor that is nearer.
-constexpr Real kSkin = Real(0.03);           ///< By which a row is thinner where a neighbor is nearer.
-constexpr Real kAside = Real(0.25);          ///< Share of the way that other forces may turn into approach.
-constexpr Real kAhead = Real(0.1);           ///< A gap within which a row holds, over the thickness.
-constexpr Real kApartSpeed = Real(1);        ///< Overlaps are undone slower than that [m/s].
+constexpr Real kEnd = Real(1e-5);            ///< A fraction this near to 0 or 1 counts as the end.
+constexpr Real kClearlyNearer = Real(1e-3);  ///< Sine of the slope from which a neighbor counts as nearer.
+constexpr Real kSkin = Real(0.03);           ///< Share by which a row is thinner where a neighbor is nearer.
+constexpr Real kAside = Real(0.25);          ///< Share of the displacement that other forces may turn into
+                                             ///< approach.
+constexpr Real kAhead = Real(0.1);           ///< Gap within which a row acts, over the thickness.
+constexpr Real kApartSpeed = Real(1);        ///< Overlaps are undone more slowly than this [m/s].
 
 void leave(RopeContact& row) {
   row.separation = kNoContact;
   row.successor = RopeContact::kNone;
 }
 
-/// One row while its places are found.
+/// The search for the contact points of one row.
 class RopeRowUpdate {
  public:
   RopeRowUpdate(const state::Tables& tables, Real h, RopeContact& row)
@@ -61,7 +62,7 @@ class RopeRowUpdate {
   }
 
  private:
-  /// Whether the two cannot have met, nor will within h, since their distance was found.
+  /// Whether the two cannot have met since their distance was found, and will not within h.
   bool stay_apart() {
     if (!(row_.clearance > Real(0))) return false;
     const Real displacement = Real(2) * longest_displacement_ + kApartSpeed * h_;
@@ -69,8 +70,8 @@ class RopeRowUpdate {
     return row_.clearance > displacement + kAhead * row_.thickness;
   }
 
-  /// By how much a step along the next segment, or back along the one before, changes the distance, over the
-  /// length of that segment. Side 0 is of a, 1 of b.
+  /// Change of the distance for a step along the next segment, or back along the one before, over the length
+  /// of that segment. Side 0 is that of a, 1 that of b.
   [[nodiscard]] Real slope(std::size_t side, bool onward) const {
     const std::uint32_t end = row_.particle[2 * side + (onward ? 1 : 0)];
     const std::uint32_t next = onward ? end + 1 : end - 1;
@@ -81,9 +82,9 @@ class RopeRowUpdate {
     return size > Real(0) ? rise / size : Real(0);
   }
 
-  /// Where a segment's end is nearest, the next one may be nearer still. Then a row only holds what is a
+  /// If a segment is nearest at its end, the next one may be nearer still. Then a row acts only on what is a
   /// little thinner: ropes that lie side by side touch all along. At a joint that is nearest itself only the
-  /// first of the two holds, unless it is not clear which.
+  /// first of the two acts, unless it is not clear which.
   [[nodiscard]] std::uint32_t nearer_neighbor() {
     std::uint32_t nearer = RopeContact::kNone;
     for (std::size_t side = 0; side < 2; ++side) {

@@ -19,8 +19,8 @@ using state::RopeContact;
 using state::Tables;
 
 constexpr int kRopeContactGrain = 32;
-constexpr Real kLeastShare = Real(0.5);  ///< Of the thickness, or of the arc between two segments.
-constexpr int kFoundFor = 4;             ///< Substeps for which rows are found anew.
+constexpr Real kLeastShare = Real(0.5);  ///< Share of the thickness, or of the arc between two segments.
+constexpr int kFoundFor = 4;             ///< Number of substeps for which a new search is valid.
 
 auto key_of(const RopeContact& row) {
   return std::tie(row.segment_a, row.segment_b);
@@ -42,8 +42,8 @@ Vec3 mean_velocity(const Tables& t, const std::vector<std::uint32_t>& ropes) {
   return vector_cast<Real>((1 / count) * sum);
 }
 
-/// Notes where the rope's points are and how far they may go, and boxes around its segments. Coordinates are
-/// offsets from `origin`.
+/// Notes the positions of the rope's points and how far they may move, and the boxes around its segments.
+/// Coordinates are offsets from `origin`.
 void set_boxes(const Tables& t, std::uint32_t object, DVec3 origin, Real dt, RopeContactFinder& finder) {
   const state::Deformable& rope = t.objects[object];
   const Vec3 offset = vector_cast<Real>(rope.origin - origin);
@@ -114,7 +114,7 @@ void find_neighbors(std::vector<RopeContact>& rows) {
   }
 }
 
-/// Rows of both tables stand in order: one walk carries over what is known of a pair.
+/// Carries over what is known of a pair. Rows of both tables stand in order, so one walk is enough.
 void carry(const std::vector<RopeContact>& from, std::vector<RopeContact>& to) {
   auto old = from.begin();
   for (RopeContact& row : to) {
@@ -155,7 +155,7 @@ void find(parallel::ThreadPool& pool, Real dt, RopeContactFinder& finder, Tables
   base::take_turns(t.rope_contacts, finder.contacts);
 }
 
-/// Whether something may be by `h` from now where its rows are not known.
+/// Whether something may, within `h`, get to where its rows are not known.
 bool left_margin(const Tables& t, Real h, const RopeContactFinder& finder) {
   const Vec3 drifted = (finder.elapsed + h) * finder.drift;
   for (const std::uint32_t o : finder.ropes) {
@@ -168,7 +168,7 @@ bool left_margin(const Tables& t, Real h, const RopeContactFinder& finder) {
   return false;
 }
 
-/// The row that holds in place of one that does not, or kNone.
+/// The row that acts in place of one that does not, or kNone.
 std::uint32_t successor_of(const std::vector<RopeContact>& rows, std::uint32_t row) {
   constexpr int kMostSteps = 4;
   for (int i = 0; i < kMostSteps && row != RopeContact::kNone; ++i) {
@@ -178,7 +178,7 @@ std::uint32_t successor_of(const std::vector<RopeContact>& rows, std::uint32_t r
   return RopeContact::kNone;
 }
 
-/// Rows that hold no more hand over what acts to those that do.
+/// Rows that act no more hand their forces over to their successors.
 void hand_over(std::vector<RopeContact>& rows) {
   for (RopeContact& row : rows) {
     if (row.separation < kNoContact || row.normal == Vec3{}) continue;
@@ -197,7 +197,7 @@ void hand_over(std::vector<RopeContact>& rows) {
 
 void find_rope_contacts(parallel::ThreadPool& pool, Real dt, RopeContactFinder& finder, Tables& t) {
   find(pool, dt, finder, t);
-  // What acted in the last substep of the step before is solved with the others from the start.
+  // Rows that acted in the last substep of the step before are solved with the others from the start.
   for (RopeContact& row : t.rope_contacts) row.joined = row.normal != Vec3{};
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 /// \file
-/// Where ropes touch ropes and themselves: segment against segment, as capsules.
+/// Contacts of ropes with ropes and with themselves: segment against segment, as capsules.
 /// docs/decisions/0024-ropes-that-touch.md.
 
 namespace hooke::collision {
@@ -24,38 +24,40 @@ struct RopeContactFinder {
     std::uint32_t count = 0;
     bool held = false;
   };
-  BroadPhase broad_phase;  ///< Of segments, by their rows.
+  BroadPhase broad_phase;  ///< Boxes of segments, by their rows.
   std::uint64_t revision = 0;
   std::vector<ColliderPair> pairs;
-  std::vector<state::RopeContact> contacts;  ///< Those found; then those of the step before.
+  std::vector<state::RopeContact> contacts;  ///< The contacts found; then those of the step before.
   std::vector<std::uint32_t> ropes;          ///< Rows of objects that touch ropes.
-  // Of each segment's row.
+  // These columns are indexed by the row of a segment.
   std::vector<std::uint32_t> object_of;
-  std::vector<Real> arc;  ///< Along its rope to its start, at rest [m].
-  // Of each particle's row, when contacts were found.
-  std::vector<Vec3> start;   ///< Where it was [m].
-  std::vector<Real> margin;  ///< How far from there the rows found are all there are [m].
-  base::DisjointSets zones;  ///< Points that stop_rope_passes lets go on as one.
-  std::vector<Zone> zone;    ///< At the root of each.
-  Vec3 drift = {};           ///< Mean velocity of all; ways are against it [m/s].
-  Real elapsed = Real(0);    ///< Since then [s].
+  std::vector<Real> arc;  ///< Rest length along the rope to the segment's start [m].
+  // These columns are indexed by the row of a particle and belong to the last search.
+  std::vector<Vec3> start;   ///< Position at that search [m].
+  std::vector<Real> margin;  ///< Distance from there within which the rows found are complete [m].
+  base::DisjointSets zones;  ///< Sets of points that stop_rope_passes moves as one.
+  std::vector<Zone> zone;    ///< Data of each zone, at its root.
+  Vec3 drift = {};           ///< Mean velocity of all; displacements are relative to it [m/s].
+  Real elapsed = Real(0);    ///< Time since that search [s].
 };
 
-/// Replaces `rope_contacts` by a row for each two segments of ropes that touch ropes which may meet within
-/// `dt` [s]: whose boxes overlap, each grown by the radius, once more as a margin, the way at its speed and
-/// that of gravity. What was known of a pair is kept. Neighbors along one rope have none, up to an arc of pi
-/// radius between them: as near as that a rope comes to itself in the tightest bend.
+/// Replaces `rope_contacts` by a row for each two segments of ropes that touch ropes and may meet within `dt`
+/// [s]. Their boxes overlap, each grown by the radius, once more as a margin, and by the displacements at its
+/// speed and by gravity. What was known of a pair is kept. Segments that follow each other have no row. Other
+/// neighbors along one rope, up to an arc of pi radius between them, have an `adjacent` row, because a rope
+/// in its tightest bend comes as near to itself as that.
 void find_rope_contacts(parallel::ThreadPool& pool, Real dt, RopeContactFinder& finder,
                         state::Tables& tables);
 
-/// Places, normal and gap of each row, where the segments are now; where they meet within the next `h` [s],
-/// those of then. A row holds where no neighbor along either rope is nearer, and hands its forces over to
-/// that one otherwise: a contact slides along a rope from segment to segment. Finds rows anew where something
-/// left its margin.
+/// Finds the nearest points, normal and gap of each row from where the segments are now. If they meet within
+/// the next `h` [s], it uses the positions at that time. A row acts where no neighbor along either rope is
+/// nearer. Otherwise it hands its forces over to that neighbor: a contact slides along a rope from segment to
+/// segment. The rows are searched again if something left its margin.
 void update_rope_contacts(parallel::ThreadPool& pool, Real h, RopeContactFinder& finder,
                           state::Tables& tables);
 
-/// Finds rows anew if something may be by `h` [s] from now where its rows are not known. True if it did.
+/// Searches the rows again if something may, within `h` [s], get to where its rows are not known. Returns
+/// whether it did.
 bool renew_rope_contacts(parallel::ThreadPool& pool, Real h, RopeContactFinder& finder,
                          state::Tables& tables);
 

@@ -9,7 +9,7 @@ namespace hooke::collision {
 namespace {
 
 constexpr int kMostRounds = 24;
-constexpr Real kContactShare = Real(0.01);  ///< Of the distance: so near is met.
+constexpr Real kContactShare = Real(0.01);  ///< Share of the distance at which two count as touching.
 
 Vec3 sum_of(const std::array<Real, 4>& weight, const std::array<Vec3, 4>& of) {
   Vec3 sum;

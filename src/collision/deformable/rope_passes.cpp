@@ -12,13 +12,14 @@ namespace {
 using state::RopeContact;
 using state::Tables;
 
-constexpr Real kZoneShare = Real(0.5);  ///< Of what single impulses keep, kept by zones.
-constexpr Real kLookedFor = Real(0.8);  ///< Share of that at which the direction is taken.
-constexpr Real kCloser = Real(0.05);    ///< Of the distance that is kept: by so much less is a pass.
+constexpr Real kZoneShare = Real(0.5);  ///< Zones keep this share of the distance that single impulses keep.
+constexpr Real kLookedFor = Real(0.8);  ///< Share of that distance at which the direction is taken.
+constexpr Real kCloser = Real(0.05);    ///< A pass is nearer than the kept distance by this share of it.
 constexpr int kPasses = 8;
 constexpr int kZonePasses = 16;
 
-/// Where two lines would come nearer than they may, and by how much too fast they do [m/s].
+/// The point at which two center lines would come nearer than they may, and by how much they are too fast
+/// [m/s].
 struct Pass {
   RopePair::Nearest at;
   Real speed = Real(0);
@@ -57,7 +58,7 @@ bool stop_pairs(Real h, Tables& t) {
   return any;
 }
 
-/// Points of each zone get its mean velocity, or that of what is held in it.
+/// Gives the points of each zone its mean velocity, or that of its held points.
 void move_zones(RopeContactFinder& finder, Tables& t) {
   std::vector<RopeContactFinder::Zone>& zones = finder.zone;
   zones.assign(t.particles.position.size(), {});

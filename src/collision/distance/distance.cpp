@@ -24,7 +24,7 @@ Vec3 support_of_box(const Convex& c, Vec3 d) {
   return c.center + along(c.axes.x, h.x) + along(c.axes.y, h.y) + along(c.axes.z, h.z);
 }
 
-/// Of the disc of `radius` across the unit vector `axis`.
+/// Support of the disc of `radius` across the unit vector `axis`.
 Vec3 support_of_disc(Vec3 axis, Real radius, Vec3 d) {
   return radius * direction_across(axis, d, {});
 }
@@ -50,7 +50,7 @@ Vec3 support_of_triangle(const Convex& c, Vec3 d) {
   return dot(r - pq, d) > Real(0) ? r : pq;
 }
 
-/// A corner of the simplex: a point of the difference of the cores, and where it comes from.
+/// A corner of the simplex: a point of the difference of the cores, and the two points that it comes from.
 struct Corner {
   DVec3 w = {};
   DVec3 on_a = {};
@@ -74,11 +74,11 @@ struct Simplex {
   }
 };
 
-/// The corners that the point of a face nearest to the origin needs, by their weights.
+/// The corners that the point of a face nearest to the origin needs, with their weights.
 struct Nearby {
   std::array<int, 3> of = {};
   std::array<double, 3> weight = {};
-  DVec3 point = {};  ///< The nearest.
+  DVec3 point = {};  ///< The nearest point.
 };
 
 Nearby near_on_segment(const Simplex& s) {
@@ -93,7 +93,7 @@ Nearby near_on_triangle(const Simplex& s, const std::array<int, 3>& of) {
 }
 
 void keep(const Nearby& near, Simplex& s) {
-  // In place: `of` ascends.
+  // This works in place, because `of` ascends.
   s.count = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(near.weight[i] > 0)) continue;
@@ -102,8 +102,8 @@ void keep(const Nearby& near, Simplex& s) {
   }
 }
 
-/// False if the origin is inside. A flat tetrahedron has all faces outside; `is_outside` says that the origin
-/// is known to be outside, whatever rounding makes of a tetrahedron that is nearly flat.
+/// Returns false if the origin is inside. A flat tetrahedron has all faces outside; `is_outside` says that
+/// the origin is known to be outside, whatever rounding makes of a tetrahedron that is nearly flat.
 bool reduce_tetrahedron(Simplex& s, bool is_outside) {
   constexpr std::array<std::array<int, 4>, 4> kFaces = {
       {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}};
@@ -124,7 +124,7 @@ bool reduce_tetrahedron(Simplex& s, bool is_outside) {
   return true;
 }
 
-/// Keeps the corners that the point nearest to the origin needs. False if the origin is inside.
+/// Keeps the corners that the point nearest to the origin needs. Returns false if the origin is inside.
 bool reduce(Simplex& s, bool is_outside) {
   if (s.count == 4) return reduce_tetrahedron(s, is_outside);
   if (s.count == 3) keep(near_on_triangle(s, {0, 1, 2}), s);
@@ -133,7 +133,7 @@ bool reduce(Simplex& s, bool is_outside) {
   return true;
 }
 
-/// Of places that lie farthest along a direction.
+/// The corner that lies farthest along a direction.
 Corner corner_along(const Convex& a, const Convex& b, DVec3 direction) {
   // The direction shrinks with the distance: its length must not underflow in Real.
   const Vec3 d = vector_cast<Real>(geometry::direction_or(direction, DVec3{0, 1, 0}));
@@ -149,7 +149,8 @@ bool holds(const Simplex& s, DVec3 w) {
                      [w](const Corner& corner) { return corner.w == w; });
 }
 
-/// From a to the middle of b: of a triangle, which may be large, from the place nearest to that.
+/// From a to the middle of b. A triangle may be large; for it the direction begins at its point nearest to
+/// that middle.
 Vec3 first_direction(const Convex& a, const Convex& b) {
   const Vec3 middle = middle_of(b);
   if (a.shape.kind != ShapeKind::kMesh) return middle - middle_of(a);
@@ -157,7 +158,7 @@ Vec3 first_direction(const Convex& a, const Convex& b) {
   return middle - geometry::closest_on_triangle(middle, p, q, r).point;
 }
 
-/// Of the nearest places of the cores, which are apart.
+/// The distance from the nearest points of the cores, which are apart.
 Distance between_points(const Convex& a, const Convex& b, DVec3 on_a, DVec3 on_b) {
   Distance result;
   result.normal = vector_cast<Real>(geometry::direction_or(on_b - on_a, DVec3{}));
@@ -167,7 +168,7 @@ Distance between_points(const Convex& a, const Convex& b, DVec3 on_a, DVec3 on_b
   return result;
 }
 
-/// By the supports of the two; see distance_between.
+/// Finds the distance by the supports of the two; see distance_between.
 Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
   const Real skins = skin_of(a) + skin_of(b);
   const auto far = static_cast<double>(enough + skins);
@@ -196,7 +197,7 @@ Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
   return between_points(a, b, nearest.on_a, nearest.on_b);
 }
 
-/// The pair of places that are nearest of those offered.
+/// The nearest of the pairs of points that are offered.
 struct NearestPoints {
   DVec3 on_a = {};
   DVec3 on_b = {};
@@ -211,7 +212,7 @@ struct NearestPoints {
   }
 };
 
-/// Where the lines of two segments are nearest, if that is inside both.
+/// Offers the points where the lines of two segments are nearest, if these are inside both.
 void offer_inside(const geometry::Segment<double>& a, const geometry::Segment<double>& b,
                   NearestPoints& nearest) {
   const DVec3 along_a = a.end - a.start;
@@ -236,7 +237,8 @@ bool passes_through(const geometry::Segment<double>& s, const std::array<DVec3, 
   return is_inside(p, q) && is_inside(q, r) && is_inside(r, p);
 }
 
-/// What people on terrain ask most, from all places that can be nearest: a third of the time.
+/// The most frequent test of people on terrain. It compares all points that can be nearest, in a third of the
+/// time.
 Distance between_triangle_and_capsule(const Convex& a, const Convex& b) {
   const DVec3 half = vector_cast<double>(b.shape.half_height * b.axes.y);
   const DVec3 center = vector_cast<double>(b.center);
@@ -264,7 +266,7 @@ Vec3 direction_across(Vec3 axis, Vec3 d, Vec3 otherwise) {
   const Vec3 across = d - dot(axis, d) * axis;
   const Real size = length(across);
   if (!(size > Real(1e-6) * length(d))) return otherwise;
-  // What rounding left along the axis has grown with the rest.
+  // The rounding error along the axis has grown with the rest.
   const Vec3 scaled = Real(1) / size * across;
   return scaled - dot(axis, scaled) * axis;
 }

@@ -8,14 +8,14 @@
 
 namespace hooke::collision {
 
-/// What two surfaces do to each other.
+/// Friction and restitution of two surfaces in contact.
 struct PairSurface {
   Real friction = Real(0);
   Real static_friction = Real(0);  ///< Not below `friction`.
   Real restitution = Real(0);
 };
 
-/// By the table where it lists the two materials, otherwise by the rule at ContactDesc.
+/// The values come from the table where it lists the two materials, otherwise from the rule at ContactDesc.
 inline PairSurface surface_of(const ContactDesc& a, const ContactDesc& b,
                               std::span<const MaterialPairDesc> materials) {
   for (const MaterialPairDesc& m : materials) {

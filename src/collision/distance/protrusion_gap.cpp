@@ -9,11 +9,13 @@ namespace hooke::collision {
 
 namespace {
 
-constexpr Real kTilt = Real(0.01);   ///< By which a neighbor may stand out over the plane of contact, a sine.
-constexpr Real kClose = Real(1e-3);  ///< Places that are nearer, over the element's size, tell no direction.
+constexpr Real kTilt = Real(0.01);   ///< Sine of the angle by which a neighbor may stand out over the plane
+                                     ///< of contact.
+constexpr Real kClose = Real(1e-3);  ///< Points that are nearer than this, over the element's size, define no
+                                     ///< direction.
 constexpr Real kParallel = Real(1e-4);  ///< The square of a sine: points carry what lies along a ridge.
 
-/// One protrusion, seen from one element.
+/// The gap between one protrusion and one element.
 class GapSearch {
  public:
   GapSearch(const state::Mesh& mesh, std::uint32_t protrusion, std::span<const Vec3> corners)
@@ -37,7 +39,7 @@ class GapSearch {
     return mesh_.desc.positions[mesh_.protrusions.ends[protrusion_][end]];
   }
 
-  /// Whether the mesh around lies behind the plane across n.
+  /// Whether the mesh around the protrusion lies behind the plane across n.
   [[nodiscard]] bool faces(Vec3 n) const {
     const auto around = mesh_.protrusions.neighbors_of(protrusion_);
     return std::all_of(around.begin(), around.end(), [&](std::uint32_t vertex) {
@@ -47,7 +49,8 @@ class GapSearch {
     });
   }
 
-  /// `across` is a direction across both, of any sign, for places that are too near to tell one.
+  /// Offers a pair of points. `across` is a direction across both, of any sign, for points that are too near
+  /// to define one.
   void offer(Vec3 on_element, Vec3 on_mesh, Vec3 across, std::array<Real, 3> weight) {
     const Vec3 apart = on_element - on_mesh;
     const Real distance = length(apart);
@@ -85,7 +88,7 @@ class GapSearch {
     if (share > Real(0) && share < Real(1)) offer(found.point, start_, {}, {Real(1) - share, share, Real(0)});
   }
 
-  /// Where the two cross; elsewhere peaks and points meet.
+  /// Offers the points where the two cross; elsewhere peaks and points meet.
   void offer_ridge() {
     const Vec3 along = corners_[1] - corners_[0];
     const Vec3 ridge = vertex(1) - start_;

@@ -10,27 +10,27 @@
 #include <span>
 
 /// \file
-/// How far a segment or a triangle is from a ridge or a peak of a mesh (geometry/mesh/protrusions.h), in the
-/// mesh's frame.
+/// The distance of a segment or a triangle from a ridge or a peak of a mesh (geometry/mesh/protrusions.h), in
+/// the mesh's frame.
 
 namespace hooke::collision {
 
-/// Places between the points of an element and on a protrusion, of which each is the nearest to the other.
+/// A point between the points of an element and a point on a protrusion, each of which is the nearest to the
+/// other.
 struct ProtrusionGap {
   Real distance = Real(0);          ///< Negative behind the mesh's front [m].
-  Vec3 normal = {};                 ///< Out of the mesh.
-  Vec3 place = {};                  ///< On the element.
-  std::array<Real, 3> weight = {};  ///< Of the element's points there.
+  Vec3 normal = {};                 ///< Unit vector out of the mesh.
+  Vec3 place = {};                  ///< Point on the element.
+  std::array<Real, 3> weight = {};  ///< Weights of the element's points there.
 };
 
 struct ProtrusionSearch {
-  std::optional<ProtrusionGap>
-      gap;                   ///< Nothing where points of the element or other parts of the mesh touch.
-  Real clearance = Real(0);  ///< The two are not nearer to each other than this [m].
+  std::optional<ProtrusionGap> gap;  ///< Nothing if points of the element or other parts of the mesh touch.
+  Real clearance = Real(0);          ///< Lower bound of the distance between the two [m].
 };
 
-/// Of a ridge or a peak and a point (one corner) or a segment (two), or of a peak and the inside of a
-/// triangle.
+/// Finds the gap between a ridge or a peak and a point (one corner) or a segment (two), or between a peak and
+/// the inside of a triangle.
 [[nodiscard]] ProtrusionSearch find_protrusion_gap(const state::Mesh& mesh, std::uint32_t protrusion,
                                                    std::span<const Vec3> corners);
 

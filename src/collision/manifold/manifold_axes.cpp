@@ -15,12 +15,13 @@ Real axis_tolerance(const Convex& a, const Convex& b) {
 
 Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axis) {
   constexpr int kMaxPushes = 8;
-  // Far enough apart that rounding does not turn the direction, near enough that it is the surface's.
+  // The shapes are far enough apart that rounding does not change the direction, and near enough that it is
+  // that of the surface.
   const Real clearance = Real(0.25) * std::max(thinness_of(a), thinness_of(b)) + Real(16) * tolerance;
   Nearest nearest;
   for (int i = 0; i < kMaxPushes; ++i) {
     const Real core_separation = axis.separation + skin_of(a) + skin_of(b);
-    // Where the cores are apart anyway the first direction is the right one.
+    // If the cores are apart anyway, the first direction is the right one.
     const bool apart = core_separation > Real(16) * tolerance;
     const Vec3 push = (apart ? Real(0) : clearance - core_separation) * axis.n;
     Convex pushed = b;
@@ -30,7 +31,7 @@ Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axi
     if (d.cores_overlap) break;
     const Real separation = separation_along(a, b, d.normal);
     const bool gains = separation > axis.separation + tolerance;
-    // The push moves the points against each other, unless it is along the direction between them.
+    // The push moves the nearest points against each other, unless it is along the direction between them.
     if (gains || !nearest.known || dot(d.normal, axis.n) > Real(0.999)) {
       nearest = {d.point_a, d.point_b - push, true};
     }

@@ -9,11 +9,11 @@ namespace hooke::collision {
 
 namespace {
 
-/// Two boxes as the test of their axes needs them: B in the frame of A.
+/// Data of two boxes for the test of their axes: B in the frame of A.
 struct BoxPair {
   Real r[3][3];     ///< r[i][j]: axis j of B along axis i of A.
   Real size[3][3];  ///< |r|
-  Real offset[3];   ///< From A to B.
+  Real offset[3];   ///< From the center of A to that of B.
   Real half_a[3], half_b[3];
 
   BoxPair(const Convex& a, const Convex& b) {
@@ -40,7 +40,7 @@ constexpr Real kParallel = Real(1e-4);
 /// The axis with the largest separation so far. Ties and near ties go to the last step's axis and to faces.
 struct Choice {
   std::uint32_t last_axis;
-  Real keep;  ///< What another axis has to be better by.
+  Real keep;  ///< The amount by which another axis has to be better.
   std::uint32_t code = 0;
   Real separation = Real(0);
   Real score = -std::numeric_limits<Real>::infinity();
@@ -111,7 +111,7 @@ struct FacePlane {
         face(2 * static_cast<unsigned>(axis) + (dot(outward, axis_of(box, axis)) < Real(0) ? 1 : 0)) {}
 };
 
-/// The face of the box that looks most against the plane's normal, as a polygon over the plane.
+/// The face of the box that points most against the plane's normal, as a polygon over the plane.
 CutPolygon face_over(const FacePlane& plane, const Convex& box, Vec3 from_plane) {
   const Real along[3] = {dot(box.axes.x, plane.normal), dot(box.axes.y, plane.normal),
                          dot(box.axes.z, plane.normal)};
@@ -138,7 +138,7 @@ CutPolygon face_over(const FacePlane& plane, const Convex& box, Vec3 from_plane)
   return polygon;
 }
 
-/// A face of `reference` against the face of `other` that looks at it. `on_a`: the reference is A.
+/// Makes the contact of a face of `reference` with the facing face of `other`. `on_a`: the reference is A.
 void collide_faces(const Convex& reference, int axis, const Convex& other, bool on_a, ContactResult& result) {
   const FacePlane plane(reference, axis, on_a ? result.normal : -result.normal);
   CutPolygon polygon = face_over(plane, other, other.center - reference.center);
@@ -174,7 +174,7 @@ void collide_edges(const Convex& a, const Convex& b, int edge, ContactResult& re
   const Feature edge_a = edge_along(a, edge / 3, result.normal);
   const Feature edge_b = edge_along(b, edge % 3, -result.normal);
   overlap_features(edge_a, edge_b, Real(0), Real(0), result);
-  // One point, where the edges cross.
+  // There is one point, where the edges cross.
   const auto key_of = [](const Feature& f) {
     return static_cast<std::uint32_t>(f.vertex[0]) << 3 | f.vertex[1];
   };
@@ -203,7 +203,7 @@ void collide_boxes(const Convex& a, const Convex& b, const ContactQuery& query, 
   if (axis < 3) collide_faces(a, axis, b, true, result);
   if (axis >= 3) collide_faces(b, axis - 3, a, false, result);
   if (result.count > 0 || result.separation > Real(0)) return;
-  // Two faces that miss each other although the boxes overlap: a corner is inside.
+  // The two faces miss each other although the boxes overlap: a corner is inside.
   const Vec3 on_a = support_of(a, result.normal);
   const Vec3 on_b = support_of(b, -result.normal);
   complete_points({axis < 3 ? on_b : on_a, axis < 3 ? on_b : on_a, true}, Real(0), result);

@@ -4,7 +4,7 @@ namespace hooke::collision {
 
 namespace {
 
-/// Key of the place where `edge` of the polygon crosses `clip` of the clipper.
+/// Key of the point where `edge` of the polygon crosses `clip` of the clipper.
 std::uint32_t crossing_key(std::uint32_t edge, std::uint32_t clip) {
   // Two edges of the clipper meet in its vertex.
   const std::uint32_t kind = (edge & Cut::kOfClipper) != 0 ? kVertexOfA : kCrossing;

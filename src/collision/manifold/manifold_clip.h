@@ -13,7 +13,7 @@
 
 namespace hooke::collision {
 
-/// A place in a plane. Not initialized: arrays of it are scratch.
+/// A position in a plane. It is not initialized, because arrays of it are scratch.
 struct Flat {
   Real u, v;
 };
@@ -34,9 +34,10 @@ constexpr Flat mix(Flat a, Flat b, Real t) {
 /// A corner of the polygon that is being clipped.
 struct Cut {
   Flat at;
-  Real height;  ///< Over the plane: interpolated.
+  Real height;  ///< Height over the plane, interpolated.
   std::uint32_t key;
-  std::uint32_t edge;  ///< That leaves it: of the subject, or of the clipper with kOfClipper.
+  std::uint32_t edge;  ///< Edge that leaves the corner: an edge of the subject, or with kOfClipper one of the
+                       ///< clipper.
 
   static constexpr std::uint32_t kOfClipper = 1u << 15;
 };

@@ -26,7 +26,7 @@ struct BestAxis {
     axis = {n, separation, code};
     score = candidate_score;
   }
-  /// The direction of `d` that looks from A to B; none for a zero vector.
+  /// Offers the direction of `d` with the sign that points from A to B; nothing for a zero vector.
   void offer_toward(Vec3 d) {
     const Vec3 n = geometry::direction_or(d, Vec3{});
     if (n == Vec3{}) return;
@@ -34,14 +34,14 @@ struct BestAxis {
   }
 };
 
-/// Outward normal of a cone's side, where it looks along `d`.
+/// Outward normal of a cone's side, on the side of `d`.
 Vec3 side_of_cone(const Convex& cone, Vec3 d) {
   const Vec3 out = direction_across(cone.axes.y, d, cone.axes.x);
   return normalize(Real(2) * cone.shape.half_height * out + cone.shape.radius * cone.axes.y);
 }
 
-/// Offers the directions in which the faces and flat ends of `own` look that may hold `other` off. `side` is
-/// the base of their codes; kAxisOfB turns them.
+/// Offers the normals of those faces and flat ends of `own` that may separate it from `other`. `side` is the
+/// base of their codes; with kAxisOfB the normals are negated.
 void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, BestAxis& best) {
   const Real sign = side == kAxisOfB ? Real(-1) : Real(1);
   const Vec3 to_other = middle_of(other) - middle_of(own);
@@ -61,7 +61,7 @@ void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, Bes
       const auto& faces = own.hull->faces;
       for (std::size_t i = 0; i < faces.size(); ++i) {
         const Vec3 n = own.axes * faces[i].normal;
-        // The other's middle is inside it by `core`, so it separates no more than this.
+        // The middle of `other` is inside `other` by `core`, so the face separates no more than this.
         const Real bound = dot(n, middle_of(other) - own.center) - faces[i].offset - core;
         if (bound > best.axis.separation - best.keep) offer(n, static_cast<std::uint32_t>(i));
       }
@@ -95,12 +95,12 @@ geometry::Segment<Real> shaft_of(const Convex& c) {
   return {c.center - end, c.center + end};
 }
 
-/// Directions across the axis of a round shape and the edges of a box.
+/// Offers directions across the axis of a round shape and the edges of a box.
 void offer_across_edges(const Convex& round, const Convex& box, BestAxis& best) {
   for (const Vec3 edge : {box.axes.x, box.axes.y, box.axes.z}) best.offer_toward(cross(round.axes.y, edge));
 }
 
-/// Directions between the axes of round shapes, and across them.
+/// Offers directions between the axes of round shapes, and across them.
 void offer_shafts(BestAxis& best) {
   const bool round_a = has_shaft(best.a);
   const bool round_b = has_shaft(best.b);
@@ -128,8 +128,8 @@ void collide_convex(const Convex& a, const Convex& b, const ContactQuery& query,
   const Real tolerance = axis_tolerance(a, b);
   Nearest nearest = improve_axis(a, b, tolerance, axis);
   if (axis.separation < Real(0)) {
-    // Overlapping shapes have several places where the separation is largest nearby: look from their middles
-    // too.
+    // For overlapping shapes the separation is largest nearby at several directions, so this starts from
+    // their middles too.
     BestAxis second = {a, b, 0, Real(0)};
     second.offer_toward(middle_of(b) - middle_of(a));
     const Nearest other = improve_axis(a, b, tolerance, second.axis);

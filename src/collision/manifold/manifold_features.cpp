@@ -9,12 +9,12 @@ namespace hooke::collision {
 
 namespace {
 
-// Slope of a side, as a sine, up to which it counts as lying across the direction.
+// Slope of a side, as a sine, up to which it counts as perpendicular to the direction.
 constexpr Real kFlatSide = Real(0.2);
-// A cylinder's end less tilted than this (cosine) is a disc and not a point of its rim.
+// The end of a cylinder that is less tilted than this (cosine) is a disc and not a point of its rim.
 constexpr Real kFlatEnd = Real(0.995);
-// The rim is taken at marks of the body, unless its lowest place lies this much of the radius below them:
-// marks that turn with the tilt would jump about on an end that stands flat.
+// Points of the rim are taken at marks fixed to the body, unless its lowest point lies this much of the
+// radius below them. Marks that follow the tilt would jump about on an end that stands flat.
 constexpr Real kTiltedRim = Real(1e-3);
 
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kBoxFaces = {
@@ -83,8 +83,8 @@ Feature disc_feature(const Convex& c, Vec3 center, Vec3 outward, Vec3 n) {
   f.center = center;
   f.radius = c.shape.radius;
   const Vec3 lowest = direction_across(outward, n, c.axes.x);
-  // With marks a quarter turn apart, the lowest place lies deeper than the nearest mark by at most
-  // (1 - cos 45 degrees) of the tilt.
+  // With marks a quarter turn apart, the lowest point lies deeper than the nearest mark by at most (1 - cos
+  // 45 degrees) of the tilt.
   const bool tilted = Real(0.3) * std::fabs(dot(n, lowest)) > kTiltedRim;
   const Vec3 first = tilted ? lowest : c.axes.x;
   const Vec3 second = cross(outward, first);
@@ -125,13 +125,13 @@ Feature capsule_feature(const Convex& c, Vec3 n) {
 }
 
 /// A feature seen along the normal: its points in the plane, and its height over the plane as a linear
-/// function of the place.
+/// function of the position.
 struct Seen {
   const Feature* feature = nullptr;
   std::array<Flat, Feature::kMaxPoints> at;
   Flat slope = {Real(0), Real(0)};
-  Real height = Real(0);             ///< At (0, 0).
-  Flat center = {Real(0), Real(0)};  ///< Of a disc.
+  Real height = Real(0);             ///< Height at (0, 0).
+  Flat center = {Real(0), Real(0)};  ///< Center of a disc.
 
   [[nodiscard]] Real height_at(Flat p) const { return height + dot(slope, p); }
 };
@@ -169,7 +169,7 @@ struct Projection {
   }
 };
 
-/// Collects points of the meeting.
+/// Collects points of the contact result.
 struct Collector {
   const Projection& projection;
   const Seen& a;
@@ -184,8 +184,8 @@ struct Collector {
   }
 };
 
-/// A's outside is along the normal and B's against it: seen along the normal A runs counter-clockwise and B
-/// clockwise.
+/// The outward normal of A is along the given normal, that of B against it: seen along it A runs
+/// counter-clockwise and B clockwise.
 void overlap_polygons(const Seen& clipper, const Seen& subject, bool clipper_is_a, const Collector& out) {
   CutPolygon polygon;
   const Feature& f = *subject.feature;
@@ -204,7 +204,7 @@ void overlap_polygons(const Seen& clipper, const Seen& subject, bool clipper_is_
   }
 }
 
-/// The part of a segment from fraction `first` to `last`, with what ends it.
+/// The part of a segment from fraction `first` to `last`, with the features that end it.
 struct Part {
   Real first = Real(0);
   Real last = Real(1);
@@ -239,13 +239,13 @@ void overlap_segment(const Seen& polygon, const Seen& segment, bool polygon_is_a
   add_part(segment, part, out);
 }
 
-/// Two sides that lie along each other meet in a line, others in a point.
+/// Two sides that are parallel overlap in a segment, others in a point.
 void overlap_segments(const Seen& a, const Seen& b, const Collector& out) {
   const Flat along_a = a.at[1] - a.at[0];
   const Flat along_b = b.at[1] - b.at[0];
   const Real size_a = dot(along_a, along_a);
   const Real cross_product = cross(along_a, along_b);
-  // Up to about a degree the sides lie along each other.
+  // Up to about a degree the sides count as parallel.
   if (cross_product * cross_product > Real(4e-4) * size_a * dot(along_b, along_b)) {
     const Real t = cross(b.at[0] - a.at[0], along_b) / cross_product;
     out.add(mix(a.at[0], a.at[1], std::clamp(t, Real(0), Real(1))), kCrossing);
@@ -259,11 +259,11 @@ void overlap_segments(const Seen& a, const Seen& b, const Collector& out) {
   add_part(b, part, out);
 }
 
-// How far beside an edge a point may lie and still count as inside, in lengths of the edge: what lies on an
+// Distance beside an edge at which a point still counts as inside, in lengths of the edge. So a point on an
 // edge that two faces share is over one of them.
 constexpr Real kSlack = Real(1e-5);
 
-/// A disc little tilted against the normal is seen as a circle.
+/// A disc that is little tilted against the normal is taken as a circle.
 bool is_inside(const Seen& seen, bool is_a, Flat p) {
   const Feature& f = *seen.feature;
   if (f.kind == Feature::Kind::kDisc) {
@@ -280,7 +280,7 @@ bool is_inside(const Seen& seen, bool is_a, Flat p) {
   return true;
 }
 
-/// Where the line from p to q crosses the rim of a disc.
+/// Adds the points where the line from p to q crosses the rim of a disc.
 void add_rim_crossings(const Seen& disc, Flat p, Flat q, std::uint32_t key, const Collector& out) {
   const Flat d = q - p;
   const Flat f = p - disc.center;
@@ -296,7 +296,8 @@ void add_rim_crossings(const Seen& disc, Flat p, Flat q, std::uint32_t key, cons
   if (last >= Real(0) && last <= Real(1)) out.add(mix(p, q, last), key | 1u << 15);
 }
 
-/// A disc and a disc, polygon or segment: the points of each that lie inside the other, and the crossings.
+/// Handles a disc with a disc, polygon or segment: adds the points of each that lie inside the other, and the
+/// crossings.
 void overlap_disc(const Seen& disc, const Seen& other, bool disc_is_a, const Collector& out) {
   const Feature& f = *other.feature;
   for (std::size_t i = 0; i < 4 && f.kind != Feature::Kind::kSegment; ++i) {
@@ -366,7 +367,7 @@ Feature feature_of_hull(const Convex& c, Vec3 n, Real least_cosine) {
   for (std::size_t i = 1; i < hull.vertices.size(); ++i) {
     if (dot(hull.vertices[i], local) > dot(hull.vertices[best], local)) best = i;
   }
-  // Of the faces at the farthest vertex: another face may look along n more and yet lie behind.
+  // Only faces at the farthest vertex are compared: another face may have a better normal and yet lie behind.
   const auto has_best = [&](const geometry::ConvexHull::Face& f) {
     const auto first = hull.loop.begin() + f.first;
     return std::find(first, first + f.count, best) != first + f.count;
@@ -380,7 +381,7 @@ Feature feature_of_hull(const Convex& c, Vec3 n, Real least_cosine) {
     cosine = c_face;
   }
   if (cosine >= least_cosine) return face_of_hull(c, face);
-  // The edge that falls off least from the farthest vertex.
+  // The edge whose slope down from the farthest vertex is least.
   Real flattest = kFlatSide;
   std::size_t other = best;
   for (const auto& edge : hull.edges) {
@@ -431,7 +432,7 @@ void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin
   const Seen& high = a_first ? seen_a : seen_b;
   const Seen& low = a_first ? seen_b : seen_a;
   if (low.feature->kind == Kind::kPoint) {
-    // Where a point meets an edge or a point, the nearest points say better where.
+    // For a point with an edge or a point, the nearest points give a better position.
     if (high.feature->kind < Kind::kPolygon || !is_inside(high, a_first, low.at[0])) return;
     out.add(low.at[0], kVertexOfB | low.feature->vertex[0]);
   } else if (high.feature->kind == Kind::kDisc) {

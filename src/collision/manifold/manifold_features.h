@@ -10,20 +10,21 @@
 
 namespace hooke::collision {
 
-/// What a shape offers along a direction: a point, an edge, a face or the flat end of a cylinder. Of the
-/// core: the skin is added when points are made.
+/// A feature that a shape presents along a direction: a point, an edge, a face or the flat end of a cylinder.
+/// It belongs to the core: the skin is added when points are made.
 struct Feature {
   enum class Kind : std::uint8_t { kPoint, kSegment, kPolygon, kDisc };
-  /// Faces of more corners are taken at this many of them.
+  /// Faces of more corners are reduced to this many of them.
   static constexpr int kMaxPoints = 16;
 
   Kind kind = Kind::kPoint;
   int count = 0;
-  std::array<Vec3, kMaxPoints> point;  ///< Of a polygon counter-clockwise from outside; of a disc on its rim.
-  std::array<std::uint16_t, kMaxPoints> vertex;  ///< For keys.
-  std::array<std::uint16_t, kMaxPoints> edge;    ///< From point i to the next, for keys.
-  Vec3 normal = {};                              ///< Of the plane of a polygon or disc, outward.
-  Vec3 center = {};                              ///< Of a disc.
+  std::array<Vec3, kMaxPoints> point;  ///< Points of a polygon, counter-clockwise from outside, or points on
+                                       ///< the rim of a disc.
+  std::array<std::uint16_t, kMaxPoints> vertex;  ///< Numbers of the vertices, for keys.
+  std::array<std::uint16_t, kMaxPoints> edge;    ///< Numbers of the edges from point i to the next, for keys.
+  Vec3 normal = {};                              ///< Outward normal of the plane of a polygon or disc.
+  Vec3 center = {};                              ///< Center of a disc.
   Real radius = Real(0);
 
   void add(Vec3 p, std::uint32_t vertex_id, std::uint32_t edge_id) {
@@ -34,10 +35,10 @@ struct Feature {
   }
 };
 
-/// How steep a face may be to count as what a polyhedron offers along a direction: cosines of the angle
-/// between them.
-inline constexpr Real kFlat = Real(0.98);  ///< Where the normal may be any direction.
-inline constexpr Real kSteep = Real(0.2);  ///< Where it is a face of the other shape.
+/// Largest slope of a face against a direction for which it is the feature of a polyhedron there: cosines of
+/// the angle between them.
+inline constexpr Real kFlat = Real(0.98);  ///< Used where the normal may be any direction.
+inline constexpr Real kSteep = Real(0.2);  ///< Used where the normal is that of a face of the other shape.
 
 /// The feature that is farthest along the unit vector `n`.
 [[nodiscard]] Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine = kFlat);
@@ -47,12 +48,13 @@ inline constexpr Real kSteep = Real(0.2);  ///< Where it is a face of the other 
 /// The face of a box, 0..5: +x, -x, +y, -y, +z, -z.
 [[nodiscard]] Feature face_of_box(const Convex& box, int face);
 [[nodiscard]] Feature face_of_hull(const Convex& hull, std::size_t face);
-/// feature_along for a shape with `hull` set, whatever its kind: vertices and edges are those of the hull.
+/// Does the same as feature_along for a shape with `hull` set, whatever its kind. Vertices and edges are
+/// those of the hull.
 [[nodiscard]] Feature feature_of_hull(const Convex& hull, Vec3 n, Real least_cosine);
 
-/// Adds the points where the two features lie over each other as seen along meeting.normal, from A to B: the
-/// corners of what their projections have in common. None for points and edges that miss each other, and for
-/// a point with anything but a face. `skin_a`, `skin_b` [m].
+/// Adds the points where the two features lie over each other as seen along result.normal, from A to B: the
+/// corners of what their projections have in common. Adds none for points and edges that miss each other, and
+/// none for a point with anything but a face. `skin_a`, `skin_b` [m].
 void overlap_features(const Feature& a, const Feature& b, Real skin_a, Real skin_b, ContactResult& result);
 
 }  // namespace hooke::collision

@@ -10,13 +10,13 @@ namespace {
 /// Heights below this are rounding [m].
 constexpr Real kPositionRounding = Real(2e-6);
 
-/// How far the piece stands out over a plane [m].
+/// Height by which the piece stands out over a plane [m].
 Real height_over_plane(const Convex& piece, Vec3 place, Vec3 normal) {
   if (piece.shape.kind == ShapeKind::kHalfSpace) return std::numeric_limits<Real>::infinity();
   return dot(normal, support_of(piece, normal) - place) + skin_of(piece);
 }
 
-/// Whether `other` covers the contact, see find_ghosts.
+/// Whether `other` covers the contact; see find_ghosts.
 bool covers(const SurfaceContact& other, const SurfaceContact& contact, Pieces pieces) {
   if (is_same_direction(contact.normal, other.normal)) return false;
   const Real height = height_over_plane(contact.piece, other.place, other.normal);
@@ -31,7 +31,7 @@ bool covers(const SurfaceContact& other, const SurfaceContact& contact, Pieces p
   return other.index < contact.index;
 }
 
-/// Where contacts cover each other all around, one of them stays.
+/// Where contacts cover each other all around, lets one of them stay.
 void open_rings(std::span<const SurfaceContact> all, Pieces pieces, Ghosts& found) {
   const std::vector<std::uint32_t>& coverer = found.coverer;
   std::vector<std::uint32_t>& held = found.held;

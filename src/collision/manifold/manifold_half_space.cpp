@@ -43,7 +43,7 @@ void collide_half_space(Vec3 origin, Vec3 normal, const Convex& b, const Contact
   result.separation = plane.height_of(support_of(b, -normal)) - skin;
   if (result.separation > query.margin) return;
   if (b.shape.kind == ShapeKind::kBox || b.shape.kind == ShapeKind::kHull) {
-    // Of a hull with very many corners so near, the lowest ones.
+    // Of a hull with very many corners in reach, the lowest ones are taken.
     Real reach = query.margin;
     add_corners(plane, b, reach, result);
     while (result.count == ContactResult::kMaxPoints && reach > result.separation + Real(1e-4)) {

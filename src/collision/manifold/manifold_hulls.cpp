@@ -60,13 +60,13 @@ void offer_faces(const Convex& own, const Convex& other, std::uint32_t side, Hul
   const Vec3 local = transpose(own.axes) * (middle_of(other) - own.center);
   for (std::size_t i = 0; i < own.hull->faces.size(); ++i) {
     const ConvexHull::Face& f = own.hull->faces[i];
-    // The other's center is inside it by its inner radius.
+    // The other's center is inside it by its inner radius, so this is an upper bound of the separation.
     const Real bound = dot(f.normal, local) - f.offset - other.hull->inner_radius;
     if (bound + pair.keep > pair.score) pair.offer(face_axis(own, other, i, side), Real(0));
   }
 }
 
-/// An edge in place, with the normals of its faces.
+/// An edge in world axes, with the normals of its faces.
 struct WorldEdge {
   Vec3 start, along, normal_a, normal_b;
   std::uint32_t index;
@@ -79,8 +79,8 @@ WorldEdge world_edge(const Convex& c, std::size_t i) {
           c.axes * c.hull->faces[e.face_b].normal, static_cast<std::uint32_t>(i)};
 }
 
-/// Edges in place. Room for those of the largest hull, on the stack and not filled with zeros: most hulls
-/// have few.
+/// A list of such edges. It has room on the stack for those of the largest hull, not filled with zeros,
+/// because most hulls have few.
 class EdgeList {
  public:
   void add(const WorldEdge& edge) {
@@ -97,7 +97,8 @@ class EdgeList {
   std::size_t count_ = 0;
 };
 
-/// What of edges decides whether they cross, eight side by side: the compiler makes vectors of it.
+/// The vectors that decide whether edges cross, for eight edges side by side, so that the compiler vectorizes
+/// the test.
 struct EdgeLanes {
   static constexpr std::size_t kLanes = 8;
   using Lanes = std::array<Real, kLanes>;
@@ -117,13 +118,13 @@ struct EdgeLanes {
 
   /// Whether the normals of edge p of A and the opposite ones of edges of B cross on the sphere of
   /// directions: only then the two edges span a face of the difference of the hulls (Gregorius, 2013, The
-  /// separating axis test between convex polyhedra). Of each lane negative where they do.
+  /// separating axis test between convex polyhedra). The result is negative in each lane where they do.
   void cross_arcs(const WorldEdge& p, Lanes& result) const {
     for (std::size_t i = 0; i < kLanes; ++i) {
       const auto dot_lane = [i](const Vectors& v, Vec3 w) {
         return v[0][i] * w.x + v[1][i] * w.y + v[2][i] * w.z;
       };
-      // normal_a x normal_b points along the edge. With the normals of the edges of B turned:
+      // normal_a x normal_b points along the edge. The normals of the edges of B are negated here:
       const Real cba = dot_lane(normal_a, p.along);
       const Real dba = dot_lane(normal_b, p.along);
       const Real adc = -dot_lane(along, p.normal_a);
@@ -133,8 +134,9 @@ struct EdgeLanes {
   }
 };
 
-/// The edges of `own` that may hold `other` off by more than `least`. Normals of an edge lie between those of
-/// its faces; none of them is farther along than the whole of the part across the edge.
+/// Finds the edges of `own` that may separate it from `other` by more than `least`. Normals of an edge lie
+/// between those of its faces. Along none of them is the other farther away than by its whole offset across
+/// the edge.
 void find_edges_toward(const Convex& own, const Convex& other, Real least, EdgeList& edges) {
   const ConvexHull& hull = *own.hull;
   const Vec3 middle = transpose(own.axes) * (middle_of(other) - own.center);
@@ -173,7 +175,7 @@ void offer_edge_pair(const WorldEdge& p, const WorldEdge& q, Vec3 middle, HullPa
              pair.prefer_faces);
 }
 
-/// Of axes that are equally good the first is kept: pairs are offered by edge of A, then of B.
+/// Of equally good axes the first is kept: pairs are offered by edge of A, then of B.
 void offer_edges(HullPair& pair) {
   constexpr std::size_t kLanes = EdgeLanes::kLanes;
   const Real least = pair.score + pair.prefer_faces - pair.keep;
@@ -199,9 +201,9 @@ void offer_edges(HullPair& pair) {
   }
 }
 
-/// Offers what held the hulls apart in the last step. Edges that span no face of the difference any more
-/// cross nowhere near where the hulls meet: they may only tell that the hulls are farther apart than
-/// `margin`.
+/// Offers the axis that separated the hulls in the last step. Edges that no longer span a face of the
+/// difference cross nowhere near where the hulls meet. They may only show that the hulls are farther apart
+/// than `margin`.
 void offer_last(Real margin, HullPair& pair) {
   const std::uint32_t code = pair.last_axis;
   const std::size_t face = code & 0xFFFF;
@@ -232,7 +234,7 @@ Feature edge_feature(const Convex& c, std::size_t index) {
   return f;
 }
 
-/// What the best axis says, and the points of its features.
+/// Sets the result of the best axis, and the points of its features.
 void add_points(const HullPair& pair, ContactResult& result) {
   const std::uint32_t code = pair.best.code;
   result.normal = pair.best.n;
@@ -253,12 +255,12 @@ void add_points(const HullPair& pair, ContactResult& result) {
   overlap_features(a, b, Real(0), Real(0), result);
 }
 
-/// Whether the hulls are apart, or a point is as deep as the axis says, but for `tolerance`.
+/// Whether the hulls are apart, or a point is as deep as the axis says, within `tolerance`.
 bool is_complete(const ContactResult& result, Real tolerance) {
   return result.separation > Real(0) || deepest_of(result) <= result.separation + tolerance;
 }
 
-/// A corner that is inside, where no feature shows it.
+/// Adds a corner that is inside, where no feature shows it.
 void add_corner(const HullPair& pair, ContactResult& result) {
   const bool of_a = (pair.best.code & kAxisOfB) == 0;
   const Vec3 corner = of_a ? farthest_vertex(pair.b, -result.normal) : farthest_vertex(pair.a, result.normal);
@@ -285,7 +287,7 @@ void collide_hulls(const Convex& a, const Convex& b, const ContactQuery& query, 
   const Real tolerance = pair.prefer_faces;
   if (is_complete(result, tolerance)) return;
   // The features of an axis that was kept or preferred need not lie over each other where the hulls are
-  // deepest; those of the best do.
+  // deepest; those of the best axis do.
   HullPair best = {a, b, 0, Real(0), Real(0)};
   offer_faces(a, b, kAxisOfA, best);
   offer_faces(b, a, kAxisOfB, best);

@@ -14,8 +14,8 @@ using state::Manifold;
 constexpr Real kSamePosition = Real(0.02);  // [m]
 constexpr Real kSameNormal = Real(0.866);   // cosine of 30 degrees
 
-/// Impulses by key; the points that found none are left to match_by_place. Bit i: point i of the old
-/// manifold has been used, or of the new one has its impulse.
+/// Result of the match by key; points that found no impulse are left to match_by_position. Bit i: point i of
+/// the old manifold has been used, or point i of the new one has its impulse.
 struct Matched {
   unsigned old_points = 0;
   unsigned new_points = 0;
@@ -25,7 +25,8 @@ Real distance_squared(const ContactPoint& p, const ContactPoint& q) {
   return std::min(length_squared(p.anchor_a - q.anchor_a), length_squared(p.anchor_b - q.anchor_b));
 }
 
-/// Two edges that are nearly parallel cross now near one end, now near the other, and keep their key.
+/// Two edges that are nearly parallel cross at one end in one step and at the other end in the next, and keep
+/// their key.
 bool is_same_point(const ContactPoint& p, const ContactPoint& q) {
   const bool crossing = (p.key & kNearest) == kCrossing;
   return p.key == q.key && (!crossing || distance_squared(p, q) < kSamePosition * kSamePosition);
@@ -45,7 +46,8 @@ Matched match_by_key(const Manifold& old, Manifold& manifold) {
   return matched;
 }
 
-/// A clip of aligned faces calls the same place now a vertex, now a crossing: the place decides.
+/// A clip of aligned faces calls the same point a vertex in one step and a crossing in the next, so the
+/// position decides.
 void match_by_position(const Manifold& old, Matched matched, Manifold& manifold) {
   for (unsigned round = 0; round < static_cast<unsigned>(manifold.point_count); ++round) {
     Real nearest = kSamePosition * kSamePosition;

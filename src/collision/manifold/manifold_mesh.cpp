@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxPatches = 6;
 
-/// The box of the shape, and of what is in reach of it, in the frame of the mesh.
+/// The box of the shape and of its reach, in the frame of the mesh.
 geometry::Box bounds_in(const PlacedMesh& mesh, const Convex& b, const MeshReach& reach) {
   const auto side = [&](Vec3 axis) {
     return dot(axis, support_of(b, axis)) + skin_of(b) + reach.along(-axis);
@@ -33,7 +33,7 @@ Vec3 front_of(const Convex& triangle) {
   return normalize(cross(q - p, r - p));
 }
 
-/// Points of the shape over the face.
+/// Makes the points of the shape over the face.
 void collide_face(const Convex& triangle, const Convex& b, ContactResult& result) {
   Feature face;
   face.kind = Feature::Kind::kPolygon;
@@ -42,8 +42,8 @@ void collide_face(const Convex& triangle, const Convex& b, ContactResult& result
   overlap_features(face, feature_along(b, -result.normal, kSteep), Real(0), skin_of(b), result);
 }
 
-/// A ball touches a triangle at the place nearest to its center, along the line between the two: along any
-/// other its spin would seem to bring them together.
+/// A ball touches a triangle at the point nearest to its center, along the line between the two. Along any
+/// other line its spin would seem to bring them together.
 bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, ContactResult& result) {
   constexpr Real kFlat = Real(1e-4);  // [rad]
   const auto& [p, q, r] = triangle.corners;
@@ -52,7 +52,7 @@ bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, Conta
   if (!(height > Real(0)) || !(height - skin_of(ball) <= margin)) return false;
   const Vec3 place = geometry::closest_on_triangle(ball.center, p, q, r).point;
   const Vec3 out = ball.center - place;
-  // Over an edge within a flat floor, too.
+  // This holds over an edge within a flat floor, too.
   const bool over_face = length(out - height * front) <= kFlat * height;
   const Real distance = over_face ? height : length(out);
   if (!(distance - skin_of(ball) <= margin)) return false;
@@ -66,7 +66,7 @@ bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, Conta
   return true;
 }
 
-/// What of the triangle's rim is farthest along n: a corner, or of an edge the place nearest to p.
+/// The part of the triangle's rim that is farthest along n: a corner, or the point of an edge nearest to p.
 Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
   std::array<Vec3, 3> rim = triangle.corners;
   const auto height = [n](Vec3 corner) { return dot(n, corner); };
@@ -75,8 +75,8 @@ Vec3 rim_along(const Convex& triangle, Vec3 n, Vec3 p) {
   return whole_edge ? geometry::closest_on_segment(p, rim[0], rim[1]).point : rim[0];
 }
 
-/// Whether the way from the triangle to the middle of the shape holds them apart: so most of the triangles
-/// are out that come into the shape's box.
+/// Whether the direction from the triangle to the middle of the shape separates them. This excludes most of
+/// the triangles whose boxes overlap that of the shape.
 bool is_apart(const Convex& triangle, const Convex& b, const MeshReach& reach) {
   const auto& [p, q, r] = triangle.corners;
   const Vec3 middle = middle_of(b);
@@ -87,7 +87,7 @@ bool is_apart(const Convex& triangle, const Convex& b, const MeshReach& reach) {
   return separation_along(triangle, b, n) > reach.along(n);
 }
 
-/// False if they are too far apart to meet, or the shape is behind the triangle.
+/// Returns false if they are too far apart to meet, or the shape is behind the triangle.
 bool collide_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b, const MeshReach& reach,
                       std::vector<std::uint32_t>& near, ContactResult& result) {
   const Real margin = reach.margin();
@@ -120,7 +120,7 @@ bool collide_triangle(const PlacedMesh& a, std::uint32_t index, const Convex& b,
   return result.count > 0;
 }
 
-/// Vertices of the shape keep their key from triangle to triangle, other places do not.
+/// Vertices of the shape keep their key from triangle to triangle, other points do not.
 std::uint32_t key_on(std::uint32_t triangle, std::uint32_t key) {
   const std::uint32_t kind = key & kNearest;
   if (kind == kVertexOfB) return key;
@@ -140,7 +140,7 @@ void append_contact(const Convex& triangle, std::uint32_t index, const ContactRe
   scratch.first_point.push_back(scratch.points.size());
 }
 
-/// The patch's points are cut down when there is no room for more: those farthest out stay.
+/// Adds a point to a patch. If there is no room for more, its points are reduced: those farthest out stay.
 void add_point(const ContactResultPoint& point, ContactResult& result) {
   const auto points = std::span(result.point.data(), static_cast<std::size_t>(result.count));
   const bool known =
@@ -162,7 +162,7 @@ void join(const ContactResult& from, PatchResult& patch) {
   to.separation = std::min(to.separation, from.separation);
 }
 
-/// Puts a contact into the patch of its plane.
+/// Adds a contact to the patch of its plane.
 void add_to_patches(const SurfaceContact& contact, std::span<const ContactResultPoint> points,
                     std::vector<PatchResult>& patches) {
   const auto is_same_plane = [&](const PatchResult& patch) {
@@ -181,8 +181,9 @@ void add_to_patches(const SurfaceContact& contact, std::span<const ContactResult
   patch->result.separation = std::min(patch->result.separation, contact.separation);
 }
 
-/// What of a covered triangle is deeper in the shape than the patch that looks most like it pushes that
-/// patch's way: else the shape would sink in there while it turns about what stays.
+/// Adds the points of a covered triangle to the patch with the most similar normal, if they are deeper in the
+/// shape than that patch. They push along the normal of that patch. Otherwise the shape would sink in there
+/// while it rotates about the points that stay.
 void join_ghost(const SurfaceContact& ghost, std::span<const ContactResultPoint> points,
                 std::vector<PatchResult>& patches) {
   constexpr Real kLeastCosine = Real(0.5);
@@ -199,7 +200,7 @@ void join_ghost(const SurfaceContact& ghost, std::span<const ContactResultPoint>
   }
 }
 
-/// Joins patches whose normals are less than the angle with this cosine apart to the deepest of them.
+/// Joins patches whose normals differ by less than the angle with this cosine to the deepest of them.
 void join_patches(Real cosine, MeshScratch& scratch) {
   std::vector<PatchResult>& patches = scratch.patches;
   const std::vector<PatchResult>& unjoined = scratch.unjoined;
@@ -293,7 +294,7 @@ Real collide_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, 
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
             [](const PatchResult& p, const PatchResult& q) { return p.patch < q.patch; });
-  // Out of reach is not yet the whole margin apart, and the bodies may go another way later.
+  // Out of reach does not mean the whole margin apart, and the bodies may move in another direction later.
   if (scratch.triangles.empty()) find_triangles_near(a, b, MeshReach(reach.margin()), scratch.triangles);
   return scratch.triangles.empty() ? reach.margin() : Real(0);
 }

@@ -10,7 +10,8 @@ namespace hooke::collision {
 namespace {
 
 constexpr Real kSameDepth = Real(5e-4);  // [m]
-constexpr Real kKeepArea = Real(1.1);  // of points that span nearly the same, the one of the last step stays
+constexpr Real kKeepArea = Real(1.1);    // of points that span nearly the same area, the one of the last step
+                                         // stays
 
 struct Candidates {
   const ContactResult& result;
@@ -39,7 +40,7 @@ struct Candidates {
     return found;
   }
   [[nodiscard]] Real favor(int i) const { return is_old(i) ? kKeepArea : Real(1); }
-  /// Of the points that are about as deep as the deepest the one farthest from the middle: a point in the
+  /// Of the points that are about as deep as the deepest, the one farthest from the middle: a point in the
   /// middle of a side would leave a corner out.
   [[nodiscard]] int outermost_of_deepest() const {
     const Real deepest = deepest_of(result);
@@ -54,7 +55,7 @@ struct Candidates {
   }
 };
 
-/// Whether `p` lies behind `q`: the body would have to turn by 45 degrees before `p` touches first.
+/// Whether `p` lies behind `q`: the body would have to rotate by 45 degrees before `p` touches first.
 bool is_behind(const ContactResultPoint& p, const ContactResultPoint& q, Vec3 normal) {
   const Real behind = p.separation - q.separation;
   if (!(behind > Real(0))) return false;
@@ -63,7 +64,8 @@ bool is_behind(const ContactResultPoint& p, const ContactResultPoint& q, Vec3 no
   return length_squared(apart) - along * along < behind * behind;
 }
 
-/// The upper corners of a flat body, say: seen along the normal they are where the lower ones are.
+/// Removes points behind others, such as the upper corners of a flat body: seen along the normal they are
+/// where the lower ones are.
 void remove_points_behind(ContactResult& result) {
   std::array<ContactResultPoint, ContactResult::kMaxPoints> all = result.point;
   const int count = result.count;
@@ -95,7 +97,7 @@ void reduce_points(ContactResult& result, Real margin, std::span<const std::uint
   const int third = c.best(
       [&](int i) { return c.favor(i) * std::max(c.area(first, second, i), -c.area(first, second, i)); });
   const Real sense = c.area(first, second, third) < Real(0) ? Real(-1) : Real(1);
-  // What a point adds outside each side of the triangle.
+  // The area that a point adds outside each side of the triangle.
   const int fourth = c.best([&](int i) {
     const Real gain = std::max({-sense * c.area(first, second, i), -sense * c.area(second, third, i),
                                 -sense * c.area(third, first, i)});

@@ -11,7 +11,7 @@ namespace hooke::collision {
 
 namespace {
 
-/// A sphere and a shape that has its own closed form.
+/// Handles a sphere and a shape that has its own closed form.
 void collide_sphere(const Convex& sphere, const Convex& b, ContactResult& result) {
   const Vec3 d = sphere.center - b.center;
   const Gap gap = gap_to_shape(b.shape, {dot(b.axes.x, d), dot(b.axes.y, d), dot(b.axes.z, d)});
@@ -30,7 +30,7 @@ geometry::Segment<Real> core_of(const Convex& capsule) {
 
 void collide_capsules(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
   const auto pair = geometry::closest_between_segments(core_of(a), core_of(b));
-  // Cores that cross separate across both; cores on one line across them, in some direction.
+  // Cores that cross separate across both; cores on one line separate across it, in some direction.
   const Vec3 across = cross(a.axes.y, b.axes.y);
   const Vec3 sideways = geometry::direction_or(across, a.axes.x);
   const Vec3 otherwise = dot(sideways, b.center - a.center) < Real(0) ? -sideways : sideways;

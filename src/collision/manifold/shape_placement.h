@@ -9,18 +9,19 @@
 #include <cstdint>
 
 /// \file
-/// Shapes of bodies where they stand, for tests of one pair.
+/// Shapes of bodies with their positions and rotations, for tests of one pair.
 
 namespace hooke::collision {
 
-/// The collider's shape seen from its body's center of mass, of a body turned by `rotation`.
+/// The collider's shape relative to its body's center of mass, for a body rotated by `rotation`.
 [[nodiscard]] Convex place(const state::Colliders& colliders, std::uint32_t collider, Quat rotation);
 
-/// The mesh of a shape placed by `place` on a body with its center of mass `from` the origin of the offsets
-/// [m], which is taken in double: meshes may be wide.
+/// The mesh of a shape placed by `place`. `from` leads from the body's center of mass to the origin of the
+/// offsets [m]. It is in double, because meshes may be wide.
 [[nodiscard]] PlacedMesh place_mesh(const state::ColliderShape& shape, const Convex& place, DVec3 from);
 
-/// How high the point `from` a body's center of mass is over a half-space placed by `place` on it [m].
+/// Height over a half-space, placed by `place`, of the point at `from` relative to its body's center of mass
+/// [m].
 [[nodiscard]] Real height_over(const Convex& half_space, DVec3 from);
 
 }  // namespace hooke::collision

@@ -8,17 +8,19 @@ namespace hooke::collision {
 
 namespace {
 
-/// Of a body's radius: by so much a pair may drift, so its surfaces lean by no more than twice this [rad].
+/// Share of a body's radius by which a pair may drift, so that its surfaces tilt by no more than twice this
+/// [rad].
 constexpr Real kDriftShare = Real(5e-4);
 
-// The same for calm bodies of large islands; less than the margin within which points are kept.
+// These are the values for slow bodies of large islands; they are less than the margin within which points
+// are kept.
 constexpr Real kSlowDriftShare = Real(0.03);
 constexpr Real kLargestSlowDrift = Real(0.015);  // [m]
 constexpr Real kSlowRate = Real(0.25);           // speed of all its points over its radius [1/s]
 
 constexpr int kBodyGrain = 1024;
 
-/// The rotation less one: small turns keep their digits, which rotate(q, x) - x would lose.
+/// The rotation matrix less one. Small rotations keep their digits, which rotate(q, x) - x would lose.
 Mat3 rotation_less_one(Quat q) {
   const Vec3 v = {q.x, q.y, q.z};
   const auto column = [&](Vec3 x) {
@@ -29,7 +31,8 @@ Mat3 rotation_less_one(Quat q) {
           column({Real(0), Real(0), Real(1)})};
 }
 
-/// Of an island that is too large to be solved directly (solver/coupled/direct_islands.h).
+/// Whether the body is slow and belongs to an island that is too large to be solved directly
+/// (solver/coupled/direct_islands.h).
 bool is_slow(const state::Bodies& bodies, std::size_t row) {
   const Real radius = bodies.traits[row].radius;
   const Real speed = length(bodies.motion[row].v) + length(bodies.angular_velocity[row]) * radius;
@@ -43,7 +46,7 @@ void add_motion(const state::SeenPose& before, const state::SeenPose& now, Small
   motion.rotation_change = rotation_less_one(rotation_change);
   motion.angle = (rotation_change.w < Real(0) ? Real(-2) : Real(2)) *
                  Vec3{rotation_change.x, rotation_change.y, rotation_change.z};
-  // The chord of the turn, 2 sin(angle / 2) of a radius, is as long as its vector part twice.
+  // The chord of the rotation, 2 sin(angle / 2) of a radius, is as long as its vector part twice.
   constexpr Real kRounding = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
   motion.reach = kRounding * (length(motion.displacement) + length(motion.angle) * motion.radius);
 }

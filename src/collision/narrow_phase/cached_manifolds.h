@@ -9,31 +9,33 @@
 #include <vector>
 
 /// \file
-/// Manifolds of pairs that hardly move against each other are kept instead of being made anew.
+/// Manifolds of pairs that hardly move against each other are kept instead of being made again.
 ///
-/// Between calm bodies of islands that are too large to be solved directly it is more than a saving of time.
-/// Levers that follow what soft contacts let a stack lean are what it buckles by; the stiff one it stands for
-/// would not lean. Rows that stay the same know only small displacements, and give a stack nothing to buckle
-/// by (docs/decisions/0004-body-contacts.md).
+/// For slow bodies of islands that are too large to be solved directly, this is more than a saving of time. A
+/// stack buckles because the levers of its contacts follow the tilt that soft contacts allow. The stiff stack
+/// that it stands for would not tilt. Rows that stay the same describe small displacements only, and under
+/// them a stack does not buckle (docs/decisions/0004-body-contacts.md).
 
 namespace hooke::collision {
 
-/// How a body moved since the narrow phase last saw it.
+/// Motion of a body since the narrow phase last saw it.
 struct SmallMotion {
-  Vec3 displacement = {};  ///< Of the center of mass [m].
-  Vec3 angle = {};         ///< [rad]
+  Vec3 displacement = {};  ///< Displacement of the center of mass [m].
+  Vec3 angle = {};         ///< Rotation [rad].
   Mat3 rotation_change = {
-      {}, {}, {}};           ///< How far points moved from their place about the center by turning.
-  Real radius = Real(0);     ///< Of the body, around its center of mass [m].
-  Real reach = Real(0);      ///< No point of the body moved farther [m].
-  Real tolerance = Real(0);  ///< What two bodies may move against each other before a new test [m].
-  bool slow = false;         ///< And of a large island.
+      {}, {}, {}};           ///< Maps an offset from the center to its displacement by the rotation.
+  Real radius = Real(0);     ///< Radius of the body around its center of mass [m].
+  Real reach = Real(0);      ///< Upper bound of the displacement of the body's points [m].
+  Real tolerance = Real(0);  ///< Motion of two bodies against each other that is allowed before a new test
+                             ///< [m].
+  bool slow = false;         ///< The body is slow and belongs to a large island.
 };
 
-/// How all bodies moved, from one narrow phase to the next.
+/// Motion of all bodies from one narrow phase to the next.
 class SmallMotions {
  public:
-  /// Since `seen`, which becomes what is seen now. Those not `stirred` (rows) are where they were.
+  /// Finds the motion since `seen`, which is then replaced by the present poses. Bodies that are not in
+  /// `moved_set` (rows) have not moved.
   void find(parallel::ThreadPool& pool, const state::Bodies& bodies, std::span<const std::uint32_t> moved_set,
             std::vector<state::SeenPose>& seen);
 
@@ -41,23 +43,24 @@ class SmallMotions {
 
  private:
   std::vector<SmallMotion> motions_ = {};
-  std::vector<std::uint32_t> before_ = {};  // stirred in the last step: they may stand now
+  std::vector<std::uint32_t> before_ = {};  // moved set of the last step: these may stand now
   std::vector<std::uint32_t> rows_ = {};
   std::vector<std::uint8_t> is_listed_ = {};
 };
 
-/// Adds what the two moved.
+/// Adds the motion of the two bodies to `drift`.
 void add_drift(const SmallMotion& a, const SmallMotion& b, state::Drift& drift);
 
-/// How far points of the two can be from where they were against each other [m].
+/// Upper bound of how far points of the two have moved against each other [m].
 [[nodiscard]] Real largest_drift(const SmallMotion& a, const SmallMotion& b, const state::Drift& drift);
 
-/// What is left for certain of a gap [m] after what the two moved since the last step. Rounded downwards, so
-/// that it may be called any number of times.
+/// Lower bound of a gap [m] after the motion of the two since the last step. It is rounded downwards, so that
+/// this may be called any number of times.
 [[nodiscard]] Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap);
 
-/// Moves points and normals along with their bodies; the normal belongs to `fixed`, A or B. Separations
-/// follow to first order in what the bodies turned against each other. Between two calm bodies only they do.
+/// Moves points and normals along with their bodies; the normal belongs to A if `fixed_is_a`, otherwise to B.
+/// Separations follow to first order in the rotation of the bodies against each other. Between two slow
+/// bodies only the separations change.
 void move_cached_manifold(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a,
                           state::Manifold& manifold);
 

@@ -8,9 +8,10 @@ namespace hooke::collision {
 
 namespace {
 
-/// Of the sum of two bodies' inner radii: the distance of their centers where they are deep in each other.
+/// Share of the sum of two bodies' inner radii: with a smaller distance of their centers they are deep in
+/// each other.
 constexpr double kDeepCenters = 0.75;
-/// Of the smaller inner radius: the overlap from which on they are.
+/// Share of the smaller inner radius: with a larger overlap they are.
 constexpr Real kDeepOverlap = Real(0.5);
 
 PileNeighborKey key_of(std::uint32_t body, std::uint32_t other, double distance_squared) {
@@ -21,7 +22,7 @@ PileNeighborKey key_of(std::uint32_t body, std::uint32_t other, double distance_
 
 void DensePiles::Nearest::add(const PileNeighborKey& key) {
   const auto end = keys.begin() + size;
-  if (std::find(keys.begin(), end, key) != end) return;  // another shape of the same body
+  if (std::find(keys.begin(), end, key) != end) return;  // it is another shape of the same body
   if (size < kMostNeighborsInPile) {
     keys[size++] = key;
     std::push_heap(keys.begin(), keys.begin() + size);
@@ -41,7 +42,7 @@ void DensePiles::note(const state::Bodies& bodies, const Deep& deep) {
   deep_.push_back(deep);
 }
 
-/// Of those noted. Fills `nearest_` if there are so many that some may be left out.
+/// Finds the members among the noted bodies. Fills `nearest_` if there are so many that some may be left out.
 void DensePiles::find_members(std::size_t body_count) {
   found_.clear();
   nearest_.clear();
@@ -54,7 +55,7 @@ void DensePiles::find_members(std::size_t body_count) {
   for (std::uint32_t body = 0; body < count_.size(); ++body) {
     if (count_[body] >= kLeastNeighborsInPile) found_.push_back(body);
   }
-  if (found_.size() <= kLeastNeighborsInPile) return;  // they have several shapes, and not so many others
+  if (found_.size() <= kLeastNeighborsInPile) return;  // they have several shapes, and not so many neighbors
   if (members_.empty()) sets_.reset(count_.size());
   for (const Deep& deep : deep_) sets_.merge(deep.a, deep.b);
   members_.insert(members_.end(), found_.begin(), found_.end());
@@ -131,7 +132,7 @@ void DensePiles::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
   divide();
 }
 
-/// Members into crowds.
+/// Divides the members into dense piles.
 void DensePiles::divide() {
   if (members_.empty()) return;
   std::sort(members_.begin(), members_.end(), [&](std::uint32_t a, std::uint32_t b) {

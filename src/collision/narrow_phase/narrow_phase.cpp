@@ -32,39 +32,39 @@ using state::ContactRefresh;
 using state::Manifold;
 using state::Pair;
 
-constexpr Real kMargin = Real(0.02);           // from which points are kept, at rest [m]
-constexpr Real kForeseenOverlap = Real(1e-4);  // at which fast shapes are looked at [m]
+constexpr Real kMargin = Real(0.02);           // up to which points are kept, at rest [m]
+constexpr Real kForeseenOverlap = Real(1e-4);  // at which fast shapes are tested [m]
 constexpr int kChunk = 128;                    // pairs of one buffer
 constexpr int kColliderGrain = 512;
 constexpr int kChunkGrain = 1;
 
-/// All that a step's pairs read.
+/// All data that a step's pairs read.
 struct Scene {
   const state::Bodies& bodies;
   const state::Colliders& colliders;
   std::span<const MaterialPairDesc> materials;
-  Real dt;  ///< Of what is looked ahead: a step, or a substep.
+  Real dt;  ///< Time that is looked ahead: a step, or a substep.
   int substeps = 1;
   std::span<const Convex> placed_shapes =
-      {};  ///< Of colliders in pairs that do not rest, from their body's center.
+      {};  ///< Shapes of colliders in pairs that do not rest, from their body's center.
   std::span<const Manifold> old = {};
-  std::span<const SmallMotion> motions = {};          ///< Of each body, since the last step.
-  std::span<const std::uint32_t> sole_neighbor = {};  ///< Of each body; see find_company.
+  std::span<const SmallMotion> motions = {};          ///< Motion of each body since the last step.
+  std::span<const std::uint32_t> sole_neighbor = {};  ///< By body; see find_sole_neighbors.
 };
 
-/// What the pairs of a chunk produced, in their order.
+/// The results of the pairs of a chunk, in their order.
 struct Chunk {
   std::vector<Manifold> manifolds = {};
   NarrowPhaseCounts counts = {};
-  // Of the pair at hand.
+  // The fields below belong to the current pair.
   Real margin = Real(0);
-  bool is_whole = true;  // the margin is margin_of, for all of the way
-  Real time = Real(0);   // part of the step after which it is looked at
+  bool is_whole = true;  // the margin is margin_of, for the whole displacement
+  Real time = Real(0);   // part of the step after which the pair is tested
   ContactResult result = {};
   MeshScratch mesh = {};
   SweepScratch sweep = {};
 
-  /// As if new, but for its memory.
+  /// Resets to the state of a new object, but keeps the memory.
   void clear() {
     manifolds.clear();
     manifolds.reserve(kChunk);
@@ -74,10 +74,10 @@ struct Chunk {
   }
 };
 
-/// 2 cm and the way two points of the bodies can come together in a step.
+/// 2 cm and the displacement by which two points of the bodies can come together in a step.
 Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   const state::Bodies& bodies = scene.bodies;
-  // No point of a body turns farther than its diameter.
+  // No point of a body moves farther by rotation than its diameter.
   const auto turn = [&](std::uint32_t body) {
     return std::min(scene.dt * length(bodies.angular_velocity[body]), Real(2)) * bodies.traits[body].radius;
   };
@@ -88,7 +88,7 @@ Vec3 rotated(Quat rotation, Vec3 v) {
   return v == Vec3{} ? v : rotate(rotation, v);
 }
 
-/// Fills in all but the points.
+/// Fills in everything but the points.
 void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifold& m) {
   const ContactDesc& a = scene.colliders.surface[pair.collider_a];
   const ContactDesc& b = scene.colliders.surface[pair.collider_b];
@@ -107,8 +107,8 @@ void describe(const Scene& scene, const Pair& pair, std::uint32_t patch, Manifol
                        rotated(scene.bodies.rotation[m.body_a], a.surface_velocity);
 }
 
-/// The manifold of the last step that a patch continues. A patch is called after the lowest of its triangles
-/// that are near: when that changes, the normal tells.
+/// The manifold of the last step that a patch continues. A patch is named after the lowest of its triangles
+/// that are near. When that changes, the normal decides.
 const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t patch, Vec3 normal) {
   const Manifold* best = nullptr;
   Real closest = Real(0.99);
@@ -122,8 +122,9 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
   return best;
 }
 
-/// From separations at `time` to those at the start of the step, from which rows go on evenly: they are what
-/// they should be at `time`. Points that part have no such past; what rolls only seems to, by rounding.
+/// Converts separations at `time` to those at the start of the step. Rows proceed evenly from there, so that
+/// they are right at `time`. Points that part have no such past; rolling points only seem to part, by
+/// rounding.
 void bring_to_start(const Scene& scene, Real time, Manifold& m) {
   const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
   const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
@@ -151,10 +152,10 @@ void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const Con
   if (m.point_count == 0) chunk.manifolds.pop_back();
 }
 
-/// Manifolds that a lively pair has at least: one for each patch that it may come upon.
+/// Least number of manifolds of a refreshed pair: one for each patch that it may reach.
 constexpr std::uint32_t kRefreshedPatches = 4;
 
-/// Manifolds without points, for those that a lively pair will have within the step.
+/// Appends manifolds without points, for those that a refreshed pair will have within the step.
 void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bool mesh, Chunk& chunk) {
   const std::uint32_t wanted = mesh ? kRefreshedPatches : 1;
   while (chunk.manifolds.size() < begin + wanted) {
@@ -166,7 +167,7 @@ void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bo
     chunk.manifolds[i].refresh = state::ContactRefresh::kEachSubstep;
 }
 
-/// The shapes of a pair, each from the center of mass of its body.
+/// The shapes of a pair, each relative to the center of mass of its body.
 struct View {
   const Convex& a;
   const Convex& b;
@@ -176,7 +177,7 @@ struct View {
   [[nodiscard]] Vec3 apart() const { return vector_cast<Real>(center_b - center_a); }
 };
 
-/// Two convex shapes, in the neighborhood of A.
+/// Tests two convex shapes, in the neighborhood of A.
 void test_convex(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const Vec3 apart = view.apart();
   Convex b = view.b;
@@ -185,8 +186,8 @@ void test_convex(const Scene& scene, const View& view, Pair& pair, Chunk& chunk)
   append(scene, pair, 0, {{}, apart}, chunk.result, chunk);
 }
 
-/// A half-space and a convex shape, in the neighborhood of the shape: the plane is wide, and only the height
-/// over it is asked, in double.
+/// Tests a half-space and a convex shape, in the neighborhood of the shape. The plane is wide, and only the
+/// height over it is needed, in double.
 void test_half_space(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const bool is_a = view.a.shape.kind == ShapeKind::kHalfSpace;
   const Convex& plane = is_a ? view.a : view.b;
@@ -199,7 +200,7 @@ void test_half_space(const Scene& scene, const View& view, Pair& pair, Chunk& ch
          chunk.result, chunk);
 }
 
-/// A mesh and a convex shape, in the neighborhood of the shape.
+/// Tests a mesh and a convex shape, in the neighborhood of the shape.
 void test_mesh(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const bool is_a = view.a.shape.kind == ShapeKind::kMesh;
   const state::ColliderShape& mesh = scene.colliders.shape[is_a ? pair.collider_a : pair.collider_b];
@@ -234,9 +235,9 @@ void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   pair.axis = result.axis;
 }
 
-/// Whether what is near at the start of the step may say nothing of where the shapes will meet: they come or
-/// turn farther than they are thick. Half-spaces have the same normal everywhere; that of two balls turns
-/// with every way aside, and to look ahead is cheap for them.
+/// Whether the surfaces that are near at the start of the step may not be those that will meet: the shapes
+/// come together or rotate farther than they are thick. Half-spaces have the same normal everywhere. The
+/// normal of two balls changes with every displacement aside, and to look ahead is cheap for them.
 bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape_a, const Convex& shape_b) {
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
@@ -246,17 +247,17 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
   return displacement + rotation_reach(a) + rotation_reach(b) > kMargin + thick;
 }
 
-/// Whether a body turns farther than `angle` [rad] in the step.
+/// Whether a body rotates farther than `angle` [rad] in the step.
 bool rotates_beyond(const Path& path, Real angle) {
   return length_squared(path.turn) > angle * angle;
 }
 
-/// From here on the levers of the step's start are not those of the whole.
+/// From this rotation on the levers of the step's start do not fit the whole step.
 constexpr Real kSpinning = Real(0.2);  // [rad]
-/// From here on it is looked for again what something round rolls on.
+/// From this rotation on the support of a round shape that rolls is searched again.
 constexpr Real kRolling = Real(0.02);  // [rad]
 
-/// Whether the pair had contacts whose places hardly come nearer or part: a tip that spins, a wheel that
+/// Whether the pair had contacts whose points hardly come nearer or part: a tip that spins, a wheel that
 /// rolls.
 bool stays_in_contact(const Scene& scene, const Pair& pair) {
   for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
@@ -287,8 +288,9 @@ bool is_moved(const Scene& scene, std::uint32_t collider) {
   return scene.bodies.mass[scene.colliders.body[collider]].inverse_mass > Real(0);
 }
 
-/// What each body that moves is near to: one other body, one collider of what nothing moves, or several, as
-/// those of `in_company` always are, and those that sleep, whose other pairs may be parked.
+/// Finds what each dynamic body is near to: one other body, one collider that nothing moves, or several.
+/// Bodies of `has_several_neighbors` always count as near to several. So do sleeping bodies, whose other
+/// pairs may be sleeping pairs.
 void find_sole_neighbors(const Scene& scene, std::span<const Pair> pairs,
                          std::span<const std::uint8_t> has_several_neighbors,
                          std::vector<std::uint32_t>& sole_neighbor) {
@@ -316,20 +318,21 @@ bool is_alone(const Scene& scene, const Pair& pair) {
          scene.sole_neighbor[scene.colliders.body[pair.collider_b]] != kSeveral;
 }
 
-/// Whether the place where it touches something wanders as it turns.
+/// Whether the contact point of the shape wanders as it rotates.
 bool is_round(ShapeKind kind) {
   return kind == ShapeKind::kSphere || kind == ShapeKind::kCapsule || kind == ShapeKind::kCylinder ||
          kind == ShapeKind::kCone;
 }
 
-/// Whether rows of the step's start would be wrong before its end; see update_manifolds. Not if a substep is
-/// too long for them as well: then the pair is held where it is now, or where it will be hit. Not in a crowd
-/// either, where it would cost most and help least; and where several colliders hold one, nobody looks in the
-/// middle of the step which of them cover which.
+/// Whether rows of the step's start would be wrong before its end; see update_manifolds. Returns false if a
+/// substep is too long for them as well: then the pair is held where it is now, or where the impact will be.
+/// Returns false in a dense pile too, where refreshing would cost most and help least. It also does so where
+/// several colliders hold a body, because in the middle of the step it is not tested which of them cover
+/// which.
 bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair,
                        Chunk& chunk) {
   constexpr Real kTouching = Real(5e-3);  // [m]
-  constexpr Real kStill = Real(1e-3);     // a turn by which the surface hardly moves [m]
+  constexpr Real kStill = Real(1e-3);     // a rotation by which the surface hardly moves [m]
   if (!is_alone(scene, pair)) return false;
   const Convex& shape_a = scene.placed_shapes[a.row];
   const Convex& shape_b = scene.placed_shapes[b.row];
@@ -346,7 +349,7 @@ bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCo
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
   if (!rolls && (flat || displacement < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
-  if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know the step's start only
+  if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know only the step's start
   if (rolls) return true;
   const std::size_t before = chunk.manifolds.size();
   test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
@@ -360,7 +363,7 @@ bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCo
   return in_contact;
 }
 
-/// Looks at the pair as it is now; one that is fast, where it will meet, if it does.
+/// Tests the pair at its present pose; a fast pair is tested where it will meet, if it does.
 void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const Convex& now_a = scene.placed_shapes[pair.collider_a];
   const Convex& now_b = scene.placed_shapes[pair.collider_b];
@@ -407,7 +410,7 @@ bool is_mesh(const Scene& scene, std::uint32_t collider) {
 }
 
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
-/// the last test, and will not come as far as to points that were too far apart to be kept.
+/// the last test, and will not reach points that were too far apart to be kept.
 bool can_reuse(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
   if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.is_refreshed()) return false;
   if (margin > Real(1.5) * kMargin) return false;
@@ -434,7 +437,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   const auto begin = static_cast<std::uint32_t>(chunk.manifolds.size());
   add_drift(scene.motions[a], scene.motions[b], pair.drift);
   if (scene.bodies.traits[a].sensor || scene.bodies.traits[b].sensor) {
-    // Nothing pushes here; who overlaps is found at the end of the step.
+    // Sensors do not push; overlaps with them are found at the end of the step.
   } else if (state::rests(scene.bodies, scene.colliders, pair)) {
     ++chunk.counts.skipped;
     const auto old = scene.old.begin() + pair.first_manifold;
@@ -463,11 +466,11 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   pair.manifold_count = static_cast<std::uint32_t>(chunk.manifolds.size()) - begin;
 }
 
-constexpr std::size_t kRefreshedChunk = 8;  // lively pairs of one buffer
-constexpr std::uint32_t kMostSlots = 64;    // manifolds of a lively pair: more patches than a mesh makes
+constexpr std::size_t kRefreshedChunk = 8;  // refreshed pairs of one buffer
+constexpr std::uint32_t kMostSlots = 64;    // manifolds of a refreshed pair: more patches than a mesh makes
 
-/// The manifold that a new one replaces: the one of the same patch, or else of the most similar normal; or
-/// else one that is free. `taken` are those that have been replaced, not all.
+/// The manifold that a new one replaces: the one of the same patch, else the one of the most similar normal,
+/// else a free one. `taken` are those that have been replaced, which are not all.
 std::uint32_t find_slot(const Pair& pair, const Manifold& m, std::span<const Manifold> manifolds,
                         std::uint64_t taken) {
   const std::uint32_t count = std::min(pair.manifold_count, kMostSlots);
@@ -485,7 +488,7 @@ std::uint32_t find_slot(const Pair& pair, const Manifold& m, std::span<const Man
   return best;
 }
 
-/// Halfway between the surfaces.
+/// Moves the anchors halfway between the surfaces.
 void center_anchors(Manifold& m) {
   for (std::int32_t i = 0; i < m.point_count; ++i) {
     state::ContactPoint& p = m.point[static_cast<std::size_t>(i)];
@@ -495,7 +498,7 @@ void center_anchors(Manifold& m) {
   }
 }
 
-/// When the first of a manifold's points meets at the velocities of now [s], and how far apart it is [m].
+/// Time until the first of a manifold's points meets at the present velocities [s], and its separation [m].
 struct Prospect {
   Real time = std::numeric_limits<Real>::infinity();
   Real separation = std::numeric_limits<Real>::infinity();
@@ -521,8 +524,8 @@ Prospect prospect_of(const state::Bodies& bodies, const Manifold& m) {
   return first;
 }
 
-/// Where there are more manifolds than the pair has places, leaves those that meet first: who is fast sees
-/// far, and what is behind it must not take the place of what it hits.
+/// If there are more manifolds than the pair has slots, keeps those that meet first. A fast pair searches
+/// far, and what is behind the target must not take its slot.
 void keep_earliest(const state::Bodies& bodies, std::size_t count, std::vector<Manifold>& manifolds) {
   while (manifolds.size() > count) {
     std::size_t last = 0;
@@ -547,7 +550,7 @@ void refresh_pair(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pa
   test_view(scene, {shape_a, shape_b, pose_a.position, pose_b.position}, pair, chunk);
   keep_earliest(scene.bodies, std::min(pair.manifold_count, kMostSlots), chunk.manifolds);
   std::uint64_t taken = 0;
-  // All are matched with the old ones before those are replaced.
+  // All manifolds are matched with the old ones before those are replaced.
   std::array<std::uint32_t, kMostSlots> slot_of = {};
   for (std::size_t i = 0; i < chunk.manifolds.size(); ++i) {
     slot_of[i] = find_slot(pair, chunk.manifolds[i], manifolds, taken);
@@ -573,12 +576,12 @@ void refresh_pair(const Scene& scene, const Pose& pose_a, const Pose& pose_b, Pa
 
 /// A manifold with something that nothing moves, seen from the collider that it holds.
 struct Support {
-  std::uint32_t held = 0;  ///< Collider.
+  std::uint32_t held = 0;  ///< The held collider.
   std::uint32_t manifold = 0;
 };
 
-/// Not those of later in the step: only places of one time can be compared. Nor those that rest: they were
-/// looked at before.
+/// Lists the supports. Manifolds of later in the step are left out, because only positions of one time can be
+/// compared. So are those that rest: they were tested before.
 void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Support>& supports) {
   supports.clear();
   for (const Pair& pair : pairs.pair) {
@@ -623,7 +626,7 @@ SurfaceContact contact_of(const Scene& scene, const Manifold& m, const Support& 
   return contact;
 }
 
-/// Removes the manifolds that others of the same collider cover. Returns how many.
+/// Removes the manifolds that others of the same collider cover. Returns how many it removed.
 std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pairs& pairs) {
   auto& [supports, contacts, found, ghosts] = scratch;
   find_supports(scene, pairs, supports);
@@ -645,7 +648,7 @@ std::uint32_t empty_ghosts(const Scene& scene, GhostScratch& scratch, state::Pai
   return static_cast<std::uint32_t>(ghosts.size());
 }
 
-/// Colliders of pairs that do not rest.
+/// Marks the colliders of pairs that do not rest.
 void find_tested(const state::Bodies& bodies, const state::Colliders& colliders, std::span<const Pair> pairs,
                  std::vector<std::uint8_t>& tested) {
   tested.assign(colliders.body.size(), 0);
@@ -673,7 +676,7 @@ Range pairs_of(std::size_t chunk, std::size_t pair_count) {
   return {begin, std::min(begin + kChunk, static_cast<int>(pair_count))};
 }
 
-/// Puts the chunks' manifolds behind each other. Returns the sum of their counts.
+/// Joins the chunks' manifolds in order. Returns the sum of their counts.
 NarrowPhaseCounts join(parallel::ThreadPool& pool, std::span<const Chunk> chunks,
                        std::vector<std::size_t>& first, state::Pairs& pairs) {
   NarrowPhaseCounts counts;
@@ -705,14 +708,14 @@ struct NarrowPhase::Buffers {
   std::vector<Convex> placed_shapes = {};
   std::vector<Manifold> old = {};
   SmallMotions motions = {};
-  std::vector<std::uint32_t> all_bodies = {};  ///< Rows, where it is not said who was stirred.
+  std::vector<std::uint32_t> all_bodies = {};  ///< Rows of all bodies, for a step that has no moved set.
   std::vector<std::uint32_t> sole_neighbor = {};
   std::vector<Chunk> chunks = {};
-  std::vector<std::size_t> first_manifold = {};  ///< Of each chunk; one more at the end.
+  std::vector<std::size_t> first_manifold = {};  ///< First manifold of each chunk; one more at the end.
   GhostScratch ghosts = {};
-  std::vector<std::uint32_t> refreshed = {};  ///< Rows of lively pairs, ascending.
+  std::vector<std::uint32_t> refreshed = {};  ///< Rows of refreshed pairs, ascending.
   std::vector<Chunk> refreshed_chunks = {};
-  Chunk single_chunk = {};  ///< Of look_at.
+  Chunk single_chunk = {};  ///< Chunk of refresh_at.
 };
 
 NarrowPhase::NarrowPhase() : buffers_(std::make_unique<Buffers>()) {}

@@ -17,26 +17,26 @@
 
 namespace hooke::collision {
 
-/// What the narrow phase did in a step.
+/// Counts what the narrow phase did in a step.
 struct NarrowPhaseCounts {
   std::uint32_t tested = 0;  ///< Pairs tested exactly.
-  std::uint32_t cached = 0;  ///< Pairs that hardly moved, whose manifolds were carried along.
+  std::uint32_t cached = 0;  ///< Pairs that hardly moved, whose cached manifolds were kept.
   std::uint32_t skipped =
       0;  ///< Pairs at rest, and those that cannot have come together since their last test.
   std::uint32_t ghosts = 0;  ///< Manifolds that were left out because another surface covers them.
 };
 
-/// The step that manifolds are made for.
+/// The step for which manifolds are made.
 struct NarrowPhaseStep {
-  Real dt = Real(0);  ///< [s]
+  Real dt = Real(0);  ///< Length of the step [s].
   int substeps = 1;
   std::span<const std::uint8_t> has_several_neighbors =
-      {};  ///< By body row: 1 for what counts as in a crowd anyway.
-  /// Rows of bodies: all others are where they were in the last step. Without a list it may be any.
+      {};  ///< By body row: 1 for a body that counts as having several neighbors anyway.
+  /// Rows of bodies: all others are where they were in the last step. Without a list any body may have moved.
   std::optional<std::span<const std::uint32_t>> moved_set = {};
 };
 
-/// Makes manifolds of pairs; what it holds is memory to be used again.
+/// Makes the manifolds of pairs. Its members are memory to be used again.
 class NarrowPhase {
  public:
   NarrowPhase();
@@ -44,52 +44,50 @@ class NarrowPhase {
   NarrowPhase(NarrowPhase&&) noexcept;
   NarrowPhase& operator=(NarrowPhase&&) noexcept;
 
-  /// Brings `pairs` up to date with the pairs the broad phase found (sorted): new ones come, lost ones go,
-  /// those that stay keep what they remember. Those that nobody asked for stay, too (`asked`: as
-  /// find_pairs_of has it; without any, for all). Filters by body, category, mask, group and hooks happen
-  /// before.
+  /// Brings `pairs` up to date with the pairs that the broad phase found (sorted). New pairs are added, lost
+  /// ones are removed, and the others keep what they remember. Pairs that nobody asked for stay, too
+  /// (`asked`: as in find_pairs_of; an empty list asks for all). Filters by body, category, mask, group and
+  /// hooks are applied before.
   void merge_pairs(std::span<const ColliderPair> found, std::span<const std::uint8_t> asked,
                    state::Pairs& pairs);
   void merge_pairs(std::span<const ColliderPair> found, state::Pairs& pairs) {
     merge_pairs(found, {}, pairs);
   }
 
-  /// Makes the manifolds of all pairs for this step, in order of pair and patch. Impulses of points that were
-  /// there before are carried over: by key, then by the nearest anchor within 2 cm. `materials` is the
+  /// Makes the manifolds of all pairs for this step, in order of pair and patch. Impulses of points that
+  /// existed before are carried over: by key, then by the nearest anchor within 2 cm. `materials` is the
   /// world's table.
   ///
   /// Points up to 2 cm + (|v| + |omega| r) dt apart are kept: the solver lets them come together and no
-  /// farther. Of triangles only where the way goes towards them. A pair whose bodies both sleep or stand
-  /// keeps its manifolds as they are. A pair that was apart is tested again when its bodies may have come
-  /// as near as that since. Manifolds of convex shapes that hardly moved against each other are carried
-  /// along.
+  /// farther. Triangles need this margin only where the motion goes towards them. A pair whose bodies both
+  /// sleep or stand keeps its manifolds as they are. A pair that was apart is tested again when its bodies
+  /// may have come as near as that since. Cached manifolds of convex shapes that hardly moved against each
+  /// other are moved along.
   ///
-  /// A pair is lively whose points, levers or normals of the step's start would be wrong before its end: a
-  /// body turns by more than 0.2 rad (0.02 where one of them is round), or the pair touches and one goes over
-  /// the other by more than it is thick; and which as many looks as there are substeps are enough for. Not in
-  /// a crowd. It has at least one manifold, a mesh some more, which may be without points until
-  /// update_lively_manifolds finds some.
+  /// A pair is refreshed each substep if the points, levers or normals of the step's start would be wrong
+  /// before its end: a body rotates by more than 0.2 rad (0.02 where one of them is round), or the pair
+  /// touches and one moves over the other by more than it is thick. One refresh per substep must be enough
+  /// for that motion, and the pair must not be in a dense pile. Such a pair has at least one manifold, with a
+  /// mesh some more. They may be without points until refresh_manifolds finds some.
   NarrowPhaseCounts update_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                                      const state::Colliders& colliders,
                                      std::span<const MaterialPairDesc> materials, const NarrowPhaseStep& step,
                                      state::Pairs& pairs);
 
-  /// Which pairs update_lively_manifolds is for. To be called when no pair changes its row any more in this
-  /// step: after update_manifolds, and after pairs were parked or taken back
-  /// (state/sleeping_pairs.h).
+  /// Lists the pairs for refresh_manifolds. To be called when no pair changes its row any more in this step:
+  /// after update_manifolds, and after pairs were put to sleep or woken (state/sleeping_pairs.h).
   void list_refreshed(const state::Pairs& pairs);
 
-  /// In the middle of a step: makes the manifolds of the lively pairs anew from where bodies are, in place,
-  /// with separations of now and the impulses of the points that are still there. Anchors of A and B are the
-  /// same place but for their way along the normal, halfway between the surfaces: an impulse there keeps the
-  /// angular momentum. Points farther apart than 2 cm and what the bodies can come together in `h` [s] are
-  /// left out.
+  /// Makes the manifolds of the refreshed pairs again in the middle of a step, in place. Separations are
+  /// those of the present poses, and points that still exist keep their impulses. Anchors of A and B are the
+  /// same position except along the normal, halfway between the surfaces: an impulse there keeps the angular
+  /// momentum. Points farther apart than 2 cm and what the bodies can come together in `h` [s] are left out.
   void refresh_manifolds(parallel::ThreadPool& pool, const state::Bodies& bodies,
                          const state::Colliders& colliders, std::span<const MaterialPairDesc> materials,
                          Real h, state::Pairs& pairs);
 
-  /// The same for one pair, lively or not, with its bodies in these poses, of their centers of mass. Not to
-  /// be called by several threads at once.
+  /// Does the same for one pair, listed or not, with its bodies in these poses of their centers of mass. Not
+  /// to be called by several threads at once.
   void refresh_at(const state::Bodies& bodies, const state::Colliders& colliders,
                   std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
                   std::uint32_t pair, state::Pairs& pairs);
@@ -100,7 +98,7 @@ class NarrowPhase {
   std::vector<state::Pair> merged_;
 };
 
-/// Closes the gaps that manifolds without points leave; those of lively pairs stay.
+/// Closes the gaps that manifolds without points leave; those of refreshed pairs stay.
 void remove_empty(state::Pairs& pairs);
 
 }  // namespace hooke::collision

@@ -28,7 +28,7 @@ std::optional<RayHit> cast_ray_on_collider(const QueryScene& scene, std::uint32_
                 .normal = vector_cast<Real>(rotate(rotation, hit->normal))};
 }
 
-/// A collider's place among equally near ones.
+/// The rank of a collider among equally near ones.
 std::pair<std::uint32_t, std::uint32_t> creation_of(const QueryScene& scene, std::uint32_t collider) {
   return {scene.bodies.slot[scene.colliders.body[collider]], collider};
 }

@@ -16,10 +16,10 @@ namespace hooke::collision {
 namespace {
 
 constexpr double kRounding = static_cast<double>(std::numeric_limits<Real>::epsilon());
-// Grazing ways close half of the gap at a time: enough for any gap in Real.
+// A grazing path closes half of the gap at a time: this is enough for any gap in Real.
 constexpr int kMaxAdvances = 96;
 
-/// A shape in place. `convex` is about `place`, with its center or corners as offsets from there.
+/// A shape in its place. `convex` is about `place`, with its center or corners as offsets from there.
 struct PlacedConvex {
   Convex convex = {};
   DVec3 place = {};
@@ -39,14 +39,14 @@ PlacedConvex place_convex(const state::ColliderShape& shape, const Pose& pose) {
           static_cast<double>(length(farthest))};
 }
 
-/// A mesh and where it stands.
+/// A mesh with its position and rotation.
 struct StandingMesh {
   const state::Mesh& mesh;
   Pose pose;
 
   [[nodiscard]] DVec3 to_mesh(DVec3 v) const { return rotate(conjugate(math::in_double(pose.rotation)), v); }
 
-  /// About its first corner: offsets from there are as small as they can be.
+  /// The triangle about its first corner: offsets from there are as small as they can be.
   [[nodiscard]] PlacedConvex triangle(std::uint32_t index) const {
     const Vec3 origin = mesh.desc.positions[mesh.desc.triangles[index][0]];
     const PlacedMesh placed = {mesh, matrix_of(normalize(pose.rotation)), origin};
@@ -57,26 +57,26 @@ struct StandingMesh {
   }
 };
 
-/// Brings A to the neighborhood of B.
+/// Moves A into the neighborhood of B.
 Convex seen_from(const PlacedConvex& b, const PlacedConvex& a, DVec3 place) {
   Convex convex = a.convex;
   convex.center = vector_cast<Real>(place - b.place);
   return convex;
 }
 
-/// How far a sweep ends in front of what it meets, at most [m].
+/// Largest distance at which a sweep ends in front of what it meets [m].
 double sweep_tolerance(double size_a, double size_b) {
   return 1e-5 * std::min(size_a, 1.0) + 16 * kRounding * (size_a + size_b);
 }
 
-/// Where the swept shape A meets B.
+/// The contact of the swept shape A with B.
 struct Contact {
   double fraction = 0;
   DVec3 point = {};
   Vec3 normal = {};  // out of B
 };
 
-/// For shapes that overlap: the shortest way out, and the deepest point of B.
+/// For shapes that overlap: the shortest exit, and the deepest point of B.
 Contact overlap_contact(const Convex& a, const PlacedConvex& b, DVec3 motion) {
   ContactResult result;
   collide(b.convex, a, {}, result);
@@ -90,9 +90,8 @@ Contact overlap_contact(const Convex& a, const PlacedConvex& b, DVec3 motion) {
   return contact;
 }
 
-/// The gap d(t) of two convex shapes of which one moves straight on falls no faster than the speed along its
-/// normal, and that normal goes on holding them apart for d / speed. What is not met before `limit` may be
-/// left out.
+/// The gap d(t) of two convex shapes, of which one moves straight on, shrinks no faster than the speed along
+/// its normal, and that normal separates them for d / speed. What is not met before `limit` may be left out.
 std::optional<Contact> sweep(const PlacedConvex& a, DVec3 motion, const PlacedConvex& b, double limit) {
   const double tolerance = sweep_tolerance(a.size, b.size);
   const double rounding = 8 * kRounding * length(motion);
@@ -133,14 +132,14 @@ std::optional<Contact> sweep_to_half_space(const PlacedConvex& a, DVec3 motion, 
 struct Sweep {
   const PlacedConvex& shape;
   DVec3 motion;
-  DVec3 middle;  // of the box around the shape
+  DVec3 middle;  // middle of the box around the shape
   double radius;
 };
 
-/// The way as the mesh sees it, and all triangles on it.
+/// Sweeps along the path in the frame of the mesh, over all triangles on it.
 std::optional<RayHit> sweep_to_mesh(const Sweep& swept, const StandingMesh& mesh, double limit) {
   const DVec3 origin = mesh.to_mesh(swept.middle - mesh.pose.position);
-  // The box turns with the mesh: the ball around it does not.
+  // The box rotates with the mesh: the ball around it does not.
   const double radius = std::sqrt(3.0) * swept.radius + 2 * swept.shape.size * kRounding;
   std::vector<geometry::BvhEntry> found;
   geometry::find_triangles_on_path(mesh.mesh.bvh, origin, mesh.to_mesh(swept.motion), radius, found);
@@ -185,7 +184,7 @@ bool overlaps_mesh(const state::ColliderShape& shape, const Pose& pose, const St
                      [&](std::uint32_t triangle) { return overlaps(a, mesh.triangle(triangle)); });
 }
 
-/// Of a convex shape with any.
+/// Whether a convex shape overlaps any shape.
 bool convex_overlaps(const state::ColliderShape& a, const Pose& pose_a, const state::ColliderShape& b,
                      const Pose& pose_b) {
   if (b.shape.kind == ShapeKind::kMesh) return overlaps_mesh(a, pose_a, {*b.mesh, pose_b});
@@ -205,7 +204,8 @@ std::optional<RayHit> cast_shape(const QueryScene& scene, const state::ColliderS
   const DVec3 middle = start.position + vector_cast<double>(Real(0.5) * (box.lower + box.upper));
   const Sweep swept = {placed, motion, middle, static_cast<double>(radius)};
 
-  // Not in the order of the tree: of hits that are equal but for the tolerance, its history must not choose.
+  // The order of the tree is not used: its history must not choose among hits that are equal within the
+  // tolerance.
   std::vector<std::uint32_t> near;
   scene.broad_phase.query_sweep(middle, motion, radius, near);
   sort_by_creation(scene, near);

@@ -13,12 +13,12 @@ namespace {
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr DVec3 kUp = {0, 1, 0};
 
-/// The part of a segment that is in all pieces it was clipped by. A convex solid is what its pieces have in
-/// common, so the segment enters it where it enters the last of them.
+/// The part of a segment that is in all pieces by which it was clipped. A convex solid is what its pieces
+/// have in common, so the segment enters it where it enters the last of them.
 class RayClip {
  public:
   RayClip(DVec3 origin, DVec3 motion) : motion_(motion) {
-    // Counted from the point nearest to the shape's origin: a ray from afar keeps its digits.
+    // Fractions count from the point nearest to the shape's origin: a ray from afar keeps its digits.
     const auto nearest = geometry::closest_on_segment({}, origin, origin + motion);
     origin_ = nearest.point;
     start_ = -nearest.fraction;
@@ -26,7 +26,7 @@ class RayClip {
     leave_ = 1 - nearest.fraction;
   }
 
-  /// By the half-space dot(normal, x) <= offset.
+  /// Clips by the half-space dot(normal, x) <= offset.
   void by_plane(DVec3 normal, double offset) {
     const double height = dot(normal, origin_) - offset;
     const double speed = dot(normal, motion_);
@@ -39,7 +39,7 @@ class RayClip {
   }
 
   void by_sphere(double radius) { by_round(origin_, motion_, radius); }
-  /// By the endless cylinder about y.
+  /// Clips by the endless cylinder about y.
   void by_cylinder(double radius) { by_round({origin_.x, 0, origin_.z}, {motion_.x, 0, motion_.z}, radius); }
   void by_cone(double radius, double half_height);
 
@@ -51,12 +51,12 @@ class RayClip {
 
  private:
   void miss() { leave_ = -kForever; }
-  /// By the points within `radius` of zero, for the ray as seen along an axis or as it is.
+  /// Clips by the points within `radius` of zero, for the ray as it is or as seen along an axis.
   void by_round(DVec3 origin, DVec3 motion, double radius);
 
   DVec3 origin_ = {};
   DVec3 motion_ = {};
-  DVec3 normal_ = {};  // where the segment enters; zero while it begins inside
+  DVec3 normal_ = {};  // normal where the segment enters; zero while it begins inside
   double start_ = 0;
   double enter_ = 0;
   double leave_ = 0;
@@ -80,8 +80,8 @@ void RayClip::by_round(DVec3 origin, DVec3 motion, double radius) {
   leave_ = std::min(leave_, middle + half);
 }
 
-/// By the endless cone below its tip. With u the height below the tip and s = radius / (2 half_height), it is
-/// f(t) = x^2 + z^2 - s^2 u^2 = a t^2 + 2 b t + c <= 0 and u >= 0.
+/// Clips by the endless cone below its tip. With u the height below the tip and s = radius / (2 half_height),
+/// it is f(t) = x^2 + z^2 - s^2 u^2 = a t^2 + 2 b t + c <= 0 and u >= 0.
 void RayClip::by_cone(double radius, double half_height) {
   const double s = radius / (2 * half_height);
   const double u = half_height - origin_.y;
@@ -93,7 +93,8 @@ void RayClip::by_cone(double radius, double half_height) {
   double from = -kForever;
   double to = kForever;
   if (a > 0) {
-    // Flatter than the side: in and out again, through the cone or through its mirror image above the tip.
+    // The ray is flatter than the side: it goes in and out again, through the cone or through its mirror
+    // image above the tip.
     if (discriminant < 0 || u - b / a * u_speed < 0) return miss();
     const double q = -(b + std::copysign(std::sqrt(discriminant), b));
     from = q == 0 ? 0 : std::min(q / a, c / q);
@@ -101,7 +102,8 @@ void RayClip::by_cone(double radius, double half_height) {
   } else if (u_speed == 0) {
     if (c > 0 || u < 0) return miss();  // no motion
   } else {
-    // Steeper: it stays in the cone on its way down. Along the side (a = 0) one of the roots is far away.
+    // The ray is steeper: it stays in the cone on its descent. Along the side (a = 0) one of the roots is far
+    // away.
     const double q = -(b + std::copysign(std::sqrt(std::max(0.0, discriminant)), b));
     if (q == 0 && a == 0) return miss();
     const double roots[2] = {q == 0 ? 0 : c / q, a < 0 ? q / a : -q * kForever};
@@ -131,7 +133,7 @@ std::optional<ShapeHit> cast_ray_on_capsule(double radius, double half_height, D
   side.by_cylinder(radius);
   side.by_plane(kUp, half_height);
   side.by_plane(-kUp, half_height);
-  // Where the side is entered through an end, its sphere was entered before.
+  // A ray that enters the side through an end entered the sphere of that end before.
   return first_of(first_of(upper.hit(), lower.hit()), side.hit());
 }
 

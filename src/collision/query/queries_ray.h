@@ -9,16 +9,16 @@
 
 namespace hooke::collision {
 
-/// Where a ray first meets a shape.
+/// The first point at which a ray meets a shape.
 struct ShapeHit {
   double fraction = 0;         ///< The hit is at origin + fraction motion, in [0, 1].
-  DVec3 normal = {};           ///< Outward, of length one.
-  std::uint32_t triangle = 0;  ///< Of a mesh.
+  DVec3 normal = {};           ///< Outward unit normal.
+  std::uint32_t triangle = 0;  ///< Triangle of a mesh.
 };
 
-/// The first point of the way from `origin` over `motion` (finite, in the shape's frame) that is in a shape.
-/// What begins in a solid meets it at 0, and the normal then leads back (zero without a motion). A mesh
-/// without MeshTree::kPlanes is met from either side, with the normal of the triangle's front.
+/// The first point of the path from `origin` over `motion` (finite, in the shape's frame) that is in a shape.
+/// A path that begins in a solid meets it at 0, and the normal then leads back (zero without a motion). A
+/// mesh without MeshTree::kPlanes is met from either side, with the normal of the triangle's front.
 [[nodiscard]] std::optional<ShapeHit> cast_ray_on_shape(const state::ColliderShape& shape, DVec3 origin,
                                                         DVec3 motion);
 
