@@ -6,7 +6,7 @@
 
 namespace hooke::geometry {
 
-/// A box along the axes. Closed: boxes that touch overlap. The default is empty: it overlaps nothing.
+/// A box along the axes. It is closed: boxes that touch overlap. The default is empty and overlaps nothing.
 template <class T>
 struct Box3 {
   static constexpr T kFar = std::numeric_limits<T>::infinity();
@@ -45,7 +45,7 @@ template <class T>
 constexpr bool contains(const Box3<T>& outer, const Box3<T>& inner) {
   return merge(outer, inner) == outer;
 }
-/// Half of the surface; 0 for the empty box.
+/// Half of the surface area; 0 for the empty box.
 template <class T>
 constexpr T half_surface(const Box3<T>& box) {
   const Vector3<T> size = box.upper - box.lower;

@@ -7,10 +7,10 @@
 #include <limits>
 
 /// \file
-/// Closest points of segments, triangles and the primitive shapes. Templates over the real type: contact uses
-/// float, its twin and the tests double. Everything is total for coordinates whose fourth power is finite
-/// (1e9 in float), and takes lengths whose fourth power is zero (1e-11 in float) for zero where a direction
-/// is needed; what happens at degenerate places is said at each function.
+/// Closest points of segments, triangles and the primitive shapes. The functions are templates over the real
+/// type: contact uses float, its twin and the tests double. Everything is total for coordinates whose fourth
+/// power is finite (1e9 in float). Lengths whose fourth power is zero (1e-11 in float) count as zero where a
+/// direction is needed. Each function says what it returns in degenerate cases.
 ///
 /// After Ericson (2005), Real-Time Collision Detection, chapter 5; the signed areas of a triangle are taken
 /// from cross products, which lose fewer digits than products of dot products where a triangle is thin.
@@ -29,7 +29,7 @@ struct SegmentPair {
   Vector3<T> point_a = {};
   Vector3<T> point_b = {};
   T distance_squared = T(0);
-  T fraction_a = T(0);  ///< Of point_a from start to end of its segment, in [0, 1].
+  T fraction_a = T(0);  ///< Fraction of point_a from start to end of its segment, in [0, 1].
   T fraction_b = T(0);
 };
 
@@ -37,7 +37,7 @@ template <class T>
 struct TrianglePoint {
   Vector3<T> point = {};
   T distance_squared = T(0);
-  Vector3<T> weights = {T(1), T(0), T(0)};  ///< Of the corners a, b, c; in [0, 1], with the sum 1.
+  Vector3<T> weights = {T(1), T(0), T(0)};  ///< Weights of the corners a, b, c; in [0, 1], with the sum 1.
 };
 
 template <class T>
@@ -50,11 +50,11 @@ struct Segment {
 template <class T>
 struct SurfacePoint {
   Vector3<T> point = {};
-  T signed_distance = T(0);  ///< Negative inside the solid.
-  Vector3<T> normal = {};    ///< Outward, of length one.
+  T signed_distance = T(0);  ///< Distance, negative inside the solid.
+  Vector3<T> normal = {};    ///< Outward unit normal.
 };
 
-/// Length of `v` that neither overflows nor underflows on the way.
+/// Length of `v`, computed so that no intermediate result overflows or underflows.
 template <class T>
 T safe_length(Vector3<T> v) {
   const T size = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
@@ -126,7 +126,7 @@ SurfacePoint<T> closest_on_box(Vector3<T> p, Vector3<T> half_extents) {
 }
 
 /// Surface point of the capsule of `radius` about the segment from -half_height to half_height on the y axis
-/// (neither negative). From a point of that segment it lies along +x.
+/// (neither negative). For a point of that segment it lies along +x.
 template <class T>
 SurfacePoint<T> closest_on_capsule(Vector3<T> p, T radius, T half_height) {
   const T y = p.y < -half_height ? -half_height : p.y > half_height ? half_height : p.y;
@@ -137,8 +137,9 @@ SurfacePoint<T> closest_on_capsule(Vector3<T> p, T radius, T half_height) {
           .normal = normal};
 }
 
-/// A solid of revolution about y asked in the half plane through `p`: `closest` takes a point (distance from
-/// the axis, height, 0) and gives the surface point in that plane. Points on the axis are seen from +x.
+/// Solves for a solid of revolution about y in the half plane through `p`. `closest` takes a point (distance
+/// from the axis, height, 0) and returns the surface point in that plane. Points on the axis are seen from
+/// +x.
 template <class T, class Closest>
 SurfacePoint<T> closest_on_revolved(Vector3<T> p, const Closest& closest) {
   const Vector3<T> across = {p.x, T(0), p.z};
@@ -164,7 +165,7 @@ SurfacePoint<T> closest_on_cone(Vector3<T> p, T radius, T half_height) {
     const Vector3<T> rim = {radius, -half_height, T(0)};
     const Vector3<T> tip = {T(0), half_height, T(0)};
     const Vector3<T> along = normalize(tip - rim);
-    const Vector3<T> outward = {along.y, -along.x, T(0)};  // of the side
+    const Vector3<T> outward = {along.y, -along.x, T(0)};  // normal of the side
     const T over_side = dot(outward, flat - rim);
     const T over_base = -half_height - flat.y;
     const bool is_inside = over_side <= T(0) && over_base <= T(0);
@@ -178,7 +179,7 @@ SurfacePoint<T> closest_on_cone(Vector3<T> p, T radius, T half_height) {
   });
 }
 
-/// The pair that has one end of a segment: of `a` if `is_of_a`, its last if `is_end`.
+/// The pair of points with one end of a segment: of `a` if `is_of_a`, its last if `is_end`.
 template <class T>
 SegmentPair<T> pair_with_end(const Segment<T>& a, const Segment<T>& b, bool is_of_a, bool is_end) {
   const Segment<T>& own = is_of_a ? a : b;
@@ -190,8 +191,8 @@ SegmentPair<T> pair_with_end(const Segment<T>& a, const Segment<T>& b, bool is_o
   return {near.point, end, near.distance_squared, near.fraction, fraction};
 }
 
-/// The pair around the given place of `a`: nearly parallel segments place it badly along themselves, and two
-/// projections keep that from opening a gap.
+/// The pair of points around the given position on `a`. Nearly parallel segments give a bad position along
+/// themselves, and two projections keep that from opening a gap.
 template <class T>
 SegmentPair<T> pair_near(const Segment<T>& a, const Segment<T>& b, T fraction_a) {
   const SegmentPoint<T> on_b = closest_on_segment(a.start + fraction_a * (a.end - a.start), b.start, b.end);
@@ -199,8 +200,8 @@ SegmentPair<T> pair_near(const Segment<T>& a, const Segment<T>& b, T fraction_a)
   return {on_a.point, on_b.point, on_a.distance_squared, on_a.fraction, on_b.fraction};
 }
 
-/// The nearest points of two segments. Where several pairs are equally near (parallel segments) the pair has
-/// an end of a segment: the first of start of a, end of a, start of b, end of b. Segments of no length are
+/// The nearest points of two segments. If several pairs are equally near (parallel segments), the pair has an
+/// end of a segment: the first of start of a, end of a, start of b, end of b. Segments of no length are
 /// points.
 template <class T>
 SegmentPair<T> closest_between_segments(const Segment<T>& a, const Segment<T>& b) {
@@ -214,7 +215,7 @@ SegmentPair<T> closest_between_segments(const Segment<T>& a, const Segment<T>& b
   // Either the lines are nearest inside both segments, or an end is nearest.
   const bool is_inside =
       numerator_a > T(0) && numerator_a < determinant && numerator_b > T(0) && numerator_b < determinant;
-  // Below a sine of about 0.003 (float) rounding decides where lines are nearest: then the ends are asked
+  // Below a sine of about 0.003 (float) rounding decides where lines are nearest: then the ends are tested
   // too.
   const T clear =
       T(64) * std::numeric_limits<T>::epsilon() * length_squared(along_a) * length_squared(along_b);
@@ -257,8 +258,8 @@ TrianglePoint<T> point_inside(Vector3<T> p, Vector3<T> a, Vector3<T> ab, Vector3
   return {point, length_squared(p - point), {std::fmax(T(0), T(1) - of_b - of_c), of_b, of_c}};
 }
 
-/// The answer for a thin triangle from a first guess inside it: the guess is mended by what it leaves over,
-/// and the outline is asked too.
+/// The result for a thin triangle from a first guess inside it. The guess is corrected by its remaining
+/// error, and the outline is tested too.
 template <class T>
 TrianglePoint<T> closest_on_thin_triangle(Vector3<T> p, Vector3<T> a, Vector3<T> b, Vector3<T> c,
                                           const TrianglePoint<T>& guess) {
@@ -274,7 +275,7 @@ TrianglePoint<T> closest_on_thin_triangle(Vector3<T> p, Vector3<T> a, Vector3<T>
   return mended.distance_squared < outline.distance_squared ? mended : outline;
 }
 
-/// The point of the triangle nearest to `p`. A triangle without area is its outline; of points equally near,
+/// The point of the triangle nearest to `p`. A triangle without area is its outline. Of points equally near,
 /// the one on ab is taken before the one on bc before the one on ca.
 template <class T>
 TrianglePoint<T> closest_on_triangle(Vector3<T> p, Vector3<T> a, Vector3<T> b, Vector3<T> c) {
@@ -284,7 +285,7 @@ TrianglePoint<T> closest_on_triangle(Vector3<T> p, Vector3<T> a, Vector3<T> b, V
   // The square of the smallest height in units of the longest edge; not a number for a single point.
   const T longest = std::fmax(length_squared(c - b), std::fmax(length_squared(ab), length_squared(ac)));
   const T thinness_squared = length_squared(normal) / (longest * longest);
-  // Twice the areas that p, seen along the normal, spans with the edges.
+  // These are twice the areas that p, seen along the normal, spans with the edges.
   const T opposite_a = dot(normal, cross(c - b, p - b));
   const T opposite_b = dot(normal, cross(p - a, ac));
   const T opposite_c = dot(normal, cross(ab, p - a));

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRounding = 0x1p-53;
 
-/// A sum without rounding: `head` is the rounded value, `tail` what it lacks.
+/// A sum without rounding: `head` is the rounded value, `tail` the rest.
 struct Pair {
   double head = 0;
   double tail = 0;
@@ -125,7 +125,7 @@ int exact_orientation(Point2 a, Point2 b, Point2 c) {
   return sum.sign();
 }
 
-/// The sign of `value` if its error, at most `bound`, leaves one.
+/// Whether the error of `value`, at most `bound`, leaves its sign certain.
 bool is_certain(double value, double bound) {
   return value > bound || value < -bound;
 }
@@ -141,7 +141,7 @@ int orientation(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
   const double size_sum = size(u.y * v.z, u.z * v.y) * std::fabs(w.x) +
                           size(u.z * v.x, u.x * v.z) * std::fabs(w.y) +
                           size(u.x * v.y, u.y * v.x) * std::fabs(w.z);
-  // Shewchuk's bound for this order of operations.
+  // This is Shewchuk's bound for this order of operations.
   if (is_certain(value, (7 + 56 * kRounding) * kRounding * size_sum)) return value > 0 ? 1 : -1;
   if (!std::isfinite(value)) return 0;
   return exact_orientation(a, b, c, d);

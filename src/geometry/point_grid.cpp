@@ -10,7 +10,8 @@ PointGrid::Cell PointGrid::cell_of(DVec3 place) const {
   constexpr double kEnd = 1 << 30;
   const auto along = [&](double x) {
     const double cell = std::floor(x * inverse_cell_);
-    return static_cast<std::int32_t>(cell > -kEnd ? std::min(cell, kEnd) : -kEnd);  // not a number: the end
+    // not a number counts as the end
+    return static_cast<std::int32_t>(cell > -kEnd ? std::min(cell, kEnd) : -kEnd);
   };
   return {along(place.x), along(place.y), along(place.z)};
 }
@@ -21,7 +22,8 @@ void PointGrid::build(std::span<const DVec3> points, double cell) {
   mask_ = std::bit_ceil(2 * count + 1) - 1;
   unsorted_.resize(count);
   entries_.resize(count);
-  // Counts two places on, so that filling a bucket moves its beginning to where the next one begins.
+  // The counts stand two entries further on, so that filling a bucket moves its beginning to where the next
+  // one begins.
   begin_.assign(mask_ + 3, 0);
   for (std::uint32_t i = 0; i < count; ++i) {
     unsorted_[i] = {cell_of(points[i]), i};

@@ -8,11 +8,11 @@
 
 namespace hooke::geometry {
 
-/// Points by the cells of an even grid without bounds, for what is near a place.
+/// Sorts points by the cells of an even grid without bounds, to find those that are near a position.
 class PointGrid {
  public:
   /// Replaces all points. `cell` is the side of a cell [m], positive. Time and memory are linear in the
-  /// points, wherever they are; those that are not finite are in cells at the end of the world.
+  /// points, wherever they are. Points that are not finite are put into the outermost cells.
   void build(std::span<const DVec3> points, double cell);
 
   /// Calls `visit(i)` for every point i in the cell of `place` and those around it: all that are nearer than
@@ -48,7 +48,8 @@ class PointGrid {
   };
 
   [[nodiscard]] Cell cell_of(DVec3 place) const;
-  /// Of Teschner et al. 2003, "Optimized spatial hashing for collision detection of deformable objects".
+  /// Bucket of a cell, after Teschner et al. 2003, "Optimized spatial hashing for collision detection of
+  /// deformable objects".
   [[nodiscard]] std::uint32_t bucket_of(const Cell& cell) const {
     const std::uint32_t hash = (static_cast<std::uint32_t>(cell.x) * 73856093u) ^
                                (static_cast<std::uint32_t>(cell.y) * 19349663u) ^
@@ -58,8 +59,9 @@ class PointGrid {
 
   double inverse_cell_ = 0;  ///< [1/m]
   std::uint32_t mask_ = 0;
-  std::vector<std::uint32_t> begin_;  ///< Of each bucket's entries; those of the last one end at the next.
-  std::vector<Entry> entries_;        ///< By bucket, then by point.
+  std::vector<std::uint32_t> begin_;  ///< Begin of each bucket's entries; those of the last one end at the
+                                      ///< next.
+  std::vector<Entry> entries_;        ///< Entries by bucket, then by point.
   std::vector<Entry> unsorted_;
 };
 

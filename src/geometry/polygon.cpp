@@ -15,7 +15,7 @@ namespace hooke {
 namespace {
 
 constexpr std::size_t kCornersMax = 65536;
-constexpr double kThin = 1e-12;  ///< Of the longest side.
+constexpr double kThin = 1e-12;  ///< Lengths below this count as zero, over the longest side.
 
 Error refusal(const char* where, std::string message) {
   return {.code = ErrorCode::kOutOfRange, .where = where, .message = std::move(message)};
@@ -42,7 +42,7 @@ bool is_on_plane(const Polygon& polygon, DVec3 p, double tolerance) {
   return std::fabs(signed_distance(polygon.plane, p)) <= tolerance;
 }
 
-/// Whether `p`, put on the plane, is within the tolerance of a side.
+/// Whether `p`, projected onto the plane, is within the tolerance of a side.
 bool is_on_outline(const Polygon& polygon, DVec3 p, double tolerance) {
   const DVec3 q = p - signed_distance(polygon.plane, p) * polygon.plane.normal;
   const std::size_t count = polygon.corners.size();
@@ -133,7 +133,7 @@ Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance) {
     polygon.is_convex =
         polygon.is_convex && side_of(polygon.sides[k], corners[(k + 2) % count], kThin * extent) >= 0;
   }
-  // A star turns the same way at every corner, and more than once around.
+  // A star polygon turns in the same direction at every corner, and more than once around.
   const View view = view_of(normal);
   int falls = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -200,7 +200,7 @@ int winding_number(const Polygon& polygon, DVec3 p) {
 bool is_inside_by_winding(const Polygon& polygon, DVec3 p, double tolerance) {
   const base::FloatEnvironment environment;
   if (!is_on_plane(polygon, p, tolerance)) return false;
-  // Where the point is off the plane it is seen along the normal, as by the others.
+  // A point that is off the plane is seen along the normal, as in the other tests.
   const DVec3 q = p - signed_distance(polygon.plane, p) * polygon.plane.normal;
   return winding_number(polygon, q) != 0 || is_on_outline(polygon, p, tolerance);
 }

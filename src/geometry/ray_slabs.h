@@ -21,9 +21,10 @@ struct RaySlabs {
     return {origin, {1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z}};
   }
 
-  /// The fraction of the direction where the ray enters the box grown by `radius` on every side, 0 from
-  /// within; kNever if it misses. A box inside another is never entered before it. The slack makes up for
-  /// rounding, so that a hit on the rim of the box is never lost (after Ize, 2013, Robust BVH ray traversal).
+  /// The fraction of the direction where the ray enters the box grown by `radius` on every side. It is 0 from
+  /// within and kNever if the ray misses. A box inside another is never entered before it. The slack makes up
+  /// for rounding, so that a hit on the rim of the box is never lost (after Ize, 2013, Robust BVH ray
+  /// traversal).
   [[nodiscard]] double enter(const Box& box, double radius = 0.0) const {
     const double lower[3] = {box.lower.x - radius, box.lower.y - radius, box.lower.z - radius};
     const double upper[3] = {box.upper.x + radius, box.upper.y + radius, box.upper.z + radius};

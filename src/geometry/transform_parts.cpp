@@ -9,7 +9,7 @@ namespace hooke {
 
 namespace {
 
-/// Of a column's length: what is left of it by rounding alone has no direction.
+/// Share of a column's length: a rest below it is rounding alone and has no direction.
 constexpr double kNoDirection = 1e-14;
 
 /// A unit vector at right angles to the unit vector `v`: the coordinate axis least along it, made orthogonal.

@@ -45,7 +45,7 @@ void list_triangles_by_vertex(std::size_t vertex_count, std::span<const Triangle
 struct Side {
   std::uint32_t other = 0;  // the edge's second vertex
   std::uint32_t triangle = 0;
-  std::uint32_t number = 0;  // of the edge in the triangle
+  std::uint32_t number = 0;  // number of the edge in the triangle
   bool is_forward = false;   // the triangle runs from the first to the second vertex
 };
 
@@ -66,7 +66,7 @@ void collect_sides(std::uint32_t vertex, std::span<const Triangle> triangles, co
   });
 }
 
-/// The edge of `sides`, which all belong to it.
+/// Makes the edge of `sides`, which all belong to it.
 EdgeSides make_edge_sides(std::span<const Side> sides, std::span<const Triangle> triangles) {
   EdgeSides edge;
   edge.triangle_count = static_cast<std::uint32_t>(sides.size());
@@ -206,7 +206,8 @@ std::vector<Real> compute_edge_lengths(std::span<const Vec3> positions, std::spa
 
 double compute_signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   if (triangles.empty()) return 0.0;
-  // Tetrahedra to a point of the mesh, not to the frame's origin: a small mesh far away keeps its digits.
+  // Tetrahedra reach to a point of the mesh, not to the frame's origin: a small mesh far away keeps its
+  // digits.
   const DVec3 apex = vector_cast<double>(positions[triangles[0][0]]);
   double sum = 0.0;
   for (const Triangle& t : triangles) {

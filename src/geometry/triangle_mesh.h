@@ -19,13 +19,14 @@ inline constexpr std::size_t kTriangleLimit = std::size_t{1} << 25;
 
 /// The triangles at an edge. Of more than two, the two with the smallest indices are kept.
 struct EdgeSides {
-  std::array<std::uint32_t, 2> triangles = {kNone, kNone};  ///< Ascending; kNone: there is none.
-  std::array<std::uint32_t, 2> opposite = {kNone, kNone};   ///< The corner of each that is not on the edge.
+  std::array<std::uint32_t, 2> triangles = {kNone, kNone};  ///< Ascending; kNone for a missing one.
+  std::array<std::uint32_t, 2> opposite = {kNone, kNone};   ///< The corner of each triangle that is not on
+                                                            ///< the edge.
   std::uint32_t triangle_count = 0;  ///< 1 at a border, 2 inside, more where the surface branches.
-  bool has_same_winding = true;      ///< Of the two kept: they run along the edge in opposite directions.
+  bool has_same_winding = true;      ///< The two kept triangles run along the edge in opposite directions.
 };
 
-/// Who touches whom in a triangle mesh. Depends on the triangles only, not on positions.
+/// Neighbors in a triangle mesh. It depends on the triangles only, not on positions.
 struct MeshTopology {
   std::vector<Edge> edges = {};            ///< Each once, in ascending order of (first, second) vertex.
   std::vector<EdgeSides> edge_sides = {};  ///< One for each edge.
@@ -38,27 +39,27 @@ struct MeshTopology {
   std::vector<std::uint8_t> is_border_vertex = {};  ///< 1 where an edge with a single triangle ends.
   std::uint32_t border_edge_count = 0;
   std::uint32_t branching_edge_count = 0;         ///< Edges with more than two triangles.
-  std::uint32_t opposite_winding_edge_count = 0;  ///< Inner edges whose two triangles face opposite ways.
+  std::uint32_t opposite_winding_edge_count = 0;  ///< Inner edges whose two triangles face opposite sides.
 
   /// The triangles at `vertex`, ascending.
   [[nodiscard]] std::span<const std::uint32_t> triangles_at(std::uint32_t vertex) const {
     const std::uint32_t begin = vertex_triangle_begin[vertex];
     return {vertex_triangles.data() + begin, vertex_triangle_begin[vertex + 1] - begin};
   }
-  /// Whether the surface has an inside and an outside all over.
+  /// Whether the surface has an inside and an outside everywhere.
   [[nodiscard]] bool is_closed() const {
     return border_edge_count == 0 && branching_edge_count == 0 && opposite_winding_edge_count == 0;
   }
 };
 
-/// Whether the mesh can be worked with: within the limits, finite, indices in range, three different corners.
-/// At least one triangle. Vertices that no triangle uses and triangles of no area are accepted. `where` of
+/// Checks that the mesh is usable: within the limits, finite, indices in range, three different corners, and
+/// at least one triangle. Vertices that no triangle uses and triangles of no area are accepted. `where` of
 /// the Error is like "mesh.triangles[12]".
 Result<void> validate_mesh(const MeshDesc& mesh);
 
-/// Whether the mesh is the surface of a solid: a mesh that can be worked with, every edge with two triangles
-/// that run along it in opposite directions, and the inside on the inner side of most. Vertices at the same
-/// place are not the same vertex: weld them first. `where` of the Error is like "mesh.triangles[12]".
+/// Checks that the mesh is the surface of a solid: a usable mesh, every edge with two triangles that run
+/// along it in opposite directions, and the inside on the inner side of most. Vertices at the same position
+/// are not the same vertex: weld them first. `where` of the Error is like "mesh.triangles[12]".
 Result<void> validate_solid(const MeshDesc& mesh);
 
 /// Precondition: a mesh that validate_mesh accepts (or no triangles at all).
@@ -70,7 +71,7 @@ std::vector<Real> compute_vertex_areas(std::span<const Vec3> positions, std::spa
 /// Lengths of the edges [m].
 std::vector<Real> compute_edge_lengths(std::span<const Vec3> positions, std::span<const Edge> edges);
 
-/// The volume inside [m^3], negative if the triangles face inward. If the mesh is not closed: the volume
+/// The volume inside [m^3], negative if the triangles face inward. If the mesh is not closed, the volume
 /// between it and the first corner of its first triangle. 0 without triangles.
 double compute_signed_volume(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 

@@ -46,7 +46,7 @@ Neighbors collect_neighbors(std::size_t vertex_count, std::span<const std::array
 }
 
 /// Appends the part of the graph around `start` to `order`, breadth first. `visited` holds `stamp` where a
-/// vertex has been seen. Returns the place in `order` where the last, farthest level begins.
+/// vertex has been seen. Returns the index in `order` where the last, farthest level begins.
 std::size_t append_breadth_first(const Neighbors& neighbors, std::uint32_t start, std::uint32_t stamp,
                                  std::vector<std::uint32_t>& visited, std::vector<std::uint32_t>& order) {
   std::size_t level_begin = order.size();

@@ -493,7 +493,8 @@ class RowUpdate {
     return true;
   }
 
-  /// Advances to where they meet, as gap_along_displacement does for particles (particle_contacts.cpp).
+  /// Advances to where they meet, as gap_along_displacement does for particles
+  /// (collision/deformable/particle_contacts.cpp).
   void advance() {
     constexpr int kRounds = 4;
     Real share = Real(0);

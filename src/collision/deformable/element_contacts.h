@@ -16,7 +16,7 @@
 /// on a face or a gentle curve, nothing is found and nothing is paid for.
 ///
 /// Contacts are found with convex shapes, and with the ridges and peaks of meshes; a half-space has nothing
-/// that could pass between points. docs/decisions/0021.
+/// that could pass between points. docs/decisions/0021-contacts-between-points.md.
 
 namespace hooke::collision {
 

@@ -83,7 +83,7 @@ std::uint32_t median_plane(BspSpace& space, const Pieces& pieces, std::size_t ax
   return space.add_plane(p, {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}).plane;
 }
 
-/// The best of the planes of some of the pieces; of equals the first.
+/// The best of the planes of some of the pieces; the first of equal ones.
 std::pair<std::uint32_t, std::size_t> best_own_plane(const BspSpace& space, const Pieces& pieces) {
   std::pair<std::uint32_t, std::size_t> best = {pieces[0].plane, SIZE_MAX};
   const std::size_t tries = std::min(kCandidates, pieces.size());
@@ -102,7 +102,7 @@ std::uint32_t choose_plane(BspSpace& space, const Pieces& pieces) {
     const std::uint32_t across = median_plane(space, pieces, axis);
     const std::size_t across_cost = count_sides(space, pieces, across, kSample).cost();
     if (across_cost >= cost) continue;
-    // What was sampled is what is there only if all is counted.
+    // A sample is not enough here: all pieces are counted.
     if (!divides(count_sides(space, pieces, across, pieces.size()))) continue;
     plane = across;
     cost = across_cost;
@@ -110,7 +110,7 @@ std::uint32_t choose_plane(BspSpace& space, const Pieces& pieces) {
   return plane;
 }
 
-/// Moves the pieces to where they belong; those in the plane become faces of the node.
+/// Moves the pieces to their sides; those in the plane become faces of the node.
 void divide(BspSpace& space, Pieces& pieces, std::uint32_t plane, Pieces& above, Pieces& below,
             Pieces& faces) {
   for (BspPiece& piece : pieces) {
@@ -155,7 +155,7 @@ Result<BspPieces> build_pieces(BspSpace& space, const std::vector<BspPiece>& pie
     divide(space, task.pieces, node.plane, above, below, tree.faces);
     node.face_count = static_cast<std::uint32_t>(tree.faces.size()) - node.first_face;
     if (node.face_count > 0) {
-      // A side without pieces is all empty or all solid, as the face at its border says.
+      // A side without pieces is all empty or all solid; the face at its border says which.
       const bool is_empty_above = !tree.faces[node.first_face].is_flipped;
       node.above = is_empty_above ? kBspEmpty : kBspSolid;
       node.below = is_empty_above ? kBspSolid : kBspEmpty;
@@ -175,14 +175,14 @@ Result<BspPieces> build_pieces(BspSpace& space, const std::vector<BspPiece>& pie
 
 namespace {
 
-/// A piece on its way down. At a node in whose plane it lies it goes down above first, then below.
+/// A piece that descends the tree. At a node in whose plane it lies, it descends above first, then below.
 struct Descent {
   BspPiece piece = {};
   std::uint32_t node = 0;
   std::uint32_t lies_on = kBspEmpty;   // the node in whose plane it lies; kBspEmpty: none
-  bool is_past_above = false;          // it has been down above that node
-  bool is_solid_above = false;         // what it found there
-  std::uint32_t first_part = 0;        // of its two parts, if it was cut; 0: not cut
+  bool is_past_above = false;          // the descent above that node is done
+  bool is_solid_above = false;         // result of that descent
+  std::uint32_t first_part = 0;        // the first of its two parts, if it was cut; 0: not cut
   std::optional<BspClass> where = {};  // nothing if parts differ
 };
 
@@ -192,7 +192,7 @@ BspClass class_of(const Descent& d, bool is_solid) {
   return d.is_solid_above == d.piece.is_flipped ? BspClass::kSame : BspClass::kOpposite;
 }
 
-/// Goes down until it is cut or knows its class.
+/// Descends until the piece is cut or its class is known.
 void descend(BspSpace& space, const BspPieces& tree, std::vector<Descent>& descents, std::size_t index) {
   Descent d = std::move(descents[index]);
   while (!d.where && d.first_part == 0) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 /// \file
-/// Trees over exact pieces of triangles, as they are built and merged; the tree of queries is BspTree.
+/// Trees over exact pieces of triangles, as they are built and merged. BspTree is the tree for queries.
 
 namespace hooke::geometry {
 
@@ -17,7 +17,7 @@ struct BspSplitNode {
   std::uint32_t plane = 0;
   std::uint32_t above = kBspEmpty;  ///< Node or leaf.
   std::uint32_t below = kBspEmpty;
-  std::uint32_t first_face = 0;  ///< Of BspPieces::faces.
+  std::uint32_t first_face = 0;  ///< Index in BspPieces::faces.
   std::uint32_t face_count = 0;  ///< Pieces that lie in the plane; 0 for a cut along an axis.
 };
 
@@ -27,21 +27,21 @@ struct BspPieces {
   std::vector<BspPiece> faces = {};
 };
 
-/// Builds the tree over pieces that bound a solid. At each node the plane with the least
+/// Builds the tree over pieces that bound a solid. At each node it takes the plane with the least
 ///   |above - below| + 4 cut
-/// (numbers of pieces, counted on a sample) is taken: of sampled pieces, and while they are many also across
-/// the axes at the median piece. The latter is taken only where both sides have pieces and no side has
-/// nearly all, so that every leaf touches a face, which says whether it is solid. So at most
-/// log_{6/5} n + n nodes lie on the way to a leaf. The same tree for the same pieces on every machine. An
-/// error if cutting makes more than 64 pieces of each, and 10^6.
+/// (numbers of pieces, counted on a sample): among the planes of sampled pieces, and while these are many
+/// also among planes across the axes at the median piece. A plane across an axis is taken only where both
+/// sides have pieces and no side has nearly all, so that every leaf touches a face, which says whether it is
+/// solid. So at most log_{6/5} n + n nodes lie on the path to a leaf. The same pieces give the same tree on
+/// every machine. Returns an error if cutting makes more than 64 pieces of each, and 10^6.
 Result<BspPieces> build_pieces(BspSpace& space, const std::vector<BspPiece>& pieces);
 
-/// Where a piece lies to a solid.
+/// The position of a piece relative to a solid.
 enum class BspClass : std::uint8_t {
   kOutside,
   kInside,
-  kSame,      ///< On its surface, facing the same way.
-  kOpposite,  ///< On its surface, facing the other way.
+  kSame,      ///< On its surface, facing the same side.
+  kOpposite,  ///< On its surface, facing the other side.
 };
 
 struct ClassifiedPiece {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kMagic = "HOOKEBSP";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kMostItems = 1u << 30;  // of nodes, faces or corners
-// Bytes.
+// The size is in bytes.
 constexpr std::size_t kHeaderSize = 24;
 constexpr std::size_t kNodeSize = 48;
 constexpr std::size_t kFaceSize = 12;
@@ -37,7 +37,7 @@ class Writer {
   std::vector<std::byte> bytes = {};
 };
 
-/// Takes numbers off bytes of which enough are there.
+/// Reads numbers from bytes; the caller has checked that there are enough.
 class BytesReader {
  public:
   explicit BytesReader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -71,7 +71,7 @@ Error item_error(const char* name, std::size_t index, const char* message) {
   return {ErrorCode::kBadSyntax, std::string("bsp.") + name + "[" + std::to_string(index) + "]", message};
 }
 
-/// Of so many nodes, faces and corners, whose bytes are there.
+/// Reads a tree with so many nodes, faces and corners, whose bytes are known to be there.
 BspTree read_tree(BytesReader& reader, const std::array<std::uint32_t, 3>& counts) {
   BspTree tree;
   tree.nodes.resize(counts[0]);
@@ -114,7 +114,8 @@ Result<void> check_nodes(const BspTree& tree) {
   return item_error("nodes", static_cast<std::size_t>(orphan - has_parent.begin()), "no node's child");
 }
 
-/// Painter's order names each face once: it lies in the plane of one node. The nodes' ranges are there.
+/// Painter's order visits each face once, so it must lie in the plane of one node. The nodes' ranges are
+/// known to be valid.
 Result<void> check_owners(const BspTree& tree) {
   std::vector<bool> has_node(tree.faces.size(), false);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {

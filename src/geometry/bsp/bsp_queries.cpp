@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kNoFraction = std::numeric_limits<double>::infinity();
 constexpr std::size_t kUsualDepth = 64;
-constexpr double kGrazing = 1e-12;  // relative; what is nearer to sliding along than this slides along
+constexpr double kGrazing = 1e-12;  // relative: a motion that is nearer than this to sliding along a surface
+                                    // slides along it
 
 std::uint32_t root_of(const BspTree& tree) {
   return tree.nodes.empty() ? kBspEmpty : 0;
@@ -26,7 +27,7 @@ double height_over(const BspNode& node, DVec3 p) {
 /// A part of the ray that is in a child.
 struct Stretch {
   std::uint32_t child = 0;
-  std::uint32_t entered = 0;  // the node whose plane it begins at
+  std::uint32_t entered = 0;  // the node at whose plane it begins
   double begin = 0;
   double end = 0;
 };
@@ -62,7 +63,7 @@ void visit_leaves(const BspTree& tree, DVec3 origin, DVec3 direction, double fra
   }
 }
 
-/// The same for the places where the surface is passed.
+/// Does the same for the points where the ray passes the surface.
 template <class Visit>
 void visit_crossings(const BspTree& tree, DVec3 origin, DVec3 direction, double fraction_max,
                      const Visit& visit) {
@@ -129,7 +130,7 @@ std::span<const DVec3> corners_of(const BspTree& tree, const BspFace& face) {
   return std::span(tree.corners).subspan(face.first_corner, face.corner_count);
 }
 
-/// How far inside of the outline `p` is, in the plane across `normal`; negative outside. No distance there.
+/// Depth of `p` inside the outline, in the plane across `normal`; negative outside, where it is no distance.
 double depth_in_outline(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
   double depth = kNoFraction;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -139,7 +140,7 @@ double depth_in_outline(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
   return depth;
 }
 
-/// Unit, outward.
+/// Unit normal, outward.
 DVec3 normal_of(std::span<const DVec3> corners) {
   DVec3 sum = {};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
@@ -184,8 +185,8 @@ DVec3 closest_on_face(std::span<const DVec3> corners, DVec3 normal, DVec3 p) {
   return best.point;
 }
 
-/// The first root of |offset + t motion| = radius, if t is not negative. Not where it is grazed: a sphere
-/// that slides along a plane must not stop at the edges in it.
+/// The first root of |offset + t motion| = radius, if t is not negative. A grazing root does not count: a
+/// sphere that slides along a plane must not stop at the edges in it.
 double time_to_distance(DVec3 offset, DVec3 motion, double radius) {
   const double speed = geometry::safe_length(motion);
   if (!(speed > 0)) return kNoFraction;
@@ -197,7 +198,7 @@ double time_to_distance(DVec3 offset, DVec3 motion, double radius) {
   return distance >= 0 ? distance / speed : kNoFraction;
 }
 
-/// The first time that the sphere, away from the face at the start, touches a corner or an edge.
+/// The first time at which the sphere, away from the face at the start, touches a corner or an edge.
 double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
   double first = kNoFraction;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -206,7 +207,7 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
     const DVec3 edge = geometry::direction_or(b - a, DVec3{});
     const DVec3 offset = sphere.center - a;
     first = std::min(first, time_to_distance(offset, sphere.motion, sphere.radius));
-    // The edge's line: without what is along it.
+    // The line of the edge is tested, so the components along it are removed.
     const double time = time_to_distance(offset - dot(offset, edge) * edge,
                                          sphere.motion - dot(sphere.motion, edge) * edge, sphere.radius);
     if (!(time < first)) continue;
@@ -216,12 +217,13 @@ double time_to_outline(std::span<const DVec3> corners, const Sphere& sphere) {
   return first;
 }
 
-/// When the sphere touches the face, and from where.
+/// Time at which the sphere touches the face, and the side from which it comes.
 BspHit sweep_to_face(std::span<const DVec3> corners, const Sphere& sphere) {
   const DVec3 normal = normal_of(corners);
   const DVec3 gap = sphere.center - closest_on_face(corners, normal, sphere.center);
   if (geometry::safe_length(gap) <= sphere.radius) {
-    // The distance to what is convex grows for ever once it grows. Along the face is not toward it.
+    // The distance to a convex shape grows for ever once it grows. Motion along the face is not motion toward
+    // it.
     const double toward = -dot(gap, sphere.motion);
     const bool is_toward =
         toward > kGrazing * geometry::safe_length(gap) * geometry::safe_length(sphere.motion);
@@ -239,7 +241,7 @@ BspHit sweep_to_face(std::span<const DVec3> corners, const Sphere& sphere) {
   return {time, geometry::direction_or(center - closest_on_face(corners, normal, center), normal)};
 }
 
-/// The part of the stretch where height + t rate is in [low, high]; empty: it begins after its end.
+/// The part of the stretch where height + t rate is in [low, high]. An empty part begins after its end.
 Stretch clip(Stretch s, double height, double rate, double low, double high) {
   if (!(rate < 0) && !(rate > 0)) {
     if (height < low || height > high) s.end = -kNoFraction;
@@ -290,7 +292,7 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
     Stretch below = clip(s, height, rate, -kNoFraction, reach);
     above.child = node.above;
     below.child = node.below;
-    // The nearer one is taken first, from the end.
+    // The nearer child is taken first, from the end.
     stack.push_back(above.begin <= below.begin ? below : above);
     stack.push_back(above.begin <= below.begin ? above : below);
   }

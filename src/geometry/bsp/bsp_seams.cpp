@@ -19,7 +19,7 @@ struct Side {
   std::uint32_t low = 0;  // vertices, low < high
   std::uint32_t high = 0;
   std::uint32_t piece = 0;
-  std::uint32_t corner = 0;  // of the piece, where its whole edge begins
+  std::uint32_t corner = 0;  // number of the piece's corner where its whole edge begins
   bool is_forward = false;   // from low to high
 
   friend bool operator<(const Side& a, const Side& b) {
@@ -42,13 +42,13 @@ void visit_edges(std::span<const Side> sides, const Visit& visit) {
   }
 }
 
-/// How much more often the edge is gone along forward than backward.
+/// By how much the edge is passed more often forward than backward.
 std::ptrdiff_t excess(std::span<const Side> sides) {
   const auto forward = std::count_if(sides.begin(), sides.end(), [](const Side& s) { return s.is_forward; });
   return 2 * forward - static_cast<std::ptrdiff_t>(sides.size());
 }
 
-/// Numbers places by x, y, z.
+/// Numbers the positions by x, y, z.
 void weld_corners(const BspSpace& space, std::span<const BspPiece> pieces, SeamedPieces& seamed) {
   std::vector<std::uint32_t> points;
   for (const BspPiece& piece : pieces) {
@@ -100,7 +100,7 @@ class SeamVertices {
     }
   }
 
-  /// Those strictly between the ends of the side, from low to high.
+  /// The vertices strictly between the ends of the side, from low to high.
   [[nodiscard]] std::vector<std::uint32_t> between(const Side& side, const BspPiece& piece) const {
     std::span<const std::uint32_t> fewest = near(side, 0);
     for (std::size_t axis = 1; axis < 3; ++axis) {
@@ -109,7 +109,7 @@ class SeamVertices {
     }
     std::vector<std::uint32_t> found;
     for (const std::uint32_t v : fewest) {
-      // Vertices are numbered by place, so those between have numbers between.
+      // Vertices are numbered by position, so those between have numbers between.
       if (v <= side.low || v >= side.high) continue;
       if (space_.side_of(piece.corners[side.corner].edge_plane, seamed_.vertices[v]) != 0) continue;
       if (space_.side_of(piece.plane, seamed_.vertices[v]) != 0) continue;
@@ -120,7 +120,7 @@ class SeamVertices {
   }
 
  private:
-  static constexpr double kSlack = 0x1p-14;  // places are right to 2^-18 steps
+  static constexpr double kSlack = 0x1p-14;  // positions are right to 2^-18 steps
 
   [[nodiscard]] double at(std::uint32_t vertex, std::size_t axis) const {
     return component(space_.point(seamed_.vertices[vertex]).place, static_cast<int>(axis));
@@ -155,7 +155,7 @@ void divide_edges(const BspSpace& space, std::span<const BspPiece> pieces, Seame
   });
   base::sort_unique(candidates);
   const SeamVertices vertices(space, seamed, candidates);
-  // Backward, so that the corners before keep their places in the outline.
+  // The order is backward, so that the corners before keep their positions in the outline.
   std::sort(open.begin(), open.end(), [](const Side& a, const Side& b) {
     return std::tie(a.piece, b.corner) < std::tie(b.piece, a.corner);
   });
@@ -206,15 +206,15 @@ Result<SeamedPieces> seam_pieces(const BspSpace& space, std::span<const BspPiece
 
 namespace {
 
-/// Cuts corners off a convex outline until it is a triangle. None of the triangles is flat: as long as there
+/// Cuts corners off a convex outline until it is a triangle. None of the triangles is flat. As long as there
 /// are straight vertices, one that follows a corner is joined with the vertex before that corner, and both
-/// become corners; what is left is never flat because the corner's edges go different ways.
+/// become corners. What is left is never flat, because the corner's edges have different directions.
 void cut_ears(std::vector<SeamCorner> outline, std::uint32_t piece, SeamedTriangles& result) {
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     result.triangles.push_back({a, b, c});
     result.pieces.push_back(piece);
   };
-  // The outline begins with a corner; what is before `done` is cut off but for the first vertex.
+  // The outline begins with a corner. Everything before `done` except the first vertex is cut off.
   while (outline.size() > 3) {
     const std::size_t count = outline.size();
     std::size_t straight = 0;
@@ -235,11 +235,11 @@ void cut_ears(std::vector<SeamCorner> outline, std::uint32_t piece, SeamedTriang
 /// A triangle at an edge, for the order around it.
 struct EdgeFace {
   std::uint32_t triangle = 0;
-  std::uint32_t number = 0;  // of the triangle's corner where the edge begins
+  std::uint32_t number = 0;  // number of the triangle's corner where the edge begins
   bool is_forward = false;
 };
 
-/// Joins the corners of triangles that stay neighbors.
+/// Joins the corners of triangles that remain neighbors.
 class Fans {
  public:
   Fans(const BspSpace& space, std::span<const BspPiece> pieces, SeamedTriangles& mesh)
@@ -249,7 +249,7 @@ class Fans {
     std::vector<EdgeFace> faces;
     for (const Side& side : sides) faces.push_back({side.piece, side.corner, side.is_forward});
     if (faces.size() > 2) sort_around(faces);
-    // Outside follows on a forward triangle, and the solid on a backward one.
+    // After a forward triangle the outside follows, after a backward one the solid.
     const std::size_t count = faces.size();
     for (std::size_t k = 0; k < count; ++k) {
       if (faces[k].is_forward) continue;
@@ -278,17 +278,17 @@ class Fans {
  private:
   using Normal = Vector3<math::WideInt>;
 
-  /// Where the piece's outside is, seen along its edge from low to high.
+  /// Direction of the piece's outside, seen along its edge from low to high.
   [[nodiscard]] Normal outward(const EdgeFace& face) const {
     const BspPiece& piece = pieces_[mesh_.pieces[face.triangle]];
     const LatticeNormal& a = space_.plane(piece.plane).a;
     return piece.is_flipped == face.is_forward ? Normal{-a.x, -a.y, -a.z} : Normal{a.x, a.y, a.z};
   }
 
-  /// Counter-clockwise about the edge, seen against the direction from low to high.
+  /// Sorts counter-clockwise about the edge, seen against the direction from low to high.
   void sort_around(std::vector<EdgeFace>& faces) const {
     const Normal start = outward(faces[0]);
-    // Any two planes that are not parallel give the edge's direction; low to high is the way x, y, z grow.
+    // Any two planes that are not parallel give the edge's direction. From low to high x, y, z grow.
     Normal along;
     for (std::size_t k = 1; k < faces.size() && along == Normal{}; ++k) {
       along = cross(start, outward(faces[k]));
@@ -300,7 +300,7 @@ class Fans {
     const auto rotation_sign = [&](const Normal& u, const Normal& v) {
       return dot(cross(u, v), along).sign();
     };
-    // 0: along the start, 1: less than half a turn, 2: half, 3: more.
+    // The quarter is 0: along the start, 1: less than half a turn, 2: half, 3: more.
     const auto quarter = [&](const Normal& v) {
       const int side = rotation_sign(start, v);
       if (side != 0) return side > 0 ? 1 : 3;
@@ -317,7 +317,8 @@ class Fans {
     });
   }
 
-  /// Of surfaces that lie on each other: the forward one of the same rank among the forward ones.
+  /// For surfaces that lie on each other, the partner is the forward one of the same rank among the forward
+  /// ones.
   static std::size_t partner(std::span<const EdgeFace> faces, std::size_t backward) {
     std::size_t rank = 0;
     for (std::size_t k = 0; k < backward; ++k) rank += faces[k].is_forward ? 0 : 1;
@@ -328,7 +329,7 @@ class Fans {
   }
 
   void join(const EdgeFace& a, const EdgeFace& b) {
-    // They go along the edge opposite ways: the start of one is the end of the other.
+    // The two pass the edge in opposite directions: the start of one is the end of the other.
     sets_.merge(3 * a.triangle + a.number, 3 * b.triangle + (b.number + 1) % 3);
     sets_.merge(3 * a.triangle + (a.number + 1) % 3, 3 * b.triangle + b.number);
   }

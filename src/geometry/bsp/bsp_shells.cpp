@@ -13,11 +13,12 @@ namespace hooke::geometry {
 
 namespace {
 
-// Places in steps would overflow float when multiplied with each other; the boxes need no more than float.
+// Positions in steps would overflow float when multiplied with each other; the boxes need no more than float.
 constexpr double kBoxScale = 0x1p-32;
 constexpr double kBoxSlack = 1e-6;
 
-/// The shell of each piece, by its smallest piece. Along an edge with more than two pieces solids only touch.
+/// The shell of each piece, named by its smallest piece. Where an edge has more than two pieces, solids only
+/// touch.
 std::vector<std::uint32_t> find_shells(const SeamedPieces& seamed) {
   using Step = std::pair<std::array<std::uint32_t, 2>, std::uint32_t>;  // an edge and a piece
   std::vector<Step> steps;
@@ -56,8 +57,8 @@ Bvh boxes_of(const BspSpace& space, std::span<const BspPiece> pieces) {
   return build_bvh(positions, triangles);
 }
 
-/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it passes by. The three volumes
-/// have opposite signs on both sides of an edge: a line through it passes one of the two triangles.
+/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it misses. The three volumes have
+/// opposite signs on both sides of an edge: a line through it passes one of the two triangles.
 int passes(const std::array<DVec3, 3>& corners, DVec3 origin, DVec3 direction) {
   const DVec3 a = corners[0] - origin;
   const DVec3 b = corners[1] - origin;
@@ -69,7 +70,8 @@ int passes(const std::array<DVec3, 3>& corners, DVec3 origin, DVec3 direction) {
   const bool is_entering = of_a < 0 && of_b < 0 && of_c < 0;
   if (is_leaving == is_entering) return 0;
   const DVec3 normal = cross(b - a, c - a);
-  const double ahead = dot(normal, a);  // times dot(normal, direction): the sign of the way to it
+  const double ahead = dot(normal, a);  // times dot(normal, direction): the sign of the distance along the
+                                        // ray
   return is_leaving ? (ahead > 0 ? 1 : 0) : (ahead < 0 ? -1 : 0);
 }
 
@@ -86,7 +88,7 @@ Result<void> check_shells(const BspSpace& space, std::span<const BspPiece> piece
     const std::array<DVec3, 3> corners = places_of(space, pieces[piece]);
     const DVec3 middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
     const DVec3 normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
-    // Outward, and along nothing in particular: 4 is beyond the boxes, which end at 1.
+    // The direction is outward and along nothing in particular: 4 is beyond the boxes, which end at 1.
     const DVec3 direction = 4.0 * (normal + DVec3{0.1234567, -0.0765432, 0.1543217});
     find_triangles_on_path(boxes, kBoxScale * middle, direction, kBoxSlack, near);
     int winding = 0;

@@ -9,10 +9,10 @@
 
 namespace hooke::geometry {
 
-/// Whether each shell of a closed surface, pieces that are joined by edges, has nothing but empty space
-/// before it: a shell in the empty inside of another is fine, one wound the same way in the solid inside is
-/// not. By the signed crossings of a ray from one piece of each. Pieces are whole triangles. The error names
-/// one.
+/// Checks that each shell of a closed surface, which is a set of pieces joined by edges, has only empty space
+/// in front of it. A shell in the empty inside of another is fine; one wound the same way in the solid inside
+/// is not. The check counts the signed crossings of a ray from one piece of each shell. Pieces are whole
+/// triangles. The error names one.
 Result<void> check_shells(const BspSpace& space, std::span<const BspPiece> pieces,
                           const SeamedPieces& seamed);
 

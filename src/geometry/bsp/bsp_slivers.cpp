@@ -14,8 +14,8 @@ namespace hooke::geometry {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr double kLift = 1.5;   // times the distance: how high a sliver becomes
-constexpr double kFlat = 1e-3;  // times the distance: no height, and so no plane
+constexpr double kLift = 1.5;   // height of a lifted sliver, times the distance
+constexpr double kFlat = 1e-3;  // height below which a triangle has no plane, times the distance
 
 /// A manifold whose edges can be collapsed and flipped.
 class Remesher {
@@ -27,7 +27,7 @@ class Remesher {
     }
   }
 
-  /// Whether anything was done.
+  /// Returns whether anything was changed.
   bool improve() {
     bool has_changed = false;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -44,8 +44,9 @@ class Remesher {
     return has_changed;
   }
 
-  /// For triangles where neither can be done: the corner over the longest edge is moved away from it, in the
-  /// triangle's plane or in that of its neighbor, until it is high enough. Whether anything was done.
+  /// Lifts triangles where neither can be done: the corner over the longest edge is moved away from it, in
+  /// the triangle's plane or in that of its neighbor, until it is high enough. Returns whether anything was
+  /// changed.
   bool lift_rest() {
     bool has_changed = false;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -60,7 +61,7 @@ class Remesher {
     return has_changed;
   }
 
-  /// Without triangles and vertices that are gone.
+  /// The mesh without the triangles and vertices that were removed.
   [[nodiscard]] SolidMesh result() const {
     SolidMesh result;
     std::vector<std::uint32_t> number(mesh_.positions.size(), kNone);
@@ -91,7 +92,7 @@ class Remesher {
     return length(cross(place(t, 1) - place(t, 0), place(t, 2) - place(t, 0)));
   }
 
-  /// The vertices joined to one, ascending.
+  /// The vertices joined to `vertex` by an edge, ascending.
   [[nodiscard]] std::vector<std::uint32_t> neighbors(std::uint32_t vertex) const {
     std::vector<std::uint32_t> found;
     for (const std::uint32_t t : around_[vertex]) {
@@ -103,7 +104,7 @@ class Remesher {
     return found;
   }
 
-  /// The triangle that goes from `a` to `b`, and its third corner's number.
+  /// The triangle whose edge runs from `a` to `b`, and the number of its third corner.
   [[nodiscard]] std::pair<std::uint32_t, std::size_t> beside(std::uint32_t a, std::uint32_t b) const {
     for (const std::uint32_t t : around_[a]) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -126,8 +127,8 @@ class Remesher {
     for (const std::uint32_t vertex : corners) around_[vertex].push_back(t);
   }
 
-  /// Moves one end of the edge to the other. Only if the ends have no other neighbors in common than the two
-  /// third corners (the link condition), and no vertex is left with two triangles.
+  /// Moves one end of the edge to the other. This is done only if the ends have no other neighbors in common
+  /// than the two third corners (the link condition), and no vertex is left with two triangles.
   bool collapse(std::uint32_t t, std::size_t k) {
     const std::uint32_t kept = std::min(corner(t, k), corner(t, k + 1));
     const std::uint32_t gone = std::max(corner(t, k), corner(t, k + 1));
@@ -153,7 +154,7 @@ class Remesher {
     return true;
   }
 
-  /// The edge's two triangles get the other diagonal; not if that is an edge already.
+  /// Gives the edge's two triangles the other diagonal, unless that is an edge already.
   bool flip(std::uint32_t t, std::size_t k) {
     const std::uint32_t a = corner(t, k);
     const std::uint32_t b = corner(t, k + 1);

@@ -43,7 +43,7 @@ Result<void> check_indices(const SolidMesh& mesh) {
   return {};
 }
 
-/// Numbers places; vertices at the same place get the number of the first of them.
+/// Numbers the vertices; those at the same position get the number of the first of them.
 std::vector<std::uint32_t> weld_places(const std::vector<LatticePoint>& points) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -57,9 +57,9 @@ std::vector<std::uint32_t> weld_places(const std::vector<LatticePoint>& points) 
   return same;
 }
 
-/// A triangle from its smallest corner on, each way round.
+/// A triangle written from its smallest corner on, in either direction.
 struct Winding {
-  Triangle corners = {};  // ascending but for the way round
+  Triangle corners = {};  // ascending except for the direction
   bool is_even = false;
   std::uint32_t triangle = 0;
 };
@@ -170,10 +170,10 @@ namespace {
 struct LatticeMesh {
   std::vector<LatticePoint> points = {};
   std::vector<Triangle> triangles = {};  // their corners welded; as many as in the mesh
-  std::vector<std::uint32_t> kept = {};  // of the triangles
+  std::vector<std::uint32_t> kept = {};  // those of the triangles that stay
 };
 
-/// Welds, and leaves out flat and double triangles.
+/// Welds the corners, and leaves out flat and double triangles.
 LatticeMesh on_lattice(const Lattice& lattice, const SolidMesh& mesh) {
   LatticeMesh result;
   for (const DVec3& p : mesh.positions) result.points.push_back(lattice.point_of(p));
@@ -258,7 +258,7 @@ void keep_parts(BspSpace& space, const Operand& own, const Operand& other, std::
   }
 }
 
-/// Where both have the same face, that of `a` stands for both.
+/// The surface of the result. Where both have the same face, that of `a` is used for both.
 std::vector<BspPiece> surface_of(BspSpace& space, const Operand& a, const Operand& b,
                                  SolidOperation operation) {
   std::vector<BspPiece> surface;

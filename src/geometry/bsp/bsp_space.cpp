@@ -12,10 +12,10 @@ namespace {
 using math::Int128;
 using math::WideInt;
 
-// Heights by doubles are right to 2^-15 steps: places to 2^-18 (coordinates to 2^32 + 1), normals and offsets
-// to a few units in the last place.
+// Heights computed in double are right to 2^-15 steps: positions to 2^-18 (coordinates to 2^32 + 1), normals
+// and offsets to a few units in the last place.
 constexpr double kSureHeight = 0x1p-12;
-// Coordinates by doubles are right to 2^-18 steps.
+// Coordinates computed in double are right to 2^-18 steps.
 constexpr double kSureDistance = 0x1p-14;
 
 using WideVector = Vector3<WideInt>;
@@ -44,7 +44,7 @@ Int128 size_of(Int128 v) {
   return v < 0 ? -v : v;
 }
 
-/// By Euclid; in 64 bits as soon as they suffice. Not negative.
+/// Greatest common divisor by Euclid's algorithm, in 64 bits as soon as they suffice. Not negative.
 Int128 common_divisor(Int128 a, Int128 b) {
   a = size_of(a);
   b = size_of(b);
@@ -105,7 +105,7 @@ BspPiece BspSpace::add_triangle(const std::array<LatticePoint, 3>& corners, std:
   if (normal == LatticeNormal{}) return {};
   const BspSide own = add_plane(corners[0], normal);
   BspPiece piece = {.plane = own.plane, .triangle = triangle, .is_flipped = own.is_flipped};
-  // Through an edge and along an axis: across the triangle, and with small numbers.
+  // The plane goes through an edge and along an axis, so it is across the triangle and has small numbers.
   const LatticeNormal axis = longest_axis(normal);
   for (std::size_t k = 0; k < 3; ++k) {
     const LatticeNormal across = cross(difference(corners[(k + 1) % 3], corners[k]), axis);
@@ -175,7 +175,7 @@ BspSplit classify(const BspSpace& space, const BspPiece& piece, std::uint32_t pl
     has_below = has_below || side < 0;
     if (has_above && has_below) return BspSplit::kCut;
   }
-  // All on it: then the piece would lie in the plane, which has one number only.
+  // If all corners were on it, the piece would lie in the plane, which has one number only.
   HOOKE_ASSERT(has_above || has_below);
   return has_above ? BspSplit::kAbove : BspSplit::kBelow;
 }
@@ -193,7 +193,7 @@ BspSplit split(BspSpace& space, const BspPiece& piece, std::uint32_t plane, BspP
     const BspCorner& corner = piece.corners[k];
     const int here = sides[k];
     const int next = sides[(k + 1) % count];
-    // An edge that leaves a side is followed on that side by the cut.
+    // After an edge that leaves a side, the cut follows on that side.
     if (here > 0) above.corners.push_back(corner);
     if (here < 0) below.corners.push_back(corner);
     if (here == 0) {

@@ -30,7 +30,7 @@ using LatticePoint = Vector3<std::int64_t>;
 inline constexpr std::int64_t kLatticeHalf = (std::int64_t{1} << 32) + 1;
 using LatticeNormal = Vector3<math::Int128>;
 
-/// Across the triangle, outward, twice its area long; zero if it has none.
+/// Normal of the triangle, outward, of twice its area in length; zero if it has no area.
 [[nodiscard]] LatticeNormal normal_of(const std::array<LatticePoint, 3>& corners);
 
 /// The points p with dot(a, p) + d = 0. `a` has no common divisor, and its first number that is not zero is
@@ -38,19 +38,20 @@ using LatticeNormal = Vector3<math::Int128>;
 struct BspPlane {
   LatticeNormal a = {};
   math::Int128 d = 0;
-  DVec3 normal = {};  ///< Unit, along `a`.
+  DVec3 normal = {};  ///< Unit normal, along `a`.
   double offset = 0;  ///< dot(normal, p) + offset is the height of p, in steps.
 };
 
 /// A plane and the side of it.
 struct BspSide {
   std::uint32_t plane = 0;
-  bool is_flipped = false;  ///< The direction asked for is against the plane's normal.
+  bool is_flipped = false;  ///< The requested direction is against the plane's normal.
 };
 
 struct BspPoint {
-  DVec3 place = {};                          ///< In steps; exact for a corner of a mesh, else to 2^-18 steps.
-  std::array<std::uint32_t, 3> planes = {};  ///< It is the one point on all three.
+  DVec3 place = {};                          ///< Position in steps; exact for a corner of a mesh, else to
+                                             ///< 2^-18 steps.
+  std::array<std::uint32_t, 3> planes = {};  ///< The point is the only one on all three.
   bool is_lattice = false;
 };
 
@@ -64,11 +65,11 @@ struct BspCorner {
 struct BspPiece {
   std::vector<BspCorner> corners = {};
   std::uint32_t plane = 0;
-  std::uint32_t triangle = 0;  ///< Whose piece it is.
-  bool is_flipped = false;     ///< Outside is below the plane.
+  std::uint32_t triangle = 0;  ///< Number of the triangle that the piece is from.
+  bool is_flipped = false;     ///< The outside is below the plane.
 };
 
-/// What planes, points and pieces are numbered in.
+/// Stores planes, points and pieces under numbers.
 class BspSpace {
  public:
   /// The plane through `p` across `normal`, which is not zero; its numbers are at most 2^67.
@@ -82,9 +83,9 @@ class BspSpace {
   [[nodiscard]] const BspPoint& point(std::uint32_t index) const { return points_[index]; }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
 
-  /// 1 above the plane, -1 below, 0 on it. Exact.
+  /// Side of the point: 1 above the plane, -1 below, 0 on it. Exact.
   [[nodiscard]] int side_of(std::uint32_t plane, std::uint32_t point) const;
-  /// The order of two points by x, then y, then z: -1, 0 or 1. Exact; 0 only for the same place.
+  /// The order of two points by x, then y, then z: -1, 0 or 1. Exact; 0 only for the same position.
   [[nodiscard]] int compare(std::uint32_t p, std::uint32_t q) const;
 
  private:
@@ -95,12 +96,12 @@ class BspSpace {
   std::vector<BspPoint> points_;
 };
 
-/// Where a piece lies.
+/// The position of a piece relative to a plane.
 enum class BspSplit : std::uint8_t { kAbove, kBelow, kOn, kCut };
 
-/// Where the piece lies to the plane; if it is cut, its two parts.
+/// Finds the position of the piece relative to the plane; if it is cut, also its two parts.
 BspSplit split(BspSpace& space, const BspPiece& piece, std::uint32_t plane, BspPiece& above, BspPiece& below);
-/// The same without the cutting.
+/// Does the same without cutting.
 BspSplit classify(const BspSpace& space, const BspPiece& piece, std::uint32_t plane);
 
 }  // namespace hooke::geometry

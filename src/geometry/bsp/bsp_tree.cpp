@@ -10,7 +10,7 @@ namespace hooke::geometry {
 
 namespace {
 
-/// The exact tree in double.
+/// The exact tree, rounded to double.
 BspTree rounded(const BspSpace& space, const Lattice& lattice, const BspPieces& exact) {
   BspTree tree;
   for (const BspSplitNode& node : exact.nodes) {
@@ -72,7 +72,7 @@ Result<BspTree> build_bsp(const MeshDesc& mesh) {
 void order_back_to_front(const BspTree& tree, DVec3 eye, std::vector<std::uint32_t>& faces) {
   struct Waiting {
     std::uint32_t child = 0;
-    bool is_own = false;  // only the node's own faces are left to do
+    bool is_own = false;  // only the node's own faces remain
   };
   faces.clear();
   std::vector<Waiting> stack;
@@ -86,7 +86,7 @@ void order_back_to_front(const BspTree& tree, DVec3 eye, std::vector<std::uint32
       for (std::uint32_t k = 0; k < node.face_count; ++k) faces.push_back(node.first_face + k);
       continue;
     }
-    // What is beyond the plane first, what is on the eye's side last.
+    // Parts beyond the plane come first, parts on the eye's side last.
     const bool is_above = dot(node.normal, eye) >= node.offset;
     stack.push_back({is_above ? node.above : node.below, false});
     stack.push_back({next.child, true});

@@ -21,7 +21,8 @@ bool is_over(const ConvexHull& hull, const ConvexHull::Face& face, Vec3 p) {
   return true;
 }
 
-/// For a `p` that is over no face: on the edges between a face that it is in front of and another.
+/// Finds the surface point for a `p` that is over no face: on the edges between a face that it is in front of
+/// and another.
 SurfacePoint<Real> closest_on_edges(Vec3 p, const ConvexHull& hull, Vec3 normal_on_edge) {
   SegmentPoint<Real> best = {.distance_squared = std::numeric_limits<Real>::infinity()};
   for (const ConvexHull::Edge& edge : hull.edges) {

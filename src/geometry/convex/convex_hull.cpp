@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kExtentMin = 1e-9;  // [m]
 constexpr double kExtentMax = 1e9;   // [m]
-// In units of the grid, of which the extent of the points has 2^20.
+// The unit is that of the grid; the extent of the points is 2^20 of them.
 constexpr double kToleranceOnGrid = ConvexHull::kTolerance * 2.0 * static_cast<double>(kGridHalf);
 constexpr double kThicknessOnGrid = ConvexHull::kThicknessMin * 2.0 * static_cast<double>(kGridHalf);
 
@@ -30,7 +30,7 @@ Error hull_error(ErrorCode code, std::string where, std::string message) {
   return {.code = code, .where = std::move(where), .message = std::move(message)};
 }
 
-/// Points on the grid in ascending order, each once, and where they came from.
+/// Points on the grid in ascending order, each once, and the points that they came from.
 struct GriddedPoints {
   std::vector<GridPoint> grid;
   std::vector<Vec3> original;
@@ -65,7 +65,7 @@ Result<GriddedPoints> put_on_grid(std::span<const Vec3> points) {
     const DVec3 q = scale * (vector_cast<double>(p) - middle);
     all.push_back({{nearest_whole(q.x), nearest_whole(q.y), nearest_whole(q.z)}, p});
   }
-  // By place alone, so that the hull does not depend on the order of the points.
+  // Points are sorted by position alone, so that the hull does not depend on their order.
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return std::tie(a.first.x, a.first.y, a.first.z, a.second.x, a.second.y, a.second.z) <
            std::tie(b.first.x, b.first.y, b.first.z, b.second.x, b.second.y, b.second.z);
@@ -93,7 +93,7 @@ double thickness_of(std::span<const HullTriangle> triangles, std::span<const Gri
   return thickness;
 }
 
-/// For each point, in how many loops it is.
+/// For each point, the number of loops that contain it.
 std::vector<std::uint32_t> count_loops(const Loops& loops, std::size_t point_count) {
   std::vector<std::uint32_t> count(point_count, 0);
   for (const auto& loop : loops) {
@@ -114,9 +114,9 @@ void keep(const std::vector<std::uint8_t>& is_kept, GriddedPoints& points) {
   points.original.resize(end);
 }
 
-/// Faces of the hull, after leaving out all points but its corners. A point at which fewer than three faces
-/// meet lies inside the hull, a face or an edge; without it, others may stop being corners. No faces if the
-/// hull is too thin.
+/// Faces of the hull, after all points but its corners have been left out. A point at which fewer than three
+/// faces meet lies inside the hull, a face or an edge; without it, others may stop being corners. Returns no
+/// faces if the hull is too thin.
 Loops find_faces(GriddedPoints& points, int vertex_limit) {
   for (;;) {
     const auto triangles = triangulate_hull(points.grid, kToleranceOnGrid, vertex_limit);
@@ -144,7 +144,7 @@ DVec3 area_vector(const ConvexHull& hull, const ConvexHull::Face& face) {
   return sum;
 }
 
-/// The plane whose offset is that of the outermost corner, so that no corner of the face is outside.
+/// Fits the plane with the offset of the outermost corner, so that no corner of the face is outside.
 void fit_plane(const ConvexHull& hull, ConvexHull::Face& face) {
   face.normal = vector_cast<Real>(normalize(area_vector(hull, face)));
   double offset = -std::numeric_limits<double>::infinity();
@@ -188,7 +188,7 @@ std::vector<ConvexHull::Edge> edges_of(const ConvexHull& hull) {
   return edges;
 }
 
-/// The hull with these corners and faces: planes, edges, center and radii follow.
+/// Makes the hull from these corners and faces; planes, edges, center and radii follow from them.
 ConvexHull assemble(std::vector<Vec3> vertices, const Loops& loops) {
   ConvexHull hull;
   hull.vertices = std::move(vertices);

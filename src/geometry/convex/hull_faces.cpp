@@ -66,7 +66,7 @@ class FaceGrowth {
     return static_cast<std::size_t>(std::find(rim_.begin(), rim_.end(), vertex) - rim_.begin());
   }
 
-  /// Moves the rim out around a triangle that shares an edge with the face; false if it must not.
+  /// Moves the rim out around a triangle that shares an edge with the face. Returns false if it must not.
   bool join(std::uint32_t candidate, std::uint32_t seed) {
     const std::array<std::uint32_t, 3>& vertex = triangles_[candidate].vertex;
     std::array<std::size_t, 3> place = {};
@@ -77,7 +77,7 @@ class FaceGrowth {
     while (fresh < 3 && place[fresh] != rim_.size()) ++fresh;
     if (fresh < 3) {
       // The triangle runs along the shared edge from the corner after the new one to the corner before it;
-      // the rim the other way.
+      // the rim runs in the other direction.
       rim.insert(rim.begin() + static_cast<std::ptrdiff_t>(place[(fresh + 2) % 3] + 1), vertex[fresh]);
     } else if (!close_corner(vertex, place, rim)) {
       return false;
@@ -87,7 +87,8 @@ class FaceGrowth {
     return true;
   }
 
-  /// All three corners are on the rim: they have to follow each other, and the middle one is left inside.
+  /// Handles a triangle with all three corners on the rim: they have to follow each other, and the middle one
+  /// is left inside.
   bool close_corner(const std::array<std::uint32_t, 3>& vertex, const std::array<std::size_t, 3>& place,
                     std::vector<std::uint32_t>& rim) const {
     if (rim.size() == 3) return false;
@@ -118,8 +119,8 @@ class FaceGrowth {
   std::span<const GridPoint> points_;
   double tolerance_;
   bool stay_convex_;
-  std::vector<std::uint32_t> face_of_;  // of each triangle
-  std::vector<std::uint32_t> rim_;      // of the face that grows, counter-clockwise from outside
+  std::vector<std::uint32_t> face_of_;  // by triangle
+  std::vector<std::uint32_t> rim_;      // rim of the face that grows, counter-clockwise from outside
 };
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kSides = 24;
-constexpr int kRings = 5;  ///< Of a half sphere, without its pole; the mesh keeps to a hull's vertices.
+constexpr int kRings = 5;  ///< Rings of a half sphere, without its pole; the mesh stays within the vertices
+                           ///< of a hull.
 
 /// A vertex of a solid of revolution: round * radius + end * half_height.
 struct RoundVertex {
@@ -30,14 +31,14 @@ struct RoundMesh {
   std::vector<std::array<std::uint16_t, 3>> triangles;
 };
 
-/// A circle of vertices about y, or one on it. `y` counts in radii.
+/// A circle of vertices about y, or a single vertex on it. `y` counts in radii.
 struct Ring {
   double radius = 0;
   double y = 0;
   double end = 0;
 };
 
-/// Through rings from below to above; flat where it ends in a circle.
+/// Makes the mesh through rings from below to above; it is flat where it ends in a circle.
 RoundMesh mesh_through(std::span<const Ring> rings) {
   RoundMesh mesh;
   std::vector<std::uint16_t> first;
@@ -69,7 +70,7 @@ RoundMesh mesh_through(std::span<const Ring> rings) {
 
 RoundMesh make_capsule() {
   std::vector<Ring> upper;
-  double volume = 0;  // of the half sphere between the rings, by frusta of cones
+  double volume = 0;  // volume of the half sphere between the rings, by frusta of cones
   for (int i = 0; i <= kRings; ++i) {
     const math::SinCos<double> at = math::sin_cos(0.5 * kPi * i / kRings);
     upper.push_back({i < kRings ? at.cos : 0.0, at.sin, 1});

@@ -12,7 +12,7 @@ namespace {
 
 using Inertia = math::Symmetric3<double>;
 
-/// The integral of x x^T is turned into the one of |x|^2 1 - x x^T.
+/// Turns the integral of x x^T into the one of |x|^2 1 - x x^T.
 Inertia inertia_from(const Inertia& second_moment) {
   const double trace = second_moment.xx + second_moment.yy + second_moment.zz;
   return {trace - second_moment.xx, -second_moment.xy, -second_moment.xz,
@@ -39,7 +39,7 @@ Inertia rotated(const Inertia& m, const Quaternion<double>& q) {
   return {x.x, 0.5 * (x.y + y.x), 0.5 * (x.z + z.x), y.y, 0.5 * (y.z + z.y), z.z};
 }
 
-/// Symmetric about y.
+/// Properties of a solid that is symmetric about y.
 MassProperties turned_solid(double volume, double along, double across) {
   return {.volume = volume, .inertia = {across, 0, 0, along, 0, across}};
 }
@@ -72,7 +72,7 @@ MassProperties mass_of_capsule(double r, double h) {
                       middle.inertia.xx + ends.inertia.xx + ends.volume * h * (h + 0.75 * r));
 }
 
-/// Of height 2 h; the center is at a quarter of it.
+/// The height of the cone is 2 h; the center is at a quarter of it.
 MassProperties mass_of_cone(double r, double h) {
   const double volume = 2.0 / 3.0 * std::numbers::pi * r * r * h;
   MassProperties cone = turned_solid(volume, 0.3 * volume * r * r, 0.15 * volume * (r * r + h * h));
@@ -88,7 +88,7 @@ MassProperties mass_of_cone(double r, double h) {
 /// (Eberly 2002, Polyhedral mass properties, gives the same integrals over the surface.)
 class Tetrahedra {
  public:
-  /// The apex should be near the solid, lest digits cancel.
+  /// The apex should be near the solid, otherwise digits cancel.
   explicit Tetrahedra(Vec3 apex) : apex_(vector_cast<double>(apex)) {}
 
   void add(const Vec3& corner_a, const Vec3& corner_b, const Vec3& corner_c) {
@@ -123,7 +123,7 @@ class Tetrahedra {
 constexpr int kSweeps = 8;
 constexpr double kNegligible = 1e-13;
 constexpr double kFlat = 1e-9;   ///< A disk's moment about its axis is the sum of the two across.
-constexpr double kThin = 1e-12;  ///< Moments of less than this part of the largest are rounding.
+constexpr double kThin = 1e-12;  ///< Moments below this part of the largest are rounding.
 
 /// The rotation about one axis that takes the element `off` between the two others out of a matrix with `p`
 /// and `q` on its diagonal there: cosine and sine of half its angle, at most 45 degrees.

@@ -14,11 +14,11 @@ DVec3 as_double(GridPoint p) {
   return vector_cast<double>(p);
 }
 
-/// A triangle of the hull so far, and the points outside that are left to it.
+/// A triangle of the hull so far, and the points outside that are assigned to it.
 struct Facet : HullTriangle {
   std::vector<std::uint32_t> outside;
   std::uint32_t farthest = kNobody;
-  double height = 0;  // of the farthest
+  double height = 0;  // height of the farthest point
   bool is_alive = true;
 };
 
@@ -33,7 +33,7 @@ class Quickhull {
   Quickhull(std::span<const GridPoint> points, double tolerance)
       : points_(points), tolerance_(tolerance), facet_from_(points.size(), kNobody) {}
 
-  /// False if all points lie in one plane.
+  /// Returns false if all points lie in one plane.
   bool begin() {
     const std::array<std::uint32_t, 4> corners = find_first_corners();
     if (corners[3] == kNobody) return false;
@@ -50,7 +50,7 @@ class Quickhull {
     return true;
   }
 
-  /// False if no point is outside.
+  /// Returns false if no point is outside.
   bool add_farthest() {
     const Facet* highest = &facets_.front();
     for (const Facet& facet : facets_) {
@@ -121,7 +121,7 @@ class Quickhull {
     return static_cast<std::uint32_t>(facets_.size() - 1);
   }
 
-  /// Leaves each point to the facet, of those from `first` on, over which it is highest.
+  /// Assigns each point to the facet, of those from `first` on, over which it is highest.
   void share_out(std::span<const std::uint32_t> points, std::size_t first) {
     for (const std::uint32_t point : points) {
       Facet* best = nullptr;
@@ -162,8 +162,8 @@ class Quickhull {
     share_out(orphans_, first);
   }
 
-  /// Removes what `eye` sees; leaves the rim in `horizon_` and the points outside in `orphans_`. With exact
-  /// heights the rim is a simple loop, and `eye` is on none of the lines of its edges.
+  /// Removes the facets that `eye` sees. Puts the rim into `horizon_` and the points outside into `orphans_`.
+  /// With exact heights the rim is a simple loop, and `eye` is on none of the lines of its edges.
   void remove_visible(std::uint32_t seen, GridPoint eye) {
     std::vector<std::uint32_t> visible = {seen};
     facets_[seen].is_alive = false;
@@ -190,7 +190,7 @@ class Quickhull {
   std::span<const GridPoint> points_;
   double tolerance_;
   std::vector<Facet> facets_;
-  std::vector<std::uint32_t> facet_from_;  // of the cone being made: the facet whose first vertex this is
+  std::vector<std::uint32_t> facet_from_;  // facets of the cone being made, by their first vertex
   std::vector<HorizonEdge> horizon_;
   std::vector<std::uint32_t> orphans_;
 };

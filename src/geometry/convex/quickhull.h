@@ -21,10 +21,10 @@ inline constexpr std::int64_t kGridHalf = std::int64_t{1} << 19;
 
 /// A triangle of the hull.
 struct HullTriangle {
-  std::array<std::uint32_t, 3> vertex = {};  ///< Points, counter-clockwise from outside.
+  std::array<std::uint32_t, 3> vertex = {};  ///< Numbers of the points, counter-clockwise from outside.
   std::array<std::uint32_t, 3> neighbor =
-      {};                     ///< Triangles: number k across the edge from vertex k to k + 1.
-  GridPoint normal = {};      ///< Outward, twice the area long.
+      {};                     ///< Neighboring triangles: number k is across the edge from vertex k to k + 1.
+  GridPoint normal = {};      ///< Outward normal, of twice the area in length.
   double inverse_length = 0;  ///< 1 / |normal|.
 };
 
@@ -32,15 +32,15 @@ struct HullTriangle {
 inline std::int64_t scaled_height(const HullTriangle& t, std::span<const GridPoint> points, GridPoint p) {
   return dot(t.normal, p - points[t.vertex[0]]);
 }
-/// The same in grid units.
+/// Height of `p` over the triangle's plane in grid units.
 inline double height_over(const HullTriangle& t, std::span<const GridPoint> points, GridPoint p) {
   return static_cast<double>(scaled_height(t, points, p)) * t.inverse_length;
 }
 
 /// Triangles around the points, by quickhull (Barber, Dobkin, Huhdanpaa 1996, The quickhull algorithm for
 /// convex hulls): the point that is farthest outside is added until none is farther outside than `tolerance`
-/// [grid units], or `vertex_limit` points are on the hull. Exactly convex; points may lie on it that are not
-/// needed for its shape. Empty if all points lie in one plane.
+/// [grid units], or `vertex_limit` points are on the hull. The hull is exactly convex; points may lie on it
+/// that are not needed for its shape. Empty if all points lie in one plane.
 ///
 /// Precondition: points are in ascending order of (x, y, z), each once; vertex_limit >= 4.
 [[nodiscard]] std::vector<HullTriangle> triangulate_hull(std::span<const GridPoint> points, double tolerance,

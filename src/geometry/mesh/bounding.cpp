@@ -15,12 +15,12 @@ namespace hooke::geometry {
 
 namespace {
 
-constexpr double kOutside = 1 + 1e-12;  ///< Of the radius: a point beyond is outside.
-/// May_touch says no only where the gap is more than this part of the sizes involved.
+constexpr double kOutside = 1 + 1e-12;  ///< A point beyond this share of the radius is outside.
+/// may_overlap says no only where the gap is more than this part of the sizes involved.
 constexpr double kRoundingSlack = 1e-12;
 
-/// The smallest sphere with all points of `support` (two to four) on it; empty if they lie so that there is
-/// none.
+/// The smallest sphere with all points of `support` (two to four) on it; empty if there is none for their
+/// positions.
 BoundingSphere sphere_through(std::span<const DVec3> support) {
   // center = first + sum of weights along an orthogonal basis, one right side after the other.
   const DVec3 first = support[0];
@@ -33,7 +33,7 @@ BoundingSphere sphere_through(std::span<const DVec3> support) {
     const double height = length(across);
     if (!(height > 1e-12 * length(along))) return {};
     basis[i - 1] = (1 / height) * across;
-    // |offset + w basis|^2 = |offset + w basis - along|^2
+    // The weight w solves |offset + w basis|^2 = |offset + w basis - along|^2.
     const double w = (0.5 * length_squared(along) - dot(offset, along)) / height;
     offset += w * basis[i - 1];
   }
@@ -41,12 +41,12 @@ BoundingSphere sphere_through(std::span<const DVec3> support) {
 }
 
 bool holds(const BoundingSphere& sphere, std::span<const DVec3> points) {
-  // Looser than the pivot: the points of a thin support are found less exactly.
+  // This is looser than the pivot: the points of a thin support are found less exactly.
   return std::all_of(points.begin(), points.end(),
                      [&](DVec3 p) { return length(p - sphere.center) <= sphere.radius * (1 + 1e-10); });
 }
 
-/// A sphere and the points that hold it.
+/// A sphere and the points that determine it.
 struct Support {
   BoundingSphere sphere = {};
   std::vector<DVec3> points = {};
@@ -89,7 +89,7 @@ DVec3 mean_of(std::span<const DVec3> points) {
   return points[0] + 1 / static_cast<double>(points.size()) * sum;
 }
 
-/// Columns at right angles from a rotation.
+/// Columns at right angles, from a rotation.
 Matrix3<double> principal_frame(std::span<const DVec3> points) {
   const DVec3 mean = mean_of(points);
   math::Symmetric3<double> m = {};
@@ -169,7 +169,7 @@ double reach(const DVec3& half_extents, DVec3 x, DVec3 y, DVec3 z, DVec3 axis) {
 
 BoundingSphere minimum_sphere(std::span<const DVec3> points) {
   if (points.empty()) return {};
-  // From the farthest pair of two passes, a good guess.
+  // The search starts from the farthest pair of two passes, which is a good guess.
   const DVec3 first = points[farthest(points, points[0])];
   const DVec3 second = points[farthest(points, first)];
   Support support = {sphere_through(std::array{first, second}), {first, second}};
@@ -179,7 +179,7 @@ BoundingSphere minimum_sphere(std::span<const DVec3> points) {
     const DVec3 p = points[farthest(points, support.sphere.center)];
     if (length(p - support.sphere.center) <= kOutside * support.sphere.radius) break;
     const Support next = with_point(support, p);
-    // Each support holds a larger sphere than the last; where rounding says otherwise it is the end.
+    // Each support gives a larger sphere than the last one. Where rounding says otherwise, the search ends.
     if (!std::isfinite(next.sphere.radius) || !(next.sphere.radius > support.sphere.radius)) break;
     support = next;
   }
@@ -267,7 +267,7 @@ bool may_overlap(const OrientedBox& a, const OrientedBox& b, const RigidPose& b_
                          rotate(b_in_a.rotation, b.axes.z)};
   const double size = length(apart) + length(a.half_extents) + length(b.half_extents);
   const double slack = margin + kRoundingSlack * size;
-  // An axis of length below one sees a smaller gap, which the whole slack covers all the more.
+  // An axis of length below one gives a smaller gap, which the whole slack covers all the more.
   const auto separates = [&](DVec3 axis) {
     return std::fabs(dot(axis, apart)) > reach(a.half_extents, of_a[0], of_a[1], of_a[2], axis) +
                                              reach(b.half_extents, of_b[0], of_b[1], of_b[2], axis) + slack;

@@ -11,13 +11,13 @@ namespace hooke::geometry {
 
 namespace {
 
-// One entry for each level of the tree and one more; build_bvh keeps to 36 levels of lopsided splits and 25
-// of halves.
+// The stack has one entry for each level of the tree and one more; build_bvh stays within 36 levels of
+// lopsided splits and 25 of halves.
 constexpr int kStackSize = 64;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Nodes that wait for their turn, farthest first.
+/// A node that a search has still to enter; the farthest come first.
 struct Waiting {
   std::uint32_t node = 0;
   double bound = 0.0;  // nothing below the node is nearer
@@ -33,8 +33,8 @@ Box box_of_node(const BvhNode& node) {
   return {node.lower, node.upper};
 }
 
-/// Visits leaves from near to far: `bound(node)` is the distance no triangle below is nearer than, infinite
-/// to skip it; `visit(leaf)` returns the distance beyond which nothing matters any more.
+/// Visits leaves from near to far. `bound(node)` is a lower bound of the distance of the triangles below,
+/// infinite to skip them. `visit(leaf)` returns the distance beyond which the caller needs nothing more.
 template <class Bound, class Visit>
 void visit_near_to_far(const Bvh& bvh, double limit, const Bound& bound, const Visit& visit) {
   if (bvh.nodes.empty()) return;

@@ -13,7 +13,7 @@ namespace hooke::geometry {
 struct BvhNode {
   Vec3 lower = {};
   std::uint32_t next =
-      0;  ///< Node: the one that follows everything below it. Leaf: its first triangle in `order`.
+      0;  ///< Inner node: the node that follows everything below it. Leaf: its first triangle in `order`.
   Vec3 upper = {};
   std::uint32_t count = 0;  ///< Triangles of a leaf; 0 for an inner node.
 };
@@ -35,11 +35,12 @@ void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& 
 
 struct BvhEntry {
   std::uint32_t triangle = 0;
-  double fraction = 0.0;  ///< Of the motion, in [0, 1].
+  double fraction = 0.0;  ///< Fraction of the motion, in [0, 1].
 };
 
-/// Replaces `found` by the triangles whose boxes, grown by `radius` on every side, the segment from `origin`
-/// over `motion` enters, and where; in order of (fraction, triangle). The motion may be zero.
+/// Replaces `found` by the triangles whose boxes, grown by `radius` on every side, are entered by the segment
+/// from `origin` over `motion`, and the fractions where it enters; in order of (fraction, triangle). The
+/// motion may be zero.
 void find_triangles_on_path(const Bvh& bvh, DVec3 origin, DVec3 motion, double radius,
                             std::vector<BvhEntry>& found);
 
@@ -47,7 +48,7 @@ struct BvhClosest {
   std::uint32_t triangle = 0;
   Vec3 point = {};
   Real distance_squared = Real(0);
-  Vec3 weights = {};  ///< Of the triangle's corners, see closest_on_triangle.
+  Vec3 weights = {};  ///< Weights of the triangle's corners, see closest_on_triangle.
 };
 
 /// The triangle point nearest to `p` that is not farther than `distance_max` [m] (not negative, may be
@@ -60,9 +61,9 @@ struct BvhHit {
   double fraction = 0.0;  ///< The hit is at origin + fraction direction.
 };
 
-/// The first triangle that the ray hits at a fraction in [0, fraction_max], from either side; of equally near
-/// ones the one with the smallest index. A ray through an edge or corner that triangles share hits at least
-/// one of them. Nothing for a direction of no length. Triangles seen edge-on are not hit.
+/// The first triangle that the ray hits at a fraction in [0, fraction_max], from either side. Of equally near
+/// ones it is the one with the smallest index. A ray through an edge or corner that triangles share hits at
+/// least one of them. Finds nothing for a direction of no length. Triangles seen edge-on are not hit.
 std::optional<BvhHit> cast_ray(const Bvh& bvh, DVec3 origin, DVec3 direction,
                                double fraction_max = std::numeric_limits<double>::infinity());
 

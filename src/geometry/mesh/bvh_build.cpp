@@ -11,26 +11,28 @@ namespace {
 constexpr std::size_t kLeafSize = 4;
 constexpr int kBinCount = 16;
 
-// From this depth on halves are taken. They end after 25 more levels, within the stacks of the queries.
+// From this depth on nodes are split in halves. These end after 25 more levels, within the stacks of the
+// queries.
 constexpr int kMedianDepth = 36;
 
 struct Item {
   Box box = {};
   std::uint32_t triangle = 0;
 
-  /// Twice the center: its order is what counts. In double, where the sum of two floats does not overflow.
+  /// Twice the center; only the order of the values counts. It is in double, where the sum of two floats does
+  /// not overflow.
   [[nodiscard]] double center(int axis) const {
     return static_cast<double>(component(box.lower, axis)) + static_cast<double>(component(box.upper, axis));
   }
 };
 
-/// Part of the items, and how deep its node lies.
+/// A part of the items, and the depth of its node.
 struct Task {
   std::span<Item> items = {};
   int depth = 0;
 };
 
-/// The axis along which the centers lie farthest apart, and the interval they fill.
+/// The axis along which the centers are spread farthest, and their interval on it.
 struct Extent {
   int axis = 0;
   double lower = 0.0;
@@ -65,7 +67,7 @@ int find_cheapest_split(std::span<const Item> items, const Extent& extent) {
         merge(boxes[bin], {vector_cast<double>(item.box.lower), vector_cast<double>(item.box.upper)});
     counts[bin] += 1.0;
   }
-  double costs[kBinCount] = {};  // of the split before this bin
+  double costs[kBinCount] = {};  // cost of the split before each bin
   Box3<double> box;
   double count = 0.0;
   for (int bin = 0; bin + 1 < kBinCount; ++bin) {
@@ -110,7 +112,7 @@ std::vector<Item> make_items(std::span<const Vec3> positions, std::span<const Tr
   return items;
 }
 
-/// Appends the node of `task`, and its halves to `tasks`, the first last: it is to follow its parent.
+/// Appends the node of `task`, and its halves to `tasks`, the first last, because it must follow its parent.
 void append_node(const Task& task, Bvh& bvh, std::vector<Task>& tasks) {
   Box box;
   for (const Item& item : task.items) box = merge(box, item.box);
@@ -127,7 +129,7 @@ void append_node(const Task& task, Bvh& bvh, std::vector<Task>& tasks) {
   for (const Item& item : task.items) bvh.order.push_back(item.triangle);
 }
 
-/// Sets `next` of the inner nodes. From the back, so that a node's children are ready before it.
+/// Sets `next` of the inner nodes. Goes from back to front, so that a node's children are ready before it.
 void link_nodes(std::vector<BvhNode>& nodes) {
   const auto end_of = [&](std::size_t node) {
     return nodes[node].count > 0 ? static_cast<std::uint32_t>(node + 1) : nodes[node].next;

@@ -15,7 +15,7 @@ namespace hooke::geometry {
 namespace {
 
 constexpr double kCoordinateMax = 1e9;
-constexpr double kBoundRounding = 1e-12;  ///< Of the sizes involved: what a bound may be off by.
+constexpr double kBoundRounding = 1e-12;  ///< Error that a bound may have, over the sizes involved.
 
 constexpr double kFlat = 1e-9;  ///< Sine of the angle below which an edge is flat.
 
@@ -45,7 +45,7 @@ void make_normals_and_edges(ContactMesh& solid) {
   }
 }
 
-/// Calls `visit` with the triangles whose boxes may be within the distance that `reach` returns at the time
+/// Calls `visit` with the triangles whose boxes may be within the distance that `reach` returns at that time
 /// [m], near ones first.
 template <class Reach, class Visit>
 void visit_near(const ContactMesh& solid, DVec3 p, const Reach& reach, const Visit& visit) {
@@ -95,7 +95,7 @@ DVec3 normal_at(const ContactMesh& solid, const SolidPoint& place) {
   return solid.face_normals[place.index];
 }
 
-/// Which part of the triangle has these weights of its corners.
+/// Names the part of the triangle that has these weights of its corners.
 void name_feature(const ContactMesh& solid, const DVec3& weights, SolidPoint& place) {
   const std::array<double, 3> weight = {weights.x, weights.y, weights.z};
   const auto zeros = std::count(weight.begin(), weight.end(), 0.0);
@@ -146,7 +146,7 @@ Result<ContactMesh> make_contact_mesh(const MeshDesc& mesh) {
   solid.triangles = mesh.triangles;
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
     const auto [a, b, c] = solid.view().corners(t);
-    // Edges of one length: a sliver has a direction where squares of its sides would be zero.
+    // Edges are scaled to one length: a sliver has a direction where squares of its sides would be zero.
     const DVec3 normal = normalize(cross(direction_or(b - a, {}), direction_or(c - a, {})));
     if (normal == DVec3{}) {
       return Error{.code = ErrorCode::kOutOfRange, .where = triangle_name(t), .message = "has no area"};

@@ -15,23 +15,25 @@
 
 namespace hooke::geometry {
 
-/// How a search goes: both give the same answer to the bit.
+/// The method of a search. Both give the same answer to the bit.
 enum class Search : std::uint8_t {
-  kAll,   ///< Every triangle, every pair: the paper's brute force.
-  kTree,  ///< By the tree of oriented boxes.
+  kAll,   ///< Tests every triangle and every pair: the paper's brute force.
+  kTree,  ///< Uses the tree of oriented boxes.
 };
 
 struct ContactMesh {
   std::vector<DVec3> positions = {};  ///< [m]
   std::vector<Triangle> triangles = {};
   MeshTopology topology = {};
-  std::vector<DVec3> face_normals = {};           ///< Outward, of length one.
-  std::vector<DVec3> edge_normals = {};           ///< The sum of its two faces' normals.
-  std::vector<DVec3> vertex_normals = {};         ///< Of its faces' normals, weighted by their angles there.
-  std::vector<std::uint8_t> is_convex_edge = {};  ///< 1 where the solid is less than a half-space.
-  BoundingSphere sphere = {};                     ///< The smallest.
+  std::vector<DVec3> face_normals = {};           ///< Outward unit normals.
+  std::vector<DVec3> edge_normals = {};           ///< Sum of the normals of each edge's two faces.
+  std::vector<DVec3> vertex_normals = {};         ///< Sum of the normals of each vertex's faces, weighted by
+                                                  ///< their angles there.
+  std::vector<std::uint8_t> is_convex_edge = {};  ///< 1 where the solid at the edge is less than a
+                                                  ///< half-space.
+  BoundingSphere sphere = {};                     ///< Smallest sphere around the mesh.
   OrientedBoxTree tree = {};
-  double size = 0;  ///< The largest coordinate's size [m]: what rounding errors are measured by.
+  double size = 0;  ///< Largest absolute coordinate [m]; rounding errors are relative to it.
 
   [[nodiscard]] MeshView view() const { return {positions, triangles}; }
 };
@@ -43,21 +45,21 @@ struct ContactMesh {
 /// Part of a surface.
 enum class SurfaceFeature : std::uint8_t { kFace, kEdge, kVertex };
 
-/// The place of the surface nearest to a point.
+/// The point of the surface nearest to a given point.
 struct SolidPoint {
   DVec3 point = {};
-  double signed_distance = 0;  ///< Negative inside [m].
+  double signed_distance = 0;  ///< Distance, negative inside [m].
   SurfaceFeature feature = SurfaceFeature::kFace;
-  std::uint32_t index = 0;     ///< Of the triangle, edge or vertex it lies on.
-  std::uint32_t triangle = 0;  ///< One that has the place.
+  std::uint32_t index = 0;     ///< Index of the triangle, edge or vertex that it lies on.
+  std::uint32_t triangle = 0;  ///< A triangle that has the point.
 };
 
-/// The nearest of all triangles, of equally near ones the first. Inside or outside is told by the normal of
-/// the face, edge or vertex (Baerentzen and Aanaes 2005, Signed distance computation using the angle weighted
-/// pseudonormal): exact for surfaces that do not cut themselves.
+/// The nearest point of all triangles, of equally near ones the first. The normal of the face, edge or vertex
+/// says whether `p` is inside (Baerentzen and Aanaes 2005, Signed distance computation using the angle
+/// weighted pseudonormal). This is exact for surfaces that do not cut themselves.
 [[nodiscard]] SolidPoint closest_on_solid(const ContactMesh& solid, DVec3 p, Search search);
 
-/// The point of one triangle nearest to `p`; its `feature` is the face's, an edge's or a vertex'.
+/// The point of one triangle nearest to `p`; its `feature` is that of the face, an edge or a vertex.
 [[nodiscard]] SolidPoint closest_on_face(const ContactMesh& solid, std::uint32_t triangle, DVec3 p);
 
 /// Replaces `found` by the triangles not farther from `p` than `distance` [m], in ascending order.

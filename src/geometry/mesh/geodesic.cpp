@@ -21,11 +21,11 @@ constexpr double kWorthwhile = 1.0 - 1e-7;
 /// A triangle laid flat: a at the origin, b on the x axis, c above it.
 struct FlatTriangle {
   double base = 0.0;  // x of b
-  double x = 0.0;     // of c
-  double y = 0.0;     // of c, not negative
+  double x = 0.0;     // x of c
+  double y = 0.0;     // y of c, not negative
 };
 
-/// Precondition: a and b are different points.
+/// Lays a triangle flat. Precondition: a and b are different points.
 FlatTriangle lay_flat(DVec3 a, DVec3 b, DVec3 c) {
   const double base = length(b - a);
   const double x = dot(c - a, b - a) / base;
@@ -33,7 +33,7 @@ FlatTriangle lay_flat(DVec3 a, DVec3 b, DVec3 c) {
 }
 
 /// Distance of c from a source at the given distances from a and b, on the other side of ab. Infinity if
-/// there is no such place, or if the straight line from it to c misses the edge.
+/// there is no such point, or if the straight line from it to c misses the edge.
 double distance_from_point_source(const FlatTriangle& t, double from_a, double from_b) {
   const double source_x = 0.5 * ((from_a - from_b) * (from_a + from_b) / t.base + t.base);
   const double depth_squared = (from_a - source_x) * (from_a + source_x);
@@ -46,7 +46,7 @@ double distance_from_point_source(const FlatTriangle& t, double from_a, double f
   return std::sqrt((t.x - source_x) * (t.x - source_x) + height * height);
 }
 
-/// The same for a straight front that passes a and b at the given distances.
+/// Distance of c from a straight front that passes a and b at the given distances.
 double distance_from_straight_front(const FlatTriangle& t, double from_a, double from_b) {
   const double along = (from_b - from_a) / t.base;
   const double across_squared = 1.0 - along * along;
@@ -93,7 +93,7 @@ class March {
  private:
   [[nodiscard]] DVec3 position(std::uint32_t vertex) const { return vector_cast<double>(positions_[vertex]); }
 
-  /// Distance of c across the edge ab, and through a or b.
+  /// Updates the distance of c across the edge ab, and through a or b.
   void update(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     offer(c, distance_[a] + length(position(c) - position(a)), source_[a]);
     if (distance_[b] == kInfinity || positions_[a] == positions_[b]) return;

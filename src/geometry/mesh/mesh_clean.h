@@ -8,9 +8,9 @@
 #include <vector>
 
 /// \file
-/// What is wrong with triangles that come from outside, and what can be mended: welding, triangles of no
-/// height, which side is outside, triangles that cross. Pure; the same input gives the same output
-/// everywhere. Put together by repair_solid of hooke/geometry.h.
+/// Finds what is wrong with triangles that come from outside, and repairs what can be repaired: welding,
+/// triangles of no height, which side is outside, triangles that cross. All functions are pure; the same
+/// input gives the same output everywhere. repair_solid of hooke/geometry.h combines them.
 
 namespace hooke::geometry {
 
@@ -19,7 +19,7 @@ struct Weld {
   std::vector<std::uint32_t> first;      ///< For each welded point, the first point that made it.
 };
 
-/// Points closer than this are one: 1e-6 of the bounding box's diagonal. 0 for no points.
+/// Points closer than this are united: 1e-6 of the bounding box's diagonal. 0 for no points.
 [[nodiscard]] double weld_distance(std::span<const DVec3> points);
 
 /// Unites each point with the earliest welded point within `distance` per axis, or makes it a new one.
@@ -29,10 +29,10 @@ struct Weld {
 /// has no direction.
 [[nodiscard]] bool is_degenerate(std::span<const DVec3> points, const Triangle& triangle, double distance);
 
-/// Which triangles must be turned over to face outward, a flag for each. A surface without border is made
-/// consistent and gets a positive volume; one inside another such surface turns with the outermost around it,
-/// so that a cavity stays a cavity. A surface with a border is made consistent as the most of its triangles
-/// are.
+/// A flag for each triangle that must be turned over to face outward. A surface without border is made
+/// consistent and gets a positive volume. One inside another such surface is turned with the outermost around
+/// it, so that a cavity stays a cavity. A surface with a border is made consistent with the majority of its
+/// triangles.
 [[nodiscard]] std::vector<std::uint8_t> find_flipped(std::span<const DVec3> points,
                                                      std::span<const Triangle> triangles);
 
@@ -40,7 +40,7 @@ struct Weld {
 /// each other. Exact.
 [[nodiscard]] bool triangles_cross(const MeshView& mesh, std::uint32_t a, std::uint32_t b);
 
-/// Replaces `found` by all pairs that do, the smaller index first, in ascending order.
+/// Replaces `found` by all pairs of triangles that cross, the smaller index first, in ascending order.
 void find_crossings(const MeshView& mesh, std::vector<TrianglePair>& found);
 
 }  // namespace hooke::geometry

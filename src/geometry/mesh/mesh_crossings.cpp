@@ -7,7 +7,8 @@ namespace hooke::geometry {
 
 namespace {
 
-/// Whether `p` and `q`, in one plane with the segment, lie on the same side of it: triangles folded back.
+/// Whether `p` and `q`, in one plane with the segment, lie on the same side of it: then the triangles are
+/// folded back.
 bool is_folded(DVec3 from, DVec3 to, DVec3 p, DVec3 q) {
   if (orientation(from, to, p, q) != 0) return false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -22,7 +23,7 @@ bool is_folded(DVec3 from, DVec3 to, DVec3 p, DVec3 q) {
 }  // namespace
 
 bool triangles_cross(const MeshView& mesh, std::uint32_t a, std::uint32_t b) {
-  // Shared corners first in both.
+  // Shared corners come first in both triangles.
   Triangle of_a = mesh.triangles[a];
   Triangle of_b = mesh.triangles[b];
   std::size_t shared = 0;

@@ -11,7 +11,8 @@ namespace hooke::geometry {
 
 namespace {
 
-/// Above this number of closed surfaces each is judged alone: looking for nests takes the square of it.
+/// Above this number of closed surfaces each is evaluated alone, because the search for nested ones takes the
+/// square of it.
 constexpr std::ptrdiff_t kMaxNested = 2048;
 
 /// One side of a triangle, named by its ends in ascending order.
@@ -61,7 +62,7 @@ void for_edges(std::span<const Border> sides, const Visit& visit) {
   }
 }
 
-/// For each triangle, the surface it belongs to: triangles that share an edge share a surface.
+/// For each triangle, the number of its surface: triangles that share an edge share a surface.
 std::vector<std::uint32_t> find_surfaces(std::span<const Border> sides, std::size_t triangle_count) {
   base::DisjointSets sets(triangle_count);
   for_edges(sides, [&](std::span<const Border> edge) {
@@ -99,8 +100,8 @@ std::vector<Neighbors> find_neighbors(std::span<const Border> sides, std::size_t
   return neighbors;
 }
 
-/// Turns triangles so that neighbors agree with each other, as far as edges with two sides lead from `start`:
-/// the fewer of them, of equally many not `start`.
+/// Turns triangles over so that neighbors agree with each other, as far as edges with two sides lead from
+/// `start`. It turns the smaller number of them; of equal numbers not that with `start`.
 void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::vector<std::uint8_t>& is_seen,
                 std::vector<std::uint8_t>& flipped) {
   std::vector<std::uint32_t> reached = {start};
@@ -119,7 +120,7 @@ void agree_from(std::uint32_t start, std::span<const Neighbors> neighbors, std::
   for (const std::uint32_t t : reached) flipped[t] ^= 1u;
 }
 
-/// Makes each surface agree with the most of its triangles.
+/// Makes each surface agree with the majority of its triangles.
 void make_consistent(std::span<const Border> sides, std::vector<std::uint8_t>& flipped) {
   const std::vector<Neighbors> neighbors = find_neighbors(sides, flipped.size());
   std::vector<std::uint8_t> is_seen(flipped.size(), 0);
@@ -215,7 +216,7 @@ std::vector<std::uint8_t> find_flipped(std::span<const DVec3> points, std::span<
 
   std::vector<std::uint8_t> flipped(triangles.size(), 0);
   for (std::size_t s = 0; s < given.size(); ++s) {
-    double volume = 0.0;  // of a surface with a border: it has none
+    double volume = 0.0;  // volume of a surface with a border: it has none
     if (given[s].is_closed) {
       volume = closed_count > kMaxNested ? given[s].volume : outermost_volume(points, triangles, given, s);
     } else {

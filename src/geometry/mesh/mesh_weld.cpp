@@ -8,7 +8,7 @@ namespace hooke::geometry {
 
 namespace {
 
-/// Cells of four weld distances: a point's neighborhood then touches one or two cells per axis.
+/// A grid with cells of four weld distances: a point's neighborhood then touches one or two cells per axis.
 class WeldGrid {
  public:
   WeldGrid(DVec3 low, double distance)

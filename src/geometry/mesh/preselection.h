@@ -9,11 +9,11 @@
 #include <vector>
 
 /// \file
-/// Every Preselection of two meshes, so that the choices can be compared.
+/// Applies every Preselection of two meshes, so that the choices can be compared.
 
 namespace hooke::geometry {
 
-/// The volumes of a mesh, made once.
+/// The bounding volumes of a mesh, made once.
 struct BoundingVolumes {
   std::vector<DVec3> positions = {};
   std::uint32_t triangle_count = 0;
@@ -24,19 +24,19 @@ struct BoundingVolumes {
   OrientedBoxTree oriented_box_tree = {};
 };
 
-/// Those of the given kinds; the others stay empty.
+/// Makes the volumes of the given kinds; the others stay empty.
 [[nodiscard]] BoundingVolumes make_bounding_volumes(const MeshView& mesh,
                                                     std::span<const Preselection> kinds = kPreselections);
 
-/// The box around the mesh where it is, along the axes of the world: it changes as the mesh turns.
+/// The box along the axes of the world around the mesh at its pose. It changes as the mesh rotates.
 [[nodiscard]] DBox world_box(const BoundingVolumes& volumes, const RigidPose& pose);
 
 struct Candidates {
   std::uint64_t volumes_compared = 0;  ///< Pairs of volumes.
-  std::uint64_t pairs_left = 0;        ///< Of triangles, which only a test of their own can tell apart.
+  std::uint64_t pairs_left = 0;        ///< Pairs of triangles, which need a test of their own.
 };
 
-/// How many pairs of triangles of two meshes are left by one choice: none that are within `margin` [m] of
+/// Counts the pairs of triangles of two meshes that are left by one choice. No pair within `margin` [m] of
 /// each other is lost.
 [[nodiscard]] Candidates count_candidates(Preselection preselection, const BoundingVolumes& a,
                                           const RigidPose& pose_a, const BoundingVolumes& b,

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kLeastBend = 0.01;  ///< Sine of the angle between the two sides of a ridge.
 
-/// The mesh with the vertices at one place united: triangles that lose their area by that are left out.
+/// The mesh with the vertices at one position united. Triangles that lose their area by that are left out.
 struct WeldedMesh {
   std::vector<DVec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> triangle_of;  ///< Of the mesh, for each.
-  std::vector<std::uint32_t> vertex_of;    ///< Of the mesh, for each.
+  std::vector<std::uint32_t> triangle_of;  ///< Triangle of the given mesh, for each of `triangles`.
+  std::vector<std::uint32_t> vertex_of;    ///< Vertex of the given mesh, for each of `positions`.
   MeshTopology topology;
 };
 
@@ -48,7 +48,7 @@ DVec3 normal_of(const WeldedMesh& mesh, std::uint32_t triangle) {
   return size > 0 ? (1 / size) * across : DVec3{};
 }
 
-/// What ends, branches or does not know its front may protrude as well.
+/// An edge that ends or branches, or whose front is not known, may protrude as well.
 bool is_ridge(const WeldedMesh& mesh, std::size_t edge) {
   const EdgeSides& sides = mesh.topology.edge_sides[edge];
   if (sides.triangle_count != 2 || !sides.has_same_winding) return true;
@@ -59,9 +59,9 @@ bool is_ridge(const WeldedMesh& mesh, std::size_t edge) {
   return dot(normal_of(mesh, sides.triangles[0]), beyond) * length(along) < -kLeastBend * across;
 }
 
-/// One of them before it has its place in the table.
+/// A protrusion before it has its row in the table.
 struct Found {
-  std::uint32_t triangle = 0;  ///< Of the mesh.
+  std::uint32_t triangle = 0;  ///< Triangle of the given mesh.
   Edge ends = {};
   std::vector<std::uint32_t> neighbors;
 };

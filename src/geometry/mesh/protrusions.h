@@ -7,20 +7,20 @@
 #include <vector>
 
 /// \file
-/// Where a surface of triangles can touch what is flat or straight: along its ridges and at its peaks.
+/// Where a surface of triangles can touch something flat or straight: along its ridges and at its peaks.
 
 namespace hooke::geometry {
 
-/// A ridge is an edge where the surface bends away from its front, or where it ends; a peak is a vertex at
-/// the end of a ridge. Vertices at the same place are one here. Each belongs to one triangle that has it, and
-/// they stand in the order of those.
+/// A ridge is an edge where the surface bends away from its front, or where it ends. A peak is a vertex at
+/// the end of a ridge. Vertices at the same position are one here. Each ridge or peak belongs to one triangle
+/// that has it, and they stand in the order of those triangles.
 struct Protrusions {
-  std::vector<Edge> ends = {};  ///< Of a ridge; of a peak twice its vertex.
-  /// Vertices around number i: neighbors[neighbor_begin[i] .. neighbor_begin[i + 1]): of a ridge the corners
-  /// opposite to it, of a peak those that an edge joins to it.
+  std::vector<Edge> ends = {};  ///< Ends of a ridge; for a peak twice its vertex.
+  /// Vertices around number i: neighbors[neighbor_begin[i] .. neighbor_begin[i + 1]). For a ridge they are
+  /// the corners opposite to it, for a peak those that an edge joins to it.
   std::vector<std::uint32_t> neighbor_begin = {};
   std::vector<std::uint32_t> neighbors = {};
-  /// Those of triangle t: triangle_begin[t] .. triangle_begin[t + 1].
+  /// Protrusions of triangle t: triangle_begin[t] .. triangle_begin[t + 1].
   std::vector<std::uint32_t> triangle_begin = {};
 
   [[nodiscard]] bool is_peak(std::uint32_t i) const { return ends[i][0] == ends[i][1]; }
@@ -29,7 +29,8 @@ struct Protrusions {
   }
 };
 
-/// Edges that bend by less than half a degree are flat. Precondition: a mesh that validate_mesh accepts.
+/// Finds the ridges and peaks. Edges that bend by less than half a degree are flat. Precondition: a mesh that
+/// validate_mesh accepts.
 [[nodiscard]] Protrusions find_protrusions(const MeshDesc& mesh);
 
 }  // namespace hooke::geometry

@@ -37,7 +37,7 @@ Error refusal(std::string message) {
   return {.code = ErrorCode::kOutOfRange, .where = "mesh.triangles", .message = std::move(message)};
 }
 
-/// Indices in range and coordinates finite. Corners that are named twice can be mended.
+/// Checks that indices are in range and coordinates finite. Corners that are named twice can be repaired.
 Result<void> check_numbers(const MeshDesc& mesh) {
   if (mesh.positions.size() > geometry::kVertexLimit || mesh.triangles.size() > geometry::kTriangleLimit) {
     return Error{ErrorCode::kLimitExceeded, "mesh", "more than 2^24 positions or 2^25 triangles"};
@@ -63,7 +63,7 @@ Result<void> check_numbers(const MeshDesc& mesh) {
   return {};
 }
 
-/// The mesh while it is mended.
+/// The mesh while it is repaired.
 struct Draft {
   std::vector<DVec3> points = {};
   std::vector<Triangle> triangles = {};
@@ -84,7 +84,7 @@ struct Draft {
   }
 };
 
-/// Welded, each triangle still there. The points of no triangle do not count for the size.
+/// The mesh with its points welded and all its triangles. Points of no triangle do not count for the size.
 Draft welded(const MeshDesc& mesh) {
   std::vector<std::uint8_t> is_used(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) {
@@ -117,7 +117,8 @@ void drop_degenerate(Draft& draft, Numbers& dropped) {
   draft.keep(is_kept, dropped);
 }
 
-/// Of triangles with the same corners the first stays; none where each edge has two others without them.
+/// Of triangles with the same corners the first stays. None stays where each edge has two others without
+/// them.
 void drop_duplicates(Draft& draft, Numbers& dropped) {
   const auto sorted = [](Triangle t) {
     std::sort(t.begin(), t.end());

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kNoAxis = -1;
 
-/// An axis along which the three points are seen as a triangle, kNoAxis if they lie on one line.
+/// An axis along which the three points are seen as a triangle; kNoAxis if they lie on one line.
 int axis_facing(DVec3 a, DVec3 b, DVec3 c) {
   for (int axis = 0; axis < 3; ++axis) {
     if (orientation(seen_along(axis, a), seen_along(axis, b), seen_along(axis, c)) != 0) return axis;
@@ -44,7 +44,7 @@ bool agree(int a, int b, int c) {
   return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-/// For a segment in the triangle's plane; along the axis the triangle is seen as one.
+/// Tests a segment in the triangle's plane. Seen along the axis the triangle has an area.
 bool flat_segment_meets(DVec3 from, DVec3 to, const DTriangle& triangle, int axis) {
   const Point2 p = seen_along(axis, from);
   const Point2 q = seen_along(axis, to);
@@ -83,7 +83,7 @@ bool segments_overlap(DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
     return segments_overlap(seen_along(axis, a), seen_along(axis, b), seen_along(axis, c),
                             seen_along(axis, d));
   }
-  return true;  // all on one line, where boxes that overlap are segments that do
+  return true;  // all points are on one line, where boxes that overlap are segments that overlap
 }
 
 bool segment_meets_triangle(DVec3 from, DVec3 to, const DTriangle& triangle) {

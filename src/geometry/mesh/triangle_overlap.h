@@ -5,10 +5,10 @@
 #include <array>
 
 /// \file
-/// Whether segments and triangles have a point in common. All are closed sets: what touches, in a point,
-/// along an edge or in a common plane, overlaps. The answers are exact for the given coordinates (see
-/// orientation.h), also for triangles that are only a segment or a point. Nothing overlaps what is not
-/// finite.
+/// Whether segments and triangles have a point in common. All are closed sets: those that touch in a point,
+/// along an edge or in a common plane overlap. The answers are exact for the given coordinates (see
+/// geometry/orientation.h), also for triangles that are only a segment or a point. Anything that is not
+/// finite overlaps nothing.
 
 namespace hooke::geometry {
 

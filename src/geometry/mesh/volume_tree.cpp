@@ -25,7 +25,7 @@ DVec3 middle_of(const MeshView& mesh, std::uint32_t triangle) {
   return 1.0 / 3.0 * (a + b + c);
 }
 
-/// Axes of the second moment of the surface about its middle; of the corners where there is no surface.
+/// Axes of the second moment of the surface about its middle; without a surface, that of the corners.
 Matrix3<double> surface_axes(const MeshView& mesh, Range triangles) {
   const DVec3 origin = mesh.corners(triangles[0])[0];
   const auto square = [](DVec3 p, double s) {
@@ -78,7 +78,7 @@ int longest(DVec3 size) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// The direction in which a node is halved.
+/// The direction along which a node is halved.
 DVec3 splitting_axis(const MeshView& mesh, Range triangles, const Matrix3<double>& axes) {
   DBox spread;
   for (const std::uint32_t t : triangles) {

@@ -10,9 +10,9 @@
 #include <vector>
 
 /// \file
-/// Trees of volumes over triangles, one template for spheres, boxes along the axes and oriented boxes: the
-/// recursive bounding objects of the paper (4.5.2). For two moving meshes; rays and points of the world ask
-/// the tree of bvh.h.
+/// Trees of volumes over triangles, with one template for spheres, boxes along the axes and oriented boxes:
+/// the recursive bounding objects of the paper (4.5.2). They are for two moving meshes; rays and points of
+/// the world use the tree of geometry/mesh/bvh.h.
 
 namespace hooke::geometry {
 
@@ -22,9 +22,9 @@ template <class Volume>
 struct VolumeTree {
   struct Node {
     Volume volume = {};
-    std::uint32_t first = 0;  ///< Its triangles are order[first, first + count).
+    std::uint32_t first = 0;  ///< The node's triangles are order[first, first + count).
     std::uint32_t count = 0;
-    std::uint32_t next = 0;  ///< The node that follows everything below it; of a leaf its own neighbor.
+    std::uint32_t next = 0;  ///< The node that follows everything below it; for a leaf the next node.
   };
   static constexpr std::uint32_t kLeafSize = 2;
 
@@ -38,7 +38,7 @@ using SphereTree = VolumeTree<BoundingSphere>;
 using BoxTree = VolumeTree<DBox>;
 using OrientedBoxTree = VolumeTree<OrientedBox>;
 
-/// Triangles with their corners in place.
+/// Triangles and the positions of their corners.
 struct MeshView {
   std::span<const DVec3> positions = {};
   std::span<const Triangle> triangles = {};
@@ -49,14 +49,14 @@ struct MeshView {
   }
 };
 
-/// The tree of the triangles, halved again and again along the longest extent of the middles of a node's
-/// triangles (oriented boxes: along the longest of their own axes); the same on every machine. Oriented boxes
-/// lie along the principal axes of the surface (Gottschalk, Lin and Manocha 1996), or along the coordinate
-/// axes where that box is smaller. Spheres are the smallest around a node's corners.
+/// Builds the tree of the triangles. Nodes are halved along the longest extent of the middles of their
+/// triangles (oriented boxes: along the longest of their own axes). The tree is the same on every machine.
+/// Oriented boxes lie along the principal axes of the surface (Gottschalk, Lin and Manocha 1996), or along
+/// the coordinate axes where that box is smaller. Spheres are the smallest around a node's corners.
 template <class Volume>
 [[nodiscard]] VolumeTree<Volume> build_volume_tree(const MeshView& mesh);
 
-/// Fits the volumes to moved vertices; who is below whom stays, and so do the axes of oriented boxes.
+/// Fits the volumes to moved vertices. The structure of the tree stays, and so do the axes of oriented boxes.
 /// Precondition: the triangles that the tree was built from.
 template <class Volume>
 void refit(VolumeTree<Volume>& tree, const MeshView& mesh);

@@ -17,11 +17,10 @@
 #include <utility>
 
 /// \file
-/// Cuts a solid into parts that are nearly convex. After the idea of approximate convex decomposition (Lien
-/// and Amato 2007): the measure of a part is how deep its
-/// surface dips below its hull, and the deepest is cut. Of a number of planes the one is taken that leaves
-/// the smallest hulls. The cuts themselves are in the hull's faces, and need no looking at. In the end parts
-/// that make a good one are joined.
+/// Cuts a solid into parts that are nearly convex, after the idea of approximate convex decomposition (Lien
+/// and Amato 2007). The measure of a part is how deep its surface dips below its hull, and the deepest part
+/// is cut. Of a number of planes the one is taken that leaves the smallest hulls. The cuts themselves are in
+/// the hull's faces and are not measured. In the end parts that make a good one are joined.
 
 namespace hooke {
 
@@ -37,29 +36,29 @@ constexpr std::size_t kNotchPlanesMax = 32;
 constexpr int kSamplesPerExtent = 24;
 constexpr double kOnPlane = 1e-6;   // [extents of the solid]
 constexpr int kTrialVertices = 48;  // of hulls by which cuts are compared
-// What a cut that goes all around the part, and one that leaves everything on one side, costs in units of the
-// volume of its hull. A ring has to be cut although no single cut makes its hulls smaller.
+// The costs of a cut that goes all around the part, and of one that leaves everything on one side, are in
+// units of the volume of its hull. A ring has to be cut although no single cut makes its hulls smaller.
 constexpr double kCostOfLength = 0.01;
 constexpr double kCostOfUnevenness = 0.01;
-constexpr double kGrowthMax = 0.05;  // of the volume, by joining two parts
+constexpr double kGrowthMax = 0.05;  // largest growth of the volume, by joining two parts
 
-/// What all parts are parts of.
+/// The solid that all parts belong to.
 struct Solid {
   std::vector<Corners> surface;
   std::vector<Plane> notch_planes;  // where a cut is likely to be good
-  double on_plane = 0;              // what is nearer counts as on a plane [m]
+  double on_plane = 0;              // distance below which a point counts as on a plane [m]
 };
 
 struct Part {
   SolidPiece piece;
   ConvexHull hull;
   geometry::Box bounds = {};
-  double volume = 0;      // of the hull [m^3]
-  double depth = 0;       // of the surface below the hull [m]
-  bool is_final = false;  // no plane meets it, or only one that leaves nothing
+  double volume = 0;      // volume of the hull [m^3]
+  double depth = 0;       // depth of the surface below the hull [m]
+  bool is_final = false;  // no plane cuts it, or only one that leaves nothing
 };
 
-/// How deep the surface lies below the hull at most, at points at most 1/24 of the extent apart.
+/// Largest depth of the surface below the hull, at points at most 1/24 of the extent apart.
 double depth_of(std::span<const Corners> surface, const ConvexHull& hull) {
   const double spacing = 2 * static_cast<double>(hull.outer_radius) / kSamplesPerExtent;
   double deepest = 0;
@@ -88,7 +87,7 @@ Result<ConvexHull> hull_around(const SolidPiece& piece, int vertex_limit) {
   return geometry::make_convex_hull(points, vertex_limit);
 }
 
-/// An Error if the part is too thin.
+/// Makes a part; an Error if it is too thin.
 Result<Part> make_part(SolidPiece piece) {
   Result<ConvexHull> hull = hull_around(piece, ConvexHull::kMaxVertices);
   if (!hull) return hull.error();
@@ -156,14 +155,14 @@ void append_even_planes(const ConvexHull& hull, std::vector<Plane>& planes) {
   }
 }
 
-/// The volume of the hull around a piece, about.
+/// Approximate volume of the hull around a piece.
 double hull_volume(const SolidPiece& piece) {
   const Result<ConvexHull> hull = hull_around(piece, kTrialVertices);
   return hull ? geometry::mass_of(hull.value()).volume : 0.0;
 }
 
-/// The two sides of the plane that leaves the smallest hulls; of nearly equal ones, a short cut through the
-/// middle. Nothing if no plane meets the part.
+/// The two sides of the plane that leaves the smallest hulls. Of nearly equal planes it takes a short cut
+/// through the middle. Returns nothing if no plane cuts the part.
 std::optional<SolidHalves> find_best_cut(const Part& part, const Solid& solid) {
   std::vector<Plane> planes = solid.notch_planes;
   append_even_planes(part.hull, planes);
@@ -185,7 +184,7 @@ std::optional<SolidHalves> find_best_cut(const Part& part, const Solid& solid) {
   return best;
 }
 
-/// The part to cut next; parts.size() if all are good enough.
+/// Index of the part to cut next; parts.size() if all are good enough.
 std::size_t find_deepest(const std::vector<Part>& parts, double concavity_max) {
   std::size_t deepest = parts.size();
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -209,13 +208,13 @@ void cut_part(std::size_t number, const Solid& solid, std::vector<Part>& parts) 
   parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(number) + 1, std::move(above).value());
 }
 
-/// What a joined part may be: how deep, and how much larger than its two parts.
+/// Limits of a joined part: its depth, and how much larger it is than its two parts.
 struct JoinLimits {
   double depth = 0;  // [m]
   double growth = 0;
 };
 
-/// Two parts as one; nothing if they are apart, or the limits are exceeded.
+/// Joins two parts into one; returns nothing if they are apart, or the limits are exceeded.
 std::optional<Part> join(const Part& a, const Part& b, const JoinLimits& limits, double on_plane) {
   const auto slack = static_cast<Real>(on_plane);
   const Vec3 margin = {slack, slack, slack};
@@ -230,7 +229,7 @@ std::optional<Part> join(const Part& a, const Part& b, const JoinLimits& limits,
   return std::move(part).value();
 }
 
-/// Joins each part with the first later ones that it can be one with.
+/// Joins each part with the first later ones that fit.
 void join_parts(const JoinLimits& limits, double on_plane, std::vector<Part>& parts) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t k = i + 1; k < parts.size();) {
@@ -271,7 +270,7 @@ Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concav
     if (deepest == parts.size()) break;
     cut_part(deepest, solid, parts);
   }
-  // Cuts on the way may have turned out needless; those that leave no trace are undone first.
+  // Some cuts may have turned out needless; those that leave no trace are undone first.
   for (const double share : {0.01, 1.0}) {
     join_parts({share * static_cast<double>(concavity_max), share * kGrowthMax}, solid.on_plane, parts);
   }

@@ -22,7 +22,7 @@ struct Piece {
   }
 };
 
-/// Where the edge crosses height zero; the same for both directions, so that neighbors share the point.
+/// The point where the edge crosses height zero; the same for both directions, so that neighbors share it.
 Vec3 crossing(Vec3 a, Vec3 b, double height_a, double height_b) {
   if (height_a > height_b) return crossing(b, a, height_b, height_a);
   const auto from = vector_cast<double>(a);
@@ -50,7 +50,7 @@ void cut_triangle(const Corners& t, const std::array<double, 3>& height, SolidHa
   below.append_to(halves.below.surface);
   above.append_to(halves.above.surface);
   if (section.count != 2) return;
-  // An edge in the plane is met again in the triangle on its other side.
+  // An edge in the plane is found again in the triangle on its other side.
   const auto section_length = static_cast<double>(length(section.corner[1] - section.corner[0]));
   halves.cut_length += is_cut ? section_length : 0.5 * section_length;
 }
@@ -65,7 +65,8 @@ std::optional<DVec3> intersection_point(const Plane& a, const Plane& b, const Pl
   return 1 / volume * sum;
 }
 
-/// The corners on both sides, and those that the plane makes with two of the piece's planes.
+/// Divides the corners between both sides, and adds those that the plane makes with two of the piece's
+/// planes.
 void cut_corners(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane, double on_plane,
                  SolidHalves& halves) {
   for (const Vec3& p : piece.corners) {

@@ -9,16 +9,16 @@
 #include <vector>
 
 /// \file
-/// Solids cut by planes, without lids on the cuts.
+/// Cuts solids by planes, without lids on the cuts.
 
 namespace hooke::geometry {
 
-using Corners = std::array<Vec3, 3>;  ///< Of a triangle, counter-clockwise seen from outside.
+using Corners = std::array<Vec3, 3>;  ///< Corners of a triangle, counter-clockwise seen from outside.
 
-/// Unit; zero for a triangle of no area.
+/// Unit normal; zero for a triangle of no area.
 DVec3 normal_of(const Corners& triangle);
 
-/// What is left of a solid between planes. Its convex hull is that of the surface and the corners.
+/// The part of a solid that is left between planes. Its convex hull is that of the surface and the corners.
 struct SolidPiece {
   std::vector<Corners> surface;  ///< The pieces of the solid's own surface.
   std::vector<Plane> planes;     ///< The piece is below them.
@@ -27,15 +27,15 @@ struct SolidPiece {
 
 struct SolidHalves {
   SolidPiece below, above;
-  double cut_length = 0;  ///< Of the curve in which the plane meets the surface [m].
+  double cut_length = 0;  ///< Length of the curve in which the plane meets the surface [m].
 };
 
 /// Whether the point is inside the closed surface: whether the solid angle around it is full (Van Oosterom
 /// and Strackee 1983, The solid angle of a plane triangle). Either answer on the surface.
 [[nodiscard]] bool contains(std::span<const Corners> surface, DVec3 p);
 
-/// The two sides of a plane of a piece of `solid`. What is at most `on_plane` [m] away from the plane counts
-/// as on it; triangles that lie in it belong to the solid on their inner side.
+/// The two sides of a plane of a piece of `solid`. Points at most `on_plane` [m] away from the plane count as
+/// on it; triangles that lie in it belong to the solid on their inner side.
 [[nodiscard]] SolidHalves cut(const SolidPiece& piece, std::span<const Corners> solid, const Plane& plane,
                               double on_plane);
 

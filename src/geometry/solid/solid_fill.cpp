@@ -1,5 +1,5 @@
-/// The lattice inside a closed surface: which cells are filled, the outer points moved onto the surface, and
-/// where the surface's own vertices lie in it.
+/// Fills a closed surface with the lattice: it decides which cells are filled, moves the outer points onto
+/// the surface, and finds where the surface's own vertices lie in it.
 
 #include "geometry/box.h"
 #include "geometry/mesh/bvh.h"
@@ -17,16 +17,18 @@ namespace {
 
 constexpr std::size_t kMostCells = std::size_t{1} << 22;
 constexpr std::uint32_t kFittingSweeps = 3;
-constexpr double kLeastVolume = 0.1;  ///< Of a tetrahedron, of what it was, after its points moved.
+constexpr double kLeastVolume = 0.1;  ///< Least volume of a tetrahedron after its points moved, over the one
+                                      ///< before.
 
-/// Where a line along x meets a triangle: the sign of its turn about the line, and the place.
+/// The point where a line along x meets a triangle, and the sign of its winding about the line.
 struct Crossing {
   double x = 0;
   int sign = 0;
 };
 
-/// Times that the triangle, seen along x, turns about (y, z). Counted by its edges, each of them in one
-/// direction whatever triangle asks: neighbors agree to the bit, and no line slips between them.
+/// Number of times that the triangle, seen along x, winds about (y, z). It is counted by its edges, each of
+/// them in one direction whichever triangle asks. So neighbors agree to the bit, and no line slips between
+/// them.
 int winding_about(const std::array<DVec3, 3>& t, double y, double z) {
   int winding = 0;
   for (int k = 0; k < 3; ++k) {
@@ -49,7 +51,7 @@ double crossing_of(const std::array<DVec3, 3>& t, double y, double z) {
   return x >= box.lower.x ? std::min(x, box.upper.x) : box.lower.x;
 }
 
-/// Half cells, by the winding number at their centers.
+/// Fills half cells, by the winding number at their centers.
 class Filler {
  public:
   Filler(const MeshDesc& mesh, CellGrid& grid)
@@ -110,7 +112,7 @@ class Filler {
   std::vector<std::vector<Crossing>> rays_;
 };
 
-/// Moves points of the surface to the nearest places of the mesh, or part of the way.
+/// Moves points of the surface to the nearest points of the mesh, or part of that distance.
 void fit_surface(const MeshDesc& target, TetrahedralMesh& mesh) {
   const Bvh bvh = build_bvh(target.positions, target.triangles);
   std::vector<std::uint8_t> outer(mesh.points.size(), 0);
@@ -132,7 +134,7 @@ void fit_surface(const MeshDesc& target, TetrahedralMesh& mesh) {
     });
   };
   const auto count = static_cast<std::uint32_t>(mesh.points.size());
-  // What a neighbor stopped the first time may have room the next.
+  // A point that a neighbor stopped the first time may have room the next time.
   for (std::uint32_t i = 0; i < kFittingSweeps * count; ++i) {
     const std::uint32_t p = i % count;
     if (outer[p] == 0) continue;
@@ -202,7 +204,7 @@ std::array<double, 4> weights_at(const TetrahedralMesh& mesh, const Tetrahedron&
   return {a, b, c, 1.0 - a - b - c};
 }
 
-/// Tetrahedra by the cubes that their boxes overlap.
+/// Sorts tetrahedra by the cubes that their boxes overlap.
 class Buckets {
  public:
   explicit Buckets(const TetrahedralMesh& mesh) : mesh_(mesh) {
@@ -217,7 +219,7 @@ class Buckets {
     std::sort(entries_.begin(), entries_.end());
   }
 
-  /// The best of the tetrahedra within `reach` cubes of p; false if there are none.
+  /// Finds the best of the tetrahedra within `reach` cubes of p. Returns false if there are none.
   bool find_best(DVec3 p, int reach, TetrahedronPlace& best) const {
     const Cube center = cube_of(p);
     std::vector<std::uint32_t> near;
@@ -248,14 +250,14 @@ class Buckets {
   using Cube = std::array<int, 3>;
   using Entry = std::pair<Cube, std::uint32_t>;
 
-  static constexpr double kMostCubes = 16;  // of a tetrahedron, on average
+  static constexpr double kMostCubes = 16;  // per tetrahedron, on average
 
   [[nodiscard]] Cube cube_of(DVec3 p) const {
     const auto at = [&](double x) { return static_cast<int>(std::clamp(std::floor(x / size_), -1e9, 1e9)); };
     return {at(p.x), at(p.y), at(p.z)};
   }
 
-  /// The first and the last cube of those that the box around a tetrahedron overlaps.
+  /// The first and the last of the cubes that the box around a tetrahedron overlaps.
   [[nodiscard]] std::pair<Cube, Cube> cubes_of(const Tetrahedron& t) const {
     const auto& x = mesh_.points;
     const Box3<double> box = merge(box_of(x[t[0]], x[t[1]], x[t[2]]), box_of(x[t[1]], x[t[2]], x[t[3]]));

@@ -8,7 +8,7 @@ namespace hooke::geometry {
 
 namespace {
 
-/// Numbers points as they are asked for, and makes tetrahedra of positive volume.
+/// Numbers points when they are first used, and makes tetrahedra of positive volume.
 class CellFiller {
  public:
   explicit CellFiller(const CellGrid& grid) : grid_(grid) {}
@@ -79,7 +79,7 @@ class CellFiller {
     mesh_.tetrahedra.push_back(t);
   }
 
-  /// The tetrahedra at the six faces of a cell; those between two cells belong to the first.
+  /// Makes the tetrahedra at the six faces of a cell; those between two cells belong to the first.
   void fill_cell(const Cell& cell) {
     const std::uint32_t center = point_of_cell_[grid_.index(cell[0], cell[1], cell[2])];
     for (int axis = 0; axis < 3; ++axis) {
@@ -90,7 +90,7 @@ class CellFiller {
         if (has_neighbor && side == 0) continue;
         Cell corner = cell;
         corner[axis] += side;
-        std::array<std::uint32_t, 4> face = {};  // round the face
+        std::array<std::uint32_t, 4> face = {};  // corners around the face
         for (int k = 0; k < 4; ++k) {
           Cell c = corner;
           c[(axis + 1) % 3] += k == 1 || k == 2 ? 1 : 0;
@@ -122,7 +122,7 @@ TetrahedralMesh fill_cells(const CellGrid& grid) {
 }
 
 std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
-  // Seen from outside the corner that is left out lies behind.
+  // Seen from outside, the corner that is left out lies behind.
   constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   struct Face {
     Triangle sorted = {}, triangle = {};

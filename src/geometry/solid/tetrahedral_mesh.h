@@ -11,11 +11,11 @@
 #include <vector>
 
 /// \file
-/// Solids of tetrahedra: from cubic cells, and from these for any closed surface.
+/// Solids of tetrahedra: made from cubic cells, and by means of these from any closed surface.
 
 namespace hooke::geometry {
 
-/// Corners; 1, 2, 3 counter-clockwise seen from 0, so that the volume is positive.
+/// Corners of a tetrahedron; 1, 2, 3 are counter-clockwise seen from 0, so that the volume is positive.
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
 struct TetrahedralMesh {
@@ -40,32 +40,32 @@ struct CellGrid {
   }
 };
 
-/// The body-centered lattice over the filled cells: their corners and their centers. Four tetrahedra between
-/// the centers of two neighbors, two on a face without a neighbor, whose diagonal alternates like a
-/// checkerboard: 12 equal tetrahedra a cell inside, no direction preferred. Points: used corners in the
-/// grid's order, then centers.
+/// Makes the body-centered lattice over the filled cells: their corners and their centers. There are four
+/// tetrahedra between the centers of two neighbors, and two on a face without a neighbor, whose diagonal
+/// alternates like a checkerboard. So there are 12 equal tetrahedra a cell inside, and no direction is
+/// preferred. Points: used corners in the grid's order, then centers.
 [[nodiscard]] TetrahedralMesh fill_cells(const CellGrid& grid);
 
 /// The faces that only one tetrahedron has, counter-clockwise seen from outside, in order of tetrahedra.
 [[nodiscard]] std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra);
 
-/// The solid inside a closed surface, in tetrahedra of cells of about `cell` [m]: cells of which half is
-/// inside are kept (fill_cells), and the outer points moved onto the surface as far as no tetrahedron loses
-/// more than nine tenths of its volume. What is thinner than a cell is lost. The same for the same mesh on
+/// Fills a closed surface with tetrahedra of cells of about `cell` [m]. Cells of which half is inside are
+/// kept (fill_cells), and the outer points are moved onto the surface as far as no tetrahedron loses more
+/// than nine tenths of its volume. Parts thinner than a cell are lost. The result for a mesh is the same on
 /// every machine.
 ///
 /// Errors (`where` is like "mesh.triangles[12]" or "cell"): a mesh that validate_solid refuses, a cell that
 /// is not positive, more than 2^22 cells in the mesh's box, no cell inside.
 [[nodiscard]] Result<TetrahedralMesh> fill_solid(const MeshDesc& mesh, double cell);
 
-/// A place inside a tetrahedron, or outside by continuation.
+/// A position inside a tetrahedron, or outside by continuation.
 struct TetrahedronPlace {
   std::uint32_t tetrahedron = 0;
-  std::array<double, 4> weights = {};  ///< Of the corners, with the sum 1.
+  std::array<double, 4> weights = {};  ///< Weights of the corners, with the sum 1.
 };
 
-/// For each place the tetrahedron that holds it or is nearest to doing so: whose least weight is largest, and
-/// of equals the first. At least one tetrahedron with a volume.
+/// Finds for each position the tetrahedron that contains it or comes nearest to that: the one whose least
+/// weight is largest, and of equals the first. Needs at least one tetrahedron with a volume.
 [[nodiscard]] std::vector<TetrahedronPlace> locate(const TetrahedralMesh& mesh,
                                                    std::span<const DVec3> places);
 
