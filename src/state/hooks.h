@@ -84,9 +84,9 @@ struct Hook {
   /// (solver/coupled/coupled_groups.h).
   [[nodiscard]] bool holds_point() const { return a.is_point() || b.is_point(); }
   [[nodiscard]] bool can_break() const { return break_force < kRigid || break_torque < kRigid; }
-  /// Whether it is solved in a bundle.
+  /// Whether the hook is solved in a coupled group.
   [[nodiscard]] bool is_in_coupled_group() const { return route == JointRoute::kCoupled || holds_point(); }
-  /// Of such a hook, the end at particles, the first if both are, and the other one.
+  /// The end at particles of such a hook, the first if both are, and the other end.
   [[nodiscard]] const HookPlace& point_end() const { return a.is_point() ? a : b; }
   [[nodiscard]] const HookPlace& other_end() const { return a.is_point() ? b : a; }
 

@@ -111,7 +111,7 @@ struct Pair {
   // The fields below describe the manifolds of this step.
   std::uint32_t first_manifold = 0;
   std::uint32_t manifold_count = 0;
-  Real time = Real(0);  ///< Part of the step after which they are as the manifolds say; 0: now.
+  Real time = Real(0);  ///< Part of the step after which the bodies are as the manifolds say; 0: now.
   ContactRefresh refresh = ContactRefresh::kAtStart;  ///< When its manifolds are made; see solver/routes.h.
 
   [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
