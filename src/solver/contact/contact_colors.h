@@ -24,11 +24,6 @@ struct ContactColors {
   std::vector<std::uint64_t> used;  ///< Colors of a body, by body row.
   std::vector<int> color;           ///< Color of each manifold as taken; -1 if it has no rows.
   std::vector<int> next_slot;       ///< Where the next member of each kind goes.
-};  ///< Color c is [begin[c], begin[c + 1]). No color is empty.
-  std::vector<std::uint8_t> moves;   ///< Whether contacts move a body, by body row.
-  std::vector<std::uint64_t> used;   ///< Colors of a body, by body row.
-  std::vector<int> color;            ///< Of each manifold, as taken; -1: has no rows.
-  std::vector<int> next_slot;        ///< Where the next member of each kind goes.
 };
 
 /// Whether contacts move the body in `row`.
