@@ -4,6 +4,7 @@
 - no absolute path of a developer's machine in any text file;
 - every relative link of a Markdown file leads to a file that exists;
 - every suite and every file that docs/paper.md names exists;
+- docs/step.md names every stage that src/world/step.cpp calls;
 - every C++ block of README.md stands, line by line, in a program that the tests build.
 """
 import pathlib
@@ -16,6 +17,7 @@ MACHINE_PATH = re.compile(r"(?<![\w.-])/(?:work|home|root|Users)/\w")
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 CPP_BLOCK = re.compile(r"^```cpp\n(.*?)^```", re.MULTILINE | re.DOTALL)
 QUOTED = re.compile(r"`([a-z_0-9./]+)`")
+STAGE = re.compile(r"world::([a-z_]+)\(w\b")
 SUITE = re.compile(r'TEST_SUITE\("([^"]+)"\)')
 TESTED_PROGRAMS = ("tests/consumer", "examples")
 
@@ -57,6 +59,12 @@ def missing_names(paper):
             yield f"docs/paper.md: no file or test suite is called '{name}'"
 
 
+def missing_stages(step, page):
+    for stage in sorted(set(STAGE.findall(step))):
+        if f"`world::{stage}`" not in page:
+            yield f"docs/step.md: stage 'world::{stage}' of src/world/step.cpp is missing"
+
+
 def untested_programs(readme):
     programs = [path.read_text() for folder in TESTED_PROGRAMS for path in (ROOT / folder).glob("*.cpp")]
     for block in CPP_BLOCK.findall(readme):
@@ -78,6 +86,7 @@ def main():
         if path.suffix == ".md":
             errors += broken_links(path, text)
     errors += untested_programs((ROOT / "README.md").read_text())
+    errors += missing_stages((ROOT / "src/world/step.cpp").read_text(), (ROOT / "docs/step.md").read_text())
     errors += missing_names((ROOT / "docs/paper.md").read_text())
     print("\n".join(errors) or "files: ok")
     return 1 if errors else 0
