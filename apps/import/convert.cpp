@@ -223,14 +223,14 @@ void add_nodes(Builder& builder, const aiNode& root) {
 
 /// Drops the points no triangle uses: their coordinates may be anything.
 void compact(io::Soup& soup) {
-  constexpr auto unused = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> moved(soup.positions.size(), unused);
+  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> moved(soup.positions.size(), kUnused);
   for (const io::Triangle& triangle : soup.triangles) {
     for (const std::uint32_t i : triangle) moved[i] = 0;
   }
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < moved.size(); ++i) {
-    if (moved[i] == unused) continue;
+    if (moved[i] == kUnused) continue;
     moved[i] = count++;
     soup.positions[moved[i]] = soup.positions[i];
     soup.normals[moved[i]] = soup.normals[i];

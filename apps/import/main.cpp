@@ -82,10 +82,10 @@ double positive_number(std::string_view text, const char* name) {
 Arguments parse(int count, char** words) {
   if (count != 5) throw Refusal(ImporterExit::kOutOfRange, "usage: hooke-import FILE UP SCALE FIT");
   Arguments arguments = {.path = words[1]};
-  constexpr std::array<std::string_view, 4> up_words = {"format", "x", "y", "z"};
-  const auto* up = std::find(up_words.begin(), up_words.end(), std::string_view(words[2]));
-  if (up == up_words.end()) throw Refusal(ImporterExit::kOutOfRange, "UP must be format, x, y or z");
-  arguments.up = static_cast<UpAxis>(up - up_words.begin());
+  constexpr std::array<std::string_view, 4> kUpWords = {"format", "x", "y", "z"};
+  const auto* up = std::find(kUpWords.begin(), kUpWords.end(), std::string_view(words[2]));
+  if (up == kUpWords.end()) throw Refusal(ImporterExit::kOutOfRange, "UP must be format, x, y or z");
+  arguments.up = static_cast<UpAxis>(up - kUpWords.begin());
   arguments.scale = positive_number(words[3], "SCALE");
   if (std::string_view(words[4]) != "none") arguments.fit = positive_number(words[4], "FIT");
   return arguments;

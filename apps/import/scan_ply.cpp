@@ -27,25 +27,25 @@ std::string_view take_word(std::string_view& line) {
 
 /// Bytes of a number in the binary form; 0 for a word that names no type.
 std::uint64_t size_of(std::string_view type) {
-  constexpr std::array<std::pair<std::string_view, std::uint64_t>, 16> sizes = {{{"char", 1},
-                                                                                 {"uchar", 1},
-                                                                                 {"int8", 1},
-                                                                                 {"uint8", 1},
-                                                                                 {"short", 2},
-                                                                                 {"ushort", 2},
-                                                                                 {"int16", 2},
-                                                                                 {"uint16", 2},
-                                                                                 {"int", 4},
-                                                                                 {"uint", 4},
-                                                                                 {"int32", 4},
-                                                                                 {"uint32", 4},
-                                                                                 {"float", 4},
-                                                                                 {"float32", 4},
-                                                                                 {"double", 8},
-                                                                                 {"float64", 8}}};
+  constexpr std::array<std::pair<std::string_view, std::uint64_t>, 16> kSizes = {{{"char", 1},
+                                                                                  {"uchar", 1},
+                                                                                  {"int8", 1},
+                                                                                  {"uint8", 1},
+                                                                                  {"short", 2},
+                                                                                  {"ushort", 2},
+                                                                                  {"int16", 2},
+                                                                                  {"uint16", 2},
+                                                                                  {"int", 4},
+                                                                                  {"uint", 4},
+                                                                                  {"int32", 4},
+                                                                                  {"uint32", 4},
+                                                                                  {"float", 4},
+                                                                                  {"float32", 4},
+                                                                                  {"double", 8},
+                                                                                  {"float64", 8}}};
   const auto* entry =
-      std::find_if(sizes.begin(), sizes.end(), [&](const auto& known) { return known.first == type; });
-  return entry == sizes.end() ? 0 : entry->second;
+      std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& known) { return known.first == type; });
+  return entry == kSizes.end() ? 0 : entry->second;
 }
 
 /// What a header promises to follow.

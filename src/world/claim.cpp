@@ -5,8 +5,8 @@ namespace hooke::world {
 namespace {
 
 const WorldData& nothing() {
-  static const WorldData kNothing;
-  return kNothing;
+  static const WorldData nothing;
+  return nothing;
 }
 
 }  // namespace

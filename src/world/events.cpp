@@ -36,11 +36,11 @@ auto order_of(BodyId id) {
   return id.slot;
 }
 
-constexpr auto comes_first = [](const auto& p, const auto& q) { return order_of(p) < order_of(q); };
+constexpr auto kComesFirst = [](const auto& p, const auto& q) { return order_of(p) < order_of(q); };
 
 template <class Event>
 void sort_events(std::vector<Event>& events) {
-  std::sort(events.begin(), events.end(), comes_first);
+  std::sort(events.begin(), events.end(), kComesFirst);
 }
 
 /// Sorts `now`, lists what is new in it and what is gone, and keeps it.
@@ -52,9 +52,9 @@ void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Ev
   begins.clear();
   ends.clear();
   std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(begins),
-                      comes_first);
+                      kComesFirst);
   std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(ends),
-                      comes_first);
+                      kComesFirst);
   base::take_turns(now, before);
 }
 

@@ -143,15 +143,15 @@ class PairSweep {
       : a_(a), b_(b), allowance_(allowance), scratch_(scratch) {}
 
   std::optional<Impact> run(Real begin) {
-    constexpr Real end = Real(1);
+    constexpr Real kEnd = Real(1);
     const Closing closing = {b_.path.displacement - a_.path.displacement, spin_of(a_), spin_of(b_)};
     const ShapeKind kind = kind_of(a_);
-    if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, end);
+    if (kind == ShapeKind::kMesh) return sweep_mesh(closing, begin, kEnd);
     if (kind == ShapeKind::kHalfSpace) {
-      return advance(closing, allowance_, begin, end,
+      return advance(closing, allowance_, begin, kEnd,
                      [this](Real time) { return separate_from_half_space(time); });
     }
-    return advance(closing, allowance_, begin, end, [this](Real time) {
+    return advance(closing, allowance_, begin, kEnd, [this](Real time) {
       const auto [a, b] = convex_pair_at(a_, b_, time);
       return separate_convex(a, b, scratch_.result);
     });

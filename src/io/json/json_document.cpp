@@ -205,9 +205,9 @@ std::string plain_reason(std::string message) {
 
 bool TreeBuilder::parse_error(std::size_t position, const std::string& token,
                               const nlohmann::detail::exception& exception) {
-  constexpr int number_overflow = 406;
+  constexpr int kNumberOverflow = 406;
   const std::size_t token_start = next_token();
-  if (exception.id == number_overflow) {
+  if (exception.id == kNumberOverflow) {
     return fail(token_start, ErrorCode::kOutOfRange, in_quotes(token) + " is too large for a number");
   }
   const std::string reason = plain_reason(exception.what());

@@ -174,25 +174,25 @@ std::string to_flat_text(const JsonNode& root) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 40;
+  constexpr std::size_t kLongest = 40;
   std::string result = "'";
-  std::string_view shown = text.substr(0, longest);
-  if (text.size() > longest) {
+  std::string_view shown = text.substr(0, kLongest);
+  if (text.size() > kLongest) {
     // Do not cut a character of several bytes in two.
     while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U) {
       shown.remove_suffix(1);
     }
   }
   for (const char c : shown) result += static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c;
-  return result + (text.size() > longest ? "...'" : "'");
+  return result + (text.size() > kLongest ? "...'" : "'");
 }
 
 int edit_distance_up_to_2(std::string_view a, std::string_view b) {
-  constexpr std::size_t longest = 48;
-  constexpr int far = 3;
+  constexpr std::size_t kLongest = 48;
+  constexpr int kFar = 3;
   const std::size_t difference = a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
-  if (difference > 2 || a.size() > longest || b.size() > longest) return far;
-  std::array<int, longest + 1> row = {};
+  if (difference > 2 || a.size() > kLongest || b.size() > kLongest) return kFar;
+  std::array<int, kLongest + 1> row = {};
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     int diagonal = row[0];
@@ -203,7 +203,7 @@ int edit_distance_up_to_2(std::string_view a, std::string_view b) {
       row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
     }
   }
-  return std::min(row[b.size()], far);
+  return std::min(row[b.size()], kFar);
 }
 
 }  // namespace hooke::io

@@ -70,8 +70,8 @@ std::string number_text(double value) {
 
 std::vector<std::string> arguments(const std::string& program, const std::string& path,
                                    const ImportOptions& options) {
-  constexpr std::array<const char*, 4> up_words = {"format", "x", "y", "z"};
-  return {program, path, up_words[static_cast<std::size_t>(options.up)], number_text(options.scale),
+  constexpr std::array<const char*, 4> kUpWords = {"format", "x", "y", "z"};
+  return {program, path, kUpWords[static_cast<std::size_t>(options.up)], number_text(options.scale),
           options.fit ? number_text(*options.fit) : "none"};
 }
 

@@ -52,10 +52,10 @@ std::size_t clean_sequence(std::string_view text) {
     if ((byte(i) & 0xC0u) != 0x80u) return 0;
     code = (code << 6u) | (byte(i) & 0x3Fu);
   }
-  constexpr std::array<std::uint32_t, 5> smallest = {0, 0, 0xA0, 0x800, 0x10000};  // 0x80-0x9F are controls
+  constexpr std::array<std::uint32_t, 5> kSmallest = {0, 0, 0xA0, 0x800, 0x10000};  // 0x80-0x9F are controls
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
   const bool format_control = (code >= 0x200B && code <= 0x200F) || (code >= 0x2028 && code <= 0x202E);
-  return code < smallest[size] || code > 0x10FFFF || surrogate || format_control ? 0 : size;
+  return code < kSmallest[size] || code > 0x10FFFF || surrogate || format_control ? 0 : size;
 }
 
 bool in_range(float value, float low, float high) {

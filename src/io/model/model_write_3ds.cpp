@@ -216,12 +216,12 @@ std::vector<Object> split(const Model& model) {
 
 /// Faces, the materials they have, and their smoothing groups.
 void put_faces(Bytes& bytes, const Object& object, const std::vector<std::string>& names) {
-  constexpr std::uint16_t all_edges_visible = 7;
+  constexpr std::uint16_t kAllEdgesVisible = 7;
   const Chunk chunk(bytes, 0x4120);
   put(bytes, static_cast<std::uint16_t>(object.faces.size()));
   for (const auto& face : object.faces) {
     put(bytes, face);
-    put(bytes, all_edges_visible);
+    put(bytes, kAllEdgesVisible);
   }
   for (std::size_t first = 0; first < object.faces.size();) {  // parts are runs of one material
     std::size_t last = first;
@@ -252,8 +252,8 @@ void put_object(Bytes& bytes, const Object& object, std::size_t number, const st
     put(bytes, static_cast<std::uint16_t>(object.uvs.size()));
     for (const auto& uv : object.uvs) put(bytes, uv);
   }
-  constexpr std::array<float, 12> identity = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
-  put_chunk(bytes, 0x4160, identity);
+  constexpr std::array<float, 12> kIdentity = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  put_chunk(bytes, 0x4160, kIdentity);
   put_faces(bytes, object, names);
 }
 

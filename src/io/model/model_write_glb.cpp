@@ -19,7 +19,7 @@ constexpr int kIndexBuffer = 34963;
 
 /// For a URI: everything but letters, digits and "-._~" as %XX (RFC 3986).
 std::string percent_encoded(const std::string& text) {
-  constexpr std::string_view hex_digits = "0123456789ABCDEF";
+  constexpr std::string_view kHexDigits = "0123456789ABCDEF";
   std::string result;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -28,7 +28,7 @@ std::string percent_encoded(const std::string& text) {
     if (is_plain) {
       result += c;
     } else {
-      result += {'%', hex_digits[byte >> 4u], hex_digits[byte & 15u]};
+      result += {'%', kHexDigits[byte >> 4u], kHexDigits[byte & 15u]};
     }
   }
   return result;

@@ -16,8 +16,8 @@ std::uint64_t mixed(std::uint64_t word) {
 
 /// Uniform in [low, high): the upper 53 bits are exact in a double.
 double uniform(std::uint64_t word, double low, double high) {
-  constexpr double unit = 1.0 / 9007199254740992.0;  // 2^-53
-  return low + (high - low) * (static_cast<double>(mixed(word) >> 11U) * unit);
+  constexpr double kUnit = 1.0 / 9007199254740992.0;  // 2^-53
+  return low + (high - low) * (static_cast<double>(mixed(word) >> 11U) * kUnit);
 }
 
 std::size_t positive(std::int32_t n) {
@@ -31,14 +31,14 @@ DVec3 scaled(DVec3 spacing, double x, double y, double z) {
 }  // namespace
 
 std::size_t SceneArray::count() const {
-  constexpr std::size_t far = std::size_t{1} << 40U;
+  constexpr std::size_t kFar = std::size_t{1} << 40U;
   switch (kind) {
     case Kind::kSingle:
       return 1;
     case Kind::kGrid: {
       const std::size_t area = positive(grid[0]) * positive(grid[1]);
       const std::size_t layers = positive(grid[2]);
-      return layers > 0 && area > far / layers ? far : area * layers;
+      return layers > 0 && area > kFar / layers ? kFar : area * layers;
     }
     case Kind::kPyramid:
       return positive(pyramid) * (positive(pyramid) + 1) / 2;

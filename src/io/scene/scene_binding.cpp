@@ -93,8 +93,8 @@ std::string Reader::path() const {
       text += "[" + std::to_string(step.index) + "]";
     } else {
       // A key may be as long as the file.
-      constexpr std::size_t longest_key = 64;
-      text += (text.empty() ? "" : ".") + std::string(step.key.substr(0, longest_key));
+      constexpr std::size_t kLongestKey = 64;
+      text += (text.empty() ? "" : ".") + std::string(step.key.substr(0, kLongestKey));
     }
   }
   return text;
@@ -276,9 +276,9 @@ bool expect_list(Reader& reader, const JsonNode& node, std::size_t fewest, std::
 }
 
 bool check_name(Reader& reader, const JsonNode& node, const std::string& name) {
-  constexpr std::size_t longest_name = 64;
+  constexpr std::size_t kLongestName = 64;
   if (name.empty()) return reader.fail(node, ErrorCode::kOutOfRange, "a name must not be empty");
-  if (name.size() > longest_name) {
+  if (name.size() > kLongestName) {
     return reader.fail(node, ErrorCode::kOutOfRange, "a name must not be longer than 64 bytes");
   }
   const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
@@ -317,11 +317,11 @@ DVec3 unit_axis(int i) {
 }
 
 Quaternion<double> rotation_of(const AxisAngle& turn) {
-  constexpr double radians = std::numbers::pi / 180.0;
-  if (!turn.euler_deg.has_value()) return quaternion_about(turn.axis, radians * turn.angle_deg);
+  constexpr double kRadians = std::numbers::pi / 180.0;
+  if (!turn.euler_deg.has_value()) return quaternion_about(turn.axis, kRadians * turn.angle_deg);
   const DVec3 e = *turn.euler_deg;
-  return quaternion_about(unit_axis(2), radians * e.z) * quaternion_about(unit_axis(1), radians * e.y) *
-         quaternion_about(unit_axis(0), radians * e.x);
+  return quaternion_about(unit_axis(2), kRadians * e.z) * quaternion_about(unit_axis(1), kRadians * e.y) *
+         quaternion_about(unit_axis(0), kRadians * e.x);
 }
 
 }  // namespace

@@ -178,14 +178,14 @@ struct Codec<T> {
       return reader.fail_type(node, "a number or \"rigid\"");
     if (!read_number(reader, node, rule, number)) return false;
     // The shortest text of the largest number is a little more than it.
-    constexpr auto most = std::numeric_limits<T>::max();
-    constexpr double rounding = 1 + static_cast<double>(std::numeric_limits<T>::epsilon()) / 4;
-    if (std::abs(number) / rounding > static_cast<double>(most)) {
+    constexpr auto kMost = std::numeric_limits<T>::max();
+    constexpr double kRounding = 1 + static_cast<double>(std::numeric_limits<T>::epsilon()) / 4;
+    if (std::abs(number) / kRounding > static_cast<double>(kMost)) {
       return reader.fail(node, ErrorCode::kOutOfRange, "is too large for a number of this precision");
     }
-    const bool is_most = std::abs(number) > static_cast<double>(most);
+    const bool is_most = std::abs(number) > static_cast<double>(kMost);
     const T rounded =
-        is_most ? std::copysign(most, static_cast<T>(number > 0 ? 1 : -1)) : static_cast<T>(number);
+        is_most ? std::copysign(kMost, static_cast<T>(number > 0 ? 1 : -1)) : static_cast<T>(number);
     if (!reader.check(node, static_cast<double>(rounded), rule)) return false;
     value = rounded;
     return true;

@@ -115,9 +115,9 @@ bool has_points(SceneObject::Kind kind) {
 }
 
 std::size_t saturated_product(std::size_t a, std::size_t b) {
-  constexpr std::size_t far = std::size_t{1} << 40U;
+  constexpr std::size_t kFar = std::size_t{1} << 40U;
   if (a == 0 || b == 0) return 0;
-  return a > far / b ? far : a * b;
+  return a > kFar / b ? kFar : a * b;
 }
 
 template <class T>

@@ -39,8 +39,8 @@ std::vector<Error> finish(const JsonDocument& document, std::vector<JsonError> f
     const std::string place = document.place(one.offset);
     std::string& where = one.error.where;
     // Keys are the user's: an error stays one readable line whatever they are.
-    constexpr std::size_t longest_path = 300;
-    if (where.size() > longest_path) where.resize(longest_path);
+    constexpr std::size_t kLongestPath = 300;
+    if (where.size() > kLongestPath) where.resize(kLongestPath);
     for (char& c : where) c = static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c;
     if (!where.empty()) where.insert(0, ": ");
     where.insert(0, place);

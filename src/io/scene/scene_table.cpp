@@ -150,14 +150,14 @@ Field schema_row() {
 }
 
 std::vector<Field> scene_rows() {
-  constexpr Rule step_range = {.least = 0, .most = 1, .above_least = true};
+  constexpr Rule kStepRange = {.least = 0, .most = 1, .above_least = true};
   std::vector<Field> rows = {
       schema_row(),
       required(field<&Scene::version>("version", "", between(1, kSceneVersion), "Of the format.")),
       field<&Scene::title>("title", "", kAny, "One line."),
       field<&Scene::description>("description", "", kAny, "What there is to see."),
       field<&Scene::world>("world", "", kAny, "Gravity, wind, accuracy."),
-      field<&Scene::dt>("dt", "s", step_range, "Length of a step."),
+      field<&Scene::dt>("dt", "s", kStepRange, "Length of a step."),
       field<&Scene::seconds>("seconds", "s", between(0, 1e6), "How long the scene runs."),
       field<&Scene::accuracy>(
           "accuracy", "", kAny,
@@ -185,17 +185,17 @@ const Kind& kind_of<Scene>() {
 
 template <>
 const Kind& kind_of<WorldDesc>() {
-  constexpr Rule passes = between(1, 64);
+  constexpr Rule kPasses = between(1, 64);
   static const Kind kind = {
       .name = "world",
       .help = "What holds everywhere.",
       .fields =
           {field<&WorldDesc::gravity>("gravity", "m/s^2", kAny, "Acceleration of everything."),
-           field<&WorldDesc::substeps>("substeps", "", passes, "Solver passes per step; more is stiffer."),
+           field<&WorldDesc::substeps>("substeps", "", kPasses, "Solver passes per step; more is stiffer."),
            field<&WorldDesc::particle_substeps>(
-               "particle_substeps", "", passes,
+               "particle_substeps", "", kPasses,
                "Passes over ropes, cloths, solids, particles in each substep."),
-           field<&WorldDesc::workers>("workers", "", passes, "Threads. The result does not depend on it."),
+           field<&WorldDesc::workers>("workers", "", kPasses, "Threads. The result does not depend on it."),
            field<&WorldDesc::wind>("wind", "", kAny, "Moving air."),
            field<&WorldDesc::contact_hz>("contact_hz", "Hz", between(0.1, 1000),
                                          "Stiffness of contacts between bodies."),
@@ -433,7 +433,7 @@ const Kind& kind_of<SceneAccuracy>() {
 template <>
 const Kind& kind_of<SceneLaboratory>() {
   using Options = lab::CollisionOptions;
-  constexpr Rule depth = {.least = 1e-12, .most = 1};
+  constexpr Rule kDepth = {.least = 1e-12, .most = 1};
   static const Kind kind = {
       .name = "laboratory",
       .help =
@@ -460,7 +460,7 @@ const Kind& kind_of<SceneLaboratory>() {
            field<&SceneLaboratory::collisions, &Options::sweep>(
                "sweep", "", kAny,
                "How the way is looked at: not, as in the paper; cast; cast where extruded silhouettes meet."),
-           field<&SceneLaboratory::collisions, &Options::epsilon>("epsilon", "m", depth,
+           field<&SceneLaboratory::collisions, &Options::epsilon>("epsilon", "m", kDepth,
                                                                   "Depth that counts as touching."),
            field<&SceneLaboratory::collisions, &Options::iteration_limit>(
                "iteration_limit", "", between(1, 1000), "Tries in a row that may be canceled."),
@@ -493,25 +493,25 @@ std::span<const Kind* const> all_kinds() {
 
 template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>() {
-  static constexpr EnumName names[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
-                                       {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"smooth", static_cast<int>(WindDesc::Gusts::kSmooth)},
+                                        {"paper", static_cast<int>(WindDesc::Gusts::kPaper)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<MeshTree>() {
-  static constexpr EnumName names[] = {{"boxes", static_cast<int>(MeshTree::kBoxes)},
-                                       {"planes", static_cast<int>(MeshTree::kPlanes)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"boxes", static_cast<int>(MeshTree::kBoxes)},
+                                        {"planes", static_cast<int>(MeshTree::kPlanes)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<lab::CollisionOptions::Collider>() {
   using Collider = lab::CollisionOptions::Collider;
-  static constexpr EnumName names[] = {{"none", static_cast<int>(Collider::kNone)},
-                                       {"exact", static_cast<int>(Collider::kExact)},
-                                       {"faces", static_cast<int>(Collider::kFaces)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"none", static_cast<int>(Collider::kNone)},
+                                        {"exact", static_cast<int>(Collider::kExact)},
+                                        {"faces", static_cast<int>(Collider::kFaces)}};
+  return kNames;
 }
 
 template <>
@@ -528,81 +528,81 @@ std::span<const EnumName> names_of<Preselection>() {
 template <>
 std::span<const EnumName> names_of<lab::CollisionOptions::MeshSearch>() {
   using MeshSearch = lab::CollisionOptions::MeshSearch;
-  static constexpr EnumName names[] = {{"all", static_cast<int>(MeshSearch::kAll)},
-                                       {"tree", static_cast<int>(MeshSearch::kTree)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"all", static_cast<int>(MeshSearch::kAll)},
+                                        {"tree", static_cast<int>(MeshSearch::kTree)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<lab::CollisionOptions::Search>() {
   using Search = lab::CollisionOptions::Search;
-  static constexpr EnumName names[] = {{"halving", static_cast<int>(Search::kHalving)},
-                                       {"backward", static_cast<int>(Search::kBackward)},
-                                       {"event", static_cast<int>(Search::kEvent)},
-                                       {"advancement", static_cast<int>(Search::kAdvancement)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"halving", static_cast<int>(Search::kHalving)},
+                                        {"backward", static_cast<int>(Search::kBackward)},
+                                        {"event", static_cast<int>(Search::kEvent)},
+                                        {"advancement", static_cast<int>(Search::kAdvancement)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<lab::CollisionOptions::Sweep>() {
   using Sweep = lab::CollisionOptions::Sweep;
-  static constexpr EnumName names[] = {{"none", static_cast<int>(Sweep::kNone)},
-                                       {"cast", static_cast<int>(Sweep::kCast)},
-                                       {"extruded", static_cast<int>(Sweep::kExtruded)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"none", static_cast<int>(Sweep::kNone)},
+                                        {"cast", static_cast<int>(Sweep::kCast)},
+                                        {"extruded", static_cast<int>(Sweep::kExtruded)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<UpAxis>() {
-  static constexpr EnumName names[] = {{"format", static_cast<int>(UpAxis::kFormat)},
-                                       {"x", static_cast<int>(UpAxis::kX)},
-                                       {"y", static_cast<int>(UpAxis::kY)},
-                                       {"z", static_cast<int>(UpAxis::kZ)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"format", static_cast<int>(UpAxis::kFormat)},
+                                        {"x", static_cast<int>(UpAxis::kX)},
+                                        {"y", static_cast<int>(UpAxis::kY)},
+                                        {"z", static_cast<int>(UpAxis::kZ)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<SceneExpectation::Op>() {
   using Op = SceneExpectation::Op;
-  static constexpr EnumName names[] = {
+  static constexpr EnumName kNames[] = {
       {"<", static_cast<int>(Op::kLess)},    {"<=", static_cast<int>(Op::kLessOrEqual)},
       {">", static_cast<int>(Op::kGreater)}, {">=", static_cast<int>(Op::kGreaterOrEqual)},
       {"==", static_cast<int>(Op::kEqual)},  {"within", static_cast<int>(Op::kWithin)}};
-  return names;
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<SceneExpectation::Quantity>() {
   using Quantity = SceneExpectation::Quantity;
-  static constexpr EnumName names[] = {{"x", static_cast<int>(Quantity::kX)},
-                                       {"y", static_cast<int>(Quantity::kY)},
-                                       {"z", static_cast<int>(Quantity::kZ)},
-                                       {"height", static_cast<int>(Quantity::kHeight)},
-                                       {"speed", static_cast<int>(Quantity::kSpeed)},
-                                       {"angular_speed", static_cast<int>(Quantity::kAngularSpeed)},
-                                       {"tilt", static_cast<int>(Quantity::kTilt)},
-                                       {"extension", static_cast<int>(Quantity::kExtension)},
-                                       {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
-                                       {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
-                                       {"tension", static_cast<int>(Quantity::kTension)},
-                                       {"twist", static_cast<int>(Quantity::kTwist)},
-                                       {"lowest", static_cast<int>(Quantity::kLowest)},
-                                       {"highest", static_cast<int>(Quantity::kHighest)},
-                                       {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},
-                                       {"kinetic_energy", static_cast<int>(Quantity::kKineticEnergy)},
-                                       {"potential_energy", static_cast<int>(Quantity::kPotentialEnergy)},
-                                       {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
-                                       {"momentum", static_cast<int>(Quantity::kMomentum)},
-                                       {"penetration", static_cast<int>(Quantity::kPenetration)},
-                                       {"contacts", static_cast<int>(Quantity::kContacts)},
-                                       {"asleep", static_cast<int>(Quantity::kAsleep)},
-                                       {"force", static_cast<int>(Quantity::kForce)},
-                                       {"torque", static_cast<int>(Quantity::kTorque)},
-                                       {"angle", static_cast<int>(Quantity::kAngle)},
-                                       {"way", static_cast<int>(Quantity::kWay)},
-                                       {"gap", static_cast<int>(Quantity::kGap)},
-                                       {"broken", static_cast<int>(Quantity::kBroken)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"x", static_cast<int>(Quantity::kX)},
+                                        {"y", static_cast<int>(Quantity::kY)},
+                                        {"z", static_cast<int>(Quantity::kZ)},
+                                        {"height", static_cast<int>(Quantity::kHeight)},
+                                        {"speed", static_cast<int>(Quantity::kSpeed)},
+                                        {"angular_speed", static_cast<int>(Quantity::kAngularSpeed)},
+                                        {"tilt", static_cast<int>(Quantity::kTilt)},
+                                        {"extension", static_cast<int>(Quantity::kExtension)},
+                                        {"largest_stretch", static_cast<int>(Quantity::kLargestStretch)},
+                                        {"mean_stretch", static_cast<int>(Quantity::kMeanStretch)},
+                                        {"tension", static_cast<int>(Quantity::kTension)},
+                                        {"twist", static_cast<int>(Quantity::kTwist)},
+                                        {"lowest", static_cast<int>(Quantity::kLowest)},
+                                        {"highest", static_cast<int>(Quantity::kHighest)},
+                                        {"total_energy", static_cast<int>(Quantity::kTotalEnergy)},
+                                        {"kinetic_energy", static_cast<int>(Quantity::kKineticEnergy)},
+                                        {"potential_energy", static_cast<int>(Quantity::kPotentialEnergy)},
+                                        {"elastic_energy", static_cast<int>(Quantity::kElasticEnergy)},
+                                        {"momentum", static_cast<int>(Quantity::kMomentum)},
+                                        {"penetration", static_cast<int>(Quantity::kPenetration)},
+                                        {"contacts", static_cast<int>(Quantity::kContacts)},
+                                        {"asleep", static_cast<int>(Quantity::kAsleep)},
+                                        {"force", static_cast<int>(Quantity::kForce)},
+                                        {"torque", static_cast<int>(Quantity::kTorque)},
+                                        {"angle", static_cast<int>(Quantity::kAngle)},
+                                        {"way", static_cast<int>(Quantity::kWay)},
+                                        {"gap", static_cast<int>(Quantity::kGap)},
+                                        {"broken", static_cast<int>(Quantity::kBroken)}};
+  return kNames;
 }
 
 }  // namespace hooke::io

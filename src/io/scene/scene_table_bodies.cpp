@@ -113,57 +113,57 @@ const Kind& part_shape_kind() {
 }
 
 std::vector<Field> body_rows() {
-  constexpr auto desc = &SceneBody::desc;
+  constexpr auto kDesc = &SceneBody::desc;
   return {
       required(group("shape", shape_kind, "What it is.")),
-      field<desc, &BodyDesc::kind>("kind", "", kAny,
-                                   "Stands still; moves as told; or moves by what acts on it."),
-      field<desc, &BodyDesc::position>("position", "m", kAny, "Origin of its frame."),
-      field<desc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
-      field<desc, &BodyDesc::velocity>("velocity", "m/s", kAny, "Of the center of mass at the start."),
-      field<desc, &BodyDesc::angular_velocity>("angular_velocity", "rad/s", kAny,
-                                               "At the start, in the world's axes."),
-      field<desc, &BodyDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
-      field<desc, &BodyDesc::mass>("mass", "kg", kPositive, "Scales the density to give this mass."),
-      field<desc, &BodyDesc::linear_damping>("linear_damping", "1/s", kNotNegative,
-                                             "Rate at which the velocity decays."),
-      field<desc, &BodyDesc::angular_damping>("angular_damping", "1/s", kNotNegative,
-                                              "Rate at which the spin decays."),
-      field<desc, &BodyDesc::gravity_scale>("gravity_scale", "", kAny, "Factor on gravity."),
-      field<desc, &BodyDesc::drag_coefficient>("drag_coefficient", "", between(0, 1e6),
-                                               "C_d in air, of the area it shows to the flow."),
-      field<desc, &BodyDesc::magnus_coefficient>(
+      field<kDesc, &BodyDesc::kind>("kind", "", kAny,
+                                    "Stands still; moves as told; or moves by what acts on it."),
+      field<kDesc, &BodyDesc::position>("position", "m", kAny, "Origin of its frame."),
+      field<kDesc, &BodyDesc::rotation>("rotation", "", kAny, "Of its frame."),
+      field<kDesc, &BodyDesc::velocity>("velocity", "m/s", kAny, "Of the center of mass at the start."),
+      field<kDesc, &BodyDesc::angular_velocity>("angular_velocity", "rad/s", kAny,
+                                                "At the start, in the world's axes."),
+      field<kDesc, &BodyDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+      field<kDesc, &BodyDesc::mass>("mass", "kg", kPositive, "Scales the density to give this mass."),
+      field<kDesc, &BodyDesc::linear_damping>("linear_damping", "1/s", kNotNegative,
+                                              "Rate at which the velocity decays."),
+      field<kDesc, &BodyDesc::angular_damping>("angular_damping", "1/s", kNotNegative,
+                                               "Rate at which the spin decays."),
+      field<kDesc, &BodyDesc::gravity_scale>("gravity_scale", "", kAny, "Factor on gravity."),
+      field<kDesc, &BodyDesc::drag_coefficient>("drag_coefficient", "", between(0, 1e6),
+                                                "C_d in air, of the area it shows to the flow."),
+      field<kDesc, &BodyDesc::magnus_coefficient>(
           "magnus_coefficient", "", between(-1e6, 1e6),
           "C of the lift C rho V omega x v in air, V its volume; of a ball 0.75 (Rubinow and Keller)."),
-      field<desc, &BodyDesc::dipole_moment>(
+      field<kDesc, &BodyDesc::dipole_moment>(
           "dipole_moment", "A m^2", kAny,
           "Magnetic, in the body's frame: magnetic fields and other dipoles turn and pull it."),
-      field<desc, &BodyDesc::contact, &ContactDesc::surface_velocity>(
+      field<kDesc, &BodyDesc::contact, &ContactDesc::surface_velocity>(
           "surface_velocity", "m/s", kAny, "Of a conveyor belt, in the body's frame."),
-      field<desc, &BodyDesc::filter, &FilterDesc::category>("category", "", kAny, "Bits of its categories."),
-      field<desc, &BodyDesc::filter, &FilterDesc::mask>("mask", "", kAny,
-                                                        "Bits of the categories it collides with."),
-      field<desc, &BodyDesc::filter, &FilterDesc::group>(
+      field<kDesc, &BodyDesc::filter, &FilterDesc::category>("category", "", kAny, "Bits of its categories."),
+      field<kDesc, &BodyDesc::filter, &FilterDesc::mask>("mask", "", kAny,
+                                                         "Bits of the categories it collides with."),
+      field<kDesc, &BodyDesc::filter, &FilterDesc::group>(
           "group", "", kAny, "Bodies of one negative group never collide, of one positive group always."),
-      field<desc, &BodyDesc::motion>("motion", "", kAny, "Path of a kinematic body."),
-      field<desc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn."),
-      field<desc, &BodyDesc::sensor>("sensor", "", kAny, "Reports what overlaps it and pushes nothing."),
-      field<desc, &BodyDesc::bullet>("bullet", "", kAny, "Swept against moving bodies too."),
-      field<desc, &BodyDesc::can_sleep>("can_sleep", "", kAny, "May rest until something wakes it.")};
+      field<kDesc, &BodyDesc::motion>("motion", "", kAny, "Path of a kinematic body."),
+      field<kDesc, &BodyDesc::collides>("collides", "", kAny, "False: only drawn."),
+      field<kDesc, &BodyDesc::sensor>("sensor", "", kAny, "Reports what overlaps it and pushes nothing."),
+      field<kDesc, &BodyDesc::bullet>("bullet", "", kAny, "Swept against moving bodies too."),
+      field<kDesc, &BodyDesc::can_sleep>("can_sleep", "", kAny, "May rest until something wakes it.")};
 }
 
 }  // namespace
 
 template <>
 const Kind& kind_of<ScenePart>() {
-  constexpr auto desc = &ScenePart::desc;
+  constexpr auto kDesc = &ScenePart::desc;
   static const Kind kind = {
       .name = "part",
       .help = "One shape of a body that has several.",
       .fields = {required(group("shape", part_shape_kind, "What it is.")),
-                 field<desc, &PartDesc::position>("position", "m", kAny, "Of its frame in the body's."),
-                 field<desc, &PartDesc::rotation>("rotation", "", kAny, "Of its frame in the body's."),
-                 field<desc, &PartDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+                 field<kDesc, &PartDesc::position>("position", "m", kAny, "Of its frame in the body's."),
+                 field<kDesc, &PartDesc::rotation>("rotation", "", kAny, "Of its frame in the body's."),
+                 field<kDesc, &PartDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
                  field<&ScenePart::material>("material", "", kNotEmpty,
                                              "A name in `materials`; the body's by default.")},
       .defaults = defaults_of<ScenePart>};
@@ -186,18 +186,18 @@ const Kind& kind_of<SceneBody>() {
 
 template <>
 const Kind& kind_of<ScenePair>() {
-  constexpr auto desc = &ScenePair::desc;
+  constexpr auto kDesc = &ScenePair::desc;
   static const Kind kind = {
       .name = "material_pair",
       .help = "What two materials do to each other, in place of what their own numbers would give.",
       .fields = {required(field<&ScenePair::a>("a", "", kNotEmpty, "A name in `materials`.")),
                  required(
                      field<&ScenePair::b>("b", "", kNotEmpty, "A name in `materials`; may be the same.")),
-                 field<desc, &MaterialPairDesc::friction>("friction", "", between(0, 100), "While sliding."),
-                 field<desc, &MaterialPairDesc::static_friction>("static_friction", "", between(0, 100),
-                                                                 "While at rest; not below `friction`."),
-                 field<desc, &MaterialPairDesc::restitution>("restitution", "", between(0, 1),
-                                                             "Speed after over speed before.")},
+                 field<kDesc, &MaterialPairDesc::friction>("friction", "", between(0, 100), "While sliding."),
+                 field<kDesc, &MaterialPairDesc::static_friction>("static_friction", "", between(0, 100),
+                                                                  "While at rest; not below `friction`."),
+                 field<kDesc, &MaterialPairDesc::restitution>("restitution", "", between(0, 1),
+                                                              "Speed after over speed before.")},
       .defaults = defaults_of<ScenePair>};
   return kind;
 }
@@ -212,10 +212,10 @@ std::span<const Kind* const> body_kinds() {
 
 template <>
 std::span<const EnumName> names_of<BodyKind>() {
-  static constexpr EnumName names[] = {{"static", static_cast<int>(BodyKind::kStatic)},
-                                       {"kinematic", static_cast<int>(BodyKind::kKinematic)},
-                                       {"dynamic", static_cast<int>(BodyKind::kDynamic)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"static", static_cast<int>(BodyKind::kStatic)},
+                                        {"kinematic", static_cast<int>(BodyKind::kKinematic)},
+                                        {"dynamic", static_cast<int>(BodyKind::kDynamic)}};
+  return kNames;
 }
 
 }  // namespace hooke::io

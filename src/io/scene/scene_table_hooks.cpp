@@ -43,11 +43,11 @@ std::vector<Field> seam_rows() {
 }
 
 std::vector<Field> hook_rows() {
-  constexpr auto desc = &SceneHook::desc;
+  constexpr auto kDesc = &SceneHook::desc;
   return {
       field<&SceneHook::name>("name", "", kNotEmpty,
                               "Unique. Without it the hook is called by its place, as `hooks[0]`."),
-      field<desc, &HookDesc::kind>(
+      field<kDesc, &HookDesc::kind>(
           "kind", "", kAny,
           "One point in common; turning about `axis`; sliding along it; moving as "
           "one; a distance; a wheel; what `freedoms` says; or b sliding along rope a. "
@@ -65,29 +65,30 @@ std::vector<Field> hook_rows() {
       field<&SceneHook::anchor>("anchor", "m", kAny,
                                 "Where it holds both, in the world; of a distance, a. Needed unless a point "
                                 "says where."),
-      field<desc, &HookDesc::anchor_b>("anchor_b", "m", kAny,
-                                       "Of a distance: where it holds b; `anchor` by default."),
-      field<desc, &HookDesc::axis>("axis", "", kAny,
-                                   "In the world, any length but zero. Of a wheel, its suspension."),
-      field<desc, &HookDesc::second_axis>("second_axis", "", kAny,
-                                          "Across `axis`, any direction by default. Of a wheel, its axle."),
-      field<desc, &HookDesc::limits>("limits", "", kAny,
-                                     "Of what moves: angle, way, distance, twist of a ball."),
-      field<desc, &HookDesc::cone>("cone", "rad", kConeRange,
-                                   "Of a ball: largest angle between the two axes."),
-      field<desc, &HookDesc::spring>("spring", "", kAny, "Of what moves; of a ball, about every axis."),
-      field<desc, &HookDesc::motor>("motor", "", kAny,
-                                    "Of what moves; of a wheel, about the axle; of a ball, about `axis`, and "
-                                    "friction about every axis."),
-      field<desc, &HookDesc::steering>("steering", "", kAny,
-                                       "Of a wheel, about `axis`; held at the angle of its spring's target."),
-      field<desc, &HookDesc::freedoms>(
+      field<kDesc, &HookDesc::anchor_b>("anchor_b", "m", kAny,
+                                        "Of a distance: where it holds b; `anchor` by default."),
+      field<kDesc, &HookDesc::axis>("axis", "", kAny,
+                                    "In the world, any length but zero. Of a wheel, its suspension."),
+      field<kDesc, &HookDesc::second_axis>("second_axis", "", kAny,
+                                           "Across `axis`, any direction by default. Of a wheel, its axle."),
+      field<kDesc, &HookDesc::limits>("limits", "", kAny,
+                                      "Of what moves: angle, way, distance, twist of a ball."),
+      field<kDesc, &HookDesc::cone>("cone", "rad", kConeRange,
+                                    "Of a ball: largest angle between the two axes."),
+      field<kDesc, &HookDesc::spring>("spring", "", kAny, "Of what moves; of a ball, about every axis."),
+      field<kDesc, &HookDesc::motor>(
+          "motor", "", kAny,
+          "Of what moves; of a wheel, about the axle; of a ball, about `axis`, and "
+          "friction about every axis."),
+      field<kDesc, &HookDesc::steering>(
+          "steering", "", kAny, "Of a wheel, about `axis`; held at the angle of its spring's target."),
+      field<kDesc, &HookDesc::freedoms>(
           "freedoms", "", kAny, "Of six_degrees: ways along x (`axis`), y, z, then angles about them."),
-      field<desc, &HookDesc::break_force>("break_force", "N", kPositiveOrRigid,
-                                          "Takes no more, and breaks if it needs more."),
-      field<desc, &HookDesc::break_torque>("break_torque", "N m", kPositiveOrRigid,
-                                           "The same of its torque."),
-      field<desc, &HookDesc::collide>("collide", "", kAny, "Whether the two bodies may touch each other."),
+      field<kDesc, &HookDesc::break_force>("break_force", "N", kPositiveOrRigid,
+                                           "Takes no more, and breaks if it needs more."),
+      field<kDesc, &HookDesc::break_torque>("break_torque", "N m", kPositiveOrRigid,
+                                            "The same of its torque."),
+      field<kDesc, &HookDesc::collide>("collide", "", kAny, "Whether the two bodies may touch each other."),
       field<&SceneHook::array>(
           "array", "", kAny,
           "Copies, named `name[0]`, ... Copy i holds copy i of `a` and `b`, counted from "
@@ -178,15 +179,15 @@ std::span<const Kind* const> hook_kinds() {
 
 template <>
 std::span<const EnumName> names_of<HookKind>() {
-  static constexpr EnumName names[] = {{"ball", static_cast<int>(HookKind::kBall)},
-                                       {"hinge", static_cast<int>(HookKind::kHinge)},
-                                       {"slider", static_cast<int>(HookKind::kSlider)},
-                                       {"fixed", static_cast<int>(HookKind::kFixed)},
-                                       {"distance", static_cast<int>(HookKind::kDistance)},
-                                       {"wheel", static_cast<int>(HookKind::kWheel)},
-                                       {"six_degrees", static_cast<int>(HookKind::kSixDegrees)},
-                                       {"rope_slide", static_cast<int>(HookKind::kRopeSlide)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"ball", static_cast<int>(HookKind::kBall)},
+                                        {"hinge", static_cast<int>(HookKind::kHinge)},
+                                        {"slider", static_cast<int>(HookKind::kSlider)},
+                                        {"fixed", static_cast<int>(HookKind::kFixed)},
+                                        {"distance", static_cast<int>(HookKind::kDistance)},
+                                        {"wheel", static_cast<int>(HookKind::kWheel)},
+                                        {"six_degrees", static_cast<int>(HookKind::kSixDegrees)},
+                                        {"rope_slide", static_cast<int>(HookKind::kRopeSlide)}};
+  return kNames;
 }
 
 }  // namespace hooke::io

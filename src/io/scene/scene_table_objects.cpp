@@ -122,17 +122,17 @@ bool check_array(Reader& reader, const JsonNode& node, const void* object) {
 
 template <>
 const Kind& kind_of<SceneArray>() {
-  constexpr Rule copies = between(1, 1e6);
+  constexpr Rule kCopies = between(1, 1e6);
   static const Kind kind = {
       .name = "array",
       .help = "Copies of an object. One of `grid`, `pyramid`, `random`, `list`.",
       .fields = {choice<SceneArray::Kind::kGrid, &SceneArray::kind>(field<&SceneArray::grid>(
-                     "grid", "", copies, "Copies along x, y and z; x counts fastest.")),
+                     "grid", "", kCopies, "Copies along x, y and z; x counts fastest.")),
                  choice<SceneArray::Kind::kPyramid, &SceneArray::kind>(field<&SceneArray::pyramid>(
                      "pyramid", "", between(1, 1000),
                      "Copies in the lowest row along x; one less in each row above.")),
                  choice<SceneArray::Kind::kRandom, &SceneArray::kind>(field<&SceneArray::random>(
-                     "random", "", copies, "Copies, evenly spread in `box`, the same on every machine.")),
+                     "random", "", kCopies, "Copies, evenly spread in `box`, the same on every machine.")),
                  choice<SceneArray::Kind::kList, &SceneArray::kind>(field<&SceneArray::list>(
                      "list", "m", kNotEmpty, "Offsets from the object, one for each copy.")),
                  field<&SceneArray::spacing>("spacing", "m", kAny, "Of a grid or pyramid."),
@@ -151,169 +151,172 @@ namespace {
 
 /// A rope's keys under the names of the paper's builder, then the others.
 std::vector<Field> rope_rows() {
-  constexpr auto desc = &SceneRope::desc;
+  constexpr auto kDesc = &SceneRope::desc;
   return {
-      field<desc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
-      field<desc, &RopeDesc::direction>("direction", "", kAny,
-                                        "From the first point on; any length but zero."),
-      field<desc, &RopeDesc::total_mass>("total_mass", "kg", kPositive,
-                                         "Of the rope; half a segment's share on each end."),
-      field<desc, &RopeDesc::masses>("masses", "", between(2, 65536), "Number of points."),
-      field<desc, &RopeDesc::length_at_rest>("length_at_rest", "m", kPositive, "From end to end."),
-      field<desc, &RopeDesc::stiffness>("stiffness", "N/m", kPositiveOrRigid, "k; see `stiffness_of`."),
-      field<desc, &RopeDesc::inner_friction>("inner_friction", "N s/m", kNotNegative,
-                                             "Damping along each segment."),
-      field<desc, &RopeDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                           "Viscous drag of the whole rope, shared out by length."),
-      field<desc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
-                                            "Largest relative extension of a segment, such as 0.05."),
-      field<desc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
-                                           "Of the rope, whatever the number of points; or of each segment, "
-                                           "as in the paper: more points make a "
-                                           "softer rope."),
-      field<desc, &RopeDesc::bend_stiffness>(
+      field<kDesc, &RopeDesc::hook_point>("hook_point", "m", kAny, "Position of the first point."),
+      field<kDesc, &RopeDesc::direction>("direction", "", kAny,
+                                         "From the first point on; any length but zero."),
+      field<kDesc, &RopeDesc::total_mass>("total_mass", "kg", kPositive,
+                                          "Of the rope; half a segment's share on each end."),
+      field<kDesc, &RopeDesc::masses>("masses", "", between(2, 65536), "Number of points."),
+      field<kDesc, &RopeDesc::length_at_rest>("length_at_rest", "m", kPositive, "From end to end."),
+      field<kDesc, &RopeDesc::stiffness>("stiffness", "N/m", kPositiveOrRigid, "k; see `stiffness_of`."),
+      field<kDesc, &RopeDesc::inner_friction>("inner_friction", "N s/m", kNotNegative,
+                                              "Damping along each segment."),
+      field<kDesc, &RopeDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                            "Viscous drag of the whole rope, shared out by length."),
+      field<kDesc, &RopeDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                             "Largest relative extension of a segment, such as 0.05."),
+      field<kDesc, &RopeDesc::stiffness_of>("stiffness_of", "", kAny,
+                                            "Of the rope, whatever the number of points; or of each segment, "
+                                            "as in the paper: more points make a "
+                                            "softer rope."),
+      field<kDesc, &RopeDesc::bend_stiffness>(
           "bend_stiffness", "N m^2", kNotNegative,
           "EI: resistance to bending; straight at rest, clamped where two end points are pinned."),
-      field<desc, &RopeDesc::bend_damping>("bend_damping", "s", kNotNegative, "Of bending, over EI."),
-      field<desc, &RopeDesc::twist_stiffness>(
+      field<kDesc, &RopeDesc::bend_damping>("bend_damping", "s", kNotNegative, "Of bending, over EI."),
+      field<kDesc, &RopeDesc::twist_stiffness>(
           "twist_stiffness", "N m^2", kNotNegative,
           "GJ: resistance to twist between places where two neighboring points or more are pinned, or hooked "
           "by balls to the world or to one body. Needs `bend_stiffness`."),
-      field<desc, &RopeDesc::twist>("twist", "rad", kAny,
-                                    "Of the whole rope at the start, even over its length."),
-      field<desc, &RopeDesc::youngs_modulus>("youngs_modulus", "Pa", kPositive,
-                                             "E: replaces the stiffness and those against bending and twist "
-                                             "by those of a round rod of `radius`."),
-      field<desc, &RopeDesc::poisson_ratio>("poisson_ratio", "", between(-0.99, 0.5),
-                                            "Of `youngs_modulus`: G = E / 2 (1 + `poisson_ratio`)."),
-      field<desc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
-                                              "EA; replaces `stiffness` by EA / `length_at_rest`."),
-      field<desc, &RopeDesc::points>(
+      field<kDesc, &RopeDesc::twist>("twist", "rad", kAny,
+                                     "Of the whole rope at the start, even over its length."),
+      field<kDesc, &RopeDesc::youngs_modulus>("youngs_modulus", "Pa", kPositive,
+                                              "E: replaces the stiffness and those against bending and twist "
+                                              "by those of a round rod of `radius`."),
+      field<kDesc, &RopeDesc::poisson_ratio>("poisson_ratio", "", between(-0.99, 0.5),
+                                             "Of `youngs_modulus`: G = E / 2 (1 + `poisson_ratio`)."),
+      field<kDesc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
+                                               "EA; replaces `stiffness` by EA / `length_at_rest`."),
+      field<kDesc, &RopeDesc::points>(
           "points", "m", kAny,
           "Replaces `hook_point`, `direction`, `masses`, `length_at_rest`: the points, taken as at rest."),
       field<&SceneRope::pins>("pins", "", kAny,
                               "Points that are held; the first one by default, `[]` for none."),
       field<&SceneRope::loads>("loads", "", kAny, "Masses added to points."),
-      field<desc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
-      field<desc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                               "Of a cylinder across the flow."),
-      field<desc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<desc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
-      field<desc, &RopeDesc::touches_ropes>(
+      field<kDesc, &RopeDesc::radius>("radius", "m", kPositive, "Of the strand: for contact, wind, drawing."),
+      field<kDesc, &RopeDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                "Of a cylinder across the flow."),
+      field<kDesc, &RopeDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<kDesc, &RopeDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<kDesc, &RopeDesc::touches_ropes>(
           "touches_ropes", "", kAny, "It touches other ropes that say so too, and itself: knots hold."),
-      field<desc, &RopeDesc::repulsion_strength>("repulsion_strength", "N m^2", kNotNegative,
-                                                 "s: points of ropes with one push each other away with s (1 "
-                                                 "/ d^2 - 1 / r^2): thick hair. 0: none."),
-      field<desc, &RopeDesc::repulsion_range>(
+      field<kDesc, &RopeDesc::repulsion_strength>(
+          "repulsion_strength", "N m^2", kNotNegative,
+          "s: points of ropes with one push each other away with s (1 "
+          "/ d^2 - 1 / r^2): thick hair. 0: none."),
+      field<kDesc, &RopeDesc::repulsion_range>(
           "repulsion_range", "m", kPositive,
           "r, best above the distance of points: none of it farther away."),
   };
 }
 
 std::vector<Field> cloth_rows() {
-  constexpr auto desc = &SceneCloth::desc;
+  constexpr auto kDesc = &SceneCloth::desc;
   return {
-      field<desc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
-      field<desc, &ClothDesc::rows>("rows", "", between(2, 4096), "Points along `row_direction`."),
-      field<desc, &ClothDesc::corner>("corner", "m", kAny,
-                                      "Position of point 0; point (column, row) is row x columns + column."),
-      field<desc, &ClothDesc::column_direction>("column_direction", "", kAny, "Any length but zero."),
-      field<desc, &ClothDesc::row_direction>("row_direction", "", kAny, "Any length but zero."),
-      field<desc, &ClothDesc::width>("width", "m", kPositive, "Between the first and last column."),
-      field<desc, &ClothDesc::height>("height", "m", kPositive, "Between the first and last row."),
+      field<kDesc, &ClothDesc::columns>("columns", "", between(2, 4096), "Points along `column_direction`."),
+      field<kDesc, &ClothDesc::rows>("rows", "", between(2, 4096), "Points along `row_direction`."),
+      field<kDesc, &ClothDesc::corner>("corner", "m", kAny,
+                                       "Position of point 0; point (column, row) is row x columns + column."),
+      field<kDesc, &ClothDesc::column_direction>("column_direction", "", kAny, "Any length but zero."),
+      field<kDesc, &ClothDesc::row_direction>("row_direction", "", kAny, "Any length but zero."),
+      field<kDesc, &ClothDesc::width>("width", "m", kPositive, "Between the first and last column."),
+      field<kDesc, &ClothDesc::height>("height", "m", kPositive, "Between the first and last row."),
       field<&SceneCloth::mesh>("mesh", "", kNotEmpty, "Replaces the grid: a name in `meshes`."),
-      field<desc, &ClothDesc::position>("position", "m", kAny, "Of the mesh's frame."),
-      field<desc, &ClothDesc::rotation>("rotation", "", kAny, "Of the mesh's frame."),
-      field<desc, &ClothDesc::areal_density>("areal_density", "kg/m^2", kPositive, "Mass of a square meter."),
-      field<desc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
-      field<desc, &ClothDesc::thickness>("thickness", "m", kPositive,
-                                         "Points keep half of it from what they touch."),
-      field<desc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
-                                                 "Of each spring along an edge."),
-      field<desc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
-                                               "Of each spring across a cell."),
-      field<desc, &ClothDesc::bend_stiffness>("bend_stiffness", "N m or N/m", kNotNegative, "See `bend`."),
-      field<desc, &ClothDesc::damping>("damping", "N s/m", kNotNegative, "Of each stretch and shear spring."),
-      field<desc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
-                                            "Of each bend row, in units of `bend_stiffness`."),
-      field<desc, &ClothDesc::yield_angle>("yield_angle", "rad", kPositiveOrRigid,
-                                           "What an edge is bent beyond this it keeps, as a fold."),
-      field<desc, &ClothDesc::bend>(
+      field<kDesc, &ClothDesc::position>("position", "m", kAny, "Of the mesh's frame."),
+      field<kDesc, &ClothDesc::rotation>("rotation", "", kAny, "Of the mesh's frame."),
+      field<kDesc, &ClothDesc::areal_density>("areal_density", "kg/m^2", kPositive,
+                                              "Mass of a square meter."),
+      field<kDesc, &ClothDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `areal_density`."),
+      field<kDesc, &ClothDesc::thickness>("thickness", "m", kPositive,
+                                          "Points keep half of it from what they touch."),
+      field<kDesc, &ClothDesc::stretch_stiffness>("stretch_stiffness", "N/m", kNotNegativeOrRigid,
+                                                  "Of each spring along an edge."),
+      field<kDesc, &ClothDesc::shear_stiffness>("shear_stiffness", "N/m", kNotNegativeOrRigid,
+                                                "Of each spring across a cell."),
+      field<kDesc, &ClothDesc::bend_stiffness>("bend_stiffness", "N m or N/m", kNotNegative, "See `bend`."),
+      field<kDesc, &ClothDesc::damping>("damping", "N s/m", kNotNegative,
+                                        "Of each stretch and shear spring."),
+      field<kDesc, &ClothDesc::bend_damping>("bend_damping", "s", kNotNegative,
+                                             "Of each bend row, in units of `bend_stiffness`."),
+      field<kDesc, &ClothDesc::yield_angle>("yield_angle", "rad", kPositiveOrRigid,
+                                            "What an edge is bent beyond this it keeps, as a fold."),
+      field<kDesc, &ClothDesc::bend>(
           "bend", "", kAny,
           "By the angle at each edge [N m], by springs to the second neighbor [N/m], or not."),
-      field<desc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
-                                             "Largest relative extension of a stretch spring."),
-      field<desc, &ClothDesc::tethers>("tethers", "", kAny,
-                                       "Hold every point within its rest distance of the pins."),
-      field<desc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
-                                        "Of gas in a closed mesh, above that of the air, at the start."),
-      field<desc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                "Of a triangle across the flow."),
-      field<desc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
-                                                "Of a slanted triangle."),
-      field<desc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                            "Viscous drag of the whole cloth, shared out by area."),
+      field<kDesc, &ClothDesc::extension_max>("extension_max", "", kPositiveOrRigid,
+                                              "Largest relative extension of a stretch spring."),
+      field<kDesc, &ClothDesc::tethers>("tethers", "", kAny,
+                                        "Hold every point within its rest distance of the pins."),
+      field<kDesc, &ClothDesc::pressure>("pressure", "Pa", between(-1e5, 1e8),
+                                         "Of gas in a closed mesh, above that of the air, at the start."),
+      field<kDesc, &ClothDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                 "Of a triangle across the flow."),
+      field<kDesc, &ClothDesc::lift_coefficient>("lift_coefficient", "", kNotNegative,
+                                                 "Of a slanted triangle."),
+      field<kDesc, &ClothDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                             "Viscous drag of the whole cloth, shared out by area."),
       field<&SceneCloth::pins>("pins", "", kAny, "Points that are held."),
       field<&SceneCloth::loads>("loads", "", kAny, "Masses added to points."),
-      field<desc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
-      field<desc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<kDesc, &ClothDesc::charge>("charge", "C", kAny, "Shared out by mass."),
+      field<kDesc, &ClothDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
 }
 
 std::vector<Field> solid_rows() {
-  constexpr auto desc = &SceneSolid::desc;
+  constexpr auto kDesc = &SceneSolid::desc;
   return {
-      field<desc, &SolidDesc::cells>("cells", "", between(1, 256), "Of the box along x, y, z."),
-      field<desc, &SolidDesc::size>("size", "m", kAny, "Of the box about `position`, each positive."),
+      field<kDesc, &SolidDesc::cells>("cells", "", between(1, 256), "Of the box along x, y, z."),
+      field<kDesc, &SolidDesc::size>("size", "m", kAny, "Of the box about `position`, each positive."),
       field<&SceneSolid::mesh>("mesh", "", kNotEmpty,
                                "Replaces the box: the name in `meshes` of a closed surface that is filled."),
-      field<desc, &SolidDesc::cell>("cell", "m", kPositive,
-                                    "Size of the cells that fill a mesh; thinner parts are lost."),
-      field<desc, &SolidDesc::position>("position", "m", kAny, "Of the box's center or the mesh's frame."),
-      field<desc, &SolidDesc::rotation>("rotation", "", kAny, "Of the same."),
-      field<desc, &SolidDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
-      field<desc, &SolidDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `density`."),
-      field<desc, &SolidDesc::elasticity>("elasticity", "", kAny,
-                                          "A material of tetrahedra; or cheaper, every point drawn to its "
-                                          "place in the form at rest, of a mesh "
-                                          "its vertices."),
-      field<desc, &SolidDesc::match_hz>("match_hz", "Hz", kPositiveOrRigid,
-                                        "Of shape_matching: at which any deformation swings."),
-      field<desc, &SolidDesc::match_damping_ratio>("match_damping_ratio", "", between(0, 100),
-                                                   "The same: 1 is critical."),
-      field<desc, &SolidDesc::young_modulus>("young_modulus", "Pa", kPositive,
-                                             "Stiffness; more than a substep carries acts as what it does."),
-      field<desc, &SolidDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
-                                             "How far it narrows when it is pulled; near 0.5 it keeps its "
-                                             "volume."),
-      field<desc, &SolidDesc::damping>("damping", "s", between(0, 0.1), "Viscosity over stiffness."),
-      field<desc, &SolidDesc::yield_stress>("yield_stress", "Pa", kPositiveOrRigid,
-                                            "Above this von Mises' stress it flows and keeps its new form."),
-      field<desc, &SolidDesc::thickness>("thickness", "m", kPositive,
-                                         "Points keep half of it from what they touch."),
-      field<desc, &SolidDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                            "Viscous drag of the whole solid, shared out by volume."),
+      field<kDesc, &SolidDesc::cell>("cell", "m", kPositive,
+                                     "Size of the cells that fill a mesh; thinner parts are lost."),
+      field<kDesc, &SolidDesc::position>("position", "m", kAny, "Of the box's center or the mesh's frame."),
+      field<kDesc, &SolidDesc::rotation>("rotation", "", kAny, "Of the same."),
+      field<kDesc, &SolidDesc::density>("density", "kg/m^3", kPositive, "Mass of a cubic meter."),
+      field<kDesc, &SolidDesc::total_mass>("total_mass", "kg", kPositive, "Replaces `density`."),
+      field<kDesc, &SolidDesc::elasticity>("elasticity", "", kAny,
+                                           "A material of tetrahedra; or cheaper, every point drawn to its "
+                                           "place in the form at rest, of a mesh "
+                                           "its vertices."),
+      field<kDesc, &SolidDesc::match_hz>("match_hz", "Hz", kPositiveOrRigid,
+                                         "Of shape_matching: at which any deformation swings."),
+      field<kDesc, &SolidDesc::match_damping_ratio>("match_damping_ratio", "", between(0, 100),
+                                                    "The same: 1 is critical."),
+      field<kDesc, &SolidDesc::young_modulus>("young_modulus", "Pa", kPositive,
+                                              "Stiffness; more than a substep carries acts as what it does."),
+      field<kDesc, &SolidDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
+                                              "How far it narrows when it is pulled; near 0.5 it keeps its "
+                                              "volume."),
+      field<kDesc, &SolidDesc::damping>("damping", "s", between(0, 0.1), "Viscosity over stiffness."),
+      field<kDesc, &SolidDesc::yield_stress>("yield_stress", "Pa", kPositiveOrRigid,
+                                             "Above this von Mises' stress it flows and keeps its new form."),
+      field<kDesc, &SolidDesc::thickness>("thickness", "m", kPositive,
+                                          "Points keep half of it from what they touch."),
+      field<kDesc, &SolidDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                             "Viscous drag of the whole solid, shared out by volume."),
       field<&SceneSolid::pins>("pins", "", kAny, "Points that are held."),
-      field<desc, &SolidDesc::charge>("charge", "C", kAny, "Shared out by volume."),
-      field<desc, &SolidDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
+      field<kDesc, &SolidDesc::charge>("charge", "C", kAny, "Shared out by volume."),
+      field<kDesc, &SolidDesc::velocity>("velocity", "m/s", kAny, "Of all points at the start."),
   };
 }
 
 std::vector<Field> particles_rows() {
-  constexpr auto desc = &SceneParticles::desc;
+  constexpr auto kDesc = &SceneParticles::desc;
   return {
-      required(field<desc, &ParticlesDesc::particles>("particles", "", kNotEmpty, "The point masses.")),
-      field<desc, &ParticlesDesc::springs>("springs", "", kAny, "Between two of them each."),
-      field<desc, &ParticlesDesc::direction>("direction", "", kAny,
-                                             "Where a spring's direction is taken: at the start of a "
-                                             "substep (keeps energy), or where the points are "
-                                             "about to be (quieter on stiff lattices)."),
-      field<desc, &ParticlesDesc::damping>(
+      required(field<kDesc, &ParticlesDesc::particles>("particles", "", kNotEmpty, "The point masses.")),
+      field<kDesc, &ParticlesDesc::springs>("springs", "", kAny, "Between two of them each."),
+      field<kDesc, &ParticlesDesc::direction>("direction", "", kAny,
+                                              "Where a spring's direction is taken: at the start of a "
+                                              "substep (keeps energy), or where the points are "
+                                              "about to be (quieter on stiff lattices)."),
+      field<kDesc, &ParticlesDesc::damping>(
           "damping", "", kAny, "Along the spring, or of the whole relative velocity as in the paper."),
-      field<desc, &ParticlesDesc::air_friction>("air_friction", "N s/m", kNotNegative,
-                                                "Viscous drag of each particle."),
-      field<desc, &ParticlesDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
-                                                    "Of each particle as a sphere of its radius."),
+      field<kDesc, &ParticlesDesc::air_friction>("air_friction", "N s/m", kNotNegative,
+                                                 "Viscous drag of each particle."),
+      field<kDesc, &ParticlesDesc::drag_coefficient>("drag_coefficient", "", kNotNegative,
+                                                     "Of each particle as a sphere of its radius."),
       field<&SceneParticles::pins>("pins", "", kAny, "Particles that are held."),
   };
 }
@@ -408,46 +411,46 @@ const Kind& inverse_square_kind() {
 }
 
 const Kind& magnetic_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "magnetic",
       .help =
           "Force q v x B on charged particles; turns bodies with a dipole moment, and pulls them up a "
           "gradient.",
-      .fields = {required(field<desc, &FieldDesc::vector>("flux_density", "T", kAny, "B at the center.")),
-                 field<desc, &FieldDesc::strength>(
+      .fields = {required(field<kDesc, &FieldDesc::vector>("flux_density", "T", kAny, "B at the center.")),
+                 field<kDesc, &FieldDesc::strength>(
                      "gradient", "T/m", between(-1e9, 1e9),
                      "Of B along its own direction; across it B falls by half of that."),
-                 field<desc, &FieldDesc::center>("center", "m", kAny, "Where B is as given.")},
+                 field<kDesc, &FieldDesc::center>("center", "m", kAny, "Where B is as given.")},
       .defaults = defaults_of<SceneField>};
   return kind;
 }
 
 const Kind& dipole_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "dipole",
       .help = "A magnet at rest, small against the way to it.",
-      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it is."),
-                 required(field<desc, &FieldDesc::vector>("moment", "A m^2", kAny,
-                                                          "From its south pole to its north pole."))},
+      .fields = {field<kDesc, &FieldDesc::center>("center", "m", kAny, "Where it is."),
+                 required(field<kDesc, &FieldDesc::vector>("moment", "A m^2", kAny,
+                                                           "From its south pole to its north pole."))},
       .defaults = defaults_of<SceneField>};
   return kind;
 }
 
 const Kind& liquid_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "liquid",
       .help = "Lifts by the weight of what is displaced, and drags. The liquid itself does not move.",
-      .fields = {required(field<desc, &FieldDesc::height>(
+      .fields = {required(field<kDesc, &FieldDesc::height>(
                      "height", "m", between(-1e9, 1e9), "Of the surface above the origin, against gravity.")),
-                 field<desc, &FieldDesc::density>("density", "kg/m^3", between(0, 1e6),
-                                                  "Mass of a cubic meter."),
-                 field<desc, &FieldDesc::drag>(
+                 field<kDesc, &FieldDesc::density>("density", "kg/m^3", between(0, 1e6),
+                                                   "Mass of a cubic meter."),
+                 field<kDesc, &FieldDesc::drag>(
                      "drag", "1/s", between(0, 1e6),
                      "Rate at which the motion of a body decays that displaces its own mass."),
-                 field<desc, &FieldDesc::vector>("flow", "m/s", kAny, "Of the current.")},
+                 field<kDesc, &FieldDesc::vector>("flow", "m/s", kAny, "Of the current.")},
       .defaults = defaults_of<SceneField>};
   return kind;
 }
@@ -463,25 +466,25 @@ Field reach_row() {
 }
 
 const Kind& suction_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "suction",
       .help = "Acceleration strength (1 - r / reach)^falloff towards the center, r the distance from it.",
-      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it points to."),
-                 required(field<desc, &FieldDesc::strength>("strength", "m/s^2", kAny, "Negative blows.")),
+      .fields = {field<kDesc, &FieldDesc::center>("center", "m", kAny, "Where it points to."),
+                 required(field<kDesc, &FieldDesc::strength>("strength", "m/s^2", kAny, "Negative blows.")),
                  reach_row(), falloff_row()},
       .defaults = defaults_of<SceneField>};
   return kind;
 }
 
 const Kind& vortex_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "vortex",
       .help = "Acceleration strength (1 - r / reach)^falloff about an axis, r the distance from that.",
-      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "A point of the axis."),
-                 required(field<desc, &FieldDesc::vector>("axis", "", kAny, "Any length but zero.")),
-                 required(field<desc, &FieldDesc::strength>(
+      .fields = {field<kDesc, &FieldDesc::center>("center", "m", kAny, "A point of the axis."),
+                 required(field<kDesc, &FieldDesc::vector>("axis", "", kAny, "Any length but zero.")),
+                 required(field<kDesc, &FieldDesc::strength>(
                      "strength", "m/s^2", kAny, "Positive: counter-clockwise seen from the axis's tip.")),
                  reach_row(), falloff_row()},
       .defaults = defaults_of<SceneField>};
@@ -489,14 +492,14 @@ const Kind& vortex_kind() {
 }
 
 const Kind& explosion_kind() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "explosion",
       .help = "Once, the velocity changes by strength (1 - r / reach)^falloff away from the center.",
-      .fields = {field<desc, &FieldDesc::center>("center", "m", kAny, "Where it happens."),
-                 required(field<desc, &FieldDesc::time>("time", "s", kNotNegative, "When it happens.")),
+      .fields = {field<kDesc, &FieldDesc::center>("center", "m", kAny, "Where it happens."),
+                 required(field<kDesc, &FieldDesc::time>("time", "s", kNotNegative, "When it happens.")),
                  required(
-                     field<desc, &FieldDesc::strength>("strength", "m/s", kAny, "Positive drives away.")),
+                     field<kDesc, &FieldDesc::strength>("strength", "m/s", kAny, "Positive drives away.")),
                  reach_row(), falloff_row()},
       .defaults = defaults_of<SceneField>};
   return kind;
@@ -510,28 +513,28 @@ bool check_field(Reader& reader, const JsonNode& node, const void* object) {
 
 template <>
 const Kind& kind_of<SceneField>() {
-  constexpr auto desc = &SceneField::desc;
+  constexpr auto kDesc = &SceneField::desc;
   static const Kind kind = {
       .name = "field",
       .help =
           "A force on every particle and body of the world. One of `uniform`, `inverse_square`, `magnetic`, "
           "`liquid`, `suction`, `vortex`, `explosion`, `dipole`.",
       .fields = {field<&SceneField::name>("name", "", kNotEmpty, "Unique."),
-                 choice<FieldDesc::Kind::kUniform, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kUniform, kDesc, &FieldDesc::kind>(
                      group("uniform", uniform_kind, "Like gravity.")),
-                 choice<FieldDesc::Kind::kInverseSquare, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kInverseSquare, kDesc, &FieldDesc::kind>(
                      group("inverse_square", inverse_square_kind, "Like a planet's.")),
-                 choice<FieldDesc::Kind::kMagnetic, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kMagnetic, kDesc, &FieldDesc::kind>(
                      group("magnetic", magnetic_kind, "A magnet's.")),
-                 choice<FieldDesc::Kind::kLiquid, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kLiquid, kDesc, &FieldDesc::kind>(
                      group("liquid", liquid_kind, "Water that things float in.")),
-                 choice<FieldDesc::Kind::kSuction, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kSuction, kDesc, &FieldDesc::kind>(
                      group("suction", suction_kind, "Towards a point.")),
-                 choice<FieldDesc::Kind::kVortex, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kVortex, kDesc, &FieldDesc::kind>(
                      group("vortex", vortex_kind, "Round an axis.")),
-                 choice<FieldDesc::Kind::kExplosion, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kExplosion, kDesc, &FieldDesc::kind>(
                      group("explosion", explosion_kind, "Away from a point, once.")),
-                 choice<FieldDesc::Kind::kDipole, desc, &FieldDesc::kind>(
+                 choice<FieldDesc::Kind::kDipole, kDesc, &FieldDesc::kind>(
                      group("dipole", dipole_kind, "A small magnet's."))},
       .defaults = defaults_of<SceneField>,
       .check = check_field};
@@ -645,40 +648,41 @@ JsonNode Codec<ScenePin>::schema(const Rule& rule) {
 
 template <>
 std::span<const EnumName> names_of<RopeDesc::StiffnessOf>() {
-  static constexpr EnumName names[] = {{"rope", static_cast<int>(RopeDesc::StiffnessOf::kRope)},
-                                       {"segment", static_cast<int>(RopeDesc::StiffnessOf::kSegment)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"rope", static_cast<int>(RopeDesc::StiffnessOf::kRope)},
+                                        {"segment", static_cast<int>(RopeDesc::StiffnessOf::kSegment)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<ClothDesc::Bend>() {
-  static constexpr EnumName names[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
-                                       {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
-                                       {"none", static_cast<int>(ClothDesc::Bend::kNone)},
-                                       {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"angle", static_cast<int>(ClothDesc::Bend::kAngle)},
+                                        {"spring", static_cast<int>(ClothDesc::Bend::kSpring)},
+                                        {"none", static_cast<int>(ClothDesc::Bend::kNone)},
+                                        {"isometric", static_cast<int>(ClothDesc::Bend::kIsometric)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<SolidDesc::Elasticity>() {
-  static constexpr EnumName names[] = {
+  static constexpr EnumName kNames[] = {
       {"tetrahedra", static_cast<int>(SolidDesc::Elasticity::kTetrahedra)},
       {"shape_matching", static_cast<int>(SolidDesc::Elasticity::kShapeMatching)}};
-  return names;
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<ParticlesDesc::Direction>() {
-  static constexpr EnumName names[] = {{"explicit", static_cast<int>(ParticlesDesc::Direction::kExplicit)},
-                                       {"predicted", static_cast<int>(ParticlesDesc::Direction::kPredicted)}};
-  return names;
+  static constexpr EnumName kNames[] = {
+      {"explicit", static_cast<int>(ParticlesDesc::Direction::kExplicit)},
+      {"predicted", static_cast<int>(ParticlesDesc::Direction::kPredicted)}};
+  return kNames;
 }
 
 template <>
 std::span<const EnumName> names_of<ParticlesDesc::Damping>() {
-  static constexpr EnumName names[] = {{"central", static_cast<int>(ParticlesDesc::Damping::kCentral)},
-                                       {"isotropic", static_cast<int>(ParticlesDesc::Damping::kIsotropic)}};
-  return names;
+  static constexpr EnumName kNames[] = {{"central", static_cast<int>(ParticlesDesc::Damping::kCentral)},
+                                        {"isotropic", static_cast<int>(ParticlesDesc::Damping::kIsotropic)}};
+  return kNames;
 }
 
 }  // namespace hooke::io
