@@ -56,11 +56,7 @@ std::string line(const std::string& scene, int workers, const BenchRow& row) {
   return text;
 }
 
-}  // namespace
-
-int command_bench(Arguments arguments) {
-  CLI::App app("Times scenes. A hash that depends on the number of workers fails.", "hooke bench");
-  BenchOptions options;
+void describe(CLI::App& app, BenchOptions& options) {
   app.add_option("SCENE", options.scenes,
                  "Scene files; with --peers rigid ones by default; ofg for opposing face geometry");
   app.add_option("--workers", options.workers, "Numbers of threads to try")
@@ -75,6 +71,51 @@ int command_bench(Arguments arguments) {
   app.footer(
       "Examples:\n  hooke bench scenes/flag.json scenes/rope.json --workers 1,2 --csv bench.csv\n  hooke "
       "bench ofg");
+}
+
+struct BenchTable {
+  std::string csv =
+      "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,mean_stretch,max_penetration,"
+      "kinetic_energy,state_hash\n";
+  bool same_hashes = true;  ///< No scene's hash depends on the number of workers.
+};
+
+/// Runs one scene; nothing if it cannot be read or built, which has been reported then.
+std::optional<BenchRow> time_scene(const std::string& path, int workers, const BenchOptions& options) {
+  std::optional<Scene> scene = read_scene(path);
+  if (!scene) return std::nullopt;
+  scene->world.workers = workers;
+  scene->world.substeps = options.substeps.value_or(scene->world.substeps);
+  std::optional<Simulation> simulation = build_simulation(std::move(*scene));
+  if (!simulation) return std::nullopt;
+  return measure(*simulation, options.steps.value_or(kSteps));
+}
+
+/// Times every scene with every number of workers; nothing as above.
+std::optional<BenchTable> time_scenes(const BenchOptions& options) {
+  BenchTable table;
+  Progress progress("timing", options.scenes.size() * options.workers.size());
+  std::uint64_t done = 0;
+  for (const std::string& path : options.scenes) {
+    std::optional<std::uint64_t> hash;
+    for (const int workers : options.workers) {
+      const std::optional<BenchRow> row = time_scene(path, workers, options);
+      if (!row) return std::nullopt;
+      table.same_hashes = table.same_hashes && (!hash || *hash == row->hash);
+      hash = row->hash;
+      table.csv += line(path, workers, *row);
+      progress.show(++done);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+int command_bench(Arguments arguments) {
+  CLI::App app("Times scenes. A hash that depends on the number of workers fails.", "hooke bench");
+  BenchOptions options;
+  describe(app, options);
   if (const auto code = parse(app, arguments)) return *code;
   if (options.scenes == std::vector<std::string>{"ofg"}) return bench_ofg(options.csv);
   if (options.peers) {
@@ -89,32 +130,14 @@ int command_bench(Arguments arguments) {
     return kBadInput;
   }
 
-  std::string table =
-      "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,mean_stretch,max_penetration,"
-      "kinetic_energy,state_hash\n";
-  bool same = true;
-  Progress progress("timing", options.scenes.size() * options.workers.size());
-  std::uint64_t done = 0;
-  for (const std::string& path : options.scenes) {
-    std::optional<std::uint64_t> hash;
-    for (const int workers : options.workers) {
-      std::optional<Scene> scene = read_scene(path);
-      if (!scene) return kBadInput;
-      scene->world.workers = workers;
-      scene->world.substeps = options.substeps.value_or(scene->world.substeps);
-      std::optional<Simulation> simulation = build_simulation(std::move(*scene));
-      if (!simulation) return kBadInput;
-      const BenchRow row = measure(*simulation, options.steps.value_or(kSteps));
-      same = same && (!hash || *hash == row.hash);
-      hash = row.hash;
-      table += line(path, workers, row);
-      progress.show(++done);
-    }
-  }
-  const auto written = write_file(options.csv.empty() ? "-" : options.csv, table);
+  const std::optional<BenchTable> table = time_scenes(options);
+  if (!table) return kBadInput;
+  const auto written = write_file(options.csv.empty() ? "-" : options.csv, table->csv);
   if (!written) return report(written.error());
-  if (!same) std::fputs("hooke bench: the state hash depends on the number of workers\n", stderr);
-  return same ? kGood : kFailed;
+  if (!table->same_hashes) {
+    std::fputs("hooke bench: the state hash depends on the number of workers\n", stderr);
+  }
+  return table->same_hashes ? kGood : kFailed;
 }
 
 }  // namespace hooke::app

@@ -63,7 +63,7 @@ void describe(CLI::App& app, CompareOptions& options) {
 Result<void> check(CompareOptions& options) {
   std::vector<std::string> once;
   for (const std::string& name : options.steppers) {
-    const auto known = check_stepper(name);
+    auto known = check_stepper(name);
     if (!known && known.error().code != ErrorCode::kUnsupported) return known;
     if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
   }
@@ -122,8 +122,11 @@ Result<Comparison> compare(const Stage& stage, const CompareOptions& options) {
     if (!only_solver(options)) names.push_back(kDeclaredName);
   }
   auto reference = make_reference(stage, schedule);
-  if (reference) comparison.reference = std::move(reference).value();
-  if (!reference && !only_solver(options)) return reference.error();
+  if (reference) {
+    comparison.reference = std::move(reference).value();
+  } else if (!only_solver(options)) {
+    return reference.error();
+  }
   for (const std::string& name : names) {
     auto trial = run_trial(stage, name, options.force, schedule, comparison.reference);
     if (!trial) return trial.error();
@@ -143,11 +146,11 @@ Result<void> write_tables(const Comparison& comparison, const std::filesystem::p
     return write_file((folder / name).string(), text);
   };
   for (const Trial& trial : comparison.trials) {
-    const auto done = write("series_" + trial.name + ".csv", series_csv(trial.samples));
+    auto done = write("series_" + trial.name + ".csv", series_csv(trial.samples));
     if (!done) return done;
   }
   if (!comparison.reference.samples.empty()) {
-    const auto done = write("series_reference.csv", series_csv(comparison.reference.samples));
+    auto done = write("series_reference.csv", series_csv(comparison.reference.samples));
     if (!done) return done;
   }
   auto done = write("order.csv", order_csv(comparison));
@@ -165,8 +168,7 @@ Result<void> write_plots(const Comparison& comparison, const std::filesystem::pa
       const bool svg = format == PlotFormat::kSvg;
       const auto bytes = draw_plot(plot, format);
       if (!bytes) return bytes.error();
-      const auto written =
-          write_file((folder / (plot.name + (svg ? ".svg" : ".png"))).string(), bytes.value());
+      auto written = write_file((folder / (plot.name + (svg ? ".svg" : ".png"))).string(), bytes.value());
       if (!written) return written;
       if (svg) pictures.push_back({plot.name, plot.caption, bytes.value()});
     }

@@ -1,6 +1,7 @@
 #include "hooke/progress.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 #include <utility>
@@ -15,7 +16,7 @@ constexpr int kWidth = 30;
 
 /// "1:02:03" or "2:03".
 std::string clock_text(double seconds) {
-  const auto total = static_cast<long long>(std::clamp(seconds, 0.0, 3.6e6) + 0.5);
+  const auto total = std::llround(std::clamp(seconds, 0.0, 3.6e6));
   char text[32];
   if (total >= 3600) {
     std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", total / 3600, total / 60 % 60, total % 60);

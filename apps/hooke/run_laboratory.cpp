@@ -89,7 +89,7 @@ Result<void> simulate(lab::Run& run, const LaboratoryRun& options, std::uint64_t
   }
   Progress progress("simulating", steps);
   for (std::uint64_t i = 0; i < steps; ++i) {
-    const auto done = run.advance();
+    auto done = run.advance();
     if (!done) return done;
     if (csv) csv->write(csv_line(run));
     if (auto checked = promises.check(run, i + 1); !checked) return checked;

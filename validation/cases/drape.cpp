@@ -48,9 +48,10 @@ MeshDesc disc(std::uint32_t rings) {
 double shadow(const std::vector<DVec3>& x, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   constexpr double kCell = 0.0005;
   constexpr int kSide = 640;
+  constexpr int kHalfSide = kSide / 2;
   std::vector<char> covered(static_cast<std::size_t>(kSide) * kSide, 0);
   const auto cell_of = [&](double v) {
-    return std::clamp(static_cast<int>(std::floor(v / kCell)) + kSide / 2, 0, kSide - 1);
+    return std::clamp(static_cast<int>(std::floor(v / kCell)) + kHalfSide, 0, kSide - 1);
   };
   for (const auto& t : triangles) {
     const DVec3 a = x[t[0]], b = x[t[1]], c = x[t[2]];
@@ -59,7 +60,7 @@ double shadow(const std::vector<DVec3>& x, const std::vector<std::array<std::uin
     };
     for (int i = cell_of(std::min({a.x, b.x, c.x})); i <= cell_of(std::max({a.x, b.x, c.x})); ++i) {
       for (int k = cell_of(std::min({a.z, b.z, c.z})); k <= cell_of(std::max({a.z, b.z, c.z})); ++k) {
-        const double u = (i - kSide / 2 + 0.5) * kCell, v = (k - kSide / 2 + 0.5) * kCell;
+        const double u = (i - kHalfSide + 0.5) * kCell, v = (k - kHalfSide + 0.5) * kCell;
         const double ab = turn(a, b, u, v), bc = turn(b, c, u, v), ca = turn(c, a, u, v);
         if ((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))
           covered[static_cast<std::size_t>(i) * kSide + static_cast<std::size_t>(k)] = 1;

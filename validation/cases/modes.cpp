@@ -30,9 +30,10 @@ double hanging_period(const CheckSetting& setting, double zero, double expected)
   const Curve curve = record(rig, 5 * expected, [&] {
     const std::vector<DVec3> x = rig.positions(id);
     double sum = 0;
-    for (int i = 1; i <= segments; ++i)
+    for (int i = 1; i <= segments; ++i) {
       sum +=
           hanging_shape(zero, i, segments) * x[static_cast<std::size_t>(i)].x * (i == segments ? 0.5 : 1.0);
+    }
     return sum;
   });
   return curve.period();

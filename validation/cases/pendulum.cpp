@@ -96,9 +96,10 @@ Rows pendulum_amplitude(const CheckSetting& setting) {
                       .tolerance = amplitude.angle_deg > 90 ? 0.005 : 0.001,
                       .goal = 1e-4,
                       .solver = name});
-      if (amplitude.angle_deg > 178)
+      if (amplitude.angle_deg > 178) {
         rows.back() =
             known_miss_turned(setting, rows.back(), "so near the top a rounding is a start at another angle");
+      }
     }
   }
   return rows;

@@ -49,9 +49,10 @@ bool buckles(const CheckSetting& setting, const Column& column, double load) {
     slide.mass = real(load);
     slide.collides = false;
     const BodyId body = rig.add(slide);
-    for (std::uint32_t i = top; i <= last; ++i)
+    for (std::uint32_t i = top; i <= last; ++i) {
       must(rig.world().add_hook(
           {.a = {.body = body}, .b = {.point = point(id, i)}, .anchor = desc.points[i]}));
+    }
     guide.b = {.body = body};
   }
   if (!column.free_above) must(rig.world().add_hook(guide));

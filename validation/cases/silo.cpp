@@ -52,8 +52,9 @@ struct Bin {
     };
     for (int i = 0; i < balls; ++i) {
       const int row = i % 16 / 4;
+      const int layer = i / 16;
       const double radius = 0.045 + 0.01 * random();
-      DVec3 place = {kWidth * (i % 4 - 1.5) / 4, 0.06 + 0.11 * (i / 16), kWidth * (row - 1.5) / 4};
+      DVec3 place = {kWidth * (i % 4 - 1.5) / 4, 0.06 + 0.11 * layer, kWidth * (row - 1.5) / 4};
       place.x += 0.005 * (random() - 0.5);
       place.z += 0.005 * (random() - 0.5);
       const BodyId ball = rig.add(moving(Shape::sphere(real(radius)), place));

@@ -72,48 +72,95 @@ double sag_of(const CheckSetting& setting, const Bar& bar, double gravity, doubl
   return before - mean_of(rig, id, end, 1);
 }
 
-/// n x n x n cubes of 1 / n m, six tetrahedra to each, their inner corners moved at random by a fifth of
-/// that.
+using Corner = std::array<std::uint32_t, 3>;
+
+/// Visits all corners whose coordinates are below `side`, first along x, last along z.
+template <class Visitor>
+void for_each_corner(std::uint32_t side, const Visitor& visit) {
+  for (std::uint32_t z = 0; z < side; ++z) {
+    for (std::uint32_t y = 0; y < side; ++y) {
+      for (std::uint32_t x = 0; x < side; ++x) visit(Corner{x, y, z});
+    }
+  }
+}
+
+/// A cube of 1 m made of n x n x n cubes, six tetrahedra to each; their inner corners are moved at random by
+/// up to a fifth of a small cube's side.
 struct IrregularCube {
   SolidDesc desc;
   std::vector<std::uint32_t> rim;
 
-  explicit IrregularCube(std::uint32_t n) {
-    std::uint32_t state = 12345;
-    const auto random = [&] {
-      state = state * 1664525u + 1013904223u;
-      return (state >> 8) / 16777216.0 - 0.5;
-    };
-    const auto at = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-      return x + (n + 1) * (y + (n + 1) * z);
-    };
-    for (std::uint32_t z = 0; z <= n; ++z) {
-      for (std::uint32_t y = 0; y <= n; ++y) {
-        for (std::uint32_t x = 0; x <= n; ++x) {
-          const bool inner = x % n != 0 && y % n != 0 && z % n != 0;
-          const DVec3 off = inner ? DVec3{0.4 * random(), 0.4 * random(), 0.4 * random()} : DVec3{};
-          if (!inner) rim.push_back(at(x, y, z));
-          desc.points.push_back(real((1.0 / n) * (DVec3{x + off.x, y + off.y, z + off.z})));
-          if (x == n || y == n || z == n) continue;
-          constexpr std::array<std::array<std::uint32_t, 3>, 6> kOrders = {
-              {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-          for (const auto& order : kOrders) {
-            std::array<std::uint32_t, 3> corner = {x, y, z};
-            std::array<std::uint32_t, 4> four = {at(x, y, z)};
-            for (std::size_t i = 0; i < 3; ++i) {
-              ++corner[order[i]];
-              four[i + 1] = at(corner[0], corner[1], corner[2]);
-            }
-            desc.tetrahedra.push_back(four);
-          }
-        }
-      }
-    }
+  explicit IrregularCube(std::uint32_t n) : n_(n) {
+    for_each_corner(n + 1, [&](const Corner& corner) { add_point(corner); });
+    for_each_corner(n, [&](const Corner& corner) { add_tetrahedra(corner); });
     desc.poisson_ratio = Real(0.3);
     desc.damping = Real(0);
     desc.air_friction = Real(3e4);
   }
+
+ private:
+  /// A number from -0.5 to 0.5.
+  double random() {
+    random_ = random_ * 1664525u + 1013904223u;
+    return (random_ >> 8) / 16777216.0 - 0.5;
+  }
+  [[nodiscard]] std::uint32_t index_of(const Corner& corner) const {
+    return corner[0] + (n_ + 1) * (corner[1] + (n_ + 1) * corner[2]);
+  }
+  void add_point(const Corner& corner) {
+    const auto& [x, y, z] = corner;
+    const bool inner = x % n_ != 0 && y % n_ != 0 && z % n_ != 0;
+    const DVec3 off = inner ? DVec3{0.4 * random(), 0.4 * random(), 0.4 * random()} : DVec3{};
+    if (!inner) rim.push_back(index_of(corner));
+    desc.points.push_back(real((1.0 / n_) * (DVec3{x + off.x, y + off.y, z + off.z})));
+  }
+  /// Each of the six goes from the lowest corner of the small cube to the highest, along its edges in another
+  /// order of the axes.
+  void add_tetrahedra(const Corner& lowest) {
+    constexpr std::array<std::array<std::uint32_t, 3>, 6> kOrders = {
+        {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+    for (const auto& order : kOrders) {
+      Corner corner = lowest;
+      std::array<std::uint32_t, 4> four = {index_of(corner)};
+      for (std::size_t i = 0; i < 3; ++i) {
+        ++corner[order[i]];
+        four[i + 1] = index_of(corner);
+      }
+      desc.tetrahedra.push_back(four);
+    }
+  }
+
+  std::uint32_t n_;
+  std::uint32_t random_ = 12345;
 };
+
+/// The areas of the two ends of a bar along x, shared out among their points; those of the lower end are
+/// negative.
+std::map<std::uint32_t, double> areas_of_ends(const Rig& rig, SolidId id, const std::vector<DVec3>& points) {
+  std::map<std::uint32_t, double> area;
+  const std::vector<DVec3> surface = rig.world().surface(id);
+  const auto point_at = [&](DVec3 place) {
+    const auto same = [&](DVec3 p) { return length(p - place) < 1e-5; };
+    return static_cast<std::uint32_t>(std::find_if(points.begin(), points.end(), same) - points.begin());
+  };
+  for (const auto& t : rig.world().triangles(id)) {
+    const DVec3 normal = cross(surface[t[1]] - surface[t[0]], surface[t[2]] - surface[t[0]]);
+    if (std::abs(normal.x) < 0.9 * length(normal)) continue;
+    for (const std::uint32_t corner : t) area[point_at(surface[corner])] += normal.x / 6;
+  }
+  return area;
+}
+
+/// How far apart the two faces of a bar across an axis are now, over how far they were at rest. They are at
+/// `half` to both sides of the center in `rest`, the places of the points at rest.
+double stretch_of(const Rig& rig, SolidId id, const std::vector<DVec3>& rest, int axis, double half) {
+  std::vector<std::uint32_t> ends[2];
+  for (std::uint32_t i = 0; i < rest.size(); ++i) {
+    if (std::abs(std::abs(component(rest[i], axis)) - half) < 1e-4)
+      ends[component(rest[i], axis) > 0].push_back(i);
+  }
+  return (mean_of(rig, id, ends[1], axis) - mean_of(rig, id, ends[0], axis)) / (2 * half);
+}
 
 }  // namespace
 
@@ -199,34 +246,18 @@ Rows pulled_bar(const CheckSetting& setting) {
 
     Rig rig(setting, fine_world({}));
     const SolidId id = rig.add(desc_of({.poisson_ratio = nu}, 60));
-    std::map<std::uint32_t, double> area;  // of the ends, shared out among their points; one end negative
-    const std::vector<DVec3> surface = rig.world().surface(id);
-    const std::vector<DVec3> points = rig.positions(id);
-    const auto point_at = [&](DVec3 place) {
-      const auto same = [&](DVec3 p) { return length(p - place) < 1e-5; };
-      return static_cast<std::uint32_t>(std::find_if(points.begin(), points.end(), same) - points.begin());
-    };
-    for (const auto& t : rig.world().triangles(id)) {
-      const DVec3 normal = cross(surface[t[1]] - surface[t[0]], surface[t[2]] - surface[t[0]]);
-      if (std::abs(normal.x) < 0.9 * length(normal)) continue;
-      for (const std::uint32_t corner : t) area[point_at(surface[corner])] += normal.x / 6;
-    }
+    const std::vector<DVec3> rest = rig.positions(id);
+    const std::map<std::uint32_t, double> area = areas_of_ends(rig, id, rest);
     for (int i = 0; i < 60; ++i) {
       for (const auto& [index, share] : area)
         must(rig.world().apply_force(point(id, index), {real(pull * share), 0, 0}));
       rig.step();
     }
-    const auto width = [&](int axis, double half) {
-      std::vector<std::uint32_t> ends[2];
-      for (std::uint32_t i = 0; i < points.size(); ++i) {
-        if (std::abs(std::abs(component(points[i], axis)) - half) < 1e-4)
-          ends[component(points[i], axis) > 0].push_back(i);
-      }
-      return (mean_of(rig, id, ends[1], axis) - mean_of(rig, id, ends[0], axis)) / (2 * half);
-    };
     const std::string title = "bar of nu = " + std::string(nu < 0.4 ? "0.3" : "0.45") + " pulled by 5 %: ";
-    rows.push_back(relative_row(title + "strain", "", stretch - 1, width(0, 0.5) - 1, 0.01));
-    rows.push_back(relative_row(title + "lateral strain", "", narrowing - 1, width(1, 0.125) - 1, 0.01));
+    rows.push_back(
+        relative_row(title + "strain", "", stretch - 1, stretch_of(rig, id, rest, 0, 0.5) - 1, 0.01));
+    rows.push_back(relative_row(title + "lateral strain", "", narrowing - 1,
+                                stretch_of(rig, id, rest, 1, 0.125) - 1, 0.01));
   }
   for (CheckRow& row : rows) row.solver = "tetrahedra";
   return rows;

@@ -226,44 +226,68 @@ Rows gusts(const CheckSetting& setting) {
   return rows;
 }
 
+namespace {
+
+/// Balls in a line that is not quite straight; the first runs into the others.
+std::vector<BodyDesc> balls_that_collide() {
+  std::vector<BodyDesc> balls;
+  for (int i = 0; i < 4; ++i) {
+    BodyDesc desc = moving(Shape::sphere(real(0.1)), {0.5 * i, 0.05 * i, 0});
+    desc.mass = real(1 + i);
+    desc.velocity = real(DVec3{i == 0 ? 2.0 : -0.1 * i, 0, 0});
+    desc.contact = {.friction = real(0), .restitution = real(1)};
+    balls.push_back(desc);
+  }
+  return balls;
+}
+
+/// A rectangle of springs with one diagonal; its corners set out with different speeds.
+ParticlesDesc braced_rectangle() {
+  ParticlesDesc lattice;
+  for (int i = 0; i < 4; ++i) {
+    const int column = i / 2;
+    const int row = i % 2;
+    lattice.particles.push_back(
+        {.position = {column * 1.2, row * 1.0, 5}, .velocity = {real(0.1 * i), real(0), real(0)}});
+  }
+  lattice.springs = {
+      {0, 1, real(50)}, {1, 3, real(50)}, {3, 2, real(50)}, {2, 0, real(50)}, {0, 3, real(20)}};
+  return lattice;
+}
+
+void turn_around(Rig& rig, const std::vector<BodyId>& balls, ParticlesId springs) {
+  for (const BodyId ball : balls) {
+    must(rig.world().set_velocity(ball, real(-rig.velocity(ball))));
+    must(rig.world().set_angular_velocity(ball, real(-rig.spin(ball))));
+  }
+  const std::vector<DVec3> v = rig.velocities(springs);
+  for (std::uint32_t i = 0; i < v.size(); ++i) must(rig.world().set_velocity(point(springs, i), real(-v[i])));
+}
+
+}  // namespace
+
 /// Elastic hits without friction and springs without damping run backward as they ran forward: with every
 /// velocity turned around all is where it began after the same time (Loschmidt 1876).
 Rows there_and_back(const CheckSetting& setting) {
   WorldDesc space = without_air();
   space.gravity = {};
   Rig rig(setting, space);
+  const std::vector<BodyDesc> descs = balls_that_collide();
   std::vector<BodyId> balls;
-  std::vector<DVec3> start;
-  for (int i = 0; i < 4; ++i) {
-    BodyDesc desc = moving(Shape::sphere(real(0.1)), {0.5 * i, 0.05 * i, 0});
-    desc.mass = real(1 + i);
-    desc.velocity = real(DVec3{i == 0 ? 2.0 : -0.1 * i, 0, 0});
-    desc.contact = {.friction = real(0), .restitution = real(1)};
-    balls.push_back(rig.add(desc));
-    start.push_back(desc.position);
-  }
-  ParticlesDesc lattice;
-  for (int i = 0; i < 4; ++i)
-    lattice.particles.push_back(
-        {.position = {i / 2 * 1.2, i % 2 * 1.0, 5}, .velocity = {real(0.1 * i), real(0), real(0)}});
-  lattice.springs = {
-      {0, 1, real(50)}, {1, 3, real(50)}, {3, 2, real(50)}, {2, 0, real(50)}, {0, 3, real(20)}};
+  balls.reserve(descs.size());
+  for (const BodyDesc& desc : descs) balls.push_back(rig.add(desc));
+  const ParticlesDesc lattice = braced_rectangle();
   const ParticlesId springs = rig.add(lattice);
   const double seconds = 2;
   rig.run(seconds);
-  for (const BodyId ball : balls) {
-    must(rig.world().set_velocity(ball, real(-rig.velocity(ball))));
-    must(rig.world().set_angular_velocity(ball, real(-rig.spin(ball))));
-  }
-  const std::vector<DVec3> v = rig.velocities(springs);
-  for (std::uint32_t i = 0; i < 4; ++i) must(rig.world().set_velocity(point(springs, i), real(-v[i])));
+  turn_around(rig, balls, springs);
   rig.run(seconds);
   double bodies_off = 0;
   for (std::size_t i = 0; i < balls.size(); ++i)
-    bodies_off = std::max(bodies_off, length(rig.center(balls[i]) - start[i]));
+    bodies_off = std::max(bodies_off, length(rig.center(balls[i]) - descs[i].position));
   double points_off = 0;
   const std::vector<DVec3> x = rig.positions(springs);
-  for (std::size_t i = 0; i < 4; ++i)
+  for (std::size_t i = 0; i < x.size(); ++i)
     points_off = std::max(points_off, length(x[i] - lattice.particles[i].position));
   Rows rows = {
       absolute_row("balls that hit each other, 2 s there and back: way off", "m", 0, bodies_off, 1e-4),

@@ -90,9 +90,11 @@ std::vector<std::string> rigid_scenes() {
 
 /// The runs of one scene that are to be made: Hooke with each number of workers, its peers with one.
 std::vector<PeerRow> runs_of(const std::string& scene, const std::vector<int>& workers) {
+  constexpr std::array<const char*, 2> kPeers = {"bullet", "ode"};
   std::vector<PeerRow> runs;
+  runs.reserve(workers.size() + kPeers.size());
   for (const int count : workers) runs.push_back({{}, {scene, "hooke", std::to_string(count)}});
-  for (const char* peer : {"bullet", "ode"}) runs.push_back({{}, {scene, peer, "1"}});
+  for (const char* peer : kPeers) runs.push_back({{}, {scene, peer, "1"}});
   return runs;
 }
 

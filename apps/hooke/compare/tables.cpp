@@ -71,9 +71,10 @@ Table summary_table(const Comparison& comparison) {
                      word(energy_error(trial, comparison)), text_of("%.0f", trial.evaluations),
                      text_of("%.3g", trial.cost_ms), pair(limits.stiffness, limits.stiffness_in_theory),
                      pair(limits.step, limits.step_in_theory), word(trial.diverged_at)});
-    if (collide)
+    if (collide) {
       table.back().insert(table.back().end(), {std::to_string(trial.collisions.candidates),
                                                std::to_string(trial.collisions.touching)});
+    }
   }
   return table;
 }

@@ -41,8 +41,10 @@ ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
   const std::size_t count = std::size_t{columns} * rows;
   surface.geometry->vertices.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    surface.geometry->vertices[i].u = static_cast<float>(i % columns) / static_cast<float>(columns - 1);
-    surface.geometry->vertices[i].v = 1 - static_cast<float>(i / columns) / static_cast<float>(rows - 1);
+    const std::size_t column = i % columns;
+    const std::size_t row = i / columns;
+    surface.geometry->vertices[i].u = static_cast<float>(column) / static_cast<float>(columns - 1);
+    surface.geometry->vertices[i].v = 1 - static_cast<float>(row) / static_cast<float>(rows - 1);
   }
   for (const auto& triangle : triangles) {
     surface.geometry->indices.insert(surface.geometry->indices.end(), triangle.begin(), triangle.end());

@@ -145,6 +145,7 @@ void prepare_solid(const Simulation& simulation, const SceneObject& object, Figu
   }
   const std::vector<DVec3> places = simulation.world().surface(object.solid);
   std::vector<Vec3> points;
+  points.reserve(places.size());
   for (const DVec3& place : places) points.push_back(vector_cast<float>(place - places.front()));
   figure.surface = make_solid_surface(points, simulation.world().triangles(object.solid));
 }
