@@ -1,5 +1,7 @@
 #include "validation/report.h"
 
+#include "hooke/version.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -113,7 +115,7 @@ std::string to_json(const std::vector<Ran>& ran) {
                     {"solver", row.solver},
                     {"precision", precision_name()}});
   }
-  return nlohmann::ordered_json{{"cases", list}}.dump(2) + "\n";
+  return nlohmann::ordered_json{{"version", kVersion}, {"cases", list}}.dump(2) + "\n";
 }
 
 std::string to_markdown(const std::vector<Ran>& ran) {

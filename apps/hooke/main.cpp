@@ -1,6 +1,7 @@
 #include "hooke/command_line.h"
 #include "hooke/commands.h"
 #include "hooke/machine.h"
+#include "hooke/version.h"
 
 #include "process/new_file.h"
 
@@ -39,7 +40,8 @@ constexpr std::array kCommands = {
 
 int print_help() {
   std::printf("hooke: a physics engine for rigid bodies, ropes, cloth and jelly in one world\n\n");
-  std::printf("Usage: hooke COMMAND [ARGUMENTS]\n       hooke COMMAND --help\n\nCommands:\n");
+  std::printf(
+      "Usage: hooke COMMAND [ARGUMENTS]\n       hooke COMMAND --help\n       hooke --version\n\nCommands:\n");
   for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.summary);
   std::printf("\nOf every command:\n");
   std::printf(
@@ -57,6 +59,11 @@ int print_help() {
       "  hooke run scenes/rope.json\n"
       "  hooke render scenes/rope.json -o rope.png --at 1\n"
       "  hooke validate scenes/rope.json\n");
+  return kGood;
+}
+
+int print_version() {
+  std::printf("hooke %s\n", kVersion);
   return kGood;
 }
 
@@ -88,6 +95,7 @@ int dispatch(Arguments arguments) {
   }
   const std::string_view name = arguments.front();
   if (name == "--help" || name == "-h" || name == "help") return print_help();
+  if (name == "--version") return print_version();
   for (const Command& command : kCommands) {
     if (name == command.name) return command.function(arguments.subspan(1));
   }

@@ -6,6 +6,7 @@
 #include "hooke/output_file.h"
 #include "hooke/progress.h"
 #include "hooke/text_of.h"
+#include "hooke/version.h"
 
 #include <algorithm>
 #include <optional>
@@ -125,7 +126,8 @@ std::string json_text(const Simulation& simulation, const lab::Run& run, const L
     object["error"] = report.error ? Json(*report.error) : Json(nullptr);
     objects.push_back(std::move(object));
   }
-  const Json report = {{"scene", options.scene},
+  const Json report = {{"version", kVersion},
+                       {"scene", options.scene},
                        {"stepper", options.stepper},
                        {"seconds", run.time()},
                        {"evaluations", run.evaluations()},

@@ -2,6 +2,7 @@
 
 #include "hooke/json_of.h"
 #include "hooke/text_of.h"
+#include "hooke/version.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
   Json errors = Json::array();
   for (const Error& error : simulation.errors()) errors.push_back(to_line(error));
   const Json report = {
+      {"version", kVersion},
       {"scene", record.scene},
       {"steps", world.step_count()},
       {"seconds", world.time()},

@@ -30,6 +30,10 @@ FALLING = {
 }
 
 
+def project_version():
+    return re.search(r"project\(hooke VERSION ([0-9.]+)", (PROJECT / "CMakeLists.txt").read_text())[1]
+
+
 class Program(unittest.TestCase):
     """A temporary folder with the project's scenes, and the program."""
 
@@ -64,6 +68,17 @@ class Program(unittest.TestCase):
     def assert_one_line(self, text, pattern):
         self.assertEqual(text.count("\n"), 1, text)
         self.assertRegex(text, pattern)
+
+
+class Version(Program):
+    def test_the_program_says_the_version_of_the_project(self):
+        self.assertEqual(self.hooke("--version"), (f"hooke {project_version()}\n", ""))
+
+    def test_reports_begin_with_the_version(self):
+        scene = {"version": 1, "seconds": 0.1, "particles": FALLING["particles"]}
+        for words in ([], ["--stepper", "rk4"]):
+            out, _ = self.hooke("run", self.scene(scene), *words, "--json", "-")
+            self.assertEqual(next(iter(json.loads(out).items())), ("version", project_version()))
 
 
 class Run(Program):

@@ -1,5 +1,7 @@
 #include "validation/check.h"
 
+#include "hooke/version.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <doctest/doctest.h>
@@ -193,6 +195,7 @@ TEST_SUITE("check/command") {
     REQUIRE(check_command({.cases = {"v1", "V24"}, .json_file = file}) == 0);
     std::ifstream in(file);
     const auto json = nlohmann::json::parse(in);
+    CHECK(json["version"] == hooke::kVersion);
     REQUIRE(json["cases"].size() == 5);
     CHECK(json["cases"][0]["id"] == "V1");
     CHECK(json["cases"][0]["expected"].get<double>() == doctest::Approx(4.905));
