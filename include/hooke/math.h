@@ -23,9 +23,12 @@ using Real = float;
 /// Three numbers. The meaning and unit belong to the variable, not to the type.
 template <class T>
 struct Vector3 {
+  ///@{
+  /// Component along the axis of the same name.
   T x = T(0);
   T y = T(0);
   T z = T(0);
+  ///@}
 
   friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
 };
@@ -33,47 +36,57 @@ struct Vector3 {
 using Vec3 = Vector3<Real>;     ///< Velocities, forces, offsets from an object's origin.
 using DVec3 = Vector3<double>;  ///< Positions in the world.
 
+/// Sum, component by component.
 template <class T>
 constexpr Vector3<T> operator+(Vector3<T> a, Vector3<T> b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+/// Difference, component by component.
 template <class T>
 constexpr Vector3<T> operator-(Vector3<T> a, Vector3<T> b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+/// The vector turned around.
 template <class T>
 constexpr Vector3<T> operator-(Vector3<T> a) {
   return {-a.x, -a.y, -a.z};
 }
+/// `a` scaled by `s`. The number stands in front.
 template <class T>
 constexpr Vector3<T> operator*(std::type_identity_t<T> s, Vector3<T> a) {
   return {s * a.x, s * a.y, s * a.z};
 }
+/// Adds `b` to `a`, and returns `a`.
 template <class T>
 constexpr Vector3<T>& operator+=(Vector3<T>& a, Vector3<T> b) {
   return a = a + b;
 }
+/// Subtracts `b` from `a`, and returns `a`.
 template <class T>
 constexpr Vector3<T>& operator-=(Vector3<T>& a, Vector3<T> b) {
   return a = a - b;
 }
+/// Scalar product a . b.
 template <class T>
 constexpr T dot(Vector3<T> a, Vector3<T> b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// Vector product a x b, right-handed: x cross y is z.
 template <class T>
 constexpr Vector3<T> cross(Vector3<T> a, Vector3<T> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Component `axis` of a vector: 0 is x, 1 is y, 2 is z.
+/// Component `axis` of a vector: 0 is x, 1 is y, and any other number z.
 template <class T>
 constexpr T component(Vector3<T> a, int axis) {
   return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
+/// Square of the length: a . a.
 template <class T>
 constexpr T length_squared(Vector3<T> a) {
   return dot(a, a);
 }
+/// Euclidean length. It overflows where length_squared does.
 template <class T>
 T length(Vector3<T> a) {
   using std::sqrt;  // T may bring its own
@@ -85,6 +98,7 @@ Vector3<T> normalize(Vector3<T> a) {
   const T l = length(a);
   return l > T(0) ? Vector3<T>{a.x / l, a.y / l, a.z / l} : Vector3<T>{};
 }
+/// Whether no component is infinite or NaN.
 template <class T>
 bool is_finite(Vector3<T> a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
@@ -98,17 +112,20 @@ constexpr Vector3<To> vector_cast(Vector3<From> a) {
 /// A rotation when of unit length: w = cos(angle/2), (x, y, z) = sin(angle/2) axis.
 template <class T>
 struct Quaternion {
+  ///@{
+  /// Imaginary part: the axis, scaled by the sine of half the angle.
   T x = T(0);
   T y = T(0);
   T z = T(0);
-  T w = T(1);
+  ///@}
+  T w = T(1);  ///< Real part: the cosine of half the angle. The default is the identity.
 
   friend constexpr bool operator==(const Quaternion&, const Quaternion&) = default;
 };
 
-using Quat = Quaternion<Real>;
+using Quat = Quaternion<Real>;  ///< Rotations of bodies and shapes.
 
-/// First rotate by `b`, then by `a`.
+/// The rotation that first turns by `b`, then by `a`.
 template <class T>
 constexpr Quaternion<T> operator*(Quaternion<T> a, Quaternion<T> b) {
   return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
@@ -142,42 +159,50 @@ Quaternion<T> quaternion_about(Vector3<T> axis, std::type_identity_t<T> angle) {
   return {s * n.x, s * n.y, s * n.z, std::cos(T(0.5) * angle)};
 }
 
-/// 3x3 matrix by columns: element (row, column) is `column[c].row`.
+/// 3x3 matrix by columns: `m.y.x` is the element in the first row and the second column. The default is the
+/// identity.
 template <class T>
 struct Matrix3 {
   Vector3<T> x = {T(1), T(0), T(0)};  ///< First column.
-  Vector3<T> y = {T(0), T(1), T(0)};
-  Vector3<T> z = {T(0), T(0), T(1)};
+  Vector3<T> y = {T(0), T(1), T(0)};  ///< Second column.
+  Vector3<T> z = {T(0), T(0), T(1)};  ///< Third column.
 
   friend constexpr bool operator==(const Matrix3&, const Matrix3&) = default;
 };
 
-using Mat3 = Matrix3<Real>;
+using Mat3 = Matrix3<Real>;  ///< In the engine's precision.
 
+/// Product of a matrix and a column vector.
 template <class T>
 constexpr Vector3<T> operator*(const Matrix3<T>& m, Vector3<T> v) {
   return v.x * m.x + v.y * m.y + v.z * m.z;
 }
+/// Product of two matrices: applies `b` first.
 template <class T>
 constexpr Matrix3<T> operator*(const Matrix3<T>& a, const Matrix3<T>& b) {
   return {a * b.x, a * b.y, a * b.z};
 }
+/// Sum, element by element.
 template <class T>
 constexpr Matrix3<T> operator+(const Matrix3<T>& a, const Matrix3<T>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+/// Difference, element by element.
 template <class T>
 constexpr Matrix3<T> operator-(const Matrix3<T>& a, const Matrix3<T>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+/// Every element of `m` times `s`.
 template <class T>
 constexpr Matrix3<T> operator*(std::type_identity_t<T> s, const Matrix3<T>& m) {
   return {s * m.x, s * m.y, s * m.z};
 }
+/// The matrix with rows and columns exchanged.
 template <class T>
 constexpr Matrix3<T> transpose(const Matrix3<T>& m) {
   return {{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}};
 }
+/// Determinant: the triple product of the columns.
 template <class T>
 constexpr T determinant(const Matrix3<T>& m) {
   return dot(m.x, cross(m.y, m.z));
@@ -190,7 +215,7 @@ constexpr Matrix3<T> inverse(const Matrix3<T>& m) {
   const T s = T(1) / d;
   return transpose(Matrix3<T>{s * cross(m.y, m.z), s * cross(m.z, m.x), s * cross(m.x, m.y)});
 }
-/// a b^T.
+/// Outer product a b^T: element (row, column) is a[row] b[column].
 template <class T>
 constexpr Matrix3<T> outer(Vector3<T> a, Vector3<T> b) {
   return {b.x * a, b.y * a, b.z * a};
@@ -202,17 +227,19 @@ constexpr Matrix3<T> matrix_of(Quaternion<T> q) {
           rotate(q, Vector3<T>{T(0), T(0), T(1)})};
 }
 
-/// Homogeneous 4x4 matrix by columns, `m[column][row]`.
+/// Homogeneous 4x4 matrix by columns. The default is the identity.
 template <class T>
 struct Matrix4 {
+  /// Elements, as `m[column][row]`: the memory order of OpenGL.
   T m[4][4] = {
       {T(1), T(0), T(0), T(0)}, {T(0), T(1), T(0), T(0)}, {T(0), T(0), T(1), T(0)}, {T(0), T(0), T(0), T(1)}};
 
   friend constexpr bool operator==(const Matrix4&, const Matrix4&) = default;
 };
 
-using Mat4 = Matrix4<Real>;
+using Mat4 = Matrix4<Real>;  ///< In the engine's precision.
 
+/// Product of two matrices: applies `b` first.
 template <class T>
 constexpr Matrix4<T> operator*(const Matrix4<T>& a, const Matrix4<T>& b) {
   Matrix4<T> r;
@@ -224,6 +251,7 @@ constexpr Matrix4<T> operator*(const Matrix4<T>& a, const Matrix4<T>& b) {
   }
   return r;
 }
+/// The matrix with rows and columns exchanged.
 template <class T>
 constexpr Matrix4<T> transpose(const Matrix4<T>& a) {
   Matrix4<T> r;
@@ -239,6 +267,7 @@ constexpr Matrix3<T> linear_part(const Matrix4<T>& a) {
           {a.m[1][0], a.m[1][1], a.m[1][2]},
           {a.m[2][0], a.m[2][1], a.m[2][2]}};
 }
+/// The upper three elements of the last column: the translation of an affine matrix.
 template <class T>
 constexpr Vector3<T> translation_part(const Matrix4<T>& a) {
   return {a.m[3][0], a.m[3][1], a.m[3][2]};
@@ -262,6 +291,7 @@ template <class T>
 constexpr Vector3<T> transform_point(const Matrix4<T>& a, Vector3<T> p) {
   return linear_part(a) * p + translation_part(a);
 }
+/// Determinant, by 2x2 minors of the upper and the lower two rows.
 template <class T>
 constexpr T determinant(const Matrix4<T>& a) {
   const T s0 = a.m[0][0] * a.m[1][1] - a.m[1][0] * a.m[0][1];
