@@ -6,14 +6,15 @@
 #include <vector>
 
 /// \file
-/// What happened in a step, for those who asked: see BodyDesc::reports_contacts, hit_speed, sensor.
+/// What happened in a step. Bodies take part in it if their BodyDesc asks for it: reports_contacts,
+/// hit_speed, sensor.
 
 namespace hooke {
 
-/// Two parts of bodies that touch; `a` was created before `b`.
+/// Two parts of bodies that began or ceased to touch.
 struct ContactEvent {
-  BodyPart a = {};
-  BodyPart b = {};
+  BodyPart a = {};  ///< The part of the body that was created first.
+  BodyPart b = {};  ///< The part of the other body.
 
   friend constexpr bool operator==(const ContactEvent&, const ContactEvent&) = default;
 };
@@ -21,40 +22,47 @@ struct ContactEvent {
 /// Two parts of bodies that met at a speed. A body that meets others in several directions at once, as in the
 /// corner of a mesh, hits once in each.
 struct HitEvent {
-  BodyPart a = {};  ///< Created before `b`.
-  BodyPart b = {};
-  DVec3 point = {};        ///< Where they met [m].
-  Vec3 normal = {};        ///< From a to b.
-  Real speed = Real(0);    ///< Along the normal, with which they came together [m/s].
-  Real impulse = Real(0);  ///< Along the normal [N s]: the largest of a substep, and what bouncing added.
+  BodyPart a = {};   ///< The part of the body that was created first.
+  BodyPart b = {};   ///< The part of the other body.
+  DVec3 point = {};  ///< Where they met, in the world [m].
+  Vec3 normal = {};  ///< Direction from a to b, of unit length.
+  /// Speed along the normal at which they came together [m/s].
+  Real speed = Real(0);
+  /// Impulse along the normal [N s]: the largest of any substep, plus what bouncing added.
+  Real impulse = Real(0);
 };
 
+/// A body that came into a sensor or left it.
 struct SensorEvent {
-  BodyId sensor = {};
-  BodyId visitor = {};
+  BodyId sensor = {};   ///< The body with BodyDesc::sensor.
+  BodyId visitor = {};  ///< The body that came or left.
 
   friend constexpr bool operator==(const SensorEvent&, const SensorEvent&) = default;
 };
 
-/// A hook that broke, as it needed more than its break_force or break_torque. It is gone: its id is stale.
+/// A hook that broke because it needed more than its break_force or break_torque. It is gone: its id is
+/// stale.
 struct BreakEvent {
-  HookId hook = {};
-  Real force = Real(0);   ///< That it needed, mean over the substep in which it broke [N].
-  Real torque = Real(0);  ///< The same [N m].
-  double time = 0;        ///< Of the world, at the end of that substep [s].
+  HookId hook = {};       ///< The id that it had.
+  Real force = Real(0);   ///< Force that it needed, as a mean over the substep in which it broke [N].
+  Real torque = Real(0);  ///< Torque that it needed, as a mean over the same substep [N m].
+  double time = 0;        ///< Time of the world at the end of that substep [s].
 };
 
-/// Each list is in order of the bodies' creation, and the same for any number of workers. A body that was
-/// removed while it touched something or was in a sensor ends that in the next step: its id is stale then.
+/// All events of one step. Lists of bodies are in the order of the bodies' creation, and the same for any
+/// number of workers. A body that was removed while it touched something, or was in a sensor, ends that in
+/// the next step; its id is stale by then.
 struct Events {
+  /// Parts that began to touch; one body at least has reports_contacts.
   std::vector<ContactEvent> contact_begins;
+  /// Parts that ceased to touch; one body at least has reports_contacts.
   std::vector<ContactEvent> contact_ends;
-  std::vector<HitEvent> hits;
-  std::vector<SensorEvent> sensor_enters;
-  std::vector<SensorEvent> sensor_leaves;
-  std::vector<BodyId> fell_asleep;
-  std::vector<BodyId> woke_up;
-  std::vector<BreakEvent> breaks;  ///< In order of time, then of the hooks' creation.
+  std::vector<HitEvent> hits;              ///< Parts that met faster than hit_speed.
+  std::vector<SensorEvent> sensor_enters;  ///< Bodies that came into a sensor.
+  std::vector<SensorEvent> sensor_leaves;  ///< Bodies that left a sensor.
+  std::vector<BodyId> fell_asleep;         ///< Bodies that fell asleep.
+  std::vector<BodyId> woke_up;             ///< Bodies that woke up.
+  std::vector<BreakEvent> breaks;  ///< Hooks that broke, in order of time, then of the hooks' creation.
 };
 
 }  // namespace hooke

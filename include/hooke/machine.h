@@ -6,20 +6,19 @@
 #include <vector>
 
 /// \file
-/// Which instructions of this machine steps use. The results do not depend on it, to the bit: choose another
-/// set than the widest to see that, to measure, or to keep clear of one that a machine has and cannot run
-/// well.
+/// Which instructions of this machine steps use. The results do not depend on it, to the bit. Choose another
+/// set than the widest to verify that, to measure, or to avoid a set that a machine has but runs slowly.
 ///
-/// The environment variable HOOKE_INSTRUCTION_SET names a set for the whole process, as far as nobody calls
-/// use_instruction_set; a name that is not in the list is an Error of World::create.
+/// The environment variable HOOKE_INSTRUCTION_SET names a set for the whole process, until somebody calls
+/// use_instruction_set. A name that is not in the list is an Error of World::create.
 
 namespace hooke {
 
-/// The names of the sets that this machine has: "scalar" first, the widest last.
+/// Lists the names of the sets that this machine has: "scalar" first, the widest last.
 [[nodiscard]] std::vector<std::string> instruction_sets();
 
-/// Steps of all Worlds use that set from now on; "" means the widest. Not while any World steps. Errors: a
-/// name that is not in the list.
+/// Makes the steps of all Worlds use that set from now on; "" means the widest. Do not call it while any
+/// World steps. Errors: a name that is not in the list.
 Result<void> use_instruction_set(const std::string& name);
 
 }  // namespace hooke
