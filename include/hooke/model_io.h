@@ -11,7 +11,7 @@
 #include <vector>
 
 /// \file
-/// Models from files and to files: .3ds .obj .stl .ply .gltf .glb. Part of the library `hooke::io`.
+/// Reads models from files and writes them: .3ds .obj .stl .ply .gltf .glb. Part of the library `hooke::io`.
 ///
 /// A file from outside is never parsed in this process: `hooke-import`, a child process with limits on
 /// memory, time, depth and size and, where the kernel allows it, without files and network, reads it, and
@@ -21,52 +21,56 @@ namespace hooke {
 
 /// How a surface looks.
 struct ModelMaterial {
-  std::string name = {};
-  std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear base color, each [0, 1].
-  float opacity = 1.0f;                             ///< [0, 1]
+  std::string name = {};                            ///< The name in the file; may be empty.
+  std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
+  float opacity = 1.0f;                             ///< Opacity; 1 hides what is behind. [0, 1]
   float shininess = 16.0f;                          ///< Blinn-Phong exponent.
   std::string texture = {};  ///< Path of an image, which the color multiplies; empty for none.
 };
 
+/// A vertex as it is drawn.
 struct ModelVertex {
-  std::array<float, 3> position = {};
-  std::array<float, 3> normal = {};  ///< Unit length.
-  std::array<float, 2> uv = {};  ///< u to the right, v up: v = 0 is the image's bottom row. May leave [0, 1].
+  std::array<float, 3> position = {};  ///< Place in the model's frame [m].
+  std::array<float, 3> normal = {};    ///< Outward normal, of unit length.
+  /// Texture coordinates u to the right and v up: v = 0 is the image's bottom row. They may leave [0, 1].
+  std::array<float, 2> uv = {};
 };
 
-/// Triangles of one material: `count` indices from `first` on.
+/// The triangles of one material.
 struct ModelPart {
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-  std::uint32_t material = 0;
+  std::uint32_t first = 0;     ///< Position in Model::indices of the first index.
+  std::uint32_t count = 0;     ///< Number of indices, three for each triangle.
+  std::uint32_t material = 0;  ///< Index into Model::materials.
 };
 
-/// A model as drawn, and as simulated. Hooke's frame: y up, right-handed, counter-clockwise front faces,
-/// meters.
+/// A model as it is drawn, and as it is simulated. Its frame is Hooke's: y up, right-handed,
+/// counter-clockwise front faces, meters.
 struct Model {
-  std::vector<ModelVertex> vertices;     ///< As drawn: seams and creases keep their own vertices.
-  std::vector<std::uint32_t> indices;    ///< Three per triangle, into `vertices`.
-  std::vector<ModelPart> parts;          ///< Cover `indices`, in order, without gaps.
-  std::vector<ModelMaterial> materials;  ///< At least one.
-  MeshDesc mesh;  ///< As simulated: vertices welded by position, degenerate triangles gone.
-  std::vector<std::uint32_t> welded_of;  ///< For each drawn vertex, its vertex in `mesh`.
+  std::vector<ModelVertex> vertices;     ///< Vertices as drawn: seams and creases keep their own.
+  std::vector<std::uint32_t> indices;    ///< Three indices into `vertices` for each triangle.
+  std::vector<ModelPart> parts;          ///< Parts by material; they cover `indices` in order, without gaps.
+  std::vector<ModelMaterial> materials;  ///< At least one material.
+  MeshDesc mesh;  ///< The mesh as simulated: vertices welded by position, without degenerate triangles.
+  std::vector<std::uint32_t> welded_of;  ///< For each drawn vertex, the index of its vertex in `mesh`.
 };
 
+/// The axis of a file that points up.
 enum class UpAxis : std::uint8_t {
-  kFormat,  ///< What the format says: z for .3ds and .stl, y for the others.
-  kX,
-  kY,
-  kZ,
+  kFormat,  ///< The axis of the format: z for .3ds and .stl, y for the others.
+  kX,       ///< The x axis.
+  kY,       ///< The y axis.
+  kZ,       ///< The z axis.
 };
 
+/// How a file is brought into Hooke's frame.
 struct ImportOptions {
-  UpAxis up = UpAxis::kFormat;
-  double scale = 1.0;  ///< Meters per unit of the file. Positive.
-  std::optional<double> fit =
-      {};  ///< Replaces `scale`: the longest side of the bounding box becomes this long [m].
+  UpAxis up = UpAxis::kFormat;  ///< The file's axis that becomes y.
+  double scale = 1.0;           ///< Meters per unit of the file, positive.
+  /// Replaces `scale`: the longest side of the bounding box becomes this long [m].
+  std::optional<double> fit = {};
 };
 
-/// Reads a model: all nodes of all meshes, moved to their places; keyframes, lights and cameras are left out.
+/// Reads a model: all nodes of all meshes, moved to their places. Keyframes, lights and cameras are left out.
 ///
 /// - Polygons become triangles; points, lines and triangles without height are dropped.
 /// - A closed surface gets its outside outside, whatever way the file winds it; a cavity stays a cavity.
@@ -78,9 +82,9 @@ struct ImportOptions {
 ///
 /// Errors name the path, and the reason in one line; no process, file or descriptor is left behind. Limits:
 /// 1 GiB and 10 s for the child, 15 s in all, 256 MiB for the file and those it needs, which must be regular
-/// files beside it, 2^24 vertices, 2^25 triangles, nodes 64 deep. Symbolic links that lead out of the model's
-/// folder are refused: of the model, with an Error; of what belongs to it, as if it were missing. Any thread
-/// may call it, several at a time.
+/// files beside it, 2^24 vertices, 2^25 triangles, nodes 64 deep. A symbolic link that leads out of the
+/// model's folder is refused: with an Error if it is the model, otherwise as if the file were missing. Any
+/// thread may call this function, several at a time.
 ///
 /// The child is $HOOKE_IMPORT if that is set; else `hooke-import` beside the running program; else the one
 /// installed with this library, as find_package(Hooke) found it or as it was configured; else the one in
@@ -88,22 +92,26 @@ struct ImportOptions {
 [[nodiscard]] Result<Model> import_model(const std::string& path, const ImportOptions& options = {});
 
 /// Writes the drawn half of a model in meters: .obj (and .mtl beside it), .glb (y up), .stl or .3ds (z up),
-/// by the path's ending. To a temporary file first, flushed and renamed when complete: an Error leaves the
-/// old file. Refuses a model without triangles, with indices or parts out of range, or with a coordinate that
-/// is not finite. Images are named, not copied. .3ds keeps creases as smoothing groups and 8 bits a color;
-/// .stl keeps the shape alone.
+/// by the path's ending. It writes a temporary file, and flushes and renames it when it is complete: an Error
+/// leaves the old file. Images are named, not copied. .3ds keeps creases as smoothing groups and 8 bits a
+/// color; .stl keeps the shape alone.
+///
+/// Errors: another ending, a file that cannot be written, a model without triangles, with indices or parts
+/// out of range, or with a coordinate that is not finite.
 [[nodiscard]] Result<void> export_model(const Model& model, const std::string& path);
 
-/// A model of one gray material from triangles, flat-shaded where the surface turns more than `crease` [rad].
-/// Wound and cleaned as by import_model; triangles with a bad index or a coordinate that is not finite are
-/// left out, so the model may be empty.
+/// Makes a model of one gray material from triangles, flat-shaded where the surface turns more than `crease`
+/// [rad]. It is wound and cleaned as by import_model. Triangles with a bad index or a coordinate that is not
+/// finite are left out, so that the model may be empty.
 [[nodiscard]] Model model_of(const MeshDesc& mesh, double crease = 0.7);
 
-/// Names the folder of the installed importer; the first call counts. Always true.
+/// Names the folder of the installed importer. Only the first call counts. Returns true, so that a constant
+/// can call it.
 bool set_importer_folder(const char* folder) noexcept;
 
 #ifdef HOOKE_IMPORTER_FOLDER
-/// find_package(Hooke COMPONENTS io) knows where it found the package, which may be under any prefix.
+/// Names the folder in which find_package(Hooke COMPONENTS io) found the package, which may be under any
+/// prefix.
 [[maybe_unused]] inline const bool kImporterFolderIsSet = set_importer_folder(HOOKE_IMPORTER_FOLDER);
 #endif
 
