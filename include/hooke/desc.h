@@ -13,542 +13,610 @@
 #include <vector>
 
 /// \file
-/// Descriptions of everything a World can hold. Plain aggregates with defaults; name what differs:
+/// Descriptions of everything that a World can hold. They are plain aggregates with defaults; name what
+/// differs:
 ///
 ///     world.add_rope({.hook_point = {0, 3, 0}, .total_mass = 0.4f, .masses = 32, .length_at_rest = 2})
 ///
 /// Units are SI: meters, kilograms, seconds, newtons, radians. +Y is up. A stiffness may be `kRigid`.
-/// Bounds are checked when a description is added; what is wrong comes back as an Error that names the field.
+/// Brackets give the range of a number. The World checks ranges when a description is added, and returns an
+/// Error that names the field; what has no range here has the limits of hooke/limits.h.
 
 namespace hooke {
 
-/// Stiffness of what does not stretch.
+/// Infinite stiffness: what has it does not stretch. As a limit it means "none".
 inline constexpr Real kRigid = std::numeric_limits<Real>::infinity();
 
-/// Wind, a function of time and place and never of the step:
-/// W = |velocity| [ (1 + gust r1(t, x)) e_main + side_gust r2(t, x) e_side ], r1 and r2 independent in [-1,
-/// 1], smooth over `correlation_time` and `correlation_length`. e_side is horizontal and across e_main.
+/// Wind, a function of time and place and never of the step. With r1 and r2 independent random numbers in
+/// [-1, 1] that vary smoothly over `correlation_time` and `correlation_length`, e_main the direction of
+/// `velocity`, and e_side the horizontal direction across it:
+///
+///     W(t, x) = |velocity| [(1 + gust r1(t, x)) e_main + side_gust r2(t, x) e_side]
 struct WindDesc {
-  /// How the wind varies. kPaper draws one factor per step, as the paper's eq. 9 does: it depends on the
-  /// step.
-  enum class Gusts : std::uint8_t { kSmooth, kPaper };
+  /// How the wind varies.
+  enum class Gusts : std::uint8_t {
+    kSmooth,  ///< Smoothly in time and place.
+    kPaper    ///< By one factor per step, as in the paper's eq. 9: it depends on the length of the step.
+  };
 
-  Vec3 velocity = {};                 ///< Mean wind [m/s].
+  Vec3 velocity = {};                 ///< Mean velocity of the air [m/s].
   Real gust = Real(0);                ///< Relative size of the gusts along the wind. [0, 10]
   Real side_gust = Real(0);           ///< Relative size of the gusts across it. [0, 10]
-  Real correlation_time = Real(0.5);  ///< [s], positive.
-  Real correlation_length = Real(2);  ///< [m], positive.
-  std::uint32_t seed = 1;
-  Gusts gusts = Gusts::kSmooth;
-  Real air_density = Real(1.225);  ///< [kg/m^3]; 0 switches aerodynamic drag and lift off.
+  Real correlation_time = Real(0.5);  ///< Time over which gusts change [s]. [1e-6, 1e9]
+  Real correlation_length = Real(2);  ///< Distance over which gusts change [m]. [1e-6, 1e9]
+  std::uint32_t seed = 1;             ///< Seed of the random numbers; any value.
+  Gusts gusts = Gusts::kSmooth;       ///< How the wind varies.
+  /// Density of the air [kg/m^3]. [0, 1e6] 0 switches aerodynamic drag and lift off.
+  Real air_density = Real(1.225);
 
   friend bool operator==(const WindDesc&, const WindDesc&) = default;
 };
 
-/// What two materials do to each other, in place of the rule at ContactDesc.
+/// What two materials do to each other, in place of the rule at ContactDesc. The order of the two does not
+/// matter; the first pair in the list counts. World::create does not check these numbers.
 struct MaterialPairDesc {
-  std::uint16_t a = 0;
-  std::uint16_t b = 0;
-  Real friction = Real(0.5);  ///< [0, 100]
+  std::uint16_t a = 0;        ///< ContactDesc::material of the one surface.
+  std::uint16_t b = 0;        ///< ContactDesc::material of the other surface; may be the same.
+  Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
+  /// Coefficient while at rest; `friction` by default, and where it is below `friction`.
   std::optional<Real> static_friction = {};
-  Real restitution = Real(0);  ///< [0, 1]
+  Real restitution = Real(0);  ///< Speed after over speed before. [0, 1]
 };
 
+/// Describes a World: what holds everywhere, and how exactly steps are solved.
 struct WorldDesc {
-  Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< [m/s^2]
+  Vec3 gravity = {Real(0), Real(-9.81), Real(0)};  ///< Acceleration of everything [m/s^2].
   int substeps = 8;                                ///< Solver passes per step; more is stiffer. [1, 64]
   int particle_substeps = 1;                       ///< Passes over deformables in each substep. [1, 64]
-  int workers = 1;  ///< Threads used by step(). The result does not depend on it. [1, 64]
-  WindDesc wind = {};
+  int workers = 1;     ///< Threads that step() uses; results do not change. [1, 64]
+  WindDesc wind = {};  ///< Moving air.
+  /// Pairs of materials that have a friction and restitution of their own.
   std::vector<MaterialPairDesc> materials = {};
-  Real contact_hz = Real(60);            ///< Stiffness of contacts between bodies, as a frequency. (0, 1000]
-  Real contact_damping_ratio = Real(5);  ///< Of the same. (0, 100]
-  int bias_sweeps =
-      1;  ///< Passes over contacts in each substep; 2 is cheaper than twice the substeps. [1, 8]
-  bool sleeping = true;  ///< Bodies that have come to rest are skipped until something wakes them.
+  Real contact_hz = Real(60);  ///< Stiffness of contacts between bodies, as a frequency. [0.1, 1000]
+  Real contact_damping_ratio = Real(5);  ///< Damping of these contacts; 1 is critical. [0.01, 100]
+  /// Passes over contacts in each substep. [1, 8] 2 is cheaper than twice the substeps.
+  int bias_sweeps = 1;
+  bool sleeping = true;  ///< Whether bodies that have come to rest are skipped until something wakes them.
 };
 
-/// A displacement as a function of time; zero at time zero.
+/// A displacement as a function of time t since its start; zero at the start. Only the fields of its kind
+/// count.
 struct MotionDesc {
-  enum class Kind : std::uint8_t { kStill, kConstantVelocity, kSine, kKeyframes };
+  /// The form of the function.
+  enum class Kind : std::uint8_t {
+    kStill,             ///< No displacement.
+    kConstantVelocity,  ///< `velocity` t.
+    kSine,              ///< `amplitude` (sin(2 pi `frequency_hz` t + `phase`) - sin(`phase`)).
+    kKeyframes          ///< Straight lines between `keyframes`; still before the first and after the last.
+  };
+  /// A displacement at a time.
   struct Keyframe {
-    double time = 0;   ///< [s], increasing.
-    Vec3 offset = {};  ///< [m] from the start; straight lines between keyframes, still before the first and
-                       ///< after the last.
+    double time = 0;   ///< Time since the start [s]; larger than that of the keyframe before.
+    Vec3 offset = {};  ///< Displacement from the start [m].
 
     friend bool operator==(const Keyframe&, const Keyframe&) = default;
   };
 
-  Kind kind = Kind::kStill;
-  Vec3 velocity = {};                    ///< kConstantVelocity [m/s].
-  Vec3 amplitude = {};                   ///< kSine [m]: amplitude (sin(2 pi f t + phase) - sin(phase)).
-  Real frequency_hz = Real(1);           ///< kSine.
-  Real phase = Real(0);                  ///< kSine [rad].
-  std::vector<Keyframe> keyframes = {};  ///< kKeyframes, at least one.
+  Kind kind = Kind::kStill;              ///< The form of the function.
+  Vec3 velocity = {};                    ///< Velocity of kConstantVelocity [m/s].
+  Vec3 amplitude = {};                   ///< Amplitude of kSine [m].
+  Real frequency_hz = Real(1);           ///< Frequency of kSine [Hz]. [0, 1e6]
+  Real phase = Real(0);                  ///< Phase of kSine at the start [rad]. [-1e6, 1e6]
+  std::vector<Keyframe> keyframes = {};  ///< Keyframes of kKeyframes; at least one.
 
   friend bool operator==(const MotionDesc&, const MotionDesc&) = default;
 };
 
-/// A point that is held: still, or moved by a given motion.
+/// A point that is held: still, or moved along a path.
 struct PinDesc {
-  std::uint32_t point = 0;
-  MotionDesc motion = {};
+  std::uint32_t point = 0;  ///< Index of the point in its object.
+  MotionDesc motion = {};   ///< Path of the point from where it is; still by default.
 };
 
-/// Mass added to one point.
+/// A mass that is added to a point.
 struct LoadDesc {
-  std::uint32_t point = 0;
-  Real mass = Real(1);  ///< [kg], not negative.
+  std::uint32_t point = 0;  ///< Index of the point in its object.
+  Real mass = Real(1);      ///< Mass in addition to the point's own [kg], not negative.
 };
 
-/// A place of an object that hooks may name (HookEnd::connection_point). Every object has those of its kind
-/// too, unless one of its own has the same name:
+/// A named place of an object, which hooks may use (HookEnd::connection_point). Every object has the names of
+/// its kind as well, except those that it declares itself:
 ///
-/// - bodies: `center` (of mass) and `origin` (of the frame). Boxes: `left` (-x), `right`, `bottom` (-y),
-/// `top`,
-///   `back` (-z) and `front`, the centers of faces, and the corners, from `bottom_left_back` to
-///   `top_right_front`. Spheres, capsules and cylinders: the six that lie on the axes. Cones: `top`,
-///   `bottom`;
-/// - ropes: `start`, `middle`, `end`;
+/// - bodies: `center` (of mass) and `origin` (of the frame);
+/// - boxes: `left` (-x), `right`, `bottom` (-y), `top`, `back` (-z) and `front`, the centers of faces, and
+///   the corners, from `bottom_left_back` to `top_right_front`;
+/// - spheres, capsules and cylinders: the same six places, on the axes; cones: `top` and `bottom`;
+/// - ropes: `start`, `middle` and `end`;
 /// - cloths on a grid, seen with columns to the right and rows downward: `top_left`, `top_right`,
-/// `bottom_left`,
-///   `bottom_right`, the middles of edges `left`, `right`, `top`, `bottom`, and `center`;
-/// - boxes of solid: what boxes have, without `origin`;
-/// - particles: where there are springs, `start` of the first and `end` of the last; a single one, `center`.
+///   `bottom_left`, `bottom_right`, the middles of edges `left`, `right`, `top` and `bottom`, and `center`;
+/// - boxes of solid: the names of boxes, without `origin`;
+/// - particles: `start` of the first spring and `end` of the last; of a single particle, `center`.
 struct ConnectionPointDesc {
-  std::string name = {};  ///< 1 to 64 bytes; no two of an object are the same.
-  /// [m]: in the frame of a body, of a cloth's mesh, of a solid; in the world of what has no frame: ropes,
-  /// grids, particles. Of all but bodies the nearest place is meant, as by PointRef::kNearest.
+  std::string name = {};  ///< The name, 1 to 64 bytes; no two of an object are the same.
+  /// The place [m], in the frame of a body, of a cloth's mesh or of a solid. Ropes, grids and particles have
+  /// no frame: the place is in the world. Except for bodies, the name means the nearest place of the object,
+  /// as PointRef::kNearest does.
   DVec3 position = {};
-  std::optional<std::uint32_t> point = {};  ///< A point of the object instead; not of a body.
+  std::optional<std::uint32_t> point = {};  ///< Index of a point, in place of `position`; not of a body.
 };
 
-/// How a surface or a point answers a contact. Of two surfaces: friction sqrt(a b), the larger restitution,
-/// the larger rolling and spinning friction, the sum of the surface velocities; unless the world's table of
-/// materials lists the pair.
+/// How a surface answers a contact. Two surfaces a and b act together with friction sqrt(a b), the larger
+/// restitution, the larger rolling and spinning friction, and the sum of the surface velocities, unless
+/// WorldDesc::materials lists the pair. Of ropes, cloths, solids and particles only `friction` counts.
 struct ContactDesc {
   Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
-  std::optional<Real> static_friction =
-      {};                      ///< Coefficient while at rest, not below `friction`, which it is by default.
-  Real restitution = Real(0);  ///< Speed after over speed before, of bodies. [0, 1]
-  Real rolling_friction = Real(0);   ///< Lever of the rolling resistance [m]. Not negative.
-  Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m]. Not negative.
-  Vec3 surface_velocity = {};        ///< Of a conveyor belt, in the body's frame [m/s].
-  std::uint16_t material = 0;        ///< The row of WorldDesc::materials it is listed under; any number.
+  /// Coefficient while at rest; `friction` by default. [friction, 100]
+  std::optional<Real> static_friction = {};
+  Real restitution = Real(0);        ///< Speed after over speed before. [0, 1]
+  Real rolling_friction = Real(0);   ///< Lever of the resistance to rolling [m]. [0, 1e6]
+  Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m]. [0, 1e6]
+  Vec3 surface_velocity = {};  ///< Velocity of the surface, as of a conveyor belt, in the body's frame [m/s].
+  std::uint16_t material = 0;  ///< Number under which WorldDesc::materials lists the surface; any number.
 };
 
+/// What moves a body.
 enum class BodyKind : std::uint8_t {
-  kStatic,     ///< Never moves.
-  kKinematic,  ///< Moves as told and is not moved by what it touches.
-  kDynamic,
+  kStatic,     ///< Nothing: the body never moves.
+  kKinematic,  ///< Its path: the body moves as told, and what it touches does not move it.
+  kDynamic,    ///< Forces and contacts.
 };
 
-/// Two bodies collide when each is in a category that the other's mask has, and they do not share a negative
-/// group; a shared positive group always collides.
+/// Says which bodies collide. Two bodies of one group collide always if the group is positive, never if it is
+/// negative. All others collide if each is in a category that the other's mask has.
 struct FilterDesc {
-  std::uint32_t category = 1;
-  std::uint32_t mask = 0xFFFFFFFF;
-  std::int32_t group = 0;
+  std::uint32_t category = 1;       ///< Categories of the body, one per bit.
+  std::uint32_t mask = 0xFFFFFFFF;  ///< Categories that the body collides with, one per bit; all by default.
+  std::int32_t group = 0;           ///< Group of the body; 0 for none.
 };
 
 /// One shape of a body that has several.
 struct PartDesc {
-  Shape shape = {};
-  Vec3 position = {};         ///< Of the shape's frame in the body's [m].
-  Quat rotation = {};         ///< Of the shape's frame in the body's. Normalized on entry.
-  Real density = Real(1000);  ///< [kg/m^3], positive.
-  ContactDesc contact = {};
+  Shape shape = {};           ///< The shape; not a compound.
+  Vec3 position = {};         ///< Origin of the shape's frame in the body's frame [m].
+  Quat rotation = {};         ///< Rotation of the shape's frame in the body's. The World normalizes it.
+  Real density = Real(1000);  ///< Density of the part [kg/m^3], positive.
+  ContactDesc contact = {};   ///< Surface of the part.
 };
 
-/// A rigid body. Its mass, its center and its inertia come from the volume of its shapes.
+/// A rigid body. The volume of its shapes gives its mass, its center and its inertia.
 struct BodyDesc {
-  BodyKind kind = BodyKind::kStatic;
-  Shape shape = {};
-  std::vector<PartDesc> parts = {};  ///< Of a compound: replace `density` and `contact`.
+  BodyKind kind = BodyKind::kStatic;  ///< What moves the body.
+  Shape shape = {};                   ///< The shape. Of a compound, `parts` have the shapes.
+  std::vector<PartDesc> parts = {};  ///< Shapes of a compound; their density and contact replace those below.
   DVec3 position = {};               ///< Origin of the body's frame [m].
-  Quat rotation = {};                ///< Normalized on entry.
-  Vec3 velocity = {};                ///< Of the center of mass [m/s].
-  Vec3 angular_velocity = {};        ///< [rad/s], in the world's axes.
-  Real density = Real(1000);         ///< [kg/m^3], positive.
-  std::optional<Real> mass = {};     ///< [kg]: scales the density to give this mass.
-  Real linear_damping = Real(0);     ///< Rate at which the velocity decays [1/s].
-  Real angular_damping = Real(0);    ///< [1/s]
-  Real gravity_scale = Real(1);
-  Real drag_coefficient = Real(0);    ///< C_d of the area it shows to the flow of air (WindDesc), 0 to 1e6.
-  Real magnus_coefficient = Real(0);  ///< C of the lift C rho V omega x v of a body that spins in air, V its
-                                      ///< volume; within 1e6. A smooth ball at low speed: 0.75.
-  Vec3 dipole_moment = {};  ///< Magnetic, at the center of mass, in the body's frame [A m^2]; at most 1e9
-                            ///< long. A body that has one never sleeps. Magnetic fields turn and pull it, and
-                            ///< all others that have one, whatever their kind.
-  ContactDesc contact = {};
-  FilterDesc filter = {};
-  bool collides = true;  ///< False: only drawn.
-  bool sensor = false;   ///< Pushes nothing; lists who comes and goes (Events, World::visitors).
-  bool bullet = false;   ///< Swept against moving bodies too, not only against those that stand.
-  bool can_sleep = true;
-  bool reports_contacts = false;  ///< Begins and ends of its contacts are listed (Events).
-  Real hit_speed = kRigid;        ///< What meets it faster than this [m/s] is listed (Events). Not negative;
-                                  ///< infinite: nothing. Of two bodies the lower one counts.
-  MotionDesc motion = {};         ///< kKinematic: its path from the start; rotation by `angular_velocity`.
-  std::vector<ConnectionPointDesc> connection_points = {};
+  Quat rotation = {};                ///< Rotation of the body's frame. The World normalizes it.
+  Vec3 velocity = {};                ///< Velocity of the center of mass at the start [m/s].
+  Vec3 angular_velocity = {};        ///< Angular velocity at the start, in the world's axes [rad/s].
+  Real density = Real(1000);         ///< Density [kg/m^3], positive.
+  std::optional<Real> mass = {};     ///< Mass [kg]: scales the density to give it.
+  Real linear_damping = Real(0);     ///< Rate at which the velocity decays [1/s]. [0, 1e6]
+  Real angular_damping = Real(0);    ///< Rate at which the angular velocity decays [1/s]. [0, 1e6]
+  Real gravity_scale = Real(1);      ///< Factor on WorldDesc::gravity. [-1e6, 1e6]
+  /// Coefficient C_d of the drag of air, on the area that the body shows to the flow (WindDesc). [0, 1e6]
+  Real drag_coefficient = Real(0);
+  /// Coefficient C of the lift C rho V omega x v of a body that spins in air, V its volume. [-1e6, 1e6] A
+  /// smooth ball at low speed has 0.75 (Rubinow and Keller 1961).
+  Real magnus_coefficient = Real(0);
+  /// Magnetic dipole moment at the center of mass, in the body's frame [A m^2]; at most 1e9 long. Magnetic
+  /// fields turn and pull it, and so do all other bodies that have one, whatever their kind. Such a body
+  /// never sleeps.
+  Vec3 dipole_moment = {};
+  ContactDesc contact = {};  ///< Surface of the body.
+  FilterDesc filter = {};    ///< Which bodies it collides with.
+  bool collides = true;      ///< Whether it touches anything; if not, it is only drawn.
+  bool sensor = false;       ///< Whether it pushes nothing, and lists who comes and goes (World::visitors).
+  bool bullet = false;       ///< Whether it is swept against moving bodies too, and not only against others.
+  bool can_sleep = true;     ///< Whether it may rest, and be skipped until something wakes it.
+  bool reports_contacts = false;  ///< Whether Events lists the begins and ends of its contacts.
+  /// Speed above which Events lists what meets it [m/s], not negative; nothing by default. Of two bodies the
+  /// lower speed counts.
+  Real hit_speed = kRigid;
+  /// Path of the body's center from where it starts, for kKinematic. The body turns by `angular_velocity`.
+  MotionDesc motion = {};
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for places in the body's frame.
 };
 
-/// What a hook holds on one side: a body, a point of a rope, cloth, solid or group of particles, or, where
-/// neither is given, the world itself.
+/// What a hook holds on one side: a body, or a point of a rope, cloth, solid or group of particles, or the
+/// world itself if neither is given.
 struct HookEnd {
-  BodyId body = {};
-  PointRef point = {};  ///< Of a deformable object; its index may be PointRef::kNearest.
-  /// The name of a place of either (ConnectionPointDesc): the hook is there, whatever its anchor and the
-  /// point's index. Not of the world.
+  BodyId body = {};     ///< The body; null for a point or the world.
+  PointRef point = {};  ///< The point of a deformable object; its index may be PointRef::kNearest.
+  /// The name of a place of either (ConnectionPointDesc). The hook is there, whatever its anchor and the
+  /// point's index are. The world has no names.
   std::string connection_point = {};
 };
 
+/// In which ways a hook lets b move relative to a.
 enum class HookKind : std::uint8_t {
-  kBall,      ///< One point in common; turns freely within `cone` about its axis and `limits` of twist.
-  kHinge,     ///< Turns about `axis`.
-  kSlider,    ///< Slides along `axis` and does not turn.
-  kFixed,     ///< Moves as one.
-  kDistance,  ///< The distance of two points stays within `limits`, or what it was where there are none.
-  kWheel,     ///< B slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
-  kSixDegrees,  ///< Each of the six `freedoms` on its own.
-  kRopeSlide,   ///< B slides along rope a, between its ends: a bead on a string. `anchor` says where it is.
+  kBall,      ///< One point in common. b turns freely within `cone` about the axis and `limits` of twist.
+  kHinge,     ///< b turns about `axis`.
+  kSlider,    ///< b slides along `axis` and does not turn.
+  kFixed,     ///< b moves as one with a.
+  kDistance,  ///< The distance of two points stays within `limits`, or as it was if there are none.
+  kWheel,     ///< b slides along `axis` (suspension), steers about it, and rolls about `second_axis` (axle).
+  kSixDegrees,  ///< Each of the six `freedoms` has its own limits, spring and motor.
+  kRopeSlide,   ///< b slides along rope a, between its ends: a bead on a string. `anchor` says where it is.
 };
 
-/// Bounds of a freedom [m] or [rad]; infinite where there is none.
+/// Bounds of a freedom [m] or [rad]: finite ones within 1e9, infinite ones for none.
 struct HookLimits {
-  Real lower = -kRigid;
-  Real upper = kRigid;
+  Real lower = -kRigid;  ///< Smallest value.
+  Real upper = kRigid;   ///< Largest value, not below `lower`.
 
   friend bool operator==(const HookLimits&, const HookLimits&) = default;
 };
 
-/// F = -stiffness (value - target) - damping speed, whatever the stiffness without instability.
+/// A damped spring on a freedom: F = -stiffness (value - target) - damping speed. It is stable at any
+/// stiffness.
 struct HookSpring {
-  Real stiffness = Real(0);  ///< [N/m] or [N m/rad], not negative.
-  Real damping = Real(0);    ///< [N s/m] or [N m s/rad], not negative.
-  Real target = Real(0);     ///< Value at rest [m] or [rad], relative to how things stood when hooked.
+  Real stiffness = Real(0);  ///< Stiffness [N/m] or [N m/rad], not negative.
+  Real damping = Real(0);    ///< Damping [N s/m] or [N m s/rad], not negative.
+  Real target = Real(0);     ///< Value at rest [m] or [rad], from how things stood when hooked.
 
   friend bool operator==(const HookSpring&, const HookSpring&) = default;
 };
 
-/// Drives a freedom at a speed with a force that is limited. Speed zero: friction.
+/// A motor drives a freedom at a speed, with a force that is limited. With speed zero it is friction.
 struct HookMotor {
-  Real speed = Real(0);      ///< [m/s] or [rad/s]
-  Real max_force = Real(0);  ///< [N] or [N m], not negative; 0 switches the motor off.
+  Real speed = Real(0);      ///< Speed of b relative to a [m/s] or [rad/s].
+  Real max_force = Real(0);  ///< Largest force [N] or torque [N m], not negative; 0 switches the motor off.
 
   friend bool operator==(const HookMotor&, const HookMotor&) = default;
 };
 
-/// One of the ways in which b may move relative to a. Zero is how they stood when hooked.
+/// One of the ways in which b may move relative to a. Its value is zero where they stood when hooked.
 struct HookFreedom {
-  bool locked = false;  ///< Held at `spring.target`.
-  HookLimits limits = {};
-  HookSpring spring = {};
-  HookMotor motor = {};
+  bool locked = false;     ///< Whether it is held at `spring.target`.
+  HookLimits limits = {};  ///< Bounds of its value.
+  HookSpring spring = {};  ///< Spring that pulls it towards a value.
+  HookMotor motor = {};    ///< Motor that drives it.
 
   friend bool operator==(const HookFreedom&, const HookFreedom&) = default;
 };
 
-/// Holds two ends together. Anchor and axes are given in the world, as things stand when the hook is made.
+/// A hook holds two ends together. Anchor and axes are given in the world, as things stand when the hook is
+/// made.
 ///
-/// An end that names a connection point is held there, and an end that says nothing at the same place as the
-/// other one; two that are named are drawn together, as two points are.
+/// An end that names a connection point is held there. An end that says nothing is held at the same place as
+/// the other. Two named ends are drawn together, as two points are.
 ///
-/// Points have no rotation: between a point and anything, kBall, kDistance, kRopeSlide, and kSlider with a
-/// body or the world as a. A point is held where it is, whatever `anchor` says, and what it is hooked to at
-/// the same place; two points are drawn together.
+/// Points have no rotation. Between a point and anything there may be kBall, kDistance and kRopeSlide, and
+/// kSlider if a is a body or the world. A point is held where it is, whatever `anchor` says, and what it is
+/// hooked to is held at the same place; two points are drawn together.
 ///
 /// Freedoms are those of b relative to a, in a's axes: x along `axis`, y along the part of `second_axis` that
-/// is across it, z across both (kWheel: z along the axle). A rotation is taken apart as one about a's x, then
-/// y, then b's z; the second is meant to stay within 90 degrees.
+/// is across it, z across both (kWheel: z along the axle). A rotation is taken apart into one about a's x,
+/// then y, then b's z; the second should stay within 90 degrees.
+///
+/// "The main freedom" is the angle of a hinge, the way of a slider, the length of a distance, the suspension
+/// of a wheel and the rotation of a ball.
 struct HookDesc {
-  HookKind kind = HookKind::kBall;
-  HookEnd a = {};
-  HookEnd b = {};
-  DVec3 anchor = {};                         ///< Of both ends [m]; of a for kDistance.
-  std::optional<DVec3> anchor_b = {};        ///< kDistance: of b [m]; `anchor` by default.
-  Vec3 axis = {Real(0), Real(1), Real(0)};   ///< Any length but zero.
-  std::optional<Vec3> second_axis = {};      ///< Not along `axis`; any direction across it by default.
-  HookLimits limits = {};                    ///< Of what moves: angle, way, distance, twist, suspension.
-  std::optional<Real> cone = {};             ///< kBall: largest angle between the axes [rad], (0, pi].
-  HookSpring spring = {};                    ///< Of what moves. kBall: towards how things stood.
-  HookMotor motor = {};                      ///< Of what moves. kWheel: about the axle. kBall: the speed
-                                             ///< about `axis`, friction about every axis.
-  HookFreedom steering = {.locked = true};   ///< kWheel: about the suspension's axis.
-  std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y, z, then angles.
-  Real break_force = kRigid;                 ///< [N], positive: takes no more, and breaks if it needs more.
-  Real break_torque = kRigid;                ///< [N m], positive.
-  /// Whether the two bodies may touch each other; of a body and a point, the point and what of its object was
-  /// inside the body when it was hooked.
+  HookKind kind = HookKind::kBall;  ///< In which ways b may move.
+  HookEnd a = {};                   ///< The end that axes are fixed to; the world by default.
+  HookEnd b = {};                   ///< The end that moves relative to a; the world by default.
+  DVec3 anchor = {};                ///< Place at which both ends are held [m]; of kDistance, the place on a.
+  std::optional<DVec3> anchor_b = {};       ///< Place on b of kDistance [m]; `anchor` by default.
+  Vec3 axis = {Real(0), Real(1), Real(0)};  ///< The axis; any length but zero.
+  std::optional<Vec3> second_axis = {};     ///< An axis not along `axis`; any direction across it by default.
+  HookLimits limits = {};         ///< Bounds of the main freedom; of kBall, of the twist about `axis`.
+  std::optional<Real> cone = {};  ///< kBall: largest angle between the axes of a and b [rad]. (0, pi]
+  HookSpring spring = {};         ///< Spring on the main freedom; of kBall, towards how things stood.
+  /// Motor on the main freedom; of kWheel, about the axle. Of kBall `speed` is about `axis`, and `max_force`
+  /// acts as friction about the other axes.
+  HookMotor motor = {};
+  HookFreedom steering = {.locked = true};   ///< kWheel: the angle about the suspension's axis.
+  std::array<HookFreedom, 6> freedoms = {};  ///< kSixDegrees: ways along x, y and z, then angles about them.
+  Real break_force = kRigid;                 ///< Force [N], positive: the hook breaks if it needs more.
+  Real break_torque = kRigid;                ///< Torque [N m], positive: the hook breaks if it needs more.
+  /// Whether the two bodies may touch each other. Of a body and a point, it says so for the point and for
+  /// what of its object was inside the body when it was hooked.
   bool collide = false;
 };
 
-/// A line of points of a cloth or solid, to be sewn: an edge by its name, or points.
+/// A line of points of a cloth or solid that is to be sewn: an edge by its name, or points one by one.
 struct SeamEdge {
-  PointRef object = {};  ///< Of a cloth or solid; its index does not count.
-  /// Of a cloth: on a grid `left`, `right`, `top`, `bottom` (ConnectionPointDesc); where there is one border,
-  /// `border`, else `border_0`, ... by their lowest points: all around, as triangles run.
+  PointRef object = {};  ///< Any point of the cloth or solid; its index does not count.
+  /// Name of an edge of a cloth. A grid has `left`, `right`, `top` and `bottom` (ConnectionPointDesc). Every
+  /// cloth with one border has `border`; with several it has `border_0`, `border_1`, ... in the order of
+  /// their lowest points. Borders run all around, as their triangles do.
   std::string edge = {};
-  std::vector<std::uint32_t> points = {};  ///< Instead: at least 2, one after the other along the line; the
-                                           ///< first once more at the end if it is closed.
+  /// Points in place of `edge`: at least 2, in their order along the line. A closed line ends with its first
+  /// point.
+  std::vector<std::uint32_t> points = {};
 };
 
-/// Sews two lines together from end to end: each point of the one that has more of them is hooked to the
-/// place of the other line that is at the same share of its length. Open lines begin with the ends that are
-/// nearer to each other; closed ones with the first point of `a` and the point of `b` that is nearest to it.
+/// Sews two lines together from end to end. Each point of the line that has more points is hooked to the
+/// place of the other line at the same share of its length. Open lines begin with the ends that are nearer to
+/// each other; closed ones with the first point of `a` and the point of `b` that is nearest to it.
 struct SeamDesc {
-  SeamEdge a = {};
-  SeamEdge b = {};
-  Real strength = kRigid;  ///< [N/m], positive: a stitch lets go above this times its share of the length.
+  SeamEdge a = {};  ///< The first line.
+  SeamEdge b = {};  ///< The second line; it may belong to the same object.
+  /// Strength [N/m], positive: a stitch breaks above this force per length of its share of the line.
+  Real strength = kRigid;
 };
 
-/// A chain of point masses solved as one: it does not stretch more than its stiffness says, whatever hangs on
-/// it. The paper's builder: `masses` points laid from `hook_point` along `direction`.
+/// A chain of point masses that is solved as one: it does not stretch more than its stiffness says, whatever
+/// hangs on it. `masses` points lie from `hook_point` along `direction`, as in the paper's builder.
 struct RopeDesc {
+  /// What `stiffness` is the stiffness of.
   enum class StiffnessOf : std::uint8_t {
-    kRope,  ///< Of the whole rope, whatever the number of points: each of the n segments is n times as stiff.
-    kSegment,  ///< Of each segment, as in the paper: more points make a softer rope.
+    kRope,     ///< The whole rope, whatever its points: each of the n segments is n times as stiff.
+    kSegment,  ///< Each segment, as in the paper: more points make a softer rope.
   };
 
   DVec3 hook_point = {};                          ///< Position of the first point [m].
-  Vec3 direction = {Real(-1), Real(0), Real(0)};  ///< Any length but zero.
-  Real total_mass = Real(1);                      ///< [kg], positive. Half a segment's share on each end.
-  int masses = 16;                                ///< Number of points. [2, 65536]
-  Real length_at_rest = Real(1);                  ///< [m], positive.
-  Real stiffness = kRigid;                        ///< [N/m], positive or kRigid.
-  Real inner_friction = Real(0);                  ///< [N s/m], not negative.
-  Real air_friction = Real(0);  ///< Viscous drag of the whole rope [N s/m], shared out by length.
-  Real extension_max = kRigid;  ///< Largest relative extension of a segment, e.g. 0.05. Positive.
-  StiffnessOf stiffness_of = StiffnessOf::kRope;
-  std::optional<Real> axial_stiffness = {};  ///< EA [N]: replaces `stiffness` by EA / length_at_rest.
-  /// EI [N m^2], not negative: the rope resists bending and is straight at rest, a cable, a rod, a hair.
-  /// Where its first or last two points are pinned it is clamped.
+  Vec3 direction = {Real(-1), Real(0), Real(0)};  ///< Direction to the last point; any length but zero.
+  Real total_mass = Real(1);      ///< Mass of the rope [kg], positive. Each end has half of an inner point's.
+  int masses = 16;                ///< Number of points. [2, 65536]
+  Real length_at_rest = Real(1);  ///< Length without tension [m], positive.
+  Real stiffness = kRigid;        ///< Force over extension [N/m], positive or kRigid; see `stiffness_of`.
+  Real inner_friction = Real(0);  ///< Damping along each segment [N s/m], not negative.
+  Real air_friction = Real(0);    ///< Viscous drag of the whole rope [N s/m], shared out by length.
+  Real extension_max = kRigid;    ///< Largest relative extension of a segment, such as 0.05. Positive.
+  StiffnessOf stiffness_of = StiffnessOf::kRope;  ///< What `stiffness` belongs to.
+  std::optional<Real> axial_stiffness = {};       ///< EA [N]: replaces `stiffness` by EA / length_at_rest.
+  /// Stiffness against bending EI [N m^2], not negative. With it the rope is straight at rest: a cable, a
+  /// rod, a hair. Where its first or last two points are pinned it is clamped.
   Real bend_stiffness = Real(0);
-  Real bend_damping = Real(0);  ///< Of bending, over EI [s], not negative.
-  /// GJ [N m^2], not negative: resists twist between places that hold it against twist, where two neighboring
-  /// points or more are pinned, or hooked by balls to the world or to one body. Needs a bend_stiffness.
+  Real bend_damping = Real(0);  ///< Damping of bending over EI [s], not negative.
+  /// Stiffness against twist GJ [N m^2], not negative; it needs a bend_stiffness. The rope resists twist
+  /// between places that hold it against twist: where two neighboring points or more are pinned, or are
+  /// hooked by balls to the world or to one body.
   Real twist_stiffness = Real(0);
-  Real twist = Real(0);  ///< Of the whole rope at the start, even over its length [rad].
-  /// E [Pa], positive: replaces the stiffness, of the rope, and those against bending and twist by EA, E pi
-  /// r^4 / 4 and G pi r^4 / 2 of a round rod of `radius` r, G = E / 2 (1 + poisson_ratio).
+  Real twist = Real(0);  ///< Twist of the whole rope at the start, even over its length [rad].
+  /// Young's modulus E [Pa], positive. It replaces the three stiffnesses by those of a round rod of `radius`
+  /// r: EA, EI = E pi r^4 / 4 and GJ = G pi r^4 / 2, with G = E / (2 (1 + poisson_ratio)).
   std::optional<Real> youngs_modulus = {};
-  Real poisson_ratio = Real(0.3);  ///< [-0.99, 0.5]
-  std::vector<DVec3> points =
-      {};  ///< Replaces hook_point, direction, masses, length_at_rest; taken as at rest.
-  std::vector<PinDesc> pins = {{}};  ///< The first point by default; `{}` for none.
-  std::vector<LoadDesc> loads = {};
-  std::vector<ConnectionPointDesc> connection_points = {};
-  Real radius = Real(0.005);          ///< Of the strand [m]: for contact, wind and drawing. Positive.
-  Real drag_coefficient = Real(1.1);  ///< Of a cylinder across the flow. Not negative.
-  Real charge = Real(0);              ///< [C], shared out by mass.
-  Vec3 velocity = {};                 ///< Of all points at the start [m/s].
-  /// Touches other ropes that say so too, and itself, all along, as a tube of `radius`, with the friction of
-  /// `contact`. Segments less than half a turn of the tightest bend, pi x radius, apart along the rope do
-  /// not touch each other. Off, ropes pass through each other at no cost.
+  Real poisson_ratio = Real(0.3);  ///< Poisson's ratio, for `youngs_modulus`. [-0.99, 0.5]
+  /// Positions of all points, at rest [m]: replaces hook_point, direction, masses and length_at_rest.
+  std::vector<DVec3> points = {};
+  std::vector<PinDesc> pins = {{}};  ///< Points that are held: the first by default, `{}` for none.
+  std::vector<LoadDesc> loads = {};  ///< Masses that are added to points.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for points or places.
+  Real radius = Real(0.005);          ///< Radius of the strand, for contact, wind and drawing [m]. Positive.
+  Real drag_coefficient = Real(1.1);  ///< Coefficient of drag of a cylinder across the flow. [0, 1e6]
+  Real charge = Real(0);              ///< Electric charge of the rope [C], shared out by mass. [-1e9, 1e9]
+  Vec3 velocity = {};                 ///< Velocity of all points at the start [m/s].
+  /// Whether it touches itself and other ropes that say so too, all along, as a tube of `radius` with the
+  /// friction of `contact`. Segments that are less than pi x radius apart along the rope, half a turn of the
+  /// tightest bend, do not touch each other. Without it ropes pass through each other, at no cost.
   bool touches_ropes = false;
-  /// s [N m^2], not negative: points of ropes with a repulsion that are nearer than r = `repulsion_range`
-  /// push each other away with the force s (1 / d^2 - 1 / r^2): with the geometric mean of s of two ropes and
-  /// the mean of r. Points less than pi / 2 r apart along one rope do not. It gives hair its thickness at
-  /// little cost; strands still slip between points that are farther apart than r. 0: none.
+  /// Repulsion s [N m^2], not negative; 0 for none. Points of ropes that are nearer than r =
+  /// `repulsion_range` push each other away with the force s (1 / d^2 - 1 / r^2), d their distance; of two
+  /// ropes the geometric mean of s counts and the mean of r. Points less than pi r / 2 apart along one rope
+  /// do not. It gives hair its thickness at little cost; strands still slip between points that are farther
+  /// apart than r.
   Real repulsion_strength = Real(0);
-  Real repulsion_range = Real(0.01);  ///< [m], positive.
-  ContactDesc contact = {};
+  Real repulsion_range = Real(0.01);  ///< Range r of the repulsion [m], positive.
+  ContactDesc contact = {};           ///< Surface of the rope; only its friction counts.
 };
 
 /// A surface of point masses: a grid of `columns` x `rows` points, or the triangles of a mesh.
 struct ClothDesc {
+  /// By what the cloth resists bending.
   enum class Bend : std::uint8_t {
-    kAngle,   ///< By the dihedral angle at each inner edge; `bend_stiffness` in N m.
-    kSpring,  ///< The paper's springs to the second neighbor; `bend_stiffness` in N/m.
-    kNone,
-    kIsometric,  ///< By the curvature at each inner edge, for cloth that is flat at rest and hardly
-                 ///< stretches: needs no angle, and half the time of kAngle. `bend_stiffness` in N m.
+    kAngle,   ///< The dihedral angle at each inner edge; `bend_stiffness` is in N m.
+    kSpring,  ///< The paper's springs to the second neighbor; `bend_stiffness` is in N/m.
+    kNone,    ///< Nothing.
+    /// The curvature at each inner edge; `bend_stiffness` is in N m. It suits cloth that is flat at rest and
+    /// hardly stretches: it needs no angle, and half the time of kAngle.
+    kIsometric,
   };
 
-  int columns = 2;    ///< Points along `column_direction`. [2, 4096]
-  int rows = 2;       ///< Points along `row_direction`. [2, 4096]
-  DVec3 corner = {};  ///< Position of point 0 [m]. Point (column, row) is row * columns + column.
-  Vec3 column_direction = {Real(1), Real(0), Real(0)};
-  Vec3 row_direction = {Real(0), Real(-1), Real(0)};
-  Real width = Real(1);   ///< Between the first and last column [m].
-  Real height = Real(1);  ///< Between the first and last row [m].
-  MeshId mesh = {};       ///< Replaces the grid: point i is vertex i.
-  DVec3 position = {};    ///< Of the mesh's frame [m].
-  Quat rotation = {};     ///< Of the mesh's frame.
+  int columns = 2;    ///< Number of points along `column_direction`. [2, 4096]
+  int rows = 2;       ///< Number of points along `row_direction`. [2, 4096]
+  DVec3 corner = {};  ///< Position of point 0 [m]. Point (column, row) has the index row * columns + column.
+  Vec3 column_direction = {Real(1), Real(0), Real(0)};  ///< Direction in which columns count; not zero.
+  Vec3 row_direction = {Real(0), Real(-1), Real(0)};  ///< Direction in which rows count; not along the other.
+  Real width = Real(1);                               ///< Distance of the first and last column [m].
+  Real height = Real(1);                              ///< Distance of the first and last row [m].
+  MeshId mesh = {};                                   ///< Replaces the grid: point i is vertex i of the mesh.
+  DVec3 position = {};                                ///< Origin of the mesh's frame [m].
+  Quat rotation = {};                                 ///< Rotation of the mesh's frame.
 
-  Real areal_density = Real(0.2);       ///< [kg/m^2], positive; mass goes to points by their share of area.
-  std::optional<Real> total_mass = {};  ///< [kg]: replaces areal_density.
-  Real thickness = Real(0.004);         ///< [m]: points keep half of it from what they touch. Positive.
-  /// Of each spring along an edge [N/m], or kRigid. A substep h carries about 1.4 m / h^2 of it, m the mass
-  /// of a point: cloth that is to stretch less needs more substeps, larger cells or more mass.
+  Real areal_density = Real(0.2);  ///< Mass per area [kg/m^2], positive; points have their share of area.
+  std::optional<Real> total_mass = {};  ///< Mass of the cloth [kg]: replaces areal_density.
+  Real thickness = Real(0.004);         ///< Points keep half of it from what they touch [m]. Positive.
+  /// Stiffness of each spring along an edge [N/m], or kRigid. A substep of h seconds carries about 1.4 m /
+  /// h^2 of it, m the mass of a point: cloth that is to stretch less needs more substeps, larger cells or
+  /// more mass.
   Real stretch_stiffness = Real(1e4);
-  Real shear_stiffness = Real(2e3);  ///< Of each spring across a cell or a pair of triangles [N/m].
-  /// See Bend; in N m the flexural rigidity of a sheet that bends about lines across it. Diagonals fold, too:
-  /// a strip with free sides bends by up to a quarter more (hooke check I23).
+  Real shear_stiffness = Real(2e3);  ///< Stiffness of each spring across a cell or a pair of triangles [N/m].
+  /// Resistance to bending, in the unit that `bend` says; in N m, the flexural rigidity of a sheet that bends
+  /// about lines across it. Diagonals fold, too: a strip with free sides bends by up to a quarter more (hooke
+  /// check I23).
   Real bend_stiffness = Real(1e-4);
-  /// Of each stretch and shear spring [N s/m]. Beyond ten times the spring's stiffness times a substep, and
-  /// beyond half the mass of a point over a substep, it counts as that much.
+  /// Damping of each stretch and shear spring [N s/m]. It counts as at most ten times the spring's stiffness
+  /// times a substep, and at most half the mass of a point over a substep.
   Real damping = Real(0);
-  Real bend_damping = Real(0);  ///< Of each bend row, in units of bend_stiffness times s.
-  Real yield_angle = kRigid;    ///< A pair of triangles bent farther than this [rad] from its form at rest
-                                ///< keeps the rest of it: a fold. Bend::kAngle only; positive, or kRigid.
-  Bend bend = Bend::kAngle;
+  Real bend_damping = Real(0);  ///< Damping of each bend, over `bend_stiffness` [s].
+  /// Angle [rad], positive, or kRigid, for Bend::kAngle only: what a pair of triangles is bent beyond it from
+  /// its form at rest, it keeps as a fold.
+  Real yield_angle = kRigid;
+  Bend bend = Bend::kAngle;     ///< By what the cloth resists bending.
   Real extension_max = kRigid;  ///< Largest relative extension of a stretch spring.
-  bool tethers = false;  ///< Hold every point within its rest distance of the pins: inextensible cloth.
-  /// Of a closed mesh: fills it with gas, so many pascals above the air around it (101325 Pa) at the volume
-  /// it has when added; from then on (p + 101325 Pa) V stays the same. [-1e5, 1e8]
+  bool tethers = false;  ///< Whether points stay within their rest distance of the pins: inextensible cloth.
+  /// Pressure of the gas in a closed mesh when it is added, above the 101325 Pa of the air around it [Pa].
+  /// [-1e5, 1e8] The product of absolute pressure and volume then stays the same. There is no gas by default.
   std::optional<Real> pressure = {};
-  Real drag_coefficient = Real(1.2);  ///< Of a triangle across the flow.
-  Real lift_coefficient = Real(0.6);
-  Real air_friction = Real(0);  ///< Viscous drag of the whole cloth [N s/m], shared out by area.
-  std::vector<PinDesc> pins = {};
-  std::vector<LoadDesc> loads = {};
-  std::vector<ConnectionPointDesc> connection_points = {};
-  Real charge = Real(0);  ///< [C], shared out by mass.
-  Vec3 velocity = {};     ///< Of all points at the start [m/s].
-  ContactDesc contact = {};
+  Real drag_coefficient = Real(1.2);  ///< Coefficient C_d of drag of a triangle across the flow. [0, 1e6]
+  Real lift_coefficient = Real(0.6);  ///< Coefficient C_l of lift of a slanted triangle. [0, 1e6]
+  Real air_friction = Real(0);        ///< Viscous drag of the whole cloth [N s/m], shared out by area.
+  std::vector<PinDesc> pins = {};     ///< Points that are held.
+  std::vector<LoadDesc> loads = {};   ///< Masses that are added to points.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for points or places.
+  Real charge = Real(0);     ///< Electric charge of the cloth [C], shared out by mass. [-1e9, 1e9]
+  Vec3 velocity = {};        ///< Velocity of all points at the start [m/s].
+  ContactDesc contact = {};  ///< Surface of the cloth; only its friction counts.
 };
 
-/// A soft solid: a box of cells, the inside of a closed mesh, or tetrahedra as given. Of tetrahedra, its
-/// material keeps its law at any deformation: psi = mu / 2 tr(F^T F) + lambda / 2 (det F - 1 - mu / lambda)^2
-/// (stable neo-Hookean, Smith, de Goes and Kim 2018), and comes back from being turned inside out; not from a
-/// point: below (1 - 2 nu) / (2 - 2 nu) of its size it shrinks.
+/// A soft solid: a box of cells, the inside of a closed mesh, or tetrahedra as given.
 ///
-/// A substep of h seconds carries a wave through a cell, not farther: where mu is above about
-/// density (edge / 4 h)^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.
+/// The material of tetrahedra keeps its law at any deformation F (stable neo-Hookean, Smith, de Goes and Kim
+/// 2018), with mu and lambda Lame's constants of `young_modulus` and `poisson_ratio`:
+///
+///     psi = mu / 2 tr(F^T F) + lambda / 2 (det F - 1 - mu / lambda)^2
+///
+/// It comes back from being turned inside out, but not from a point: below (1 - 2 nu) / (2 - 2 nu) of its
+/// size it shrinks.
+///
+/// A substep of h seconds carries a wave through one cell, not farther. Where mu is above about density (edge
+/// / (4 h))^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.
 struct SolidDesc {
+  /// By what the solid resists deformation.
   enum class Elasticity : std::uint8_t {
-    kTetrahedra,
-    /// The cheap one: every point is drawn to its place in the form at rest, which lies where it fits all
-    /// points best (Mueller, Heidelberger, Teschner and Gross 2005). Keeps momentum and spin, comes back from
-    /// any deformation, and is as stiff whatever the substeps and the cells. Not a material: a point feels
-    /// the whole but not its neighbors, and stiffness is by mass, so that few points yield more than many.
-    /// Of a mesh its vertices are the points, and nothing is filled; `points` need no tetrahedra.
+    kTetrahedra,  ///< The material of its tetrahedra.
+    /// Every point is drawn to its place in the form at rest, which lies where it fits all points best
+    /// (Mueller, Heidelberger, Teschner and Gross 2005). It is the cheap one: it keeps momentum and spin,
+    /// comes back from any deformation, and is as stiff whatever the substeps and the cells are. It is no
+    /// material: a point feels the whole but not its neighbors, and stiffness goes by mass, so that few
+    /// points yield more than many. Of a mesh its vertices are the points, and nothing is filled; `points`
+    /// need no tetrahedra.
     kShapeMatching,
   };
 
-  Elasticity elasticity = Elasticity::kTetrahedra;
-  Real match_hz = Real(10);  ///< kShapeMatching: at which any deformation swings [Hz], positive; or
-                             ///< kRigid: a body as rigid as one substep makes it.
-  Real match_damping_ratio = Real(0.1);           ///< The same: 1 is critical. [0, 100]
-  std::array<std::int32_t, 3> cells = {4, 4, 4};  ///< Of the box along x, y, z. Each [1, 256], 2^20 in all.
-  Vec3 size = {Real(1), Real(1), Real(1)};        ///< Of the box about `position` [m], each positive.
-  MeshId mesh = {};       ///< Replaces the box: the inside of a closed surface, as a lattice of cells whose
-                          ///< outer points lie on the mesh. The mesh is carried along (World::surface).
-  Real cell = Real(0.1);  ///< About the size of the lattice's cells [m], positive. Thinner parts are lost.
-  std::vector<Vec3> points = {};  ///< With `tetrahedra`: replace the box [m]. Point i is points[i].
-  std::vector<std::array<std::uint32_t, 4>> tetrahedra = {};  ///< Corners in any order, none without volume.
-  DVec3 position = {};  ///< Of the box's center, of the mesh's frame, of the frame of `points` [m].
-  Quat rotation = {};   ///< Of the same.
+  Elasticity elasticity = Elasticity::kTetrahedra;  ///< By what the solid resists deformation.
+  /// Frequency at which a deformation swings, for kShapeMatching [Hz], positive. kRigid makes a body as rigid
+  /// as one substep can.
+  Real match_hz = Real(10);
+  Real match_damping_ratio = Real(0.1);  ///< Damping of that swing; 1 is critical. [0, 100]
+  /// Number of cells of the box along x, y and z. Each [1, 256], 2^20 in all.
+  std::array<std::int32_t, 3> cells = {4, 4, 4};
+  Vec3 size = {Real(1), Real(1), Real(1)};  ///< Lengths of the box about `position` [m], each positive.
+  /// Replaces the box by the inside of a closed surface: a lattice of cells whose outer points lie on the
+  /// mesh. The mesh is carried along (World::surface).
+  MeshId mesh = {};
+  Real cell = Real(0.1);  ///< Size of the lattice's cells, about [m], positive. Thinner parts are lost.
+  std::vector<Vec3> points = {};  ///< Replace the box, with `tetrahedra`, in the solid's frame [m].
+  /// Four indices into `points` for each tetrahedron, in any order; none may be flat.
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra = {};
+  DVec3 position = {};  ///< Center of the box, or origin of the frame of the mesh or of `points` [m].
+  Quat rotation = {};   ///< Rotation of the same.
 
-  Real density = Real(1000);            ///< [kg/m^3], positive. Of a mesh: of the volume inside it.
-  std::optional<Real> total_mass = {};  ///< [kg]: replaces density.
-  Real young_modulus = Real(1e5);       ///< E [Pa], positive.
-  Real poisson_ratio = Real(0.45);      ///< nu. [0, 0.499]
-  /// Viscosity over stiffness [s]: a wave of angular frequency w is damped by w damping / 2 of critical.
-  /// [0, 0.1]
+  Real density = Real(1000);            ///< Density [kg/m^3], positive; of a mesh, of the volume inside it.
+  std::optional<Real> total_mass = {};  ///< Mass of the solid [kg]: replaces density.
+  Real young_modulus = Real(1e5);       ///< Young's modulus E [Pa]. [1e-6, 1e12]
+  Real poisson_ratio = Real(0.45);      ///< Poisson's ratio nu; near 0.5 the volume stays. [0, 0.499]
+  /// Viscosity over stiffness [s]. [0, 0.1] A wave of angular frequency w is damped by w damping / 2 of
+  /// critical.
   Real damping = Real(0.002);
-  /// sigma_y [Pa], positive, or kRigid: von Mises' stress, sqrt(3/2) |dev tau|, above which the solid flows,
-  /// at constant volume and without hardening. A bar pulled by its end yields at sigma_y / E. The stress
-  /// of `damping` comes on top. No part is stretched for good beyond 5 times or below a fifth.
+  /// Yield stress sigma_y [Pa], positive, or kRigid. Above it, by von Mises' stress sqrt(3/2) |dev tau|, the
+  /// solid flows at constant volume and without hardening. A bar pulled by its end yields at the strain
+  /// sigma_y / E. The stress of `damping` comes on top. No part is stretched for good beyond 5 times or below
+  /// a fifth.
   Real yield_stress = kRigid;
-  Real thickness = Real(0.004);  ///< [m]: points keep half of it from what they touch. Positive.
-  Real air_friction = Real(0);   ///< Viscous drag of the whole solid [N s/m], shared out by volume.
-  std::vector<PinDesc> pins = {};
-  std::vector<LoadDesc> loads = {};
-  std::vector<ConnectionPointDesc> connection_points = {};
-  Real charge = Real(0);  ///< [C], shared out by volume.
-  Vec3 velocity = {};     ///< Of all points at the start [m/s].
-  ContactDesc contact = {};
+  Real thickness = Real(0.004);      ///< Points keep half of it from what they touch [m]. Positive.
+  Real air_friction = Real(0);       ///< Viscous drag of the whole solid [N s/m], shared out by volume.
+  std::vector<PinDesc> pins = {};    ///< Points that are held.
+  std::vector<LoadDesc> loads = {};  ///< Masses that are added to points.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for points or places.
+  Real charge = Real(0);     ///< Electric charge of the solid [C], shared out by volume. [-1e9, 1e9]
+  Vec3 velocity = {};        ///< Velocity of all points at the start [m/s].
+  ContactDesc contact = {};  ///< Surface of the solid; only its friction counts.
 };
 
-/// A damped Hooke spring between two points of one object. On the first: F = -[k (|x| - L) + c v.u] u, x =
-/// x_a - x_b.
+/// A damped Hooke spring between two points of one object. With x = x_a - x_b, u = x / |x| and v the velocity
+/// of a relative to b, the force on a is
+///
+///     F = -[k (|x| - L) + c v.u] u
 struct SpringDesc {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  Real stiffness = Real(100);            ///< k [N/m], not negative, or kRigid.
-  Real damping = Real(0);                ///< c [N s/m], not negative.
-  std::optional<Real> rest_length = {};  ///< L [m]; the distance at the start by default.
+  std::uint32_t a = 0;                   ///< Index of the one particle.
+  std::uint32_t b = 0;                   ///< Index of the other particle.
+  Real stiffness = Real(100);            ///< Stiffness k [N/m], not negative, or kRigid.
+  Real damping = Real(0);                ///< Damping c [N s/m], not negative.
+  std::optional<Real> rest_length = {};  ///< Length at rest L [m]; the distance at the start by default.
 };
 
+/// A loose point mass.
 struct ParticleDesc {
-  DVec3 position = {};       ///< [m]
-  Vec3 velocity = {};        ///< [m/s]
-  Real mass = Real(1);       ///< [kg], positive.
-  Real charge = Real(0);     ///< [C]
-  Real radius = Real(0.01);  ///< [m], positive.
+  DVec3 position = {};       ///< Position at the start [m].
+  Vec3 velocity = {};        ///< Velocity at the start [m/s].
+  Real mass = Real(1);       ///< Mass [kg], positive.
+  Real charge = Real(0);     ///< Electric charge [C]. [-1e9, 1e9]
+  Real radius = Real(0.01);  ///< Radius for contact, drag and drawing [m], positive.
 };
 
 /// Loose point masses and the springs between them.
 struct ParticlesDesc {
-  /// Where a spring's direction is taken: at the start of the substep (keeps energy), or where the points are
-  /// about to be (quieter on very stiff lattices).
-  enum class Direction : std::uint8_t { kExplicit, kPredicted };
+  /// Where a spring's direction is taken.
+  enum class Direction : std::uint8_t {
+    kExplicit,  ///< At the start of the substep: keeps energy.
+    kPredicted  ///< Where the points are about to be: quieter on very stiff lattices.
+  };
+  /// What the damping of a spring acts on.
   enum class Damping : std::uint8_t {
-    kCentral,    ///< Along the spring: keeps angular momentum.
-    kIsotropic,  ///< On the whole relative velocity, as in the paper: brakes rotation.
+    kCentral,    ///< The relative velocity along the spring: keeps angular momentum.
+    kIsotropic,  ///< The whole relative velocity, as in the paper: brakes rotation.
   };
 
-  std::vector<ParticleDesc> particles = {};  ///< At least one.
-  std::vector<SpringDesc> springs = {};
-  Direction direction = Direction::kExplicit;
-  Damping damping = Damping::kCentral;
-  Real air_friction = Real(0);      ///< Viscous drag of each particle [N s/m].
-  Real drag_coefficient = Real(0);  ///< Quadratic drag of each particle as a sphere of its radius.
-  std::vector<PinDesc> pins = {};
-  std::vector<ConnectionPointDesc> connection_points = {};
-  ContactDesc contact = {};
+  std::vector<ParticleDesc> particles = {};    ///< The particles; at least one.
+  std::vector<SpringDesc> springs = {};        ///< Springs between them.
+  Direction direction = Direction::kExplicit;  ///< Where the springs' directions are taken.
+  Damping damping = Damping::kCentral;         ///< What the springs' damping acts on.
+  Real air_friction = Real(0);                 ///< Viscous drag of each particle [N s/m], not negative.
+  /// Coefficient of drag of each particle, as a ball of its radius. [0, 1e6]
+  Real drag_coefficient = Real(0);
+  std::vector<PinDesc> pins = {};                           ///< Particles that are held.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< Names for particles or places.
+  ContactDesc contact = {};  ///< Surface of the particles; only its friction counts.
 };
 
-/// A force on every particle and every body that forces move. On bodies it acts at the center of mass.
+/// A force on every particle and on every body that forces move. On bodies it acts at the center of mass;
+/// only a liquid lifts at the center of what is displaced. Only the fields of its kind count.
 struct FieldDesc {
+  /// The law of the force.
   enum class Kind : std::uint8_t {
-    kUniform,        ///< Acceleration `vector` [m/s^2].
-    kInverseSquare,  ///< Acceleration -strength (x - center) / |x - center|^3; none at the center itself.
-    kMagnetic,  ///< Flux density B [T]: `vector` at `center`, and along it more by `strength` [T/m], across
-                ///< it less by half of that: B = vector + strength (3 (a.d) a - d) / 2, d = x - center, a the
-                ///< direction of `vector`. Force q v x B on charged particles; on bodies with a dipole
-                ///< moment m torque m x B and force grad (m.B).
-    kLiquid,    ///< At rest, or flowing with `vector` [m/s], below `height`: its surface lies across gravity,
-                ///< that far above the origin; across y without gravity. Lifts by the weight of what is
-                ///< displaced, at its center, and drags: velocity and spin of what displaces its own mass
-                ///< decay at the rate `drag`. The liquid itself does not move. Bodies and solids displace
-                ///< their volume, closed cloths with gas what they enclose; ropes and other cloths are as
-                ///< thick as they collide, and loose particles balls.
-    kSuction,   ///< Acceleration `strength` (1 - r / reach)^falloff towards `center`, r the distance from it.
-    kVortex,    ///< The same about the axis `vector` through `center`, r the distance from the axis:
-                ///< across it, counter-clockwise seen from its tip.
-    kExplosion,  ///< At `time` the velocity changes by `strength` (1 - r / reach)^falloff away from `center`,
-                 ///< at the start of the step in which that falls. Once; never if the time is over.
-    kDipole,     ///< A magnetic dipole of moment `vector` [A m^2], at most 1e9 long, at rest at `center`: its
-                 ///< flux density acts as that of kMagnetic does. None closer than 1e-6 m.
+    kUniform,        ///< The acceleration `vector` [m/s^2].
+    kInverseSquare,  ///< The acceleration -strength (x - center) / |x - center|^3; none at the center itself.
+    /// The flux density B = vector + strength (3 (a.d) a - d) / 2 [T], with d = x - center and a the
+    /// direction of `vector`: `vector` at the center, along it more by `strength` [T/m], across it less by
+    /// half of that. It pushes charged particles with q v x B, and turns a body of dipole moment m with m x B
+    /// and pulls it with grad (m.B).
+    kMagnetic,
+    /// A liquid at rest, or flowing with `vector` [m/s], below `height`. Its surface lies across gravity,
+    /// that far above the origin; across y without gravity. It lifts by the weight of what is displaced, at
+    /// its center, and drags: velocity and spin of what displaces its own mass decay at the rate `drag`. The
+    /// liquid itself does not move. Bodies and solids displace their volume, and closed cloths with gas what
+    /// they enclose; ropes and other cloths are as thick as they collide, and loose particles are balls.
+    kLiquid,
+    /// The acceleration strength (1 - r / reach)^falloff towards `center`, r the distance from it.
+    kSuction,
+    /// The same size about the axis `vector` through `center`, r the distance from the axis. It points across
+    /// the axis, counter-clockwise seen from its tip.
+    kVortex,
+    /// At `time` the velocity changes by strength (1 - r / reach)^falloff away from `center`, at the start of
+    /// the step in which that falls: once, and never if the time is over.
+    kExplosion,
+    /// A magnetic dipole of moment `vector` [A m^2], at most 1e9 long, at rest at `center`. Its flux density
+    /// acts as that of kMagnetic does. There is none closer than 1e-6 m.
+    kDipole,
   };
 
-  Kind kind = Kind::kUniform;
-  Vec3 vector = {};
-  DVec3 center = {};        ///< [m]
-  double strength = 0.0;    ///< kInverseSquare: [m^3/s^2]; positive attracts. kSuction, kVortex: [m/s^2].
-                            ///< kExplosion: [m/s]. kMagnetic: [T/m], within 1e9; not zero only with a
-                            ///< direction to go by.
-  double reach = 1.0;       ///< [m], 1e-6 to 1e9: from there on nothing is felt.
-  int falloff = 1;          ///< 0 to 8; 0: as strong everywhere within reach.
-  double height = 0.0;      ///< kLiquid: of the surface above the origin, against gravity [m].
-  double density = 1000.0;  ///< kLiquid [kg/m^3], 0 to 1e6.
-  double drag = 0.0;        ///< kLiquid [1/s], 0 to 1e6.
-  double time = 0.0;        ///< kExplosion [s].
+  Kind kind = Kind::kUniform;  ///< The law of the force.
+  Vec3 vector = {};            ///< Acceleration, flux density, flow, axis or moment, as the kind says.
+  DVec3 center = {};           ///< Center of the field [m].
+  /// Strength: of kInverseSquare [m^3/s^2], where positive attracts; of kSuction and kVortex [m/s^2]; of
+  /// kExplosion [m/s]; of kMagnetic [T/m], within 1e9, and zero if `vector` is.
+  double strength = 0.0;
+  double reach = 1.0;   ///< Distance from which on nothing is felt [m]. [1e-6, 1e9]
+  int falloff = 1;      ///< Exponent of the decay within reach; 0: as strong everywhere. [0, 8]
+  double height = 0.0;  ///< Height of a liquid's surface above the origin, against gravity [m]. [-1e9, 1e9]
+  double density = 1000.0;  ///< Density of a liquid [kg/m^3]. [0, 1e6]
+  double drag = 0.0;        ///< Rate at which motion in a liquid decays [1/s]. [0, 1e6]
+  double time = 0.0;        ///< Time of an explosion, of the world's clock [s].
 };
 
-/// One object's particles as a force law sees them, in the order the maker gave them.
+/// The points of one object as a force law sees them, in the order that their maker gave.
 class ForceView;
 
-/// Called once per particle substep for each object, in order of creation, on the thread that called step().
+/// A function that adds forces to the points of objects. It is called once per particle substep for each
+/// object, in order of creation, on the thread that called step().
 using ForceLaw = std::function<void(ForceView&)>;
 
 /// The bodies that forces move and that are awake, as a force law sees them, in the same order in every run.
 class BodyForceView;
 
-/// Called once per substep, on the thread that called step().
+/// A function that adds forces to bodies. It is called once per substep, on the thread that called step().
 using BodyForceLaw = std::function<void(BodyForceView&)>;
 
 }  // namespace hooke

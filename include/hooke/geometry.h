@@ -192,8 +192,7 @@ enum class SolidOperation : std::uint8_t {
 /// 10,000 triangles.
 ///
 /// - Corners are moved by less than 2^-32 of the longest side of the box around both. From there on all is
-/// exact,
-///   so that faces, edges and corners that fall together are welded.
+///   exact, so that faces, edges and corners that fall together are welded.
 /// - Edges shorter than 2e-6 of the result's diagonal are then collapsed, and triangles lower than that are
 ///   flipped away or lifted, so that the mesh stays closed when a file rounds it.
 /// - The result is closed, each of its edges has two triangles, and the triangles at a vertex form one fan:

@@ -236,8 +236,8 @@ struct Chain {
 };
 
 /// Largest stiffness [N/m] at which oscillations of the chain do not grow: by bisection of runs, and by
-/// growth_per_step at the chain's fastest mode, omega^2 = 4 (k/m) sin^2(pi (2n - 1) / (4n + 2)).
-/// 0 for methods that always diverge, infinity for those that never do (found above 1e6 m/dt^2).
+/// growth_per_step at the chain's fastest mode, omega^2 = 4 (k/m) sin^2(pi (2n - 1) / (4n + 2)). 0 for
+/// methods that always diverge, infinity for those that never do (found above 1e6 m/dt^2).
 [[nodiscard]] Result<double> largest_stable_stiffness(std::string_view stepper, const Chain& chain = {});
 [[nodiscard]] Result<double> stable_stiffness_in_theory(std::string_view stepper, const Chain& chain = {});
 

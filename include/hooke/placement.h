@@ -57,9 +57,9 @@ struct Placement {
 [[nodiscard]] FieldDesc placed(FieldDesc desc, const Placement& at, Vec3 gravity);
 
 /// Draws a placement by `seed`, to try an arrangement in any direction. Every rotation is equally likely
-/// (Shoemake 1992, Uniform random rotations). The
-/// position is drawn from a cube of 200 m about the origin and moved along the turned `gravity` until it is
-/// level with the origin: heights above the origin stay the same.
+/// (Shoemake 1992, Uniform random rotations). The position is drawn from a cube of 200 m about the origin and
+/// moved along the turned `gravity` until it is level with the origin: heights above the origin stay the
+/// same.
 [[nodiscard]] Placement random_placement(std::uint32_t seed, Vec3 gravity);
 
 }  // namespace hooke

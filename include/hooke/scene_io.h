@@ -437,9 +437,9 @@ struct SceneVerdict {
 /// A World made from a scene, its timeline and its expectations.
 class Simulation {
  public:
-  /// Reads the meshes, builds the world, evaluates the expectations of step 0.
-  /// With a placement the whole scene is turned and moved; its timeline and its expectations are still in the
-  /// scene's own frame. Energies keep the world's origin as their zero.
+  /// Reads the meshes, builds the world, evaluates the expectations of step 0. With a placement the whole
+  /// scene is turned and moved; its timeline and its expectations are still in the scene's own frame.
+  /// Energies keep the world's origin as their zero.
   [[nodiscard]] static Loaded<Simulation> create(Scene scene, const Placement& placement = {});
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
