@@ -79,15 +79,15 @@ struct WorldDesc {
   bool sleeping = true;  ///< Whether bodies that have come to rest are skipped until something wakes them.
 };
 
-/// A displacement as a function of time t since its start; zero at the start. Only the fields of its kind
-/// count.
+/// A displacement as a function of the time t since its start. It is zero at the start, unless keyframes say
+/// otherwise. Only the fields of its kind count.
 struct MotionDesc {
   /// The form of the function.
   enum class Kind : std::uint8_t {
     kStill,             ///< No displacement.
     kConstantVelocity,  ///< `velocity` t.
     kSine,              ///< `amplitude` (sin(2 pi `frequency_hz` t + `phase`) - sin(`phase`)).
-    kKeyframes          ///< Straight lines between `keyframes`; still before the first and after the last.
+    kKeyframes          ///< Straight lines between `keyframes`; the first and the last one hold beyond them.
   };
   /// A displacement at a time.
   struct Keyframe {

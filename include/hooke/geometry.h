@@ -18,8 +18,8 @@ namespace hooke {
 struct SolidRepair {
   MeshDesc mesh = {};                ///< The mended mesh: closed, its outside outside.
   std::uint32_t points_dropped = 0;  ///< Number of points welded to another or used by no triangle.
-  std::vector<std::uint32_t> degenerate =
-      {};                                     ///< Triangles left out: without height, or with a corner twice.
+  /// Triangles left out because they have no height, or a corner twice.
+  std::vector<std::uint32_t> degenerate = {};
   std::vector<std::uint32_t> duplicate = {};  ///< Triangles left out: they lie on one with the same corners.
   std::vector<std::uint32_t> turned = {};  ///< Triangles turned over, to face outward as their neighbors do.
   std::vector<std::uint32_t> given = {};   ///< For each triangle of `mesh`, its index in the given mesh.
