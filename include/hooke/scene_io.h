@@ -18,300 +18,323 @@
 
 /// \file
 /// Scenes: what a JSON file says, as plain data, and the simulation that runs it. Part of the library
-/// `hooke::io`. Read Scene first, then Simulation; docs/scene_format.md describes the file.
+/// `hooke::io`. Read Scene first, then Simulation; docs/scene_format.md describes the file, and gives the
+/// range of every key.
 
 namespace hooke {
 
-/// The newest version of the format that this library reads, and the one that it writes.
+/// Newest version of the format that this library reads, and the one that it writes.
 inline constexpr int kSceneVersion = 1;
 
-/// Most points of all objects together, events included; a body counts as one, or as its parts.
+/// Largest number of points of all objects together, including those that events add. A body counts as one
+/// point, or as many as it has parts; a hook counts as one.
 inline constexpr std::size_t kMostScenePoints = 1'000'000;
 
 /// How a surface looks and how it answers a contact.
 struct SceneMaterial {
-  std::string name = {};
-  std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear base color, each [0, 1].
+  std::string name = {};                            ///< Name that objects refer to; unique.
+  std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
   std::string texture = {};   ///< Path of an image, relative to the scene file; empty for none.
-  float shininess = 16.0f;    ///< Blinn-Phong exponent. [1, 1000]
-  float opacity = 1.0f;       ///< [0, 1]
-  Real friction = Real(0.5);  ///< Coulomb coefficient. [0, 100]
-  std::optional<Real> static_friction = {};  ///< While at rest; not below `friction`, which it is by default.
-  Real restitution = Real(0);                ///< [0, 1]
-  Real rolling_friction = Real(0);           ///< Lever [m].
-  Real spinning_friction = Real(0);          ///< Lever [m].
+  float shininess = 16.0f;    ///< Exponent of Blinn and Phong's highlights. [1, 1000]
+  float opacity = 1.0f;       ///< Opacity; 1 hides what is behind. [0, 1]
+  Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
+  /// Coefficient while at rest; `friction` by default. [friction, 100]
+  std::optional<Real> static_friction = {};
+  Real restitution = Real(0);        ///< Speed after over speed before. [0, 1]
+  Real rolling_friction = Real(0);   ///< Lever of the resistance to rolling [m], not negative.
+  Real spinning_friction = Real(0);  ///< Lever of the resistance to spin about the normal [m], not negative.
 };
 
 /// What two materials do to each other, in place of what their own numbers would give.
 struct ScenePair {
-  std::string a = {};  ///< Names in Scene::materials.
-  std::string b = {};
-  MaterialPairDesc desc = {};
+  std::string a = {};          ///< Name of the one material in Scene::materials.
+  std::string b = {};          ///< Name of the other material.
+  MaterialPairDesc desc = {};  ///< What they do to each other. The simulation fills in the numbers a and b.
 };
 
 /// Triangles for bodies, cloths and solids: a file, or vertices and triangles in place.
 struct SceneMesh {
-  std::string name = {};
-  std::string file = {};  ///< Relative to the scene file; empty when `mesh` holds the triangles.
-  ImportOptions import = {};
-  MeshTree tree = MeshTree::kBoxes;  ///< For World::add_mesh.
-  MeshDesc mesh = {};
-  /// Of every object that is made of it, in its frame; the numbers are of vertices.
+  std::string name = {};             ///< Name that objects refer to; unique.
+  std::string file = {};             ///< Path relative to the scene file; empty if `mesh` has the triangles.
+  ImportOptions import = {};         ///< How the file is brought into Hooke's frame.
+  MeshTree tree = MeshTree::kBoxes;  ///< Structure for World::add_mesh.
+  MeshDesc mesh = {};                ///< Triangles in place of a file.
+  /// Names for places of every object that is made of the mesh, in its frame; point numbers are of vertices.
   std::vector<ConnectionPointDesc> connection_points = {};
 };
 
 /// A point of an object: an index, or the last one.
 struct ScenePoint {
-  std::uint32_t index = 0;  ///< 0 when `last`.
-  bool last = false;
+  std::uint32_t index = 0;  ///< Index of the point; 0 if `last` is set.
+  bool last = false;        ///< Whether the object's last point is meant.
   friend bool operator==(const ScenePoint&, const ScenePoint&) = default;
 };
 
-/// Points that are held, by their number or by their place.
+/// Points that are held, chosen by their number or by their place.
 struct ScenePin {
+  /// How the points are chosen.
   enum class Pick : std::uint8_t {
-    kPoint,
+    kPoint,    ///< One point, by its number.
     kColumn,   ///< All points of a column of a cloth's grid.
     kRow,      ///< All points of a row of a cloth's grid.
     kTopmost,  ///< All points not further than `within` below the highest.
   };
 
-  Pick pick = Pick::kPoint;
-  ScenePoint point = {};     ///< Of the object, or the number of the column or row.
-  Real within = Real(0.01);  ///< kTopmost [m].
-  MotionDesc motion = {};
+  Pick pick = Pick::kPoint;  ///< How the points are chosen.
+  ScenePoint point = {};     ///< The point, or the number of the column or row.
+  Real within = Real(0.01);  ///< Depth below the highest point, for kTopmost [m], not negative.
+  MotionDesc motion = {};    ///< Path of the points; still by default.
 };
 
+/// A mass that is added to a point.
 struct SceneLoad {
-  ScenePoint point = {};
-  Real mass = Real(1);  ///< [kg], not negative.
+  ScenePoint point = {};  ///< The point.
+  Real mass = Real(1);    ///< Mass in addition to the point's own [kg], not negative.
 };
 
-/// Copies of one object. Instance i is named `name[i]`.
+/// Copies of one object. Copy i is named `name[i]`. Only the fields of its kind count.
 struct SceneArray {
+  /// How the copies are arranged.
   enum class Kind : std::uint8_t {
-    kSingle,
+    kSingle,   ///< The object alone, under its own name.
     kGrid,     ///< grid[0] x grid[1] x grid[2] copies, x fastest, `spacing` apart.
     kPyramid,  ///< `pyramid` copies in the lowest row along x, one less in each row above.
     kRandom,   ///< `random` copies, uniform in `box`, by `seed`.
-    kList,     ///< One copy for each of `list`.
+    kList,     ///< One copy for each offset in `list`.
   };
 
-  Kind kind = Kind::kSingle;
-  std::array<std::int32_t, 3> grid = {1, 1, 1};
-  std::int32_t pyramid = 1;
-  std::int32_t random = 1;
-  DVec3 spacing = {1, 1, 1};  ///< [m]
-  std::uint32_t seed = 1;
-  std::array<DVec3, 2> box = {DVec3{}, DVec3{1, 1, 1}};  ///< Smallest and largest offset [m].
-  std::vector<DVec3> list = {};                          ///< Offsets [m].
-  std::vector<Quat> rotations = {};                      ///< Of a list of bodies: as many as `list`, or none.
+  Kind kind = Kind::kSingle;                             ///< How the copies are arranged.
+  std::array<std::int32_t, 3> grid = {1, 1, 1};          ///< Copies along x, y and z. Each [1, 1e6]
+  std::int32_t pyramid = 1;                              ///< Copies in the lowest row of a pyramid. [1, 1000]
+  std::int32_t random = 1;                               ///< Number of random copies. [1, 1e6]
+  DVec3 spacing = {1, 1, 1};                             ///< Distances of neighbors in a grid or pyramid [m].
+  std::uint32_t seed = 1;                                ///< Seed of a random array; any value.
+  std::array<DVec3, 2> box = {DVec3{}, DVec3{1, 1, 1}};  ///< Smallest and largest random offset [m].
+  std::vector<DVec3> list = {};                          ///< Offsets of the copies of a list [m].
+  std::vector<Quat> rotations = {};  ///< Rotations of a list of bodies: as many as `list` has, or none.
 
-  /// Number of copies; saturates.
+  /// Number of copies, at most 2^40.
   [[nodiscard]] std::size_t count() const;
   /// Offset of copy `i` from the object as described [m]; zero beyond count().
   [[nodiscard]] DVec3 offset(std::size_t i) const;
-  /// Turn of copy `i` about its own origin, after the rotation of the object as described.
+  /// Rotation of copy `i` about its own origin, after that of the object as described.
   [[nodiscard]] Quat rotation(std::size_t i) const;
 };
 
-/// What every object but a field has.
+/// What bodies, ropes, cloths, solids and particles have in common.
 struct SceneTag {
-  std::string name = {};      ///< Unique; when empty, the object is called by its path, as "ropes[0]".
-  std::string material = {};  ///< A name in Scene::materials; empty for none.
-  std::optional<Real> friction = {};  ///< Replaces the material's. [0, 100]
-  /// How the laboratory integrates it: a name of lab::steppers() or "auto"; empty for what the run chooses.
-  /// Not of a body.
+  std::string name = {};      ///< Unique name; an object without is called by its path, as "ropes[0]".
+  std::string material = {};  ///< Name in Scene::materials; empty for none.
+  std::optional<Real> friction = {};  ///< Friction in place of the material's. [0, 100]
+  /// Method by which the laboratory integrates the object: a name of lab::steppers() or "auto"; empty for
+  /// what the run chooses. Bodies have none.
   std::string stepper = {};
-  SceneArray array = {};
+  SceneArray array = {};  ///< Copies of the object.
 };
 
-// Descriptions by value. What refers to something by name or by place stands beside the description and is
-// filled into it when the world is built: meshes, pins, loads, friction.
+// Objects hold their descriptions by value. What refers to something by name or by place stands beside the
+// description, and is filled into it when the world is built: meshes, pins, loads, friction.
+
+/// One shape of a body that has several.
 struct ScenePart {
-  PartDesc desc = {};
-  std::string mesh = {};      ///< A name in Scene::meshes, for a mesh or a hull.
-  std::string material = {};  ///< A name in Scene::materials; the body's by default.
+  PartDesc desc = {};         ///< The part; its mesh and contact come from the names below.
+  std::string mesh = {};      ///< Name in Scene::meshes, for a mesh or a hull.
+  std::string material = {};  ///< Name in Scene::materials; the body's by default.
 };
+/// A body.
 struct SceneBody {
-  SceneTag tag = {};
-  BodyDesc desc = {};
-  std::string mesh = {};              ///< A name in Scene::meshes, for a mesh or a hull.
-  std::vector<ScenePart> parts = {};  ///< Replace desc.shape.
+  SceneTag tag = {};                  ///< Name, material, friction and copies.
+  BodyDesc desc = {};                 ///< The body; its mesh, contact and parts come from below.
+  std::string mesh = {};              ///< Name in Scene::meshes, for a mesh or a hull.
+  std::vector<ScenePart> parts = {};  ///< Shapes of a compound, in place of desc.parts.
 };
+/// A rope.
 struct SceneRope {
-  SceneTag tag = {};
-  RopeDesc desc = {};
-  std::vector<ScenePin> pins = {{}};
-  std::vector<SceneLoad> loads = {};
+  SceneTag tag = {};                  ///< Name, material, friction, stepper and copies.
+  RopeDesc desc = {};                 ///< The rope; its pins, loads and friction come from here.
+  std::vector<ScenePin> pins = {{}};  ///< Points that are held; the first by default.
+  std::vector<SceneLoad> loads = {};  ///< Masses that are added to points.
 };
+/// A cloth.
 struct SceneCloth {
-  SceneTag tag = {};
-  ClothDesc desc = {};
-  std::string mesh = {};  ///< A name in Scene::meshes; empty for a grid.
-  std::vector<ScenePin> pins = {};
-  std::vector<SceneLoad> loads = {};
+  SceneTag tag = {};                  ///< Name, material, friction, stepper and copies.
+  ClothDesc desc = {};                ///< The cloth; its mesh, pins, loads and friction come from here.
+  std::string mesh = {};              ///< Name in Scene::meshes; empty for a grid.
+  std::vector<ScenePin> pins = {};    ///< Points that are held.
+  std::vector<SceneLoad> loads = {};  ///< Masses that are added to points.
 };
+/// A soft solid.
 struct SceneSolid {
-  SceneTag tag = {};
-  SolidDesc desc = {};
-  std::string mesh = {};  ///< A name in Scene::meshes; empty for a box of cells.
-  std::vector<ScenePin> pins = {};
+  SceneTag tag = {};                ///< Name, material, friction, stepper and copies.
+  SolidDesc desc = {};              ///< The solid; its mesh, pins and friction come from here.
+  std::string mesh = {};            ///< Name in Scene::meshes; empty for a box of cells.
+  std::vector<ScenePin> pins = {};  ///< Points that are held.
 };
+/// Loose point masses and their springs.
 struct SceneParticles {
-  SceneTag tag = {};
-  ParticlesDesc desc = {};
-  std::vector<ScenePin> pins = {};
+  SceneTag tag = {};                ///< Name, material, friction, stepper and copies.
+  ParticlesDesc desc = {};          ///< The particles; their pins and friction come from here.
+  std::vector<ScenePin> pins = {};  ///< Particles that are held.
 };
-/// A hook. In an array, copy i holds copy i of `a` and of `b` where they are arrays, counted from the copy
-/// that is named: with "link[1]", copy i holds link[1 + i].
+/// A hook. In an array, copy i holds copy i of `a` and of `b` if they are arrays, counted from the copy that
+/// is named: with "link[1]", copy i holds link[1 + i].
 struct SceneHook {
-  std::string name = {};             ///< As SceneTag::name.
-  HookDesc desc = {};                ///< All but `a`, `b` and `anchor`.
-  std::optional<DVec3> anchor = {};  ///< HookDesc::anchor; needed unless a point says where.
-  /// Name of what it holds, or "name.point" with one of its connection points; empty for the world.
+  std::string name = {};             ///< Name as SceneTag::name.
+  HookDesc desc = {};                ///< The hook, except for `a`, `b` and `anchor`.
+  std::optional<DVec3> anchor = {};  ///< HookDesc::anchor; needed unless a point or a name says where.
+  /// Name of what is held on one side, or "name.point" with one of its connection points; empty for the
+  /// world.
   std::string a = {};
-  std::string b = {};
-  std::optional<ScenePoint> a_point = {};  ///< Of a rope, cloth, solid or particles; the place nearest to the
-                                           ///< anchor without it.
-  std::optional<ScenePoint> b_point = {};
-  SceneArray array = {};  ///< Offsets of the anchors.
+  std::string b = {};  ///< The same of the other side.
+  /// Point of a rope, cloth, solid or particles on side a; without it, the place nearest to the anchor.
+  std::optional<ScenePoint> a_point = {};
+  std::optional<ScenePoint> b_point = {};  ///< The same of side b.
+  SceneArray array = {};                   ///< Copies of the hook; offsets move their anchors.
 };
-/// Two lines sewn together. The stitches are hooks named `name[0]`, ... In an array, copy i sews copy i of
-/// `a` and of `b` as those of a hook are held, and its stitches follow those of the copy before.
+/// Two lines that are sewn together. The stitches are hooks named `name[0]`, `name[1]`, ... In an array, copy
+/// i sews copy i of `a` and of `b`, as a hook holds them, and its stitches follow those of the copy before.
 struct SceneSeam {
-  std::string name = {};                     ///< As SceneTag::name.
-  std::string a = {};                        ///< "cloth.edge" as in SeamEdge, or what `a_points` are of.
-  std::vector<std::uint32_t> a_points = {};  ///< SeamEdge::points.
-  std::string b = {};
-  std::vector<std::uint32_t> b_points = {};
-  Real strength = kRigid;  ///< SeamDesc::strength.
-  SceneArray array = {};
+  std::string name = {};                     ///< Name as SceneTag::name.
+  std::string a = {};                        ///< "cloth.edge" as in SeamEdge, or the object of `a_points`.
+  std::vector<std::uint32_t> a_points = {};  ///< SeamEdge::points of the first line.
+  std::string b = {};                        ///< "cloth.edge" as in SeamEdge, or the object of `b_points`.
+  std::vector<std::uint32_t> b_points = {};  ///< SeamEdge::points of the second line.
+  Real strength = kRigid;                    ///< SeamDesc::strength [N/m].
+  SceneArray array = {};                     ///< Copies of the seam.
 };
+/// A field of force.
 struct SceneField {
-  std::string name = {};
-  FieldDesc desc = {};
+  std::string name = {};  ///< Name as SceneTag::name.
+  FieldDesc desc = {};    ///< The field.
 };
 
+/// Objects of a scene or of an event, in the order in which they are added: kind after kind as listed here.
 struct SceneObjects {
-  std::vector<SceneBody> bodies = {};
-  std::vector<SceneRope> ropes = {};
-  std::vector<SceneCloth> cloths = {};
-  std::vector<SceneSolid> solids = {};
-  std::vector<SceneParticles> particles = {};
-  std::vector<SceneField> fields = {};
-  std::vector<SceneHook> hooks = {};
-  std::vector<SceneSeam> seams = {};
+  std::vector<SceneBody> bodies = {};          ///< Rigid bodies, still or moving.
+  std::vector<SceneRope> ropes = {};           ///< Ropes, strings, hair.
+  std::vector<SceneCloth> cloths = {};         ///< Cloths, flags, soft shells.
+  std::vector<SceneSolid> solids = {};         ///< Soft solids: jelly, rubber.
+  std::vector<SceneParticles> particles = {};  ///< Nets of masses and springs.
+  std::vector<SceneField> fields = {};         ///< Forces on every particle and body.
+  std::vector<SceneHook> hooks = {};           ///< What holds objects together.
+  std::vector<SceneSeam> seams = {};           ///< What sews cloths and solids together.
 };
 
-/// Something that happens just before a step.
+/// Something that happens just before a step. Only the fields of its kind count.
 struct SceneEvent {
+  /// What happens.
   enum class Kind : std::uint8_t {
-    kNone,
-    kAdd,
-    kRemove,
-    kMotion,  ///< Pins `point` and moves it; of a kinematic body, its path from where it is.
-    kUnpin,
-    kForce,
-    kImpulse,
-    kVelocity,
+    kNone,      ///< Nothing.
+    kAdd,       ///< Adds the objects in `add`.
+    kRemove,    ///< Removes `object`, or all copies of an array of that name.
+    kMotion,    ///< Pins `point` and moves it; of a kinematic body, its path from where it is.
+    kUnpin,     ///< Lets `point` go.
+    kForce,     ///< Pushes a point or a body for `steps` steps.
+    kImpulse,   ///< Hits a point or a body.
+    kVelocity,  ///< Sets the velocity of a point or a body.
     kMotor,     ///< World::set_motor
     kSpring,    ///< World::set_spring
     kSteering,  ///< World::set_steering
-    kWind,
-    kGravity,
+    kWind,      ///< World::set_wind
+    kGravity,   ///< World::set_gravity
   };
 
-  Kind kind = Kind::kNone;
-  std::uint32_t at_step = 0;  ///< Number of steps done before it happens.
-  SceneObjects add = {};
-  std::string object = {};
-  std::optional<ScenePoint> point = {};  ///< Of a rope, cloth, solid or particles; none of a body.
-  std::optional<DVec3> at = {};  ///< Of a force or impulse on a body: where [m]; its center of mass without.
-  MotionDesc motion = {};
+  Kind kind = Kind::kNone;               ///< What happens.
+  std::uint32_t at_step = 0;             ///< Number of steps done before it happens.
+  SceneObjects add = {};                 ///< New objects, for kAdd.
+  std::string object = {};               ///< Name of the object, hook or array that it happens to.
+  std::optional<ScenePoint> point = {};  ///< Point of a rope, cloth, solid or particles; none of a body.
+  /// Place of a force or impulse on a body [m]; its center of mass by default.
+  std::optional<DVec3> at = {};
+  MotionDesc motion = {};                     ///< Path, for kMotion.
   Vec3 vector = {};                           ///< Force [N], impulse [N s] or gravity [m/s^2].
-  std::uint32_t steps = 1;                    ///< kForce: for so many steps.
-  std::optional<Vec3> velocity = {};          ///< kVelocity [m/s]; without it, as it was.
-  std::optional<Vec3> angular_velocity = {};  ///< kVelocity of a body [rad/s]; likewise.
-  HookMotor motor = {};
-  HookSpring spring = {};
-  Real angle = Real(0);  ///< kSteering [rad].
-  WindDesc wind = {};
+  std::uint32_t steps = 1;                    ///< Number of steps that a force acts for. [1, 1e9]
+  std::optional<Vec3> velocity = {};          ///< Velocity, for kVelocity [m/s]; as it was by default.
+  std::optional<Vec3> angular_velocity = {};  ///< Angular velocity of a body [rad/s]; as it was by default.
+  HookMotor motor = {};                       ///< Motor, for kMotor.
+  HookSpring spring = {};                     ///< Spring, for kSpring.
+  Real angle = Real(0);                       ///< Angle, for kSteering [rad].
+  WindDesc wind = {};                         ///< Wind, for kWind.
 };
 
+/// Where the camera is at a time.
 struct SceneKeyframe {
-  double time = 0;  ///< [s], increasing.
-  DVec3 eye = {};
-  DVec3 target = {};
+  double time = 0;    ///< Time since the start [s]; larger than that of the keyframe before.
+  DVec3 eye = {};     ///< Position of the camera [m].
+  DVec3 target = {};  ///< Place that it looks at [m].
 };
 
 /// Where a viewer stands.
 struct SceneCamera {
-  DVec3 eye = {2, 1.5, 4};               ///< [m]
-  DVec3 target = {0, 1, 0};              ///< [m]
-  Real fov_deg = Real(45);               ///< Vertical opening angle. [1, 170]
+  DVec3 eye = {2, 1.5, 4};               ///< Position of the camera [m].
+  DVec3 target = {0, 1, 0};              ///< Place that it looks at [m].
+  Real fov_deg = Real(45);               ///< Vertical opening angle [degrees]. [1, 170]
   std::vector<SceneKeyframe> path = {};  ///< Replaces eye and target; smooth between keyframes.
 };
 
 /// How exact the laboratory must be, whatever the method.
 struct SceneAccuracy {
-  double max_error = 1e-3;  ///< Of any point's position up to the end [m], positive.
+  double max_error = 1e-3;  ///< Largest error of any point's position up to the end [m], positive.
 };
 
 /// What the laboratory does with the scene (`hooke run --stepper declared`).
 struct SceneLaboratory {
-  std::string stepper = "rk4";  ///< A name of lab::steppers() or "auto".
-  lab::CollisionOptions collisions = {};
+  std::string stepper = "rk4";            ///< Method: a name of lab::steppers() or "auto".
+  lab::CollisionOptions collisions = {};  ///< How bodies collide.
 };
 
 /// A figure that the scene promises.
 struct SceneExpectation {
+  /// Which figure it is.
   enum class Quantity : std::uint8_t {
-    kX,
-    kY,
-    kZ,
-    kHeight,  ///< The same as kY.
-    kSpeed,
-    kAngularSpeed,
-    kTilt,  ///< Angle between the y axis of a body and that of the world [deg].
-    kExtension,
-    kLargestStretch,
-    kMeanStretch,
-    kTension,
-    kTwist,  ///< Of a rope's segment, or of all of them [rad].
-    kLowest,
-    kHighest,
-    kTotalEnergy,
-    kKineticEnergy,
-    kPotentialEnergy,
-    kElasticEnergy,
-    kMomentum,
-    kPenetration,
-    kContacts,
-    kAsleep,  ///< Number of bodies that sleep.
-    kForce,   ///< Size of what a hook does to b, mean over the last step [N].
-    kTorque,  ///< The same [N m]; or the largest of a rope's segments (World::torques), or of one.
+    kX,                ///< x of a point or body [m].
+    kY,                ///< y of a point or body [m].
+    kZ,                ///< z of a point or body [m].
+    kHeight,           ///< The same as kY.
+    kSpeed,            ///< Speed of a point, or of a body's center of mass [m/s].
+    kAngularSpeed,     ///< Angular speed of a body [rad/s].
+    kTilt,             ///< Angle between the y axis of a body and that of the world [degrees].
+    kExtension,        ///< Length of a rope minus its length at rest [m].
+    kLargestStretch,   ///< Measurement::largest_stretch of the world.
+    kMeanStretch,      ///< Measurement::mean_stretch of the world.
+    kTension,          ///< Tension of a rope's segment, or the largest of them [N].
+    kTwist,            ///< Twist of a rope's segment, or of all of them [rad].
+    kLowest,           ///< y of an object's lowest point [m].
+    kHighest,          ///< y of an object's highest point [m].
+    kTotalEnergy,      ///< Energy::total of the world [J].
+    kKineticEnergy,    ///< Energy::kinetic of the world [J].
+    kPotentialEnergy,  ///< Energy::potential of the world [J].
+    kElasticEnergy,    ///< Energy::elastic of the world [J].
+    kMomentum,         ///< Length of the world's momentum [kg m/s].
+    kPenetration,      ///< Measurement::largest_penetration of the world [m].
+    kContacts,         ///< StepReport::contacts of the last step.
+    kAsleep,           ///< Number of bodies that sleep.
+    kForce,            ///< Size of a hook's force on b, as a mean over the last step [N].
+    /// Size of a hook's torque on b, likewise [N m]; or the torque of a rope's segment (World::torques), or
+    /// the largest of them.
+    kTorque,
     kAngle,   ///< World::hook_value of a hinge [rad].
     kWay,     ///< World::hook_value of a slider, a wheel or a distance [m].
-    kGap,     ///< World::hook_gap; of the world, the largest [m].
+    kGap,     ///< World::hook_gap of a hook; of the world, the largest [m].
     kBroken,  ///< 1 for a hook that has broken; of the world, their number.
   };
+  /// How the achieved figure is compared with `value`.
   enum class Op : std::uint8_t {
-    kLess,
-    kLessOrEqual,
-    kGreater,
-    kGreaterOrEqual,
-    kEqual,   ///< |achieved - value| <= tolerance.
-    kWithin,  ///< |achieved - value| <= tolerance |value|.
+    kLess,            ///< achieved < value
+    kLessOrEqual,     ///< achieved <= value
+    kGreater,         ///< achieved > value
+    kGreaterOrEqual,  ///< achieved >= value
+    kEqual,           ///< |achieved - value| <= tolerance
+    kWithin,          ///< |achieved - value| <= tolerance |value|
   };
 
-  Quantity quantity = Quantity::kHeight;
-  std::string of = {};                   ///< Name of an object; empty for the world.
-  std::optional<ScenePoint> point = {};  ///< Of the object; of a tension, twist or torque, the segment.
-  Op op = Op::kLess;
-  double value = 0;
-  double tolerance = 0;
-  std::optional<std::uint32_t> at_step = {};  ///< Number of steps done; at the end by default.
+  Quantity quantity = Quantity::kHeight;  ///< Which figure it is.
+  std::string of = {};                    ///< Name of an object; empty for the world.
+  std::optional<ScenePoint> point = {};  ///< Point of the object; of a tension, twist or torque, the segment.
+  Op op = Op::kLess;                     ///< How the figure is compared.
+  double value = 0;                      ///< The figure that is promised, in its unit.
+  double tolerance = 0;                  ///< Tolerance of kEqual, in the figure's unit, or of kWithin.
+  std::optional<std::uint32_t> at_step = {};  ///< Number of steps done by then; at the end by default.
 };
 
 struct SceneSource;     // the file a scene came from; src/io/scene/scene_source.h
@@ -319,155 +342,184 @@ struct SimulationData;  // src/io/scene/scene_simulation.cpp
 
 /// Everything a scene file says.
 struct Scene {
-  int version = kSceneVersion;
-  std::string title = {};
-  std::string description = {};
-  WorldDesc world = {};
-  Real dt = Real(1) / Real(60);  ///< Of one step [s]. (0, 1]
-  double seconds = 10;           ///< How long it runs. [0, 1e6]
-  std::optional<SceneAccuracy> accuracy = {};
-  std::optional<SceneLaboratory> laboratory = {};
-  std::vector<SceneMesh> meshes = {};
-  std::vector<SceneMaterial> materials = {};
-  std::vector<ScenePair> material_pairs = {};
-  SceneObjects objects = {};
-  std::vector<SceneEvent> timeline = {};
-  std::optional<SceneCamera> camera = {};
-  std::vector<SceneExpectation> expect = {};
+  int version = kSceneVersion;   ///< Version of the format. [1, kSceneVersion]
+  std::string title = {};        ///< Title, in one line.
+  std::string description = {};  ///< What there is to see.
+  WorldDesc world = {};          ///< The world; its table of materials comes from `material_pairs`.
+  Real dt = Real(1) / Real(60);  ///< Length of one step [s]. (0, 1]
+  double seconds = 10;           ///< How long the scene runs [s]. [0, 1e6]
+  std::optional<SceneAccuracy> accuracy = {};      ///< How exact the laboratory must be, if it is to choose.
+  std::optional<SceneLaboratory> laboratory = {};  ///< What the laboratory does with the scene.
+  std::vector<SceneMesh> meshes = {};              ///< Meshes that objects refer to.
+  std::vector<SceneMaterial> materials = {};       ///< Materials that objects refer to.
+  std::vector<ScenePair> material_pairs = {};      ///< What two materials do to each other.
+  SceneObjects objects = {};                       ///< Objects at the start.
+  std::vector<SceneEvent> timeline = {};           ///< What happens on the way, in any order.
+  std::optional<SceneCamera> camera = {};          ///< Where a viewer stands; without it he frames the scene.
+  std::vector<SceneExpectation> expect = {};       ///< Figures that the scene promises.
   /// File that textures and meshes are relative to; empty for the current folder.
   std::string path = {};
-  /// For messages; not part of what the scene says.
+  /// The text that the scene was read from, for the places in messages; no part of what the scene says.
   std::shared_ptr<const SceneSource> source = {};
 
   /// Number of steps in `seconds`.
   [[nodiscard]] std::uint32_t step_count() const;
 };
 
-/// The same content; `path` and `source` do not count.
+/// Whether two scenes say the same; `path` and `source` do not count.
 [[nodiscard]] bool operator==(const Scene& a, const Scene& b);
 
 /// A value with warnings, or everything that is wrong: at least one error.
 template <class T>
+/// A value and its warnings, or everything that is wrong: at least one error.
 struct Loaded {
-  std::optional<T> value = {};
-  std::vector<Error> errors = {};  ///< In the order of the file, at most 100.
-  std::vector<Error> warnings = {};
+  std::optional<T> value = {};       ///< The value; nothing if there are errors.
+  std::vector<Error> errors = {};    ///< Everything that is wrong, in the order of the file, at most 100.
+  std::vector<Error> warnings = {};  ///< What the file says in vain.
 
+  /// Whether there is a value.
   explicit operator bool() const { return value.has_value(); }
 };
 
-/// "demo.json:12:17: ropes[0].masses: 1 is out of range, must be 2 to 65536".
+/// Writes an error in one line: "demo.json:12:17: ropes[0].masses: 1 is out of range, must be 2 to 65536".
 [[nodiscard]] std::string to_line(const Error& error);
 
-/// Reads a scene file. Limits: 64 MiB, 64 levels, 2e6 values, kMostScenePoints. Model files are looked for,
-/// and read when the simulation is created.
+/// Reads a scene file. Limits: 64 MiB, 64 levels, 2e6 values, kMostScenePoints. It looks for model files,
+/// which are read when the simulation is created.
 [[nodiscard]] Loaded<Scene> load_scene(const std::string& path);
 
-/// Reads a scene from memory. `name` stands in messages; files are relative to its folder and not looked for.
+/// Reads a scene from memory. `name` stands in messages. Files are relative to the folder of `name`, and it
+/// does not look for them.
 [[nodiscard]] Loaded<Scene> parse_scene(std::string text, std::string name);
 
-/// The scene as a file; what equals its default is left out. parse_scene gives the scene back.
+/// Writes the scene as a file, without what equals its default. parse_scene gives the scene back.
 [[nodiscard]] std::string write_scene(const Scene& scene);
 
-/// Writes the scene: to a temporary file in the same folder, renamed when it is complete.
+/// Saves the scene in a file: it writes a temporary file in the same folder, and renames it when it is
+/// complete. Errors: a file that cannot be written.
 [[nodiscard]] Result<void> save_scene(const Scene& scene, const std::string& path);
 
-/// The JSON schema (draft 7) of the format.
+/// Writes the JSON schema (draft 7) of the format.
 [[nodiscard]] std::string scene_schema();
 
-/// Every object and key of the format with type, unit, range, default and meaning, as Markdown tables.
+/// Writes Markdown tables of every object and key of the format, with type, unit, range, default and meaning.
 [[nodiscard]] std::string scene_reference();
 
-/// A commented scene to start from. Kinds: "empty", "rope", "flag"; nothing for another word.
+/// Gives a commented scene to start from. Kinds are "empty", "rope" and "flag"; there is nothing for another
+/// word.
 [[nodiscard]] std::optional<std::string> starter_scene(std::string_view kind);
 
 /// One object of a running simulation: what to draw and how.
 struct SceneObject {
-  enum class Kind : std::uint8_t { kBody, kRope, kCloth, kSolid, kParticles, kField, kHook };
-
-  std::string name = {};
-  Kind kind = Kind::kBody;
-  BodyId body = {};  ///< The id of its kind is set, the others are null.
-  RopeId rope = {};
-  ClothId cloth = {};
-  SolidId solid = {};
-  ParticlesId particles = {};
-  FieldId field = {};
-  HookId hook = {};
-  SceneMaterial look = {};
-  std::string material = {};  ///< Empty: `look` is the default, and a model's own materials apply.
-  std::string path = {};      ///< In the file, as "ropes[0]".
-  std::string stepper = {};   ///< Of the laboratory; empty for what the run chooses.
-  /// One shape of a body that has several.
-  struct Part {
-    Shape shape = {};
-    Vec3 position = {};  ///< In the body's frame [m].
-    Quat rotation = {};
-    std::shared_ptr<const Model> model = {};
-    SceneMaterial look = {};
-    std::string material = {};  ///< As of the object.
+  /// What the object is.
+  enum class Kind : std::uint8_t {
+    kBody,       ///< A body.
+    kRope,       ///< A rope.
+    kCloth,      ///< A cloth.
+    kSolid,      ///< A soft solid.
+    kParticles,  ///< Loose particles.
+    kField,      ///< A field of force, which cannot be seen.
+    kHook        ///< A hook, or a stitch of a seam.
   };
 
-  Shape shape = {};              ///< Of a body.
-  std::vector<Part> parts = {};  ///< Of a compound body.
-  Real radius = Real(0);   ///< Of a rope's strand or a particle [m]; half the thickness of a cloth or solid.
-  double rest_length = 0;  ///< Of a rope [m].
-  std::uint32_t columns = 0;  ///< Of a cloth's grid; 0 for a mesh.
-  std::uint32_t rows = 0;
-  HookKind hook_kind = HookKind::kBall;
-  std::array<std::string, 2> hooked = {};   ///< Names of what a hook holds; empty for the world.
-  bool broken = false;                      ///< Of a hook: its id is stale.
-  BreakEvent broke = {};                    ///< Of one that is broken.
-  std::shared_ptr<const Model> model = {};  ///< Of a mesh body, cloth or solid; of a hull, its faces.
+  std::string name = {};       ///< Name, with its number in an array: "rope[3]".
+  Kind kind = Kind::kBody;     ///< What the object is.
+  BodyId body = {};            ///< Id of a body; the ids of all other kinds are null.
+  RopeId rope = {};            ///< Id of a rope.
+  ClothId cloth = {};          ///< Id of a cloth.
+  SolidId solid = {};          ///< Id of a soft solid.
+  ParticlesId particles = {};  ///< Id of particles.
+  FieldId field = {};          ///< Id of a field.
+  HookId hook = {};            ///< Id of a hook; stale once it has broken.
+  SceneMaterial look = {};     ///< Material of the object.
+  /// Name of `look`; empty if that is the default, and a model's own materials apply.
+  std::string material = {};
+  std::string path = {};     ///< Place in the file, as "ropes[0]".
+  std::string stepper = {};  ///< Method of the laboratory; empty for what the run chooses.
+  /// One shape of a body that has several.
+  struct Part {
+    Shape shape = {};                         ///< The shape.
+    Vec3 position = {};                       ///< Origin of its frame in the body's frame [m].
+    Quat rotation = {};                       ///< Rotation of its frame in the body's.
+    std::shared_ptr<const Model> model = {};  ///< Model of a mesh; of a hull, its faces; null for others.
+    SceneMaterial look = {};                  ///< Material of the part.
+    std::string material = {};                ///< Name of `look`, as SceneObject::material.
+  };
+
+  Shape shape = {};              ///< Shape of a body.
+  std::vector<Part> parts = {};  ///< Shapes of a compound body.
+  /// Radius of a rope's strand or of the first particle [m]; half the thickness of a cloth or solid.
+  Real radius = Real(0);
+  double rest_length = 0;                   ///< Length of a rope at rest [m].
+  std::uint32_t columns = 0;                ///< Columns of a cloth's grid; 0 for a mesh.
+  std::uint32_t rows = 0;                   ///< Rows of a cloth's grid; 0 for a mesh.
+  HookKind hook_kind = HookKind::kBall;     ///< Kind of a hook.
+  std::array<std::string, 2> hooked = {};   ///< Names of what a hook holds, a and b; empty for the world.
+  bool broken = false;                      ///< Whether a hook has broken; its id is stale then.
+  BreakEvent broke = {};                    ///< How a hook broke, if it has.
+  std::shared_ptr<const Model> model = {};  ///< Model of a mesh body, cloth or solid; of a hull, its faces.
 };
 
-/// The points of a rope, a cloth, a solid or particles, as World::positions gives them; none for other
-/// objects.
+/// Positions of the points of a rope, a cloth, a solid or particles, as World::positions gives them; none for
+/// other objects.
 [[nodiscard]] PointView positions_of(const World& world, const SceneObject& object);
 
 /// One expectation, evaluated.
 struct SceneVerdict {
-  std::size_t index = 0;  ///< In Scene::expect.
-  bool passed = false;
-  double achieved = 0;  ///< NaN when the object is gone.
-  std::uint64_t step = 0;
-  std::string text = {};  ///< "height of 'rope' point 15 = 0.998, expected within 1 % of 1".
+  std::size_t index = 0;   ///< Index in Scene::expect.
+  bool passed = false;     ///< Whether the promise was kept.
+  double achieved = 0;     ///< The figure that was measured; NaN if the object is gone.
+  std::uint64_t step = 0;  ///< Number of steps done by then.
+  std::string text = {};   ///< "height of 'rope' point 15 = 0.998, expected within 1 % of 1".
 };
 
-/// A World made from a scene, its timeline and its expectations.
+/// A World made from a scene, with its timeline and its expectations.
 class Simulation {
  public:
-  /// Reads the meshes, builds the world, evaluates the expectations of step 0. With a placement the whole
-  /// scene is turned and moved; its timeline and its expectations are still in the scene's own frame.
-  /// Energies keep the world's origin as their zero.
+  /// Reads the meshes, builds the world, and evaluates the expectations of step 0. Errors: everything that is
+  /// wrong with the scene, its files and its objects.
+  ///
+  /// A placement turns and moves the whole scene. Its timeline and its expectations remain in the scene's own
+  /// frame; only energies keep the world's origin as their zero.
   [[nodiscard]] static Loaded<Simulation> create(Scene scene, const Placement& placement = {});
+  ///@{
+  /// Takes everything over. The Simulation moved from may only be destroyed or assigned to.
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
+  ///@}
+  /// Destroys the world and all that belongs to it.
   ~Simulation();
 
-  /// Applies the events of this step, advances by Scene::dt, evaluates the expectations that are now due.
+  /// Applies the events of this step, advances by Scene::dt, and evaluates the expectations that are now due.
   StepReport step();
-  /// Steps until Scene::seconds are over; stops early at a step that did not move. The last step's report.
+  /// Steps until Scene::seconds are over, or until a step did not move. Returns the report of the last step.
   StepReport run();
 
-  /// Wrong once the world was stepped or objects were removed behind its back.
+  ///@{
+  /// The world, which lives as long as the Simulation. Step it by step() only, and remove objects by events:
+  /// otherwise events, expectations and objects() are wrong.
   [[nodiscard]] World& world();
   [[nodiscard]] const World& world() const;
+  ///@}
+  /// The scene that the simulation was made from.
   [[nodiscard]] const Scene& scene() const;
-  /// In the order they were added. Valid until the next step().
+  /// The objects in the order in which they were added, valid until the next step().
   [[nodiscard]] std::span<const SceneObject> objects() const;
-  /// The object of this name, "rope" or "rope[3]"; null if there is none.
+  /// Finds the object of this name, "rope" or "rope[3]"; null if there is none. It is valid until the next
+  /// step().
   [[nodiscard]] const SceneObject* find(std::string_view name) const;
 
-  /// Evaluates one expectation now, whatever its step.
+  /// Evaluates the expectation of this index in Scene::expect now, whatever its step. One that does not exist
+  /// has not passed.
   [[nodiscard]] SceneVerdict check(std::size_t expectation) const;
-  /// Of the expectations that were due, in the order they were.
+  /// The verdicts on the expectations that were due, in the order in which they were; valid until the next
+  /// step().
   [[nodiscard]] std::span<const SceneVerdict> verdicts() const;
-  /// All of the scene's expectations were due and passed, and no event failed.
+  /// Whether all of the scene's expectations were due and passed, and no event failed.
   [[nodiscard]] bool passed() const;
-  /// Events that could not happen.
+  /// The events that could not happen, at most 100 errors; valid until the next step().
   [[nodiscard]] std::span<const Error> errors() const;
-  /// One line for each verdict and error.
+  /// Writes one line for each error and each verdict, and one for expectations that are not due yet.
   [[nodiscard]] std::string report() const;
 
  private:
