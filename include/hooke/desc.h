@@ -616,7 +616,8 @@ using ForceLaw = std::function<void(ForceView&)>;
 /// The bodies that forces move and that are awake, as a force law sees them, in the same order in every run.
 class BodyForceView;
 
-/// A function that adds forces to bodies. It is called once per substep, on the thread that called step().
+/// A function that adds forces to bodies. It is called once per substep in which one of its bodies is awake,
+/// on the thread that called step().
 using BodyForceLaw = std::function<void(BodyForceView&)>;
 
 }  // namespace hooke

@@ -187,9 +187,10 @@ struct BodyState {
 /// wanted by a method of its own.
 class Run {
  public:
-  /// Makes a run from a World. Errors: an unknown stepper, a step or tolerance out of range, a rigid spring,
-  /// an explicit method beyond its stability limit (see Options::force), a Taylor method where a force has no
-  /// known derivative (force laws, gusts), an accuracy that cannot be reached, SUNDIALS missing.
+  /// Makes a run from a World. Errors: an unknown stepper, a step or tolerance out of range, a rigid spring
+  /// or rope, a soft solid, an explicit method beyond its stability limit (see Options::force), a Taylor
+  /// method where a force has no known derivative (force laws, gusts), an accuracy that cannot be reached,
+  /// SUNDIALS missing.
   [[nodiscard]] static Result<Run> create(const World& world, const Options& options = {});
   /// Destroys the run.
   ~Run();

@@ -190,7 +190,7 @@ class ForceView {
  public:
   /// Number of the object's points.
   [[nodiscard]] std::size_t size() const { return positions_.size(); }
-  /// Time of the world in this substep [s].
+  /// Time of the world at the end of this substep [s].
   [[nodiscard]] double time() const { return time_; }
   /// Position of point `i` in the world [m].
   [[nodiscard]] DVec3 position(std::size_t i) const { return positions_[i]; }
@@ -223,7 +223,7 @@ class BodyForceView {
  public:
   /// Number of the bodies.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  /// Time of the world in this substep [s].
+  /// Time of the world at the start of this substep [s].
   [[nodiscard]] double time() const { return time_; }
   /// Id of body `i`.
   [[nodiscard]] BodyId id(std::size_t i) const;
