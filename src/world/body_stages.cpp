@@ -273,9 +273,9 @@ void resolve_impacts(WorldData& world, Real h) {
   while (const std::optional<solver::NextImpact> impact = solver::next_impact(world.frame.impacts)) {
     const solver::ImpactPair& pair = world.frame.impacts.pairs[impact->index];
     solver::store_lanes(solver::lanes_of(pair, world.frame.impacts), contacts, t.pairs.manifold);
-    world.frame.narrow_phase.refresh_at(
-        t.bodies, t.colliders, t.desc.materials, h, state::pose_after(t.bodies, pair.a, impact->time),
-        state::pose_after(t.bodies, pair.b, impact->time), pair.pair, t.pairs);
+    const collision::PosedPair posed = {pair.pair, state::pose_after(t.bodies, pair.a, impact->time),
+                                        state::pose_after(t.bodies, pair.b, impact->time)};
+    world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h, posed, t.pairs);
     solver::resolve_impact(*impact, world.frame.contact_step, t.pairs, contacts, t.bodies,
                            world.frame.impacts);
   }
@@ -289,9 +289,9 @@ void refresh_load_bearing_contacts(WorldData& world, Real h) {
   solver::store_load_bearing_contacts(h, t.pairs);
   for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (contact.point > 0) continue;
-    world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h,
-                                        state::pose_now(t.bodies, contact.body_a),
-                                        state::pose_now(t.bodies, contact.body_b), contact.pair, t.pairs);
+    const collision::PosedPair posed = {contact.pair, state::pose_now(t.bodies, contact.body_a),
+                                        state::pose_now(t.bodies, contact.body_b)};
+    world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h, posed, t.pairs);
   }
   solver::update_load_bearing_contacts(Real(1) / h, t.bodies, t.pairs);
 }

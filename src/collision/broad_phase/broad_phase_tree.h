@@ -161,10 +161,10 @@ void BroadPhaseTree::visit_overlaps(const geometry::Box& box, std::uint16_t grou
       const std::uint32_t child = node.child[static_cast<std::size_t>(std::countr_zero(mask))];
       if ((child & kLeafBit) != 0) {
         visit(child & ~kLeafBit);
-      } else {
-        HOOKE_ASSERT(size < kStackSize);
-        stack[size++] = child;
+        continue;
       }
+      HOOKE_ASSERT(size < kStackSize);
+      stack[size++] = child;
     }
   }
 }

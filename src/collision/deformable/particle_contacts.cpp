@@ -64,28 +64,33 @@ namespace {
 
 using Finder = ParticleContactScratch::Buffers;
 
-/// Appends the rows of one particle against one shape.
-void find_pair(const state::Tables& t, Key pair, std::uint32_t object_row, const Frame& frame,
-               Real displacement, Real step, Finder& finder) {
+/// A particle that may touch something within the step.
+struct MovingParticle {
+  std::uint32_t particle = 0;
+  std::uint32_t object = 0;  ///< Row of its object.
+  Real reach = Real(0);      ///< Its radius and its displacement within the step [m].
+};
+
+/// Appends the rows of one particle against one shape, which moves for `step` seconds.
+void find_pair(const state::Tables& t, const MovingParticle& moving, std::uint32_t collider,
+               const Frame& frame, Real step, Finder& finder) {
   const state::ColliderShape& shape = *frame.shape;
-  const std::uint32_t body = t.colliders.body[pair.collider];
-  const Vec3 place = t.particles.position[pair.particle].x;
-  const Real reach =
-      t.particles.position[pair.particle].radius + displacement + frame.speed * step + kParticleMargin;
+  const std::uint32_t body = t.colliders.body[collider];
+  const Vec3 place = t.particles.position[moving.particle].x;
+  const Real reach = moving.reach + frame.speed * step + kParticleMargin;
   const Vec3 reach_to_all = {reach, reach, reach};
   if (!overlap(frame.box, geometry::Box{place - reach_to_all, place + reach_to_all})) return;
-  if (is_hooked(finder.hooked, pair.particle, body)) return;
+  if (is_hooked(finder.hooked, moving.particle, body)) return;
   const Vec3 x = frame.to_shape(place);
-  const Real friction =
-      std::sqrt(t.objects[object_row].friction * t.colliders.surface[pair.collider].friction);
+  const Real friction = std::sqrt(t.objects[moving.object].friction * t.colliders.surface[collider].friction);
+  const auto append_feature = [&](std::uint32_t feature) {
+    append(finder.contacts, {moving.particle, collider, feature}, moving.object, body, friction);
+  };
   if (shape.shape.kind != ShapeKind::kMesh) {
-    if (gap_to_shape(shape, x).distance <= reach) append(finder.contacts, pair, object_row, body, friction);
+    if (gap_to_shape(shape, x).distance <= reach) append_feature(0);
     return;
   }
   find_triangles_near(*shape.mesh, x, reach, finder.triangles);
-  const auto append_feature = [&](std::uint32_t feature) {
-    append(finder.contacts, {pair.particle, pair.collider, feature}, object_row, body, friction);
-  };
   for (const std::uint32_t triangle : finder.triangles) append_feature(triangle);
   const geometry::Protrusions& protrusions = shape.mesh->protrusions;
   const auto faces = static_cast<std::uint32_t>(shape.mesh->desc.triangles.size());
@@ -259,9 +264,8 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t)
     list_near_colliders(t, colliders, t.objects[o], reach, near);
     make_frames(t, near, t.objects[o], frames);
     for (std::uint32_t p = particles.first; p < particles.end() && !near.empty(); ++p) {
-      const Real displacement = displacement_of(p);
-      for (std::size_t i = 0; i < near.size(); ++i)
-        find_pair(t, {p, near[i], 0}, o, frames[i], displacement, step, finder);
+      const MovingParticle moving = {p, o, t.particles.position[p].radius + displacement_of(p)};
+      for (std::size_t i = 0; i < near.size(); ++i) find_pair(t, moving, near[i], frames[i], step, finder);
     }
     if (!near.empty()) find_element_contacts(t, {o, near, frames, hooked, step, reach}, element_finder);
   }

@@ -93,8 +93,8 @@ void find_triangles_near(const state::Mesh& mesh, Vec3 x, Real reach, std::vecto
 
 Real distance_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
   const std::optional<bool> inside = is_inside(mesh, x);
-  constexpr Real kAnyDepth = std::numeric_limits<Real>::infinity();
-  const auto nearest = geometry::find_closest(mesh.bvh, x, inside.value_or(false) ? kAnyDepth : reach);
+  const Real farthest = inside.value_or(false) ? std::numeric_limits<Real>::infinity() : reach;
+  const auto nearest = geometry::find_closest(mesh.bvh, x, farthest);
   if (!nearest) return reach;
   return gap_on_side(gap_to_triangle(mesh, nearest->triangle, x), inside).distance;
 }

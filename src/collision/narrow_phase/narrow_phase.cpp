@@ -455,9 +455,10 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
-      if (pair.is_refreshed())
+      if (pair.is_refreshed()) {
         append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
                       chunk);
+      }
       pair.drift = {};
       pair.tested = true;
     }
@@ -515,10 +516,11 @@ Prospect prospect_of(const state::Bodies& bodies, const Manifold& m) {
     const Real parting = dot(m.normal, state::velocity_now(bodies, m.body_b, p.anchor_b) -
                                            state::velocity_now(bodies, m.body_a, p.anchor_a));
     Prospect of_point = {.separation = p.separation};
-    if (!(p.separation > Real(0)))
+    if (!(p.separation > Real(0))) {
       of_point.time = Real(0);
-    else if (parting < Real(0))
+    } else if (parting < Real(0)) {
       of_point.time = p.separation / -parting;
+    }
     first = std::min(first, of_point);
   }
   return first;
@@ -588,9 +590,10 @@ void find_supports(const Scene& scene, const state::Pairs& pairs, std::vector<Su
     const bool a_moved = is_moved(scene, pair.collider_a);
     if (pair.time > Real(0) || a_moved == is_moved(scene, pair.collider_b)) continue;
     if (state::rests(scene.bodies, scene.colliders, pair)) continue;
-    for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i)
-      if (pairs.manifold[i].point_count > 0)
-        supports.push_back({a_moved ? pair.collider_a : pair.collider_b, i});
+    const std::uint32_t held = a_moved ? pair.collider_a : pair.collider_b;
+    for (std::uint32_t i = pair.first_manifold; i < pair.first_manifold + pair.manifold_count; ++i) {
+      if (pairs.manifold[i].point_count > 0) supports.push_back({held, i});
+    }
   }
   std::sort(supports.begin(), supports.end(), [](const Support& p, const Support& q) {
     return p.held != q.held ? p.held < q.held : p.manifold < q.manifold;
@@ -663,10 +666,8 @@ void place_tested_shapes(parallel::ThreadPool& pool, const state::Bodies& bodies
   placed_shapes.resize(colliders.body.size());
   for_ranges(pool, colliders.count(), kColliderGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      if (tested[row] != 0)
-        placed_shapes[row] =
-            place(colliders, static_cast<std::uint32_t>(i), bodies.rotation[colliders.body[row]]);
+      const auto row = static_cast<std::uint32_t>(i);
+      if (tested[row] != 0) placed_shapes[row] = place(colliders, row, bodies.rotation[colliders.body[row]]);
     }
   });
 }
@@ -791,11 +792,11 @@ void NarrowPhase::refresh_manifolds(parallel::ThreadPool& pool, const state::Bod
 }
 
 void NarrowPhase::refresh_at(const state::Bodies& bodies, const state::Colliders& colliders,
-                             std::span<const MaterialPairDesc> materials, Real h, const Pose& a,
-                             const Pose& b, std::uint32_t pair, state::Pairs& pairs) {
+                             std::span<const MaterialPairDesc> materials, Real h, const PosedPair& posed,
+                             state::Pairs& pairs) {
   const Scene scene = {
       .bodies = bodies, .colliders = colliders, .materials = materials, .dt = h, .old = pairs.manifold};
-  refresh_pair(scene, a, b, pairs.pair[pair], buffers_->single_chunk, pairs.manifold);
+  refresh_pair(scene, posed.a, posed.b, pairs.pair[posed.pair], buffers_->single_chunk, pairs.manifold);
 }
 
 }  // namespace hooke::collision

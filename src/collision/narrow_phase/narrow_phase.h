@@ -36,6 +36,12 @@ struct NarrowPhaseStep {
   std::optional<std::span<const std::uint32_t>> moved_set = {};
 };
 
+/// A pair and the poses of its bodies' centers of mass for which its manifolds are to be made.
+struct PosedPair {
+  std::uint32_t pair = 0;  ///< Row of the pair.
+  Pose a, b;
+};
+
 /// Makes the manifolds of pairs. Its members are memory to be used again.
 class NarrowPhase {
  public:
@@ -86,11 +92,11 @@ class NarrowPhase {
                          const state::Colliders& colliders, std::span<const MaterialPairDesc> materials,
                          Real h, state::Pairs& pairs);
 
-  /// Does the same for one pair, listed or not, with its bodies in these poses of their centers of mass. Not
-  /// to be called by several threads at once.
+  /// Does the same for one pair, listed or not, with its bodies in the given poses. Not to be called by
+  /// several threads at once.
   void refresh_at(const state::Bodies& bodies, const state::Colliders& colliders,
-                  std::span<const MaterialPairDesc> materials, Real h, const Pose& a, const Pose& b,
-                  std::uint32_t pair, state::Pairs& pairs);
+                  std::span<const MaterialPairDesc> materials, Real h, const PosedPair& posed,
+                  state::Pairs& pairs);
 
  private:
   struct Buffers;  // narrow_phase.cpp
