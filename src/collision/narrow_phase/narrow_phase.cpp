@@ -405,8 +405,9 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
   test_view(scene, {then_a, then_b, pose_a.position, pose_b.position}, pair, chunk);
 }
 
-bool is_mesh(const Scene& scene, std::uint32_t collider) {
-  return scene.placed_shapes[collider].shape.kind == ShapeKind::kMesh;
+bool has_mesh(const Scene& scene, const Pair& pair) {
+  return scene.placed_shapes[pair.collider_a].shape.kind == ShapeKind::kMesh ||
+         scene.placed_shapes[pair.collider_b].shape.kind == ShapeKind::kMesh;
 }
 
 /// Whether the manifolds of the last step still hold: the bodies have hardly moved against each other since
@@ -455,10 +456,7 @@ void update_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
       ++chunk.counts.tested;
       chunk.margin = margin;
       test_pair(scene, pair, chunk);
-      if (pair.is_refreshed()) {
-        append_spares(scene, pair, begin, is_mesh(scene, pair.collider_a) || is_mesh(scene, pair.collider_b),
-                      chunk);
-      }
+      if (pair.is_refreshed()) append_spares(scene, pair, begin, has_mesh(scene, pair), chunk);
       pair.drift = {};
       pair.tested = true;
     }
