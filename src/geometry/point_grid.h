@@ -24,11 +24,7 @@ class PointGrid {
     for (std::int32_t x = -1; x <= 1; ++x) {
       for (std::int32_t y = -1; y <= 1; ++y) {
         for (std::int32_t z = -1; z <= 1; ++z) {
-          const Cell cell = {middle.x + x, middle.y + y, middle.z + z};
-          const std::uint32_t bucket = bucket_of(cell);
-          for (std::uint32_t e = begin_[bucket]; e < begin_[bucket + 1]; ++e) {
-            if (entries_[e].cell == cell) visit(entries_[e].point);
-          }
+          for_each_in({middle.x + x, middle.y + y, middle.z + z}, visit);
         }
       }
     }
@@ -46,6 +42,15 @@ class PointGrid {
     Cell cell = {};
     std::uint32_t point = 0;
   };
+
+  /// Calls `visit(i)` for every point i of the cell.
+  template <class Visit>
+  void for_each_in(const Cell& cell, Visit& visit) const {
+    const std::uint32_t bucket = bucket_of(cell);
+    for (std::uint32_t e = begin_[bucket]; e < begin_[bucket + 1]; ++e) {
+      if (entries_[e].cell == cell) visit(entries_[e].point);
+    }
+  }
 
   [[nodiscard]] Cell cell_of(DVec3 place) const;
   /// Bucket of a cell, after Teschner et al. 2003, "Optimized spatial hashing for collision detection of

@@ -63,6 +63,39 @@ DVec3 area_of(std::span<const DVec3> corners) {
   return sum;
 }
 
+/// The largest distance of a corner from the first one. Refuses corners that make no polygon.
+Result<double> extent_of(std::span<const DVec3> corners) {
+  const std::size_t count = corners.size();
+  if (count < 3 || count > kCornersMax) {
+    return refusal("corners",
+                   std::to_string(count) + " corners; a polygon has 3 to " + std::to_string(kCornersMax));
+  }
+  double extent = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!is_finite(corners[k])) return refusal("corners", numbered("not finite: corner ", k));
+    extent = std::max(extent, geometry::safe_length(corners[k] - corners[0]));
+    if (corners[k] == corners[(k + 1) % count]) {
+      return refusal("corners", numbered("at the same place as the next: corner ", k));
+    }
+  }
+  return extent;
+}
+
+/// Whether the outline turns around once at most. A star polygon turns in the same direction at every corner,
+/// and more than once around.
+bool turns_once(std::span<const DVec3> corners, DVec3 normal) {
+  const View view = view_of(normal);
+  const std::size_t count = corners.size();
+  int falls = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double last = geometry::seen_along(view.axis, corners[(k + count - 1) % count]).y;
+    const double here = geometry::seen_along(view.axis, corners[k]).y;
+    const double next = geometry::seen_along(view.axis, corners[(k + 1) % count]).y;
+    if (here > last && here >= next) ++falls;
+  }
+  return falls <= 1;
+}
+
 }  // namespace
 
 Result<Plane> plane_through(DVec3 a, DVec3 b, DVec3 c) {
@@ -102,19 +135,10 @@ int side_of(const Plane& plane, DVec3 p, double tolerance) {
 
 Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance) {
   const base::FloatEnvironment environment;
+  const Result<double> found_extent = extent_of(corners);
+  if (!found_extent) return found_extent.error();
+  const double extent = found_extent.value();
   const std::size_t count = corners.size();
-  if (count < 3 || count > kCornersMax) {
-    return refusal("corners",
-                   std::to_string(count) + " corners; a polygon has 3 to " + std::to_string(kCornersMax));
-  }
-  double extent = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!is_finite(corners[k])) return refusal("corners", numbered("not finite: corner ", k));
-    extent = std::max(extent, geometry::safe_length(corners[k] - corners[0]));
-    if (corners[k] == corners[(k + 1) % count]) {
-      return refusal("corners", numbered("at the same place as the next: corner ", k));
-    }
-  }
   Polygon polygon = {.corners = {corners.begin(), corners.end()}};
   const DVec3 area = area_of(corners);
   if (!(geometry::safe_length(area) > kThin * extent * extent) || !is_finite(area)) {
@@ -133,16 +157,7 @@ Result<Polygon> make_polygon(std::span<const DVec3> corners, double tolerance) {
     polygon.is_convex =
         polygon.is_convex && side_of(polygon.sides[k], corners[(k + 2) % count], kThin * extent) >= 0;
   }
-  // A star polygon turns in the same direction at every corner, and more than once around.
-  const View view = view_of(normal);
-  int falls = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double last = geometry::seen_along(view.axis, corners[(k + count - 1) % count]).y;
-    const double here = geometry::seen_along(view.axis, corners[k]).y;
-    const double next = geometry::seen_along(view.axis, corners[(k + 1) % count]).y;
-    if (here > last && here >= next) ++falls;
-  }
-  polygon.is_convex = polygon.is_convex && falls <= 1;
+  polygon.is_convex = polygon.is_convex && turns_once(corners, normal);
   return polygon;
 }
 

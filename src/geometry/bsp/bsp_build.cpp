@@ -74,7 +74,7 @@ std::uint32_t median_plane(BspSpace& space, const Pieces& pieces, std::size_t ax
   std::vector<double> places;
   const std::size_t step = std::max<std::size_t>(1, pieces.size() / kSample);
   for (std::size_t i = 0; i < pieces.size(); i += step) {
-    places.push_back(component(space.point(pieces[i].corners[0].point).place, axis));
+    places.push_back(component(space.point(pieces[i].corners[0].point).place, static_cast<int>(axis)));
   }
   const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
   std::nth_element(places.begin(), middle, places.end());

@@ -241,6 +241,24 @@ BspHit sweep_to_face(std::span<const DVec3> corners, const Sphere& sphere) {
   return {time, geometry::direction_or(center - closest_on_face(corners, normal, center), normal)};
 }
 
+/// Puts the first hit with a face of the node into `best`, if it comes before that. `own` is the stretch of
+/// the motion within reach of the node's plane.
+void sweep_to_faces(const BspTree& tree, const BspNode& node, const Sphere& sphere, const Stretch& own,
+                    BspHit& best) {
+  if (!(own.begin <= own.end)) return;
+  const DVec3 around = {sphere.radius, sphere.radius, sphere.radius};
+  const geometry::Box3<double> swept = {geometry::min_of(sphere.at(own.begin), sphere.at(own.end)) - around,
+                                        geometry::max_of(sphere.at(own.begin), sphere.at(own.end)) + around};
+  for (std::uint32_t k = 0; k < node.face_count; ++k) {
+    const auto corners = corners_of(tree, tree.faces[node.first_face + k]);
+    geometry::Box3<double> box;
+    for (const DVec3& p : corners) box = merge(box, {p, p});
+    if (!overlap(box, swept)) continue;
+    const BspHit hit = sweep_to_face(corners, sphere);
+    if (hit.fraction < best.fraction) best = hit;
+  }
+}
+
 /// The part of the stretch where height + t rate is in [low, high]. An empty part begins after its end.
 Stretch clip(Stretch s, double height, double rate, double low, double high) {
   if (!(rate < 0) && !(rate > 0)) {
@@ -261,7 +279,6 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
     return std::nullopt;
   if (is_solid_at(tree, origin)) return BspHit{};
   const Sphere sphere = {origin, motion, radius};
-  const DVec3 around = {radius, radius, radius};
   BspHit best = {kNoFraction, {}};
   std::vector<Stretch> stack;
   stack.reserve(kUsualDepth);
@@ -276,18 +293,7 @@ std::optional<BspHit> move_sphere(const BspTree& tree, DVec3 origin, DVec3 motio
     // Rounding must not lose a face that is touched at the very edge of a stretch.
     const double reach =
         radius + 1e-12 * (radius + std::fabs(height) + std::fabs(rate) + std::fabs(node.offset));
-    const Stretch own = clip(s, height, rate, -reach, reach);
-    const geometry::Box3<double> swept = {
-        geometry::min_of(sphere.at(own.begin), sphere.at(own.end)) - around,
-        geometry::max_of(sphere.at(own.begin), sphere.at(own.end)) + around};
-    for (std::uint32_t k = 0; k < node.face_count && own.begin <= own.end; ++k) {
-      const auto corners = corners_of(tree, tree.faces[node.first_face + k]);
-      geometry::Box3<double> box;
-      for (const DVec3& p : corners) box = merge(box, {p, p});
-      if (!overlap(box, swept)) continue;
-      const BspHit hit = sweep_to_face(corners, sphere);
-      if (hit.fraction < best.fraction) best = hit;
-    }
+    sweep_to_faces(tree, node, sphere, clip(s, height, rate, -reach, reach), best);
     Stretch above = clip(s, height, rate, -reach, kNoFraction);
     Stretch below = clip(s, height, rate, -kNoFraction, reach);
     above.child = node.above;

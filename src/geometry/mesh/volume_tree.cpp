@@ -118,6 +118,19 @@ void add_nodes(const MeshView& mesh, std::uint32_t first, std::uint32_t count, V
   tree.nodes[node].next = static_cast<std::uint32_t>(tree.nodes.size());
 }
 
+/// Appends every triangle of one leaf with every one of the other.
+template <class Volume>
+void add_leaf_pairs(const VolumeTree<Volume>& a, std::uint32_t in_a, const VolumeTree<Volume>& b,
+                    std::uint32_t in_b, std::vector<TrianglePair>& found) {
+  const auto& leaf_a = a.nodes[in_a];
+  const auto& leaf_b = b.nodes[in_b];
+  for (std::uint32_t i = 0; i < leaf_a.count; ++i) {
+    for (std::uint32_t k = 0; k < leaf_b.count; ++k) {
+      found.emplace_back(a.order[leaf_a.first + i], b.order[leaf_b.first + k]);
+    }
+  }
+}
+
 }  // namespace
 
 template <class Volume>
@@ -153,11 +166,7 @@ std::uint64_t find_candidates(const VolumeTree<Volume>& a, const VolumeTree<Volu
     const bool is_leaf_a = a.is_leaf(in_a);
     const bool is_leaf_b = b.is_leaf(in_b);
     if (is_leaf_a && is_leaf_b) {
-      for (std::uint32_t i = 0; i < node_a.count; ++i) {
-        for (std::uint32_t k = 0; k < node_b.count; ++k) {
-          found.emplace_back(a.order[node_a.first + i], b.order[node_b.first + k]);
-        }
-      }
+      add_leaf_pairs(a, in_a, b, in_b, found);
     } else if (is_leaf_b || (!is_leaf_a && node_a.count >= node_b.count)) {
       open.emplace_back(a.nodes[in_a + 1].next, in_b);
       open.emplace_back(in_a + 1, in_b);

@@ -149,6 +149,7 @@ std::vector<Triangle> surface_of(std::span<const Tetrahedron> tetrahedra) {
   }
   std::sort(lone.begin(), lone.end(), [](const Face& a, const Face& b) { return a.order < b.order; });
   std::vector<Triangle> surface;
+  surface.reserve(lone.size());
   for (const Face& face : lone) surface.push_back(face.triangle);
   return surface;
 }
