@@ -338,9 +338,10 @@ Points make_points(const Surface& s, const ClothDesc& desc, double total_area,
     points.radius[i] = Real(0.5) * desc.thickness;
   }
   add_loads(desc.loads, points.mass);
-  if (!s.is_grid)
+  if (!s.is_grid) {
     points.row_of =
         geometry::invert_order(geometry::compute_cuthill_mckee_order(s.points.size(), s.topology.edges));
+  }
   return points;
 }
 

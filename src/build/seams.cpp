@@ -45,38 +45,54 @@ struct Stitch {
 
 // -- Edges of cloths. --------------------------------------------------------------------------------------
 
-/// Closed borders of a cloth. Each runs from its lowest point in the direction of its triangles.
-std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
+/// An edge of a triangle: the points at its begin and its end.
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Edges of a cloth at which there is one triangle only, ascending.
+std::vector<Edge> open_edges_of(const Deformable& object, const Tables& t) {
   std::vector<std::uint32_t> point_of(object.particles.count);
-  for (std::uint32_t i = 0; i < object.particles.count; ++i)
+  for (std::uint32_t i = 0; i < object.particles.count; ++i) {
     point_of[t.particles.row_of[object.particles.first + i]] = i;
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  }
   std::vector<Edge> edges;
   for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
     const auto [a, b, c] = t.triangles.corners[i];
     const std::array corners = {a, b, c};
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k) {
       edges.emplace_back(point_of[corners[k] - object.particles.first],
                          point_of[corners[(k + 1) % 3] - object.particles.first]);
+    }
   }
   std::sort(edges.begin(), edges.end());
   std::vector<Edge> open;
   for (const Edge& edge : edges) {
     if (!std::binary_search(edges.begin(), edges.end(), Edge{edge.second, edge.first})) open.push_back(edge);
   }
+  return open;
+}
+
+/// Follows the open edges from one of them, and marks those that it takes as used.
+Line follow_border(const std::vector<Edge>& open, std::size_t first, std::vector<std::uint8_t>& used) {
+  Line line = {open[first].first};
+  for (std::size_t at = first; at < open.size() && used[at] == 0;) {
+    used[at] = 1;
+    line.push_back(open[at].second);
+    if (line.back() == line.front()) break;
+    at = static_cast<std::size_t>(std::lower_bound(open.begin(), open.end(), Edge{line.back(), 0}) -
+                                  open.begin());
+    while (at < open.size() && used[at] != 0 && open[at].first == line.back()) ++at;
+    if (at < open.size() && open[at].first != line.back()) break;
+  }
+  return line;
+}
+
+/// Closed borders of a cloth. Each runs from its lowest point in the direction of its triangles.
+std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
+  const std::vector<Edge> open = open_edges_of(object, t);
   std::vector<std::uint8_t> used(open.size(), 0);
   std::vector<Line> borders;
   for (std::size_t first = 0; first < open.size(); ++first) {
-    Line line = {open[first].first};
-    for (std::size_t at = first; at < open.size() && used[at] == 0;) {
-      used[at] = 1;
-      line.push_back(open[at].second);
-      if (line.back() == line.front()) break;
-      at = static_cast<std::size_t>(std::lower_bound(open.begin(), open.end(), Edge{line.back(), 0}) -
-                                    open.begin());
-      while (at < open.size() && used[at] != 0 && open[at].first == line.back()) ++at;
-      if (at < open.size() && open[at].first != line.back()) break;
-    }
+    Line line = follow_border(open, first, used);
     if (line.size() > 2) borders.push_back(std::move(line));
   }
   return borders;
@@ -136,9 +152,10 @@ Result<Thread> find_thread(const SeamEdge& edge, const char* where, const Tables
   if (line.value().size() < 2) return wrong("needs at least 2 points");
   Thread thread = {.object = row};
   for (const std::uint32_t point : line.value()) {
-    if (point >= object.particles.count)
+    if (point >= object.particles.count) {
       return wrong("names point " + std::to_string(point) + " of " + std::to_string(object.particles.count) +
                    "; the first is 0");
+    }
     thread.rows.push_back(row_of(t, object, point));
     thread.places.push_back(object.origin + vector_cast<double>(t.particles.position[thread.rows.back()].x));
     if (thread.rows.size() > 1)
@@ -238,6 +255,7 @@ std::vector<Stitch> find_stitches(const Thread& a, const Thread& b) {
   const Thread& coarse = a_is_finer ? b : a;
   std::vector<double> shares(fine.share.begin(), fine.share.end() - (a.is_closed() ? 1 : 0));
   std::vector<HookPlace> held;
+  held.reserve(shares.size());
   for (const double share : shares) held.push_back(place_at(coarse, share));
   for (std::size_t i = 0; i < coarse.segments() + (a.is_closed() ? 0 : 1); ++i) {
     const auto holds_it = [&](const HookPlace& place) { return holds(place, coarse.rows[i]); };
@@ -288,9 +306,10 @@ Result<std::uint32_t> sew(const SeamDesc& desc, Tables& t) {
   const Result<Thread> found_b = find_thread(desc.b, "seam.b", t);
   if (!found_b) return found_b.error();
   const bool closed = a.value().is_closed();
-  if (closed != found_b.value().is_closed())
+  if (closed != found_b.value().is_closed()) {
     return Error{ErrorCode::kOutOfRange, "seam.b",
                  closed ? "must be closed, as a is" : "must be open, as a is"};
+  }
   const Thread b = aligned(a.value(), found_b.value());
   const std::vector<Stitch> stitches = find_stitches(a.value(), b);
   if (stitches.empty()) return Error{ErrorCode::kOutOfRange, "seam.b", "must be another line than a"};

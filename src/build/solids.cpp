@@ -91,6 +91,13 @@ TetrahedralMesh fill_box(const SolidDesc& desc) {
   return geometry::fill_cells(grid);
 }
 
+double longest_edge(const std::vector<DVec3>& points, const Tetrahedron& t) {
+  constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  double longest = 0;
+  for (const auto& [a, b] : kEdges) longest = std::max(longest, length(points[t[a]] - points[t[b]]));
+  return longest;
+}
+
 /// Checks given tetrahedra, and turns those around that are inside out.
 Result<TetrahedralMesh> take_given(const SolidDesc& desc) {
   TetrahedralMesh mesh;
@@ -107,11 +114,7 @@ Result<TetrahedralMesh> take_given(const SolidDesc& desc) {
     const std::string where = indexed("tetrahedra", i);
     for (const std::uint32_t p : t) checks.require(p < desc.points.size(), where, p, "is not a point");
     if (!checks.good()) break;
-    double longest = 0;
-    for (int k = 0; k < 6; ++k) {
-      constexpr int kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-      longest = std::max(longest, length(mesh.points[t[kEdges[k][0]]] - mesh.points[t[kEdges[k][1]]]));
-    }
+    const double longest = longest_edge(mesh.points, t);
     const auto& x = mesh.points;
     const double volume = geometry::volume6(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) / 6;
     checks.require(std::abs(volume) > kFlattest * longest * longest * longest, where, "is flat");
