@@ -88,16 +88,27 @@ const char* find_in_elements(const Tables& t, const Deformable& o) {
   return nullptr;
 }
 
+/// The row to which the id of an object leads.
+std::uint32_t row_of_id(const Tables& t, const Deformable& o) {
+  switch (o.kind) {
+    case PointRef::Kind::kRope:
+      return t.rope_slots.find(t.rope_slots.id_of(o.slot));
+    case PointRef::Kind::kCloth:
+      return t.cloth_slots.find(t.cloth_slots.id_of(o.slot));
+    case PointRef::Kind::kSolid:
+      return t.solid_slots.find(t.solid_slots.id_of(o.slot));
+    case PointRef::Kind::kParticles:
+      return t.particles_slots.find(t.particles_slots.id_of(o.slot));
+    default:
+      return Tables::kNoRow;
+  }
+}
+
 const char* find_in_objects(const Tables& t) {
   for (std::uint32_t row = 0; row < t.objects.size(); ++row) {
     const Deformable& o = t.objects[row];
     if (const char* what = find_in_elements(t, o)) return what;
-    std::uint32_t found = Tables::kNoRow;
-    if (o.kind == PointRef::Kind::kRope) found = t.rope_slots.find(t.rope_slots.id_of(o.slot));
-    if (o.kind == PointRef::Kind::kCloth) found = t.cloth_slots.find(t.cloth_slots.id_of(o.slot));
-    if (o.kind == PointRef::Kind::kSolid) found = t.solid_slots.find(t.solid_slots.id_of(o.slot));
-    if (o.kind == PointRef::Kind::kParticles) found = t.particles_slots.find(t.particles_slots.id_of(o.slot));
-    if (found != row) return "id of an object";
+    if (row_of_id(t, o) != row) return "id of an object";
   }
   for (std::size_t i = 0; i < t.pins.size(); ++i) {
     const Pin& pin = t.pins[i];
@@ -119,6 +130,24 @@ bool lives(const Tables& t, std::uint32_t body) {
   return body < t.bodies.traits.size() && t.bodies.traits[body].alive;
 }
 
+const char* find_in_body(const Tables& t, std::uint32_t body) {
+  if (t.body_slots.find(t.body_slots.id_of(t.bodies.slot[body])) != body) return "id of a body";
+  if (t.bodies.first_collider[body] + t.bodies.collider_count[body] > t.colliders.body.size())
+    return "colliders of a body";
+  for (const std::uint32_t c : colliders_of(t.bodies, body)) {
+    if (t.colliders.body[c] != body) return "body of a collider";
+  }
+  return nullptr;
+}
+
+const char* find_in_moving_bodies(const Tables& t) {
+  for (std::size_t i = 0; i < t.moving_bodies.size(); ++i) {
+    if (!lives(t, t.moving_bodies[i])) return "a moving body";
+    if (i > 0 && t.moving_bodies[i - 1] >= t.moving_bodies[i]) return "order of moving bodies";
+  }
+  return nullptr;
+}
+
 const char* find_in_bodies(const Tables& t) {
   std::size_t colliders = 0;
   std::size_t moving = 0;
@@ -128,12 +157,7 @@ const char* find_in_bodies(const Tables& t) {
     ++living;
     moving += t.bodies.traits[body].kind != BodyKind::kStatic ? 1 : 0;
     colliders += t.bodies.collider_count[body];
-    if (t.body_slots.find(t.body_slots.id_of(t.bodies.slot[body])) != body) return "id of a body";
-    if (t.bodies.first_collider[body] + t.bodies.collider_count[body] > t.colliders.body.size())
-      return "colliders of a body";
-    for (const std::uint32_t c : colliders_of(t.bodies, body)) {
-      if (t.colliders.body[c] != body) return "body of a collider";
-    }
+    if (const char* what = find_in_body(t, body)) return what;
   }
   for (const std::uint32_t body : t.free_bodies) {
     if (body >= t.bodies.traits.size() || lives(t, body)) return "a hole that is a body";
@@ -143,11 +167,7 @@ const char* find_in_bodies(const Tables& t) {
                                   [](std::uint32_t body) { return body != Colliders::kNoBody; });
   if (static_cast<std::size_t>(used) != colliders) return "number of colliders";
   if (moving != t.moving_bodies.size()) return "number of moving bodies";
-  for (std::size_t i = 0; i < t.moving_bodies.size(); ++i) {
-    if (!lives(t, t.moving_bodies[i])) return "a moving body";
-    if (i > 0 && t.moving_bodies[i - 1] >= t.moving_bodies[i]) return "order of moving bodies";
-  }
-  return nullptr;
+  return find_in_moving_bodies(t);
 }
 
 bool is_place(const Tables& t, const HookPlace& place) {
@@ -201,6 +221,10 @@ const char* find_in_contacts(const Tables& t) {
     if (t.contacts.collider[i] >= t.colliders.body.size() || t.contacts.body[i] >= t.bodies.traits.size())
       return "collider of a contact";
   }
+  return nullptr;
+}
+
+const char* find_in_element_contacts(const Tables& t) {
   for (const ElementContact& inner : t.element_contacts) {
     if (inner.object >= t.objects.size() || inner.count > inner.particle.size())
       return "object of an inner contact";
@@ -213,6 +237,10 @@ const char* find_in_contacts(const Tables& t) {
     if (inner.collider >= t.colliders.body.size() || inner.body >= t.bodies.traits.size())
       return "collider of an inner contact";
   }
+  return nullptr;
+}
+
+const char* find_in_rope_contacts(const Tables& t) {
   for (const RopeContact& contact : t.rope_contacts) {
     if (contact.object_a >= t.objects.size() || contact.object_b >= t.objects.size())
       return "ropes of a contact";
@@ -238,7 +266,9 @@ const char* find_disagreement(const Tables& t) {
   if (const char* what = find_in_hooks(t)) return what;
   if (const char* what = find_in_pairs(t, t.pairs.pair, t.pairs.manifold)) return what;
   if (const char* what = find_in_pairs(t, t.pairs.sleeping.pair, t.pairs.sleeping.manifold)) return what;
-  return find_in_contacts(t);
+  if (const char* what = find_in_contacts(t)) return what;
+  if (const char* what = find_in_element_contacts(t)) return what;
+  return find_in_rope_contacts(t);
 }
 
 void check_tables([[maybe_unused]] const Tables& t) {
