@@ -71,6 +71,28 @@ Vertex vertex_at(const Source& source, DVec3 p) {
   return vertex;
 }
 
+/// A run without triangles of what has the look of `mesh`, in a geometry in world coordinates.
+DrawMesh run_of(const DrawMesh& mesh, const std::shared_ptr<MeshGeometry>& geometry) {
+  DrawMesh run = mesh;
+  run.geometry = geometry;
+  run.first_index = geometry->indices.size();
+  run.index_count = 0;
+  run.transform = Mat4{};
+  run.is_in_order = true;
+  return run;
+}
+
+/// Appends a face of the tree, a part of the triangle of `source`, as a fan of triangles.
+void add_face(const BspTree& tree, const BspFace& face, const Source& source, MeshGeometry& geometry) {
+  const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
+  for (std::uint32_t k = 0; k < face.corner_count; ++k) {
+    geometry.vertices.push_back(vertex_at(source, tree.corners[face.first_corner + k]));
+  }
+  for (std::uint32_t k = 2; k < face.corner_count; ++k) {
+    geometry.indices.insert(geometry.indices.end(), {first, first + k - 1, first + k});
+  }
+}
+
 }  // namespace
 
 Result<void> paint_in_order(DrawList& list) {
@@ -92,18 +114,9 @@ Result<void> paint_in_order(DrawList& list) {
     const Source& source = sources[face.triangle];
     if (source.mesh != mesh) {
       mesh = source.mesh;
-      DrawMesh& run = runs.emplace_back(list.meshes[mesh]);
-      run.geometry = ordered;
-      run.first_index = ordered->indices.size();
-      run.index_count = 0;
-      run.transform = Mat4{};
-      run.is_in_order = true;
+      runs.push_back(run_of(list.meshes[mesh], ordered));
     }
-    const auto first = static_cast<std::uint32_t>(ordered->vertices.size());
-    for (std::uint32_t k = 0; k < face.corner_count; ++k)
-      ordered->vertices.push_back(vertex_at(source, tree.value().corners[face.first_corner + k]));
-    for (std::uint32_t k = 2; k < face.corner_count; ++k)
-      ordered->indices.insert(ordered->indices.end(), {first, first + k - 1, first + k});
+    add_face(tree.value(), face, source, *ordered);
     runs.back().index_count = ordered->indices.size() - runs.back().first_index;
   }
   for (DrawMesh& other : list.meshes)
