@@ -317,6 +317,10 @@ struct Codec<Vector3<T>> {
   static std::string type() { return "[x, y, z]"; }
 };
 
+/// The object form of a rotation: {"axis", "angle_deg"}, or {"euler_deg"}.
+template <>
+const Kind& kind_of<Quat>();
+
 /// [x, y, z, w], or {"axis", "angle_deg"}, or {"euler_deg"}.
 template <>
 struct Codec<Quat> {

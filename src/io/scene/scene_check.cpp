@@ -62,11 +62,13 @@ class Checker {
   }
   void add_name(const std::string& name, const NamedObject& object);
   void collect(const SceneObjects& objects, const std::string& prefix);
+  void collect_hooks(const SceneObjects& objects, const std::string& prefix);
   void check_tag(const SceneTag& tag, const std::string& path);
   void check_pairs();
   void check_material(const std::string& name, const std::string& path);
   void check_mesh_name(const std::string& name, const std::string& path);
   void check_references(const SceneObjects& objects, const std::string& prefix);
+  void check_body(const SceneBody& body, const std::string& path);
   void check_hook(const SceneHook& hook, const std::string& path);
   void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
@@ -176,6 +178,11 @@ void Checker::collect(const SceneObjects& objects, const std::string& prefix) {
     add_name(objects.fields[i].name,
              {.path = indexed(prefix + "fields", i), .kind = SceneObject::Kind::kField});
   }
+  collect_hooks(objects, prefix);
+}
+
+/// Collects hooks, and seams, which are sets of hooks.
+void Checker::collect_hooks(const SceneObjects& objects, const std::string& prefix) {
   for (std::size_t i = 0; i < objects.hooks.size(); ++i) {
     const SceneHook& hook = objects.hooks[i];
     add_name(hook.name, {.path = indexed(prefix + "hooks", i),
@@ -221,19 +228,22 @@ void Checker::check_mesh_name(const std::string& name, const std::string& path) 
        "there is no mesh " + in_quotes(name) + closest_name(scene_.meshes, name));
 }
 
+void Checker::check_body(const SceneBody& body, const std::string& path) {
+  check_tag(body.tag, path);
+  const bool hull = body.desc.shape.kind == ShapeKind::kHull;
+  check_mesh_name(body.mesh, path + (hull ? ".shape.hull" : ".shape.mesh"));
+  for (std::size_t k = 0; k < body.parts.size(); ++k) {
+    const ScenePart& part = body.parts[k];
+    const std::string part_path = indexed(path + ".shape.parts", k);
+    const bool part_hull = part.desc.shape.kind == ShapeKind::kHull;
+    check_mesh_name(part.mesh, part_path + (part_hull ? ".shape.hull" : ".shape.mesh"));
+    check_material(part.material, part_path + ".material");
+  }
+}
+
 void Checker::check_references(const SceneObjects& objects, const std::string& prefix) {
   for (std::size_t i = 0; i < objects.bodies.size(); ++i) {
-    const std::string path = indexed(prefix + "bodies", i);
-    check_tag(objects.bodies[i].tag, path);
-    const bool hull = objects.bodies[i].desc.shape.kind == ShapeKind::kHull;
-    check_mesh_name(objects.bodies[i].mesh, path + (hull ? ".shape.hull" : ".shape.mesh"));
-    for (std::size_t k = 0; k < objects.bodies[i].parts.size(); ++k) {
-      const ScenePart& part = objects.bodies[i].parts[k];
-      const std::string part_path = indexed(path + ".shape.parts", k);
-      const bool part_hull = part.desc.shape.kind == ShapeKind::kHull;
-      check_mesh_name(part.mesh, part_path + (part_hull ? ".shape.hull" : ".shape.mesh"));
-      check_material(part.material, part_path + ".material");
-    }
+    check_body(objects.bodies[i], indexed(prefix + "bodies", i));
   }
   for (std::size_t i = 0; i < objects.ropes.size(); ++i) {
     check_tag(objects.ropes[i].tag, indexed(prefix + "ropes", i));

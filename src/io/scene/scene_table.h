@@ -121,8 +121,6 @@ template <>
 const Kind& kind_of<SceneAccuracy>();
 template <>
 const Kind& kind_of<SceneExpectation>();
-template <>
-const Kind& kind_of<Quat>();
 
 template <>
 std::span<const EnumName> names_of<WindDesc::Gusts>();

@@ -70,7 +70,7 @@ struct ShapeTables {
 
   template <ShapeKind Choice>
   static Field of(Field row) {
-    return choice<Choice, Members..., &Shape::kind>(std::move(row));
+    return choice<Choice, Members..., &Shape::kind>(row);
   }
 
   static std::vector<Field> rows() {
