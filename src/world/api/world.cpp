@@ -482,7 +482,7 @@ Result<void> World::unpin(PointRef point) {
 Result<void> World::set_gravity(Vec3 gravity) {
   const world::Claim claim(data_);
   if (!claim) return claim.error();
-  const auto good = Checks("").within("gravity", gravity, limits::kAcceleration, " m/s^2").result();
+  auto good = Checks("").within("gravity", gravity, limits::kAcceleration, " m/s^2").result();
   if (!good) return good;
   state::Tables& t = claim.tables();
   if (gravity == t.desc.gravity) return {};

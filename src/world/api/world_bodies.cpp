@@ -328,7 +328,7 @@ Result<void> World::set_angular_velocity(BodyId body, Vec3 angular_velocity) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  const auto good = Checks("").within("angular_velocity", angular_velocity, limits::kSpin, " rad/s").result();
+  auto good = Checks("").within("angular_velocity", angular_velocity, limits::kSpin, " rad/s").result();
   if (!good) return good;
   if (bodies.traits[row].kind == BodyKind::kStatic) return {};
   bodies.angular_velocity[row] = angular_velocity;
@@ -362,10 +362,10 @@ Result<void> World::set_pose(BodyId body, const Pose& pose) {
   Bodies& bodies = claim.tables().bodies;
   const std::uint32_t row = claim.tables().body_slots.find(body);
   if (row == kNone) return world::stale("body");
-  const auto good = Checks("pose")
-                        .place("position", pose.position)
-                        .require(build::is_rotation(pose.rotation), "rotation", "must be finite and not zero")
-                        .result();
+  auto good = Checks("pose")
+                  .place("position", pose.position)
+                  .require(build::is_rotation(pose.rotation), "rotation", "must be finite and not zero")
+                  .result();
   if (!good) return good;
   const Quat rotation = normalize(pose.rotation);
   const Vec3 omega = angular_velocity_of(bodies, row);
