@@ -21,7 +21,7 @@ void contacts(benchmark::State& state, Search search) {
   const auto upright = hooke::quaternion_about(DVec3{1, 0, 0}, std::acos(-1.0) / 2);
   std::vector<hooke::collision::MeshContact> found;
   for ([[maybe_unused]] auto _ : state) {
-    hooke::collision::find_mesh_contacts(ring, {}, ring, {{1.61, 0, 0}, upright}, 1e-4, search, found);
+    hooke::collision::find_mesh_contacts(ring, {}, ring, {{1.61, 0, 0}, upright}, {1e-4, search}, found);
     benchmark::DoNotOptimize(found.data());
   }
   state.counters["faces"] = static_cast<double>(ring.triangles.size());

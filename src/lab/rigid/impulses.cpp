@@ -117,6 +117,22 @@ std::vector<Group> groups_of(std::span<const ImpulsePoint> points) {
   return groups;
 }
 
+/// The group with the point that closes fastest, faster than `enough` [m/s]; null if there is none.
+Group* find_fastest(std::span<const ImpulseBody> bodies, std::span<const ImpulsePoint> points, double enough,
+                    std::vector<Group>& groups) {
+  Group* next = nullptr;
+  double fastest = -enough;
+  for (Group& group : groups) {
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      const double speed = normal_speed(bodies, points[i]);
+      if (!(speed < fastest)) continue;
+      fastest = speed;
+      next = &group;
+    }
+  }
+  return next;
+}
+
 }  // namespace
 
 ImpulseBody impulse_body(const RigidBody& body, const BodyMotion& at) {
@@ -181,17 +197,7 @@ int resolve_impacts(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
   const double closing_speed = kClosingSpeed * scale;
   int impacts = 0;
   for (;;) {
-    Group* next = nullptr;
-    double fastest = -closing_speed;
-    for (Group& group : groups) {
-      for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-        const double speed = normal_speed(bodies, points[i]);
-        if (speed < fastest) {
-          fastest = speed;
-          next = &group;
-        }
-      }
-    }
+    Group* const next = find_fastest(bodies, points, closing_speed, groups);
     if (next == nullptr) return impacts;
     if (++next->impacts > kMostImpactsOfPair) break;
     const auto own = points.subspan(next->first, next->count);

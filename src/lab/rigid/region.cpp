@@ -51,9 +51,7 @@ Result<void> Region::advance(double t, double dt) {
     }
     evaluate(attempt);
     if (attempt.deep) {
-      reset();
-      ++report_.rollbacks;
-      report_.resimulated_seconds += h * static_cast<double>(members_.size());
+      cancel(attempt);
       if (++tries_ < setting_.options.iteration_limit) {
         h = shorter_step(attempt);
         continue;
@@ -61,15 +59,8 @@ Result<void> Region::advance(double t, double dt) {
       give_up(attempt);
       ++events;
     } else {
-      accept(attempt);
       left -= h;
-      known_ = std::max(0.0, known_ - h);
-      respond(attempt.h);
-      if (attempt.touches) {
-        known_ = 0;
-        tries_ = 0;
-        ++events;
-      }
+      if (keep(attempt)) ++events;
     }
     h = known_ > kDone * dt ? std::min(left, longer_step(attempt)) : left;
     if (events == kManyEvents && patient_) {
@@ -78,11 +69,33 @@ Result<void> Region::advance(double t, double dt) {
     }
     if (events == 2 * kManyEvents) break;  // and here it stands until the step is over
   }
-  time_ = t + dt;
+  finish(t + dt);
+  return {};
+}
+
+void Region::cancel(const Attempt& attempt) {
+  reset();
+  ++report_.rollbacks;
+  report_.resimulated_seconds += attempt.h * static_cast<double>(members_.size());
+}
+
+/// Takes a try as it is, and lets what touches at its end respond. \return Whether something did.
+bool Region::keep(const Attempt& attempt) {
+  accept(attempt);
+  known_ = std::max(0.0, known_ - attempt.h);
+  respond(attempt.h);
+  if (!attempt.touches) return false;
+  known_ = 0;
+  tries_ = 0;
+  return true;
+}
+
+/// Forgets what only counts within an output step, which ends at `end` [s].
+void Region::finish(double end) {
+  time_ = end;
   tries_ = 0;
   known_ = 0;
   patient_ = true;
-  return {};
 }
 
 Result<void> Region::step_all(Attempt& attempt) {

@@ -71,6 +71,9 @@ class Region {
   };
 
   Result<void> step_all(Attempt& attempt);
+  void cancel(const Attempt& attempt);
+  bool keep(const Attempt& attempt);
+  void finish(double end);
   double shorter_step(const Attempt& attempt);
   double longer_step(const Attempt& attempt);
   double backward_error(const Attempt& attempt);

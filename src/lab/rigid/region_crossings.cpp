@@ -34,9 +34,10 @@ void Region::find_pairs(const Attempt& attempt) {
   pairs_.clear();
   const CollisionOptions& options = setting_.options;
   const auto collide = [&](std::uint32_t a, std::uint32_t b) {
-    if (options.preselection == Preselection::kBox)  // tighter than a margin: swept along the way
+    if (options.preselection == Preselection::kBox) {  // tighter than a margin: swept along the way
       return overlap(grown(swept_bounds(bodies_[a], attempt.motions[a]), options.epsilon),
                      swept_bounds(bodies_[b], attempt.motions[b]));
+    }
     return may_collide(options.preselection, {setting_.volumes[a], attempt.motions[a], bodies_[a].radius},
                        {setting_.volumes[b], attempt.motions[b], bodies_[b].radius}, options.epsilon);
   };

@@ -23,8 +23,8 @@ std::vector<Contact> Region::contacts_of(BodyPair pair, const BodyMotion& a, con
   std::vector<Contact> contacts;
   const double epsilon = setting_.options.epsilon;
   // Farther than what counts as a touch: what rests at the very limit still rests after rounding.
-  find_contacts(bodies_[pair.a], a, bodies_[pair.b], b, ContactSearch(setting_.options), 2 * epsilon,
-                2 * epsilon, setting_.materials, contacts);
+  const ContactQuery query = {ContactSearch(setting_.options), 2 * epsilon, 2 * epsilon, setting_.materials};
+  find_contacts(bodies_[pair.a], a, bodies_[pair.b], b, query, contacts);
   return contacts;
 }
 

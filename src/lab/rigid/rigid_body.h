@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 /// \file
@@ -77,12 +78,18 @@ struct BodyGap {
 [[nodiscard]] BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b,
                                   const BodyMotion& at_b, const ContactSearch& contact_search, double reach);
 
-/// Appends the places where shapes are no farther apart than `reach` [m], each with the normal and the
-/// distance of its shapes, or triangle; of two solids of triangles each with its own. `tolerance` [m] tells
-/// which corners belong to a place.
+/// Tells which contacts find_contacts lists.
+struct ContactQuery {
+  ContactSearch search = {};
+  double reach = 0;      ///< Largest distance of the shapes [m].
+  double tolerance = 0;  ///< Corners belong to a place if they are no farther than this from it [m].
+  std::span<const MaterialPairDesc> materials = {};  ///< The world's table.
+};
+
+/// Appends the places where shapes are within the reach, each with the normal and the distance of its shapes,
+/// or triangle; of two solids of triangles each with its own.
 void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                   const ContactSearch& contact_search, double reach, double tolerance,
-                   const std::vector<MaterialPairDesc>& materials, std::vector<Contact>& contacts);
+                   const ContactQuery& query, std::vector<Contact>& contacts);
 
 /// The shapes where they stand.
 [[nodiscard]] Box bounds_of(const RigidBody& body, const BodyMotion& at);

@@ -133,7 +133,7 @@ std::vector<collision::MeshContact> ball_contacts(const PlacedRigidShape& ball, 
                                                   const ContactSearch& contact_search, double reach) {
   std::vector<collision::MeshContact> contacts;
   collision::find_sphere_contacts(ball.solid.vertices[0], ball.solid.skin, *mesh.shape.surface, mesh.pose(),
-                                  reach, search_of(contact_search), contacts);
+                                  {reach, search_of(contact_search)}, contacts);
   return contacts;
 }
 
@@ -145,8 +145,8 @@ bool for_each_mesh_contact(const PlacedRigidShape& a, const PlacedRigidShape& b,
   const bool swapped = is_ball_at_surface(b, a, contact_search);
   std::vector<collision::MeshContact> contacts;
   if (are_surfaces(a, b)) {
-    collision::find_mesh_contacts(*a.shape.surface, a.pose(), *b.shape.surface, b.pose(), reach,
-                                  search_of(contact_search), contacts);
+    collision::find_mesh_contacts(*a.shape.surface, a.pose(), *b.shape.surface, b.pose(),
+                                  {reach, search_of(contact_search)}, contacts);
   } else if (swapped || is_ball_at_surface(a, b, contact_search)) {
     contacts =
         swapped ? ball_contacts(b, a, contact_search, reach) : ball_contacts(a, b, contact_search, reach);
@@ -225,35 +225,35 @@ BodyGap gap_between(const RigidBody& a, const BodyMotion& at_a, const RigidBody&
 }
 
 void find_contacts(const RigidBody& a, const BodyMotion& at_a, const RigidBody& b, const BodyMotion& at_b,
-                   const ContactSearch& contact_search, double reach, double tolerance,
-                   const std::vector<MaterialPairDesc>& materials, std::vector<Contact>& contacts) {
+                   const ContactQuery& query, std::vector<Contact>& contacts) {
   for_each_pair(a, at_a, b, at_b, [&](const PlacedRigidShape& of_a, const PlacedRigidShape& of_b) {
     const collision::PairSurface surface =
-        collision::surface_of(of_a.shape.contact, of_b.shape.contact, materials);
+        collision::surface_of(of_a.shape.contact, of_b.shape.contact, query.materials);
     const auto add = [&](DVec3 point, DVec3 normal, double distance) {
       contacts.push_back({point, normal, distance, static_cast<double>(surface.friction),
                           static_cast<double>(surface.static_friction),
                           static_cast<double>(surface.restitution)});
     };
-    if (for_each_mesh_contact(of_a, of_b, contact_search, reach, [&](const collision::MeshContact& contact) {
-          add(contact.point, contact.normal, -contact.depth);
-        }))
+    if (for_each_mesh_contact(of_a, of_b, query.search, query.reach,
+                              [&](const collision::MeshContact& contact) {
+                                add(contact.point, contact.normal, -contact.depth);
+                              }))
       return;
     for_each_piece(
-        of_a, of_b, contact_search, reach,
+        of_a, of_b, query.search, query.reach,
         [&](const ConvexSolid& x, const ConvexSolid& y, const SolidGap& gap) {
-          if (gap.distance > reach) return;
-          for (const DVec3 point : geometry::contact_points(x, y, gap, tolerance))
+          if (gap.distance > query.reach) return;
+          for (const DVec3 point : geometry::contact_points(x, y, gap, query.tolerance))
             add(point, gap.normal, gap.distance);
         },
         [&](const Plane& plane, const ConvexSolid& solid, bool swapped) {
-          if (height_over(plane, solid) > reach) return;
           const double low = height_over(plane, solid);
+          if (low > query.reach) return;
           for (const DVec3 v : solid.vertices) {
             const double height = dot(plane.normal, v) - plane.offset - solid.skin;
-            if (height <= low + tolerance)
-              add(v - (solid.skin + 0.5 * height) * plane.normal, swapped ? -plane.normal : plane.normal,
-                  height);
+            if (!(height <= low + query.tolerance)) continue;
+            add(v - (solid.skin + 0.5 * height) * plane.normal, swapped ? -plane.normal : plane.normal,
+                height);
           }
         });
   });

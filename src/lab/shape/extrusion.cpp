@@ -40,6 +40,39 @@ ConvexSolid plate_of(const ConvexSolid& segment, DVec3 displacement) {
   return plate;
 }
 
+bool faces_forward(const ConvexSolid::Face& face, DVec3 displacement) {
+  return dot(face.normal, displacement) > 0;
+}
+
+/// Whether the edge runs from `from` to `to` in the loop of the face.
+bool has_edge(const ConvexSolid::Face& face, std::uint32_t from, std::uint32_t to) {
+  for (std::size_t i = 0; i < face.loop.size(); ++i) {
+    if (face.loop[i] == from && face.loop[(i + 1) % face.loop.size()] == to) return true;
+  }
+  return false;
+}
+
+/// Appends a face at each edge of the silhouette, between the solid and its moved copy. Such an edge has a
+/// face on either side: it is in the loop of one that looks ahead, and backwards in that of one that does
+/// not.
+void add_silhouette(const ConvexSolid& solid, DVec3 displacement, ConvexSolid& result) {
+  const auto count = static_cast<std::uint32_t>(solid.vertices.size());
+  for (const ConvexSolid::Face& face : solid.faces) {
+    if (!faces_forward(face, displacement)) continue;
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const std::uint32_t from = face.loop[i];
+      const std::uint32_t to = face.loop[(i + 1) % face.loop.size()];
+      const bool inner = std::any_of(solid.faces.begin(), solid.faces.end(), [&](const auto& other) {
+        return faces_forward(other, displacement) && has_edge(other, to, from);
+      });
+      if (inner) continue;
+      const DVec3 n = direction_or(cross(solid.vertices[to] - solid.vertices[from], displacement), {});
+      if (n == DVec3{}) continue;
+      result.faces.push_back({n, farthest_along(result, n), {from + count, from, to, to + count}});
+    }
+  }
+}
+
 }  // namespace
 
 ConvexSolid extruded(const ConvexSolid& solid, DVec3 displacement) {
@@ -55,34 +88,12 @@ ConvexSolid extruded(const ConvexSolid& solid, DVec3 displacement) {
   ConvexSolid result = solid;
   for (std::uint32_t i = 0; i < count; ++i) result.vertices.push_back(solid.vertices[i] + displacement);
   // Faces that look ahead are those of the moved copy.
-  const auto faces_forward = [&](const ConvexSolid::Face& face) {
-    return dot(face.normal, displacement) > 0;
-  };
   for (ConvexSolid::Face& face : result.faces) {
-    if (!faces_forward(face)) continue;
+    if (!faces_forward(face, displacement)) continue;
     face.offset += dot(face.normal, displacement);
     for (std::uint32_t& corner : face.loop) corner += count;
   }
-  // Each edge of the silhouette has a face on either side: it is in the loop of one that looks ahead, and
-  // backwards in the loop of one that does not.
-  for (const ConvexSolid::Face& face : solid.faces) {
-    if (!faces_forward(face)) continue;
-    for (std::size_t i = 0; i < face.loop.size(); ++i) {
-      const std::uint32_t from = face.loop[i];
-      const std::uint32_t to = face.loop[(i + 1) % face.loop.size()];
-      const bool inner = std::any_of(solid.faces.begin(), solid.faces.end(), [&](const auto& other) {
-        if (!faces_forward(other)) return false;
-        for (std::size_t j = 0; j < other.loop.size(); ++j) {
-          if (other.loop[j] == to && other.loop[(j + 1) % other.loop.size()] == from) return true;
-        }
-        return false;
-      });
-      if (inner) continue;
-      const DVec3 n = direction_or(cross(solid.vertices[to] - solid.vertices[from], displacement), {});
-      if (n == DVec3{}) continue;
-      result.faces.push_back({n, farthest_along(result, n), {from + count, from, to, to + count}});
-    }
-  }
+  add_silhouette(solid, displacement, result);
   for (const auto [from, to] : solid.edges) result.edges.push_back({from + count, to + count});
   for (std::uint32_t i = 0; i < count; ++i) result.edges.push_back({i, i + count});
   result.directions.push_back({0, count});

@@ -365,6 +365,22 @@ void tidy(std::vector<MeshContact>& found) {
   found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
 }
 
+/// Whether p is outside at a place of the surface, and no triangle that has the place comes nearer to p
+/// elsewhere.
+bool is_nearest_around(const ContactMesh& mesh, DVec3 p, const SolidPoint& place, double rounding) {
+  if (!(place.signed_distance > 0)) return false;
+  const auto is_nearest_on = [&](std::uint32_t t) {
+    return closest_on_face(mesh, t, p).signed_distance >= place.signed_distance - rounding;
+  };
+  if (place.feature == SurfaceFeature::kEdge) {
+    const auto& sides = mesh.topology.edge_sides[place.index].triangles;
+    return is_nearest_on(sides[0]) && is_nearest_on(sides[1]);
+  }
+  if (place.feature != SurfaceFeature::kVertex) return true;
+  const auto& around = mesh.topology.triangles_at(place.index);
+  return std::all_of(around.begin(), around.end(), is_nearest_on);
+}
+
 bool is_finite(const RigidPose& pose) {
   const Quaternion<double>& q = pose.rotation;
   return hooke::is_finite(pose.position) && hooke::is_finite(DVec3{q.x, q.y, q.z}) && std::isfinite(q.w);
@@ -380,20 +396,20 @@ void to_world(const RigidPose& pose, std::vector<MeshContact>& contacts) {
 }  // namespace
 
 void find_mesh_contacts(const ContactMesh& a, const RigidPose& pose_a, const ContactMesh& b,
-                        const RigidPose& pose_b, double margin, Search search,
+                        const RigidPose& pose_b, const MeshContactSearch& search,
                         std::vector<MeshContact>& found) {
   found.clear();
   if (!is_finite(pose_a) || !is_finite(pose_b)) return;
   if (a.triangles.empty() || b.triangles.empty()) return;
   const RigidPose a_in_b = relative_pose(pose_a, pose_b);
   const double rounding = kRounding * (a.size + b.size);
-  const TwoMeshes scene = {{a, a_in_b}, {b, {}}, std::max(margin, 0.0), search, rounding};
+  const TwoMeshes scene = {{a, a_in_b}, {b, {}}, std::max(search.margin, 0.0), search.search, rounding};
   if (!may_overlap(a.tree.nodes[0].volume, b.tree.nodes[0].volume, relative_pose(pose_b, pose_a),
                    scene.margin + rounding)) {
     return;
   }
   Pairs near;
-  if (search == Search::kTree) {
+  if (scene.search == Search::kTree) {
     const RigidPose b_in_a = relative_pose({}, a_in_b);
     geometry::find_candidates(a.tree, b.tree, b_in_a, scene.margin + rounding, near);
   }
@@ -413,7 +429,7 @@ double largest_depth(const std::vector<MeshContact>& contacts) {
 }
 
 void find_sphere_contacts(DVec3 center, double radius, const ContactMesh& b, const RigidPose& pose_b,
-                          double margin, Search search, std::vector<MeshContact>& found) {
+                          const MeshContactSearch& search, std::vector<MeshContact>& found) {
   found.clear();
   if (!hooke::is_finite(center) || !is_finite(pose_b) || b.triangles.empty()) return;
   const DVec3 p = to_local(pose_b, center);
@@ -424,8 +440,8 @@ void find_sphere_contacts(DVec3 center, double radius, const ContactMesh& b, con
     const double depth = radius - place.signed_distance;
     found.push_back({kind, 0, place.index, place.point - 0.5 * depth * out, -out, depth});
   };
-  const SolidPoint nearest = closest_on_solid(b, p, search);
-  if (nearest.signed_distance > radius + margin) return;
+  const SolidPoint nearest = closest_on_solid(b, p, search.search);
+  if (nearest.signed_distance > radius + search.margin) return;
   const double on_surface = kRounding * (b.size + length(p));
   if (nearest.signed_distance <= on_surface) {
     const DVec3 offset = nearest.signed_distance < 0 ? nearest.point - p : p - nearest.point;
@@ -433,23 +449,10 @@ void find_sphere_contacts(DVec3 center, double radius, const ContactMesh& b, con
     add(nearest, has_offset ? normalize(offset) : b.face_normals[nearest.triangle]);
   } else {
     std::vector<std::uint32_t> faces;
-    find_near_faces(b, p, radius + margin, search, faces);
+    find_near_faces(b, p, radius + search.margin, search.search, faces);
     for (const std::uint32_t face : faces) {
       const SolidPoint place = closest_on_face(b, face, p);
-      // No triangle that has this place may come nearer elsewhere.
-      const auto is_nearest_on = [&](std::uint32_t t) {
-        return closest_on_face(b, t, p).signed_distance >= place.signed_distance - on_surface;
-      };
-      bool is_local = place.signed_distance > 0;
-      if (place.feature == SurfaceFeature::kEdge) {
-        const auto& sides = b.topology.edge_sides[place.index].triangles;
-        is_local = is_local && is_nearest_on(sides[0]) && is_nearest_on(sides[1]);
-      } else if (place.feature == SurfaceFeature::kVertex) {
-        for (const std::uint32_t t : b.topology.triangles_at(place.index)) {
-          is_local = is_local && is_nearest_on(t);
-        }
-      }
-      if (is_local) add(place, normalize(p - place.point));
+      if (is_nearest_around(b, p, place, on_surface)) add(place, normalize(p - place.point));
     }
   }
   tidy(found);

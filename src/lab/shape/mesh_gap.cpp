@@ -112,7 +112,7 @@ NearestPoints nearest_by_tree(const ContactMesh& a, std::span<const DVec3> a_pos
 MeshGap find_mesh_gap(const ContactMesh& a, const RigidPose& pose_a, const ContactMesh& b,
                       const RigidPose& pose_b, double reach, Search search) {
   std::vector<MeshContact> contacts;
-  find_mesh_contacts(a, pose_a, b, pose_b, 0, search, contacts);
+  find_mesh_contacts(a, pose_a, b, pose_b, {0, search}, contacts);
   if (!contacts.empty()) {
     const auto deepest =
         std::max_element(contacts.begin(), contacts.end(),

@@ -142,6 +142,10 @@ class System {
   PointRow add_fields(const state::Tables& tables);
   /// Says which fields are left out.
   void note_fields(const state::Tables& tables);
+  /// Lets a body turn about the axle of its hinge alone, or says that its hooks are left out.
+  void add_axle(const state::Tables& tables, std::uint32_t row, DVec3 spin);
+  /// Says which loads of a body are left out.
+  void note_loads(const state::Tables& tables, std::uint32_t row);
   void add_points(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_segments(const state::Tables& tables, const state::Deformable& object);

@@ -82,23 +82,30 @@ System System::create_body(const state::Tables& tables, std::uint32_t row, std::
   }
   if (bodies.force[row] != Vec3{} || bodies.torque[row] != Vec3{})
     system.left_out_.emplace_back("forces of World::apply_force: they last one step of a World");
-  system.axle_ = axle_of(tables, row);
-  if (system.axle_) {
-    system.start_v_ = {{}, dot(system.axle_->axis, spin) * system.axle_->axis};
-    // The same moment about every axis: nothing gyroscopic is left, and about its own it is as it was.
-    const double inertia = system.axle_->inertia;
-    system.turns_[0].inertia = {inertia, inertia, inertia};
-    system.set_load({}, {});
-  } else if (is_hooked(tables, row)) {
-    system.left_out_.emplace_back(
-        "hooks: of bodies only hinges to the world hold here, through the center of mass");
-  }
-  system.note_fields(tables);
-  if (traits.drag_coefficient != Real(0) || traits.magnus_volume != Real(0))
-    system.left_out_.emplace_back("air: bodies do not feel it here");
-  if (traits.dipole_moment != Vec3{})
-    system.left_out_.emplace_back("dipole moments: bodies are not magnetic here");
+  system.add_axle(tables, row, spin);
+  system.note_loads(tables, row);
   return system;
+}
+
+void System::add_axle(const state::Tables& tables, std::uint32_t row, DVec3 spin) {
+  axle_ = axle_of(tables, row);
+  if (axle_) {
+    start_v_ = {{}, dot(axle_->axis, spin) * axle_->axis};
+    // The same moment about every axis: nothing gyroscopic is left, and about its own it is as it was.
+    const double inertia = axle_->inertia;
+    turns_[0].inertia = {inertia, inertia, inertia};
+    set_load({}, {});
+  } else if (is_hooked(tables, row)) {
+    left_out_.emplace_back("hooks: of bodies only hinges to the world hold here, through the center of mass");
+  }
+}
+
+void System::note_loads(const state::Tables& tables, std::uint32_t row) {
+  const state::BodyTraits& traits = tables.bodies.traits[row];
+  note_fields(tables);
+  if (traits.drag_coefficient != Real(0) || traits.magnus_volume != Real(0))
+    left_out_.emplace_back("air: bodies do not feel it here");
+  if (traits.dipole_moment != Vec3{}) left_out_.emplace_back("dipole moments: bodies are not magnetic here");
 }
 
 BodyMotion System::body(double t, const State& y) const {

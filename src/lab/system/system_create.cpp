@@ -76,9 +76,10 @@ void System::note_fields(const state::Tables& tables) {
     const bool magnetic = field.desc.kind == FieldDesc::Kind::kMagnetic;
     return field.desc.kind > FieldDesc::Kind::kMagnetic || (magnetic && field.desc.strength != 0);
   };
-  if (std::any_of(tables.fields.begin(), tables.fields.end(), unknown))
+  if (std::any_of(tables.fields.begin(), tables.fields.end(), unknown)) {
     left_out_.emplace_back(
         "liquids, suction, vortices, explosions, dipoles and magnetic gradients: the laboratory has none");
+  }
 }
 
 void System::add_points(const state::Tables& tables, const state::Deformable& object) {

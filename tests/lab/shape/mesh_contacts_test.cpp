@@ -44,8 +44,8 @@ Contacts contacts_of(const ContactMesh& a, const RigidPose& pose_a, const Contac
                      const RigidPose& pose_b, double margin = kMargin) {
   Contacts by_tree;
   Contacts by_all;
-  find_mesh_contacts(a, pose_a, b, pose_b, margin, Search::kTree, by_tree);
-  find_mesh_contacts(a, pose_a, b, pose_b, margin, Search::kAll, by_all);
+  find_mesh_contacts(a, pose_a, b, pose_b, {margin, Search::kTree}, by_tree);
+  find_mesh_contacts(a, pose_a, b, pose_b, {margin, Search::kAll}, by_all);
   REQUIRE(by_tree.size() == by_all.size());
   REQUIRE(std::equal(by_tree.begin(), by_tree.end(), by_all.begin(), is_same));
   return by_tree;
@@ -308,8 +308,8 @@ TEST_SUITE("collision/mesh_contacts") {
     const auto sphere = [](DVec3 center, double radius, const ContactMesh& mesh) {
       Contacts by_tree;
       Contacts by_all;
-      find_sphere_contacts(center, radius, mesh, {}, kMargin, Search::kTree, by_tree);
-      find_sphere_contacts(center, radius, mesh, {}, kMargin, Search::kAll, by_all);
+      find_sphere_contacts(center, radius, mesh, {}, {kMargin, Search::kTree}, by_tree);
+      find_sphere_contacts(center, radius, mesh, {}, {kMargin, Search::kAll}, by_all);
       REQUIRE(std::equal(by_tree.begin(), by_tree.end(), by_all.begin(), by_all.end(), is_same));
       return by_tree;
     };
