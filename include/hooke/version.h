@@ -8,9 +8,9 @@
 ///
 /// The root CMakeLists.txt refuses to configure if they are not those of the project.
 
-#define HOOKE_VERSION_MAJOR 0
-#define HOOKE_VERSION_MINOR 1
-#define HOOKE_VERSION_PATCH 0
+#define HOOKE_VERSION_MAJOR 0  ///< It grows when programs must change.
+#define HOOKE_VERSION_MINOR 1  ///< It grows with what is new.
+#define HOOKE_VERSION_PATCH 0  ///< It grows with what is mended.
 
 namespace hooke {
 
