@@ -60,6 +60,42 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
       (is_swapped(m, block, row.lane) ? -step.impulse_scale : step.impulse_scale) * m.rolling_impulse;
 }
 
+/// Takes the next lane of a block for a member of its color.
+void add_lane(const ContactColors::Member& member, const Manifold& m, int index, BodyContacts& contacts) {
+  ContactBlock& block = contacts.blocks[index];
+  contacts.manifold_of.push_back(member.manifold);
+  block.bounces = block.bounces || m.restitution > Real(0);
+  if (m.is_refreshed() && !member.direct) {
+    block.point_count = Manifold::kMaxPoints;
+    contacts.refreshed.push_back({index, block.count, member.manifold});
+  }
+  if (m.rolling_friction > Real(0)) contacts.rolling.push_back({.lane = block.count});
+  ++block.count;
+}
+
+/// Lays out a block for the first of these members of one color, up to where their kind changes. Returns how
+/// many it holds.
+int lay_out_block(std::span<const ContactColors::Member> members, const std::vector<Manifold>& manifolds,
+                  int index, BodyContacts& contacts) {
+  ContactBlock& block = contacts.blocks[index];
+  const auto [first_manifold, anchored, direct] = members.front();
+  block.anchored = anchored;
+  block.direct = direct;
+  block.point_count = manifolds[first_manifold].point_count;
+  block.first_rolling = static_cast<int>(contacts.rolling.size());
+  block.count = 0;
+  block.bounces = false;
+  for (const ContactColors::Member& member :
+       members.first(std::min<std::size_t>(members.size(), kContactLanes))) {
+    if (member.anchored != anchored || member.direct != direct) break;
+    add_lane(member, manifolds[member.manifold], index, contacts);
+  }
+  contacts.manifold_of.resize((static_cast<std::size_t>(index) + 1) * kContactLanes,
+                              BodyContacts::kNoManifold);
+  block.rolling_count = static_cast<int>(contacts.rolling.size()) - block.first_rolling;
+  return block.count;
+}
+
 /// Cuts the colors into blocks, and finds room for what only some blocks have.
 void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contacts) {
   const ContactColors& colors = contacts.colors;
@@ -69,32 +105,13 @@ void lay_out_blocks(const std::vector<Manifold>& manifolds, BodyContacts& contac
   contacts.refreshed.clear();
   std::size_t block_count = 0;
   for (std::size_t color = 0; color + 1 < colors.begin.size(); ++color) {
-    int i = colors.begin[color];
-    while (i < colors.begin[color + 1]) {
+    auto members = std::span(colors.members)
+                       .subspan(static_cast<std::size_t>(colors.begin[color]),
+                                static_cast<std::size_t>(colors.begin[color + 1] - colors.begin[color]));
+    while (!members.empty()) {
       if (contacts.blocks.size() == block_count) contacts.blocks.emplace_back();
-      ContactBlock& block = contacts.blocks[block_count++];
-      const auto [first_manifold, anchored, direct] = colors.members[i];
-      block.anchored = anchored;
-      block.direct = direct;
-      block.point_count = manifolds[first_manifold].point_count;
-      block.first_rolling = static_cast<int>(contacts.rolling.size());
-      block.count = 0;
-      block.bounces = false;
-      const int end = std::min(i + kContactLanes, colors.begin[color + 1]);
-      for (; i < end && colors.members[i].anchored == anchored && colors.members[i].direct == direct; ++i) {
-        const Manifold& m = manifolds[colors.members[i].manifold];
-        contacts.manifold_of.push_back(colors.members[i].manifold);
-        block.bounces = block.bounces || m.restitution > Real(0);
-        if (m.is_refreshed() && !direct) {
-          block.point_count = Manifold::kMaxPoints;
-          contacts.refreshed.push_back(
-              {static_cast<int>(block_count) - 1, block.count, colors.members[i].manifold});
-        }
-        if (m.rolling_friction > Real(0)) contacts.rolling.push_back({.lane = block.count});
-        ++block.count;
-      }
-      contacts.manifold_of.resize(block_count * kContactLanes, BodyContacts::kNoManifold);
-      block.rolling_count = static_cast<int>(contacts.rolling.size()) - block.first_rolling;
+      const int held = lay_out_block(members, manifolds, static_cast<int>(block_count++), contacts);
+      members = members.subspan(static_cast<std::size_t>(held));
     }
     contacts.color_begin.push_back(static_cast<int>(block_count));
   }

@@ -39,6 +39,65 @@ int take_color(const Manifold& m, ContactColors& colors) {
   return color;
 }
 
+/// Takes the colors of all manifolds. Returns how many of these are alone in their own.
+int take_colors(const std::vector<Manifold>& manifolds, const state::Bodies& bodies, ContactColors& colors) {
+  colors.used.assign(bodies.motion.size(), 0);
+  colors.color.resize(manifolds.size());
+  int lone = 0;
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    colors.color[i] = has_contact_rows(manifolds[i], bodies) ? take_color(manifolds[i], colors) : -1;
+    if (colors.color[i] == kColors) colors.color[i] += lone++;
+  }
+  return lone;
+}
+
+/// The order of the members: by color, with lone manifolds between the two kinds of colors, then by kind.
+struct MemberOrder {
+  static constexpr int kKinds = 4 * Manifold::kMaxPoints;  ///< Number of kinds of members in a color.
+
+  const std::vector<std::uint8_t>& moves;  ///< As ContactColors::moves.
+  int lone = 0;                            ///< Number of manifolds that are alone in their color.
+
+  [[nodiscard]] bool is_anchored(const Manifold& m) const {
+    return moves[m.body_a] == 0 || moves[m.body_b] == 0;
+  }
+  [[nodiscard]] static bool is_direct(const Manifold& m) { return m.route == state::ContactRoute::kDirect; }
+  [[nodiscard]] int rank(int color) const {
+    if (color < kPairColors) return color;
+    return color < kColors ? color + lone : color - kColors + kPairColors;
+  }
+  [[nodiscard]] int key(const Manifold& m, int color) const {
+    const int kind = (is_direct(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
+    return kKinds * rank(color) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints -
+           std::max(m.point_count, 1);
+  }
+  [[nodiscard]] std::size_t key_count() const {
+    return static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone);
+  }
+};
+
+/// Fills `members` and `begin` by a counting sort.
+void sort_members(const std::vector<Manifold>& manifolds, const MemberOrder& order, ContactColors& colors) {
+  const auto key = [&](std::size_t i) { return order.key(manifolds[i], colors.color[i]); };
+  colors.next_slot.assign(order.key_count() + 1, 0);
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (colors.color[i] >= 0) ++colors.next_slot[key(i) + 1];
+  }
+  std::partial_sum(colors.next_slot.begin(), colors.next_slot.end(), colors.next_slot.begin());
+  colors.begin = {0};
+  constexpr int kKinds = MemberOrder::kKinds;
+  for (int rank_end = kKinds; rank_end < static_cast<int>(colors.next_slot.size()); rank_end += kKinds) {
+    if (colors.next_slot[rank_end] > colors.begin.back()) colors.begin.push_back(colors.next_slot[rank_end]);
+  }
+  colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
+  for (std::size_t i = 0; i < manifolds.size(); ++i) {
+    if (colors.color[i] < 0) continue;
+    const Manifold& m = manifolds[i];
+    colors.members[colors.next_slot[key(i)]++] = {static_cast<std::uint32_t>(i), order.is_anchored(m),
+                                                  MemberOrder::is_direct(m)};
+  }
+}
+
 }  // namespace
 
 bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
@@ -47,55 +106,16 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
   if (m.is_load_bearing()) return false;
-  if ((m.point_count == 0 && !m.is_refreshed()) || bodies.traits[m.body_a].sensor ||
-      bodies.traits[m.body_b].sensor)
-    return false;
+  if (m.point_count == 0 && !m.is_refreshed()) return false;
+  if (bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor) return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);
 }
 
 void color_contacts(const std::vector<Manifold>& manifolds, const state::Bodies& bodies,
                     ContactColors& colors) {
   find_moving(bodies, colors.moves);
-  colors.used.assign(bodies.motion.size(), 0);
-  colors.color.resize(manifolds.size());
-  int lone = 0;
-  for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    colors.color[i] = has_contact_rows(manifolds[i], bodies) ? take_color(manifolds[i], colors) : -1;
-    if (colors.color[i] == kColors) colors.color[i] += lone++;
-  }
-
-  // A counting sort by color, with lone manifolds between the two kinds, then in the order of `members`.
-  const auto is_anchored = [&](const Manifold& m) {
-    return colors.moves[m.body_a] == 0 || colors.moves[m.body_b] == 0;
-  };
-  const auto rank = [&](std::size_t i) {
-    const int color = colors.color[i];
-    if (color < kPairColors) return color;
-    return color < kColors ? color + lone : color - kColors + kPairColors;
-  };
-  const auto is_direct = [](const Manifold& m) { return m.route == state::ContactRoute::kDirect; };
-  constexpr int kKinds = 4 * Manifold::kMaxPoints;
-  const auto key = [&](std::size_t i) {
-    const Manifold& m = manifolds[i];
-    const int kind = (is_direct(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
-    return kKinds * rank(i) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints - std::max(m.point_count, 1);
-  };
-  colors.next_slot.assign(static_cast<std::size_t>(kKinds) * static_cast<std::size_t>(kColors + lone) + 1, 0);
-  for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (colors.color[i] >= 0) ++colors.next_slot[key(i) + 1];
-  }
-  std::partial_sum(colors.next_slot.begin(), colors.next_slot.end(), colors.next_slot.begin());
-  colors.begin = {0};
-  for (int rank_end = kKinds; rank_end < static_cast<int>(colors.next_slot.size()); rank_end += kKinds) {
-    if (colors.next_slot[rank_end] > colors.begin.back()) colors.begin.push_back(colors.next_slot[rank_end]);
-  }
-  colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
-  for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    if (colors.color[i] < 0) continue;
-    const Manifold& m = manifolds[i];
-    colors.members[colors.next_slot[key(i)]++] = {static_cast<std::uint32_t>(i), is_anchored(m),
-                                                  is_direct(m)};
-  }
+  const int lone = take_colors(manifolds, bodies, colors);
+  sort_members(manifolds, {colors.moves, lone}, colors);
 }
 
 }  // namespace hooke::solver
