@@ -391,8 +391,8 @@ void solve_solids(WorldData& world, Real h) {
   for_matched(world, h, solver::match_shape);
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
-      solver::press_gas(tables.objects[world.derived.gas_objects[i]], tables.triangles, tables.contacts,
-                        tables.bodies, static_cast<double>(h), world.frame.gas_volumes[i], tables.particles);
+      solver::press_gas(tables.objects[world.derived.gas_objects[i]], static_cast<double>(h),
+                        world.frame.gas_volumes[i], tables);
     }
   });
 }

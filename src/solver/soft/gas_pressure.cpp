@@ -21,16 +21,23 @@ GasVolume::Push& push_on(std::uint32_t body, std::vector<GasVolume::Push>& pushe
   return known != pushes.end() ? *known : pushes.emplace_back(GasVolume::Push{body, {}, {}});
 }
 
+/// A particle of the cloth around a gas.
+struct SkinParticle {
+  DVec3 v;                  ///< [m/s]
+  double inverse_mass = 0;  ///< [1/kg]
+  DVec3 gradient;           ///< Of the volume by its place [m^2].
+};
+
 /// Takes account of a particle that is pressed against a body: along the normal the body decides, not the
 /// particle.
-void hold(const state::Contacts& contacts, std::size_t row, DVec3 v, double w, DVec3 gradient,
+void hold(const state::Contacts& contacts, std::size_t row, const SkinParticle& particle,
           std::vector<GasVolume::Push>& pushes, Response& response) {
   const DVec3 n = vector_cast<double>(contacts.normal[row]);
-  const double along = dot(gradient, n);
+  const double along = dot(particle.gradient, n);
   if (!(contacts.normal_force[row] > Real(0)) || !(along < 0)) return;
-  const double closing_speed = dot(n, v - vector_cast<double>(contacts.surface_velocity[row]));
+  const double closing_speed = dot(n, particle.v - vector_cast<double>(contacts.surface_velocity[row]));
   if (closing_speed < 0) response.rate -= along * closing_speed;
-  response.mobility -= w * along * along;
+  response.mobility -= particle.inverse_mass * along * along;
   GasVolume::Push& push = push_on(contacts.body[row], pushes);
   push.force += along * n;
   push.torque += cross(vector_cast<double>(contacts.lever[row]), along * n);
@@ -68,10 +75,10 @@ double gas_pressure(const state::Deformable& object, double volume) {
   return object.gas / filled_volume(object, volume) - state::kAirPressure;
 }
 
-void press_gas(const state::Deformable& object, const state::Triangles& triangles,
-               const state::Contacts& contacts, const state::Bodies& bodies, double h, GasVolume& scratch,
-               state::Particles& particles) {
-  measure_gas(object, triangles, particles, scratch);
+void press_gas(const state::Deformable& object, double h, GasVolume& scratch, state::Tables& tables) {
+  const state::Contacts& contacts = tables.contacts;
+  state::Particles& particles = tables.particles;
+  measure_gas(object, tables.triangles, particles, scratch);
   const std::uint32_t first = object.particles.first;
   Response all;
   scratch.pushes.clear();
@@ -80,15 +87,15 @@ void press_gas(const state::Deformable& object, const state::Triangles& triangle
                                contacts.particle.begin());
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
     const state::VelocityRecord& record = particles.velocity[first + i];
-    const DVec3 v = vector_cast<double>(record.v);
-    const auto w = static_cast<double>(record.inverse_mass);
-    all.rate += dot(scratch.gradient[i], v);
-    all.mobility += w * length_squared(scratch.gradient[i]);
+    const SkinParticle particle = {vector_cast<double>(record.v), static_cast<double>(record.inverse_mass),
+                                   scratch.gradient[i]};
+    all.rate += dot(particle.gradient, particle.v);
+    all.mobility += particle.inverse_mass * length_squared(particle.gradient);
     while (row < contacts.particle.size() && contacts.particle[row] < first + i) ++row;
     const bool touches = row < contacts.particle.size() && contacts.particle[row] == first + i;
-    if (touches && w > 0) hold(contacts, row, v, w, scratch.gradient[i], scratch.pushes, all);
+    if (touches && particle.inverse_mass > 0) hold(contacts, row, particle, scratch.pushes, all);
   }
-  for (const GasVolume::Push& push : scratch.pushes) all.mobility += mobility_of(push, bodies);
+  for (const GasVolume::Push& push : scratch.pushes) all.mobility += mobility_of(push, tables.bodies);
   const double volume = filled_volume(object, scratch.volume);
   const double stiffness = object.gas / (volume * volume);
   const double impulse = h * (gas_pressure(object, scratch.volume) - h * stiffness * all.rate) /

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "state/bodies.h"
-#include "state/contacts.h"
 #include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
+#include "state/tables.h"
 
 #include <cstdint>
 #include <vector>
@@ -47,8 +46,6 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
 ///
 /// The gas law is used rather than a constant volume (V = p V_0, Macklin and Mueller): a ball has a pressure
 /// in pascals, which a gauge reads and which decides how far it gives way. `scratch` is refilled.
-void press_gas(const state::Deformable& object, const state::Triangles& triangles,
-               const state::Contacts& contacts, const state::Bodies& bodies, double h, GasVolume& scratch,
-               state::Particles& particles);
+void press_gas(const state::Deformable& object, double h, GasVolume& scratch, state::Tables& tables);
 
 }  // namespace hooke::solver
