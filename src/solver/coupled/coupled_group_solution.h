@@ -40,6 +40,7 @@ class CoupledGroupSolution {
  private:
   /// Largest relative length error left in any rope.
   double check_ropes(bool& limits_changed);
+  void linearize_ropes(std::vector<RopeSystem>& rope_systems);
   [[nodiscard]] bool gains_energy() const;
   // Loading and checking.
   void load_points();
@@ -151,7 +152,8 @@ class CoupledGroupSolution {
     return row >= column ? Numbers{first, width, 1} : Numbers{first, 1, width};
   }
   double& right_side(std::uint32_t block, int i) {
-    return b_.right_side[static_cast<std::size_t>(b_.pattern.first[b_.slot[block]] + i)];
+    const int at = b_.pattern.first[b_.slot[block]] + i;
+    return b_.right_side[static_cast<std::size_t>(at)];
   }
 
   double h_;

@@ -45,9 +45,10 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
                     .v = body.v,
                     .omega_scaled = body.omega_scaled};
   }
-  for (RopeContactRow& contact_row : b_.ropes.contact_rows)
-    contact_row.body =
-        contact_row.row == RopeContactRow::kTether ? -1 : b_.body_of(t_.contacts.body[contact_row.row]);
+  for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    const bool is_tether = contact_row.row == RopeContactRow::kTether;
+    contact_row.body = is_tether ? -1 : b_.body_of(t_.contacts.body[contact_row.row]);
+  }
   load_hooks();
   load_coupled_contacts();
   stiffen();
@@ -71,8 +72,13 @@ void CoupledGroupSolution::load_points() {
     if (!(b_.ropes.nodes.back().w > 0) || !in_contact) continue;
     const std::span<const std::uint32_t> tethers =
         std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
-    load_point_contact_rows(node, b_.ropes.nodes.back(), first, end, tethers, heaviest_in_contact(node), h_,
-                            t_, b_.ropes.contact_rows);
+    load_point_contact_rows({.node = b_.ropes.nodes.back(),
+                             .index = node,
+                             .first = first,
+                             .end = end,
+                             .tethers = tethers,
+                             .heaviest = heaviest_in_contact(node)},
+                            h_, t_, b_.ropes.contact_rows);
   }
 }
 
@@ -84,11 +90,10 @@ void CoupledGroupSolution::load_hooks() {
       const int body = b_.ends[i][end];
       return body >= 0 ? b_.moving[body].body : joint_end(t_, end == 0 ? hook.a : hook.b);
     };
-    JointBody a = end_of(0);
-    if (hook.kind == HookKind::kRopeSlide) a.rotation = slide_rotation(t_, hook);
-    const bool a_given = b_.ends[i][0] < 0 && !hook.a.is_point();
-    const bool b_given = b_.ends[i][1] < 0 && !hook.b.is_point();
-    const int count = make_rows(hook, a, end_of(1), a_given, b_given, h_, rows);
+    RowEnd a = {end_of(0), b_.ends[i][0] < 0 && !hook.a.is_point()};
+    const RowEnd b = {end_of(1), b_.ends[i][1] < 0 && !hook.b.is_point()};
+    if (hook.kind == HookKind::kRopeSlide) a.body.rotation = slide_rotation(t_, hook);
+    const int count = make_rows(hook, a, b, h_, rows);
     for (int k = 0; k < count; ++k) {
       const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
       b_.rows[row] = rows[k];
@@ -238,6 +243,20 @@ bool CoupledGroupSolution::is_sound() const {
          });
 }
 
+/// Linearizes the bends and segments of all ropes about the last result.
+void CoupledGroupSolution::linearize_ropes(std::vector<RopeSystem>& rope_systems) {
+  std::size_t segment = 0;
+  std::size_t bend = 0;
+  for (std::size_t k = 0; k < b_.rope_systems.size(); ++k) {
+    RopeSystem& rope_system = rope_systems[b_.rope_systems[k]];
+    for (std::uint32_t i = 1; rope_system.bend_stiffness > 0 && i + 1 < rope_system.node_count; ++i)
+      linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.bends[bend++]);
+    for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i)
+      linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
+    ++rope_system.solves;
+  }
+}
+
 double CoupledGroupSolution::check_ropes(bool& limits_changed) {
   double worst = 0;
   std::span<RopeSegment> rest = b_.ropes.segments;
@@ -279,16 +298,7 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
     return solve_again(solves, error, unconverged.pulls, b_.ropes.contact_rows) || slides;
   };
   for (int solves = 1; solves == 1 || (again(solves - 1) && within_budget()); ++solves) {
-    std::size_t segment = 0;
-    std::size_t bend = 0;
-    for (std::size_t k = 0; k < b_.rope_systems.size(); ++k) {
-      RopeSystem& rope_system = rope_systems[b_.rope_systems[k]];
-      for (std::uint32_t i = 1; rope_system.bend_stiffness > 0 && i + 1 < rope_system.node_count; ++i)
-        linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.bends[bend++]);
-      for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i)
-        linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
-      ++rope_system.solves;
-    }
+    linearize_ropes(rope_systems);
     if (solves > 1) revise_coupled_contacts();
     solve_with_bounds();
     if (!is_sound()) break;

@@ -19,12 +19,12 @@ JointBody joint_end(const state::Tables& t, const state::HookPlace& place) {
   return end;
 }
 
-int make_rows(state::Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
+int make_rows(state::Hook& hook, const RowEnd& a, const RowEnd& b, double h,
               std::span<JointRow, state::Hook::kMaxRows> rows) {
-  const int count = make_joint_rows(hook, a, b, h, rows);
+  const int count = make_joint_rows(hook, a.body, b.body, h, rows);
   for (JointRow& row : rows.first(static_cast<std::size_t>(count))) {
-    if (a_given) row.target += dot(row.n, a.v) + dot(row.j_a, a.omega_scaled);
-    if (b_given) row.target -= dot(row.n, b.v) + dot(row.j_b, b.omega_scaled);
+    if (a.given) row.target += dot(row.n, a.body.v) + dot(row.j_a, a.body.omega_scaled);
+    if (b.given) row.target -= dot(row.n, b.body.v) + dot(row.j_b, b.body.omega_scaled);
   }
   return count;
 }

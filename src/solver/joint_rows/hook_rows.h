@@ -17,9 +17,15 @@ inline constexpr double kHookCompliance = 1e-6;
 /// rotation.
 [[nodiscard]] JointBody joint_end(const state::Tables& tables, const state::HookPlace& place);
 
+/// An end of a hook for which rows are made.
+struct RowEnd {
+  JointBody body;
+  bool given = false;  ///< Its motion is given: the targets contain it.
+};
+
 /// Makes the rows of a hook (solver/joint_rows/joint_rows.h) between ends of which some have their motion
-/// given. The targets contain that motion.
-int make_rows(state::Hook& hook, const JointBody& a, const JointBody& b, bool a_given, bool b_given, double h,
+/// given.
+int make_rows(state::Hook& hook, const RowEnd& a, const RowEnd& b, double h,
               std::span<JointRow, state::Hook::kMaxRows> rows);
 
 }  // namespace hooke::solver

@@ -214,39 +214,38 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
                        const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
   for (std::uint32_t row = rope_system.first_contact; row < rope_system.end_contact; ++row) {
     const std::uint32_t particle = tables.contacts.particle[row];
-    if (tables.particles.velocity[particle].inverse_mass > Real(0))
-      contact_rows.push_back(
-          load_contact_row(row, first_node + particle - rope_system.first_particle, h, tables));
+    if (!(tables.particles.velocity[particle].inverse_mass > Real(0))) continue;
+    const std::uint32_t node = first_node + particle - rope_system.first_particle;
+    contact_rows.push_back(load_contact_row(row, node, h, tables));
   }
 }
 
-void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
-                             std::span<const std::uint32_t> tethers, double heaviest, double h,
-                             const state::Tables& tables, std::vector<RopeContactRow>& contact_rows) {
-  const double own = node.mass;
-  heaviest = std::max(heaviest, own);
-  for (std::size_t row = first; row < end; ++row) {
+void load_point_contact_rows(const PointInContact& point, double h, const state::Tables& tables,
+                             std::vector<RopeContactRow>& contact_rows) {
+  const double own = point.node.mass;
+  double heaviest = std::max(point.heaviest, own);
+  for (std::size_t row = point.first; row < point.end; ++row) {
     const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
     if (w > 0) heaviest = std::max(heaviest, 1 / w);
   }
   const std::size_t first_contact_row = contact_rows.size();
-  for (std::size_t row = first; row < end; ++row) {
-    RopeContactRow t = load_contact_row(row, index, h, tables);
+  for (std::size_t row = point.first; row < point.end; ++row) {
+    RopeContactRow t = load_contact_row(row, point.index, h, tables);
     t.separation = std::max(t.separation, 0.0);
     t.n0 = 0;
     t.f0 = {};
     t.slides = false;
     contact_rows.push_back(t);
   }
-  for (const std::uint32_t row : tethers) {
+  for (const std::uint32_t row : point.tethers) {
     const bool still_pinned =
         tables.particles.velocity[tables.springs.particle_b[row]].inverse_mass == Real(0);
-    if (still_pinned) contact_rows.push_back(load_tether(row, index, h, tables));
+    if (still_pinned) contact_rows.push_back(load_tether(row, point.index, h, tables));
   }
   for (RopeContactRow& t : std::span(contact_rows).subspan(first_contact_row)) {
     t.of_point = true;
     t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
-    t.drag = drag_of(t, node.v_free);
+    t.drag = drag_of(t, point.node.v_free);
   }
 }
 

@@ -131,12 +131,19 @@ void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityR
 void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, double h,
                        const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
 
-/// Appends the contacts of `node`, one particle outside of ropes with the number `index`: contact rows
-/// [first, end), and the tethers that hold it, rows of springs. Overlap does not become speed
-/// (solver/soft/particle_contact_solve.h). `heaviest` is the mass of what else presses on it [kg].
-void load_point_contact_rows(std::uint32_t index, const RopeNode& node, std::size_t first, std::size_t end,
-                             std::span<const std::uint32_t> tethers, double heaviest, double h,
-                             const state::Tables& tables, std::vector<RopeContactRow>& contact_rows);
+/// One particle outside of ropes, and what it may be held by.
+struct PointInContact {
+  const RopeNode& node;
+  std::uint32_t index = 0;                 ///< Number of the node.
+  std::size_t first = 0, end = 0;          ///< Its contacts are [first, end).
+  std::span<const std::uint32_t> tethers;  ///< The tethers that hold it, rows of springs.
+  double heaviest = 0;                     ///< Mass of the heaviest of what else presses on it [kg].
+};
+
+/// Appends the contacts of a point and its tethers. Overlap does not become speed
+/// (solver/soft/particle_contact_solve.h).
+void load_point_contact_rows(const PointInContact& point, double h, const state::Tables& tables,
+                             std::vector<RopeContactRow>& contact_rows);
 
 /// Loads the bend between the segments of `row` and the next. At a clamp (solver/rope/rope_clamps.h) only
 /// half a segment bends.

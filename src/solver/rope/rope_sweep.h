@@ -185,9 +185,10 @@ class RopeSweep {
   };
   HWY_INLINE Segment linearize(std::size_t i) {
     Triple<Number> relative = {Number(0.0), Number(0.0), Number(0.0)};
-    if (!all_first_)
+    if (!all_first_) {
       relative =
           difference(get3<Number>(ropes_.nodes[i + 1].u, lane_), get3<Number>(ropes_.nodes[i].u, lane_));
+    }
     const SegmentRow<Number> row = linearized(state_of(i, relative), traits_of(i), terms_, all_first_);
     RopeSegmentLanes<kCount>& segment = ropes_.segments[i];
     put3(row.n, segment.n, lane_);
@@ -304,6 +305,13 @@ class RopeSweep {
     return {scaled(per_d, a), scaled(per_d, an), k * d * (per_both * d)};
   }
 
+  /// What a node leaves to the next ones: its inverse, tau eta and z.
+  struct Eliminated {
+    Inverse inverse;
+    Number given;
+    Triple<Number> z;
+  };
+
   /// Stores what the backward pass needs, and adds what is left to the next two nodes.
   HWY_INLINE void eliminate(std::size_t i, const Segment& segment, const Pivot& here, Pivot& next,
                             Pivot& second, OffDiagonal& off_diagonal) {
@@ -331,7 +339,7 @@ class RopeSweep {
       given = choose(above(moves(i), Number(0.0)), given, tau * (dot(n, v) + n_o));
     }
     if constexpr (kBends) {
-      pass_on_bent(i, segment, {p, r, tau}, given, difference(y, scaled(given, r)), next, second,
+      pass_on_bent(i, segment, {{p, r, tau}, given, difference(y, scaled(given, r))}, next, second,
                    off_diagonal);
     } else {
       const Triple<Number> t = difference(n, scaled(b, r));
@@ -343,10 +351,11 @@ class RopeSweep {
     }
   }
 
-  HWY_INLINE void pass_on_bent(std::size_t i, const Segment& segment, const Inverse& inverse, Number given,
-                               const Triple<Number>& z, Pivot& next, Pivot& second,
-                               OffDiagonal& off_diagonal) {
+  /// Adds what is left of node i to the next two nodes of a rope with bends.
+  HWY_INLINE void pass_on_bent(std::size_t i, const Segment& segment, const Eliminated& left, Pivot& next,
+                               Pivot& second, OffDiagonal& off_diagonal) {
     const auto& [n, o, n_o, k, b] = segment;
+    const auto& [inverse, given, z] = left;
     const auto& [p, r, tau] = inverse;
     RopeFillLanes<kCount>& fill = ropes_.fills[i];
     put9(off_diagonal.next, fill.next_block, lane_);

@@ -210,8 +210,8 @@ class Group {
     if (!(w > 0)) return;
     state::Hook& hook = source.tables.hooks[anchor.hook];
     std::array<JointRow, state::Hook::kMaxRows> rows;
-    make_rows(hook, joint_end(source.tables, hook.a), joint_end(source.tables, hook.b), anchor.node_is_b,
-              !anchor.node_is_b, source.h, rows);
+    make_rows(hook, {joint_end(source.tables, hook.a), anchor.node_is_b},
+              {joint_end(source.tables, hook.b), !anchor.node_is_b}, source.h, rows);
     AnchorRows made;
     made.node = anchor.node;
     made.hook = anchor.hook;
