@@ -154,9 +154,10 @@ struct Loads {
       weights[count][i] = 1 - t;
       weights[count++][next] = t;
     }
-    for (std::size_t k = 2; k < count; ++k)
+    for (std::size_t k = 2; k < count; ++k) {
       press_part(row, area, {weights[0], weights[k - 1], weights[k]}, {depth[0], depth[k - 1], depth[k]},
                  count == 3 && weights[0][0] == 1 && weights[1][1] == 1 && weights[2][2] == 1);
+    }
   }
 
   /// Over a triangle of area A, the integral of a product of two linear functions is A / 12 times the sum of

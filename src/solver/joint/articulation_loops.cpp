@@ -176,9 +176,10 @@ JointWork work_of(double h, const Articulation& art, const Articulation::Joint& 
   JointWork sum;
   for (int i = joint.first; i < joint.first + joint.count; ++i) {
     const JointRow& row = art.rows[i];
-    if (row.role == RowRole::kSpring && row.rate > 0)
+    if (row.role == RowRole::kSpring && row.rate > 0) {
       sum.add_spring(row.rate / (h * row.gamma), row.start,
                      h * rate_of(row, a, b, v, omega) - row.target / row.rate);
+    }
     if (row.role == RowRole::kMotor) sum.work += art.lambda[i] * rate_of(row, a, b, mean_v, mean_omega);
     sum.work -= art.lambda[i] * rate_of(row, a, b, told_v, told_omega);
   }

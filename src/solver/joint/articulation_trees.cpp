@@ -127,9 +127,9 @@ class Group {
 
   /// Makes the rows of a lane again if a body turns fast. Returns whether a lock is off by too much then.
   bool is_bent(const std::vector<Hook>& hooks, int lane, Block<Kind>& block) const {
-    if constexpr (Kind::kApproximate)
+    if constexpr (Kind::kApproximate) {
       return false;
-    else {
+    } else {
       const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
       if (!turns_fast) return false;
       const double error = wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes);

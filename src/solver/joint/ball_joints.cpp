@@ -96,13 +96,12 @@ void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int l
   hook.value[2] = static_cast<double>(error.z);
 }
 
-/// Fills the block with `count` hooks of hook_of from `begin` on.
-void fill_block(Real h, const BallJoints& joints, std::size_t begin, std::size_t count,
-                std::vector<Hook>& hooks, const Bodies& bodies, BallBlock& block) {
-  const auto rows = std::span(joints.hook_of).subspan(begin, count);
+/// Fills the block with the hooks of `rows`, which begin at lane `first` of the plan.
+void fill_block(Real h, std::span<const std::uint32_t> rows, std::size_t first, std::vector<Hook>& hooks,
+                const Bodies& bodies, BallBlock& block) {
   block = {};
-  block.first = begin;
-  block.count = static_cast<int>(count);
+  block.first = first;
+  block.count = static_cast<int>(rows.size());
   block.anchored = ends_of(hooks[rows[0]], bodies).anchored;
   for (int lane = 0; lane < kLanes; ++lane) {
     fill_lane(h, hooks[rows[std::min<std::size_t>(lane, rows.size() - 1)]], bodies, block, lane);
@@ -128,10 +127,9 @@ template <class Visit>
 void for_each_range(parallel::ThreadPool& pool, BallJoints& joints, SweepOrder order, Visit&& visit) {
   for_each_color(static_cast<int>(joints.block_begin.size()) - 1, order, [&](int color) {
     const int first = joints.block_begin[color];
+    const auto of_color = std::span(joints.blocks).subspan(static_cast<std::size_t>(first));
     parallel::for_ranges(pool, joints.block_begin[color + 1] - first, kSolveGrain, [&](Range range) {
-      visit(std::span(joints.blocks)
-                .subspan(static_cast<std::size_t>(first + range.begin),
-                         static_cast<std::size_t>(range.count())));
+      visit(of_color.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.count())));
     });
   });
 }
@@ -187,7 +185,7 @@ void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& 
   parallel::for_ranges(pool, static_cast<int>(joints.plan.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const auto [begin, count] = joints.plan[i];
-      fill_block(h, joints, begin, count, hooks, bodies, joints.blocks[i]);
+      fill_block(h, std::span(joints.hook_of).subspan(begin, count), begin, hooks, bodies, joints.blocks[i]);
     }
   });
 }
@@ -197,9 +195,10 @@ void solve_ball_joints(parallel::ThreadPool& pool, Real h, Bodies& bodies, BallJ
   constexpr SweepOrder kForward = SweepOrder::kForward;
   const wide::BallPass pass = {static_cast<Real>(soft.rate), static_cast<Real>(soft.mass_scale),
                                static_cast<Real>(soft.impulse_scale)};
-  if (joints.fresh)
+  if (joints.fresh) {
     for_each_range(pool, joints, kForward,
                    [&](auto blocks) { wide::warm_start_balls(blocks, bodies.motion.data()); });
+  }
   for_each_range(pool, joints, kForward,
                  [&](auto blocks) { wide::solve_balls(blocks, pass, bodies.motion.data()); });
   joints.fresh = false;
@@ -215,9 +214,10 @@ void store_ball_joints(parallel::ThreadPool& pool, Real dt, int substeps, const 
   parallel::for_ranges(pool, static_cast<int>(joints.blocks.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const BallBlock& block = joints.blocks[i];
-      for (int lane = 0; lane < block.count; ++lane)
+      for (int lane = 0; lane < block.count; ++lane) {
         store_lane(block, lane, dt / static_cast<Real>(substeps), bodies,
                    hooks[joints.hook_of[block.first + static_cast<std::size_t>(lane)]]);
+      }
     }
   });
   for (const std::uint32_t row : joints.resting)

@@ -134,19 +134,26 @@ void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImp
   }
 }
 
+/// How one pass solves the rows of all joints.
+struct JointPass {
+  double h = 0;  ///< Length of the substep [s].
+  LockSoftness soft = {};
+  SweepOrder order = SweepOrder::kForward;
+};
+
 /// Solves the rows of a joint once. Returns what the hook needed.
-HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order, Hook& hook,
-                     state::Bodies& bodies, IterativeJoints& iterative) {
+HookLoad solve_joint(int i, const JointPass& pass, Hook& hook, state::Bodies& bodies,
+                     IterativeJoints& iterative) {
   Ends ends;
   load_velocity(bodies, hook.a.body, ends.a);
   load_velocity(bodies, hook.b.body, ends.b);
   const int count = iterative.first_row[i + 1] - iterative.first_row[i];
   for (int step = 0; step < count; ++step) {
-    const int k = order == SweepOrder::kForward ? step : count - 1 - step;
+    const int k = pass.order == SweepOrder::kForward ? step : count - 1 - step;
     const JointRow& row = iterative.rows[iterative.first_row[i] + k];
     Real& lambda = hook.row_impulse[k];
     const double diagonal = diagonal_of(row, ends, iterative.extra_hooks[i]);
-    const double change = solve_row(row, ends, diagonal, static_cast<double>(lambda), h, soft);
+    const double change = solve_row(row, ends, diagonal, static_cast<double>(lambda), pass.h, pass.soft);
     lambda += static_cast<Real>(change);
     const JointImpulse p = impulse_of(row, change);
     apply(p, ends);
@@ -158,7 +165,7 @@ HookLoad solve_joint(int i, double h, const LockSoftness& soft, SweepOrder order
         std::span(iterative.rows)
             .subspan(static_cast<std::size_t>(iterative.first_row[i]), static_cast<std::size_t>(count));
     load = load_of(rows, hook);
-    cap_joint(rows, need_of(hook, load, h), ends, iterative.done[i], hook);
+    cap_joint(rows, need_of(hook, load, pass.h), ends, iterative.done[i], hook);
   }
   store_velocity(ends.a, hook.a.body, bodies);
   store_velocity(ends.b, hook.b.body, bodies);
@@ -210,21 +217,19 @@ void prepare_iterative_joints(IterativeJoints& iterative) {
 
 void solve_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks,
                             state::Bodies& bodies, IterativeJoints& iterative) {
-  const LockSoftness soft = lock_softness(h);
-  constexpr SweepOrder kOrder = SweepOrder::kForward;
-  for_each_joint(pool, hooks, bodies, iterative, kOrder,
+  const JointPass pass = {.h = h, .soft = lock_softness(h), .order = SweepOrder::kForward};
+  for_each_joint(pool, hooks, bodies, iterative, pass.order,
                  [&](int i) { begin_joint(i, h, hooks[iterative.hooks[i]], bodies, iterative); });
-  for_each_joint(pool, hooks, bodies, iterative, kOrder, [&](int i) {
-    solve_joint(i, h, soft, kOrder, hooks[iterative.hooks[i]], bodies, iterative);
-  });
+  for_each_joint(pool, hooks, bodies, iterative, pass.order,
+                 [&](int i) { solve_joint(i, pass, hooks[iterative.hooks[i]], bodies, iterative); });
 }
 
 void relax_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<Hook>& hooks,
                             state::Bodies& bodies, IterativeJoints& iterative) {
-  constexpr SweepOrder kOrder = SweepOrder::kBackward;
-  for_each_joint(pool, hooks, bodies, iterative, kOrder, [&](int i) {
+  const JointPass pass = {.h = h, .soft = {}, .order = SweepOrder::kBackward};
+  for_each_joint(pool, hooks, bodies, iterative, pass.order, [&](int i) {
     Hook& hook = hooks[iterative.hooks[i]];
-    const HookLoad load = solve_joint(i, h, {}, kOrder, hook, bodies, iterative);
+    const HookLoad load = solve_joint(i, pass, hook, bodies, iterative);
     if (hook.can_break()) note_need(h, load, hook);
     std::array<double, Hook::kMaxRows> lambda = {};
     std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());

@@ -47,11 +47,10 @@ class TreeRows {
         if (form.role == RowRole::kSpring || form.sprung)
           put(f.value[form.freedom] - at(row.goal), row.start);
         first_bound(form, now, row);
-        if (Kind::kApproximate && form.role == RowRole::kMotor)
-          soften_motor(form,
-                       slide_of(form, per_h_ * (f.value[form.freedom] - before.value[form.freedom]), now,
-                                link_a(i), link_b(i)),
-                       row);
+        if (Kind::kApproximate && form.role == RowRole::kMotor) {
+          const Number moved = per_h_ * (f.value[form.freedom] - before.value[form.freedom]);
+          soften_motor(form, slide_of(form, moved, now, link_a(i), link_b(i)), row);
+        }
       }
     }
   }

@@ -82,9 +82,10 @@ class TreeStiffness {
       const Triple<Number> b = get3<Number>(joint.anchor_b, lane_);
       const Number p2 = dot(p, p);
       add_bound(root(p2 * dot(shape.child_is_b ? b : a, shape.child_is_b ? b : a)), trees_.links[i]);
-      if (shape.parent_moves)
+      if (shape.parent_moves) {
         add_bound(root(p2 * dot(shape.child_is_b ? a : b, shape.child_is_b ? a : b)),
                   trees_.links[static_cast<std::size_t>(shape.parent)]);
+      }
     }
     for (const Link& link : trees_.links) {
       const Scale<Number> s = get6(link.scale);

@@ -212,13 +212,25 @@ class TreeSweep {
     return choose(above(bound, zero), at(row.high), choose(above(zero, bound), at(row.low), between));
   }
 
+  /// The rows of a joint that are factored already.
+  struct RowList {
+    const Row* const* row;
+    int count;
+  };
+  /// A row's own entry of S, and what its right side is so far.
+  struct RowStart {
+    Number diagonal;
+    Number z;
+  };
+
   /// Adds the factors of one row of S, from `w` = L^-1 C^T and its own b and V, to those that `list` has
   /// already.
-  HWY_INLINE void add_row(const Row* const* list, int count, const Number (&w)[6], bool turns,
-                          Number diagonal, Number z, Number (&v)[6], Row& row) const {
+  HWY_INLINE void add_row(const RowList& list, const Number (&w)[6], bool turns, const RowStart& start,
+                          Number (&v)[6], Row& row) const {
+    auto [diagonal, z] = start;
     Number t[kMostTreeRows];
-    for (int q = 0; q < count; ++q) {
-      const Row& other = *list[q];
+    for (int q = 0; q < list.count; ++q) {
+      const Row& other = *list.row[q];
       Number s = product(w, other.w, turns);
       for (int p = 0; p < q; ++p) s = s - t[p] * at(other.l[p]);
       t[q] = s;
@@ -233,6 +245,23 @@ class TreeSweep {
     store(v, row.v);
   }
 
+  /// Adds the impulses of rows at a bound to the right sides of both links.
+  HWY_INLINE void add_fixed_impulses(const TreeJoint& joint, Number (&g)[6], Number (&g_parent)[6]) const {
+    const Number zero(0.0);
+    for (int r = joint.first; r < joint.first + joint.count; ++r) {
+      const TreeRowForm& form = forms_[r];
+      if (!form.bounded()) continue;
+      const Row& row = rows_[r];
+      const Number impulse = fixed_impulse(row, form);
+      for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
+        const Number child = i < 3 ? at(row.n[i % 3]) : at(row.child[i % 3]);
+        const Number other = i < 3 ? zero - at(row.n[i % 3]) : at(row.parent[i % 3]);
+        g[i] = g[i] + impulse * child;
+        g_parent[i] = g_parent[i] + impulse * other;
+      }
+    }
+  }
+
   HWY_INLINE void eliminate(const TreeJoint& joint, Link& link, Link& parent) const {
     const Number zero(0.0);
     const Number one(1.0);
@@ -244,18 +273,7 @@ class TreeSweep {
     load(link.g, y);
     Number g_parent[6];
     load(parent.g, g_parent);
-    for (int r = joint.first; r < joint.first + joint.count; ++r) {
-      const TreeRowForm& form = forms_[r];
-      if (!form.bounded()) continue;
-      const Row& row = rows_[r];
-      const Number impulse = fixed_impulse(row, form);
-      for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
-        const Number child = i < 3 ? at(row.n[i % 3]) : at(row.child[i % 3]);
-        const Number other = i < 3 ? zero - at(row.n[i % 3]) : at(row.parent[i % 3]);
-        y[i] = y[i] + impulse * child;
-        g_parent[i] = g_parent[i] + impulse * other;
-      }
-    }
+    add_fixed_impulses(joint, y, g_parent);
     factor.template substitute<0>(y);
     for (int i = 0; i < 6; ++i) y[i] = factor.inverse(i) * y[i];
     store(y, link.g);
@@ -298,7 +316,7 @@ class TreeSweep {
       const Number diagonal = product(w, scaled, form.turns());
       b = b - product(w, y, form.turns());
       const Number firm = diagonal + Number(Kind::kCompliance) * diagonal;
-      add_row(list, count, w, form.turns(), firm + gamma, b, v, row);
+      add_row({list, count}, w, form.turns(), {firm + gamma, b}, v, row);
       list[count++] = &row;
     }
     if (joint.parent_moves) add_to_parent(list, count, g_parent, parent);
