@@ -162,10 +162,11 @@ DVec3 CoupledGroupSolution::velocity_of(std::uint32_t body, DVec3 lever) const {
   return now.v + cross(now.scale * now.omega_scaled, lever);
 }
 
-void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactForce& last) {
+/// Makes the rows along the normal and across it, and finds the mobility along the normal.
+void CoupledGroupSolution::make_contact_directions(std::size_t index, DVec3 n) {
   CoupledContact& coupled = b_.contact_rows[index];
   const auto [a, b] = b_.ends[b_.hooks.size() + index];
-  const auto axes = axes_of(last.n);
+  const auto axes = axes_of(n);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   for (std::uint32_t i = 0; i < coupled.count; ++i)
     coupled.mobility += coupled.weight[i] * coupled.weight[i] * b_.ropes.nodes[coupled.node[i]].w;
@@ -185,20 +186,23 @@ void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactFor
     turns(a, coupled.lever, row.j_a);
     turns(b, coupled.lever_b, row.j_b);
   }
-  b_.rows[first].target -= gap_speed(coupled);
-  if (coupled.count > 0) coupled.resistance = coupled.mobility;
+}
 
+/// Lets the contact begin as the last substep left it: with its force, and sliding or not.
+void CoupledGroupSolution::give_last_force(std::size_t index, const ContactForce& last) {
+  CoupledContact& coupled = b_.contact_rows[index];
+  JointRow& along_normal = b_.rows[b_.first_row[b_.hooks.size() + index]];
   coupled.normal = h_ * last.normal;
   if (coupled.firm) {
-    double& gamma = b_.rows[first].gamma;
+    double& gamma = along_normal.gamma;
     gamma = coupled.mobility / kContactStiffness;
     // What presses a light rope with many times its weight would otherwise push through it.
     const bool of_ropes = index >= b_.element_contacts.size() && index < b_.first_load_bearing();
     if (of_ropes && gamma * coupled.normal > kRopeYieldSpeed) gamma = kRopeYieldSpeed / coupled.normal;
-    b_.rows[first].target += std::min(gamma * coupled.normal, kElementPushOutSpeed);
+    along_normal.target += std::min(gamma * coupled.normal, kElementPushOutSpeed);
   }
   const DVec3 friction = h_ * last.friction;
-  coupled.f = friction - dot(axes[0], friction) * axes[0];
+  coupled.f = friction - dot(last.n, friction) * last.n;
   coupled.active = coupled.near && (coupled.normal > 0 || coupled.separation <= 0);
   const double size = length(coupled.f);
   const double speed = length(sliding_of(index, true));
@@ -208,6 +212,14 @@ void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactFor
     coupled.slides = speed > 0;
     coupled.drag = speed > 0 ? coupled.friction * coupled.normal / speed : 0;
   }
+}
+
+void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactForce& last) {
+  CoupledContact& coupled = b_.contact_rows[index];
+  make_contact_directions(index, last.n);
+  b_.rows[b_.first_row[b_.hooks.size() + index]].target -= gap_speed(coupled);
+  if (coupled.count > 0) coupled.resistance = coupled.mobility;
+  give_last_force(index, last);
   set_coupled_rows(index);
   if (!coupled.active || !coupled.firm || coupled.count == 0) return;
   note_rope_in_contact(coupled.node[0]);

@@ -63,6 +63,8 @@ class CoupledGroupSolution {
   void load_body_contact(std::size_t index);
   [[nodiscard]] DVec3 velocity_of(std::uint32_t body, DVec3 lever) const;
   void make_contact_rows(std::size_t index, const ContactForce& last);
+  void make_contact_directions(std::size_t index, DVec3 n);
+  void give_last_force(std::size_t index, const ContactForce& last);
   void note_rope_in_contact(std::uint32_t node);
   void set_coupled_rows(std::size_t index);
   void revise_coupled_contacts();
@@ -93,6 +95,8 @@ class CoupledGroupSolution {
   void fill_right_side();
   void start_bodies();
   void give_impulses();
+  void fill_rows();
+  void push_bodies();
 
   [[nodiscard]] BodyRow hook_row(const JointRow& row, int end, const JointBody& body) const {
     const double sign = end == 1 ? 1 : -1;

@@ -52,9 +52,10 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   }
   for (std::uint32_t row = 0; row < t.element_contacts.size(); ++row) {
     const state::ElementContact& element_contact = t.element_contacts[row];
-    if (is_coupled(t, element_contact))
+    if (is_coupled(t, element_contact)) {
       s.insert(s.end(), {row, element_contact.element, element_contact.object, element_contact.body,
                          gives_way(t.bodies, element_contact.body)});
+    }
   }
   for (const state::LoadBearingContact& load_bearing : t.pairs.load_bearing) {
     for (const std::uint32_t body : {load_bearing.body_a, load_bearing.body_b})
@@ -83,9 +84,10 @@ class Membership {
     }
     for (const state::ElementContact& element_contact : t.element_contacts) {
       if (!is_coupled(t, element_contact)) continue;
-      for (std::uint32_t i = 1; i < element_contact.count; ++i)
+      for (std::uint32_t i = 1; i < element_contact.count; ++i) {
         sets_.merge(of_element_contact(element_contact),
                     of_particle(element_contact.object, element_contact.particle[i]));
+      }
       if (gives_way(t.bodies, element_contact.body))
         sets_.merge(of_element_contact(element_contact), element_contact.body);
     }
@@ -181,13 +183,9 @@ void list_anchors(const Tables& t, const std::vector<std::uint32_t>& hooks,
   }
 }
 
-/// Lists the members of all coupled groups, in order of the first hook, then of the first contact that makes
-/// one. Contacts of points come before those between bodies. Hooks that are anchors go to `scratch.anchors`.
-void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, CoupledGroups& groups) {
-  Membership membership(t, groups.scratch.sets);
-  const std::size_t set_count = t.bodies.motion.size() + t.particles.position.size();
-  std::vector<std::uint8_t>& coupled = groups.scratch.coupled;
-  coupled.assign(set_count, 0);
+/// Marks the sets that are coupled groups.
+void mark_coupled(const Tables& t, Membership& membership, std::vector<std::uint8_t>& coupled) {
+  coupled.assign(t.bodies.motion.size() + t.particles.position.size(), 0);
   for (const Hook& hook : t.hooks) {
     if (hook.holds_point() ? !may_be_anchor(t, hook) : hook.route == state::JointRoute::kCoupled)
       coupled[membership.of_hook(hook)] = 1;
@@ -203,69 +201,120 @@ void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, Couple
   for (const state::RopeContact& contact : t.rope_contacts) {
     if (contact.joined) coupled[membership.of_rope_contact(contact)] = 1;
   }
-  std::vector<std::uint32_t>& group_of = groups.scratch.group_of;
-  group_of.assign(set_count, kNone);
-  groups.count = 0;
-  groups.scratch.anchors.clear();
-  const auto group_at = [&](std::uint32_t set_root) -> CoupledGroup& {
-    if (group_of[set_root] == kNone) {
-      group_of[set_root] = static_cast<std::uint32_t>(groups.count++);
-      if (groups.groups.size() < groups.count) groups.groups.emplace_back();
-      groups.groups[group_of[set_root]].clear();
-    }
-    return groups.groups[group_of[set_root]];
-  };
-  for (std::uint32_t i = 0; i < t.hooks.size(); ++i) {
-    const Hook& hook = t.hooks[i];
-    if (!hook.is_in_coupled_group()) continue;
-    if (coupled[membership.of_hook(hook)] == 0) {
-      groups.scratch.anchors.push_back(i);
-      continue;
-    }
-    CoupledGroup& group = group_at(membership.of_hook(hook));
-    group.hooks.push_back(i);
-    for (const HookPlace& end : {hook.a, hook.b}) {
-      add_points(t, end, group.points);
-      if (gives_way(t.bodies, end.body)) group.bodies.push_back(end.body);
-    }
+}
+
+/// Gives each coupled group its members. A group begins with the first member that is added to it.
+class MemberSort {
+ public:
+  MemberSort(const Tables& t, Membership& membership, CoupledGroups& groups)
+      : tables_(t), membership_(membership), groups_(groups) {
+    group_of().assign(t.bodies.motion.size() + t.particles.position.size(), kNone);
+    groups_.count = 0;
+    groups_.scratch.anchors.clear();
   }
-  for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-    if (!joins(t, row)) continue;
-    CoupledGroup& group = group_at(membership.of_contact(row));
-    group.bodies.push_back(t.contacts.body[row]);
-    if (!is_of_rope(t, row)) group.points.push_back(t.contacts.particle[row]);
-  }
-  for (std::uint32_t row = 0; row < t.element_contacts.size(); ++row) {
-    const state::ElementContact& element_contact = t.element_contacts[row];
-    if (!is_coupled(t, element_contact)) continue;
-    CoupledGroup& group = group_at(membership.of_element_contact(element_contact));
-    group.element_contacts.push_back(row);
-    if (gives_way(t.bodies, element_contact.body)) group.bodies.push_back(element_contact.body);
-    if (t.objects[element_contact.object].kind == PointRef::Kind::kRope) continue;
-    group.points.insert(group.points.end(), element_contact.particle.begin(),
-                        element_contact.particle.begin() + element_contact.count);
-  }
-  for (std::uint32_t row = 0; row < t.rope_contacts.size(); ++row) {
-    const state::RopeContact& contact = t.rope_contacts[row];
-    if (contact.joined) group_at(membership.of_rope_contact(contact)).rope_contacts.push_back(row);
-  }
-  for (std::uint32_t row = 0; row < t.pairs.load_bearing.size(); ++row) {
-    const state::LoadBearingContact& load_bearing = t.pairs.load_bearing[row];
-    CoupledGroup& group = group_at(membership.of_load_bearing(load_bearing));
-    group.load_bearing.push_back(row);
-    for (const std::uint32_t body : {load_bearing.body_a, load_bearing.body_b}) {
-      if (gives_way(t.bodies, body)) group.bodies.push_back(body);
+
+  void add_hooks() {
+    for (std::uint32_t i = 0; i < tables_.hooks.size(); ++i) {
+      const Hook& hook = tables_.hooks[i];
+      if (!hook.is_in_coupled_group()) continue;
+      if (groups_.scratch.coupled[membership_.of_hook(hook)] == 0) {
+        groups_.scratch.anchors.push_back(i);
+        continue;
+      }
+      CoupledGroup& group = group_at(membership_.of_hook(hook));
+      group.hooks.push_back(i);
+      for (const HookPlace& end : {hook.a, hook.b}) {
+        add_points(tables_, end, group.points);
+        add_body(end.body, group);
+      }
     }
   }
-  std::uint32_t rope_system = 0;
-  for (std::uint32_t o = 0; o < t.objects.size(); ++o) {
-    if (t.objects[o].kind != PointRef::Kind::kRope) continue;
-    const std::uint32_t set_root = membership.of_particle(o, t.objects[o].particles.first);
-    const std::uint32_t group = group_of[set_root];
-    rope_systems[rope_system].in_coupled_group = group != kNone;
-    if (group != kNone) groups.groups[group].rope_systems.push_back(rope_system);
-    ++rope_system;
+
+  void add_contacts() {
+    for (std::size_t row = 0; row < tables_.contacts.particle.size(); ++row) {
+      if (!joins(tables_, row)) continue;
+      CoupledGroup& group = group_at(membership_.of_contact(row));
+      group.bodies.push_back(tables_.contacts.body[row]);
+      if (!is_of_rope(tables_, row)) group.points.push_back(tables_.contacts.particle[row]);
+    }
   }
+
+  void add_element_contacts() {
+    for (std::uint32_t row = 0; row < tables_.element_contacts.size(); ++row) {
+      const state::ElementContact& element_contact = tables_.element_contacts[row];
+      if (!is_coupled(tables_, element_contact)) continue;
+      CoupledGroup& group = group_at(membership_.of_element_contact(element_contact));
+      group.element_contacts.push_back(row);
+      add_body(element_contact.body, group);
+      if (tables_.objects[element_contact.object].kind == PointRef::Kind::kRope) continue;
+      group.points.insert(group.points.end(), element_contact.particle.begin(),
+                          element_contact.particle.begin() + element_contact.count);
+    }
+  }
+
+  void add_rope_contacts() {
+    for (std::uint32_t row = 0; row < tables_.rope_contacts.size(); ++row) {
+      const state::RopeContact& contact = tables_.rope_contacts[row];
+      if (contact.joined) group_at(membership_.of_rope_contact(contact)).rope_contacts.push_back(row);
+    }
+  }
+
+  void add_load_bearing_contacts() {
+    for (std::uint32_t row = 0; row < tables_.pairs.load_bearing.size(); ++row) {
+      const state::LoadBearingContact& load_bearing = tables_.pairs.load_bearing[row];
+      CoupledGroup& group = group_at(membership_.of_load_bearing(load_bearing));
+      group.load_bearing.push_back(row);
+      for (const std::uint32_t body : {load_bearing.body_a, load_bearing.body_b}) add_body(body, group);
+    }
+  }
+
+  /// Adds the rope systems to the groups that hooks and contacts have made, and marks those that have one.
+  void add_rope_systems(std::vector<RopeSystem>& rope_systems) {
+    std::uint32_t rope_system = 0;
+    for (std::uint32_t o = 0; o < tables_.objects.size(); ++o) {
+      if (tables_.objects[o].kind != PointRef::Kind::kRope) continue;
+      const std::uint32_t set_root = membership_.of_particle(o, tables_.objects[o].particles.first);
+      const std::uint32_t group = group_of()[set_root];
+      rope_systems[rope_system].in_coupled_group = group != kNone;
+      if (group != kNone) groups_.groups[group].rope_systems.push_back(rope_system);
+      ++rope_system;
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t>& group_of() { return groups_.scratch.group_of; }
+
+  CoupledGroup& group_at(std::uint32_t set_root) {
+    std::uint32_t& group = group_of()[set_root];
+    if (group == kNone) {
+      group = static_cast<std::uint32_t>(groups_.count++);
+      if (groups_.groups.size() < groups_.count) groups_.groups.emplace_back();
+      groups_.groups[group].clear();
+    }
+    return groups_.groups[group];
+  }
+
+  void add_body(std::uint32_t body, CoupledGroup& group) const {
+    if (gives_way(tables_.bodies, body)) group.bodies.push_back(body);
+  }
+
+  const Tables& tables_;
+  Membership& membership_;
+  CoupledGroups& groups_;
+};
+
+/// Lists the members of all coupled groups, in order of the first hook, then of the first contact that makes
+/// one. Contacts of points come before those between bodies. Hooks that are anchors go to `scratch.anchors`.
+void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, CoupledGroups& groups) {
+  Membership membership(t, groups.scratch.sets);
+  mark_coupled(t, membership, groups.scratch.coupled);
+  MemberSort members(t, membership, groups);
+  members.add_hooks();
+  members.add_contacts();
+  members.add_element_contacts();
+  members.add_rope_contacts();
+  members.add_load_bearing_contacts();
+  members.add_rope_systems(rope_systems);
   for (CoupledGroup& group : groups.live()) {
     base::sort_unique(group.points);
     base::sort_unique(group.bodies);
@@ -294,9 +343,8 @@ struct Layout {
     return first_node.back() + static_cast<std::uint32_t>(at - group.points.begin());
   }
 
-  void list_incidents() {
+  void number_nodes() {
     std::uint32_t nodes = 0;
-    vector_count = 0;
     first_node.clear();
     for (const std::uint32_t c : group.rope_systems) {
       first_node.push_back(nodes);
@@ -304,14 +352,14 @@ struct Layout {
     }
     first_node.push_back(nodes);
     node_count = nodes + group.points.size();
+  }
+
+  void list_incidents() {
+    number_nodes();
     base::reset_lists(node_count, at_node);
-    for (std::size_t k = 0; k < group.rope_systems.size(); ++k) {
-      for (std::uint32_t i = 0; i + 1 < rope_systems[group.rope_systems[k]].node_count; ++i) {
-        at_node[first_node[k] + i].push_back({vector_count, 1});
-        at_node[first_node[k] + i + 1].push_back({vector_count, -1});
-        ++vector_count;
-      }
-    }
+    vector_count = 0;
+    for (std::size_t k = 0; k < group.rope_systems.size(); ++k)
+      list_segments(rope_systems[group.rope_systems[k]], first_node[k]);
     for (std::size_t k = 0; k < group.rope_systems.size(); ++k)
       list_bends(rope_systems[group.rope_systems[k]], first_node[k]);
     for (std::uint32_t i = 0; i < group.hooks.size(); ++i) {
@@ -326,6 +374,14 @@ struct Layout {
     for (std::uint32_t i = 0; i < group.rope_contacts.size(); ++i) {
       for (const std::uint32_t particle : tables.rope_contacts[group.rope_contacts[i]].particle)
         at_node[node_of(particle)].push_back({contact_block(group.element_contact_count() + i), 0});
+    }
+  }
+
+  void list_segments(const RopeSystem& rope_system, std::uint32_t first) {
+    for (std::uint32_t i = 0; i + 1 < rope_system.node_count; ++i) {
+      at_node[first + i].push_back({vector_count, 1});
+      at_node[first + i + 1].push_back({vector_count, -1});
+      ++vector_count;
     }
   }
 
@@ -358,12 +414,20 @@ struct Layout {
     return contact_block(group.contact_count()) + static_cast<std::uint32_t>(index);
   }
 
+  void connect(std::uint32_t a, std::uint32_t b) {
+    if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
+  }
+
   /// Joins blocks that share a node or a body, or that a contact of a node with a body connects.
   void join_blocks() {
     scratch.matrix.reset(vector_count + group.hooks.size() + group.contact_count() + group.bodies.size());
-    const auto connect = [&](std::uint32_t a, std::uint32_t b) {
-      if (a != b && a != kNone && b != kNone) scratch.matrix.join(a, b);
-    };
+    list_bodies_at_nodes();
+    for (std::size_t node = 0; node < node_count; ++node) join_blocks_at(node);
+    join_with_bodies();
+  }
+
+  /// Lists the blocks of the bodies that touch each node.
+  void list_bodies_at_nodes() {
     std::vector<std::vector<std::uint32_t>>& bodies_at = scratch.bodies_at;
     base::reset_lists(node_count, bodies_at);
     for (std::size_t row = 0; row < tables.contacts.particle.size(); ++row) {
@@ -371,15 +435,21 @@ struct Layout {
       const std::uint32_t block = body_block(tables.contacts.body[row]);
       if (block != kNone) bodies_at[node_of(tables.contacts.particle[row])].push_back(block);
     }
-    for (std::size_t node = 0; node < node_count; ++node) {
-      for (const CoupledGroup::Incident& a : at_node[node]) {
-        for (const CoupledGroup::Incident& b : at_node[node]) connect(a.block, b.block);
-        for (const std::uint32_t body : bodies_at[node]) connect(a.block, body);
-      }
-      for (const std::uint32_t a : bodies_at[node]) {
-        for (const std::uint32_t b : bodies_at[node]) connect(a, b);
-      }
+  }
+
+  void join_blocks_at(std::size_t node) {
+    const std::vector<std::uint32_t>& bodies = scratch.bodies_at[node];
+    for (const CoupledGroup::Incident& a : at_node[node]) {
+      for (const CoupledGroup::Incident& b : at_node[node]) connect(a.block, b.block);
+      for (const std::uint32_t body : bodies) connect(a.block, body);
     }
+    for (const std::uint32_t a : bodies) {
+      for (const std::uint32_t b : bodies) connect(a, b);
+    }
+  }
+
+  /// Joins hooks and contacts with the bodies that they hold or touch.
+  void join_with_bodies() {
     for (std::uint32_t i = 0; i < group.hooks.size(); ++i) {
       for (const HookPlace& end : {tables.hooks[group.hooks[i]].a, tables.hooks[group.hooks[i]].b})
         connect(vector_count + i, body_block(end.body));

@@ -234,10 +234,8 @@ void CoupledGroupSolution::give_impulses() {
   }
 }
 
-void CoupledGroupSolution::fill_right_side() {
-  b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
-  start_bodies();
-  give_impulses();
+/// Fills the right sides of all rows: what they ask for, less what the nodes do without them.
+void CoupledGroupSolution::fill_rows() {
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     for (const Incident& at : incidents_of(n)) {
       for (int k = 0; k < size_of(at.block); ++k)
@@ -253,6 +251,10 @@ void CoupledGroupSolution::fill_right_side() {
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     if (b_.bound[row] == 0) right_side(hook_block(hook), k) += b_.rows[row].target;
   });
+}
+
+/// Adds to the bodies the impulses of contacts with nodes, without the part that depends on velocities.
+void CoupledGroupSolution::push_bodies() {
   for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.body < 0 || !contact_row.active) continue;
     const RopeNode& node = b_.ropes.nodes[contact_row.node];
@@ -262,6 +264,14 @@ void CoupledGroupSolution::fill_right_side() {
     b_.start[contact_row.body] +=
         {-std::sqrt(body.inverse_mass) * on_node, -(body.scale * cross(contact_row.lever, on_node))};
   }
+}
+
+void CoupledGroupSolution::fill_right_side() {
+  b_.right_side.assign(static_cast<std::size_t>(b_.pattern.first.back()), 0);
+  start_bodies();
+  give_impulses();
+  fill_rows();
+  push_bodies();
   for (int i = 0; i < static_cast<int>(b_.start.size()); ++i) {
     for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -b_.start[i].at(m);
   }

@@ -245,44 +245,49 @@ Real lifted_mass(const Manifold& m, const Bodies& bodies, const std::vector<Grou
   return ground_load[is_moved(bodies, m.body_a) ? m.body_a : m.body_b].group;
 }
 
+void raise_role(const Bodies& bodies, std::uint32_t body, SupportRole to,
+                std::vector<SupportRole>& support_role) {
+  if (is_dynamic(bodies, body)) support_role[body] = std::max(support_role[body], to);
+}
+
+/// Notes what one hook does to its bodies.
+void note_hook(const Hook& hook, const Bodies& bodies, Supports& supports) {
+  if (keeps_distance(hook)) note_neighbors(hook, bodies, supports.ground_load);
+  const bool driven = is_driven(hook);
+  for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
+    if (driven && is_dynamic(bodies, body)) supports.ground_load[body].driven = true;
+    if (hook.holds_point()) raise_role(bodies, body, SupportRole::kHangs, supports.support_role);
+  }
+}
+
+/// Notes what the members of an articulation hold: all of them hang if one does, or if something holds one.
+void note_articulation(const std::vector<std::uint32_t>& members, const Bodies& bodies, Supports& supports) {
+  Real mass = Real(0);
+  bool hangs = false;
+  for (const std::uint32_t body : members) {
+    const bool moves = is_dynamic(bodies, body);
+    if (moves) mass += Real(1) / bodies.motion[body].inverse_mass;
+    hangs = hangs || !moves || supports.support_role[body] == SupportRole::kHangs;
+  }
+  for (const std::uint32_t body : members) {
+    raise_role(bodies, body, hangs ? SupportRole::kHangs : SupportRole::kHooked, supports.support_role);
+    if (is_dynamic(bodies, body)) supports.ground_load[body].group = mass;
+  }
+}
+
 }  // namespace
 
 void find_supporting_bodies(const Joints& joints, const Bodies& bodies, const std::vector<Hook>& hooks,
                             Supports& supports) {
-  auto& [support_role, ground_load] = supports;
-  support_role.assign(bodies.motion.size(), SupportRole::kNone);
-  ground_load.assign(bodies.motion.size(), {});
-  const auto raise = [&support_role = support_role, &bodies](std::uint32_t body, SupportRole to) {
-    if (is_dynamic(bodies, body)) support_role[body] = std::max(support_role[body], to);
-  };
-  for (const Hook& hook : hooks) {
-    if (keeps_distance(hook)) note_neighbors(hook, bodies, ground_load);
-    if (is_driven(hook)) {
-      if (is_dynamic(bodies, hook.a.body)) ground_load[hook.a.body].driven = true;
-      if (is_dynamic(bodies, hook.b.body)) ground_load[hook.b.body].driven = true;
-    }
-    if (!hook.holds_point()) continue;
-    raise(hook.a.body, SupportRole::kHangs);
-    raise(hook.b.body, SupportRole::kHangs);
-  }
-  for (const std::uint32_t i : joints.order) {
-    const std::vector<std::uint32_t>& members = joints.articulations[i].bodies;
-    Real mass = Real(0);
-    bool hangs = false;
-    for (const std::uint32_t body : members) {
-      const bool moves = is_dynamic(bodies, body);
-      if (moves) mass += Real(1) / bodies.motion[body].inverse_mass;
-      hangs = hangs || !moves || support_role[body] == SupportRole::kHangs;
-    }
-    for (const std::uint32_t body : members) {
-      raise(body, hangs ? SupportRole::kHangs : SupportRole::kHooked);
-      if (is_dynamic(bodies, body)) ground_load[body].group = mass;
-    }
-  }
+  supports.support_role.assign(bodies.motion.size(), SupportRole::kNone);
+  supports.ground_load.assign(bodies.motion.size(), {});
+  for (const Hook& hook : hooks) note_hook(hook, bodies, supports);
+  for (const std::uint32_t i : joints.order)
+    note_articulation(joints.articulations[i].bodies, bodies, supports);
   for (const std::vector<std::uint32_t>* rows : {&joints.iterative.hooks, &joints.balls.hooks}) {
     for (const std::uint32_t row : *rows) {
       for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
-        if (is_dynamic(bodies, body)) support_role[body] = SupportRole::kNone;
+        if (is_dynamic(bodies, body)) supports.support_role[body] = SupportRole::kNone;
       }
     }
   }
@@ -323,18 +328,19 @@ bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop
 
 /// A hooked body stands if contacts with standing bodies under it bring most of its weight and of what lies
 /// on it, and no motor or spring moves it.
-void find_footing(const ContactStep& step, std::span<const std::uint8_t> hooked, const Joints& joints,
-                  const std::vector<GroundLoad>& ground_load, const Bodies& bodies, const state::Pairs& pairs,
+void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const state::Pairs& pairs,
                   LoadBearingScratch& scratch) {
+  const ContactStep& step = inputs.step;
   constexpr int kMostPasses = 32;  // one for each hooked body that stands on another one
   find_props(pairs, normalize(step.gravity), scratch.props);
   scratch.carried.resize(bodies.motion.size());
   scratch.weights.assign(bodies.motion.size(), kNeverStands);
   const Real before = step.h / step.impulse_scale * length(step.gravity);
-  for (std::uint32_t body = 0; body < hooked.size(); ++body) {
-    if (hooked[body] == 0 || !is_moved(bodies, body)) continue;
-    scratch.footing[body] = joints.in_ragdoll[body] != 0 ? Footing::kRagdoll : Footing::kHangs;
-    if (!ground_load[body].driven) scratch.weights[body] = before / bodies.motion[body].inverse_mass;
+  for (std::uint32_t body = 0; body < inputs.hooked.size(); ++body) {
+    if (inputs.hooked[body] == 0 || !is_moved(bodies, body)) continue;
+    scratch.footing[body] = inputs.joints.in_ragdoll[body] != 0 ? Footing::kRagdoll : Footing::kHangs;
+    if (inputs.supports.ground_load[body].driven) continue;
+    scratch.weights[body] = before / bodies.motion[body].inverse_mass;
   }
   for (int pass = 0; pass < kMostPasses; ++pass) {
     if (!find_more_standing(scratch.weights, scratch.props, scratch)) break;
@@ -348,15 +354,8 @@ void let_stand(std::span<const Footing> footing, std::vector<SupportRole>& suppo
   }
 }
 
-}  // namespace
-
-void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                                std::span<const std::uint8_t> hooked, const Supports& supports,
-                                const Bodies& bodies, const std::vector<Hook>& hooks, state::Pairs& pairs,
-                                LoadBearingScratch& scratch) {
-  scratch.footing.assign(bodies.motion.size(), Footing::kStands);
-  scratch.refused = 0;
-  if (hooks.empty() && pairs.load_bearing.empty()) return;
+/// Notes which contacts bore load in the last step, and forgets them.
+void take_back_last_choice(state::Pairs& pairs, LoadBearingScratch& scratch) {
   // Where no contact bore load, no flag is set.
   if (!pairs.load_bearing.empty()) {
     for (Manifold& m : pairs.manifold) {
@@ -364,48 +363,65 @@ void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, 
     }
   }
   scratch.load_bearing_before.clear();
-  for (const LoadBearingContact& contact : pairs.load_bearing)
-    scratch.load_bearing_before.emplace_back(contact.body_a, contact.body_b);
-  base::sort_unique(scratch.load_bearing_before);
   scratch.bore_load.clear();
   for (const LoadBearingContact& contact : pairs.load_bearing) {
+    scratch.load_bearing_before.emplace_back(contact.body_a, contact.body_b);
     scratch.bore_load.push_back(contact.body_a);
     scratch.bore_load.push_back(contact.body_b);
   }
+  base::sort_unique(scratch.load_bearing_before);
   base::sort_unique(scratch.bore_load);
   pairs.load_bearing.clear();
-  scratch.supports = supports;
-  find_footing(step, hooked, joints, supports.ground_load, bodies, pairs, scratch);
-  let_stand(scratch.footing, scratch.supports.support_role);
-  const Candidates candidates = {.gravity = length(step.gravity),
-                                 .down = normalize(step.gravity),
-                                 .impulse_to_force = impulse_to_force,
-                                 .bodies = bodies,
-                                 .hooked = hooked,
-                                 .by_hooks = supports.support_role,
-                                 .by_ground_load = supports.ground_load,
-                                 .supports = scratch.supports,
-                                 .footing = scratch.footing,
-                                 .carried = scratch.carried,
-                                 .load_bearing_before = scratch.load_bearing_before,
-                                 .in_ragdoll = joints.in_ragdoll};
-  const std::size_t chosen = choose(candidates, pairs, scratch.supports.support_role, scratch.refused);
-  if (chosen > 0) add_loads(joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
-  choose_pressed(candidates, chosen, pairs, scratch.refused);
+}
+
+/// Lists the points of all manifolds that were chosen.
+void list_load_bearing_contacts(const Bodies& bodies, const std::vector<GroundLoad>& ground_load,
+                                state::Pairs& pairs) {
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const std::uint32_t manifold = pairs.pair[row].first_manifold;
     if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].is_load_bearing()) continue;
     const Manifold& m = pairs.manifold[manifold];
-    const Real load = lifted_mass(m, bodies, scratch.supports.ground_load);
-    for (std::int32_t k = 0; k < Manifold::kMaxPoints; ++k)
+    const Real load = lifted_mass(m, bodies, ground_load);
+    for (std::int32_t k = 0; k < Manifold::kMaxPoints; ++k) {
       pairs.load_bearing.push_back({.pair = row,
                                     .manifold = manifold,
                                     .point = k,
                                     .body_a = m.body_a,
                                     .body_b = m.body_b,
                                     .load = load});
+    }
   }
-  update_load_bearing_contacts(impulse_to_force, bodies, pairs);
+}
+
+}  // namespace
+
+void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& bodies,
+                                const std::vector<Hook>& hooks, state::Pairs& pairs,
+                                LoadBearingScratch& scratch) {
+  scratch.footing.assign(bodies.motion.size(), Footing::kStands);
+  scratch.refused = 0;
+  if (hooks.empty() && pairs.load_bearing.empty()) return;
+  take_back_last_choice(pairs, scratch);
+  scratch.supports = inputs.supports;
+  find_footing(inputs, bodies, pairs, scratch);
+  let_stand(scratch.footing, scratch.supports.support_role);
+  const Candidates candidates = {.gravity = length(inputs.step.gravity),
+                                 .down = normalize(inputs.step.gravity),
+                                 .impulse_to_force = inputs.impulse_to_force,
+                                 .bodies = bodies,
+                                 .hooked = inputs.hooked,
+                                 .by_hooks = inputs.supports.support_role,
+                                 .by_ground_load = inputs.supports.ground_load,
+                                 .supports = scratch.supports,
+                                 .footing = scratch.footing,
+                                 .carried = scratch.carried,
+                                 .load_bearing_before = scratch.load_bearing_before,
+                                 .in_ragdoll = inputs.joints.in_ragdoll};
+  const std::size_t chosen = choose(candidates, pairs, scratch.supports.support_role, scratch.refused);
+  if (chosen > 0) add_loads(inputs.joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
+  choose_pressed(candidates, chosen, pairs, scratch.refused);
+  list_load_bearing_contacts(bodies, scratch.supports.ground_load, pairs);
+  update_load_bearing_contacts(inputs.impulse_to_force, bodies, pairs);
 }
 
 void update_load_bearing_contacts(Real impulse_to_force, const Bodies& bodies, state::Pairs& pairs) {

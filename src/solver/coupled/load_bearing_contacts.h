@@ -108,16 +108,22 @@ struct LoadBearingScratch {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> load_bearing_before;
 };
 
+/// What the choice of load-bearing contacts is made from.
+struct LoadBearingInputs {
+  const ContactStep& step;
+  Real impulse_to_force = Real(0);  ///< Of the impulses that manifolds have from the last step [1/s].
+  const Joints& joints;
+  std::span<const std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
+  const Supports& supports;              ///< What bodies hold by their hooks alone.
+};
+
 /// Fills `pairs.load_bearing`. A body that hangs bears what is heavier than itself or presses harder than
-/// that. The upper body may have hooks itself (`hooked`, by body row), as the wheel of a cart does, but does
-/// not hang. A contact that may bounce bears load once it touches. A body that its contacts carry bears
-/// nothing by its hooks, as a crate with a slack rope. What stands is supported by what it lies on, not by
-/// what leans on its side. `impulse_to_force` is that of the impulses that manifolds have from the last step
-/// [1/s].
-void find_load_bearing_contacts(const ContactStep& step, Real impulse_to_force, const Joints& joints,
-                                std::span<const std::uint8_t> hooked, const Supports& supports,
-                                const state::Bodies& bodies, const std::vector<state::Hook>& hooks,
-                                state::Pairs& pairs, LoadBearingScratch& scratch);
+/// that. The upper body may have hooks itself, as the wheel of a cart does, but does not hang. A contact that
+/// may bounce bears load once it touches. A body that its contacts carry bears nothing by its hooks, as a
+/// crate with a slack rope. What stands is supported by what it lies on, not by what leans on its side.
+void find_load_bearing_contacts(const LoadBearingInputs& inputs, const state::Bodies& bodies,
+                                const std::vector<state::Hook>& hooks, state::Pairs& pairs,
+                                LoadBearingScratch& scratch);
 
 /// Updates forces and separations to what the manifolds say now.
 void update_load_bearing_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
