@@ -85,6 +85,18 @@ struct LinkFactor {
       for (int k = kFrom; k < i; ++k) x[i] = x[i] - a[triangle_at(i, k)] * x[k];
     }
   }
+  /// Computes x := L^-1 x for a side of a row, whose linear part is zero where the row `turns`.
+  HWY_INLINE void substitute_side(bool turns, Number (&x)[6]) const {
+    if (turns) {
+      substitute<3>(x);
+    } else {
+      substitute<0>(x);
+    }
+  }
+  /// Computes x := E^-1 x.
+  HWY_INLINE void divide(Number (&x)[6]) const {
+    for (int i = 0; i < 6; ++i) x[i] = inverse(i) * x[i];
+  }
   /// Computes x := L^-T x.
   HWY_INLINE void substitute_back(Number (&x)[6]) const {
     for (int i = 4; i >= 0; --i) {
@@ -262,9 +274,38 @@ class TreeSweep {
     }
   }
 
-  HWY_INLINE void eliminate(const TreeJoint& joint, Link& link, Link& parent) const {
+  /// gamma and b of a row. One with a spring beside its bounds has those of the spring while it is at a
+  /// bound.
+  struct RowDemand {
+    Number gamma;
+    Number b;
+  };
+  HWY_INLINE RowDemand demand_of(const TreeRowForm& form, const Row& row, const Link& link,
+                                 const Link& parent) const {
+    Number gamma = at(row.gamma);
+    Number target = at(row.target);
+    if (form.sprung) {
+      const auto slides = above(is_bound(row), Number(0.5));
+      gamma = choose(slides, at(row.spring_gamma), gamma);
+      target = choose(slides, at(row.spring_target), target);
+    }
+    return {gamma, target - rate(row, form.turns(), link.v, link.omega, parent.v, parent.omega)};
+  }
+
+  /// Leaves a row out in the lanes where it is at a bound: it has C = P = 0, gamma = 1 and b = 0.
+  HWY_INLINE void drop_held(const Row& row, bool turns, Number& gamma, Number& b, Number (&child)[6],
+                            Number (&parent)[6]) const {
     const Number zero(0.0);
-    const Number one(1.0);
+    const auto held = above(is_bound(row), Number(0.5));
+    for (int i = turns ? 3 : 0; i < 6; ++i) {
+      child[i] = choose(held, zero, child[i]);
+      parent[i] = choose(held, zero, parent[i]);
+    }
+    gamma = choose(held, Number(1.0), gamma);
+    b = choose(held, zero, b);
+  }
+
+  HWY_INLINE void eliminate(const TreeJoint& joint, Link& link, Link& parent) const {
     LinkFactor<Number> factor;
     load(link.a, factor.a);
     factor.factor();
@@ -275,7 +316,7 @@ class TreeSweep {
     load(parent.g, g_parent);
     add_fixed_impulses(joint, y, g_parent);
     factor.template substitute<0>(y);
-    for (int i = 0; i < 6; ++i) y[i] = factor.inverse(i) * y[i];
+    factor.divide(y);
     store(y, link.g);
 
     const Row* list[kMostTreeRows];
@@ -288,28 +329,9 @@ class TreeSweep {
       Number w[6];
       Number v[6];
       load_sides(row, form.turns(), w, v);
-      Number gamma = at(row.gamma);
-      Number target = at(row.target);
-      if (form.sprung) {
-        const auto slides = above(is_bound(row), Number(0.5));
-        gamma = choose(slides, at(row.spring_gamma), gamma);
-        target = choose(slides, at(row.spring_target), target);
-      }
-      Number b = target - rate(row, form.turns(), link.v, link.omega, parent.v, parent.omega);
-      if (drops) {
-        const auto held = above(is_bound(row), Number(0.5));
-        for (int i = form.turns() ? 3 : 0; i < 6; ++i) {
-          w[i] = choose(held, zero, w[i]);
-          v[i] = choose(held, zero, v[i]);
-        }
-        gamma = choose(held, one, gamma);
-        b = choose(held, zero, b);
-      }
-      if (form.turns()) {
-        factor.template substitute<3>(w);
-      } else {
-        factor.template substitute<0>(w);
-      }
+      auto [gamma, b] = demand_of(form, row, link, parent);
+      if (drops) drop_held(row, form.turns(), gamma, b, w, v);
+      factor.substitute_side(form.turns(), w);
       Number scaled[6];
       for (int i = 0; i < 6; ++i) scaled[i] = factor.inverse(i) * w[i];
       store(scaled, row.w);
@@ -350,7 +372,7 @@ class TreeSweep {
       factor.factor();
       load(root.g, x);
       factor.template substitute<0>(x);
-      for (int i = 0; i < 6; ++i) x[i] = factor.inverse(i) * x[i];
+      factor.divide(x);
       factor.substitute_back(x);
     } else {
       for (int i = 0; i < 6; ++i) x[i] = zero;
