@@ -4,13 +4,19 @@
 - no absolute path of a developer's machine in any text file;
 - every relative link of a Markdown file leads to a file that exists;
 - every suite and every file that docs/paper.md names exists;
+<<<<<<< HEAD
 - docs/step.md names every stage that src/world/step.cpp calls;
 - every C++ block of README.md stands, line by line, in a program that the tests build.
+=======
+- every C++ block of README.md and of docs/manual stands, line by line, in a program that the tests build; a block may
+  be indented less than there.
+>>>>>>> bea10b1 (docs: Explain a first world and shapes in the manual, with programs)
 """
 import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MACHINE_PATH = re.compile(r"(?<![\w.-])/(?:work|home|root|Users)/\w")
@@ -20,6 +26,7 @@ QUOTED = re.compile(r"`([a-z_0-9./]+)`")
 STAGE = re.compile(r"world::([a-z_]+)\(w\b")
 SUITE = re.compile(r'TEST_SUITE\("([^"]+)"\)')
 TESTED_PROGRAMS = ("tests/consumer", "examples")
+INDENTATIONS = (0, 2, 4, 6)
 
 
 def project_files():
@@ -65,11 +72,12 @@ def missing_stages(step, page):
             yield f"docs/step.md: stage 'world::{stage}' of src/world/step.cpp is missing"
 
 
-def untested_programs(readme):
+def untested_programs(page):
     programs = [path.read_text() for folder in TESTED_PROGRAMS for path in (ROOT / folder).glob("*.cpp")]
-    for block in CPP_BLOCK.findall(readme):
-        if not any(block in program for program in programs):
-            yield f"README.md: no tested program contains this block:\n{block}"
+    for block in CPP_BLOCK.findall(page.read_text()):
+        indented = ["\n" + textwrap.indent(block, " " * count) for count in INDENTATIONS]
+        if not any(lines in "\n" + program for program in programs for lines in indented):
+            yield f"{page.relative_to(ROOT)}: no tested program contains this block:\n{block}"
 
 
 def main():
@@ -85,8 +93,9 @@ def main():
         errors += machine_paths(path, text)
         if path.suffix == ".md":
             errors += broken_links(path, text)
-    errors += untested_programs((ROOT / "README.md").read_text())
     errors += missing_stages((ROOT / "src/world/step.cpp").read_text(), (ROOT / "docs/step.md").read_text())
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs/manual").glob("*.md"))):
+        errors += untested_programs(page)
     errors += missing_names((ROOT / "docs/paper.md").read_text())
     print("\n".join(errors) or "files: ok")
     return 1 if errors else 0
