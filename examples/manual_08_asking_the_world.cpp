@@ -1,0 +1,97 @@
+/// Chapter 8 of the manual: rays, swept shapes, overlaps, forces of contacts, hits, a sensor and sleep.
+
+#include "hooke/hooke.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace {
+
+constexpr double kGravity = 9.81;
+
+/// Prints a number next to the one that mechanics gives.
+bool agrees(const char* what, double value, double expected, double tolerance) {
+  std::printf("%s: %.4f, expected %.4f\n", what, value, expected);
+  return std::abs(value - expected) <= tolerance * std::abs(expected);
+}
+
+void advance(hooke::World& world, int frames) {
+  for (int frame = 0; frame < frames; ++frame) world.step(1.0f / 60);
+}
+
+struct Scene {
+  hooke::World world = hooke::World::create().value();
+  hooke::BodyId ground = world.add_body({.shape = hooke::Shape::half_space()}).value();
+  hooke::BodyId tower =
+      world.add_body({.shape = hooke::Shape::box({1, 2, 1}), .position = {10, 2, 0}}).value();
+  hooke::BodyId gate =
+      world.add_body({.shape = hooke::Shape::box({1, 1, 1}), .position = {0, 3, 0}, .sensor = true}).value();
+  hooke::BodyId ball = world
+                           .add_body({.kind = hooke::BodyKind::kDynamic,
+                                      .shape = hooke::Shape::sphere(0.5f),
+                                      .position = {0, 5.5, 0},
+                                      .mass = 3,
+                                      .reports_contacts = true,
+                                      .hit_speed = 1})
+                           .value();
+};
+
+/// A ray from the ball to the tower, a box that is pushed along the same way, and a look around.
+bool where_things_are(const Scene& scene) {
+  const hooke::World& world = scene.world;
+  const hooke::QueryFilter others = {.skip = scene.ball};
+  const auto ray = world.cast_ray({0, 3, 0}, {100, 0, 0}, others);
+  if (!ray || !ray.value() || ray.value()->body != scene.tower) return false;
+  bool good = agrees("the ray meets the tower after [m]", ray.value()->distance, 9, 0.001);
+
+  const hooke::Shape crate = hooke::Shape::box({0.5f, 0.5f, 0.5f});
+  const auto swept = world.cast_shape(crate, {.position = {0, 3, 0}}, {100, 0, 0}, others);
+  if (!swept || !swept.value()) return false;
+  good = agrees("the crate may go by [m]", swept.value()->distance, 8.5, 0.001) && good;
+
+  const auto overlaps = world.find_overlaps(crate, {.position = {9, 4, 0}});
+  const auto nearest = world.find_closest({10, 7, 0}, 10);
+  if (!overlaps || !nearest || !nearest.value()) return false;
+  std::printf("the crate would overlap %zu body\n", overlaps.value().size());
+  return agrees("nearest surface [m]", nearest.value()->distance, 3, 0.001) && overlaps.value().size() == 1 &&
+         good;
+}
+
+/// The ball falls by 5 m through the gate onto the ground, and falls asleep there.
+bool what_happens(Scene& scene) {
+  hooke::World& world = scene.world;
+  double hit_speed = 0;
+  std::size_t entered = 0;
+  std::size_t left = 0;
+  std::size_t touched = 0;
+  bool slept = false;
+  for (int frame = 0; frame < 300 && !slept; ++frame) {
+    world.step(1.0f / 60);
+    const hooke::Events& events = world.events();
+    for (const hooke::HitEvent& hit : events.hits) hit_speed = std::fmax(hit_speed, hit.speed);
+    for (const hooke::BodyId id : events.fell_asleep) slept = slept || id == scene.ball;
+    entered += events.sensor_enters.size();
+    left += events.sensor_leaves.size();
+    touched += events.contact_begins.size();
+  }
+  std::printf("entered %zu, left %zu, touched %zu, asleep %d\n", entered, left, touched, slept);
+  return entered == 1 && left == 1 && touched == 1 && slept && world.asleep(scene.ball) &&
+         agrees("speed of the hit [m/s]", hit_speed, std::sqrt(2 * kGravity * 5), 0.01);
+}
+
+/// What the ground carries is the weight of the ball; a push wakes it.
+bool what_it_weighs(Scene& scene) {
+  double force = 0;
+  for (const hooke::BodyContact& contact : scene.world.body_contacts(scene.ball))
+    force += contact.normal_force;
+  if (!scene.world.apply_impulse(scene.ball, {0, 6, 0})) return false;
+  scene.world.step(1.0f / 60);
+  return agrees("force on the ground [N]", force, 3 * kGravity, 0.01) && !scene.world.asleep(scene.ball);
+}
+
+}  // namespace
+
+int main() {
+  Scene scene;
+  return where_things_are(scene) && what_happens(scene) && what_it_weighs(scene) ? 0 : 1;
+}
