@@ -39,7 +39,8 @@ struct Count {
 };
 
 constexpr std::array kCounts = {
-    Count{&StepReport::rows_quarantined, "particles were put back because their state was not finite",
+    Count{&StepReport::rows_quarantined,
+          "particles and bodies were put back because their state was not finite",
           "less extreme masses, stiffnesses or forces, or more substeps"},
     Count{&StepReport::ropes_unconverged,
           "ropes stayed more than 1 % off their length: Newton's steps did not converge",
@@ -47,8 +48,9 @@ constexpr std::array kCounts = {
     Count{&StepReport::pairs_left_out,
           "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
           "places that are not the same for many bodies"},
-    Count{&StepReport::islands_refused, "stacks were too many to be solved directly, and may sink",
-          "fewer bodies that lie on much lighter ones, or more substeps"},
+    Count{&StepReport::islands_refused,
+          "stacks were too large or too many to be solved directly, and may sink",
+          "lower stacks, fewer bodies that lie on much lighter ones, or more substeps"},
     Count{&StepReport::contacts_refused,
           "contacts were too many to be solved with hooks and ropes, and may sink",
           "fewer bodies on what hangs, masses that differ less, or more substeps"},

@@ -103,12 +103,12 @@ struct RouteCounts {
   std::uint32_t hooks_loop = 0;              ///< Hooks of bodies joined in loops.
   std::uint32_t hooks_block = 0;             ///< Ball hooks of nets beyond the budget, which are iterated.
   std::uint32_t hooks_iterative = 0;         ///< All other hooks of such nets.
-  std::uint32_t hooks_coupled = 0;  ///< Hooks at points, and of bodies solved with what touches them.
-  std::uint32_t ropes_alone = 0;    ///< Ropes that depend on nothing that gives way.
-  std::uint32_t ropes_coupled = 0;  ///< Ropes that hold or touch something that gives way.
-  std::uint32_t points_swept = 0;   ///< Contacts of points, edges and faces with bodies, near enough to act.
-  std::uint32_t points_in_ropes = 0;  ///< Those of them that are solved with their rope.
-  std::uint32_t points_coupled = 0;   ///< Those solved with what touches them, and those between ropes.
+  std::uint32_t hooks_coupled = 0;    ///< Hooks at points, and of bodies solved with what touches them.
+  std::uint32_t ropes_alone = 0;      ///< Ropes that depend on nothing that gives way.
+  std::uint32_t ropes_coupled = 0;    ///< Ropes that hold or touch something that gives way.
+  std::uint32_t points_swept = 0;     ///< Contacts of points, edges and faces that are solved one by one.
+  std::uint32_t points_in_ropes = 0;  ///< Contacts of points that are solved with their rope.
+  std::uint32_t points_coupled = 0;   ///< Contacts of points solved with bodies, and of ropes.
   std::uint32_t articulations = 0;    ///< Groups of hooked bodies that are solved together.
   std::uint32_t direct_islands = 0;   ///< Stacks whose contacts are solved as a whole.
   std::uint32_t coupled_groups = 0;   ///< Groups of ropes, hooks and contacts that are solved as a whole.
@@ -129,7 +129,8 @@ struct StepReport {
   std::uint32_t rows_quarantined = 0;
   std::uint32_t rope_solves = 0;        ///< Newton steps over ropes.
   std::uint32_t ropes_unconverged = 0;  ///< Ropes whose length error stayed above 1 % in some substep.
-  /// Stacks that need a direct solution and are beyond its budget: they sink.
+  /// Stacks that need a direct solution and are beyond its budget, or have more than 256 bodies: they sink.
+  /// Those with too many bodies are counted when they are evaluated, once in 60 steps.
   std::uint32_t islands_refused = 0;
   /// Contacts that need to be solved with the hooks of what they press on and are beyond their number, and
   /// those of ropes that touch each other in more places than can be solved.

@@ -16,65 +16,75 @@
 #include <vector>
 
 /// \file
-/// Which way each contact and each hook is solved: the signpost of the solver. The ways are chosen once a
-/// step, here and nowhere else; the tables carry them (state/route.h), and StepReport counts them.
+/// Which way each contact and each hook is solved: the signpost of the solver. The tables carry the ways
+/// (state/route.h), and StepReport counts them. Ways of contacts and hooks are chosen once a step, by the two
+/// functions below; what they choose by is the work of the files named here. When contacts are looked for is
+/// chosen by the narrow phase (collision/narrow_phase/narrow_phase.cpp), which trees are approximate by
+/// evaluate_ragdolls before contacts are looked for, and who belongs to a coupled group by
+/// build_coupled_groups in each particle substep.
 ///
+// clang-format off
 /// Contacts of two bodies (state::ContactRoute)
 ///
 ///   none      A sensor, bodies none of which moves, or no point near enough: there is nothing to solve.
-///   coupled   One of the bodies hangs on hooks, and the other is at least twice as heavy or presses harder
-///   than
-///             it weighs; or a light hooked body is pressed on the ground by what it is hooked to. Rows of
-///             the contact alone pass on at most what stops the light body. The contact is solved with those
-///             hooks and ropes (solver/coupled/load_bearing_contacts.h), by a factorization in each substep.
-///             512 pairs of bodies at most: StepReport::contacts_refused counts the rest.
-///             docs/decisions/0022.
-///   direct    The contacts of its island sag or would buckle as soft rows: a high stack, a heavy body on
-///   light
+///   coupled   One of the bodies hangs on hooks, and the other is at least twice as heavy or presses harder than
+///             the first weighs; or a light hooked body is pressed on the ground by what it is hooked to. Rows
+///             of the contact alone pass on at most what stops the light body, so the contact is solved with
+///             those hooks and ropes, by a factorization in each substep (solver/coupled/load_bearing_contacts.h).
+///             Only pairs with one manifold can be coupled, and 512 at most: StepReport::contacts_refused counts
+///             the others that ask for it. docs/decisions/0022-borne-contacts.md
+///   direct    The contacts of its island sag, or would buckle, as soft rows: a high stack, a heavy body on light
 ///             ones. All contacts of the island are solved by one factorization in each substep
-///             (solver/coupled/direct_islands.h). 256 bodies and a budget of work at most, the largest loads
-///             first: StepReport::islands_refused counts the rest, which stay soft. docs/decisions/0007.
-///   soft      All others. Rows that yield a little are solved color after color, 16 side by side, once with
-///   and
-///             once without bias in a substep (solver/contact/body_contacts.h). The cheapest.
-///             docs/decisions/0004.
+///             (solver/coupled/direct_islands.h). 256 bodies and 4e4 multiplications an island at most, 1e6 in
+///             all, the largest loads first: StepReport::islands_refused counts the others, which stay soft.
+///             docs/decisions/0007-hard-islands.md
+///   soft      All others. Rows that yield a little are solved color after color, 16 side by side, once with and
+///             once without bias in a substep (solver/contact/body_contacts.h). It is the cheapest way.
+///             docs/decisions/0004-body-contacts.md
 ///
-/// Soft and direct contacts with restitution meet in the order of time besides: each impact within the
-/// substep gives its impulse before the rows are solved (solver/contact/impacts.h). docs/decisions/0018.
+/// Soft and direct contacts with restitution collide in the order of time besides: each impact within the substep
+/// gives its impulse before the rows are solved (solver/contact/impacts.h). docs/decisions/0018-hits.md
 ///
-/// When contacts of two bodies are looked for (state::ContactRefresh, chosen by the narrow phase)
+/// When contacts of two bodies are looked for (state::ContactRefresh)
 ///
 ///   at start       Most: their rows follow the bodies to first order within the step.
-///   in the middle  A body that spins or rolls on another and stays in contact.
+///   in the middle  A body that spins or rolls on another one and stays in contact.
 ///   at impact      Fast pairs: where they will meet, if they meet within the step.
-///   each substep   Pairs that roll or slide far for their thickness, without restitution; not in a pile,
-///   where
-///                  it would cost most and help least. docs/decisions/0015.
+///   each substep   Pairs that roll or slide far for their thickness, without restitution, of bodies that are near
+///                  no third one, where it would cost most and help least. Soft contacts get new rows then, direct
+///                  ones keep those of the step's start. docs/decisions/0015-lively-contacts.md
+///
+/// Coupled contacts are looked for again in each substep, whatever their pair's refresh is.
 ///
 /// Hooks (state::JointRoute). Hooks that share bodies which forces move are one group, an articulation.
 ///
+///   none              Forces move neither body: there is nothing to solve.
 ///   tree              The group has no loop: links are eliminated one after the other, several trees side by
-///                     side (solver/joint/articulation_trees.cpp). Exact, linear in the hooks.
-///                     docs/decisions/0017.
-///   approximate tree  A ragdoll, of like masses and with ball hooks, whose errors are small: the same once a
-///                     substep and in float (solver/joint/approximate_trees.h). docs/decisions/0023.
-///   loop              The group has loops: a sparse factorization within kArticulationBudget of work
-///                     (solver/joint/articulation_loops.cpp). docs/decisions/0017.
-///   block             The group is beyond the budget, a net: plain ball hooks are iterated, 16 side by side
-///                     (solver/joint/ball_joints.h). docs/decisions/0008.
-///   iterative         The same for all other hooks of nets (solver/joint/iterative_joints.h).
-///   coupled           An end of the hook is a point of a rope, cloth, solid or group of particles, or its
-///   group
-///                     has contacts that are solved with it. All of it is one coupled group with the ropes
-///                     (solver/coupled/coupled_groups.h), by Newton steps with a factorization each, within
-///                     kCoupledGroupBudget of work: StepReport::coupled_groups_cut_short counts those that
-///                     end by it. docs/decisions/0011.
+///                     side (solver/joint/articulation_trees.cpp). Exact, and linear in the hooks, within ten
+///                     times kArticulationBudget. docs/decisions/0017-articulations.md
+///   approximate tree  A ragdoll: a tree of like masses that moves freely, with friction at each joint and no
+///                     drive, whose errors are small. It is solved once a substep, in float
+///                     (solver/joint/approximate_trees.h). docs/decisions/0023-loose-trees.md
+///   loop              The group has loops: a sparse factorization, within kArticulationBudget of work
+///                     (solver/joint/articulation_loops.cpp). docs/decisions/0017-articulations.md
+///   block             The group is beyond its budget: plain ball hooks of bodies with few hooks are iterated, 16
+///                     side by side (solver/joint/ball_joints.h). docs/decisions/0008-hooks-that-do-not-diverge.md
+///   iterative         The same for all other hooks of such groups (solver/joint/iterative_joints.h).
+///   coupled           An end of the hook is a point of a rope, cloth, solid or group of particles, or its group,
+///                     ragdolls too, has contacts or points that are solved with it. All of it is one coupled
+///                     group with the ropes (solver/coupled/coupled_groups.h): Newton steps with a factorization
+///                     each. After four of them kCoupledGroupBudget of work ends it:
+///                     StepReport::coupled_groups_cut_short counts those that end so. Ball hooks that hold a rope
+///                     by what does not move are anchors of the rope alone, and count here too.
+///                     docs/decisions/0011-ties.md
+// clang-format on
 ///
 /// Ropes alone are rope systems, solved several side by side (solver/rope/rope_systems.h,
-/// docs/decisions/0012); those that hold or touch something that gives way belong to a coupled group.
-/// Contacts of points with bodies belong to the rope system or the coupled group of their rope, or to the
-/// coupled group of a body on few of them; all others are swept once in a substep
-/// (solver/soft/particle_contact_solve.h, element_contact_solve.h).
+/// docs/decisions/0012-rope-lanes.md). Ropes that hold or touch something that gives way belong to a coupled
+/// group. Contacts of a rope belong to its rope system or coupled group. Contacts of other points with a body
+/// that gives way belong to its coupled group, those of edges and faces if the object has few of them. All
+/// others are swept once in a substep (solver/soft/particle_contact_solve.h,
+/// solver/soft/element_contact_solve.h).
 
 namespace hooke::solver {
 
@@ -88,7 +98,8 @@ struct ContactRouting {
   const Joints& joints;
 };
 
-/// Gives each hook between bodies the way of its group. Coupled ones are found by choose_contact_routes.
+/// Gives each hook between bodies the way of its group, and the way "coupled" to hooks at points. Groups that
+/// are solved with contacts or points become coupled in choose_contact_routes.
 void choose_joint_routes(const Joints& joints, std::vector<state::Hook>& hooks);
 
 /// Gives each manifold its way, and the way "coupled" to the hooks that are solved with contacts or points.

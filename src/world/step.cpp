@@ -3,11 +3,10 @@
 ///   detect    who is near whom, and where they touch
 ///   prepare   how each contact and hook is solved (solver/routes.h), and the rows for it
 ///   substep   force, impact, correct, move; a few per step
-///   finish    quarantine, what yields for good, sleep, origins, report
+///   finish    quarantine, fast bodies, what breaks, sleep, events, folds, origins, report
 ///
-/// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, under 150 lines.
-/// Stages stand in body_stages.h, point_contact_stages.h, particle_stages.h, force_stages.h and
-/// hook_stages.h.
+/// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, at most 150 lines.
+/// docs/step.md names the header of each stage.
 
 #include "hooke/world.h"
 
@@ -49,21 +48,21 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-void accelerate_particles(WorldData& w, double time, Real h, bool first) {
+void accelerate_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
   world::begin_particle_substep(w, h);
-  world::apply_wind(w, h, first);
+  world::apply_wind(w, h, first_of_substep);
   world::apply_forces(w, h);
   world::apply_gravity(w, h);
-  world::call_force_laws(w, time, h);
-  world::repel_and_drive(w, time, h);
+  world::call_force_laws(w, end_time, h);
+  world::repel_and_drive(w, end_time, h);
 }
 
 /// Elastic rows, soft ones before those that hold; ropes with what they depend on, exactly; contacts last
 /// among the writers of velocity.
-void substep_particles(WorldData& w, double time, Real h, bool first) {
-  accelerate_particles(w, time, h, first);
+void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
+  accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
-  world::begin_coupled_groups(w, h, first);
+  world::begin_coupled_groups(w, h, first_of_substep);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);
   world::solve_bends(w);
   world::solve_solids(w, h);
@@ -76,15 +75,15 @@ void substep_particles(WorldData& w, double time, Real h, bool first) {
 /// Bodies: impacts that bounce, in the order of time; contacts with bias, or as a whole in direct islands;
 /// hooks, then everything that depends on them; poses, and where refreshed contacts are then; last the
 /// contacts again without bias, which takes out the speed that pushed overlaps apart, and friction.
-void substep(WorldData& w, int i, double time, Real h) {
+void substep(WorldData& w, int i, double begin_time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
-  world::accelerate_bodies(w, time, h, i == 0);
+  world::accelerate_bodies(w, begin_time, h, i == 0);
   world::resolve_impacts(w, h);
   world::solve_body_contacts(w, h, i == 0);
   world::solve_joints(w, h);
   for (int k = 1; k <= particle_substeps; ++k) {
-    substep_particles(w, time + k * static_cast<double>(particle_h), particle_h, k == 1);
+    substep_particles(w, begin_time + k * static_cast<double>(particle_h), particle_h, k == 1);
     world::move_bodies(w, particle_h);
   }
   world::refresh_contacts(w, h);

@@ -16,7 +16,7 @@ void count_refused(WorldData& world, StepReport& report) {
     report.rope_solves += rope_system.solves;
     report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
   }
-  report.islands_refused = world.frame.direct_islands.refused;
+  report.islands_refused = world.frame.direct_islands.refused + world.frame.direct_islands.too_large;
   report.contacts_refused = world.frame.load_bearing.refused;
   for (const solver::CoupledGroup& group : world.derived.coupled_groups.live())
     report.contacts_refused += group.refused;

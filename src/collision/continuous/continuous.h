@@ -78,7 +78,7 @@ class ContinuousScratch {
 /// go through each other. Impacts are handled in order of time, then of pair. A clamped body is swept again
 /// from there against what `find_pairs` finds.
 ///
-/// A clamped body stops its rotation and loses the part of its own speed that takes it towards the other
+/// A clamped body stops its rotation and loses the part of its displacement that takes it towards the other
 /// body, so that it never leaves the ball of half its displacement around it. If the other body is one that
 /// nothing stops, and is no lighter, it follows that one. Shapes that approach slowly for their thickness are
 /// left to contacts. Returns how often bodies were clamped. The result does not depend on the pool's number

@@ -15,9 +15,9 @@
 
 namespace hooke::solver {
 
-/// Marks the hooks of these articulations, state::Hook::coupled, for one step. It is called after
-/// prepare_joints, which removes the marks of the last step, and once particle contacts and load-bearing
-/// contacts are known. `body_marks` is scratch, by body row.
+/// Gives the hooks of these articulations the way "coupled" (state::Hook::route) for one step. It is called
+/// after choose_joint_routes, and once particle contacts and load-bearing contacts are known. `body_marks` is
+/// scratch, by body row.
 void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_marks, state::Tables& tables);
 
 }  // namespace hooke::solver

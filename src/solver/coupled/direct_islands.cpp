@@ -120,16 +120,19 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
   to.most = std::max(to.most, of.most);
 }
 
+/// How much more an island asks for than soft contacts may do: above 1 it needs a direct solution.
+Real excess_of(const IslandDemand& island) {
+  const Real height = island.high - island.low;
+  return std::max(island.sag / kLargestSag, height * height * island.buckling / kLargestBuckling);
+}
+
 std::int8_t evaluate(const IslandDemand& island) {
   if (island.count > kMaxDirectBodies) return kNotEvaluated;
   // A wave of falling dominoes joins resting heaps one after the other: direct ones become soft with it.
   if (island.least < 0)
     return island.most >= kDirect ? std::int8_t{0} : static_cast<std::int8_t>(island.least + 1);
   if (island.count < 2) return 0;
-  const Real height = island.high - island.low;
-  const Real excess =
-      std::max(island.sag / kLargestSag, height * height * island.buckling / kLargestBuckling);
-  return next_direct_state(island.most, excess);
+  return next_direct_state(island.most, excess_of(island));
 }
 
 /// New bodies become direct where they stand on each other. Otherwise they are evaluated like others from now
@@ -332,6 +335,7 @@ void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, Dire
 void evaluate_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
                              const BodyContacts& contacts, IslandMembers members, DirectIslands& direct,
                              Bodies& bodies) {
+  direct.too_large = 0;
   // Without weight there are impacts, but no loads.
   if (step.gravity == Vec3{}) {
     for (const std::uint32_t body : awake) bodies.direct_state[body] = 0;
@@ -356,7 +360,11 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     add_demand(own, direct.demands[root]);
   }
   for (const std::uint32_t body : awake) {
-    if (is_moved(bodies, body)) bodies.direct_state[body] = evaluate(direct.demands[direct.sets.root(body)]);
+    if (!is_moved(bodies, body)) continue;
+    const std::uint32_t root = direct.sets.root(body);
+    const IslandDemand& island = direct.demands[root];
+    if (root == body && island.count > kMaxDirectBodies && excess_of(island) > Real(1)) ++direct.too_large;
+    bodies.direct_state[body] = evaluate(island);
   }
 }
 

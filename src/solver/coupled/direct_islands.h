@@ -72,6 +72,8 @@ struct DirectIslands {
   std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
   std::uint32_t refused = 0;  ///< Number of direct islands over the budget.
+  std::uint32_t too_large =
+      0;  ///< Number of islands that ask for a direct solution and have too many bodies.
 
   // Scratch memory.
   base::DisjointSets sets;

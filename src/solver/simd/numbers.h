@@ -4,7 +4,6 @@
 ///
 /// A Number has + - *, Number(Real), and these functions. They are given below for one lane, and in
 /// solver/simd/vectors.h and solver/simd/double_vectors.h for vectors:
-/// double_vectors.h for vectors:
 ///   read, write      from and to consecutive lanes; read_anywhere from unaligned ones
 ///   moved_on         lanes one further, the first from the first of `carried`, which gets the last
 ///   first_lane       the first of them
