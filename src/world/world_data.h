@@ -137,6 +137,8 @@ struct Frame {
   collision::SweptBodies swept;
   collision::ContinuousScratch continuous;
 
+  bool bodies_quarantined = false;  ///< Some body was put back in this step.
+
   // Where the step began: quarantine and a step that throws put things back.
   std::vector<Quat> start_rotation;  ///< By body, of those awake.
   std::vector<state::PositionRecord> start_position;

@@ -169,6 +169,48 @@ TEST_SUITE("world/state") {
     CHECK(dirty.world.positions(dirty.flag)[333] == clean.world.positions(clean.flag)[333]);
   }
 
+  TEST_CASE(
+      "one force that is no number stops a body for one step, and not what it touches or is hooked to for "
+      "good") {
+    for (const bool hooked : {false, true}) {
+      World world = make_world({.sleeping = false});
+      world.add_body({.kind = BodyKind::kStatic, .shape = Shape::half_space()}).value();
+      const BodyId crate = world
+                               .add_body({.kind = BodyKind::kDynamic,
+                                          .shape = Shape::box({Real(0.25), Real(0.25), Real(0.25)}),
+                                          .position = {0, 0.25, 0},
+                                          .mass = Real(10),
+                                          .contact = {.friction = Real(0)}})
+                               .value();
+      if (hooked) {
+        const BodyId other = world
+                                 .add_body({.kind = BodyKind::kDynamic,
+                                            .shape = Shape::sphere(Real(0.1)),
+                                            .position = {0, 1, 0},
+                                            .mass = Real(1)})
+                                 .value();
+        world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}).value();
+      }
+      Real force = Real(0);
+      world.add_force_law([&](BodyForceView& bodies) { bodies.add_force(0, {force, Real(0), Real(0)}); });
+      const auto quarantined = [&](int steps) {
+        std::uint32_t count = 0;
+        for (int i = 0; i < steps; ++i) count += world.step(Real(1) / Real(60)).rows_quarantined;
+        return count;
+      };
+      CHECK(quarantined(30) == 0);
+      force = std::numeric_limits<Real>::quiet_NaN();
+      CHECK(quarantined(1) > 0);
+      force = Real(0);
+      CHECK(quarantined(10) == 0);
+      if (hooked) continue;
+      // Without friction it then slides as v = F t / m says: 0.5 s at 20 N and 10 kg are 1 m/s.
+      force = Real(20);
+      CHECK(quarantined(30) == 0);
+      CHECK(static_cast<double>(world.velocity(crate).x) == doctest::Approx(1).epsilon(0.001));
+    }
+  }
+
   TEST_CASE("a force law sees every particle in order and its force acts") {
     World world = make_world(test::empty_space());
     const ParticlesId id =
