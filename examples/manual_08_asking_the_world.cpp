@@ -15,10 +15,6 @@ bool agrees(const char* what, double value, double expected, double tolerance) {
   return std::abs(value - expected) <= tolerance * std::abs(expected);
 }
 
-void advance(hooke::World& world, int frames) {
-  for (int frame = 0; frame < frames; ++frame) world.step(1.0f / 60);
-}
-
 struct Scene {
   hooke::World world = hooke::World::create().value();
   hooke::BodyId ground = world.add_body({.shape = hooke::Shape::half_space()}).value();

@@ -58,7 +58,7 @@ struct Stacks : PairScene {
 
 }  // namespace
 
-TEST_SUITE("parked_pairs") {
+TEST_SUITE("state/sleeping_pairs") {
   TEST_CASE("parked or not, all manifolds are visited in the same order") {
     Stacks scene(4);
     const std::vector<Line> before = scene.lines();
@@ -66,7 +66,8 @@ TEST_SUITE("parked_pairs") {
     scene.park();
     CHECK(scene.pairs.sleeping.pair.empty());  // nobody sleeps
 
-    for (Manifold& m : scene.pairs.manifold) m.load_bearing = true;  // in the last step
+    for (Manifold& m : scene.pairs.manifold)
+      m.route = hooke::state::ContactRoute::kCoupled;  // in the last step
     scene.fall_asleep(3, 6);
     scene.park();
     CHECK(scene.pairs.pair.size() == 4);
@@ -74,7 +75,7 @@ TEST_SUITE("parked_pairs") {
     CHECK(scene.pairs.sleeping.pair.size() == 4);
     CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 0, 0, 2, 1, 2, 1, 0, 0});
     CHECK(scene.lines() == before);
-    for (const Manifold& m : scene.pairs.sleeping.manifold) CHECK_FALSE(m.load_bearing);
+    for (const Manifold& m : scene.pairs.sleeping.manifold) CHECK_FALSE(m.is_load_bearing());
     for (const Pair& pair : scene.pairs.pair)
       CHECK(scene.pairs.manifold.at(pair.first_manifold).collider_b == pair.collider_b);
   }
