@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("include", "src")
 # Whole words: Highway's fused and approximate operations, their intrinsics, the C and C++ functions.
 FORBIDDEN = re.compile(
-    r"\b(?:(?:Neg)?Mul(?:Add|Sub)\w*|Approximate\w*|MulAddSub"
+    r"\b(?:(?:Neg)?Mul(?:Add|Sub)\w*|Approximate(?:Reciprocal|Exp|Log)\w*|MulAddSub"
     r"|fmaf?l?|rsqrt\w*|rcp\w*"
     r"|(?:_mm\d*|__builtin_ia32|v)_?\w*(?:fmadd|fmsub|fnmadd|fnmsub|rsqrt|rcp)\w*"
     r"|ffast_math|fast_math)\b"
