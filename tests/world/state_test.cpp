@@ -174,7 +174,7 @@ TEST_SUITE("world/state") {
       "good") {
     for (const bool hooked : {false, true}) {
       World world = make_world({.sleeping = false});
-      world.add_body({.kind = BodyKind::kStatic, .shape = Shape::half_space()}).value();
+      take(world.add_body({.kind = BodyKind::kStatic, .shape = Shape::half_space()}));
       const BodyId crate = world
                                .add_body({.kind = BodyKind::kDynamic,
                                           .shape = Shape::box({Real(0.25), Real(0.25), Real(0.25)}),
@@ -189,10 +189,12 @@ TEST_SUITE("world/state") {
                                             .position = {0, 1, 0},
                                             .mass = Real(1)})
                                  .value();
-        world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}).value();
+        take(world.add_hook({.a = {.body = crate}, .b = {.body = other}, .anchor = {0, 0.7, 0}}));
       }
       Real force = Real(0);
-      world.add_force_law([&](BodyForceView& bodies) { bodies.add_force(0, {force, Real(0), Real(0)}); });
+      take(world.add_force_law([&](BodyForceView& bodies) {
+        bodies.add_force(0, {force, Real(0), Real(0)});
+      }));
       const auto quarantined = [&](int steps) {
         std::uint32_t count = 0;
         for (int i = 0; i < steps; ++i) count += world.step(Real(1) / Real(60)).rows_quarantined;
