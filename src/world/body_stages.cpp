@@ -212,12 +212,11 @@ void prepare_body_contacts(WorldData& world, Real h) {
   t.body_substep = static_cast<double>(h);
   solver::choose_contact_routes({.step = world.frame.contact_step,
                                  .impulse_to_force = before > Real(0) ? Real(1) / before : Real(0),
-                                 .awake = world.frame.awake,
+                                 .joints = world.derived.joints,
                                  .hooked = world.derived.hooked,
-                                 .supports = world.derived.supports,
-                                 .joints = world.derived.joints},
-                                world.frame.body_marks, world.frame.load_bearing, world.frame.direct_islands,
-                                t);
+                                 .supports = world.derived.supports},
+                                world.frame.awake, world.frame.body_marks, world.frame.load_bearing,
+                                world.frame.direct_islands, t);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.frame.contact_step,
                                 world.frame.body_contacts);
   solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.bodies,
@@ -260,10 +259,43 @@ void relax_body_contacts(WorldData& world) {
   limit_dense_piles(world);
 }
 
+namespace {
+
+/// What a contact carries over to the next step is numbers, or nothing.
+void reset_if_not_finite(state::Manifold& m) {
+  Real sum = m.twist_impulse + m.largest_impulse;
+  for (std::int32_t k = 0; k < m.point_count; ++k) sum += m.point[static_cast<std::size_t>(k)].normal_impulse;
+  if (std::isfinite(sum) && is_finite(m.friction_impulse) && is_finite(m.rolling_impulse)) return;
+  for (state::ContactPoint& p : m.point) p.normal_impulse = Real(0);
+  m.friction_impulse = m.rolling_impulse = {};
+  m.twist_impulse = m.largest_impulse = Real(0);
+}
+
+/// The same of a hook.
+void reset_if_not_finite(state::Hook& hook) {
+  Real sum = hook.last_impulse + hook.last_angular_impulse;
+  for (const Real impulse : hook.row_impulse) sum += impulse;
+  const bool finite = std::isfinite(sum) && is_finite(hook.impulse) && is_finite(hook.angular_impulse) &&
+                      is_finite(hook.impulse_sum) && is_finite(hook.angular_impulse_sum) &&
+                      std::isfinite(hook.energy_debt) && std::isfinite(hook.spring_energy);
+  if (finite) return;
+  hook.row_impulse = {};
+  hook.impulse = hook.angular_impulse = hook.impulse_sum = hook.angular_impulse_sum = {};
+  hook.last_impulse = hook.last_angular_impulse = Real(0);
+  hook.energy_debt = 0;
+  hook.spring_energy = -1;
+}
+
+}  // namespace
+
 void finish_bodies(WorldData& world, Real dt) {
   state::Tables& t = world.tables;
   for_bodies(world, [&](auto rows) { solver::finish_bodies(rows, t.bodies); });
   solver::finish_joints(*world.pool, dt, t.desc.substeps, t.bodies, world.derived.joints, t.hooks);
+  if (!world.frame.bodies_quarantined) return;
+  // What touched or held a body that was put back must not put it back again in every step.
+  for (state::Manifold& m : t.pairs.manifold) reset_if_not_finite(m);
+  for (state::Hook& hook : t.hooks) reset_if_not_finite(hook);
 }
 
 void resolve_impacts(WorldData& world, Real h) {
@@ -310,35 +342,6 @@ void refresh_contacts(WorldData& world, Real h) {
   solver::refill_lanes(contacts.refreshed, t.pairs.manifold, Real(0), t.bodies, contacts);
 }
 
-namespace {
-
-/// What a contact carries over to the next step is numbers, or nothing.
-void reset_if_not_finite(state::Manifold& m) {
-  Real sum = m.twist_impulse + m.largest_impulse;
-  for (std::int32_t k = 0; k < m.point_count; ++k) sum += m.point[static_cast<std::size_t>(k)].normal_impulse;
-  if (std::isfinite(sum) && is_finite(m.friction_impulse) && is_finite(m.rolling_impulse)) return;
-  for (state::ContactPoint& p : m.point) p.normal_impulse = Real(0);
-  m.friction_impulse = m.rolling_impulse = {};
-  m.twist_impulse = m.largest_impulse = Real(0);
-}
-
-/// The same of a hook.
-void reset_if_not_finite(state::Hook& hook) {
-  Real sum = hook.last_impulse + hook.last_angular_impulse;
-  for (const Real impulse : hook.row_impulse) sum += impulse;
-  const bool finite = std::isfinite(sum) && is_finite(hook.impulse) && is_finite(hook.angular_impulse) &&
-                      is_finite(hook.impulse_sum) && is_finite(hook.angular_impulse_sum) &&
-                      std::isfinite(hook.energy_debt) && std::isfinite(hook.spring_energy);
-  if (finite) return;
-  hook.row_impulse = {};
-  hook.impulse = hook.angular_impulse = hook.impulse_sum = hook.angular_impulse_sum = {};
-  hook.last_impulse = hook.last_angular_impulse = Real(0);
-  hook.energy_debt = 0;
-  hook.spring_energy = -1;
-}
-
-}  // namespace
-
 void finish_body_contacts(WorldData& world) {
   Tables& t = world.tables;
   parallel::for_ranges(*world.pool, static_cast<int>(world.frame.body_contacts.blocks.size()),
@@ -346,11 +349,6 @@ void finish_body_contacts(WorldData& world) {
                          solver::store_body_contacts(blocks, world.frame.body_contacts, t.pairs.manifold);
                        });
   solver::store_load_bearing_contacts(world.frame.contact_step.h, t.pairs);
-  if (world.frame.bodies_quarantined) {
-    // What touched or held a body that was put back must not put it back again in every step.
-    for (state::Manifold& m : t.pairs.manifold) reset_if_not_finite(m);
-    for (state::Hook& hook : t.hooks) reset_if_not_finite(hook);
-  }
   solver::evaluate_direct_islands(world.frame.awake, world.frame.contact_step, world.frame.body_contacts,
                                   world.frame.load_bearing.footing, world.frame.direct_islands, t.bodies);
 }

@@ -80,7 +80,8 @@ void refresh_contacts(WorldData& world, Real h);
 /// Contacts without bias, with friction.
 void relax_body_contacts(WorldData& world);
 
-/// End of a step of length `dt`: poses of bodies, and forces of hooks.
+/// End of a step of length `dt`: poses of bodies, and forces of hooks. Contacts and hooks of bodies in
+/// quarantine carry nothing over that is not finite.
 void finish_bodies(WorldData& world, Real dt);
 
 /// After the last substep: what contacts did, for the next step and for those who ask.
