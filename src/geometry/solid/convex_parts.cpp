@@ -155,7 +155,7 @@ void append_even_planes(const ConvexHull& hull, std::vector<Plane>& planes) {
   }
 }
 
-/// Approximate volume of the hull around a piece.
+/// Estimates the volume of the hull around a piece.
 double hull_volume(const SolidPiece& piece) {
   const Result<ConvexHull> hull = hull_around(piece, kTrialVertices);
   return hull ? geometry::mass_of(hull.value()).volume : 0.0;
