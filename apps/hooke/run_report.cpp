@@ -14,21 +14,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// A number of StepReport that is zero while all is well.
-struct RefusedCount {
-  const char* name;
-  std::uint32_t StepReport::*number;
-};
-
-constexpr RefusedCount kRefusedCounts[] = {
-    {"rows_quarantined", &StepReport::rows_quarantined},
-    {"ropes_unconverged", &StepReport::ropes_unconverged},
-    {"pairs_left_out", &StepReport::pairs_left_out},
-    {"islands_refused", &StepReport::islands_refused},
-    {"contacts_refused", &StepReport::contacts_refused},
-    {"coupled_groups_cut_short", &StepReport::coupled_groups_cut_short},
-};
-
 struct RouteName {
   const char* name;
   std::uint32_t RouteCounts::*number;
@@ -131,7 +116,7 @@ static Json json_of_problems(const std::vector<RunWarning>& problems) {
 }
 
 void note_refused(const StepReport& step, StepReport& worst) {
-  for (const RefusedCount& count : kRefusedCounts)
+  for (const RefusedCount& count : refused_counts())
     worst.*count.number = std::max(worst.*count.number, step.*count.number);
 }
 
@@ -145,7 +130,7 @@ static Json json_of_routes(const RouteCounts& routes) {
 /// The most of each in any step.
 static Json json_of_refused(const StepReport& worst) {
   Json json = Json::object();
-  for (const RefusedCount& count : kRefusedCounts) json[count.name] = worst.*count.number;
+  for (const RefusedCount& count : refused_counts()) json[count.name] = worst.*count.number;
   return json;
 }
 

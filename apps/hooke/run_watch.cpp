@@ -14,7 +14,7 @@ namespace hooke::app {
 
 namespace {
 
-/// Kinds of trouble; those of StepReport come after them, in the order of kCounts.
+/// Kinds of trouble; those of StepReport come after them, in the order of kRefusedCounts.
 enum Kind : int { kStretch, kSlack, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
 
 constexpr double kBeyondLimit = 1.1;       ///< Of a declared extension, before it is said.
@@ -30,33 +30,26 @@ constexpr double kLost = 0.05;             ///< Share of a mesh's volume that it
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
 constexpr std::int32_t kMostSubsteps = 64;  ///< That a scene may have.
 
-/// A number of StepReport that is zero while all is well.
-struct Count {
-  std::uint32_t StepReport::*number;
-  const char* what;  ///< After the number.
-  const char* cure;
-  bool of_rope = false;  ///< The worst rope is named.
-};
-
-constexpr std::array kCounts = {
-    Count{&StepReport::rows_quarantined,
-          "particles and bodies were put back because their state was not finite",
-          "less extreme masses, stiffnesses or forces, or more substeps"},
-    Count{&StepReport::ropes_unconverged,
-          "ropes stayed more than 1 % off their length: Newton's steps did not converge",
-          "more particle_substeps, or a load that is not as heavy", true},
-    Count{&StepReport::pairs_left_out,
-          "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
-          "places that are not the same for many bodies"},
-    Count{&StepReport::islands_refused,
-          "stacks were too large or too many to be solved directly, and may sink",
-          "lower stacks, fewer bodies that lie on much lighter ones, or more substeps"},
-    Count{&StepReport::contacts_refused,
-          "contacts were too many to be solved with hooks and ropes, and may sink",
-          "fewer bodies on what hangs, masses that differ less, or more substeps"},
-    Count{&StepReport::coupled_groups_cut_short,
-          "groups of ropes and what they hold took too much work to be solved to the end",
-          "fewer points, or fewer ropes that touch each other"},
+constexpr std::array kRefusedCounts = {
+    RefusedCount{&StepReport::rows_quarantined, "rows_quarantined",
+                 "particles and bodies were put back because their state was not finite",
+                 "less extreme masses, stiffnesses or forces, or more substeps"},
+    RefusedCount{&StepReport::ropes_unconverged, "ropes_unconverged",
+                 "ropes stayed more than 1 % off their length: Newton's steps did not converge",
+                 "more particle_substeps, or a load that is not as heavy", true},
+    RefusedCount{
+        &StepReport::pairs_left_out, "pairs_left_out",
+        "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
+        "places that are not the same for many bodies"},
+    RefusedCount{&StepReport::islands_refused, "islands_refused",
+                 "stacks were too large or too many to be solved directly, and may sink",
+                 "lower stacks, fewer bodies that lie on much lighter ones, or more substeps"},
+    RefusedCount{&StepReport::contacts_refused, "contacts_refused",
+                 "contacts were too many to be solved with hooks and ropes, and may sink",
+                 "fewer bodies on what hangs, masses that differ less, or more substeps"},
+    RefusedCount{&StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
+                 "groups of ropes and what they hold took too much work to be solved to the end",
+                 "fewer points, or fewer ropes that touch each other"},
 };
 
 double in_double(Real value) {
@@ -228,6 +221,10 @@ std::string RunWarning::line() const {
   std::string text = object.empty() ? what : "'" + object + "' " + what;
   if (time > 0) text += text_of(", at %.3g s", time);
   return text + ": " + cure;
+}
+
+std::span<const RefusedCount> refused_counts() {
+  return kRefusedCounts;
 }
 
 RunWatch::RunWatch(const Simulation& simulation) {
@@ -475,8 +472,8 @@ const RunWatch::Watched* RunWatch::least_rigid_rope(const World& world) const {
 }
 
 void RunWatch::look_at_report(const World& world, const StepReport& report) {
-  for (std::size_t i = 0; i < kCounts.size(); ++i) {
-    const Count& count = kCounts[i];
+  for (std::size_t i = 0; i < kRefusedCounts.size(); ++i) {
+    const RefusedCount& count = kRefusedCounts[i];
     const std::uint32_t number = report.*count.number;
     if (number == 0) continue;
     const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;

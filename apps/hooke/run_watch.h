@@ -23,6 +23,18 @@ struct RunWarning {
   [[nodiscard]] std::string line() const;
 };
 
+/// A number of StepReport that is zero while all is well.
+struct RefusedCount {
+  std::uint32_t StepReport::*number;
+  const char* name;  ///< In reports.
+  const char* what;  ///< After the number, for a reader.
+  const char* cure;
+  bool of_rope = false;  ///< The worst rope is named.
+};
+
+/// All that a step can refuse or leave undone.
+[[nodiscard]] std::span<const RefusedCount> refused_counts();
+
 /// Looks at a simulation while it runs, and remembers of each object and each kind of trouble the worst.
 class RunWatch {
  public:
