@@ -111,14 +111,12 @@ void choose_joint_routes(const Joints& joints, std::vector<Hook>& hooks) {
   for (const std::uint32_t row : joints.iterative.hooks) hooks[row].route = JointRoute::kIterative;
 }
 
-void choose_contact_routes(const ContactRouting& routing, std::vector<std::uint8_t>& body_marks,
-                           LoadBearingScratch& load_bearing, DirectIslands& direct, state::Tables& tables) {
-  find_load_bearing_contacts(
-      {routing.step, routing.impulse_to_force, routing.joints, routing.hooked, routing.supports},
-      tables.bodies, tables.hooks, tables.pairs, load_bearing);
-  couple_articulations(routing.joints, body_marks, tables);
-  find_direct_islands(routing.awake, routing.step, tables.pairs.manifold, load_bearing.footing, tables.bodies,
-                      direct);
+void choose_contact_routes(const LoadBearingInputs& inputs, std::span<const std::uint32_t> awake,
+                           std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
+                           DirectIslands& direct, state::Tables& tables) {
+  find_load_bearing_contacts(inputs, tables.bodies, tables.hooks, tables.pairs, load_bearing);
+  couple_articulations(inputs.joints, body_marks, tables);
+  find_direct_islands(awake, inputs.step, tables.pairs.manifold, load_bearing.footing, tables.bodies, direct);
   for (Manifold& m : tables.pairs.manifold) m.route = route_of(m, tables.bodies, direct);
 }
 

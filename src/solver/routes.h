@@ -88,24 +88,16 @@
 
 namespace hooke::solver {
 
-/// What the choice of ways for contacts is made from, and where it is noted.
-struct ContactRouting {
-  const ContactStep& step;
-  Real impulse_to_force = Real(0);       ///< Of the impulses that manifolds have from the last step [1/s].
-  std::span<const std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
-  std::span<const std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
-  const Supports& supports;
-  const Joints& joints;
-};
-
 /// Gives each hook between bodies the way of its group, and the way "coupled" to hooks at points. Groups that
 /// are solved with contacts or points become coupled in choose_contact_routes.
 void choose_joint_routes(const Joints& joints, std::vector<state::Hook>& hooks);
 
 /// Gives each manifold its way, and the way "coupled" to the hooks that are solved with contacts or points.
-/// `body_marks` is scratch. Call it after choose_joint_routes.
-void choose_contact_routes(const ContactRouting& routing, std::vector<std::uint8_t>& body_marks,
-                           LoadBearingScratch& load_bearing, DirectIslands& direct, state::Tables& tables);
+/// `awake` are rows of bodies that move in
+/// this step, in ascending order; `body_marks` is scratch. Call it after choose_joint_routes.
+void choose_contact_routes(const LoadBearingInputs& inputs, std::span<const std::uint32_t> awake,
+                           std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
+                           DirectIslands& direct, state::Tables& tables);
 
 /// How many contacts, hooks and ropes go which way in this step.
 [[nodiscard]] RouteCounts count_routes(const state::Tables& tables, const Joints& joints,

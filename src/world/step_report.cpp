@@ -1,8 +1,6 @@
 #include "world/step_report.h"
 
 #include "solver/routes.h"
-#include "state/check_tables.h"
-#include "world/force_stages.h"
 
 #include <algorithm>
 #include <utility>
