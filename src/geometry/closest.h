@@ -65,7 +65,14 @@ T safe_length(Vector3<T> v) {
 template <class T>
 Vector3<T> direction_or(Vector3<T> v, Vector3<T> otherwise) {
   const T size = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
-  return size > T(0) ? normalize(Vector3<T>{v.x / size, v.y / size, v.z / size}) : otherwise;
+  if (!(size > T(0))) return otherwise;
+  // Four lanes, each with a value of its own. Compilers divide whole registers, and what an empty lane of a
+  // vector of three happens to hold may be so small that the division takes a hundred cycles.
+  T lane[4] = {v.x, v.y, v.z, T(0)};
+  for (T& l : lane) l /= size;
+  const T unit_length = std::sqrt(lane[0] * lane[0] + lane[1] * lane[1] + lane[2] * lane[2]);
+  for (T& l : lane) l /= unit_length;
+  return {lane[0], lane[1], lane[2]};
 }
 
 /// Point of the segment nearest to `p`. A segment of no length is its start, fraction 0.
