@@ -353,7 +353,7 @@ void RunWatch::take_cloth(const Scene& scene, const World& world, const SceneClo
 void RunWatch::take_rope(const World& world, const SceneRope& rope, Watched& watched) {
   const RopeDesc& desc = rope.desc;
   const PointView points = world.positions(watched.object.rope);
-  watched.is_rigid = desc.stiffness == kRigid && !desc.axial_stiffness && !desc.youngs_modulus;
+  watched.is_rigid = desc.stiffness == kRigid && !desc.axial_stiffness && !desc.young_modulus;
   if (desc.extension_max < kRigid) watched.extension_max = in_double(desc.extension_max);
   for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
     const double even = watched.object.rest_length / static_cast<double>(points.size() - 1);

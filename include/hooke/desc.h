@@ -53,12 +53,12 @@ struct WindDesc {
 };
 
 /// What two materials do to each other, in place of the rule at ContactDesc. The order of the two does not
-/// matter; the first pair in the list counts. World::create does not check these numbers.
+/// matter; the first pair in the list counts.
 struct MaterialPairDesc {
   std::uint16_t a = 0;        ///< ContactDesc::material of the one surface.
   std::uint16_t b = 0;        ///< ContactDesc::material of the other surface; may be the same.
   Real friction = Real(0.5);  ///< Coulomb coefficient while sliding. [0, 100]
-  /// Coefficient while at rest; `friction` by default, and where it is below `friction`.
+  /// Coefficient while at rest; `friction` by default, and where it is below `friction`. [0, 100]
   std::optional<Real> static_friction = {};
   Real restitution = Real(0);  ///< Speed after over speed before. [0, 1]
 };
@@ -366,8 +366,8 @@ struct RopeDesc {
   Real twist = Real(0);  ///< Twist of the whole rope at the start, even over its length [rad].
   /// Young's modulus E [Pa], positive. It replaces the three stiffnesses by those of a round rod of `radius`
   /// r: EA, EI = E pi r^4 / 4 and GJ = G pi r^4 / 2, with G = E / (2 (1 + poisson_ratio)).
-  std::optional<Real> youngs_modulus = {};
-  Real poisson_ratio = Real(0.3);  ///< Poisson's ratio, for `youngs_modulus`. [-0.99, 0.5]
+  std::optional<Real> young_modulus = {};
+  Real poisson_ratio = Real(0.3);  ///< Poisson's ratio, for `young_modulus`. [-0.99, 0.5]
   /// Positions of all points, at rest [m]: replaces hook_point, direction, masses and length_at_rest.
   std::vector<DVec3> points = {};
   std::vector<PinDesc> pins = {{}};  ///< Points that are held: the first by default, `{}` for none.

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "hooke/bsp.h"
+#include "hooke/clock.h"
 #include "hooke/desc.h"
 #include "hooke/event.h"
+#include "hooke/geometry.h"
 #include "hooke/id.h"
 #include "hooke/limits.h"
 #include "hooke/machine.h"

@@ -34,9 +34,9 @@ Checks check(const RopeDesc& desc) {
       .velocity("velocity", desc.velocity)
       .in_range("contact.friction", static_cast<double>(desc.contact.friction), 0, 100);
   if (desc.axial_stiffness) checks.stiffness("axial_stiffness", static_cast<double>(*desc.axial_stiffness));
-  if (desc.youngs_modulus)
-    checks.in_range("youngs_modulus", static_cast<double>(*desc.youngs_modulus), 1e-6, limits::kResistance);
-  checks.require(!(desc.twist_stiffness > Real(0)) || desc.bend_stiffness > Real(0) || desc.youngs_modulus,
+  if (desc.young_modulus)
+    checks.in_range("young_modulus", static_cast<double>(*desc.young_modulus), 1e-6, limits::kResistance);
+  checks.require(!(desc.twist_stiffness > Real(0)) || desc.bend_stiffness > Real(0) || desc.young_modulus,
                  "twist_stiffness", "needs a bend_stiffness");
   if (desc.points.empty()) {
     checks.in_range("masses", desc.masses, 2, kMostNodes)
@@ -71,8 +71,8 @@ std::vector<DVec3> node_positions(const RopeDesc& desc) {
 /// Sets the stiffnesses of a round rod where a material is given.
 RopeDesc of_material(const RopeDesc& given) {
   RopeDesc desc = given;
-  if (!given.youngs_modulus) return desc;
-  const auto e = static_cast<double>(*given.youngs_modulus);
+  if (!given.young_modulus) return desc;
+  const auto e = static_cast<double>(*given.young_modulus);
   const auto r = static_cast<double>(given.radius);
   const double g = 0.5 * e / (1 + static_cast<double>(given.poisson_ratio));
   const double area = std::numbers::pi * r * r;

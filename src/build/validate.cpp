@@ -39,7 +39,7 @@ Result<void> validate(const WindDesc& wind) {
 }
 
 Result<void> validate(const WorldDesc& desc) {
-  const Checks checks =
+  Checks checks =
       Checks("world")
           .within("gravity", desc.gravity, limits::kAcceleration)
           .in_range("substeps", desc.substeps, 1, 64)
@@ -48,6 +48,14 @@ Result<void> validate(const WorldDesc& desc) {
           .in_range("contact_hz", static_cast<double>(desc.contact_hz), 0.1, 1000)
           .in_range("contact_damping_ratio", static_cast<double>(desc.contact_damping_ratio), 0.01, 100)
           .in_range("bias_sweeps", desc.bias_sweeps, 1, 8);
+  for (std::size_t i = 0; i < desc.materials.size() && checks.good(); ++i) {
+    const MaterialPairDesc& pair = desc.materials[i];
+    const std::string where = indexed("materials", i);
+    const Real at_rest = pair.static_friction.value_or(pair.friction);
+    checks.in_range(where + ".friction", static_cast<double>(pair.friction), 0, 100)
+        .in_range(where + ".static_friction", static_cast<double>(at_rest), 0, 100)
+        .in_range(where + ".restitution", static_cast<double>(pair.restitution), 0, 1);
+  }
   if (!checks.good()) return checks.result();
   Result<void> wind = validate(desc.wind);
   if (wind) return wind;

@@ -170,7 +170,7 @@ TEST_SUITE("io/scene_load") {
          {"1:80: bodies[0].density: has no effect: 'mass' replaces it"}},
         {R"("ropes": [{"points": [[0, 0, 0], [1, 0, 0]], "masses": 4, "poisson_ratio": 0.3}])",
          {"1:61: ropes[0].masses: has no effect: 'points' replaces it",
-          "1:74: ropes[0].poisson_ratio: has no effect: it is for 'youngs_modulus'"}},
+          "1:74: ropes[0].poisson_ratio: has no effect: it is for 'young_modulus'"}},
         {R"("cloths": [{"bend": "none", "bend_stiffness": 1, "position": [1, 0, 0]}])",
          {"1:44: cloths[0].bend_stiffness: has no effect: 'bend' is \"none\"",
           "1:65: cloths[0].position: has no effect: it is for a mesh; a grid has a 'corner'"}},

@@ -97,7 +97,7 @@ constexpr const char* kEverything = R"({
      "length_at_rest": 2, "stiffness": 1000, "inner_friction": 0.1, "air_friction": 0.2, "extension_max": 0.05,
      "stiffness_of": "segment", "axial_stiffness": 500, "bend_stiffness": 0.5, "touches_ropes": true,
      "repulsion_strength": 2e-7, "repulsion_range": 0.02, "twist_stiffness": 0.4,
-     "twist": 3, "youngs_modulus": 1e9, "poisson_ratio": 0.25, "radius": 0.01, "drag_coefficient": 1, "charge": 1e-6,
+     "twist": 3, "young_modulus": 1e9, "poisson_ratio": 0.25, "radius": 0.01, "drag_coefficient": 1, "charge": 1e-6,
      "velocity": [0, 0, 1], "loads": [{"point": 3, "mass": 0.5}, {"point": "last", "mass": 0}],
      "pins": [0, {"point": "last", "motion": {"velocity": [0, 1, 0]}},
               {"point": 2, "motion": {"sine": {"amplitude": [0, 1, 0], "frequency_hz": 2, "phase": 0.5}}},

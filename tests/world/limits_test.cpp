@@ -259,6 +259,17 @@ TEST_SUITE("world/limits") {
     CHECK(l.world.apply_force(l.floor, {Real(1e15), 0, 0}).has_value());  // nothing moves it
   }
 
+  TEST_CASE("a world refuses a pair of materials whose numbers mean nothing") {
+    const auto refused = [](const MaterialPairDesc& pair) {
+      return of(World::create({.materials = {{.a = 1, .b = 2}, pair}})).where;
+    };
+    CHECK(refused({.friction = Real(-0.1)}) == "world.materials[1].friction");
+    CHECK(refused({.friction = Real(std::nan(""))}) == "world.materials[1].friction");
+    CHECK(refused({.static_friction = Real(101)}) == "world.materials[1].static_friction");
+    CHECK(refused({.restitution = Real(1.01)}) == "world.materials[1].restitution");
+    CHECK(refused({.friction = Real(100), .static_friction = Real(0), .restitution = Real(1)}) == "none");
+  }
+
   TEST_CASE("a step takes between a nanosecond and a thousand seconds") {
     Lot l = make_lot();
     const std::uint64_t before = l.world.state_hash();

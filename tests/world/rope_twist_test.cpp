@@ -345,7 +345,7 @@ TEST_SUITE("world/rope_twist") {
   TEST_CASE("a round rod of steel has the stiffnesses of its material") {
     RopeDesc desc = rod(16);
     desc.radius = real(1e-3);
-    desc.youngs_modulus = real(2e11);
+    desc.young_modulus = real(2e11);
     Shaft shaft(desc, kWall, kHand);
     shaft.turn(kPi / 2, 1);
     const double g = 2e11 / 2.6;
@@ -361,9 +361,9 @@ TEST_SUITE("world/rope_twist") {
     CHECK(complaint({.twist_stiffness = real(1)}) == "rope.twist_stiffness");
     CHECK(complaint({.bend_stiffness = real(1), .twist_stiffness = real(-1)}) == "rope.twist_stiffness");
     CHECK(complaint({.twist = kRigid}) == "rope.twist");
-    CHECK(complaint({.youngs_modulus = real(0)}) == "rope.youngs_modulus");
+    CHECK(complaint({.young_modulus = real(0)}) == "rope.young_modulus");
     CHECK(complaint({.poisson_ratio = real(0.6)}) == "rope.poisson_ratio");
-    CHECK(complaint({.twist_stiffness = real(1), .youngs_modulus = real(1e9)}).empty());
+    CHECK(complaint({.twist_stiffness = real(1), .young_modulus = real(1e9)}).empty());
   }
 }
 

@@ -175,7 +175,7 @@ Rows torsion(const CheckSetting& setting) {
   const double r = 1e-3;
   const double gj = e / 2 / (1 + nu) * kPi * std::pow(r, 4) / 2;
   RopeDesc wire = straight_rod(16);
-  wire.youngs_modulus = real(e);
+  wire.young_modulus = real(e);
   wire.poisson_ratio = real(nu);
   wire.radius = real(r);
   Shaft shaft(setting, wire);

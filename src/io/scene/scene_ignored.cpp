@@ -81,16 +81,16 @@ void IgnoredKeys::check(const SceneBody& body, const std::string& path) {
 
 void IgnoredKeys::check(const SceneRope& rope, const std::string& path) {
   const RopeDesc& desc = rope.desc;
-  const bool is_material = desc.youngs_modulus.has_value();
+  const bool is_material = desc.young_modulus.has_value();
   ignore(path, {"hook_point", "direction", "masses", "length_at_rest"}, !desc.points.empty(),
          "'points' replaces it");
   ignore(path, {"stiffness", "axial_stiffness", "stiffness_of", "bend_stiffness", "twist_stiffness"},
-         is_material, "'youngs_modulus' replaces it");
+         is_material, "'young_modulus' replaces it");
   ignore(path, {"stiffness", "stiffness_of"}, !is_material && desc.axial_stiffness.has_value(),
          "'axial_stiffness' replaces it");
   ignore(path, {"stiffness_of"},
          !is_material && !desc.axial_stiffness.has_value() && desc.stiffness == kRigid, "the rope is rigid");
-  ignore(path, {"poisson_ratio"}, !is_material, "it is for 'youngs_modulus'");
+  ignore(path, {"poisson_ratio"}, !is_material, "it is for 'young_modulus'");
   ignore(path, {"bend_damping"}, !is_material && desc.bend_stiffness == Real(0),
          "there is no bend_stiffness");
   ignore(path, {"twist"}, !is_material && desc.twist_stiffness == Real(0), "there is no twist_stiffness");

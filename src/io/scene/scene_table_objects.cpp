@@ -181,11 +181,11 @@ std::vector<Field> rope_rows() {
           "by balls to the world or to one body. Needs `bend_stiffness`."),
       field<kDesc, &RopeDesc::twist>("twist", "rad", kAny,
                                      "Of the whole rope at the start, even over its length."),
-      field<kDesc, &RopeDesc::youngs_modulus>("youngs_modulus", "Pa", kPositive,
-                                              "E: replaces the stiffness and those against bending and twist "
-                                              "by those of a round rod of `radius`."),
+      field<kDesc, &RopeDesc::young_modulus>("young_modulus", "Pa", kPositive,
+                                             "E: replaces the stiffness and those against bending and twist "
+                                             "by those of a round rod of `radius`."),
       field<kDesc, &RopeDesc::poisson_ratio>("poisson_ratio", "", between(-0.99, 0.5),
-                                             "Of `youngs_modulus`: G = E / 2 (1 + `poisson_ratio`)."),
+                                             "Of `young_modulus`: G = E / 2 (1 + `poisson_ratio`)."),
       field<kDesc, &RopeDesc::axial_stiffness>("axial_stiffness", "N", kPositiveOrRigid,
                                                "EA; replaces `stiffness` by EA / `length_at_rest`."),
       field<kDesc, &RopeDesc::points>(

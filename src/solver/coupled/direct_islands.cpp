@@ -256,8 +256,10 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
   if (direct.islands.size() < found) direct.islands.resize(found);
   direct.fits.assign(found, 0);
   double cost = 0;
+  std::size_t too_large = 0;
   for (std::size_t i = 0; i < found; ++i) {
     const DirectGraph& graph = direct.found[i];
+    if (graph.bodies.size() > kMaxDirectBodies) ++too_large;
     DirectIsland& island = direct.islands[i];
     const bool fits = graph.bodies.size() <= kMaxDirectBodies &&
                       (island.graph == graph || make_pattern(graph, direct, island));
@@ -278,7 +280,8 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
     taken += fits ? 1 : 0;
   }
   direct.count = static_cast<int>(taken);
-  direct.refused = static_cast<std::uint32_t>(found - taken);
+  // The evaluation at the step's end counts those that are too large, whether they are asked for here or not.
+  direct.refused = static_cast<std::uint32_t>(found - taken - too_large);
 }
 
 }  // namespace

@@ -71,9 +71,9 @@ struct DirectIslands {
 
   std::vector<DirectIsland> islands;  ///< The first `count` are those of this step, by lowest body.
   int count = 0;
-  std::uint32_t refused = 0;  ///< Number of direct islands over the budget.
-  std::uint32_t too_large =
-      0;  ///< Number of islands that ask for a direct solution and have too many bodies.
+  std::uint32_t refused = 0;  ///< Number of islands over the budget that are small enough.
+  /// Number of islands that ask for a direct solution and have too many bodies.
+  std::uint32_t too_large = 0;
 
   // Scratch memory.
   base::DisjointSets sets;

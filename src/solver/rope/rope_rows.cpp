@@ -38,8 +38,8 @@ wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const R
           e.tension_bound};
 }
 
-/// Speed at which a contact opens, with its gap as speed.
-double closing_speed_of(const RopeContactRow& t, V u, double h) {
+/// Speed at which a contact opens [m/s], its gap counted as the speed that would close it in one substep.
+double opening_speed_of(const RopeContactRow& t, V u, double h) {
   return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
 }
 
@@ -97,9 +97,9 @@ double drag_of(const RopeContactRow& t, V u) {
 bool update_point_contact_row(double h, bool let_go, V u, RopeContactRow& t) {
   const bool was_active = t.active;
   const double drag = t.drag;
-  const double closing_speed = closing_speed_of(t, u, h);
-  t.normal = t.active ? std::max(0.0, -t.rho * closing_speed) : 0;
-  t.active = t.active ? t.normal > 0 : closing_speed < 0 && !let_go;
+  const double opening_speed = opening_speed_of(t, u, h);
+  t.normal = t.active ? std::max(0.0, -t.rho * opening_speed) : 0;
+  t.active = t.active ? t.normal > 0 : opening_speed < 0 && !let_go;
   t.drag = drag_of(t, u);
   t.f = -drag * across(t.n, u - t.surface);
   return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kConvergedDrag * drag);
@@ -356,12 +356,12 @@ void constrain_nodes(double h, RopeScratch& s) {
 }
 
 Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, RopeContactRow& t) {
-  const double closing_speed = closing_speed_of(t, node.u, h);
+  const double opening_speed = opening_speed_of(t, node.u, h);
   const bool was_active = t.active;
   const bool slid = t.slides;
   Unconverged unconverged;
   if (t.active) {
-    const double push = t.n0 - t.rho * closing_speed;
+    const double push = t.n0 - t.rho * opening_speed;
     const V sliding = across(t.n, node.u - t.surface);
     const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kContactStiffness);
     const bool drags_on = drives_by_friction(t, sliding);
@@ -373,8 +373,8 @@ Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, Rope
     unconverged.pulls = pulls || drags_on;
   } else {
     t.normal = 0;
-    t.active = closing_speed < 0 && !t.let_go;
-    unconverged.impacts = t.active && closing_speed < -kImpactSpeed;
+    t.active = opening_speed < 0 && !t.let_go;
+    unconverged.impacts = t.active && opening_speed < -kImpactSpeed;
   }
   if (!t.active) t.f = {};
   unconverged.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;

@@ -69,10 +69,10 @@ class RopeSystemScratch {
 /// A rope that resists bending has a moment M at each inner node. m_d and m_e are the vectors of the
 /// segments before and behind it over their lengths, and B is EI over the length between their middles:
 ///
-///   bending      M = -B (c / h + beta (r_c - r_c0) + delta r_c + d r_c)
+///   bending      M = -B (c + h beta (r_c - r_c0) + h delta r_c + d r_c)
 ///
 /// Here c = m_e - m_d at the start of the substep, r_c is its rate, r_c0 that rate before this substep's
-/// forces, d the damping, beta = 1/4 and delta = 0.03: see RopeBend.
+/// forces, d the damping over EI [s], beta = 1/4 and delta = 0.03: see RopeBend.
 ///
 /// A sweep from the first node eliminates one node after the other (solver/rope/rope_sweep.h; exact for k =
 /// infinity), and a sweep back gives u and q. The solve repeats, linearized anew, while a length error
