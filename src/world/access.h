@@ -6,16 +6,16 @@
 #include <cstddef>
 
 /// \file
-/// What Hooke's own libraries may see of the API's classes.
+/// This header shows Hooke's own libraries what the API's classes keep private.
 
 namespace hooke {
 
 struct WorldAccess {
-  /// Of a World that was moved from: empty ones.
+  /// Returns the tables of a World, or empty ones if it was moved from.
   static const state::Tables& tables(const World& world) { return world::Reading(world.data_).tables(); }
 };
 
-/// The one place that may fill a ForceView.
+/// Only this struct fills force views, so that programs cannot make one.
 struct ForceViewAccess {
   static ForceView make(const state::Tables& tables, const state::Deformable& object, double time,
                         Vec3* forces) {
@@ -38,7 +38,7 @@ struct ForceViewAccess {
     return view;
   }
 
-  /// Of the bodies in `law_bodies`.
+  /// Makes the view of the bodies in `law_bodies`. It is valid during one call of a law.
   static BodyForceView make(WorldData& world, double time) {
     BodyForceView view;
     view.world_ = &world;

@@ -27,20 +27,23 @@ bool moves(const BodyTraits& traits) {
   return traits.kind != BodyKind::kStatic;
 }
 
-/// Who can push, and who is seen by sensors: all that moves, but no other sensor.
+/// Whether two bodies may push each other or one is a sensor that may see the other. A sensor never sees
+/// another sensor. A dynamic sensor sees static bodies too; any other sensor sees only bodies that are not
+/// static.
 bool may_meet(const BodyTraits& a, const BodyTraits& b) {
   if (a.sensor && b.sensor) return false;
   if (a.kind == BodyKind::kDynamic || b.kind == BodyKind::kDynamic) return true;
   return (a.sensor && moves(b)) || (b.sensor && moves(a));
 }
 
-/// Bodies of a negative group never collide with each other: that is a company.
+/// Sets the box of a collider. Bodies with the same negative filter group never collide, so they are a
+/// collision group.
 void set_box(WorldData& world, std::uint32_t body, std::uint32_t collider, const geometry::Box& box) {
   const BodyTraits& traits = world.tables.bodies.traits[body];
   world.derived.broad_phase.set(collider, box, moves(traits), std::min(traits.filter.group, 0));
 }
 
-/// What the colliders of a body can reach in this step.
+/// Updates the boxes that the colliders of a body can reach in this step.
 void update_bounds(Tables& t, std::uint32_t body, Real dt) {
   for (const std::uint32_t c : colliders_of(t.bodies, body))
     t.colliders.bounds[c] = collision::reach_of(t.bodies, t.colliders, c, dt);
@@ -53,7 +56,7 @@ void for_all_bodies(const state::Bodies& bodies, Visit&& visit) {
   }
 }
 
-/// All bodies that are not where they were in the last step, as far as pairs go.
+/// Lists the bodies that may have moved since the pairs of the last step were found.
 void list_moved_set(WorldData& world) {
   const Tables& t = world.tables;
   world.frame.moved_set = world.frame.awake;
@@ -66,7 +69,7 @@ void list_moved_set(WorldData& world) {
     for (const std::uint32_t c : colliders_of(t.bodies, body)) world.frame.in_moved_set[c] = 1;
 }
 
-/// Bodies that were added, or put elsewhere by hand, since the last step.
+/// Enters the boxes of bodies that were added or placed by hand since the last step.
 void refresh_broad_phase(WorldData& world, Real dt) {
   Tables& t = world.tables;
   if (world.derived.broad_phase_stale) {
@@ -84,7 +87,8 @@ void refresh_broad_phase(WorldData& world, Real dt) {
   world.derived.placed_bodies.clear();
 }
 
-/// Where a kinematic body stands still, for one.
+/// Whether a pair is among the sleeping pairs. The broad phase finds such pairs again, for example those of a
+/// kinematic body that is awake but stands still.
 bool is_sleeping(const Tables& t, collision::ColliderPair pair) {
   if (t.pairs.sleeping.pair.empty()) return false;
   const auto stands = [&](std::uint32_t collider) {
@@ -145,7 +149,7 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
   const std::lock_guard lock(world.derived.boxes_mutex);
   if (world.derived.boxes_are_current.load(std::memory_order_relaxed)) return world.derived.broad_phase;
   const Tables& t = world.tables;
-  // The step's own boxes of the same bodies replace these, so that no query changes what a step does.
+  // The next step sets the boxes of the same bodies again, so that no query changes what a step does.
   const auto enter = [&](std::uint32_t body) {
     for (const std::uint32_t c : colliders_of(t.bodies, body))
       set_box(world, body, c, collision::reach_of(t.bodies, t.colliders, c, Real(0)));
@@ -166,7 +170,7 @@ const collision::BroadPhase& boxes_for_queries(WorldData& world) {
 
 static void find_manifolds(WorldData& world, Real dt) {
   Tables& t = world.tables;
-  world.derived.boxes_are_current = false;  // from now on they are those of the step
+  world.derived.boxes_are_current = false;  // From now on they are the boxes of the step.
   refresh_broad_phase(world, dt);
   for_bodies(world, [&](auto rows) {
     for (const std::uint32_t body : rows) update_bounds(t, body, dt);
@@ -200,7 +204,7 @@ void find_body_contacts(WorldData& world, Real dt) {
 
 void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  world.frame.narrow_phase.list_refreshed(t.pairs);  // no pair changes its row any more in this step
+  world.frame.narrow_phase.list_refreshed(t.pairs);  // No pair changes its row any more in this step.
   const WorldDesc& desc = t.desc;
   const auto before = static_cast<Real>(t.body_substep);
   world.frame.contact_step = {.gravity = desc.gravity,
@@ -261,7 +265,7 @@ void relax_body_contacts(WorldData& world) {
 
 namespace {
 
-/// What a contact carries over to the next step is numbers, or nothing.
+/// Clears what a contact carries over to the next step if any of it is not finite.
 void reset_if_not_finite(state::Manifold& m) {
   Real sum = m.twist_impulse + m.largest_impulse;
   for (std::int32_t k = 0; k < m.point_count; ++k) sum += m.point[static_cast<std::size_t>(k)].normal_impulse;
@@ -271,7 +275,7 @@ void reset_if_not_finite(state::Manifold& m) {
   m.twist_impulse = m.largest_impulse = Real(0);
 }
 
-/// The same of a hook.
+/// Does the same for a hook.
 void reset_if_not_finite(state::Hook& hook) {
   Real sum = hook.last_impulse + hook.last_angular_impulse;
   for (const Real impulse : hook.row_impulse) sum += impulse;
@@ -293,7 +297,7 @@ void finish_bodies(WorldData& world, Real dt) {
   for_bodies(world, [&](auto rows) { solver::finish_bodies(rows, t.bodies); });
   solver::finish_joints(*world.pool, dt, t.desc.substeps, t.bodies, world.derived.joints, t.hooks);
   if (!world.frame.bodies_quarantined) return;
-  // What touched or held a body that was put back must not put it back again in every step.
+  // Otherwise what touched or held a quarantined body would send it back to quarantine in every step.
   for (state::Manifold& m : t.pairs.manifold) reset_if_not_finite(m);
   for (state::Hook& hook : t.hooks) reset_if_not_finite(hook);
 }

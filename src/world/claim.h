@@ -9,18 +9,20 @@
 #include <memory>
 
 /// \file
-/// How every call of the API comes to a World's data. Whatever the host does around it, what a call computes
-/// has the same bits; a World that was moved from has nothing; and nothing changes while a step runs.
+/// Every call of the API reaches a World's data through one of these classes. They make sure that the host's
+/// rounding mode never changes the bits, that a World that was moved from holds nothing, and that nothing but
+/// the step itself changes a World during a step.
 
 namespace hooke::world {
 
-/// Of a call that changes the world. Refused where there is none, or where the call comes from a force law.
+/// A call that changes the world makes a Claim first. It is refused if the World was moved from, or if a step
+/// runs, which is when force laws are called.
 class Claim {
  public:
   explicit Claim(const std::shared_ptr<WorldData>& data) : data_(data.get()) {}
 
   explicit operator bool() const { return data_ != nullptr && !data_->stepping; }
-  /// Why it is refused.
+  /// Says why the call is refused.
   [[nodiscard]] Error error() const;
 
   WorldData* operator->() const { return data_; }
@@ -32,7 +34,7 @@ class Claim {
   WorldData* data_;
 };
 
-/// Of a call that only reads. A World that was moved from is read as one that holds nothing.
+/// A call that only reads makes a Reading first. A World that was moved from reads as an empty one.
 class Reading {
  public:
   explicit Reading(const std::shared_ptr<WorldData>& data);

@@ -43,7 +43,7 @@ void sort_events(std::vector<Event>& events) {
   std::sort(events.begin(), events.end(), kComesFirst);
 }
 
-/// Sorts `now`, lists what is new in it and what is gone, and keeps it.
+/// Sorts `now` and lists what is new in it and what is gone. `before` then holds it for the next step.
 template <class Event>
 void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Event>& begins,
              std::vector<Event>& ends) {
@@ -88,7 +88,7 @@ void gather_hits(const WorldData& world, Events& events) {
   sort_events(events.hits);
 }
 
-/// Neither moved in this step.
+/// Whether neither body moved in this step.
 bool both_stood(const Bodies& bodies, std::uint32_t a, std::uint32_t b) {
   const auto stood = [&](std::uint32_t body) {
     return bodies.traits[body].kind == BodyKind::kStatic ||
@@ -97,7 +97,8 @@ bool both_stood(const Bodies& bodies, std::uint32_t a, std::uint32_t b) {
   return stood(a) && stood(b);
 }
 
-/// The pair's memory is the sensor's to use: such a pair has no manifolds.
+/// Whether the shapes of a sensor's pair overlap. Such a pair has no manifolds, so its `gap` and `tested`
+/// remember the answer while both bodies stand.
 bool overlap(const Tables& t, state::Pair& pair) {
   const std::uint32_t a = t.colliders.body[pair.collider_a];
   const std::uint32_t b = t.colliders.body[pair.collider_b];
@@ -139,7 +140,7 @@ void gather_sleep(WorldData& world) {
   sort_events(events.woke_up);
 }
 
-/// Acceleration of free bodies towards each other, along the normal.
+/// Returns the acceleration at which gravity drives two bodies together along the normal [m/s^2].
 Real pull_of(const Tables& t, const Manifold& m) {
   const auto pull = [&](std::uint32_t body) {
     return is_dynamic(t.bodies, body) ? t.bodies.traits[body].gravity_scale : Real(0);
@@ -147,10 +148,11 @@ Real pull_of(const Tables& t, const Manifold& m) {
   return (pull(m.body_a) - pull(m.body_b)) * dot(m.normal, t.desc.gravity);
 }
 
-/// The fastest point of those that meet within `dt`; speed zero if none does.
+/// Returns the fastest of the points that meet within `dt` [s]; the speed is zero if none do.
 ///
-/// With the closing speed v and the closing acceleration g, both now, a gap s is closed with
-/// sqrt(v^2 + 2 g s); the semi-implicit step of gravity is half a substep ahead.
+/// With the closing speed v and the closing acceleration g of now, two points close a gap s with sqrt(v^2 + 2
+/// g s). Half a substep of g is added to v, because semi-implicit steps follow the parabola that begins with
+/// that speed.
 ClosingPair fastest_of(const Tables& t, std::uint32_t row, Real dt) {
   const Manifold& m = t.pairs.manifold[row];
   const Real pull = pull_of(t, m);

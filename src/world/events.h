@@ -3,17 +3,18 @@
 #include "world/world_data.h"
 
 /// \file
-/// What users are told about a step: contacts, hits and visitors of the bodies that ask, and sleep.
+/// These stages gather what a step reports: contacts, hit events, visitors of sensors, and sleep.
 
 namespace hooke::world {
 
-/// Before contacts are solved: how fast the bodies that ask for hits come together, where they are near.
+/// Lists the closing pairs of bodies that ask for hit events. It is called before contacts are solved,
+/// because these change the speeds.
 void note_closing_pairs(WorldData& world, Real dt);
 
-/// Fills `events`, once everything has moved; writes `touches`, `visits` and the bodies' `slept`.
+/// Fills `events` once everything has moved. Writes `touches`, `visits` and the bodies' `slept`.
 void gather_events(WorldData& world);
 
-/// Nothing has happened. Keeps the memory.
+/// Empties all lists but keeps their memory.
 void clear_events(Events& events);
 
 }  // namespace hooke::world

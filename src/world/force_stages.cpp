@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDipoleGrain = 16;
 
-/// Who is pushed by force laws over bodies.
+/// Lists the bodies that force laws over bodies see.
 void list_law_bodies(WorldData& world) {
   const state::Tables& tables = world.tables;
   const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };

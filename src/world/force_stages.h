@@ -4,14 +4,17 @@
 
 namespace hooke::world {
 
-/// Explosions whose time falls within the `dt` that begins now change velocities; sleepers they reach wake.
+/// Changes the velocities of what explosions reach whose time lies within the `dt` [s] that begins now.
+/// Sleeping bodies that they reach wake.
 void set_off_explosions(WorldData& world, double dt);
 
-/// Start of a step: whether anything pushes bodies anew in each substep, and what was given for all of them.
+/// Begins a step: finds out whether bodies need new forces in each substep, and stores the forces that the
+/// user gave for the whole step.
 void begin_body_forces(WorldData& world);
 
-/// The force and torque on bodies for the substep of length h that begins at `time`: what was given for the
-/// step, what twisted ropes and fields do, and what the user's laws over bodies ask for.
+/// Sets the force and torque on bodies for the substep of length `h` [s] that begins at `time` [s]: those of
+/// the user for the step, of fields, air and dipoles, and of the user's force laws. Twisted ropes turn the
+/// bodies that clamp them by an impulse.
 void force_bodies(WorldData& world, double time, Real h);
 
 }  // namespace hooke::world

@@ -84,7 +84,7 @@ void drop_broken_hooks(WorldData& world) {
     breaks.push_back(
         {world.last_step.broken_hooks.back(), hook.needed_force, hook.needed_torque, t.time + hook.held});
   }
-  // Few; a stable sort would allocate.
+  // Breaks are few, and std::stable_sort would allocate, so this is an insertion sort.
   for (auto at = breaks.begin(); at != breaks.end(); ++at) {
     const auto place = std::upper_bound(breaks.begin(), at, at->time,
                                         [](double time, const BreakEvent& e) { return time < e.time; });
@@ -96,7 +96,8 @@ void drop_broken_hooks(WorldData& world) {
 
 namespace {
 
-/// Those with an end for which `holds` is true; the others close up, in their order.
+/// Removes the hooks with an end for which `holds` is true and wakes what they held. The others keep their
+/// order.
 template <class Holds>
 void remove_hooks(state::Tables& t, Holds&& holds) {
   std::uint32_t kept = 0;

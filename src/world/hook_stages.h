@@ -7,39 +7,42 @@
 #include <vector>
 
 /// \file
-/// The stages of the step that concern hooks as a whole, and what happens to hooks when bodies go.
+/// These stages of the step concern hooks as a whole. The functions after them remove hooks together with
+/// what they hold.
 
 namespace hooke::world {
 
-/// Groups of hooks for the solver, and the pairs that do not collide, if hooks or their bodies changed.
+/// Groups hooks for the solver again, and lists the pairs that do not collide, if hooks came, went or
+/// changed.
 void refresh_hooks(WorldData& world);
 
-/// Whether a hook that keeps them apart joins two bodies. Valid after refresh_hooks.
+/// Whether a hook joins two bodies and keeps them from colliding. It is valid after refresh_hooks.
 [[nodiscard]] bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b);
 
-/// Bodies and hooks at the start of a step of substeps of length `h` [s]; which way each hook is solved.
+/// Starts a step of substeps of length `h` [s] for bodies and hooks, and chooses how each hook is solved.
 void prepare_joints(WorldData& world, Real h);
 
-/// Rows of hooks between bodies for a substep of length `h` [s], with their errors removed. What impacts did
-/// to hooked bodies reaches those that they are hooked to.
+/// Solves hooks between bodies in a substep of length `h` [s], and removes their errors. Bodies on hooks that
+/// had impacts are then moved by the velocity that their hooks left them.
 void solve_joints(WorldData& world, Real h);
 
-/// After bodies have moved: takes back the velocity that removing errors has added.
+/// Removes the velocity that the removal of errors has added, sums impulses, and marks hooks that break. It
+/// is called after bodies have moved.
 void relax_joints(WorldData& world, Real h);
 
-/// Takes the hooks that broke in this step out of the world and lists them.
+/// Removes the hooks that broke in this step, and lists them in order of time.
 void drop_broken_hooks(WorldData& world);
 
-/// Takes the hooks of bodies out of the world, before the bodies go. `goes` says which bodies do, by row.
+/// Removes the hooks of bodies before the bodies themselves are removed. `goes` says by body row which are.
 void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 
-/// The same of a rope, cloth, solid or group of particles, by its row.
+/// Does the same for the hooks of a rope, cloth, solid or group of particles, given by its row.
 void remove_hooks_of_object(std::uint32_t object, state::Tables& tables);
 
-/// Wakes the bodies at both ends.
+/// Wakes the bodies at both ends of a hook.
 void wake_ends(const state::Hook& hook, state::Bodies& bodies);
 
-/// How far the ends of a hook are from where it holds them [m]; see World::hook_gap.
+/// Distance of the ends of a hook from where it holds them [m]; see World::hook_gap.
 [[nodiscard]] double gap_of(const state::Hook& hook, const state::Tables& tables);
 
 }  // namespace hooke::world

@@ -20,13 +20,13 @@ using collision::Stoppable;
 using state::Bodies;
 using state::MotionRecord;
 
-/// By how much a body turned in this step, as far as its line tells [rad].
+/// Rotation of a body in this step [rad], as its motion record has it.
 Vec3 rotation_of(const Bodies& bodies, std::uint32_t body) {
   const MotionRecord& m = bodies.motion[body];
   return m.inverse_mass > Real(0) ? bodies.scale[body] * m.theta_scaled : m.theta_scaled;
 }
 
-/// The way that the solver has found for a body in this step.
+/// The path on which the solver has moved a body in this step.
 Path path_of(const WorldData& world, std::uint32_t body) {
   const Bodies& bodies = world.tables.bodies;
   const MotionRecord& m = bodies.motion[body];
@@ -40,7 +40,8 @@ Path path_of(const WorldData& world, std::uint32_t body) {
   return path;
 }
 
-/// Whether the body goes or turns far for its thickness.
+/// Whether the body moves or rotates in this step by much of its thickness, so that it might pass through
+/// others.
 bool is_fast(const Bodies& bodies, std::uint32_t body) {
   const state::BodyTraits& traits = bodies.traits[body];
   if (!traits.collides || traits.sensor) return false;
@@ -49,7 +50,7 @@ bool is_fast(const Bodies& bodies, std::uint32_t body) {
   return displacement > collision::kUnseenDisplacement * traits.inner_radius;
 }
 
-/// Who hangs on hooks goes on: stopped alone, it would tear away from those it hangs together with.
+/// Bodies on hooks are never stopped: one that is stopped alone would tear away from the others.
 bool may_be_stopped(const WorldData& world, std::uint32_t body) {
   return world.derived.hooked[body] == 0 && state::gives_way(world.tables.bodies, body);
 }
@@ -59,19 +60,20 @@ Stoppable stoppable(const WorldData& world, std::uint32_t body, bool fast) {
   return fast ? Stoppable::kAlways : Stoppable::kSlow;
 }
 
-/// Whether the body may turn so far in the step that its inertia in world axes changes by a large part: it
-/// does, or will be hit fast enough (`foreseen`, or faster than its size). A top does not, whose axis stays.
-/// Rows know only one inertia, and would make energy with that of another time.
+/// Whether the body may rotate so far within the step that its inertia in world axes changes by a large part.
+/// Either it rotates so far by itself, or an impact may make it: one that detect foresaw (`foreseen`), or any
+/// if the body moves by more than its radius. A top that spins about its fixed axis does not count. Rows know
+/// only one inertia per step, and would add energy with that of another time.
 bool changes_inertia(const Bodies& bodies, std::uint32_t body, bool foreseen, Real dt) {
   constexpr Real kFar = Real(0.25);        // [rad]
-  constexpr Real kLargePart = Real(0.25);  // of the largest entry
+  constexpr Real kLargePart = Real(0.25);  // Share of the largest diagonal entry.
   if (!state::gives_way(bodies, body)) return false;
   if (!state::is_gyroscopic(bodies.mass[body])) return false;
   if (foreseen || dt * length(bodies.motion[body].v) > bodies.traits[body].radius) return true;
   const Vec3 turn = dt * bodies.angular_velocity[body];
   if (!(length(turn) > kFar)) return false;
   const auto now = solver::inertia_scale(bodies.mass[body], bodies.rotation[body]);
-  // Two looks: after half a turn things may be as they were.
+  // The inertia is compared at two times, because after half a turn it may be what it was.
   for (const Real part : {Real(0.37), Real(1)}) {
     const auto then =
         solver::inertia_scale(bodies.mass[body], math::quaternion_of(part * turn) * bodies.rotation[body]);
@@ -83,7 +85,8 @@ bool changes_inertia(const Bodies& bodies, std::uint32_t body, bool foreseen, Re
   return false;
 }
 
-/// Marks the bodies that go or turn far for their thickness; false if none do, or none may be stopped.
+/// Marks the bodies that are fast for their thickness. Returns false if there are none, or if none may be
+/// stopped.
 bool find_fast_bodies(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   world.frame.fast.assign(bodies.motion.size(), 0);
@@ -106,8 +109,8 @@ bool is_solid(const WorldData& world, std::uint32_t collider) {
   return !world.tables.bodies.traits[world.tables.colliders.body[collider]].sensor;
 }
 
-/// Whether the body goes where detect did not think it could: then what is in its way is not among the pairs
-/// of the step.
+/// Whether the body leaves the boxes that detect expected it to stay in. Then the pairs of the step do not
+/// contain everything in its way.
 bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
   const state::Colliders& colliders = world.tables.colliders;
   constexpr Vec3 kMargin = {collision::kReachMargin, collision::kReachMargin, collision::kReachMargin};
@@ -118,8 +121,8 @@ bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
   return false;
 }
 
-/// Puts what does not move among the swept bodies, if the collider is of such a body: there is too much of it
-/// to do so for all.
+/// Enters the body of a collider as a swept body if it stands. Standing bodies are entered only when a path
+/// may reach them, because there may be far too many of them.
 void enter_standing(WorldData& world, std::uint32_t collider) {
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.frame.swept;
@@ -131,7 +134,7 @@ void enter_standing(WorldData& world, std::uint32_t collider) {
   swept.clamps[body] = {};
 }
 
-/// How awake bodies go, and which of them go astray.
+/// Finds the paths of awake bodies, and marks those that leave their boxes.
 void find_paths(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.frame.swept;
@@ -152,7 +155,7 @@ void find_paths(WorldData& world) {
   });
 }
 
-/// Puts boxes around where the body goes.
+/// Sets the boxes of a body's colliders to what its path reaches.
 void enter_path(WorldData& world, std::uint32_t body) {
   state::Tables& t = world.tables;
   for (const std::uint32_t c : colliders_of(t.bodies, body))
@@ -160,7 +163,7 @@ void enter_path(WorldData& world, std::uint32_t body) {
   enter_broad_phase(world, body);
 }
 
-/// What a body's colliders may run into.
+/// Finds the pairs of a body's colliders with what its path may meet.
 void find_in_path(WorldData& world, std::uint32_t body, collision::PathScratch& scratch) {
   const state::Tables& t = world.tables;
   scratch.pairs.clear();
@@ -175,7 +178,7 @@ void find_in_path(WorldData& world, std::uint32_t body, collision::PathScratch& 
   }
 }
 
-/// The pairs of solid colliders that may run into each other, one of them fast.
+/// Lists the pairs of solid colliders that may run into each other and of which one at least is fast.
 void list_impact_candidates(WorldData& world, std::vector<collision::ImpactCandidate>& impact_candidates) {
   const state::Pairs& pairs = world.tables.pairs;
   impact_candidates.clear();
@@ -209,7 +212,7 @@ void list_impact_candidates(WorldData& world, std::vector<collision::ImpactCandi
                           impact_candidates.end());
 }
 
-/// Lets the body be where its path ends.
+/// Moves the body to the end of its clamped path. `turned` is the share of its rotation that it keeps.
 void follow(const Path& path, Real turned, std::uint32_t body, Bodies& bodies) {
   MotionRecord& m = bodies.motion[body];
   const Pose end = collision::pose_at(path, Real(1));

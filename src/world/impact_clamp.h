@@ -5,22 +5,24 @@
 #include "world/world_data.h"
 
 /// \file
-/// The stage of the step that keeps fast bodies from passing through others.
+/// These stages keep fast bodies from passing through others, and keep their energy while they rotate far.
 
 namespace hooke::world {
 
-/// Remembers how the bodies that are awake are turned, some turn before the step ends, and finds those that
-/// touch something in it while they turn far (state::FrozenInertia).
+/// Stores the rotations of awake bodies, because some rotate before the step ends. Freezes the inertia of
+/// bodies that rotate far in this step and touch something or hang on hooks (state::FrozenInertia).
 void begin_motion(WorldData& world, Real dt);
 
-/// Before contacts of a substep, and again when bodies have moved: those that have turned over while they
-/// touch something keep the inertia that their rows know (state::FrozenInertia).
+/// Freezes the inertia of touching bodies that have rotated too far for their rows (state::FrozenInertia). It
+/// is called before contacts are solved in a substep of length `h` [s], and again when bodies have moved
+/// (`moved`).
 void freeze_inertia(WorldData& world, Real h, bool moved);
 
-/// Bodies that moved farther in this step than a quarter of their thickness, or turned as far, are swept
-/// against all that is in their way, in relative motion, and give way where they would have gone through it
-/// (collision/continuous/continuous.h); velocities are not changed: the contact is the next step's. Does
-/// nothing in a world in which nothing is fast.
+/// Sweeps the bodies whose motion and rotation in this step add up to more than a quarter of their thickness,
+/// against all that is in their way, in relative motion. Those that would have gone through something are
+/// clamped to their time of impact (collision/continuous/continuous.h). Velocities stay for the contact of
+/// the next step. Only the angular momentum of a clamped body shrinks if its new rotation would give it more
+/// energy. Nothing happens in a step in which nothing is fast.
 void clamp_to_impact_times(WorldData& world);
 
 }  // namespace hooke::world

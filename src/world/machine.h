@@ -4,7 +4,8 @@
 
 namespace hooke::world {
 
-/// Does what HOOKE_INSTRUCTION_SET asks for, once; see hooke/machine.h. Errors: it names no set.
+/// Chooses the instruction set that the environment variable HOOKE_INSTRUCTION_SET names, unless one was
+/// chosen before; see hooke/machine.h. Errors: a name that is not in the list.
 [[nodiscard]] Result<void> heed_environment();
 
 }  // namespace hooke::world

@@ -21,7 +21,7 @@ void erase_rows(Table& table, Rows rows) {
       table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
 }
 
-/// Subtracts the removed particles from every row number behind them.
+/// Lowers the row numbers of particles behind the removed ones, wherever they are stored.
 void renumber_particles(Tables& t, Rows removed) {
   const auto moved = [&](std::uint32_t& p) {
     if (p >= removed.end()) p -= removed.count;
@@ -45,7 +45,7 @@ void renumber_particles(Tables& t, Rows removed) {
   }
 }
 
-/// Objects behind `removed` have moved up by one row.
+/// Lowers the object rows in hooks, because objects behind `removed` have moved up by one row.
 void renumber_hooked_objects(Tables& t, std::uint32_t removed) {
   for (state::Hook& hook : t.hooks) {
     for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > removed;
@@ -96,7 +96,7 @@ void remove_object(Tables& t, std::uint32_t row) {
   std::erase_if(t.twists, [&](const state::TwistSpan& span) { return span.object == row; });
   for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
   renumber_particles(t, gone.particles);
-  t.contacts = {};  // detect finds them again
+  t.contacts = {};  // Detect finds contacts again in the next step.
   t.element_contacts.clear();
   t.rope_contacts.clear();
 
@@ -188,7 +188,7 @@ void restore_tables(const Tables& from, Tables& to) {
     mark_ids(mark, to);
   };
   try {
-    to = from;  // where there is room already, nothing is allocated
+    to = from;  // Nothing is allocated where there is room already.
   } catch (...) {
     to = Tables();
     go_on();

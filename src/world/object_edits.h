@@ -10,12 +10,13 @@
 #include <vector>
 
 /// \file
-/// Finding, removing, holding: the API's work on whole objects and single particles.
+/// These functions do the API's work on whole objects and on single particles: they find, remove, pin and
+/// wake.
 
 namespace hooke::world {
 
 [[nodiscard]] Error stale(const char* what);
-/// Of a force [N] or torque [N m], and with what was given for the same step.
+/// Checks a force [N] or torque [N m], alone and in sum with what was given for the same step.
 [[nodiscard]] Result<void> check_force(const char* what, Vec3 force, Vec3 sum);
 
 struct ParticleRow {
@@ -23,29 +24,30 @@ struct ParticleRow {
   std::uint32_t object = 0;    ///< Row of the deformable.
 };
 
-/// Nothing for a stale id or an index beyond the object's points.
+/// Finds the rows of a point; nothing for a stale id or an index beyond the object's points.
 [[nodiscard]] std::optional<ParticleRow> find_particle(const state::Tables& tables, PointRef point);
 
-/// Takes an object's ranges out of every table and moves what stands behind them.
+/// Removes an object with its hooks and all its rows. The rows behind them move up.
 void remove_object(state::Tables& tables, std::uint32_t row);
 
 void pin_particle(state::Tables& tables, ParticleRow row, const MotionDesc& motion);
 void unpin_particle(state::Tables& tables, ParticleRow row);
 
-/// Ids that are made from now on say that they are of the World that has this mark.
+/// Marks the ids that are made from now on as those of the World with this mark.
 void mark_ids(std::uint32_t mark, state::Tables& tables);
 
-/// `from` into `to`; ids made since the snapshot become stale, and `to` keeps its number of workers. Where
-/// there is not the memory, nothing is left in `to`.
+/// Assigns `from` to `to`. Ids that were made since the snapshot become stale, and `to` keeps its number of
+/// workers. If memory runs out, `to` is left empty and the exception passes on.
 void restore_tables(const state::Tables& from, state::Tables& to);
 
 [[nodiscard]] BodyId id_of(const state::Tables& tables, std::uint32_t body);
-/// The body of a collider, and which of its parts that is.
+/// Returns the body of a collider, and the index of the collider among the body's parts.
 [[nodiscard]] BodyPart part_of(const state::Tables& tables, std::uint32_t collider);
-/// Whether b's body was created before a's.
+/// Whether the body of collider b was created before that of collider a.
 [[nodiscard]] bool is_swapped(const state::Tables& tables, const state::Manifold& manifold);
 
-/// Wakes every body that is near one for which `is(row)`, before that goes or is moved by hand.
+/// Wakes all bodies that have a pair with one for which `is(row)` is true. It is called before that one is
+/// removed, or when it is placed by hand.
 template <class Is>
 void wake_neighbors(state::Tables& t, Is&& is) {
   for (const std::vector<state::Pair>* pairs : {&t.pairs.pair, &t.pairs.sleeping.pair}) {
@@ -58,10 +60,10 @@ void wake_neighbors(state::Tables& t, Is&& is) {
   }
 }
 
-/// Wakes every body: a force on all of them has changed.
+/// Wakes every body, because a force on all of them has changed.
 void wake_all(state::Tables& tables);
 
-/// Removes one row of a table whose rows know their slot; those behind it move up.
+/// Removes one row of a table whose rows contain their slots; the rows behind it move up.
 template <class IdType, class Entry>
 bool remove_row(state::SlotTable<IdType>& slots, IdType id, std::vector<Entry>& table) {
   const std::uint32_t row = slots.find(id);

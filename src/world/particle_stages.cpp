@@ -27,7 +27,8 @@ constexpr int kTriangleGrain = 512;
 constexpr int kTetrahedronGrain = 64;
 constexpr int kBlockGrain = 16;
 
-/// An object is moved back to its origin when its first particle is farther than this from it [m].
+/// An object gets a new origin when its first particle is farther than this from the old one along an axis
+/// [m].
 constexpr Real kFarFromOrigin = Real(64);
 
 bool air_moves(const state::Tables& tables, const state::Deformable& object) {
@@ -35,7 +36,8 @@ bool air_moves(const state::Tables& tables, const state::Deformable& object) {
          (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
 }
 
-/// Of consecutive numbers. Their products with zero are zero or not a number; eight sums, for vectors.
+/// Whether all of the numbers are finite. A finite number times zero is zero, any other is not. There are
+/// eight sums so that compilers use vectors.
 bool all_finite(const Real* numbers, std::size_t count) {
   constexpr std::size_t kSums = 8;
   Real sums[kSums] = {};
@@ -57,7 +59,7 @@ bool all_finite(const std::vector<Real>& numbers) {
   return all_finite(numbers.data(), numbers.size());
 }
 
-/// Calls `work` with ranges that cover the rows [first, end) of a table.
+/// Calls `work` with ranges that cover the rows [first, end) of a table, on several threads.
 template <class Work>
 void for_rows(const WorldData& world, int first, int end, int grain, Work work) {
   for_ranges(*world.pool, end - first, grain, [&](Range range) {
@@ -65,7 +67,7 @@ void for_rows(const WorldData& world, int first, int end, int grain, Work work) 
   });
 }
 
-/// The same, with an object's particles.
+/// Does the same for an object's particles.
 template <class Work>
 void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
   for_rows(world, static_cast<int>(object.particles.first), static_cast<int>(object.particles.end()),
@@ -91,7 +93,7 @@ void read_wind(WorldData& world, double time) {
   }
 }
 
-/// Tetrahedra of one color share no particle; colors follow one another.
+/// Calls `kernel` for the tetrahedra, one color after the other. Tetrahedra of one color share no particle.
 template <class Kernel>
 void for_tetrahedra(WorldData& world, Kernel kernel) {
   for (const solver::TetrahedronPass& pass : world.derived.tetrahedra.passes) {
@@ -100,7 +102,7 @@ void for_tetrahedra(WorldData& world, Kernel kernel) {
   }
 }
 
-/// Solids that are matched to their forms at rest, one after the other in each part of the range.
+/// Calls `kernel` for each solid that is solved by shape matching.
 template <class Kernel>
 void for_matched(WorldData& world, Real h, Kernel kernel) {
   state::Tables& tables = world.tables;
@@ -110,8 +112,9 @@ void for_matched(WorldData& world, Real h, Kernel kernel) {
   });
 }
 
-/// What the wind does in all particle substeps of one substep, `h` the length of one of them. It changes far
-/// more slowly than stretched cloth swings, which is what these are for.
+/// Computes the loads of the wind once for all particle substeps of a substep; `h` is the length of one of
+/// them [s]. Particle substeps are short because stretched cloth swings fast; the wind changes far more
+/// slowly.
 void compute_air_loads(WorldData& world, const state::Deformable& object, Real h) {
   state::Tables& tables = world.tables;
   const auto count = static_cast<Real>(tables.desc.particle_substeps);
@@ -124,8 +127,9 @@ void compute_air_loads(WorldData& world, const state::Deformable& object, Real h
   });
 }
 
-/// Bodies have had the gravity of all particle substeps at once. Those that hang on ropes get it as the ropes
-/// do, share by share: the ropes would feel it all in the first substep and none in the others.
+/// Gives the bodies of coupled groups their gravity in equal shares, one in each particle substep, as ropes
+/// get theirs. accelerate_bodies has given them the gravity of the whole substep at once. Without shares,
+/// ropes would feel all of it in the first particle substep and none in the others.
 void share_out_gravity(WorldData& world, Real h, bool first) {
   state::Tables& tables = world.tables;
   const auto others = static_cast<Real>(tables.desc.particle_substeps - 1);
@@ -151,8 +155,9 @@ void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::v
   }
 }
 
-/// So with what contacts did to them: what stands with a load tied to it would rise and fall in each substep.
-/// Shares go to the bodies that gave them, also if they leave their bundle meanwhile.
+/// Gives the bodies of coupled groups what contacts did to them in shares, too. Without shares, a standing
+/// body with a load hooked to it would rise and fall in each substep. A body gets all of its shares, even if
+/// it leaves its coupled group meanwhile.
 void share_out_contacts(WorldData& world, bool first) {
   state::Bodies& bodies = world.tables.bodies;
   const auto count = static_cast<Real>(world.tables.desc.particle_substeps);
@@ -192,7 +197,7 @@ void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
   }
 }
 
-/// Pins and hooks say where ropes are held against bending and twist.
+/// Finds again where pins and hooks hold ropes against bending and twist, if pins or hooks changed.
 void refresh_clamps(WorldData& world) {
   const std::uint64_t revision = world.tables.revision + world.tables.hook_revision;
   if (world.derived.clamps_revision == revision) return;
@@ -241,7 +246,7 @@ void refresh_derived(WorldData& world) {
 }
 
 void prepare_particle_rows(WorldData& world, Real h) {
-  state::check_tables(world.tables);  // after all contacts were found
+  state::check_tables(world.tables);  // By now all contacts have been found.
   solver::prepare_springs(world.derived.spring_blocks.materials, h);
   solver::prepare_isometric_bends(world.derived.isometric_bend_blocks, h);
   solver::prepare_bends(world.derived.bend_blocks, h);

@@ -15,7 +15,7 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 
-// Sizes below which a job stays on one thread.
+// Jobs of fewer contacts stay on one thread.
 constexpr int kContactGrain = 256;
 constexpr int kElementContactGrain = 32;
 

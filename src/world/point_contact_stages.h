@@ -3,18 +3,20 @@
 #include "world/world_data.h"
 
 /// \file
-/// The stages of the step that concern contacts of deformables: of particles, edges and faces with bodies,
-/// and of ropes with ropes.
+/// These stages of the step concern contacts of deformables: those of particles, edges and faces with bodies,
+/// and those of ropes with ropes.
 
 namespace hooke::world {
 
-/// Which particles and elements may touch bodies, and which rope segments each other, within this step.
+/// Finds the particles and elements that may touch bodies within `dt` [s], and the rope segments that may
+/// touch each other.
 void find_point_contacts(WorldData& world, double dt);
 
-/// Where these contacts are now, in a substep of length `h` [s].
+/// Updates normals, gaps and surface velocities of these contacts for a particle substep of length `h` [s].
 void update_point_contacts(WorldData& world, Real h);
 
-/// Contacts that no rope system and no coupled group has solved; and no rope passes through another one.
+/// Solves the contacts that belong to no rope system and no coupled group, and stops ropes that would still
+/// pass through each other.
 void solve_point_contacts(WorldData& world, Real h);
 
 }  // namespace hooke::world

@@ -15,18 +15,19 @@ namespace {
 using state::Bodies;
 using state::Manifold;
 
-constexpr Real kRestSpeed = Real(0.05);  ///< Of the fastest point [m/s].
-constexpr Real kRestTime = Real(0.5);    ///< [s]
+constexpr Real kRestSpeed = Real(0.05);  ///< Largest speed of the fastest point of a body at rest [m/s].
+constexpr Real kRestTime = Real(0.5);    ///< Time at rest after which an island sleeps [s].
 
-/// Pushes, or overlaps: what is only near does not wake.
+/// Whether the bodies of a manifold push each other or overlap. Bodies that are only near do not wake each
+/// other.
 bool touches(const Manifold& manifold) {
   if (manifold.touching) return true;
   return std::any_of(manifold.point.begin(), manifold.point.begin() + manifold.point_count,
                      [](const state::ContactPoint& p) { return p.separation < Real(0); });
 }
 
-/// Will overlap within `dt` at the bodies' present speeds: a sleeper that is hit must be awake in that step,
-/// or it takes the hit like a wall.
+/// Whether the bodies will overlap within `dt` [s] at their present velocities. A sleeping body must be awake
+/// in the step in which it is hit, or it takes the impact as if nothing could move it.
 bool will_touch(const Bodies& bodies, const Manifold& manifold, Real dt) {
   const auto speed = [&](std::uint32_t body, Vec3 anchor) {
     return dot(manifold.normal, state::velocity_at(bodies, body, anchor));
@@ -43,7 +44,7 @@ bool sleeps(const Bodies& bodies, std::uint32_t body) {
   return body != state::HookPlace::kWorld && bodies.asleep[body] != 0;
 }
 
-/// Awake and in motion: a kinematic body that stands still wakes nobody.
+/// Whether a body is awake and moves; a kinematic body that stands still wakes no other.
 bool disturbs(const Bodies& bodies, std::uint32_t body) {
   if (body == state::HookPlace::kWorld || bodies.traits[body].kind == BodyKind::kStatic ||
       bodies.asleep[body] != 0)
@@ -52,10 +53,11 @@ bool disturbs(const Bodies& bodies, std::uint32_t body) {
          bodies.angular_velocity[body] != Vec3{};
 }
 
-/// A particle that meets a sleeper faster than this wakes it [m/s].
+/// A particle wakes a sleeping body if it is faster than this [m/s] and presses on it.
 constexpr Real kWakingSpeed = Real(0.2);
 
-/// Particles that meet sleepers: the cloth that lies on one does not wake it.
+/// Wakes the sleeping bodies that fast particles press on. A cloth that lies still on a body does not wake
+/// it. Returns whether any woke.
 bool wake_by_particles(WorldData& world) {
   state::Tables& t = world.tables;
   bool any = false;
@@ -74,23 +76,23 @@ bool wake_by_particles(WorldData& world) {
   return any;
 }
 
-/// Of bodies that woke.
+/// Moves the pairs of bodies that woke from the sleeping pairs back to the pairs of the step.
 void take_pairs_back(WorldData& world) {
   state::Tables& t = world.tables;
   state::wake_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.frame.sleeping_pair_scratch);
 }
 
-/// What is pressed into another leaves it more slowly than what rests may move
-/// (solver/coupled/load_bearing_contacts.h).
+/// Keeps bodies awake that are pressed into each other, because load-bearing contacts push them apart at less
+/// than the speed of rest (solver/coupled/load_bearing_contacts.h).
 void keep_rising_awake(state::Tables& t) {
-  constexpr Real kSunk = Real(1e-3);  // [m]
+  constexpr Real kSunk = Real(1e-3);  // Overlap from which on they stay awake [m].
   for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (!(contact.separation < -kSunk)) continue;
     t.bodies.rest_time[contact.body_a] = t.bodies.rest_time[contact.body_b] = Real(0);
   }
 }
 
-/// For how long each island has been at rest: the least over its members, at its root.
+/// Finds for how long each island has been at rest: the shortest time of its members, stored at its root.
 void find_rest_of_islands(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   world.frame.island_rest.assign(bodies.motion.size(), std::numeric_limits<Real>::infinity());
@@ -136,7 +138,7 @@ void put_to_sleep(WorldData& world, Real dt) {
   Bodies& bodies = t.bodies;
   if (!t.desc.sleeping || world.frame.awake.empty()) return;
   for (const state::Hook& hook : t.hooks) {
-    if (hook.holds_point()) wake_ends(hook, bodies);  // ropes and cloths never rest
+    if (hook.holds_point()) wake_ends(hook, bodies);  // Ropes and cloths never rest.
   }
   for (const std::uint32_t body : world.frame.awake) {
     const Real speed =
@@ -162,7 +164,7 @@ void put_to_sleep(WorldData& world, Real dt) {
   for (const std::uint32_t body : world.frame.awake) {
     if (!is_dynamic(bodies, body) || world.frame.island_rest[islands.root(body)] < kRestTime) continue;
     bodies.asleep[body] = 1;
-    world.derived.placed_bodies.push_back(body);  // its box is still that of its last way
+    world.derived.placed_bodies.push_back(body);  // Its box is still that of its last displacement.
     bodies.motion[body].v = {};
     bodies.angular_momentum[body] = {};
     bodies.angular_velocity[body] = {};
@@ -182,7 +184,7 @@ void wake_within(const geometry::Box& box, state::Tables& t) {
 void wake_near_points(const state::Deformable& object, state::Tables& t) {
   const auto sleeps = [&](std::uint32_t body) { return t.bodies.asleep[body] != 0; };
   if (std::none_of(t.moving_bodies.begin(), t.moving_bodies.end(), sleeps)) return;
-  constexpr Real kNear = Real(0.01);  // what bears something touches it [m]
+  constexpr Real kNear = Real(0.01);  // Distance within which a body counts as touched [m].
   geometry::Box3<double> around;
   for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
     const state::PositionRecord& record = t.particles.position[p];

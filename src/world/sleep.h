@@ -6,21 +6,25 @@
 
 namespace hooke::world {
 
-/// Wakes the bodies that sleep and are touched, or will be within `dt`, by one that moves, and with each all
-/// that it touches. Returns whether any woke; `awake` is then out of date.
+/// Wakes the sleeping bodies that a moving body touches, or will touch within `dt` [s], and through these all
+/// that they touch or hang together with. Particles that hit a sleeping body wake it, too. Returns whether
+/// any woke; `awake` is then out of date.
 bool wake_touched(WorldData& world, Real dt);
 
-/// Puts to sleep the islands (bodies that touch each other or are hooked to each other) all of whose bodies
-/// have been slower than 5 cm/s for half a second.
+/// Puts islands to sleep: bodies that touch each other or are hooked to each other, and have all been slower
+/// than 5 cm/s for half a second. Bodies hooked to deformables never sleep. `dt` [s] is the length of the
+/// step.
 void put_to_sleep(WorldData& world, Real dt);
 
-/// Wakes the bodies that sleep within a box [m], when something else there comes, goes or is let go.
+/// Wakes the sleeping bodies within a box [m]. It is called when something else there comes, goes, or is
+/// pinned or unpinned.
 void wake_within(const geometry::Box& box, state::Tables& tables);
 
-/// Those near the points of an object.
+/// Wakes the sleeping bodies near the points of an object.
 void wake_near_points(const state::Deformable& object, state::Tables& tables);
 
-/// Those near a body that nothing moves; who touches one that moves wakes by that.
+/// Wakes the sleeping bodies near a static or kinematic body that was added or placed. A dynamic one needs no
+/// call, because its contacts wake what it touches.
 void wake_near_body(std::uint32_t body, state::Tables& tables);
 
 }  // namespace hooke::world

@@ -5,8 +5,8 @@
 #include <type_traits>
 
 /// \file
-/// Field by field: structs have bytes between their fields that mean nothing. What is derived from other
-/// fields, or written before it is read, is left out.
+/// Structs are hashed field by field, because the padding between fields has no meaning. Fields are left out
+/// if they follow from others, or if each step writes them before it reads them.
 
 namespace hooke::world {
 
@@ -97,7 +97,7 @@ void add_objects(StateHash& hash, const Tables& t) {
   }
 }
 
-/// What contacts of points carry into the next step.
+/// Adds what contacts of points carry over to the next step.
 void add_point_contacts(StateHash& hash, const Tables& t) {
   const state::Contacts& c = t.contacts;
   add(hash, c.particle, c.collider, c.feature, c.normal_force, c.friction_force);

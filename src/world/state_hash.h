@@ -6,11 +6,11 @@
 
 namespace hooke::world {
 
-/// Of everything that the bits of later steps depend upon, but for the user's own code; see
+/// Hash of everything that the bits of later steps depend upon, except the functions of force laws; see
 /// World::state_hash.
 [[nodiscard]] std::uint64_t hash_of(const state::Tables& tables);
 
-/// Of what a mesh is.
+/// Hash of a mesh: its positions and triangles.
 [[nodiscard]] std::uint64_t hash_of(const MeshDesc& mesh);
 
 }  // namespace hooke::world

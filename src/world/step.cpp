@@ -1,12 +1,12 @@
-/// The step, in order. This file says what happens and when; each named stage says how.
+/// This file is the step, in order: it says what happens and when. Each named stage says how.
 ///
 ///   detect    who is near whom, and where they touch
 ///   prepare   how each contact and hook is solved (solver/routes.h), and the rows for it
 ///   substep   force, impact, correct, move; a few per step
 ///   finish    quarantine, fast bodies, what breaks, sleep, events, folds, origins, report
 ///
-/// Rules for this file: no arithmetic beyond time, no data access beyond naming a table, at most 150 lines.
-/// docs/step.md names the header of each stage.
+/// Rules for this file: it computes nothing but times, touches no data beyond naming a table, and has at most
+/// 150 lines. docs/step.md names the header of each stage.
 
 #include "hooke/world.h"
 
@@ -57,8 +57,9 @@ void accelerate_particles(WorldData& w, double end_time, Real h, bool first_of_s
   world::repel_and_drive(w, end_time, h);
 }
 
-/// Elastic rows, soft ones before those that hold; ropes with what they depend on, exactly; contacts last
-/// among the writers of velocity.
+/// Solves one particle substep. Elastic rows come before tethers and limits, which must hold. Then ropes are
+/// solved exactly, with what they depend on. Contacts change velocities last, so that nothing pushes a
+/// particle into a body afterwards.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
   accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
@@ -72,9 +73,10 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::move_particles(w, h);
 }
 
-/// Bodies: impacts that bounce, in the order of time; contacts with bias, or as a whole in direct islands;
-/// hooks, then everything that depends on them; poses, and where refreshed contacts are then; last the
-/// contacts again without bias, which takes out the speed that pushed overlaps apart, and friction.
+/// Solves one substep of bodies. Impacts with restitution come first, in order of time. Then contacts are
+/// solved with bias, and hooks with all that depends on them. When bodies have moved, refreshed contacts are
+/// found again. Last, contacts are solved without bias and with friction, which takes out the speed that
+/// pushed overlaps apart.
 void substep(WorldData& w, int i, double begin_time, Real h) {
   const int particle_substeps = w.tables.desc.particle_substeps;
   const Real particle_h = h / static_cast<Real>(particle_substeps);
@@ -108,7 +110,7 @@ void finish(WorldData& w, double dt, StepReport& report) {
 }  // namespace
 
 StepReport World::step(Real dt) {
-  const std::shared_ptr<WorldData> data = data_;  // force laws may move this World, or destroy it
+  const std::shared_ptr<WorldData> data = data_;  // Force laws may move or destroy this World.
   const world::Claim claim(data);
   StepReport report;
   if (!claim || !world::is_step(dt)) return report;

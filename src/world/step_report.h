@@ -4,8 +4,8 @@
 
 namespace hooke::world {
 
-/// Counts what the step did, the ways that contacts and hooks went and what was refused among it; ends the
-/// forces that were set for this step.
+/// Ends a step of length `dt` [s]. Counts what it did, how contacts and hooks were solved, and what it
+/// refused. Clears the forces on particles that were given for it, and advances time.
 void end_step(WorldData& world, double dt, StepReport& report);
 
 }  // namespace hooke::world

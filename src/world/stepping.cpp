@@ -34,7 +34,7 @@ void note_start(WorldData& world) {
 void put_bodies_back(WorldData& world) {
   state::Bodies& b = world.tables.bodies;
   for (const std::uint32_t row : world.tables.moving_bodies) {
-    // Those that slept are where they were, and stood still.
+    // Bodies that slept are where they were and have no velocity.
     b.motion[row] = {.inverse_mass = b.motion[row].inverse_mass};
     b.free_motion[row] = {};
     b.frozen_inertia[row] = {};
@@ -64,7 +64,7 @@ void put_points_back(WorldData& world) {
   for (std::size_t i = 0; i < t.objects.size(); ++i) t.objects[i].origin = world.frame.start_origin[i];
 }
 
-/// All that is found or derived anew from where things are; it may have been left half done.
+/// Clears all that the next step finds or derives again, since the broken step may have left it half done.
 void reset_contacts(WorldData& world) {
   state::Tables& t = world.tables;
   t.pairs = {};
@@ -86,7 +86,7 @@ void reset_contacts(WorldData& world) {
 }  // namespace
 
 Stepping::Stepping(WorldData& world) : world_(world) {
-  state::check_tables(world.tables);  // after the calls since the last step
+  state::check_tables(world.tables);  // This covers the calls since the last step.
   note_start(world);
   world.stepping = true;
 }

@@ -6,23 +6,23 @@
 
 namespace hooke::world {
 
-/// Whether it is a length that a step may have [s].
+/// Whether a step may have this length [s].
 [[nodiscard]] inline bool is_step(Real dt) {
   return dt >= static_cast<Real>(limits::kShortestStep) && dt <= static_cast<Real>(limits::kLongestStep);
 }
 
-/// A step that runs. One that ends by an exception, of a force law or for want of memory, is taken back:
-/// places, velocities, pending forces and who sleeps are as before it. What contacts, ropes and hooks
-/// remember of steps before, to begin the next one with, is lost or of the step that broke off.
+/// A step that runs. If an exception of a force law or a lack of memory ends it, the destructor takes it
+/// back: positions, velocities, pending forces and sleep are as before the step. What contacts, ropes and
+/// hooks remember of earlier steps is lost, or is that of the broken step.
 class Stepping {
  public:
-  /// May itself throw for want of memory; the world is then untouched.
+  /// May throw if there is no memory; the world is then unchanged.
   explicit Stepping(WorldData& world);
   ~Stepping();
   Stepping(const Stepping&) = delete;
   Stepping& operator=(const Stepping&) = delete;
 
-  /// The step was made.
+  /// Confirms that the step was completed, so that it is not taken back.
   void end();
 
  private:

@@ -4,10 +4,10 @@
 
 namespace hooke::world {
 
-/// Times the parts of a step for its report. Time never reaches the physics.
+/// Measures the times of the parts of a step for its report. They never influence the physics.
 class Stopwatch {
  public:
-  /// Milliseconds since the last call, or since construction.
+  /// Returns the milliseconds since the last call, or since construction.
   double lap_ms() {
     const auto now = std::chrono::steady_clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - last_).count();

@@ -7,7 +7,7 @@ namespace hooke::world {
 
 namespace {
 
-/// Calls `visit(list)` for each list that calls append to.
+/// Calls `visit(list)` for each list that calls of the API append to.
 template <class Visit>
 void for_each_list(state::Tables& t, Visit&& visit) {
   const auto columns_of = [&](auto& table) {

@@ -7,8 +7,8 @@
 
 namespace hooke::world {
 
-/// For a call that appends to the tables: takes what it appended out again where it does not come to its end,
-/// for want of memory. Bodies are not among it: build::add_body makes room before it changes anything.
+/// Removes what a call has appended to the tables if an exception or an Error ends the call early. The tables
+/// of bodies need no Undo, because build::add_body makes room before it changes them.
 class Undo {
  public:
   explicit Undo(state::Tables& tables);
@@ -16,14 +16,14 @@ class Undo {
   Undo(const Undo&) = delete;
   Undo& operator=(const Undo&) = delete;
 
-  /// What was appended stays.
+  /// Keeps what was appended.
   void keep() { kept_ = true; }
 
  private:
   static constexpr std::size_t kMostLists = 64;
 
   state::Tables& tables_;
-  std::array<std::size_t, kMostLists> size_ = {};  ///< Of each list, in the order of for_each_list.
+  std::array<std::size_t, kMostLists> size_ = {};  ///< Sizes at the start, in the order of for_each_list.
   bool kept_ = false;
 };
 

@@ -40,14 +40,14 @@
 
 namespace hooke {
 
-/// Bodies about to meet faster than one of them asked for; see world::note_approaches.
+/// Two bodies that are about to meet faster than one of them asked for; see world::note_closing_pairs.
 struct ClosingPair {
   std::uint32_t manifold = 0;
-  Real speed = Real(0);  ///< [m/s]
+  Real speed = Real(0);  ///< Closing speed [m/s].
   DVec3 point = {};      ///< Where they will meet [m].
 };
 
-/// How a body that is awake was when the step began.
+/// State of an awake body when the step began.
 struct StartOfBody {
   std::uint32_t row = 0;
   Real rest_time = Real(0);
@@ -60,116 +60,117 @@ struct StartOfBody {
   Vec3 torque = {};
 };
 
-/// What contacts did to a body in a bundle, for each particle substep when there are several in a substep.
+/// What contacts did to a body of a coupled group, as the share of one particle substep.
 struct ContactShare {
-  std::uint32_t body = 0;  ///< Row.
-  Vec3 v = {};             ///< [m/s]
+  std::uint32_t body = 0;  ///< Row of the body.
+  Vec3 v = {};             ///< Change of velocity [m/s].
   Vec3 omega_scaled = {};
 };
 
 namespace world {
 
-/// What is derived from the tables, and made again when their revision changes. It decides nothing: a World
-/// that was restored makes the same again.
+/// What is derived from the tables and made again when their revision changes. It has no influence on
+/// results: a World that was restored derives the same again.
 struct Derived {
-  // Of deformables; see world::refresh_derived.
-  std::uint64_t revision = ~std::uint64_t{0};  ///< Revision of the tables that all of this belongs to.
+  // These members belong to deformables; see world::refresh_derived.
+  std::uint64_t revision = ~std::uint64_t{0};  ///< Revision of the tables that these members were made from.
   solver::SpringBlocks spring_blocks;
   solver::BendBlocks bend_blocks;
   solver::IsometricBendBlocks isometric_bend_blocks;
   solver::TetrahedronRows tetrahedra;
-  solver::Yields yields;                       ///< Bends and tetrahedra that may flow.
-  std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are matched to their shapes at rest.
+  solver::Yields yields;                       ///< Bends and tetrahedra that may yield.
+  std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are solved by shape matching.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
   solver::AirLoads air_loads;
   std::vector<solver::RopeSystem> rope_systems;  ///< One per rope, in order of creation.
   solver::CoupledGroups coupled_groups;  ///< Ropes with the hooks, points and bodies that they depend on.
-  std::uint64_t clamps_revision = 0;     ///< Sum of both revisions, which only grow.
+  std::uint64_t clamps_revision = 0;     ///< Sum of `revision` and `hook_revision`, both of which only grow.
 
-  // Of hooks; see world::refresh_hooks.
+  // These members belong to hooks; see world::refresh_hooks.
   std::uint64_t joints_revision = ~std::uint64_t{0};
   solver::Joints joints;
   std::vector<std::uint8_t> hooked;  ///< Whether a hook holds the body, by body row.
   solver::Supports supports;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> hooked_pairs;  ///< Bodies that do not collide, sorted.
   std::vector<std::uint32_t>
-      hooked_begin;  ///< Where the pairs of each first body begin; one more at the end.
+      hooked_begin;  ///< Index of the first pair of each first body; one more at the end.
 
-  // Of bodies; what it holds does not change what a step does.
+  // These members belong to bodies. What they hold never changes the result of a step.
   collision::BroadPhase broad_phase;
-  bool broad_phase_stale = true;             ///< Everything must be entered again.
-  std::vector<std::uint32_t> placed_bodies;  ///< Bodies added, moved by hand or asleep since the last step.
+  bool broad_phase_stale = true;             ///< All boxes must be entered again.
+  std::vector<std::uint32_t> placed_bodies;  ///< Bodies that were added, placed by hand or put to sleep since
+                                             ///< detect last entered boxes.
   std::atomic<bool> boxes_are_current =
-      false;  ///< Boxes of all bodies are where they are now; see boxes_for_queries.
+      false;  ///< All boxes are where their bodies are now; see boxes_for_queries.
   std::mutex boxes_mutex;
 };
 
-/// What lives for one step, or for one substep, and keeps only its memory from one to the next.
+/// What lives for one step or one substep. Only its memory is kept from one to the next.
 struct Frame {
-  // Bodies: who moves, who is near whom.
+  // These members say which bodies move and which are near each other.
   std::vector<std::uint32_t> awake;  ///< Rows of bodies that move in this step, in ascending order.
   std::vector<std::uint32_t>
-      moved_set;  ///< Rows of those and of placed bodies: all that may meet others now.
-  std::vector<std::uint8_t> in_moved_set;  ///< By collider; empty where nobody sleeps, as then all are in it.
+      moved_set;  ///< Rows of those and of placed bodies: all that may meet others in this step.
+  std::vector<std::uint8_t> in_moved_set;  ///< By collider; empty if no body sleeps: all are in the set.
   std::vector<collision::ColliderPair> pairs_found;
   collision::DensePiles dense_piles;
   collision::NarrowPhase narrow_phase;
   state::SleepingPairScratch sleeping_pair_scratch;
-  std::vector<ClosingPair> closing_pairs;  ///< In order of manifolds.
+  std::vector<ClosingPair> closing_pairs;  ///< In order of their manifolds.
   std::vector<ContactEvent> contacts_now;  ///< Contacts of bodies that ask for events.
   std::vector<SensorEvent> visits_now;
-  base::DisjointSets islands;            ///< Bodies that may fall asleep together.
-  std::vector<Real> island_rest;         ///< For how long each island has been at rest, at its root [s].
+  base::DisjointSets islands;            ///< Sets of bodies that may fall asleep together.
+  std::vector<Real> island_rest;         ///< Time for which each island has been at rest, at its root [s].
   std::vector<std::uint8_t> body_marks;  ///< By body: scratch of couple_articulations and share_out_contacts.
 
-  // Bodies: how contacts are solved.
+  // These members solve contacts of bodies.
   solver::BodyContacts body_contacts;
   solver::ContactStep contact_step;
   solver::Impacts impacts;
   solver::DirectIslands direct_islands;
   solver::LoadBearingScratch load_bearing;
 
-  // Bodies: clamping to the time of impact.
-  std::vector<std::uint8_t> fast;    ///< By body: it may pass through others.
-  std::vector<std::uint8_t> astray;  ///< By body: it goes where detect did not think it could.
+  // These members clamp bodies to their times of impact.
+  std::vector<std::uint8_t> fast;    ///< By body row: it may pass through others.
+  std::vector<std::uint8_t> astray;  ///< By body row: it leaves the boxes that detect expected it to stay in.
   std::vector<collision::ImpactCandidate> impact_candidates;
   collision::PathScratch path_scratch;
   collision::SweptBodies swept;
   collision::ContinuousScratch continuous;
 
-  bool bodies_quarantined = false;  ///< Some body was put back in this step.
+  bool bodies_quarantined = false;  ///< Some body was quarantined in this step.
 
-  // Where the step began: quarantine and a step that throws put things back.
-  std::vector<Quat> start_rotation;  ///< By body, of those awake.
+  // These members hold the state when the step began, to which quarantine and a step that throws go back.
+  std::vector<Quat> start_rotation;  ///< By body row; set for awake bodies.
   std::vector<state::PositionRecord> start_position;
   std::vector<state::VelocityRecord> start_velocity;
   std::vector<DVec3> start_origin;
-  std::vector<StartOfBody> start_bodies;  ///< Bodies awake; see world::Stepping.
+  std::vector<StartOfBody> start_bodies;  ///< One for each awake body; see world::Stepping.
 
-  // Particles.
+  // These members belong to particles.
   collision::ParticleContactScratch particle_contacts;
   collision::RopeContactFinder rope_contacts;
   solver::Repulsion repulsion;
-  std::vector<state::VelocityRecord> velocity_before;  ///< Of rope nodes, before the substep's forces.
-  std::vector<solver::AirRecord> wind;                 ///< At each particle [m/s].
-  std::vector<solver::LiquidLoad> liquid_loads;        ///< Of the object at hand.
+  std::vector<state::VelocityRecord> velocity_before;  ///< Velocities of rope nodes before forces act.
+  std::vector<solver::AirRecord> wind;                 ///< Velocity of the air at each particle [m/s].
+  std::vector<solver::LiquidLoad> liquid_loads;        ///< Loads of the object that is handled now.
   std::vector<solver::GasVolume> gas_volumes;          ///< One for each of Derived::gas_objects.
   std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
-  std::vector<ContactShare> contact_shares;                    ///< Lives for one substep.
-  std::vector<solver::HookedPoint> hooked_points;              ///< Lives for one substep.
-  std::vector<solver::TwistRow> twist_rows;                    ///< Lives for one substep.
+  std::vector<ContactShare> contact_shares;                    ///< Valid for one substep.
+  std::vector<solver::HookedPoint> hooked_points;              ///< Valid for one particle substep.
+  std::vector<solver::TwistRow> twist_rows;  ///< One for each twist span; valid for one particle substep.
 
-  // Forces.
-  std::vector<Vec3> law_force;               ///< What force laws ask for [N].
-  std::vector<std::uint32_t> law_bodies;     ///< Bodies that force laws see: rows in ascending order.
-  std::vector<std::uint32_t> dipole_bodies;  ///< Bodies with a dipole moment: rows in ascending order.
-  std::vector<solver::Dipole> dipoles;  ///< Dipoles of bodies where they are in this substep, and of fields.
-  bool bodies_surrounded = false;       ///< Something besides laws pushes bodies in each substep.
-  std::vector<Vec3> given_force;        ///< On bodies, without fields and force laws [N].
-  std::vector<Vec3> given_torque;       ///< [N m]
+  // These members belong to forces.
+  std::vector<Vec3> law_force;               ///< Sum of the forces of laws on each particle [N].
+  std::vector<std::uint32_t> law_bodies;     ///< Rows of the bodies that force laws see, in ascending order.
+  std::vector<std::uint32_t> dipole_bodies;  ///< Rows of the bodies with a dipole moment, in ascending order.
+  std::vector<solver::Dipole> dipoles;  ///< Dipoles of fields, then of bodies where they are in this substep.
+  bool bodies_surrounded = false;       ///< Fields, air or dipoles act on bodies in each substep.
+  std::vector<Vec3> given_force;        ///< Forces that the user gave for the step, by body row [N].
+  std::vector<Vec3> given_torque;       ///< Torques that the user gave for the step [N m].
 };
 
-/// What the last step has to tell those who ask after it.
+/// What the World reports about the last step.
 struct LastStep {
   Events events;
   std::vector<HookId> broken_hooks;
@@ -177,16 +178,16 @@ struct LastStep {
 
 }  // namespace world
 
-/// A World's inside, in parts: a stage of the step takes those that it uses.
+/// The inside of a World. A stage of the step takes from it what it uses.
 struct WorldData {
   state::Tables tables;    ///< Everything that a snapshot holds.
-  world::Derived derived;  ///< Made again from the tables when they change.
-  world::Frame frame;      ///< Lives for one step.
+  world::Derived derived;  ///< Made again from the tables when these change.
+  world::Frame frame;      ///< Memory of one step.
   world::LastStep last_step;
 
-  // Services.
+  // These members serve every step.
   std::unique_ptr<parallel::ThreadPool> pool;
-  bool stepping = false;  ///< A step runs: calls that change the World are refused.
+  bool stepping = false;  ///< A step runs, so calls that change the World are refused.
 };
 
 struct SnapshotData {
