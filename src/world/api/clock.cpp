@@ -12,12 +12,13 @@ namespace {
 
 constexpr double kShortestStep = 1e-6;   // [s]
 constexpr double kLongestStep = 1;       // [s]
-constexpr double kLongestElapsed = 1e6;  // [s]: the steps in it are a whole number of a double
+constexpr double kLongestElapsed = 1e6;  // [s]; a double holds the number of steps in it exactly.
 constexpr int kMostCatchUpSteps = 1'000'000;
-// Below this angle between quaternions [rad] the straight line is even to 1e-7, and the sine near zero.
+// Below this angle between two quaternions [rad], a straight line between them is even to 1e-7, and dividing
+// by the sine of the angle would lose digits.
 constexpr double kSmallAngle = 1e-3;
 
-/// Zero for what is no number.
+/// Clamps a part to [0, 1]; a NaN becomes 0.
 double unit_part(double part) {
   return part > 0 ? std::min(part, 1.0) : 0.0;
 }
@@ -39,7 +40,7 @@ Result<Clock> Clock::create(const ClockDesc& desc) {
 Clock::Due Clock::advance(double elapsed_seconds) {
   const base::FloatEnvironment environment;
   const double owed = remainder_ + (elapsed_seconds > 0 ? std::min(elapsed_seconds, kLongestElapsed) : 0.0);
-  // fmod is exact, so nothing accumulates but the rounding of the sum above.
+  // std::fmod is exact, so nothing but the rounding of the sum above adds up.
   remainder_ = std::fmod(owed, desc_.step_seconds);
   const auto due = static_cast<std::uint64_t>(std::llround((owed - remainder_) / desc_.step_seconds));
   const std::uint64_t steps = std::min(due, static_cast<std::uint64_t>(desc_.catch_up_steps));
@@ -68,7 +69,7 @@ Quat blend(Quat before, Quat after, double part) {
   const double t = unit_part(part);
   const double product = static_cast<double>(before.x) * after.x + static_cast<double>(before.y) * after.y +
                          static_cast<double>(before.z) * after.z + static_cast<double>(before.w) * after.w;
-  // Of the two quaternions of a rotation, the one on the side of `before`: the short way around.
+  // A rotation has two quaternions. The one on the side of `before` gives the short way around.
   const double angle = std::acos(std::min(std::abs(product), 1.0));
   const bool small = !(angle > kSmallAngle);
   const double a = small ? 1 - t : std::sin((1 - t) * angle) / std::sin(angle);

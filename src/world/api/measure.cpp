@@ -20,8 +20,8 @@ namespace {
 
 using state::Tables;
 
-/// Where the particle was half a substep ago, from its object's origin. A substep moves it by h v with the
-/// new v: that is the velocity of the middle, and an energy must take both at one instant.
+/// Position of the particle half a substep ago, from its object's origin [m]. A substep moves it by h v with
+/// the new v, which is thus the velocity at the middle. An energy needs both at one time.
 DVec3 middle_of(const Tables& t, std::uint32_t p) {
   return vector_cast<double>(t.particles.position[p].x) -
          0.5 * t.substep * vector_cast<double>(t.particles.velocity[p].v);
@@ -43,7 +43,7 @@ double potential_of(const Tables& t, DVec3 x, double mass, double gravity_scale 
   return sum;
 }
 
-/// Kinetic and potential energy, momenta. A pinned particle has no part in any of them.
+/// Adds energies and momenta of particles. A pinned particle counts in none of them.
 void measure_particles(const Tables& t, Measurement& m) {
   for (const state::Deformable& object : t.objects) {
     for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p) {
@@ -67,7 +67,7 @@ double potential_of_dipoles(const Tables& t) {
   return solver::dipole_energy(t.fields, dipoles);
 }
 
-/// Kinetic energy p^2 / 2 m + L I^-1 L / 2.
+/// Adds energies and momenta of bodies; the kinetic energy is p^2 / 2 m + L I^-1 L / 2.
 void measure_bodies(const Tables& t, Measurement& m) {
   for (const std::uint32_t body : t.moving_bodies) {
     const state::BodyMass& mass = t.bodies.mass[body];
@@ -136,7 +136,7 @@ double measure_segments(const Tables& t, Stretch& stretch) {
       const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
       const auto rest = static_cast<double>(t.segments.rest_length[s]);
       stretch.add(l, rest);
-      // By the force: the length of a very stiff segment is known less exactly than its tension.
+      // The energy follows from the tension, because the length of a very stiff segment is less exact.
       const auto tension = static_cast<double>(t.segments.tension[s]);
       energy += 0.5 * tension * tension / static_cast<double>(t.segments.stiffness[s]);
     }
@@ -144,7 +144,7 @@ double measure_segments(const Tables& t, Stretch& stretch) {
   return energy;
 }
 
-/// Ropes that resist bending.
+/// Energy of the bending of ropes [J].
 double measure_rope_bends(const Tables& t) {
   double energy = 0;
   for (const state::Deformable& rope : t.objects) {
@@ -161,7 +161,8 @@ double measure_rope_bends(const Tables& t) {
   return energy;
 }
 
-/// The angle of the middle is the mean of those before and after the last substep.
+/// Energy of the twist of ropes [J]. The twist at the middle of the last substep is the mean of those before
+/// and after it.
 double measure_twists(const Tables& t) {
   double energy = 0;
   for (const state::TwistSpan& span : t.twists) {
@@ -208,14 +209,15 @@ double measure_tetrahedra(const Tables& t) {
   return energy;
 }
 
-/// Work to press the gas to where it is, against the air around; least where both are equal.
+/// Work that brings the gas to its volume against the air around it [J]; it is zero where both pressures are
+/// equal.
 double measure_gas(const Tables& t) {
   double energy = 0;
   solver::GasVolume gas;
   for (const state::Deformable& object : t.objects) {
     if (!(object.gas > 0)) continue;
     solver::measure_gas(object, t.triangles, t.particles, gas);
-    const double calm = object.gas / state::kAirPressure;  // its volume at the pressure around
+    const double calm = object.gas / state::kAirPressure;  // Its volume at the pressure of the air [m^3].
     const double volume = std::max(gas.volume, 1e-3 * object.gas_volume);
     energy += state::kAirPressure * (volume - calm) - object.gas * std::log(volume / calm);
   }

@@ -24,7 +24,7 @@ void place(std::vector<PinDesc>& pins, const Placement& at) {
   for (PinDesc& pin : pins) pin.motion = placed(pin.motion, at);
 }
 
-/// Of objects whose connection points are given in the world.
+/// Places connection points that are given in the world's frame; those of a mesh are given in its own.
 void place(std::vector<ConnectionPointDesc>& points, const Placement& at) {
   for (ConnectionPointDesc& point : points) point.position = at.point(point.position);
 }
@@ -133,7 +133,8 @@ FieldDesc placed(FieldDesc desc, const Placement& at, Vec3 gravity) {
   return desc;
 }
 
-/// A uniform rotation from three uniform numbers (Shoemake, Uniform random rotations, 1992).
+/// The rotation is made from three uniform numbers, so that every rotation is equally likely (Shoemake,
+/// Uniform random rotations, 1992).
 Placement random_placement(std::uint32_t seed, Vec3 gravity) {
   const base::FloatEnvironment environment;
   std::mt19937 bits(seed);

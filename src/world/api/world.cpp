@@ -1,4 +1,5 @@
-/// The public API over the tables: adding, removing, reading, pushing. The step is in step.cpp.
+/// This file implements the public API over deformables, meshes, fields, force laws and the World itself. The
+/// step is in src/world/step.cpp.
 
 #include "hooke/world.h"
 
@@ -30,7 +31,8 @@ namespace {
 
 using build::Checks;
 
-/// Runs `add`, which appends an object, and gives that object an id.
+/// Runs `add`, which appends an object, and gives that object an id. If `add` fails, the tables are as
+/// before.
 template <class IdType, class Add>
 Result<IdType> add_object(state::Tables& tables, state::SlotTable<IdType>& slots, Add&& add) {
   world::Undo undo(tables);
@@ -51,7 +53,8 @@ bool remove_object(state::Tables& tables, const state::SlotTable<IdType>& slots,
   return true;
 }
 
-/// An object's part of a column of lines. Places are seen from the object's origin, velocities from zero.
+/// A view of an object's rows in a column of records. Positions are offsets from the object's origin;
+/// velocities have the origin zero.
 template <class IdType, class Line>
 PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& slots, IdType id,
                   const std::vector<Line>& column) {
@@ -64,7 +67,7 @@ PointView view_of(const state::Tables& tables, const state::SlotTable<IdType>& s
           object.particles.count, sizeof(Line), tables.particles.row_of.data() + first};
 }
 
-/// figure(span, rest length) for each segment of a rope that is in a span, 0 for others.
+/// Returns figure(span, rest length) for each segment of a rope that lies in a twist span, and 0 for others.
 template <class Figure>
 std::vector<Real> twist_figures(const state::Tables& t, RopeId id, Figure&& figure) {
   const std::uint32_t row = t.rope_slots.find(id);
@@ -79,7 +82,7 @@ std::vector<Real> twist_figures(const state::Tables& t, RopeId id, Figure&& figu
   return figures;
 }
 
-/// Of a World, for its ids; none has 0.
+/// Returns the mark of a new World, which its ids contain. No World has the mark 0.
 std::uint32_t next_mark() {
   static std::atomic<std::uint32_t> last = 0;
   const std::uint32_t mark = ++last;
@@ -230,7 +233,7 @@ bool World::remove(MeshId id) {
   state::Tables& t = claim.tables();
   const std::uint32_t row = t.mesh_slots.find(id);
   if (row == t.mesh_slots.kNone || !t.meshes[row]) return false;
-  t.meshes[row] = nullptr;  // bodies that use it share it
+  t.meshes[row] = nullptr;  // Bodies that use the mesh share it, so it lives on with them.
   t.hulls[row] = nullptr;
   t.convex_parts[row].clear();
   t.mesh_slots.move(id.slot, t.mesh_slots.kNone);
@@ -545,7 +548,7 @@ Result<void> World::restore(const Snapshot& snapshot) {
   if (!claim) return claim.error();
   if (!snapshot.data_) return Error{ErrorCode::kOutOfRange, "snapshot", "is empty"};
   claim->derived.broad_phase_stale = true;
-  claim->derived.placed_bodies.clear();  // rows of the world that was
+  claim->derived.placed_bodies.clear();  // These rows belong to the world before the restoration.
   claim->derived.boxes_are_current = false;
   world::clear_events(claim->last_step.events);
   claim->last_step.broken_hooks.clear();

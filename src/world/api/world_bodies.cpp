@@ -1,4 +1,4 @@
-/// The public API over bodies: adding, removing, reading, pushing.
+/// This file implements the public API over bodies: adding, removing, reading and pushing them.
 
 #include "hooke/world.h"
 
@@ -30,7 +30,7 @@ using state::Tables;
 
 constexpr std::uint32_t kNone = state::SlotTable<BodyId>::kNone;
 
-/// Of a dynamic body with that angular momentum.
+/// Angular velocity of a dynamic body with the angular momentum `momentum` [rad/s].
 Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row, Vec3 momentum) {
   const Quat axes = bodies.rotation[row] * bodies.mass[row].principal;
   const Vec3 inertia = bodies.mass[row].inertia;
@@ -43,12 +43,12 @@ Vec3 angular_velocity_of(const Bodies& bodies, std::uint32_t row) {
   return angular_velocity_of(bodies, row, bodies.angular_momentum[row]);
 }
 
-/// From the center of mass to a place in the world.
+/// Lever from the center of mass to the position `at` in the world [m].
 Vec3 lever(const Bodies& bodies, std::uint32_t row, DVec3 at) {
   return vector_cast<Real>(at - bodies.center[row]);
 }
 
-/// During the next step.
+/// Adds a force and a torque that act during the next step, and wakes the body.
 Result<void> push(Bodies& bodies, std::uint32_t row, Vec3 force, Vec3 torque) {
   const Vec3 force_in_all = bodies.force[row] + force;
   const Vec3 torque_in_all = bodies.torque[row] + torque;
@@ -61,7 +61,8 @@ Result<void> push(Bodies& bodies, std::uint32_t row, Vec3 force, Vec3 torque) {
   return {};
 }
 
-/// Appends the points of a manifold that touched, seen from the body that was created first.
+/// Appends the points of a manifold that touched, with the normal and friction as the body that was created
+/// first sees them.
 void append_contacts(const Tables& t, const state::Manifold& m, std::vector<BodyContact>& contacts) {
   const auto h = static_cast<Real>(t.body_substep);
   if (!m.touching || !(h > Real(0)) || m.point_count == 0) return;
@@ -177,7 +178,7 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   world::remove_hooks_of(goes, t);
   std::erase_if(claim->derived.placed_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   build::remove_bodies(goes, t);
-  t.contacts = {};  // detect finds those that remain again
+  t.contacts = {};  // Detect finds the remaining contacts again in the next step.
   t.element_contacts.clear();
   return count;
 }

@@ -1,4 +1,4 @@
-/// The public API over hooks: adding, removing, reading, driving.
+/// This file implements the public API over hooks: adding, removing, reading and driving them.
 
 #include "hooke/world.h"
 
@@ -31,7 +31,7 @@ const Hook* find_hook(const Tables& t, HookId id) {
   return row == t.hook_slots.kNone ? nullptr : &t.hooks[row];
 }
 
-/// The freedom that a hook's kind is about; nothing where there is none or more than one.
+/// Index of the freedom that a hook's kind moves; -1 for a kind with none or with several.
 int main_freedom(HookKind kind) {
   switch (kind) {
     case HookKind::kHinge:
@@ -53,8 +53,8 @@ Error no_such_freedom(const char* what) {
   return {ErrorCode::kUnsupported, what, "does not exist on a hook of this kind"};
 }
 
-/// Changes a hook and wakes what it holds. Its rows may be others than before; their impulses then start
-/// anew.
+/// Changes a hook and wakes what it holds. If the number of its rows changes, the stored impulses belong to
+/// other rows and are cleared.
 template <class Change>
 Result<void> change_hook(Tables& t, HookId id, Change&& change) {
   const std::uint32_t row = t.hook_slots.find(id);
@@ -69,7 +69,8 @@ Result<void> change_hook(Tables& t, HookId id, Change&& change) {
   return {};
 }
 
-/// Gives a new hook its id, and wakes what it holds.
+/// Gives a new hook its id, and wakes what it holds. Points that are now inside the body at the other end are
+/// listed, so that they do not touch it.
 HookId enter_hook(Tables& t, std::size_t row) {
   Hook& hook = t.hooks[row];
   const HookId id = t.hook_slots.add(static_cast<std::uint32_t>(row));
@@ -202,7 +203,7 @@ Result<void> World::set_motor(HookId id, const HookMotor& motor) {
     HookFreedom& freedom = hook.freedom[i];
     freedom.motor = motor;
     if (hook.kind == HookKind::kDistance && !build::is_closed(freedom.limits)) {
-      freedom.locked = false;  // a rod that is driven is none
+      freedom.locked = false;  // The motor changes the distance, so the hook is no longer a rigid rod.
       freedom = build::line_freedom(freedom, Real(0));
     }
     return {};
@@ -221,7 +222,7 @@ Result<void> World::set_spring(HookId id, const HookSpring& spring) {
     }
     if (main_freedom(hook.kind) < 0) return no_such_freedom("spring");
     HookFreedom& freedom = hook.freedom[main_freedom(hook.kind)];
-    if (build::is_closed(freedom.limits)) return {};  // stays where its limits hold it
+    if (build::is_closed(freedom.limits)) return {};  // It stays where its limits hold it.
     if (hook.kind == HookKind::kDistance) {
       freedom = build::line_freedom({.limits = freedom.limits, .spring = spring, .motor = freedom.motor},
                                     hook.rest_distance);

@@ -1,4 +1,4 @@
-/// The public API over what is where: rays, swept shapes, overlaps, nearest points.
+/// This file implements queries: rays, moving shapes, overlaps and nearest points.
 
 #include "hooke/world.h"
 
@@ -22,7 +22,7 @@ using collision::QueryScene;
 using collision::RayHit;
 using state::Tables;
 
-/// What a query sees, once its filter makes sense.
+/// Returns what a query may find, or the Error of a filter or of a call during a step.
 Result<QueryScene> look(const std::shared_ptr<WorldData>& data, const QueryFilter& filter) {
   if (!data) return world::Claim(data).error();
   if (data->stepping) return Error{ErrorCode::kUnsupported, "query", "cannot be asked during a step"};
@@ -50,7 +50,7 @@ Result<QueryScene> look_along(const std::shared_ptr<WorldData>& data, DVec3 orig
   return look(data, filter);
 }
 
-/// The shape of a query, in place.
+/// The shape of a query with its pose.
 struct QueryShape {
   state::ColliderShape shape;
   Pose pose;
