@@ -21,14 +21,14 @@ using geometry::MassProperties;
 using state::ColliderShape;
 using state::Tables;
 
-// Limits for solids that are taken apart to move.
-constexpr Real kConcavity = Real(0.001);  ///< Depth that parts may dip below their hulls, over the diagonal.
+// These limits apply to the convex parts of meshes of dynamic bodies.
+constexpr Real kConcavity = Real(0.001);  ///< Largest depth of a part below its hull, over the diagonal.
 constexpr int kMostParts = 64;
 
 struct Part {
   PartDesc desc;
   ColliderShape shape;
-  MassProperties solid;  // Density 1, in the body's frame.
+  MassProperties solid;  // Mass properties at density 1, in the body's frame.
 };
 
 void check_surface(const ContactDesc& contact, const std::string& prefix, Checks& checks) {
@@ -73,7 +73,7 @@ void check_shape(const Shape& shape, const std::string& prefix, Checks& checks) 
   }
 }
 
-/// A body of one shape is a body of one part at its origin.
+/// Returns the parts of a body. A body of one shape has one part, at its origin.
 std::vector<PartDesc> parts_of(const BodyDesc& desc) {
   if (desc.shape.kind == ShapeKind::kCompound) return desc.parts;
   return {{.shape = desc.shape, .density = desc.density, .contact = desc.contact}};
@@ -89,7 +89,7 @@ MassProperties solid_of(const ColliderShape& shape, const PartDesc& part) {
   return geometry::moved(solid, part.rotation, vector_cast<double>(part.position));
 }
 
-/// Makes the convex parts of a mesh where the tables have none.
+/// Makes the convex parts of a mesh if the tables do not have them yet.
 Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t) {
   const std::uint32_t row = t.mesh_slots.find(mesh);
   if (!t.convex_parts[row].empty()) return {};
@@ -112,8 +112,8 @@ Result<void> make_convex_parts(MeshId mesh, const std::string& where, Tables& t)
   return {};
 }
 
-/// A solid of triangles that moves collides by its convex parts, and has the mass of the whole. Where its
-/// surface crosses itself, so that it bounds no matter, it has the mass of its parts.
+/// A mesh of a dynamic body collides by its convex parts and has the mass of the whole. If its surface
+/// crosses itself, so that it bounds no matter, the body has the mass of the parts instead.
 Result<void> add_convex_parts(Part whole, const std::string& where, Tables& t, std::vector<Part>& parts) {
   const MeshId id = whole.desc.shape.mesh;
   if (const Result<void> made = make_convex_parts(id, where, t); !made) return made.error();
@@ -159,7 +159,8 @@ Result<std::vector<Part>> make_parts(const BodyDesc& desc, Tables& t) {
   return parts;
 }
 
-/// Mass, center and principal inertia of all parts; for a body that nothing moves only the center.
+/// Mass, center and principal inertia of all parts. For a body that is not dynamic all are zero, and its
+/// center is the origin of its frame.
 state::BodyMass mass_of_parts(const BodyDesc& desc, const std::vector<Part>& parts) {
   if (desc.kind != BodyKind::kDynamic) return {};
   MassProperties whole;
@@ -178,7 +179,8 @@ state::BodyMass mass_of_parts(const BodyDesc& desc, const std::vector<Part>& par
           .inverse_mass = static_cast<Real>(1.0 / mass)};
 }
 
-/// Distance from the center of mass to the farthest point of a part, and the radius of a ball inside it.
+/// An upper bound of the distance from the body's center of mass to a point of the part, and the radius of a
+/// ball inside the part [m].
 struct Extent {
   Real outer = Real(0), inner = Real(0);
 };
@@ -197,7 +199,7 @@ Extent extent_of(const Part& part, Vec3 center) {
     case ShapeKind::kCylinder:
       return {distance + length(Vec3{s.radius, s.half_height, Real(0)}), std::min(s.radius, s.half_height)};
     case ShapeKind::kCone: {
-      // The ball that touches the base and the side: r h / (r + sqrt(r^2 + h^2)).
+      // This is the ball that touches the base and the side: r h / (r + sqrt(r^2 + h^2)).
       const Real height = Real(2) * s.half_height;
       const Real slant = std::sqrt(s.radius * s.radius + height * height);
       return {distance + length(Vec3{s.radius, s.half_height, Real(0)}),
@@ -225,7 +227,7 @@ void make_room(Table& table, std::size_t more) {
   Table::for_each_column(table, [&](auto& column) { base::make_room(column, more); });
 }
 
-/// Makes room for a body and its colliders, so that adding them cannot fail for want of memory.
+/// Makes room for a body and its colliders, so that adding them cannot fail for lack of memory.
 void make_room_for_body(Tables& t, std::size_t colliders) {
   make_room(t.bodies, 1);
   make_room(t.colliders, colliders);

@@ -10,8 +10,9 @@
 #include <vector>
 
 /// \file
-/// From descriptions to rows. Each function checks the whole description before it appends anything: on an
-/// Error the tables are unchanged. The new object is the last of `tables.objects`; its slot is not set.
+/// Makes rows of the tables from descriptions. Each function checks the whole description before it appends
+/// anything. On an Error no row has changed; only the hulls and convex parts of meshes, which the tables
+/// cache, may have been added. A new deformable is the last of `tables.objects`; its slot is not set.
 
 namespace hooke::build {
 
@@ -20,26 +21,27 @@ Result<void> add_cloth(const ClothDesc& desc, state::Tables& tables);
 Result<void> add_solid(const SolidDesc& desc, state::Tables& tables);
 Result<void> add_particles(const ParticlesDesc& desc, state::Tables& tables);
 
-/// Returns the row of the new body; its slot is not set.
+/// Adds a body and returns its row; its slot is not set.
 Result<std::uint32_t> add_body(const BodyDesc& desc, state::Tables& tables);
-/// Makes the part of a shape that colliders keep, with the hull of a mesh where the tables have none.
-/// `where` begins the place of an Error, like "body.".
+/// Makes the shape of a collider, and the hull of a mesh if the tables have none. `where` begins the place in
+/// an Error, like "body.".
 [[nodiscard]] Result<state::ColliderShape> make_shape(const Shape& shape, const std::string& where,
                                                       const state::Tables& tables);
-/// Removes bodies, which leaves holes in the tables of bodies and colliders, and drops the pairs of their
-/// colliders. `goes` says by row which bodies go.
+/// Removes bodies and the pairs of their colliders. Their rows become holes in the tables of bodies and
+/// colliders. `goes` says by body row which bodies go.
 void remove_bodies(const std::vector<std::uint8_t>& goes, state::Tables& tables);
 
-/// The new hook is the last of `tables.hooks`; its slot is not set.
+/// Adds a hook, as the last of `tables.hooks`; its slot is not set.
 Result<void> add_hook(const HookDesc& desc, state::Tables& tables);
 
-/// Returns the number of new hooks. They are the last of `tables.hooks`, and their slots are not set.
+/// Adds the stitches of a seam, as the last of `tables.hooks`, and returns their number; their slots are not
+/// set.
 Result<std::uint32_t> sew(const SeamDesc& desc, state::Tables& tables);
 
-/// The one freedom of a kDistance hook whose anchors were `distance` apart [m]. Its target becomes a length,
-/// and without other settings it is a rod.
+/// Returns the one freedom of a kDistance hook whose anchors were `distance` apart [m]. Its target becomes a
+/// length. Without other settings it is locked, as a rod.
 [[nodiscard]] HookFreedom line_freedom(HookFreedom line, Real distance);
-/// Whether bounds leave one value only.
+/// Whether limits leave one value only.
 [[nodiscard]] bool is_closed(const HookLimits& limits);
 
 [[nodiscard]] Result<void> validate(const WorldDesc& desc);

@@ -40,7 +40,7 @@ Checks& Checks::require(bool good, const std::string& field, const char* must) {
 }
 
 Checks& Checks::in_range(const std::string& field, double value, double least, double most) {
-  // A bound like 0.499 is fulfilled by the nearest number of type Real, above it or not.
+  // The nearest number of type Real also fulfills a bound like 0.499, whether it is above the bound or not.
   const auto real = [](double bound) { return static_cast<double>(static_cast<Real>(bound)); };
   if ((value >= std::min(least, real(least)) && value <= std::max(most, real(most))) || error_) return *this;
   const std::string must = "must be " + number(least) + " to " + number(most);

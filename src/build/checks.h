@@ -13,12 +13,12 @@
 
 namespace hooke::build {
 
-/// Collects the first error of a description. Every check names the field; later checks do nothing.
+/// Collects the first error of a description. Every check names its field; checks after an error do nothing.
 class Checks {
  public:
   explicit Checks(std::string object) : object_(std::move(object)) {}
 
-  /// `value` must satisfy `good`; the message says what it is and what it must be.
+  /// Requires `good`; the message gives `value` and says what it must be.
   Checks& require(bool good, const std::string& field, double value, const char* must);
   Checks& require(bool good, const std::string& field, const char* must);
 
@@ -28,12 +28,12 @@ class Checks {
   Checks& not_negative(const std::string& field, double value) {
     return require(value >= 0 && std::isfinite(value), field, value, "must be zero or positive and finite");
   }
-  /// A stiffness must be positive, or kRigid.
+  /// Requires a positive stiffness of at most 1e30, or kRigid.
   Checks& stiffness(const std::string& field, double value) {
     return require(value > 0 && (value <= as_real(limits::kStiffness) || std::isinf(value)), field, value,
                    value > 0 ? "must be at most 1e30, or rigid" : "must be positive, or rigid");
   }
-  /// A stiffness may also be zero.
+  /// Does the same, but a stiffness of zero passes, too.
   Checks& stiffness_or_none(const std::string& field, double value) {
     return value == 0 ? *this : stiffness(field, value);
   }
@@ -45,7 +45,7 @@ class Checks {
   Checks& finite(const std::string& field, Vector3<T> value) {
     return require(is_finite(value), field, "must be finite");
   }
-  /// Each component must be from -most to most.
+  /// Requires each component to be from -most to most.
   Checks& within(const std::string& field, DVec3 value, double most, const char* unit = "");
   Checks& within(const std::string& field, Vector3<float> value, double most, const char* unit = "") {
     return within(field, vector_cast<double>(value), most, unit);
@@ -63,7 +63,7 @@ class Checks {
   Checks& mass(const std::string& field, double value) {
     return in_range(field, value, limits::kLeastMass, limits::kMass);
   }
-  /// A value must be from zero to `most`.
+  /// Requires a value from zero to `most`.
   Checks& up_to(const std::string& field, double value, double most) {
     return in_range(field, value, 0, most);
   }
@@ -72,7 +72,7 @@ class Checks {
   [[nodiscard]] Result<void> result() const { return error_ ? Result<void>(*error_) : Result<void>(); }
 
  private:
-  /// A bound is also fulfilled by the nearest number of type Real, above it or not.
+  /// The nearest number of type Real also fulfills a bound, whether it is above the bound or not.
   static double as_real(double bound) {
     return std::max(bound, static_cast<double>(static_cast<Real>(bound)));
   }
@@ -80,7 +80,7 @@ class Checks {
     return object_.empty() ? field : object_ + "." + field;
   }
 
-  std::string object_;  ///< Empty where fields stand for themselves.
+  std::string object_;  ///< Empty if fields are named without an object.
   std::optional<Error> error_;
 };
 
@@ -88,15 +88,15 @@ class Checks {
 [[nodiscard]] inline bool is_rotation(Quat q) {
   const auto square = [](Real part) { return static_cast<double>(part) * static_cast<double>(part); };
   const double squared = square(q.x) + square(q.y) + square(q.z) + square(q.w);
-  // Bounds of the squares, which are taken in float.
+  // `normalize` takes the squares in float, where they must neither vanish nor overflow.
   return squared >= 1e-30 && squared <= 1e30;
 }
 
-/// "has no edge 'to', there are left, right".
+/// Makes an Error such as "has no edge 'to', there are left, right".
 [[nodiscard]] Error no_such_name(const char* what, const std::string& name,
                                  const std::vector<std::string>& names, const char* where);
 
-/// "name[i]"
+/// Makes "name[i]".
 [[nodiscard]] std::string indexed(const std::string& name, std::size_t i);
 
 }  // namespace hooke::build

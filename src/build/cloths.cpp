@@ -1,5 +1,5 @@
-/// Makes cloth from a grid or a mesh: points with mass by area, springs of three classes, bends, triangles,
-/// tethers.
+/// This file makes cloth from a grid or a mesh: points with mass by area, springs of three classes, length
+/// limits, bends, triangles and tethers.
 
 #include "build/build.h"
 #include "build/common.h"
@@ -24,7 +24,7 @@ using state::SpringClass;
 
 constexpr std::size_t kMostPoints = std::size_t{1} << 22;
 
-/// The cloth's points and triangles at rest, in the maker's order.
+/// The cloth's points and triangles at rest, in the order of its maker.
 struct Surface {
   std::vector<DVec3> points;
   std::vector<Triangle> triangles;
@@ -90,7 +90,7 @@ Surface make_grid(const ClothDesc& desc) {
       const auto b = a + 1;
       const auto c = a + static_cast<std::uint32_t>(s.columns);
       const auto d = c + 1;
-      // Diagonals alternate, so that the cloth has no preferred way to fold.
+      // Diagonals alternate, so that the cloth prefers no direction to fold.
       const bool even = (row + column) % 2 == 0;
       s.triangles.push_back(even ? Triangle{a, c, d} : Triangle{a, c, b});
       s.triangles.push_back(even ? Triangle{a, d, b} : Triangle{b, c, d});
@@ -112,13 +112,14 @@ double area_of(const Surface& s, const Triangle& t) {
   return 0.5 * length(cross(s.points[t[1]] - s.points[t[0]], s.points[t[2]] - s.points[t[0]]));
 }
 
-/// Share of the whole area that belongs to each point; `total` is the whole [m^2].
+/// Area that belongs to each point [m^2]; `total` is their sum.
 std::vector<double> area_shares(const Surface& s, double& total) {
   std::vector<double> share(s.points.size(), 0.0);
   for (const Triangle& t : s.triangles) {
     for (const std::uint32_t p : t) share[p] += area_of(s, t) / 3.0;
   }
-  if (s.is_grid) {  // Sums by cells, so that corners have exactly 1/4 and rims 1/2 of an inner point's share.
+  // Cells give their areas in quarters, so that corners have exactly 1/4 and rims 1/2 of an inner point's.
+  if (s.is_grid) {
     const auto rim = [](int i, int count) { return i == 0 || i + 1 == count ? 0.5 : 1.0; };
     for (int row = 0; row < s.rows; ++row) {
       for (int column = 0; column < s.columns; ++column) {
@@ -147,8 +148,8 @@ SpringRow spring(const Surface& s, std::uint32_t a, std::uint32_t b, SpringClass
           .kind = kind};
 }
 
-/// Springs along rows and columns, across cells, and to second neighbors: n(m-1)+m(n-1), 2(n-1)(m-1) and
-/// n(m-2)+m(n-2) springs.
+/// Makes springs along rows and columns, across cells, and to second neighbors. For n x m points there are
+/// n(m-1)+m(n-1), 2(n-1)(m-1) and n(m-2)+m(n-2) of them.
 std::vector<SpringRow> grid_springs(const Surface& s, const ClothDesc& desc) {
   std::vector<SpringRow> rows;
   const auto add = [&](int column, int row, int right, int down, SpringClass kind) {
@@ -178,9 +179,9 @@ bool is_longest(const Surface& s, const Triangle& t, double edge) {
   return true;
 }
 
-/// Makes one spring for each edge, whatever the number of its triangles. Where an inner edge is the longest
-/// of both its triangles, the two form a cell, and the spring between their far corners resists shear.
-/// Across other inner edges that spring resists bending.
+/// Makes one spring for each edge, however many triangles it has. Where an inner edge is the longest of both
+/// its triangles, the two form a cell, and the spring between their far corners resists shear. Across other
+/// inner edges that spring resists bending.
 std::vector<SpringRow> mesh_springs(const Surface& s, const ClothDesc& desc) {
   std::vector<SpringRow> rows;
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
@@ -215,9 +216,9 @@ void append_springs(const Surface& s, const ClothDesc& desc, double mass, state:
   }
 }
 
-/// Isometric bends need a form at rest that is flat.
+/// Returns an Error if the surface is not flat at rest, as isometric bends need it.
 Result<void> check_flat(const Surface& s) {
-  constexpr double kFlat = 0.01;  // [rad]
+  constexpr double kFlat = 0.01;  // Angle between triangles below which they are flat [rad].
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
     if (sides.triangle_count != 2) continue;
@@ -245,7 +246,7 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
     if (sides.triangle_count != 2 || !sides.has_same_winding) continue;
-    // The first triangle runs along the edge from x0 to x1, see elements/dihedral.h.
+    // The first triangle must run along the edge from x0 to x1; see elements/dihedral.h.
     auto [a, b] = s.topology.edges[e];
     const Triangle& t = s.triangles[sides.triangles[0]];
     for (int k = 0; k < 3; ++k) {
@@ -307,8 +308,8 @@ void append_tethers(const Surface& s, const ClothDesc& desc, state::Tables& tabl
   }
 }
 
-/// Finds the product of pressure and volume that the gas keeps, and the volume; an error for a surface that
-/// encloses none.
+/// Sets the volume and the product of pressure and volume, which the gas keeps. Returns an Error if the
+/// surface does not enclose a volume.
 Result<void> fill_with_gas(const Surface& s, double pressure, state::Deformable& object) {
   double volume = 0;
   for (const Triangle& t : s.triangles) {

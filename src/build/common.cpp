@@ -86,7 +86,7 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   const auto object_row = static_cast<std::uint32_t>(tables.objects.size());
   for (const PinDesc& pin : pins) {
     const auto row = static_cast<std::uint32_t>(first + points.row_of[pin.point]);
-    if (particles.velocity[row].inverse_mass == Real(0)) continue;  // This pin is named twice.
+    if (particles.velocity[row].inverse_mass == Real(0)) continue;  // Of two pins the first one counts.
     particles.velocity[row] = {};
     tables.pins.push_back({object_row, row, points.position[pin.point], tables.time, pin.motion});
   }

@@ -10,7 +10,7 @@
 
 namespace hooke::build {
 
-/// What every maker of particles hands over: one entry per point, in the maker's order.
+/// The points of a new deformable, one entry for each, in the order of its maker.
 struct Points {
   std::vector<DVec3> position;
   std::vector<Vec3> velocity;
@@ -19,27 +19,27 @@ struct Points {
   std::vector<Real> viscous_drag;
   std::vector<Real> drag_area;
   std::vector<Real> radius;
-  std::vector<std::uint32_t> row_of;  ///< Row of each point.
+  std::vector<std::uint32_t> row_of;  ///< Row of each point, from the object's first one.
 
   /// Makes `count` points with all values zero and rows in the same order.
   explicit Points(std::size_t count);
 };
 
-/// Checks pins and loads against the number of points.
+/// Checks that pins and loads name points below `count`, and checks their motions and masses.
 void check_points(Checks& checks, const std::vector<PinDesc>& pins, const std::vector<LoadDesc>& loads,
                   std::size_t count);
 
 /// Adds loads to the mass of each point.
 void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass);
 
-/// Appends a deformable with these points. Its other rows begin at the ends of their tables and are still
-/// empty. Its origin is the middle of the points' bounding box, rounded to whole meters, so that offsets are
-/// small and exact to shift.
+/// Appends a deformable with these points. It has no rows in other tables yet; they begin at the ends of
+/// those. Its origin is the middle of the points' bounding box, rounded to whole meters, so that offsets are
+/// small and can be shifted exactly.
 state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
                                  state::Tables& tables);
 
 struct SpringRow {
-  std::uint32_t a = 0, b = 0;  ///< Points of the object, in the maker's order.
+  std::uint32_t a = 0, b = 0;  ///< Points of the object, in the order of its maker.
   Real rest_length = Real(0);
   Real stiffness = Real(0);
   Real damping = Real(0);
@@ -51,7 +51,7 @@ struct SpringRow {
 /// Appends a spring to the last object.
 void append_spring(const SpringRow& spring, state::Tables& tables);
 
-/// The row of a point of `object`.
+/// Row of a point of `object` in the table of particles.
 [[nodiscard]] inline std::uint32_t row_of(const state::Tables& tables, const state::Deformable& object,
                                           std::uint32_t point) {
   return object.particles.first + tables.particles.row_of[object.particles.first + point];

@@ -14,12 +14,13 @@ using state::NamedPlace;
 using state::NamedPlaces;
 using state::Tables;
 
-/// A side, an edge or a corner of a box or grid: by its end along each axis, with 0 for the middle.
+/// A side, an edge or a corner of a box or grid, given by its end along each axis: -1, 1, or 0 for the
+/// middle.
 struct Side {
   std::array<int, 3> end = {};
 };
 
-/// Joins the words for the ends of the axes, the vertical axis first: "top_left_front".
+/// Joins the words for the ends along the axes, the vertical axis first, as in "top_left_front".
 std::string name_of(const Side& side) {
   struct Word {
     int axis;
@@ -36,7 +37,7 @@ std::string name_of(const Side& side) {
   return name.empty() ? "center" : name;
 }
 
-/// Sides along the first `axes` axes, in the order left, right, bottom, top, back, front.
+/// Returns the sides along the first `axes` axes, in the order left, right, bottom, top, back, front.
 std::vector<Side> faces(int axes) {
   std::vector<Side> result;
   for (int axis = 0; axis < axes; ++axis) {
@@ -45,7 +46,7 @@ std::vector<Side> faces(int axes) {
   return result;
 }
 
-/// Corners, where sides of all of the first `axes` axes meet.
+/// Returns the corners, where sides along all of the first `axes` axes meet.
 std::vector<Side> corners(int axes) {
   std::vector<Side> result;
   for (int corner = 0; corner < 1 << axes; ++corner) {
@@ -56,8 +57,8 @@ std::vector<Side> corners(int axes) {
   return result;
 }
 
-/// The place at a side of a lattice with so many points along its axes, the first fastest: a point, or the
-/// middle between two or four.
+/// Returns the connection point at a side of a lattice with `counts` points along its axes, x fastest. It is
+/// a point, or the middle between two or four points.
 NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) {
   NamedPlace place = {.name = name_of(side)};
   std::array<std::vector<std::uint32_t>, 3> along;
@@ -68,7 +69,8 @@ NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) 
     if (twice % 2 != 0) along[axis].push_back(twice / 2 + 1);
   }
   const std::size_t count = along[0].size() * along[1].size() * along[2].size();
-  HOOKE_ASSERT(count <= place.points.size());  // The center of an odd box is a point of its own.
+  // Only the center of an odd box is between eight points, and it has a point of its own.
+  HOOKE_ASSERT(count <= place.points.size());
   std::size_t used = 0;
   for (const std::uint32_t z : along[2]) {
     for (const std::uint32_t y : along[1]) {
@@ -81,7 +83,7 @@ NamedPlace lattice_point(std::array<std::uint32_t, 3> counts, const Side& side) 
   return place;
 }
 
-/// Half the size of a shape whose sides have names; zero for others.
+/// Half of the size of a shape whose sides have names [m]; zero for other shapes.
 Vec3 half_size(const Shape& shape) {
   switch (shape.kind) {
     case ShapeKind::kBox:
@@ -98,7 +100,7 @@ Vec3 half_size(const Shape& shape) {
   }
 }
 
-/// Sides of a shape that lie on its surface.
+/// Returns the named sides and corners that lie on the surface of a shape.
 std::vector<Side> sides_of(ShapeKind kind) {
   if (kind == ShapeKind::kCone) return {Side{.end = {0, -1, 0}}, Side{.end = {0, 1, 0}}};
   std::vector<Side> sides = faces(3);
@@ -107,7 +109,7 @@ std::vector<Side> sides_of(ShapeKind kind) {
   return sides;
 }
 
-/// Appends the places whose names are still free.
+/// Appends the connection points whose names are not taken yet.
 void append_missing(const NamedPlaces& more, NamedPlaces& places) {
   for (const NamedPlace& place : more) {
     const auto same = [&](const NamedPlace& one) { return one.name == place.name; };
@@ -115,7 +117,7 @@ void append_missing(const NamedPlaces& more, NamedPlaces& places) {
   }
 }
 
-/// Turns a place between rows of an object into one with the maker's numbers of its points.
+/// Converts a place between rows of an object to point numbers in the order of its maker.
 NamedPlace from_rows(const state::HookPlace& rows, const state::Deformable& object, const Tables& t) {
   NamedPlace place;
   for (std::uint32_t i = 0; i < rows.particle_count; ++i) {

@@ -16,7 +16,7 @@ using state::Deformable;
 using state::HookPlace;
 using state::Tables;
 
-/// The nearest place found so far, between particles of one object.
+/// The nearest place to `wanted` found so far, between particles of one object.
 struct Nearest {
   const Tables& t;
   DVec3 wanted = {};  ///< Offset from the object's origin [m].
@@ -74,7 +74,7 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
     const state::Triangles::Corners& c = t.triangles.corners[object.triangles.first + i];
     nearest.try_triangle(c.a, c.b, c.c);
   }
-  if (object.rest_shape && object.skin) {  // Vertices of the skin are points of the solid.
+  if (object.rest_shape && object.skin) {  // Each vertex of the skin is a point of the solid.
     const auto row = [&](std::uint32_t vertex) {
       return row_of(t, object, object.skin->vertices[vertex].points[0]);
     };
@@ -86,7 +86,7 @@ void find_nearest(const Deformable& object, Nearest& nearest) {
   for (std::uint32_t i = 0; i < object.particles.count; ++i) nearest.try_particle(object.particles.first + i);
 }
 
-/// Finds the rows of a named place.
+/// Converts a connection point to rows of particles.
 HookPlace rows_of(const state::NamedPlace& named, const Deformable& object, const Tables& t) {
   HookPlace place;
   for (std::size_t i = 0; i < named.points.size(); ++i) {

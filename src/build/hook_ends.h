@@ -7,23 +7,23 @@
 
 namespace hooke::build {
 
-/// An end of a hook, in rows.
+/// An end of a hook, with rows in place of ids.
 struct FoundEnd {
   state::HookPlace place = {};  ///< Without anchor and axes.
-  bool is_given = false;        ///< Whether the end itself says where it is: it is a point or a named place.
-  DVec3 position = {};          ///< Where that is [m].
+  bool is_given = false;        ///< Whether the end itself is at a known position, as a point is.
+  DVec3 position = {};          ///< That position in the world [m].
 };
 
-/// Finds an end; `anchor` [m] says which place of an object PointRef::kNearest means. Errors are a stale id,
-/// a point or a name that the object has not, and both a body and a point; `where` names the end.
+/// Finds an end. `anchor` [m] is where the search begins for PointRef::kNearest. Errors: a stale id, a point
+/// or a name that the object does not have, both a body and a point. `where` names the end.
 [[nodiscard]] Result<FoundEnd> find_end(const HookEnd& end, DVec3 anchor, const char* where,
                                         const state::Tables& tables);
 
 /// Appends a hook between ends that were found and that its kind can hold; its slot is not set.
 void append_hook(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b, state::Tables& tables);
 
-/// The place of an object that is nearest to `wanted` [m]: in a tetrahedron, on a triangle or a segment, or
-/// at a particle where the object has none of these. The object's row is not set.
+/// Finds the place of an object that is nearest to `wanted` [m]. It lies in a tetrahedron, on a triangle or
+/// on a segment, or at a particle if the object has none of these. The object's row is not set.
 [[nodiscard]] state::HookPlace nearest_place(const state::Tables& tables, const state::Deformable& object,
                                              DVec3 wanted);
 

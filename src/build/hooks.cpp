@@ -49,22 +49,22 @@ void check_freedom(const HookFreedom& freedom, const std::string& field, Checks&
   check_motor(freedom.motor, field + ".motor.", checks);
 }
 
-/// Whether `second` defines the direction of the second axis.
+/// Whether `second` is across `axis` enough to define the second axis.
 bool is_across(Vec3 axis, Vec3 second) {
   const DVec3 a = normalize(vector_cast<double>(axis));
   const DVec3 b = normalize(vector_cast<double>(second));
   return length(cross(a, b)) > 1e-3;
 }
 
-/// Any direction across x: along the coordinate axis that is least along it.
+/// Returns the coordinate axis that is farthest from x, to replace a second axis that is not given.
 DVec3 some_direction_across(DVec3 x) {
   const DVec3 size = {std::abs(x.x), std::abs(x.y), std::abs(x.z)};
   if (size.x <= size.y && size.x <= size.z) return {1, 0, 0};
   return size.y <= size.z ? DVec3{0, 1, 0} : DVec3{0, 0, 1};
 }
 
-/// The hook's axes in the world: x along `axis`, and y (for wheels z) along the part of `second_axis` across
-/// it.
+/// Returns the hook's axes in the world. The x axis is along `axis`. The y axis, or the z axis of a wheel, is
+/// along the part of `second_axis` across it.
 DMat3 axes_of(const HookDesc& desc) {
   const DVec3 x = normalize(vector_cast<double>(desc.axis));
   const DVec3 second = desc.second_axis ? vector_cast<double>(*desc.second_axis) : some_direction_across(x);
@@ -73,7 +73,7 @@ DMat3 axes_of(const HookDesc& desc) {
   return {x, across, cross(x, across)};
 }
 
-/// The unit quaternion of a rotation matrix, by the largest of its four components.
+/// Converts a rotation matrix to a unit quaternion, by the largest of its four components.
 DQuat quaternion_of(const DMat3& m) {
   const double trace = m.x.x + m.y.y + m.z.z;
   if (trace > 0) {
@@ -93,7 +93,8 @@ Quaternion<To> quaternion_cast(Quaternion<From> q) {
   return {static_cast<To>(q.x), static_cast<To>(q.y), static_cast<To>(q.z), static_cast<To>(q.w)};
 }
 
-/// Gives an end its anchor and axes in its own frame; a point has neither place nor rotation of its own.
+/// Gives an end its anchor and axes, in the frame of its body or of the world. A point has no frame, so its
+/// anchor stays zero.
 void place(const state::Bodies& bodies, DVec3 anchor, DQuat axes, HookPlace& end) {
   end.axes = quaternion_cast<Real>(axes);
   if (end.is_point()) return;
@@ -106,7 +107,7 @@ void place(const state::Bodies& bodies, DVec3 anchor, DQuat axes, HookPlace& end
 
 constexpr HookFreedom kLocked = {.locked = true};
 
-/// The freedoms that a kind leaves. `distance` is that of the two anchors [m].
+/// Returns the freedoms of a hook of this kind; `distance` is that of its anchors [m].
 std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
   const HookFreedom moving = {.limits = desc.limits, .spring = desc.spring, .motor = desc.motor};
   switch (desc.kind) {
@@ -139,7 +140,7 @@ std::array<HookFreedom, 6> freedoms_of(const HookDesc& desc, double distance) {
   return desc.freedoms;
 }
 
-/// Makes a lock of bounds that leave one value only.
+/// Replaces limits that leave one value only by a lock.
 void lock_closed_limits(HookFreedom& freedom) {
   if (!is_closed(freedom.limits)) return;
   freedom = {.locked = true, .limits = freedom.limits, .spring = {.target = freedom.limits.lower}};
@@ -187,7 +188,7 @@ Result<void> check_ends(HookKind kind, const HookPlace& a, const HookPlace& b, c
   return {};
 }
 
-/// Where a hook holds its two ends [m].
+/// Positions in the world at which a hook holds its two ends [m].
 struct Anchors {
   DVec3 a, b;
 };
@@ -196,7 +197,8 @@ DVec3 wanted_anchor_b(const HookDesc& desc) {
   return desc.kind == HookKind::kDistance ? desc.anchor_b.value_or(desc.anchor) : desc.anchor;
 }
 
-/// Points and named places are held where they are. The other end is held at the same place.
+/// Points and connection points are held where they are, and the other end is held at the same place.
+/// Distances and rope slides keep both anchors.
 Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
   Anchors anchors = {a.is_given ? a.position : desc.anchor, b.is_given ? b.position : wanted_anchor_b(desc)};
   if (desc.kind == HookKind::kDistance || desc.kind == HookKind::kRopeSlide) return anchors;
@@ -205,7 +207,8 @@ Anchors anchors_of(const HookDesc& desc, const FoundEnd& a, const FoundEnd& b) {
   return anchors;
 }
 
-/// Where the search for an end's nearest place begins: at the other end, if that is named, or at the anchor.
+/// Where the search for the nearest place of an end begins [m]: at the other end if that has a connection
+/// point, and else at the anchor.
 Result<DVec3> search_start(const HookEnd& other, DVec3 anchor, const char* where, const Tables& t) {
   if (other.connection_point.empty()) return anchor;
   const Result<FoundEnd> found = find_end(other, anchor, where, t);
@@ -213,14 +216,15 @@ Result<DVec3> search_start(const HookEnd& other, DVec3 anchor, const char* where
   return found.value().position;
 }
 
-/// Takes both points of the segment at which the hook begins; solver::slide_hooks gives them their weights.
+/// Takes both points of the segment at which the slide begins. solver::slide_hooks then gives them their
+/// weights.
 void begin_slide(const Tables& t, Hook& hook) {
   const state::Deformable& rope = t.objects[hook.a.object];
   const std::uint32_t first = std::min(hook.a.particle[0], rope.particles.end() - 2);
   hook.a.particle = {first, first + 1};
   hook.a.weight = {Real(1), Real(0)};
   hook.a.particle_count = 2;
-  hook.a.axes = {};  // x along the rope: solver::slide_rotation
+  hook.a.axes = {};  // The x axis follows the rope; see solver::slide_rotation.
 }
 
 }  // namespace

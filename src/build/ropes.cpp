@@ -68,7 +68,7 @@ std::vector<DVec3> node_positions(const RopeDesc& desc) {
   return points;
 }
 
-/// Sets the stiffnesses of a round rod where a material is given.
+/// Replaces the stiffnesses by those of a round rod if a material is given: EA, EI and GJ.
 RopeDesc of_material(const RopeDesc& given) {
   RopeDesc desc = given;
   if (!given.young_modulus) return desc;
@@ -88,7 +88,8 @@ void append_segments(const RopeDesc& desc, const std::vector<double>& lengths, d
   const double stiffness = desc.axial_stiffness ? static_cast<double>(*desc.axial_stiffness) / total
                                                 : static_cast<double>(desc.stiffness);
   for (const double length : lengths) {
-    // Segments are springs in series: a share of the length is that much stiffer than the whole.
+    // Segments are springs in series: one with a share of the length is stiffer than the whole by the inverse
+    // of that share.
     const double stiffer = desc.stiffness_of == RopeDesc::StiffnessOf::kRope ? total / length : 1.0;
     state::Segments& s = tables.segments;
     s.rest_length.push_back(static_cast<Real>(length));

@@ -1,4 +1,4 @@
-/// Makes seams: two edges of points, and the stitches that hold them together.
+/// This file makes seams: it finds two edges as lines of points, and the stitches that hold them together.
 
 #include "build/build.h"
 #include "build/checks.h"
@@ -25,11 +25,11 @@ struct NamedLine {
   Line points;
 };
 
-/// An edge in rows, with the share of its length at each point.
+/// An edge as rows of particles, with the share of its length at each point.
 struct Thread {
   std::uint32_t object = 0;
   std::vector<std::uint32_t> rows = {};
-  std::vector<DVec3> places = {};  ///< Place of each point [m].
+  std::vector<DVec3> places = {};  ///< Position of each point [m].
   std::vector<double> share = {};  ///< Share of the length: 0 at the first point, 1 at the last.
   double length = 0;               ///< Length of the edge [m].
 
@@ -37,7 +37,7 @@ struct Thread {
   [[nodiscard]] bool is_closed() const { return rows.front() == rows.back(); }
 };
 
-/// A place at which the edges are held together, at a share of the length of a.
+/// A place at which the edges are held together.
 struct Stitch {
   double share = 0;
   HookPlace a, b;
@@ -45,10 +45,10 @@ struct Stitch {
 
 // -- Edges of cloths. --------------------------------------------------------------------------------------
 
-/// An edge of a triangle: the points at its begin and its end.
+/// A directed edge of a triangle, with points in the order of the maker.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Edges of a cloth at which there is one triangle only, ascending.
+/// Returns the directed edges that no triangle has in the other direction, in ascending order.
 std::vector<Edge> open_edges_of(const Deformable& object, const Tables& t) {
   std::vector<std::uint32_t> point_of(object.particles.count);
   for (std::uint32_t i = 0; i < object.particles.count; ++i) {
@@ -71,7 +71,7 @@ std::vector<Edge> open_edges_of(const Deformable& object, const Tables& t) {
   return open;
 }
 
-/// Follows the open edges from one of them, and marks those that it takes as used.
+/// Follows the open edges from one of them, and marks as used those that it takes.
 Line follow_border(const std::vector<Edge>& open, std::size_t first, std::vector<std::uint8_t>& used) {
   Line line = {open[first].first};
   for (std::size_t at = first; at < open.size() && used[at] == 0;) {
@@ -86,7 +86,8 @@ Line follow_border(const std::vector<Edge>& open, std::size_t first, std::vector
   return line;
 }
 
-/// Closed borders of a cloth. Each runs from its lowest point in the direction of its triangles.
+/// Returns the borders of a cloth. Each begins at its first point in the order of the maker and runs in the
+/// direction of its triangles. A border is closed unless triangles are wound against each other.
 std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
   const std::vector<Edge> open = open_edges_of(object, t);
   std::vector<std::uint8_t> used(open.size(), 0);
@@ -98,7 +99,7 @@ std::vector<Line> borders_of(const Deformable& object, const Tables& t) {
   return borders;
 }
 
-/// The points first, first + stride, ... of a grid.
+/// Returns the points first, first + stride, ... of a grid.
 Line grid_line(std::uint32_t first, std::uint32_t stride, std::uint32_t count) {
   Line line(count);
   for (std::uint32_t i = 0; i < count; ++i) line[i] = first + i * stride;
@@ -169,9 +170,9 @@ Result<Thread> find_thread(const SeamEdge& edge, const char* where, const Tables
 
 // -- Which place of one thread belongs to which of the other. -----------------------------------------------
 
-/// The place at a share of a thread's length: a point, or a place on a segment.
+/// Returns the place at a share of a thread's length: a point, or a place on a segment.
 HookPlace place_at(const Thread& thread, double share) {
-  constexpr double kAtPoint = 1e-4;  // Share of the segment: as much as rounding may put beside a point.
+  constexpr double kAtPoint = 1e-4;  // Rounding moves no place farther from its point, as share of a segment.
   const auto after = std::upper_bound(thread.share.begin() + 1, thread.share.end() - 1, share);
   const auto last = static_cast<std::size_t>(after - thread.share.begin());
   const double span = thread.share[last] - thread.share[last - 1];
@@ -196,7 +197,7 @@ DVec3 position_at(const Thread& thread, double share) {
   return thread.places[last - 1] + along * (thread.places[last] - thread.places[last - 1]);
 }
 
-/// Runs a thread in the other direction.
+/// Reverses the direction of a thread.
 Thread reversed(Thread thread) {
   std::reverse(thread.rows.begin(), thread.rows.end());
   std::reverse(thread.places.begin(), thread.places.end());
@@ -205,7 +206,7 @@ Thread reversed(Thread thread) {
   return thread;
 }
 
-/// Begins a closed thread at another of its points.
+/// Returns a closed thread that begins at another of its points.
 Thread begun_at(const Thread& thread, std::size_t first) {
   Thread backward = {.object = thread.object, .length = thread.length};
   const std::size_t count = thread.segments();
@@ -219,7 +220,8 @@ Thread begun_at(const Thread& thread, std::size_t first) {
   return backward;
 }
 
-/// Sum of the squared distances of two threads [m^2], at their ends or at quarters of their lengths.
+/// Sum of the squared distances of two threads [m^2]: at their ends, or at quarters of the length of closed
+/// ones.
 double distance_squared(const Thread& a, const Thread& b) {
   double sum = 0;
   for (const double share : a.is_closed() ? std::array{0.25, 0.75} : std::array{0.0, 1.0})
@@ -227,7 +229,7 @@ double distance_squared(const Thread& a, const Thread& b) {
   return sum;
 }
 
-/// Begins and directs b as it lies beside a.
+/// Returns b in the direction that fits a best. If it is closed, it begins at its point nearest to that of a.
 Thread aligned(const Thread& a, Thread b) {
   if (a.is_closed()) {
     const auto nearer = [&](const DVec3& p, const DVec3& q) {
@@ -247,8 +249,8 @@ bool holds(const HookPlace& place, std::uint32_t particle) {
   return false;
 }
 
-/// Stitches each point of the finer thread to its place on the other thread, and points of the other that
-/// would not be held otherwise. Places that already share a point need no stitch.
+/// Stitches each point of the finer thread to its place on the other thread. Points of the other thread that
+/// would not be held otherwise get stitches, too. Places that share a point already need no stitch.
 std::vector<Stitch> find_stitches(const Thread& a, const Thread& b) {
   const bool a_is_finer = a.rows.size() >= b.rows.size();
   const Thread& fine = a_is_finer ? a : b;
@@ -273,7 +275,7 @@ std::vector<Stitch> find_stitches(const Thread& a, const Thread& b) {
   return stitches;
 }
 
-/// The share of the seam's length that a stitch holds: half the distances to its neighbors.
+/// Share of the seam's length that a stitch holds: half of the distances to its neighbors.
 double share_of(const std::vector<Stitch>& stitches, std::size_t i, bool closed) {
   const std::size_t count = stitches.size();
   double before = i > 0 ? stitches[i - 1].share : 0.0;

@@ -1,4 +1,5 @@
-/// Makes solids from a box of cells, from a closed mesh, or from given tetrahedra.
+/// This file makes solids from a box of cells, from a closed mesh, from given tetrahedra, or from points
+/// alone.
 
 #include "build/build.h"
 #include "build/common.h"
@@ -24,13 +25,13 @@ using geometry::Tetrahedron;
 
 constexpr double kMostCells = 1 << 20;
 constexpr std::size_t kMostTetrahedra = std::size_t{1} << 24;
-/// Volume of a tetrahedron over the cube of its longest edge; 0.118 where all edges are equal.
+/// Smallest volume of a tetrahedron over the cube of its longest edge; it is 0.118 if all edges are equal.
 constexpr double kFlattest = 1e-5;
-constexpr double kSmallest = 1e-15;  ///< Smallest volume of a tetrahedron: less is lost in float [m^3].
+constexpr double kSmallest = 1e-15;  ///< Smallest volume of a tetrahedron, below which floats lose it [m^3].
 
 struct SolidBody {
-  TetrahedralMesh mesh;       ///< Mesh in the world; without tetrahedra where only its points count.
-  double volume = 0;          ///< Volume to which the density applies [m^3].
+  TetrahedralMesh mesh;  ///< Mesh in the world; it has no tetrahedra if shape matching needs only its points.
+  double volume = 0;     ///< Volume to which the density applies [m^3]; 0 for points alone.
   std::vector<double> share;  ///< Share of the mass at each point.
   std::shared_ptr<const state::Skin> skin;
 };
@@ -39,7 +40,7 @@ bool is_matched(const SolidDesc& desc) {
   return desc.elasticity == SolidDesc::Elasticity::kShapeMatching;
 }
 
-/// Whether a solid is given neither by a mesh nor by tetrahedra nor by points.
+/// Whether a solid is made as a box of cells, because neither a mesh nor tetrahedra nor points are given.
 bool is_box(const SolidDesc& desc) {
   return !desc.mesh && desc.tetrahedra.empty() && desc.points.empty();
 }
@@ -140,7 +141,7 @@ double volume_of(const TetrahedralMesh& mesh) {
   return sum;
 }
 
-/// The skin of a solid: its outer points and the faces between them.
+/// Makes the skin of a solid from its outer points and the faces between them.
 std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
   auto skin = std::make_shared<state::Skin>();
   std::vector<std::uint32_t> number(mesh.points.size(), geometry::kNone);
@@ -157,7 +158,7 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh) {
   return skin;
 }
 
-/// The skin whose vertices are those of `surface`, where they lie in the lattice.
+/// Makes a skin of the vertices of `surface`, held by the tetrahedra in which they lie.
 std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const MeshDesc& surface) {
   std::vector<DVec3> places;
   for (const Vec3& p : surface.positions) places.push_back(vector_cast<double>(p));
@@ -171,7 +172,7 @@ std::shared_ptr<const state::Skin> skin_of(const TetrahedralMesh& mesh, const Me
   return skin;
 }
 
-/// Gives a quarter of each tetrahedron to each of its corners.
+/// Gives each corner of a tetrahedron a quarter of its volume. The shares have the sum 1.
 std::vector<double> volume_shares(const TetrahedralMesh& mesh) {
   std::vector<double> share(mesh.points.size(), 0.0);
   const double whole = volume_of(mesh);
@@ -326,7 +327,8 @@ std::shared_ptr<const state::RestEdges> rest_edges_of(const TetrahedralMesh& mes
   return edges;
 }
 
-/// The form to which points are drawn; an error where it could not tell how it is rotated.
+/// Makes the rest shape for shape matching. Returns an Error for flat points, whose rotation could not be
+/// found.
 Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& points, const SolidDesc& desc,
                                                               double volume) {
   auto rest = std::make_shared<state::RestShape>();
@@ -346,7 +348,7 @@ Result<std::shared_ptr<const state::RestShape>> rest_shape_of(const Points& poin
     rest->inertia += dot(q, weighed);
     rest->place.push_back(q);
   }
-  constexpr double kFlat = 1e-9;  // A thickness of about 1e-4 of the size.
+  constexpr double kFlat = 1e-9;  // This is a thickness of about 1e-4 of the size.
   if (!(determinant(second) > kFlat * rest->inertia * rest->inertia * rest->inertia))
     return Error{ErrorCode::kOutOfRange, "solid.points", "must not lie in one plane"};
   const double w = 2 * std::numbers::pi * static_cast<double>(desc.match_hz);

@@ -31,7 +31,7 @@ struct NearestPin {
   std::uint32_t pin = 0;
 };
 
-/// Finds for each point the nearest of the pins for which counts(point, pin).
+/// Finds for each point the nearest of the pins for which counts(point, pin) is true.
 template <class Counts>
 std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::span<const std::uint32_t> pins,
                                           Counts&& counts) {
@@ -42,7 +42,7 @@ std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::spa
     for (std::uint32_t i = 0; i < nearest.size(); ++i) {
       if (counts(i, pin)) points.push_back(i);
     }
-    if (points.empty()) continue;  // Distances along a curved surface take long.
+    if (points.empty()) continue;  // Distances along a curved surface take long to find.
     const std::vector<double> distance = distances_from(surface, pin);
     for (const std::uint32_t i : points) {
       if (distance[i] < nearest[i].length) nearest[i] = {distance[i], pin};
@@ -51,8 +51,8 @@ std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::spa
   return nearest;
 }
 
-/// Whether `other` lies on the other side of the point than `pin`: the directions to them differ by more
-/// than a right angle, as those to two pins on one straight edge do not.
+/// Whether `other` and `pin` lie on different sides of the point: the directions to them differ by more than
+/// a right angle. Those to two pins on one straight edge do not.
 bool is_opposite(const TetherSurface& surface, std::uint32_t point, std::uint32_t pin, std::uint32_t other) {
   const DVec3 to_pin = surface.points[pin] - surface.points[point];
   const DVec3 to_other = surface.points[other] - surface.points[point];

@@ -11,12 +11,12 @@ namespace hooke::elements {
 
 /// The angle between two triangles that share the edge from x0 to x1, and its gradient.
 ///
-///     theta = atan2((n_a x n_b) . e / |e|, n_a . n_b),  n_a = (x0 - x2) x (x1 - x2),  n_b = (x1 - x3) x (x0
-///     - x3)
+///     theta = atan2((n_a x n_b) . e / |e|, n_a . n_b),   e = x1 - x0
+///     n_a = (x0 - x2) x (x1 - x2),   n_b = (x1 - x3) x (x0 - x3)
 ///
-/// 0 is flat, positive folds the wings x2 and x3 to the side the normals point away from. Gradient after
-/// Bridson, Marino and Fedkiw 2003, "Simulation of clothing with folds and wrinkles". `valid` is false where
-/// a triangle or the edge has no extent: no angle then, and no force.
+/// theta is 0 if flat. A positive angle folds the wings x2 and x3 to the side away from the normals. The
+/// gradient follows Bridson, Marino and Fedkiw 2003, "Simulation of clothing with folds and wrinkles".
+/// `valid` is false if a triangle or the edge has no extent: then there is no angle, and no force.
 template <class T>
 struct Dihedral {
   T angle = T(0);
@@ -24,7 +24,7 @@ struct Dihedral {
   bool valid = false;
 };
 
-/// The same angle in (-pi, pi]; `angle` within a turn of that.
+/// Returns the same angle in (-pi, pi]. `angle` is in (-3 pi, 3 pi].
 template <class T>
 constexpr T wrapped(T angle) {
   constexpr T kPi = std::numbers::pi_v<T>;
@@ -45,7 +45,7 @@ Dihedral<T> dihedral(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vector3<T> x3)
 
   Dihedral<T> d;
   d.valid = true;
-  using math::atan2;  // T may bring its own
+  using math::atan2;  // The laboratory's power series bring their own atan2.
   d.angle = atan2(dot(cross(na, nb), e) / le, dot(na, nb));
   const Vector3<T> ua = (T(1) / aa) * na;
   const Vector3<T> ub = (T(1) / bb) * nb;

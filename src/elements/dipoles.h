@@ -5,15 +5,15 @@
 #include <cmath>
 
 /// \file
-/// Magnetic dipoles, SI units: what each does at an offset from another (Jackson, Classical Electrodynamics,
-/// 5.6 and 5.7; Yung, Landecker and Villani 1998).
+/// Fields and forces of magnetic dipoles in SI units (Jackson, Classical Electrodynamics, 5.6 and 5.7; Yung,
+/// Landecker and Villani 1998).
 
 namespace hooke::elements {
 
-/// mu_0 / 4 pi [T m / A]. As measured it is larger by 5e-10 of itself (CODATA 2018).
+/// mu_0 / 4 pi [T m / A]. The measured value is larger by 5e-10 of it (CODATA 2018).
 inline constexpr double kMagneticConstant = 1e-7;
 
-/// Closer to a dipole than this [m] it has no field: there is no direction to tell.
+/// A dipole has no field nearer than this [m], because there is no direction there.
 inline constexpr double kDipoleGap = 1e-6;
 
 /// Flux density in the unit direction n from a dipole, at a distance of 1 / `inverse` [T]:
@@ -22,9 +22,9 @@ inline DVec3 dipole_field(DVec3 moment, DVec3 n, double inverse) {
   return (kMagneticConstant * (inverse * inverse * inverse)) * (3 * dot(moment, n) * n - moment);
 }
 
-/// Force on dipole b, which lies in the unit direction n from dipole a at a distance of 1 / `inverse` [N]:
-/// 3 mu_0 / 4 pi ((a.n) b + (b.n) a + (a.b) n - 5 (a.n) (b.n) n) inverse^4. With a and b exchanged and n
-/// turned round it is the opposite to the last bit.
+/// Force [N] on dipole b, which lies in the unit direction n from dipole a at a distance of 1 / `inverse`: 3
+/// mu_0 / 4 pi ((a.n) b + (b.n) a + (a.b) n - 5 (a.n) (b.n) n) inverse^4. With a and b exchanged and n
+/// reversed, the result is opposite to the last bit.
 inline DVec3 dipole_force(DVec3 a, DVec3 b, DVec3 n, double inverse) {
   const double along_a = dot(a, n);
   const double along_b = dot(b, n);
@@ -33,7 +33,7 @@ inline DVec3 dipole_force(DVec3 a, DVec3 b, DVec3 n, double inverse) {
   return (3 * kMagneticConstant * (square * square)) * sum;
 }
 
-/// Flux density at d from a dipole [T]; none closer than kDipoleGap.
+/// Flux density at d from a dipole [T]; it is zero nearer than kDipoleGap.
 inline DVec3 dipole_field(DVec3 moment, DVec3 d) {
   const double r = length(d);
   return r >= kDipoleGap ? dipole_field(moment, (1 / r) * d, 1 / r) : DVec3{};

@@ -9,7 +9,8 @@
 
 namespace hooke::elements {
 
-/// Acceleration towards a center at offset `d` [m/s^2]: -strength d / |d|^3; none at the center itself.
+/// Acceleration [m/s^2] towards a center, at the offset d from it: -strength d / |d|^3; zero at the center
+/// itself.
 template <class T>
 Vector3<T> attraction(Vector3<T> d, double strength) {
   const T r2 = length_squared(d);
@@ -24,7 +25,7 @@ Vector3<T> magnetic_force(Vector3<T> v, DVec3 field, double charge) {
   return charge * cross(v, Vector3<T>{T(field.x), T(field.y), T(field.z)});
 }
 
-/// (1 - r / reach)^falloff; zero from `reach` on.
+/// (1 - r / reach)^falloff; it is zero from `reach` on.
 inline double falloff(const FieldDesc& field, double r) {
   if (!(r < field.reach)) return 0;
   double share = 1;
@@ -32,13 +33,14 @@ inline double falloff(const FieldDesc& field, double r) {
   return share;
 }
 
-/// What a radial field gives at d from its center, away from it; nothing at the center itself.
+/// Value of a radial field at d from its center, directed away from it; zero at the center. The unit is that
+/// of `strength`.
 inline DVec3 radial(const FieldDesc& field, DVec3 d) {
   const double r = length(d);
   return r > 0 ? (field.strength * falloff(field, r) / r) * d : DVec3{};
 }
 
-/// What a vortex gives at d from its center; nothing on the axis.
+/// Value of a vortex at d from its center, counter-clockwise about its axis; zero on the axis.
 inline DVec3 swirl(const FieldDesc& field, DVec3 d) {
   const DVec3 axis = normalize(vector_cast<double>(field.vector));
   const DVec3 across = cross(axis, d);
@@ -46,8 +48,8 @@ inline DVec3 swirl(const FieldDesc& field, DVec3 d) {
   return r > 0 ? (field.strength * falloff(field, r) / r) * across : DVec3{};
 }
 
-/// Acceleration that a field gives at x to whatever is there [m/s^2]; zero of a field that asks for more than
-/// the place.
+/// Acceleration [m/s^2] that a field gives at x to whatever is there. It is zero for fields whose effect
+/// depends on more than the position.
 inline DVec3 acceleration(const FieldDesc& field, DVec3 x) {
   switch (field.kind) {
     case FieldDesc::Kind::kUniform:
@@ -67,14 +69,15 @@ inline DVec3 acceleration(const FieldDesc& field, DVec3 x) {
   return {};
 }
 
-/// What the gradient of a magnetic field makes of d, a way [m] or a moment [A m^2]: of the moment it makes
-/// the force [N]. Traceless and symmetric, as a field without currents is.
+/// The gradient of a magnetic field times d. For an offset d [m] it is the change of the flux density [T],
+/// for a moment d [A m^2] the force [N]. The gradient is symmetric and without trace, because there are no
+/// currents.
 inline DVec3 times_gradient(const FieldDesc& field, DVec3 d) {
   const DVec3 axis = normalize(vector_cast<double>(field.vector));
   return (0.5 * field.strength) * (3 * dot(axis, d) * axis - d);
 }
 
-/// At x [T]; zero of a field that is not magnetic.
+/// Flux density at x [T]; it is zero for a field that is not magnetic.
 inline DVec3 flux_density(const FieldDesc& field, DVec3 x) {
   if (field.kind == FieldDesc::Kind::kMagnetic)
     return vector_cast<double>(field.vector) + times_gradient(field, x - field.center);

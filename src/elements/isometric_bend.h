@@ -6,15 +6,15 @@
 
 namespace hooke::elements {
 
-/// Weights K of the curvature vector q = sum K_i x_i of two triangles that share the edge from x0 to x1, with
-/// the wings x2 and x3; from their shape at rest. They add up to zero. Flat, q is zero; folded by an angle
-/// theta about an edge of length l, |q| = 2 l sin(theta / 2).
+/// Weights K of the curvature vector q = sum K_i x_i of two triangles, from their shape at rest. They share
+/// the edge from x0 to x1 and have the wings x2 and x3. The weights have the sum zero. q is zero if the
+/// triangles are flat. After a fold by an angle theta about an edge of length l, |q| is 2 l sin(theta / 2).
 ///
 ///     K_0 = cot_03 + cot_04,  K_1 = cot_01 + cot_02,  K_2 = -(cot_01 + cot_03),  K_3 = -(cot_02 + cot_04)
 ///
-/// cot_01, cot_03: of the angles at x0 and x1 in the triangle of x2; cot_02, cot_04: in that of x3. A
-/// quadratic model of bending for surfaces that keep their lengths (Bergou, Wardetzky, Harmon, Zorin and
-/// Grinspun 2006). All zero where a triangle or the edge has no extent.
+/// cot_01 and cot_03 belong to the angles at x0 and x1 in the triangle of x2, cot_02 and cot_04 to those in
+/// the triangle of x3. This is a quadratic model of bending for surfaces that keep their lengths (Bergou,
+/// Wardetzky, Harmon, Zorin and Grinspun 2006). All weights are zero if a triangle or the edge has no extent.
 template <class T>
 std::array<T, 4> isometric_bend(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vector3<T> x3) {
   const auto cotangent = [](Vector3<T> a, Vector3<T> b) { return dot(a, b) / length(cross(a, b)); };
@@ -31,7 +31,7 @@ std::array<T, 4> isometric_bend(Vector3<T> x0, Vector3<T> x1, Vector3<T> x2, Vec
   return {at_1[0] + at_1[1], at_0[0] + at_0[1], -(at_0[0] + at_1[0]), -(at_0[1] + at_1[1])};
 }
 
-/// q = sum K_i x_i, from differences, which keep their digits far from the origin.
+/// Returns q = sum K_i x_i. It uses differences of positions, which keep their digits far from the origin.
 template <class T>
 Vector3<T> curvature(const std::array<double, 4>& weights, const std::array<Vector3<T>, 4>& x) {
   Vector3<T> q = weights[1] * (x[1] - x[0]);

@@ -5,36 +5,38 @@
 #include <algorithm>
 
 /// \file
-/// Repulsion of points, falling with the square of their distance d and gone at a range r:
+/// Points repel each other with a force that falls with the square of their distance d and ends at a range r:
 ///
 ///     F = s (1 / d^2 - 1 / r^2)    for d < r,    U = s (1 / d + d / r^2 - 2 / r)
 ///
-/// s in N m^2. Without the second term it would jump where a pair is let go (docs/paper.md, 3.5.2).
+/// s is in N m^2. Without the second term the force would jump where a pair leaves the range (docs/paper.md,
+/// 3.5.2).
 
 namespace hooke::elements {
 
-/// [N]
+/// Force F [N].
 template <class T>
 T repulsion_force(T strength, T range, T distance) {
   return distance < range ? strength * (1 / (distance * distance) - 1 / (range * range)) : T(0);
 }
 
-/// [J]
+/// Energy U [J].
 template <class T>
 T repulsion_energy(T strength, T range, T distance) {
   return distance < range ? strength * (1 / distance + distance / (range * range) - 2 / range) : T(0);
 }
 
-/// How far apart [m] two points are after a substep at whose end the force is that of there: the root y of
+/// Distance of two points after a substep [m], with the force of the substep's end. It is the root y of
 ///
 ///     y = free + a (1 / y^2 - 1 / r^2),    a = h^2 s (1 / m_1 + 1 / m_2) > 0
 ///
-/// where `free` [m] is how far apart they would be without it, less than r, of any sign. In (0, r): they
-/// never meet, however fast they come and however long h is, and their energy falls, as with any backward
-/// Euler step in a convex potential (Hairer and Wanner, Solving ODEs II, IV.12).
+/// `free` [m] is the distance that they would have without the force, less than r and of any sign. y lies in
+/// (0, r): the points never meet, however fast they approach and however long h is. Their energy falls, as
+/// with any backward Euler step in a convex potential (Hairer and Wanner, Solving ODEs II, IV.12).
 template <class T>
 T repelled_distance(T free, T a, T range) {
-  // y^3 - b y^2 - a = 0 with one positive root, convex from there up: Newton's method comes down to it.
+  // y^3 - b y^2 - a = 0 has one positive root and is convex above it, so that Newton's method comes down to
+  // it.
   constexpr int kMost = 64;
   constexpr T kClose = T(1e-6);
   const T b = free - a / (range * range);
