@@ -109,7 +109,7 @@ void hang_net(World& world) {
 }
 
 TEST_SUITE("world/allocation") {
-  TEST_CASE("what is counted are all calls of operator new") {
+  TEST_CASE("the counter sees all calls of operator new") {
     const AllocationCounter counter;
     const std::vector<int> usual(100);
     struct alignas(64) Line {
@@ -206,7 +206,7 @@ TEST_SUITE("world/allocation") {
     }
   }
 
-  TEST_CASE("ropes and what they are tied to allocate nothing") {
+  TEST_CASE("ropes and what they are hooked to allocate nothing") {
     check_scene("hair_wind", 0.5);  // side by side
     check_scene("hanging_table");
     check_scene("crane", 1);

@@ -136,7 +136,7 @@ bool names_triangle(const std::string& where) {
 }  // namespace
 
 TEST_SUITE("world/bad_mesh") {
-  TEST_CASE("a floor with any defect that files have holds what falls on it, with all of them too") {
+  TEST_CASE("a floor with any defect that mesh files have, or with all of them, holds what falls on it") {
     MeshDesc all = make_floor();
     for (const Defect& defect : make_defects()) {
       CAPTURE(defect.name);
@@ -152,7 +152,9 @@ TEST_SUITE("world/bad_mesh") {
     CHECK(highest == doctest::Approx(0.1).epsilon(1e-2));
   }
 
-  TEST_CASE("what is open, branched, crossing, flat, empty or not finite is no solid, by any way") {
+  TEST_CASE(
+      "a mesh that is open, branched, crossing, flat, empty or not finite is refused wherever a solid is "
+      "needed") {
     const MeshDesc cube = test::make_cube(1);
     MeshDesc open = cube;
     open.triangles.pop_back();
@@ -194,7 +196,7 @@ TEST_SUITE("world/bad_mesh") {
     }
   }
 
-  TEST_CASE("what is flipped, double or inside out is put right, and is the same solid") {
+  TEST_CASE("a mesh that is flipped, double or inside out is mended and is then the same solid") {
     const MeshDesc cube = test::make_cube(1);
     MeshDesc inside_out = cube;
     for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);

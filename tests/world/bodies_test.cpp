@@ -184,7 +184,8 @@ TEST_SUITE("world/bodies") {
     CHECK(most > 3);  // what it falls on, and what that touches
   }
 
-  TEST_CASE("what sleeps far from what moves keeps its contacts, and falls when its ground goes") {
+  TEST_CASE(
+      "bodies that sleep far from moving ones keep their contacts, and fall when their ground is removed") {
     World world = make_world();
     BodyDesc ground;
     ground.shape = Shape::box({5, Real(0.5), 5});
@@ -232,7 +233,8 @@ TEST_SUITE("world/bodies") {
     CHECK(world.body_contacts(lower[9]).size() <= 4);  // those of the two that fall together
   }
 
-  TEST_CASE("the same bits for any number of workers, on any instruction set, and after a restoration") {
+  TEST_CASE(
+      "a heap has the same bits for any number of workers, on any instruction set, and after a restore") {
     const std::vector<std::uint64_t> expected = hashes_of(make_heap(1), 120);
     for (const int workers : {2, 3, 8}) CHECK(hashes_of(make_heap(workers), 120) == expected);
     for (const std::string& target : solver::wide::targets()) {
@@ -271,7 +273,7 @@ TEST_SUITE("world/bodies") {
     CHECK(after.energy.total() <= before.energy.total() * (1 + 1e-6));
   }
 
-  TEST_CASE("a tower of 4 x 4 x 20 boxes, too large to be solved directly, does not begin to lean") {
+  TEST_CASE("a tower of 4 x 4 x 20 boxes, too large to be solved directly, does not begin to tilt") {
     World world = make_world(without_sleep());
     add_slope(world, 0, 0.6);
     std::vector<BodyId> boxes;
@@ -289,7 +291,7 @@ TEST_SUITE("world/bodies") {
     CHECK(aside < 0.004);
   }
 
-  TEST_CASE("bodies that cannot be are refused by name") {
+  TEST_CASE("impossible bodies are refused, and the error names the field") {
     World world = make_world({});
     const auto refused = [&](const BodyDesc& desc) {
       const Result<BodyId> result = world.add_body(desc);
@@ -374,7 +376,7 @@ TEST_SUITE("world/bodies") {
     }
   }
 
-  TEST_CASE("a kinematic body is given a path, from where it is, and lifts what sleeps on it") {
+  TEST_CASE("a kinematic body follows its path from where it is, and lifts what sleeps on it") {
     World world = make_world();
     BodyDesc lift = {.kind = BodyKind::kKinematic, .shape = Shape::box({Real(1), Real(0.25), Real(1)})};
     const BodyId id = take(world.add_body(lift));
@@ -402,7 +404,7 @@ TEST_SUITE("world/bodies") {
     CHECK(world.pose(id).position.y == doctest::Approx(0.75).epsilon(1e-4));
   }
 
-  TEST_CASE("only a kinematic body is given a path, and only a path that there is") {
+  TEST_CASE("only a kinematic body accepts a path, and only a valid path") {
     World world = make_world();
     const BodyId box = take(world.add_body(cube({0, 1, 0})));
     const BodyId lift = take(world.add_body(

@@ -53,7 +53,7 @@ double kinetic(const World& world) {
 }  // namespace
 
 TEST_SUITE("world/breaks") {
-  TEST_CASE("what stops nothing takes its strength for one substep, whatever hook it is") {
+  TEST_CASE("a hook that breaks pulls with its strength for one substep, whatever its kind") {
     for (const int substeps : kSubsteps) {
       for (const HookKind kind : {HookKind::kBall, HookKind::kHinge, HookKind::kFixed, HookKind::kDistance}) {
         World world = make_world(space(substeps));
@@ -73,7 +73,7 @@ TEST_SUITE("world/breaks") {
     }
   }
 
-  TEST_CASE("a weld that breaks by torque turns nothing more than its strength in a substep") {
+  TEST_CASE("a weld that breaks by torque slows a rotation by its strength times one substep") {
     for (const int substeps : kSubsteps) {
       World world = make_world(space(substeps));
       const BodyId box = add_box(world, {}, 6, {}, 0.5);  // I = 6 / 6 kg m^2
@@ -86,7 +86,7 @@ TEST_SUITE("world/breaks") {
     }
   }
 
-  TEST_CASE("a motor that its hinge cannot bear breaks it, and turns no more") {
+  TEST_CASE("a motor that is stronger than its hinge breaks it, and then turns nothing") {
     World world = make_world(space(8));
     const BodyId wheel = add_box(world, {}, 6, {}, 0.5);
     take(world.add_hook({.kind = HookKind::kHinge,
@@ -99,7 +99,8 @@ TEST_SUITE("world/breaks") {
     CHECK(d(world.angular_velocity(wheel).z) > 0);
   }
 
-  TEST_CASE("a ball through a pane on four weak hooks loses what the pane gains, and what they take") {
+  TEST_CASE(
+      "a ball that breaks a pane off four weak hooks loses what the pane gains and what the hooks take") {
     for (const int substeps : kSubsteps) {
       WorldDesc desc = space(substeps);
       World world = make_world(desc);
@@ -128,7 +129,7 @@ TEST_SUITE("world/breaks") {
     }
   }
 
-  TEST_CASE("a cord takes its strength until it breaks, and lets fall") {
+  TEST_CASE("a cord pulls with its strength for one substep and breaks, and its load falls on") {
     for (const int substeps : kSubsteps) {
       WorldDesc desc = without_air();
       desc.substeps = substeps;
@@ -150,7 +151,7 @@ TEST_SUITE("world/breaks") {
     }
   }
 
-  TEST_CASE("a tow by a rope gives its load no more than it bears") {
+  TEST_CASE("a tow rope pulls its load with no more than the strength of its hook") {
     for (const int substeps : kSubsteps) {
       World world = make_world(space(substeps));
       const BodyId truck = take(world.add_body(
@@ -214,7 +215,7 @@ TEST_SUITE("world/breaks") {
     }
   }
 
-  TEST_CASE("hooks that bear in turn break in order of time, the same for any workers") {
+  TEST_CASE("hooks that take a load in turn break in order of time, the same for any number of workers") {
     std::vector<double> times[2];
     std::uint64_t hashes[2] = {};
     for (const int k : {0, 1}) {

@@ -385,7 +385,7 @@ TEST_SUITE("world/calls") {
     }
   }
 
-  TEST_CASE("so is one of a law of bodies, time after time") {
+  TEST_CASE("a step that ends by an exception of a law over bodies is taken back, time after time") {
     Hall h = make_hall();
     bool throws = true;
     take(h.world.add_force_law(BodyForceLaw([&](BodyForceView& view) {

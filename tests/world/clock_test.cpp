@@ -132,7 +132,7 @@ TEST_SUITE("world/clock") {
     CHECK(std::abs(playback.elapsed - accounted) < 1e-12);
   }
 
-  TEST_CASE("without the bound the same overload is the paper's spiral") {
+  TEST_CASE("without the bound the steps that come due grow threefold each time, as in the paper") {
     // Steps that take r = 3 times their length: each picture owes three times the steps of the one before.
     Clock clock = take(Clock::create({.step_seconds = kStep, .catch_up_steps = 1'000'000}));
     CHECK(clock.advance(kStep).steps == 1);
@@ -146,7 +146,7 @@ TEST_SUITE("world/clock") {
     CHECK(clock.dropped_step_count() == 0);
   }
 
-  TEST_CASE("any input gives a sound answer") {
+  TEST_CASE("any elapsed time gives a finite number of steps and a blend in [0, 1)") {
     Clock clock = take(Clock::create({.step_seconds = kStep}));
     const double infinity = std::numeric_limits<double>::infinity();
     for (const double nothing : {0.0, -1.0, -infinity, std::nan("")}) {

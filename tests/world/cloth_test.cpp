@@ -189,7 +189,7 @@ TEST_SUITE("world/cloth") {
     }
   }
 
-  TEST_CASE("a strip bent to an arc holds B / 2 R^2 of each of its areas between hinges") {
+  TEST_CASE("a strip bent to an arc has the bending energy B / 2 R^2 per area between its outer bends") {
     // 8 cells along an arc have 7 hinges between them.
     constexpr double kRadius = 1, kRigidity = 1e-3, kTurn = 0.1;
     for (const auto bend : {ClothDesc::Bend::kAngle, ClothDesc::Bend::kIsometric}) {
@@ -254,7 +254,7 @@ TEST_SUITE("world/cloth") {
     }
   }
 
-  TEST_CASE("isometric bends want a surface that is flat at rest") {
+  TEST_CASE("isometric bends need a surface that is flat at rest") {
     World world = make_world();
     MeshDesc roof;
     roof.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, Real(0.3)}, {1, 1, Real(0.3)}, {0, 2, 0}, {1, 2, 0}};

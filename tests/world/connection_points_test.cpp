@@ -55,7 +55,7 @@ std::string complaint(const Result<HookId>& added) {
 }  // namespace
 
 TEST_SUITE("world/connection_points") {
-  TEST_CASE("every kind of object has its own") {
+  TEST_CASE("every kind of object has connection points of its own") {
     World world = make_world();
     const MeshId mesh = take(world.add_mesh({.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
                                              .triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}}));
@@ -90,7 +90,7 @@ TEST_SUITE("world/connection_points") {
     CHECK(world.connection_points({}).empty());
   }
 
-  TEST_CASE("they are where their names say") {
+  TEST_CASE("connection points are where their names say") {
     World world = make_world();
     const Quat turn = {0, 0, std::sqrt(Real(0.5)), std::sqrt(Real(0.5))};  // x to y
     const BodyId box = add_box(world, {1, 2, 3}, {{"eye", {0.3, 0.1, 0}}}, turn);
@@ -141,7 +141,8 @@ TEST_SUITE("world/connection_points") {
     CHECK(std::abs(d(world.tensions(rope).front()) - (2.5 - 0.5 / 16) * kGravity) < 0.02);
   }
 
-  TEST_CASE("two named places are drawn together, and what is not named comes along") {
+  TEST_CASE(
+      "a hook pulls two connection points together, and an end without a name is held where the other is") {
     World world = make_world(empty_space());
     const BodyId a = add_box(world, {0, 0, 0});
     const BodyId b = add_box(world, {0.7, 0, 0});
@@ -162,7 +163,7 @@ TEST_SUITE("world/connection_points") {
     CHECK(d(world.hook_gap(hinge)) < 1e-4);
   }
 
-  TEST_CASE("the other end of a name is the place nearest to it") {
+  TEST_CASE("the other end of a hook at a connection point is the place nearest to it") {
     World world = make_world();
     const RopeId rope = add_rope(world);
     const BodyId box = add_box(world, {0.3, 2.1, 0});
@@ -176,7 +177,7 @@ TEST_SUITE("world/connection_points") {
     }
   }
 
-  TEST_CASE("a place that was named goes where the object goes, through other removals and a restore") {
+  TEST_CASE("a connection point moves with its object, also when others are removed and after a restore") {
     World world = make_world(without_air());
     const RopeId first = add_rope(world);
     const RopeId rope = add_rope(world, {{"knot", {0.1, 2.2, 0}}, {"third", {}, 3}});
@@ -218,7 +219,7 @@ TEST_SUITE("world/connection_points") {
     CHECK(hang_and_run() == hash);
   }
 
-  TEST_CASE("a name that is not there is answered with those that are") {
+  TEST_CASE("an unknown name is an error that lists the names that exist") {
     World world = make_world();
     const RopeId rope = add_rope(world, {{"knot", {0, 2.2, 0}}});
     const BodyId box = add_box(world, {0, 0, 0});

@@ -35,7 +35,7 @@ HookId tie(World& world, BodyId body, PointRef point) {
 }  // namespace
 
 TEST_SUITE("world/coupled_groups") {
-  TEST_CASE("a ton on a kilogram of rope: no stretch, and the tension of statics") {
+  TEST_CASE("a ton does not stretch a kilogram of rope, whose tension is that of statics") {
     World world = make_world(without_air());
     const RopeId rope = take(world.add_rope({.hook_point = {0, 10, 0},
                                              .direction = {0, Real(-1), 0},
@@ -280,7 +280,7 @@ TEST_SUITE("world/coupled_groups") {
     CHECK(std::abs(crossings[2] - crossings[0] - period) < 0.01 * period);
   }
 
-  TEST_CASE("a tie holds one percent above its load and breaks one percent below it") {
+  TEST_CASE("a hook at a rope holds with a strength 1 % above its load and breaks with one 1 % below it") {
     for (const double share : {1.01, 0.99}) {
       World world = make_world(without_air());
       const RopeId rope = take(world.add_rope(
@@ -299,7 +299,7 @@ TEST_SUITE("world/coupled_groups") {
     }
   }
 
-  TEST_CASE("ties go with what they hold, and the rest stays whole") {
+  TEST_CASE("hooks at ropes are removed with what they hold, and other objects stay whole") {
     World world = make_world(without_air());
     const RopeId gone = add_rope(world, {5, 2, 0}, {5, 1, 0}, 8, 1);
     const RopeId rope =
@@ -319,7 +319,7 @@ TEST_SUITE("world/coupled_groups") {
     run(world, 10);
   }
 
-  TEST_CASE("the same bits for any number of workers and after a restoration") {
+  TEST_CASE("coupled groups have the same bits for any number of workers and after a restore") {
     check_same_bits({}, [](World& world) {
       for (int k = 0; k < 5; ++k) {
         const RopeId rope = take(
@@ -392,7 +392,7 @@ TEST_SUITE("world/coupled_groups") {
     CHECK(std::abs(world.center_of_mass(crate).y - 0.2) < 0.005);
   }
 
-  TEST_CASE("what cannot be hooked is said") {
+  TEST_CASE("an impossible hook at a point is an error that says why") {
     World world = make_world();
     const RopeId rope = take(world.add_rope({}));
     const BodyId body = add_box(world, {0, 0, 0}, 1);

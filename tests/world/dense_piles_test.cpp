@@ -38,8 +38,8 @@ double fastest_of(const World& world, const std::vector<BodyId>& ids) {
 
 TEST_SUITE("world/dense_piles") {
   TEST_CASE(
-      "250 bodies at one place: each meets the eight nearest, and none is pushed faster than one contact "
-      "pushes") {
+      "each of 250 bodies at one place has contacts with the eight nearest, and none is pushed faster than "
+      "one contact pushes") {
     constexpr std::uint32_t kCount = 250;
     for (const Shape& shape : {Shape::sphere(Real(0.4)), Shape::box({Real(0.3), Real(0.5), Real(0.4)})}) {
       World world = make_world(empty_space());
@@ -59,7 +59,7 @@ TEST_SUITE("world/dense_piles") {
     }
   }
 
-  TEST_CASE("a body that is fast stays so among others that it stands in") {
+  TEST_CASE("fast bodies that stand in each other keep their momentum") {
     World world = make_world(empty_space());
     const std::vector<BodyId> ids = add_at_one_place(world, 30, Shape::sphere(Real(0.5)));
     for (const BodyId id : ids) REQUIRE(world.set_velocity(id, {0, 0, 20}));
@@ -70,7 +70,7 @@ TEST_SUITE("world/dense_piles") {
     CHECK(fastest_of(world, ids) < 23.5);
   }
 
-  TEST_CASE("bodies that touch as bodies do are no crowd") {
+  TEST_CASE("bodies that touch without deep overlap are no dense pile") {
     World world = make_world();
     take(world.add_body({}));
     for (int i = 0; i < 48; ++i) {
@@ -84,7 +84,7 @@ TEST_SUITE("world/dense_piles") {
     for (int i = 0; i < 60; ++i) CHECK(world.step(kDt).pairs_left_out == 0);
   }
 
-  TEST_CASE("a crowd has the same bits with any number of workers, and after a restore") {
+  TEST_CASE("a dense pile has the same bits with any number of workers, and after a restore") {
     hooke::test::check_same_bits({}, [](World& world) {
       take(world.add_body({}));
       add_at_one_place(world, 40, Shape::box({Real(0.3), Real(0.2), Real(0.4)}));

@@ -250,7 +250,7 @@ TEST_SUITE("world/element_contacts") {
     }
   }
 
-  TEST_CASE("a ball between the points of a cloth or a rope: momentum stays, and neither passes") {
+  TEST_CASE("a ball that hits a cloth or a rope between its points keeps the momentum, and neither passes") {
     for (const bool on_rope : {false, true}) {
       World world = make_world(empty_space());
       ClothId cloth;
@@ -327,7 +327,7 @@ TEST_SUITE("world/element_contacts") {
     }
   }
 
-  TEST_CASE("the same bits for any number of workers, and again after a restoration") {
+  TEST_CASE("element contacts have the same bits for any number of workers, and again after a restore") {
     check_same_bits(without_air(), [](World& world) {
       take(world.add_body({.shape = Shape::box({Real(0.05), Real(0.3), Real(3)}), .position = {0, -0.3, 0}}));
       for (int k = 0; k < 5; ++k) {

@@ -395,7 +395,7 @@ TEST_SUITE("world/events") {
     }
   }
 
-  TEST_CASE("a hit speed that is no speed is refused by name") {
+  TEST_CASE("a hit speed that is negative or not a number is refused by name") {
     World world = make_world();
     for (const Real bad : {Real(-1), std::numeric_limits<Real>::quiet_NaN()}) {
       BodyDesc desc = ball_at({0, 0, 0});

@@ -84,7 +84,7 @@ TEST_SUITE("world/gas") {
     CHECK(world.measure().energy.kinetic < 1e-6);
   }
 
-  TEST_CASE("a ball breathes as its gas and its skin let it, whatever the substep") {
+  TEST_CASE("the volume of a ball swings at the frequency of its gas and its skin, whatever the substep") {
     // Skin without stiffness: m r'' = 4 pi r^2 p, so that w^2 = 12 pi r P / m at P everywhere.
     WorldDesc still = test::empty_space();
     still.substeps = 64;

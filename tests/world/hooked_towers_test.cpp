@@ -123,7 +123,7 @@ TEST_SUITE("world/hooked towers") {
     CHECK(refused == 0);
   }
 
-  TEST_CASE("more towers than the budget has place for are counted") {
+  TEST_CASE("towers beyond the budget are counted") {
     World world = world_with_ground();
     for (int i = 0; i < 400; ++i) (void)add_tower(world, 3.0 * i);
     std::uint32_t refused = 0;
@@ -158,7 +158,7 @@ TEST_SUITE("world/hooked towers") {
     CHECK(std::abs(world.pose(held).position.x) < 1e-3);
   }
 
-  TEST_CASE("a restitution that is hardly there changes nothing of what rests on a bridge") {
+  TEST_CASE("a tiny restitution changes nothing for a load at rest on a bridge") {
     const auto height = [](double restitution) {
       World world = World::create({.sleeping = false}).value();
       std::vector<hooke::RopeId> ropes;

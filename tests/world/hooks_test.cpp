@@ -36,7 +36,7 @@ void add_ground(World& world) {
 }
 
 TEST_SUITE("world/hooks") {
-  TEST_CASE("a weight hangs on its hook, which says its force") {
+  TEST_CASE("a weight hangs on its hook, which reports the force") {
     World world = World::create().value();
     const BodyId ball = add_ball(world, {0, 1, 0});
     const HookId hook = world.add_hook({.b = {ball}, .anchor = {0, 2, 0}}).value();
@@ -45,7 +45,7 @@ TEST_SUITE("world/hooks") {
     CHECK(d(world.hook_force(hook).force.y) == doctest::Approx(2 * kGravity).epsilon(1e-4));
   }
 
-  TEST_CASE("hinges of planks between two walls do not strain against each other across, however it lies") {
+  TEST_CASE("hinges of planks between two walls have no forces along their axes, however the row is turned") {
     // The last hinge says again what the others have said of all directions but along the row. Errors of 1e-8
     // m in where anchors are gave forces along the axes of a tenth of the weight.
     for (const std::uint32_t seed : {1U, 2U, 5U, 7U}) {
@@ -169,7 +169,7 @@ TEST_SUITE("world/hooks") {
     CHECK(hanging_at({}, {}) == doctest::Approx(-1).epsilon(1e-4));
   }
 
-  TEST_CASE("the gap of a hook is what its ends are off") {
+  TEST_CASE("the gap of a hook is the distance of its ends from where it holds them") {
     World world = World::create().value();
     const BodyId ball = add_ball(world, {1, 0, 0});
     const HookId rope = world

@@ -88,7 +88,7 @@ World make_room(double e, int workers) {
 }  // namespace
 
 TEST_SUITE("world/impacts") {
-  TEST_CASE("a hit goes through a row of balls within one step") {
+  TEST_CASE("an impact goes through a row of balls within one step") {
     World world = make_world(empty_space());
     std::vector<BodyId> row;
     for (int i = 0; i < 5; ++i) {
@@ -101,7 +101,7 @@ TEST_SUITE("world/impacts") {
       CHECK(velocity(world, row[i]).x == doctest::Approx(i == 4 ? 2 : 0).epsilon(1e-5));
   }
 
-  TEST_CASE("what is left of a step after a rebound is lived") {
+  TEST_CASE("a ball that rebounds moves on for the rest of the step") {
     WorldDesc desc = empty_space();
     desc.substeps = 1;
     World world = make_world(desc);
@@ -139,7 +139,7 @@ TEST_SUITE("world/impacts") {
     CHECK(lowest_top > 1 - 1.01 * aside);
   }
 
-  TEST_CASE("tops of bounces: e^2 of the one before, and flat boxes stay flat") {
+  TEST_CASE("each bounce is e^2 as high as the one before, and flat boxes stay flat") {
     for (const double e : {1.0, 0.5}) {
       for (const bool is_box : {false, true}) {
         World world = make_world();
@@ -157,7 +157,7 @@ TEST_SUITE("world/impacts") {
     }
   }
 
-  TEST_CASE("a rough ball takes up spin: 2/7 of the speed at its surface if it does not slide") {
+  TEST_CASE("a rough ball that does not slide takes up a spin of 2/7 of the speed at its surface") {
     WorldDesc desc = empty_space();
     World world = make_world(desc);
     add_floor(world, 1, 1);
@@ -182,7 +182,7 @@ TEST_SUITE("world/impacts") {
     CHECK(velocity(world, id).y == doctest::Approx(2).epsilon(1e-5));
   }
 
-  TEST_CASE("turning boxes that hit each other keep momentum, angular momentum and, with e = 1, energy") {
+  TEST_CASE("rotating boxes that collide keep momentum, angular momentum and, with e = 1, energy") {
     World world = make_world(empty_space());
     for (int i = 0; i < 6; ++i) {
       BodyDesc box =
@@ -222,7 +222,7 @@ TEST_SUITE("world/impacts") {
   }
 
   TEST_CASE(
-      "a tile on the floor takes the hit of a ball ten thousand million times heavier, however they lie") {
+      "a tile on the floor takes the impact of a ball ten thousand million times heavier, however they lie") {
     for (int i = 0; i < 20; ++i) {
       WorldDesc desc = empty_space();
       World world = make_world(desc);
@@ -328,7 +328,7 @@ TEST_SUITE("world/impacts") {
     CHECK(energy_of(lossy) < 0.5 * before);
   }
 
-  TEST_CASE("the bits of hits do not depend on the number of workers, nor on a restore") {
+  TEST_CASE("the bits of impacts do not depend on the number of workers, nor on a restore") {
     const auto hash = [](int workers, bool restored) {
       World world = make_room(0.9, workers);
       run(world, 40);

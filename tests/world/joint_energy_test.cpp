@@ -195,7 +195,7 @@ TEST_SUITE("world/joint_energy") {
     }
   }
 
-  TEST_CASE("what is taken out of the motion of bodies on hooks is not their momentum") {
+  TEST_CASE("the energy that is taken out of bodies on hooks leaves their momentum as it was") {
     for (unsigned seed = 0; seed < 60; ++seed) {
       INFO("seed " << seed);
       Hookups hookups(seed, false, 0, empty_space());

@@ -233,7 +233,7 @@ TEST_SUITE("world/limits") {
     check_all(cases_of_descriptions());
   }
 
-  TEST_CASE("a kind that is none is refused") {
+  TEST_CASE("a kind outside its enumeration is refused") {
     Lot l = make_lot();
     const std::uint64_t before = l.world.state_hash();
     const auto none = [](auto kind) { return static_cast<decltype(kind)>(200); };
@@ -367,7 +367,7 @@ TEST_SUITE("world/limits") {
     CHECK(b.world.mass(BodyId{.slot = a.box.slot, .generation = a.box.generation}) > Real(0));
   }
 
-  TEST_CASE("where a snapshot is restored in another world, its ids mean there what they meant") {
+  TEST_CASE("ids of a snapshot keep their meaning in another world that restores it") {
     Lot a = make_lot();
     Lot b = make_lot();
     const BodyId late = take(b.world.add_body({.kind = BodyKind::kDynamic, .shape = Shape::sphere(1)}));

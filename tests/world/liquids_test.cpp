@@ -50,7 +50,7 @@ std::vector<Quat> turns() {
 }  // namespace
 
 TEST_SUITE("world/liquids") {
-  TEST_CASE("cube roots") {
+  TEST_CASE("the cube root is exact to 1e-15, and 0 for a number that is not positive") {
     for (double x = 1e-30; x < 1e30; x *= 7.3) {
       const double root = math::cube_root(x);
       CHECK(root * root * root == doctest::Approx(x).epsilon(1e-15));

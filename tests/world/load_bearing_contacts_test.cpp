@@ -223,7 +223,7 @@ TEST_SUITE("world/load_bearing_contacts") {
     CHECK(std::abs(held) == doctest::Approx((kTon + kPlanks * kPlankMass) * kGravity).epsilon(0.02));
   }
 
-  TEST_CASE("a ton on a board of two kilograms on planks: all of it is borne") {
+  TEST_CASE("a ton lies on a board of two kilograms on hooked planks, which bear all of it") {
     World world = make_world(awake());
     Bridge bridge(world);
     bridge.join(world);
@@ -235,7 +235,8 @@ TEST_SUITE("world/load_bearing_contacts") {
     CHECK(bearing.force == doctest::Approx(kTon * kGravity).epsilon(0.02));  // it swings
   }
 
-  TEST_CASE("a cart with hinged wheels is borne, though it is hooked itself, and gains no energy") {
+  TEST_CASE(
+      "hooked planks carry a cart with hinged wheels, though it is hooked itself, and it gains no energy") {
     World world = make_world(awake());
     Bridge bridge(world);
     bridge.join(world);
@@ -278,7 +279,7 @@ TEST_SUITE("world/load_bearing_contacts") {
     CHECK(most - start < 1e-3 * start);
   }
 
-  TEST_CASE("what is borne on a slope sticks, or slides by g (sin a - mu cos a)") {
+  TEST_CASE("a load on a hanging slope sticks, or slides by g (sin a - mu cos a)") {
     Ramp rough(0.6);
     const DVec3 start = rough.world.center_of_mass(rough.load);
     run(rough.world, 120);
@@ -293,7 +294,7 @@ TEST_SUITE("world/load_bearing_contacts") {
           doctest::Approx(0.5 * kGravity * (std::sin(angle) - 0.2 * std::cos(angle))).epsilon(0.01));
   }
 
-  TEST_CASE("a heavy top on legs of a kilogram: it stands on the ground, and falls onto it from 1 m") {
+  TEST_CASE("a heavy top on legs of a kilogram stands on the ground, also after a fall from 1 m") {
     for (const double mass : {10.0, 100.0, 1000.0}) {
       CAPTURE(mass);
       for (const double bottom : {0.0, 1.0}) {
@@ -307,7 +308,7 @@ TEST_SUITE("world/load_bearing_contacts") {
     }
   }
 
-  TEST_CASE("a ton laid on a light table that stands on the ground") {
+  TEST_CASE("a ton rests on a light table that stands on the ground") {
     Stand stand(1);
     const BodyId ton = stand.add(kTon, {0, 1.41, 0}, {Real(0.3), Real(0.3), Real(0.3)}, {});
     CHECK(stand.deepest(120) < 1e-3);
@@ -362,7 +363,7 @@ TEST_SUITE("world/load_bearing_contacts") {
     }
   }
 
-  TEST_CASE("a cart of 400 kg rolls on wheels of 20 kg: at its speed, with its energy, without sinking in") {
+  TEST_CASE("a cart of 400 kg on wheels of 20 kg keeps its speed and energy and does not sink in") {
     World world = make_world(awake());
     BodyDesc ground{.kind = BodyKind::kStatic, .shape = Shape::box({200, 1, 200}), .position = {0, -1, 0}};
     ground.contact.friction = Real(0.5);
@@ -409,7 +410,7 @@ TEST_SUITE("world/load_bearing_contacts") {
     CHECK(after.energy.total() < before.energy.total() * (1 + 1e-6));
   }
 
-  TEST_CASE("what is borne has the same bits with any number of workers, and after a restore") {
+  TEST_CASE("load-bearing contacts have the same bits with any number of workers, and after a restore") {
     check_same_bits(without_air(), [](World& world) {
       Bridge bridge(world);
       bridge.hang_on_ropes(world);

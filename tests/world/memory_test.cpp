@@ -74,7 +74,7 @@ void fail_everywhere(Call&& call) {
 }  // namespace
 
 TEST_SUITE("world/memory") {
-  TEST_CASE("what is added for want of memory only in part is taken out again") {
+  TEST_CASE("an object that is added only in part for lack of memory is removed again") {
     fail_everywhere([](Yard& y) { return y.world.add_mesh(wedge()).has_value(); });
     fail_everywhere([](Yard& y) {
       return y.world.add_body({.kind = BodyKind::kDynamic, .shape = Shape::hull_of(y.mesh)}).has_value();
@@ -103,7 +103,7 @@ TEST_SUITE("world/memory") {
     fail_everywhere([](Yard& y) { return y.world.add_field({.vector = {1, 0, 0}}).has_value(); });
   }
 
-  TEST_CASE("a world that there was not the memory to restore is empty, and can be restored later") {
+  TEST_CASE("a world whose restore fails for lack of memory is empty, and can be restored later") {
     Yard yard = make_yard();
     const std::uint64_t before = yard.world.state_hash();
     const Snapshot snapshot = yard.world.snapshot();

@@ -155,7 +155,7 @@ TEST_SUITE("world/mesh_tree") {
     }
   }
 
-  TEST_CASE("what is no solid has no planes, and says why") {
+  TEST_CASE("a mesh that is no solid has no planes, and the error says why") {
     World world = make_world();
     MeshDesc open = test::make_cube(1);
     open.triangles.pop_back();

@@ -310,7 +310,7 @@ TEST_SUITE("world/plasticity") {
     CHECK(apart(hinge.after(0.5), 0.8) < 2e-3);
   }
 
-  TEST_CASE("the hash knows a sheet that was folded and pressed flat again") {
+  TEST_CASE("the hash tells a sheet that was folded and pressed flat again from one that was not") {
     for (const Real yield : {Real(0.3), kRigid}) {
       Hinge folded(yield), plain(yield);
       folded.press(1);
@@ -489,7 +489,7 @@ TEST_SUITE("world/plasticity") {
     CHECK(std::equal(rest.begin(), rest.end(), expected.begin() + 40));
   }
 
-  TEST_CASE("what yields does so to the same bits when an object before it is removed") {
+  TEST_CASE("an object that yields keeps its bits when an object before it is removed") {
     std::vector<DVec3> expected;
     for (const bool removed : {false, true}) {
       World world = make_world();

@@ -212,7 +212,7 @@ TEST_SUITE("world/queries") {
     CHECK(misses > 50);
   }
 
-  TEST_CASE("a swept box meets corners, and passes what its way only grazes") {
+  TEST_CASE("a swept box meets corners, and passes what its path only grazes") {
     World world = make_world();
     add(world, kCube, {5, 0, 0});
     const Quat eighth = quaternion_about(Vec3{0, 0, 1}, Real(std::atan(1.0)));
@@ -225,7 +225,7 @@ TEST_SUITE("world/queries") {
     CHECK_FALSE(take(world.cast_shape(kCube, {{0, 0, 0}}, {-10, 0, 0})));
   }
 
-  TEST_CASE("what overlaps at the start is met at once, with the normal of the shortest way out") {
+  TEST_CASE("a shape that overlaps at the start is met at once, with the normal of the shortest exit") {
     World world = make_world();
     const BodyId body = add(world, kCube, {0, 0, 0});
     const auto hit = take(world.cast_shape(kBall, {{0.1, 0.8, 0}}, {5, 0, 0}));
@@ -333,7 +333,7 @@ TEST_SUITE("world/queries") {
     CHECK(distance() == doctest::Approx(89.5));
   }
 
-  TEST_CASE("asking changes nothing: a world that is asked in every step makes the same steps") {
+  TEST_CASE("queries change nothing, so a world with queries in every step makes the same steps") {
     World quiet = make_crowd();
     World asked = make_crowd();
     for (int i = 0; i < 150; ++i) {
@@ -348,7 +348,7 @@ TEST_SUITE("world/queries") {
     CHECK(answers_of(restored) == answers_of(quiet));
   }
 
-  TEST_CASE("many threads may ask at once") {
+  TEST_CASE("many threads may make queries at once") {
     World world = make_crowd();
     run(world, 20);
     std::vector<std::vector<double>> answers(4);
@@ -359,7 +359,7 @@ TEST_SUITE("world/queries") {
     for (const auto& answer : answers) CHECK(answer == answers[0]);
   }
 
-  TEST_CASE("hostile questions get an answer that names what is wrong") {
+  TEST_CASE("an invalid query is an error that names what is wrong") {
     World world = make_world();
     const BodyId body = add(world, kCube, {0, 0, 0});
     const auto wrong = [](const auto& result) {

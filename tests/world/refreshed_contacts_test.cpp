@@ -156,7 +156,7 @@ TEST_SUITE("world/refreshed_contacts") {
     CHECK(deepest < 0.001);
   }
 
-  TEST_CASE("the bits of lively contacts do not depend on the number of workers, nor on a restore") {
+  TEST_CASE("the bits of refreshed contacts do not depend on the number of workers, nor on a restore") {
     const auto hash = [](int workers, bool restored) {
       WorldDesc desc;
       desc.workers = workers;

@@ -197,11 +197,11 @@ TEST_CASE("repulsion: strands that hang together stay apart with it") {
   CHECK(least_between_tips(1e-6) > 0.02);
 }
 
-TEST_CASE("repulsion: the same bits for any number of workers, and after a restore") {
+TEST_CASE("repulsion: ropes have the same bits for any number of workers, and after a restore") {
   check_same_bits(without_air(), [](World& world) { add_tuft(world, 2e-8); });
 }
 
-TEST_CASE("repulsion: refuses what is not a strength or a range") {
+TEST_CASE("repulsion: a rope refuses an impossible strength or range") {
   World world = make_world();
   RopeDesc desc = rod({}, 1);
   desc.repulsion_strength = Real(-1);

@@ -369,7 +369,7 @@ TEST_CASE("rope contacts: a rope dropped in a heap comes to rest without overlap
   CHECK(least_distance(world.positions(rope), world.positions(rope), true, 3.3 * kThick) > 0.9 * 2 * kThick);
 }
 
-TEST_CASE("rope contacts: the same bits for any number of workers, and after a restore") {
+TEST_CASE("rope contacts: ropes have the same bits for any number of workers, and after a restore") {
   check_same_bits(without_air(), [](World& world) {
     RopeDesc taut = touching(straight({-0.5, 0, 0}, {0.5, 0, 0}, 31), 0.05, 0.4);
     taut.pins = {{.point = 0}, {.point = last_of(taut)}};
@@ -424,7 +424,8 @@ TEST_CASE("rope contacts: three long ropes that rush into each other take no mor
 }
 
 TEST_CASE(
-    "rope contacts: ropes so thick that each segment touches all others are solved in part, which is said") {
+    "rope contacts: ropes so thick that each segment touches all others are solved in part, which is "
+    "reported") {
   World world = make_world();
   std::uint32_t refused = 0;
   for (int r = 0; r < 2; ++r) {

@@ -352,7 +352,7 @@ TEST_SUITE("world/rope_twist") {
     CHECK(shaft.torque() == doctest::Approx(g * kPi * 1e-12 / 2 * kPi / 2).epsilon(1e-5));
   }
 
-  TEST_CASE("what a rope cannot be is refused") {
+  TEST_CASE("impossible values of a rope that twists are refused") {
     World world = make_world();
     const auto complaint = [&](const RopeDesc& desc) {
       const Result<RopeId> rope = world.add_rope(desc);

@@ -98,7 +98,7 @@ void check_held(World& world, BodyId ball, const Slab& slab, double speed, doubl
 }  // namespace
 
 TEST_SUITE("rows") {
-  TEST_CASE("pairs that are parked leave the rows of lively ones right") {
+  TEST_CASE("pairs that are put to sleep leave the row numbers of refreshed pairs right") {
     for (int seed = 0; seed < 24; ++seed) {
       CAPTURE(seed);
       World world = make_world();
@@ -118,7 +118,7 @@ TEST_SUITE("rows") {
     }
   }
 
-  TEST_CASE("what presses the ground and sleeps in part can be woken in part") {
+  TEST_CASE("one body of a sleeping group that presses the ground can be woken") {
     World world = world_of_door_and_load(HookKind::kFixed, Real(100), false);
     run(world, 120);
     const std::vector<BodyContact> contacts = world.body_contacts();
@@ -127,7 +127,7 @@ TEST_SUITE("rows") {
     run(world, 60);
   }
 
-  TEST_CASE("what an undo took away can be made and removed again") {
+  TEST_CASE("bodies that a restore took away can be added and removed again") {
     for (const int count : {1, 5, 300}) {
       World world = make_world();
       const Snapshot before = world.snapshot();
@@ -142,7 +142,7 @@ TEST_SUITE("rows") {
     }
   }
 
-  TEST_CASE("a body put before a slab by hand, or after a long way, does not pass it") {
+  TEST_CASE("a body that is placed in front of a slab, or that comes from far away, does not pass it") {
     for (const double hz : {60.0, 240.0}) {
       for (const double speed : {0.1, 1.0, 1.8, 5.0}) {
         CAPTURE(hz);
@@ -172,7 +172,7 @@ TEST_SUITE("rows") {
     check_held(world, ball, far, 1.0, 2.4);
   }
 
-  TEST_CASE("pairs that are apart are looked at again in time, however long they drifted") {
+  TEST_CASE("pairs that are apart are tested again in time, however long they drifted") {
     // A gap of 3 m that shrinks by less than the last digit of its number in a step.
     const double speed = 1e-4;
     World world = make_world(empty_space());

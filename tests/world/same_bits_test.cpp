@@ -99,7 +99,7 @@ std::vector<std::uint64_t> life() {
 }  // namespace
 
 TEST_SUITE("world/same_bits") {
-  TEST_CASE("the same bits however the host rounds") {
+  TEST_CASE("steps give the same bits however the host rounds") {
     const std::vector<std::uint64_t> expected = life();
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
       REQUIRE(std::fesetround(mode) == 0);
@@ -112,7 +112,7 @@ TEST_SUITE("world/same_bits") {
   }
 
 #ifdef __SSE2__
-  TEST_CASE("the same bits where the host flushes denormals") {
+  TEST_CASE("steps give the same bits where the host flushes denormals") {
     const std::vector<std::uint64_t> expected = life();
     const unsigned before = _mm_getcsr();
     _mm_setcsr(before | 0x8040);  // FTZ and DAZ
@@ -124,7 +124,7 @@ TEST_SUITE("world/same_bits") {
   }
 #endif
 
-  TEST_CASE("the same bits with each instruction set that there is to choose") {
+  TEST_CASE("steps give the same bits with each instruction set of the machine") {
     const std::vector<std::uint64_t> expected = life();
     const std::vector<std::string> sets = instruction_sets();
     REQUIRE_FALSE(sets.empty());
@@ -141,7 +141,7 @@ TEST_SUITE("world/same_bits") {
     CHECK(use_instruction_set("").has_value());
   }
 
-  TEST_CASE("the hash sees everything that acts") {
+  TEST_CASE("the hash covers everything that acts") {
     const std::vector<std::pair<const char*, std::function<void(Fair&)>>> changes = {
         {"gravity",
          [](Fair& f) {
@@ -195,7 +195,7 @@ TEST_SUITE("world/same_bits") {
     }
   }
 
-  TEST_CASE("the hash sees of what bodies and the world are made") {
+  TEST_CASE("the hash covers the properties of bodies and of the world") {
     const BodyDesc plain = {
         .kind = BodyKind::kDynamic, .shape = Shape::sphere(Real(0.5)), .position = {0, 9, 0}};
     const auto hash_with = [](const WorldDesc& desc, const BodyDesc& body) {

@@ -294,7 +294,7 @@ TEST_SUITE("world/seams") {
     CHECK(sew(world, line(dart, {12, 7, 2}), line(dart, {12, 13, 14})).size() == 2);
   }
 
-  TEST_CASE("seams pass a restore with the same bits, with any number of workers") {
+  TEST_CASE("seams have the same bits with any number of workers, and after a restore") {
     test::check_same_bits(without_air(), [](World& world) {
       ClothDesc left = sheet(0, 0.5, 0, -1, 6, 11);
       left.pins = {{0}};
@@ -304,7 +304,7 @@ TEST_SUITE("world/seams") {
     });
   }
 
-  TEST_CASE("what cannot be sewn is told") {
+  TEST_CASE("an impossible seam is an error that says why") {
     World world = make_world();
     const ClothId a = take(world.add_cloth({.columns = 4, .rows = 3}));
     const ClothId b = take(world.add_cloth({.columns = 4, .rows = 3, .corner = {2, 0, 0}}));

@@ -57,7 +57,7 @@ std::string complaint(World& world, const SolidDesc& desc) {
 }  // namespace
 
 TEST_SUITE("world/shape_matching") {
-  TEST_CASE("a kick keeps its momentum and angular momentum, and the form comes back") {
+  TEST_CASE("a kicked solid keeps momentum and angular momentum, and its shape comes back") {
     for (const Real hz : {Real(4), Real(30), kRigid}) {
       World world = make_world(empty_space());
       const SolidId solid =
@@ -84,7 +84,7 @@ TEST_SUITE("world/shape_matching") {
     }
   }
 
-  TEST_CASE("what spins goes on spinning") {
+  TEST_CASE("a spinning solid goes on spinning") {
     World world = make_world(empty_space());
     const SolidId solid =
         take(world.add_solid(matched({3, 3, 3}, {Real(0.4), Real(0.4), Real(0.4)}, Real(20))));
@@ -106,7 +106,7 @@ TEST_SUITE("world/shape_matching") {
     CHECK(std::abs(world.measure().energy.kinetic / energy - 1) < 0.01);
   }
 
-  TEST_CASE("any deformation swings at its frequency, whatever the substeps and cells") {
+  TEST_CASE("any deformation swings at the frequency of the solid, whatever the substeps and cells") {
     for (const int substeps : {8, 32}) {
       for (const int cells : {1, 5}) {
         WorldDesc desc = empty_space();
@@ -139,7 +139,7 @@ TEST_SUITE("world/shape_matching") {
     }
   }
 
-  TEST_CASE("on the ground it sinks in by what its lowest points carry") {
+  TEST_CASE("a solid on the ground sinks in by what its lowest points carry") {
     WorldDesc world_desc = without_air();
     world_desc.particle_substeps = 4;  // (h w)^2 is what one substep leaves too soft, 0.3 %
     World world = make_world(world_desc);
@@ -169,7 +169,7 @@ TEST_SUITE("world/shape_matching") {
     CHECK(d(world.velocities(solid).offset(3).y) == doctest::Approx(0).epsilon(1e-4));
   }
 
-  TEST_CASE("it collides and hooks as other solids do; rigid, it is a pendulum") {
+  TEST_CASE("a matched solid collides and hooks as other solids do, and a rigid one is a pendulum") {
     World world = make_world(without_air());
     SolidDesc desc = matched({2, 2, 2}, {Real(0.2), Real(0.2), Real(0.2)}, kRigid);
     desc.position = {1, 0, 0};
@@ -208,7 +208,7 @@ TEST_SUITE("world/shape_matching") {
     CHECK(length(world.hook_anchors(on_face)[1] - DVec3{5.1, 3.1, 0.1}) < 1e-6);
   }
 
-  TEST_CASE("it comes back from being turned inside out, flattened, and from a point") {
+  TEST_CASE("a matched solid comes back from inside out, from a plane and from a point") {
     for (const int how : {0, 1, 2, 3}) {
       World world = make_world(empty_space());
       const SolidId solid =
@@ -229,7 +229,7 @@ TEST_SUITE("world/shape_matching") {
     }
   }
 
-  TEST_CASE("energy is kept but for what damps it") {
+  TEST_CASE("the energy of a matched solid falls by its damping only") {
     World world = make_world(empty_space());
     const SolidId solid =
         take(world.add_solid(matched({2, 2, 2}, {Real(0.4), Real(0.4), Real(0.4)}, Real(3), Real(0.02))));
@@ -246,7 +246,7 @@ TEST_SUITE("world/shape_matching") {
     CHECK(least < first);
   }
 
-  TEST_CASE("it passes a restore with the same bits, with any number of workers") {
+  TEST_CASE("matched solids have the same bits with any number of workers, and after a restore") {
     test::check_same_bits(without_air(), [](World& world) {
       (void)take(world.add_body({}));
       for (int i = 0; i < 5; ++i) {
@@ -259,7 +259,7 @@ TEST_SUITE("world/shape_matching") {
     });
   }
 
-  TEST_CASE("what cannot be matched is told") {
+  TEST_CASE("an impossible matched solid is an error that says why") {
     World world = make_world();
     SolidDesc desc = matched({1, 1, 1}, {1, 1, 1}, Real(0));
     CHECK(complaint(world, desc) == "solid.match_hz: 0 is out of range, must be positive, or rigid");

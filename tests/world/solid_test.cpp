@@ -167,7 +167,7 @@ TEST_SUITE("world/solid") {
     CHECK(length(after.angular_momentum - before.angular_momentum) < 1e-4 * length(before.angular_momentum));
   }
 
-  TEST_CASE("the same bits for any number of workers, and after a restore") {
+  TEST_CASE("solids have the same bits for any number of workers, and after a restore") {
     std::uint64_t expected = 0;
     for (const int workers : {1, 2, 3, 8}) {
       World world = make_world({.workers = workers});
@@ -209,7 +209,7 @@ TEST_SUITE("world/solid") {
       CHECK(world.positions(second)[i] == alone.positions(twin)[i]);
   }
 
-  TEST_CASE("what cannot be a solid comes back as an error that names it, and changes nothing") {
+  TEST_CASE("an impossible solid is an error that names the field, and changes nothing") {
     World world = make_world();
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const MeshId open = take(world.add_mesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));

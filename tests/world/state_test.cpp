@@ -75,7 +75,7 @@ std::vector<std::uint64_t> hashes(Stage& stage, int steps) {
 }  // namespace
 
 TEST_SUITE("world/state") {
-  TEST_CASE("the same bits for any number of workers") {
+  TEST_CASE("a world has the same bits for any number of workers") {
     Stage one = make_stage(1);
     const auto expected = hashes(one, 60);
     for (const int workers : {2, 3, 8}) {
@@ -84,7 +84,7 @@ TEST_SUITE("world/state") {
     }
   }
 
-  TEST_CASE("the same bits for every instruction set") {
+  TEST_CASE("a world has the same bits for every instruction set") {
     std::vector<std::uint64_t> expected;
     for (const std::string& target : solver::wide::targets()) {
       REQUIRE(solver::wide::use_target(target));
@@ -213,7 +213,8 @@ TEST_SUITE("world/state") {
     }
   }
 
-  TEST_CASE("a net with a force that is no number on one ball is put back once, and falls on as all of it") {
+  TEST_CASE(
+      "a net with a force that is no number on one ball is quarantined once, and then falls on as a whole") {
     constexpr int kSide = 30;  // beyond the budget of an exact solution: ball hooks side by side
     World world = make_world({.sleeping = false});
     std::vector<BodyId> balls;
@@ -277,7 +278,7 @@ TEST_SUITE("world/state") {
     }
   }
 
-  TEST_CASE("what flies far is followed by its origin without a jump") {
+  TEST_CASE("the origin follows an object that flies far without a jump") {
     World world = make_world(test::empty_space());
     ParticlesDesc desc;
     desc.particles = {{.velocity = {Real(100), 0, 0}},

@@ -137,7 +137,7 @@ TEST_SUITE("world/waking") {
     CHECK(far.world.asleep(far.box));
   }
 
-  TEST_CASE("what lay on a cloth falls when the cloth goes or is let go") {
+  TEST_CASE("a body on a cloth falls when the cloth is removed or unpinned") {
     const auto fall = [](const std::function<void(World&, ClothId)>& call) {
       World world = make_world();
       const ClothId cloth = take(world.add_cloth({.columns = 9,
