@@ -1,7 +1,7 @@
 #pragma once
 
-/// The engine's own invariants. Active in the `dev` and `checked` builds, absent in `release`: bad input
-/// never reaches an assertion, it comes back as an Error. The expression must have no side effects.
+/// Checks an invariant of the engine itself in the `dev` and `checked` builds, and is absent in `release`.
+/// Bad input never reaches an assertion; it comes back as an Error. The expression must have no side effects.
 #ifdef HOOKE_CHECKS
 #define HOOKE_ASSERT(condition)                                                     \
   do {                                                                              \
@@ -15,8 +15,8 @@ namespace hooke::base {
 
 using AssertHandler = void (*)(const char* condition, const char* file, int line);
 
-/// Called for a broken invariant; the default writes one line to stderr and traps. Returns the handler it
-/// replaces.
+/// Sets the function that is called for a broken invariant and returns the one it replaces. The default (and
+/// null) writes one line to stderr and traps.
 AssertHandler set_assert_handler(AssertHandler handler);
 
 void assert_failed(const char* condition, const char* file, int line);

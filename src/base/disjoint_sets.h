@@ -8,13 +8,14 @@
 
 namespace hooke::base {
 
-/// Sets that merge. The root of a set is its smallest member, so that the result does not depend on order.
+/// This is a union-find structure. The root of a set is its smallest member, so that the result does not
+/// depend on the order of merges.
 class DisjointSets {
  public:
   DisjointSets() = default;
   explicit DisjointSets(std::size_t count) { reset(count); }
 
-  /// `count` sets of one member each.
+  /// Starts anew with `count` sets of one member each.
   void reset(std::size_t count) {
     parent_.resize(count);
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});

@@ -8,10 +8,10 @@
 
 namespace hooke::base {
 
-/// Sets round-to-nearest and gradual underflow for the calling thread and puts back what the host had on
-/// destruction: a host that flushes denormals or rounds upward must not change the bits (and must get its own
-/// settings back). A few nanoseconds where the host has the same. Texts become numbers, and numbers texts, by
-/// the rounding of the x87 unit, whatever computes: it is set too.
+/// Sets round-to-nearest and gradual underflow for the calling thread, and restores the settings of the host
+/// on destruction. A host that flushes denormals or rounds upward must not change the bits of a result. This
+/// costs a few nanoseconds where the host has the same settings. The rounding of the x87 unit is set, too,
+/// because the C library converts between text and numbers by it.
 class FloatEnvironment {
  public:
 #ifdef HOOKE_HAS_MXCSR
@@ -37,8 +37,8 @@ class FloatEnvironment {
 
  private:
 #ifdef HOOKE_HAS_MXCSR
-  static constexpr unsigned kDefault = 0x1F80;  // all exceptions masked, nearest, no FTZ, no DAZ
-  static constexpr unsigned kFlags = 0x3F;      // what has happened so far
+  static constexpr unsigned kDefault = 0x1F80;  // All exceptions masked, round to nearest, no FTZ, no DAZ.
+  static constexpr unsigned kFlags = 0x3F;      // Exceptions that have occurred so far.
   [[nodiscard]] bool differs() const {
     return (saved_ & ~kFlags) != kDefault;
   }

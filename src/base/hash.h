@@ -8,8 +8,9 @@
 
 namespace hooke::base {
 
-/// A 64-bit hash of the bytes fed to it, the same on every machine of little-endian order. Not cryptographic.
-/// Eight bytes a round: multiply, rotate, fold (after the mixing step of splitmix64, Steele et al. 2014).
+/// This is a 64-bit hash of the bytes fed to it, the same on every little-endian machine; it is not
+/// cryptographic. Each round takes eight bytes: xor, multiply, then xor with the high half shifted down
+/// (after the mixing step of splitmix64, Steele et al. 2014).
 class StateHash {
  public:
   void add_word(std::uint64_t word) {
@@ -24,7 +25,7 @@ class StateHash {
     add_bytes(&value, sizeof(T));
   }
 
-  /// The length, then every element.
+  /// Adds the length of the column, then every element.
   template <class T>
   void add(const std::vector<T>& column) {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -6,7 +6,8 @@
 
 namespace hooke::base {
 
-/// Room for `more` elements, so that appending them cannot fail. Grows as push_back does.
+/// Reserves memory for `more` elements, so that appending them cannot fail. The capacity at least doubles, so
+/// that repeated calls stay cheap.
 template <class T>
 void make_room(std::vector<T>& column, std::size_t more = 1) {
   const std::size_t needed = column.size() + more;

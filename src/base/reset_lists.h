@@ -5,7 +5,7 @@
 
 namespace hooke::base {
 
-/// The first `count` lists are there and empty; none loses its memory.
+/// Ensures that there are `count` lists and empties these; none loses its memory.
 template <class T>
 void reset_lists(std::size_t count, std::vector<std::vector<T>>& lists) {
   if (lists.size() < count) lists.resize(count);

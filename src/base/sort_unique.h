@@ -5,7 +5,7 @@
 
 namespace hooke::base {
 
-/// Sorts in ascending order and keeps one of each.
+/// Sorts in ascending order and removes duplicates.
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());

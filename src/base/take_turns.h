@@ -4,8 +4,8 @@
 
 namespace hooke::base {
 
-/// Exchanges a list with the one that it was before. Both then have room for the longer one: where two take
-/// turns, neither allocates at a length that was reached before.
+/// Exchanges the list of this step with that of the step before. Both then have room for the longer one, so
+/// that neither allocates again at a length that was reached before.
 template <class T>
 void take_turns(std::vector<T>& now, std::vector<T>& before) {
   before.reserve(now.capacity());

@@ -8,13 +8,14 @@ namespace hooke::math {
 
 namespace {
 
-/// Quadratic from above; where the two largest roots nearly meet, each halves the distance.
+/// Newton's iteration from above converges quadratically; where the two largest roots nearly coincide, each
+/// step only halves the distance.
 constexpr int kIterations = 20;
 
-/// Horn's matrix, for quaternions (w, x, y, z).
+/// Returns Horn's matrix for quaternions in the order (w, x, y, z).
 Matrix4<double> horn_matrix(const Matrix3<double>& a) {
   const double xx = a.x.x, yy = a.y.y, zz = a.z.z;
-  // The first letter is that of q, a column of A, the second that of p.
+  // The first letter names the component of q (a column of A), the second that of p.
   const double xy = a.x.y, xz = a.x.z, yx = a.y.x, yz = a.y.z, zx = a.z.x, zy = a.z.y;
   const double rows[4][4] = {{xx + yy + zz, yz - zy, zx - xz, xy - yx},
                              {yz - zy, xx - yy - zz, xy + yx, zx + xz},
@@ -27,7 +28,7 @@ Matrix4<double> horn_matrix(const Matrix3<double>& a) {
   return n;
 }
 
-/// Of the matrix without row i and column j, with its sign.
+/// Returns the determinant of n without row i and column j, with the sign of the cofactor.
 double cofactor(const Matrix4<double>& n, std::size_t i, std::size_t j) {
   const auto& m = n.m;
   std::array<std::size_t, 3> r = {}, c = {};
@@ -41,7 +42,7 @@ double cofactor(const Matrix4<double>& n, std::size_t i, std::size_t j) {
   return (i + j) % 2 == 0 ? minor : -minor;
 }
 
-/// The largest root for |A| = 1; none is above sqrt(3).
+/// Returns the largest root for |A| = 1; no root is above sqrt(3).
 double largest_eigenvalue(double determinant_of_a, double determinant_of_n) {
   double l = 1.7320508075688773;
   for (int i = 0; i < kIterations; ++i) {
@@ -62,7 +63,7 @@ Quaternion<double> closest_rotation(const Matrix3<double>& a) {
   Matrix4<double> n = horn_matrix(unit);
   const double eigenvalue = largest_eigenvalue(determinant(unit), determinant(n));
   for (std::size_t i = 0; i < 4; ++i) n.m[i][i] -= eigenvalue;
-  // Columns of the adjugate are multiples of the eigenvector; the longest is the most exact.
+  // Columns of the adjugate are multiples of the eigenvector; the longest one has the least rounding error.
   std::size_t best = 0;
   double most = -1;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -4,14 +4,14 @@
 
 namespace hooke::math {
 
-/// The cube root of x, to the last digit or two, with the same bits everywhere: std::cbrt is as each C
-/// library has it. 0 for what is not positive.
+/// Returns the cube root of x, to the last digit or two. It gives the same bits everywhere, which std::cbrt
+/// does not. The result is 0 if x is not positive or not finite.
 inline double cube_root(double x) {
   if (!(x > 0) || !std::isfinite(x)) return 0;
   int exponent = 0;
-  double part = std::frexp(x, &exponent);  // in [0.5, 1)
+  double part = std::frexp(x, &exponent);  // In [0.5, 1).
   for (; exponent % 3 != 0; ++exponent) part *= 0.5;
-  double root = 0.7;  // of [0.125, 1)
+  double root = 0.7;  // First guess for a number in [0.125, 1).
   for (int i = 0; i < 8; ++i) root -= (root - part / (root * root)) / 3;
   return std::ldexp(root, exponent / 3);
 }

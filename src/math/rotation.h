@@ -9,15 +9,16 @@
 
 namespace hooke::math {
 
-/// The same rotation, of unit length in double too: what it turns may be far away.
+/// Returns the same rotation in double, normalized anew, because what it rotates may be far from the origin.
 template <class T>
 Quaternion<double> in_double(Quaternion<T> q) {
   return normalize(Quaternion<double>{static_cast<double>(q.x), static_cast<double>(q.y),
                                       static_cast<double>(q.z), static_cast<double>(q.w)});
 }
 
-/// The rotation by |phi| [rad] about phi, of unit length to rounding; made of + - * / only. Up to a quarter
-/// radian by the first terms of the series of sine and cosine, which are exact there to 3e-16.
+/// Returns the rotation by |phi| [rad] about phi, of unit length to rounding, from + - * / and sqrt only. Up
+/// to a quarter of a radian it takes the first terms of the series of sine and cosine, which are exact there
+/// to 3e-16.
 template <class T>
 Quaternion<T> quaternion_of(Vector3<T> phi) {
   const Vector3<T> half = T(0.5) * phi;
@@ -34,14 +35,14 @@ Quaternion<T> quaternion_of(Vector3<T> phi) {
   return {s * half.x, s * half.y, s * half.z, angle.cos};
 }
 
-/// The whole turns nearest to an angle [rad].
+/// Returns the multiple of 2 pi nearest to an angle [rad].
 inline double whole_turns(double angle) {
   constexpr double kTurn = 2 * std::numbers::pi;
   return kTurn * std::floor(angle / kTurn + 0.5);
 }
 
-/// The turn about one axis that leads from `before` to `after`, of those the one nearest to `about` [rad]:
-/// there is one for each number of whole turns.
+/// Returns the rotation vector [rad] that leads from `before` to `after`. There is one for each number of
+/// whole turns; the result is the one nearest to `about`.
 template <class T>
 Vector3<T> turn_between(Quaternion<T> before, Quaternion<T> after, Vector3<T> about) {
   const Quaternion<T> q = after * conjugate(before);

@@ -9,7 +9,7 @@
 
 namespace hooke::math {
 
-/// Symmetric 3x3 matrix.
+/// A symmetric 3x3 matrix is stored by the six entries of its upper triangle.
 template <class T>
 struct Symmetric3 {
   T xx = T(0), xy = T(0), xz = T(0), yy = T(0), yz = T(0), zz = T(0);
@@ -27,7 +27,7 @@ constexpr Vector3<T> operator*(const Symmetric3<T>& m, Vector3<T> v) {
           m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
-/// along n n^T + across (1 - n n^T) for a unit vector n.
+/// Returns along n n^T + across (1 - n n^T) for a unit vector n.
 template <class T>
 constexpr Symmetric3<T> axial(Vector3<T> n, T along, T across) {
   const T d = along - across;
@@ -35,17 +35,19 @@ constexpr Symmetric3<T> axial(Vector3<T> n, T along, T across) {
           across + d * n.y * n.y, d * n.y * n.z, across + d * n.z * n.z};
 }
 
-/// A power of two that brings x to about 1; products of three such numbers neither overflow nor vanish.
+/// Returns a power of two that brings x to about 1. Products of three numbers scaled by it neither overflow
+/// nor vanish.
 constexpr float power_to_one(float x) {
   constexpr std::uint32_t kExponent = 0x7F80'0000;
   const std::uint32_t exponent = std::bit_cast<std::uint32_t>(x) & kExponent;
   return std::bit_cast<float>(std::clamp(0x7F00'0000 - exponent, 0x0080'0000U, 0x7F00'0000U));
 }
 constexpr double power_to_one(double /*x*/) {
-  return 1;  // its range is wide enough
+  return 1;  // The range of double is wide enough.
 }
 
-/// The inverse by cofactors; meant for positive definite matrices. Not finite if the determinant is zero.
+/// Returns the inverse by cofactors, for positive definite matrices. It is not finite if the determinant is
+/// zero.
 template <class T>
 constexpr Symmetric3<T> inverse(const Symmetric3<T>& matrix) {
   const T unit = power_to_one(std::max({matrix.xx, matrix.yy, matrix.zz}));
@@ -69,7 +71,7 @@ constexpr T determinant(const Symmetric3<T>& m) {
          m.xz * (m.xy * m.yz - m.yy * m.xz);
 }
 
-/// The lower triangular L with L L^T = m, a positive definite matrix; not finite for others.
+/// Returns the lower triangular L with L L^T = m. It is not finite unless m is positive definite.
 template <class T>
 Matrix3<T> cholesky(const Symmetric3<T>& m) {
   const T xx = std::sqrt(m.xx);
@@ -80,7 +82,7 @@ Matrix3<T> cholesky(const Symmetric3<T>& m) {
   return {{xx, yx, zx}, {T(0), yy, zy}, {T(0), T(0), std::sqrt(m.zz - zx * zx - zy * zy)}};
 }
 
-/// The symmetric part of a b c.
+/// Returns the symmetric part of the product a b c.
 template <class T>
 constexpr Symmetric3<T> symmetric_product(const Symmetric3<T>& a, const Symmetric3<T>& b,
                                           const Symmetric3<T>& c) {

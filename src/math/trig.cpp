@@ -12,14 +12,14 @@ constexpr double kHalfPi = 0x1.921fb54442d18p+0;
 constexpr double kHalfPiError = 0x1.1a62633145c07p-54;  // pi/2 - kHalfPi
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 
-// pi/2 as a head of 33 bits and a tail: a product of the head and a whole number up to 2^20 is exact.
+// The head of pi/2 has 33 bits, so that its product with a whole number up to 2^20 is exact.
 constexpr double kHalfPiHead = 0x1.921fb54400000p+0;
 constexpr double kHalfPiTail = 0x1.0b4611a626331p-34;
 
 constexpr double kManyTurns = 0x1p+20 * kHalfPi;     // 2^18 turns: the largest angle that is reduced exactly
 constexpr double kNoPhaseFrom = 9007199254740992.0;  // 2^53
 
-// atan(k / 8), rounded to nearest.
+// These are atan(k / 8), rounded to nearest.
 constexpr double kArctangents[9] = {0.0,
                                     0x1.fd5ba9aac2f6ep-4,
                                     0x1.f5b75f92c80ddp-3,
@@ -30,7 +30,7 @@ constexpr double kArctangents[9] = {0.0,
                                     0x1.700a7c5784634p-1,
                                     0x1.921fb54442d18p-1};
 
-/// sin(r + tail), |r| <= pi/4, by Taylor's series; what is left out is below r^19 / 19! < 1e-19.
+/// Returns sin(r + tail) for |r| <= pi/4 by its Taylor series. The remainder is below r^19 / 19! < 1e-19.
 double sine_near_zero(double r, double tail) {
   const double z = r * r;
   double p = 1.0 / 355687428096000.0;
@@ -44,7 +44,7 @@ double sine_near_zero(double r, double tail) {
   return r + (r * z * p + tail * (1.0 - 0.5 * z));
 }
 
-/// cos(r + tail), |r| <= pi/4; what is left out is below r^18 / 18! < 1e-17.
+/// Returns cos(r + tail) for |r| <= pi/4. The remainder is below r^18 / 18! < 1e-17.
 double cosine_near_zero(double r, double tail) {
   const double z = r * r;
   double p = 1.0 / 20922789888000.0;
@@ -58,8 +58,8 @@ double cosine_near_zero(double r, double tail) {
   return head + (((1.0 - head) - 0.5 * z) + (z * z * p - r * tail));
 }
 
-/// atan(t) for t in [0, 1]: atan(c) + atan((t - c) / (1 + t c)) with c the nearest eighth, so that the series
-/// is taken at |u| <= 1/16; what is left out is below u^15 / 15 < 1e-19.
+/// Returns atan(t) for t in [0, 1] as atan(c) + atan((t - c) / (1 + t c)), with c the nearest eighth. The
+/// series is then taken at |u| <= 1/16, and its remainder is below u^15 / 15 < 1e-19.
 double arctangent_of_fraction(double t) {
   const double eighths = std::floor(8.0 * t + 0.5);
   const double c = 0.125 * eighths;
@@ -129,7 +129,7 @@ float atan2(float y, float x) {
   return static_cast<float>(atan2(static_cast<double>(y), static_cast<double>(x)));
 }
 
-// The order of every operation here is that of solver/soft/particle_kernels.cpp.
+// Kernels must give the same bits, so the order of operations is that of solver/soft/particle_kernels.cpp.
 float quick_atan2(float y, float x) {
   const float size_x = std::fabs(x);
   const float size_y = std::fabs(y);

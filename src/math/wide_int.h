@@ -5,15 +5,15 @@
 #include <cstdint>
 
 /// \file
-/// Integers for exact signs of determinants.
+/// Integers that are wide enough for exact signs of determinants.
 
 namespace hooke::math {
 
 __extension__ typedef __int128 Int128;  // NOLINT(modernize-use-using): only a typedef takes the prefix
 __extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
-/// A signed integer of 448 bits in two's complement. Sums and products wrap beyond that: the caller knows how
-/// many bits his numbers have.
+/// This is a signed integer of 448 bits in two's complement. Sums and products wrap beyond that; callers must
+/// bound the bits of their numbers.
 class WideInt {
  public:
   static constexpr std::size_t kWords = 7;
@@ -51,7 +51,7 @@ class WideInt {
   friend constexpr WideInt operator-(const WideInt& a, const WideInt& b) { return a + -b; }
 
   friend constexpr WideInt operator*(const WideInt& a, const WideInt& b) {
-    // Of numbers that are not negative the high words are zero, and need no products.
+    // The high words of nonnegative numbers are zero and need no products.
     if (a.is_negative()) return -(-a * b);
     if (b.is_negative()) return -(a * -b);
     WideInt product;
@@ -67,16 +67,16 @@ class WideInt {
     return product;
   }
 
-  /// -1, 0 or 1.
+  /// Returns -1, 0 or 1.
   [[nodiscard]] constexpr int sign() const {
     if (is_negative()) return -1;
     return *this == WideInt{} ? 0 : 1;
   }
 
-  /// The nearest double but for two units in the last place.
+  /// Returns a double within two units in the last place of the value.
   [[nodiscard]] constexpr double approximate() const {
     if (is_negative()) return -(-*this).approximate();
-    // The three highest words that are not zero hold at least 129 bits.
+    // The highest nonzero word and the two below it hold at least 129 significant bits.
     std::size_t top = kWords - 1;
     while (top > 2 && words_[top] == 0) --top;
     double value = 0;
@@ -95,7 +95,7 @@ class WideInt {
 
   static constexpr double kWordSize = 18446744073709551616.0;
 
-  std::array<std::uint64_t, kWords> words_ = {};  // lowest first
+  std::array<std::uint64_t, kWords> words_ = {};  // Lowest first.
 };
 
 }  // namespace hooke::math

@@ -2,7 +2,7 @@
 
 namespace hooke::parallel {
 
-/// Half-open range of rows [begin, end).
+/// This is the half-open range of rows [begin, end).
 struct Range {
   int begin = 0;
   int end = 0;

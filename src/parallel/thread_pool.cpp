@@ -15,8 +15,9 @@ namespace hooke::parallel {
 
 namespace {
 
-/// About 50 microseconds: longer than the gap between two stages of a step, shorter than a scheduler's slice.
-/// With more workers than processors a spinning thread only keeps another from its work.
+/// Spinning lasts about 50 microseconds: longer than the gap between two stages of a step, shorter than a
+/// scheduler's time slice. With more workers than processors a spinning thread only keeps another from its
+/// work.
 int spins_for(int workers) {
   constexpr int kSpins = 4000;
   return workers <= static_cast<int>(std::thread::hardware_concurrency()) ? kSpins : 1;
@@ -35,7 +36,7 @@ inline void pause_briefly() {
 struct ThreadPool::Shared {
   explicit Shared(int workers) : spins(spins_for(workers)), parts(workers) {}
 
-  /// The number of the last job that someone has begun this part of.
+  /// `begun` is the number of the last job of which some thread has begun this part.
   struct alignas(64) Part {
     std::atomic<std::uint64_t> begun{0};
   };
@@ -47,7 +48,7 @@ struct ThreadPool::Shared {
   std::atomic<bool> stopping{false};
   std::atomic<int> sleepers{0};
   void (*job)(void*, int) = nullptr;
-  std::exception_ptr failure;  ///< Of the first part that failed; under `mutex`.
+  std::exception_ptr failure;  ///< Exception of the first part that failed; guarded by `mutex`.
   void* context = nullptr;
   std::mutex mutex;
   std::condition_variable wake;
@@ -64,9 +65,9 @@ struct ThreadPool::Shared {
     sleepers.fetch_sub(1);
   }
 
-  /// Does what is left of a job, its own part first: a part whose thread is kept from its work by others on
-  /// the machine is done by whoever is free. A part of an older job cannot be begun any more: a job ends when
-  /// all its parts have been begun and done.
+  /// Does the parts of a job that no thread has begun, its own part first. So a part whose thread the system
+  /// has not scheduled is done by another thread. No part of an older job can be begun any more, because a
+  /// job ends only when all its parts are done.
   void do_parts(std::uint64_t number, int own) {
     const int count = static_cast<int>(parts.size());
     for (int i = 0; i < count; ++i) {
@@ -96,7 +97,7 @@ struct ThreadPool::Shared {
 
   void publish() {
     {
-      // The lock orders this with a worker that is about to sleep: it either sees the number or is woken.
+      // The lock orders this with a worker that is about to sleep: it either sees the new number or is woken.
       const std::lock_guard<std::mutex> lock(mutex);
       job_number.fetch_add(1, std::memory_order_release);
     }

@@ -8,13 +8,14 @@
 
 namespace hooke::parallel {
 
-/// Threads that wait for short jobs: they spin for some tens of microseconds after a job, then sleep.
+/// The pool holds threads that wait for short jobs. They spin for some tens of microseconds after a job, then
+/// sleep.
 ///
-/// The split of a job depends on nothing but its size and the number of workers, and kernels write disjoint
-/// rows, so the result depends on neither.
+/// The split of a job depends only on its size and the number of workers. Kernels write disjoint rows, so
+/// results depend on neither.
 class ThreadPool {
  public:
-  /// `workers` counts the calling thread: 1 starts none. Range [1, 64].
+  /// `workers` counts the calling thread, so that 1 starts no thread. It must be in [1, 64].
   explicit ThreadPool(int workers);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -22,9 +23,9 @@ class ThreadPool {
 
   [[nodiscard]] int workers() const { return workers_; }
 
-  /// Calls `job(context, part)` once for each part in [0, workers), on whichever thread is free; each thread
-  /// prefers the same part every time. Returns when all are done, also where some end by an exception, and
-  /// then throws one of these. Not reentrant.
+  /// Calls `job(context, part)` once for each part in [0, workers), on whichever thread is free. Each thread
+  /// prefers the same part every time. Returns when all parts are done; if some threw, the exception of the
+  /// first is thrown then. It must not be called from within a job.
   void run(void (*job)(void* context, int part), void* context);
 
  private:
@@ -44,8 +45,8 @@ void call_kernel(Kernel& kernel, Range range, [[maybe_unused]] int part) {
 
 /// Calls `kernel(range)`, or `kernel(range, part)`, over disjoint ranges that cover [0, count). Ranges start
 /// at multiples of `grain`, the size below which a job is not worth splitting. Kernels of one call must not
-/// write a row that another range reads. `part`, in [0, workers), is the number of the range: a part has the
-/// same rows every time, whichever thread does it, and so has memory that is kept for it.
+/// write a row that another range reads. `part`, in [0, workers), is the number of the range. A part has the
+/// same rows every time, whichever thread does it, so memory may be kept per part.
 template <class Kernel>
 void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
   if (count <= 0) return;
@@ -69,9 +70,9 @@ void for_ranges(ThreadPool& pool, int count, int grain, Kernel&& kernel) {
       &context);
 }
 
-/// Calls `kernel(item)` for each item in [0, count): each thread takes the next one that is left. For items
-/// whose costs differ much. Kernels of one call must not write what another item reads, and memory that is
-/// kept from one call to the next belongs to items, not to threads.
+/// Calls `kernel(item)` for each item in [0, count); each thread takes the next item that is left. Use it for
+/// items whose costs differ much. Kernels of one call must not write what another item reads. Memory that is
+/// kept from call to call must belong to items, not to threads.
 template <class Kernel>
 void for_items(ThreadPool& pool, int count, Kernel&& kernel) {
   if (pool.workers() == 1 || count <= 1) {

@@ -15,7 +15,8 @@ namespace hooke::process {
 
 namespace {
 
-/// The attributes of a process to be: own group, no signal blocked or ignored. Holds an errno when it fails.
+/// The attributes give the new process a group of its own, and no signal that is blocked or ignored. `error`
+/// is an errno, or 0.
 struct Attributes {
   posix_spawnattr_t value;
   int error = 0;
@@ -39,7 +40,7 @@ struct Attributes {
   ~Attributes() { posix_spawnattr_destroy(&value); }
 };
 
-/// What happens to the descriptors of a process to be. Holds an errno when it fails.
+/// The actions set up the descriptors of the new process. `error` is an errno, or 0.
 struct Actions {
   posix_spawn_file_actions_t value;
   int error = 0;
@@ -58,7 +59,7 @@ struct Actions {
   ~Actions() { posix_spawn_file_actions_destroy(&value); }
 };
 
-/// A copy above the three standard descriptors, so that none is overwritten while they are set up.
+/// Returns a copy above the three standard descriptors, so that none is overwritten while they are set up.
 Descriptor copy_above_standard(int number) {
   return Descriptor(number < 0 ? -1 : ::fcntl(number, F_DUPFD_CLOEXEC, 3));
 }

@@ -10,11 +10,11 @@
 #include <vector>
 
 /// \file
-/// Other programs, started and ended cleanly: the importer of models, ffmpeg, gnuplot.
+/// Starts and ends other programs: the importer of models, ffmpeg, gnuplot.
 
 namespace hooke::process {
 
-/// A file descriptor that is closed with this value.
+/// A Descriptor owns a file descriptor and closes it on destruction.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -40,27 +40,29 @@ struct Pipe {
   Descriptor write;
 };
 
-/// Closed in programs that are started. Nothing when the system has none left.
+/// Returns a pipe whose ends are closed in programs that are started, or nothing when the system has none
+/// left.
 std::optional<Pipe> make_pipe();
 
-/// The path of the program `name` in the folder of the running one; empty if there is none.
+/// Returns the path of the program `name` in the folder of the running program, or an empty string if there
+/// is none.
 std::string find_beside(const std::string& name);
 
-/// What a program gets as its three standard streams; -1 is /dev/null.
+/// These are the three standard streams of a program; -1 stands for /dev/null.
 struct Streams {
   int input = -1;
   int output = -1;
   int error = -1;
 };
 
-/// A running program, in a process group of its own and with nothing open but its standard streams. Killed
-/// and collected, with what it started, when it goes out of scope.
+/// A Child is a running program in a process group of its own; only its standard streams are open. The
+/// destructor kills the whole group and collects the program.
 class Child {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// The first word is a path, or a name that is looked for in PATH. kUnsupported when it cannot be started:
-  /// `where` is the first word, the message the system's reason.
+  /// Starts a program. The first word is a path, or a name that is looked up in PATH. If it cannot be
+  /// started, the Error is kUnsupported, with the first word as `where` and the system's reason as message.
   static Result<Child> start(std::vector<std::string> words, const Streams& streams);
 
   Child() = default;
@@ -73,20 +75,21 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child() { kill(); }
 
-  /// The status that waitpid gives, once the program has ended by itself. A caller that ignores SIGCHLD
-  /// learns no status and gets 0: then what the program wrote must speak for itself.
+  /// Waits until the program has ended by itself and returns the status that waitpid gives. If the host
+  /// ignores SIGCHLD there is no status, and the result is 0; the caller must then judge by what the program
+  /// wrote.
   int wait();
-  /// The same; nothing if the program still runs at `deadline`.
+  /// Waits as wait() does, but returns nothing if the program still runs at `deadline`.
   std::optional<int> wait_until(TimePoint deadline);
-  /// The system's number of the process; 0 when there is none, or no more.
+  /// Returns the process id, or 0 when nothing runs.
   [[nodiscard]] pid_t number() const { return id_; }
-  /// Ends it, if it runs.
+  /// Kills the program and its process group, if it runs, and waits for its end.
   void kill();
 
  private:
   explicit Child(pid_t id) : id_(id) {}
 
-  pid_t id_ = 0;  ///< 0 when there is none, or no more.
+  pid_t id_ = 0;  ///< 0 when nothing runs.
 };
 
 }  // namespace hooke::process

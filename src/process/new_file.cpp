@@ -19,17 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kUsualMode = 0666;  // less the user's umask
-constexpr int kMostTries = 100;      // for a preliminary name that is free
+constexpr mode_t kUsualMode = 0666;  // The umask is subtracted.
+constexpr int kMostTries = 100;      // Attempts to find a free preliminary name.
 
-/// Names for remove_unfinished_files(): copies of its own, which a handler may read at any time.
+/// Slots hold copies of the names for remove_unfinished_files(), which a signal handler may read at any time.
 constexpr std::size_t kSlotCount = 64;
 constexpr std::size_t kLongestName = 4096;
 std::array<std::array<char, kLongestName>, kSlotCount> slot_names;
 enum class Slot : std::uint8_t { kFree, kTaken, kReady };
 std::array<std::atomic<Slot>, kSlotCount> slots;
 
-/// -1 when there is no room: then the name goes with its object alone.
+/// Returns the slot of the name, or -1 when there is no room. Only the NewFile itself then removes the file.
 int remember(const std::string& name) {
   if (name.size() >= kLongestName) return -1;
   for (std::size_t i = 0; i < kSlotCount; ++i) {
@@ -59,8 +59,8 @@ std::string own_descriptor(int number) {
   return "/proc/self/fd/" + std::to_string(number);
 }
 
-/// Without a name, in the folder of `path`; none where the file system has no such files, or nothing could
-/// give them a name later.
+/// Opens a file without a name in the folder of `path`. The descriptor is empty where the file system has no
+/// such files, or where /proc is missing, by which they get a name later.
 Descriptor open_unnamed(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   Descriptor file(::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kUsualMode));
@@ -72,7 +72,7 @@ std::string preliminary_name(const std::string& path, int attempt) {
   return path + ".part" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
 }
 
-/// Under the first preliminary name that is free. errno tells why there is none.
+/// Opens a file under the first preliminary name that is free. If there is none, errno says why.
 Descriptor open_named(const std::string& path, std::string& name) {
   for (int attempt = 0; attempt < kMostTries; ++attempt) {
     name = preliminary_name(path, attempt);
@@ -82,7 +82,8 @@ Descriptor open_named(const std::string& path, std::string& name) {
   return Descriptor();
 }
 
-/// No signal ends the process while this lives, but the one that none can hold off.
+/// Blocks all signals that can be blocked in this thread, so that none of them can end the process between
+/// naming and renaming.
 class SignalPause {
  public:
   SignalPause() {
@@ -100,7 +101,7 @@ class SignalPause {
 
 void end_cleanly(int signal) {
   remove_unfinished_files();
-  ::raise(signal);  // the handler was for once: now the usual happens
+  ::raise(signal);  // SA_RESETHAND has restored the default action, which now ends the process.
 }
 
 }  // namespace
