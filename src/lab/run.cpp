@@ -1,4 +1,4 @@
-/// The public class over the parts: from a World to one part per object, and from their states to points.
+/// Implements the public class: from a World to one part per object, and from their states to points.
 
 #include "base/float_environment.h"
 #include "lab/methods/part.h"
@@ -24,8 +24,9 @@ struct Run::Data {
   state::SlotTable<RopeId> rope_slots;
   state::SlotTable<ClothId> cloth_slots;
   state::SlotTable<BodyId> body_slots;
-  std::vector<std::uint32_t> body_of_row;              ///< Index into `bodies`; kNone for those that stand.
-  std::vector<Quaternion<double>> principal_of_frame;  ///< By row: from a body's frame to its principal axes.
+  std::vector<std::uint32_t> body_of_row;  ///< Index into `bodies`; kNone for bodies that stand.
+  /// Rotation from a body's frame to its principal axes, by row.
+  std::vector<Quaternion<double>> principal_of_frame;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   Result<void> add_bodies(const state::Tables& tables, const Options& options);
@@ -48,7 +49,7 @@ Result<void> in_range(const char* name, double value, double low, double high) {
 }
 
 Result<void> check_numbers(const Options& options) {
-  // The smallest step is one that still moves a time of some hours.
+  // The smallest step still changes a time of some hours.
   if (const auto good = in_range("dt", options.dt, 1e-9, 1e6); !good) return good.error();
   const CollisionOptions& collisions = options.collisions;
   if (const auto good = in_range("collisions.epsilon", collisions.epsilon, 1e-12, 1); !good)
@@ -62,7 +63,7 @@ Result<void> check_numbers(const Options& options) {
   return in_range("accuracy.seconds", options.accuracy->seconds, 1e-9, 1e6);
 }
 
-/// The name that holds for an object.
+/// Returns the name of the method for an object.
 const std::string& stepper_of(const System& system, const Options& options) {
   for (const ObjectStepper& choice : options.object_steppers) {
     if (choice.object.kind == system.kind() && choice.object.slot == system.slot()) return choice.stepper;
@@ -88,7 +89,7 @@ Result<Part> make_part(Result<System> system, Bodies bodies, double start_time, 
   return part;
 }
 
-/// Undoes one output step that was made.
+/// Undoes one output step.
 void take_back(Part& part, const State& y) {
   part.y = y;
   part.work.reset();
@@ -96,7 +97,7 @@ void take_back(Part& part, const State& y) {
   --part.outputs;
 }
 
-/// Every name is checked, also those that no object uses.
+/// Checks every name, also those that no object uses.
 Result<void> check_names(const state::Tables& tables, const Options& options) {
   std::vector<std::string_view> names = {options.stepper};
   for (const ObjectStepper& choice : options.object_steppers) {
@@ -177,7 +178,7 @@ Result<void> Run::advance() {
   return {};
 }
 
-/// All or none of them.
+/// Advances all bodies, or none of them.
 Result<void> Run::Data::advance_bodies(double t) {
   const std::vector<Part> before = bodies;
   for (const Part& part : bodies) part.system.show_laws(t, part.y);
@@ -187,7 +188,8 @@ Result<void> Run::Data::advance_bodies(double t) {
   }
   if (!moved) {
     bodies = before;
-    for (Part& part : bodies) part.work.reset();  // what SUNDIALS keeps is shared by copies
+    // Copies share the memory of SUNDIALS, so that it must be reset.
+    for (Part& part : bodies) part.work.reset();
   }
   return moved;
 }

@@ -9,18 +9,18 @@ namespace hooke::lab {
 
 namespace {
 
-constexpr int kMostCuts = 14;             ///< dt / 16384 at least.
-constexpr double kMostEvaluations = 1e6;  ///< Of one trial.
-constexpr double kImplicitCost = 10;      ///< Of a Newton step, in evaluations.
-constexpr double kReserve = 0.5;          ///< Share of the error allowed that the estimate may use up.
-constexpr int kStiffCuts = 6;             ///< Implicit methods are tried if rk4 needs more than 2^6.
+constexpr int kMostCuts = 14;             ///< The smallest step is dt / 16384.
+constexpr double kMostEvaluations = 1e6;  ///< Evaluations of one trial.
+constexpr double kImplicitCost = 10;      ///< Cost of a Newton step, in evaluations.
+constexpr double kReserve = 0.5;          ///< Share of the allowed error that the estimate may use up.
+constexpr int kStiffCuts = 6;  ///< Implicit methods are tried if rk4 needs more than 2^6 steps per output.
 
 struct Trial {
   std::vector<std::vector<DVec3>> outputs;
   double cost = 0;
 };
 
-/// A run of `part` with its dt cut in `cuts`; nothing if it fails.
+/// Runs `part` with its dt divided into `steps_per_output` steps; returns nothing if it fails.
 std::optional<Trial> try_run(Part part, const Method& method, int steps_per_output, int outputs) {
   const double dt = part.h;
   part.method = &method;
@@ -53,7 +53,7 @@ struct Choice {
   double cost = 0;
 };
 
-/// Least cut that is stable.
+/// Returns the least number of halvings of dt at which the method is stable.
 int first_cut(const Part& part, const Method& method) {
   for (int cut = 0; cut <= kMostCuts; ++cut) {
     Part finer = part;
@@ -64,8 +64,8 @@ int first_cut(const Part& part, const Method& method) {
   return kMostCuts + 1;
 }
 
-/// Richardson: halving the step of a method of order p leaves 1 / (2^p - 1) of the difference. With bodies
-/// around nothing is smooth, and p is 1.
+/// Applies Richardson's estimate: halving the step of a method of order p leaves 1 / (2^p - 1) of the
+/// difference. With bodies around, the motion is not smooth, and p is taken as 1.
 std::optional<Choice> try_method(const Part& part, const Method& method, const Accuracy& accuracy,
                                  int outputs) {
   const double share = std::pow(2.0, part.bodies.entries.empty() ? method.info.order : 1) - 1;

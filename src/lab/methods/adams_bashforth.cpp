@@ -11,13 +11,13 @@ constexpr double kAb2[] = {3.0 / 2, -1.0 / 2};
 constexpr double kAb3[] = {23.0 / 12, -16.0 / 12, 5.0 / 12};
 constexpr double kAb4[] = {55.0 / 24, -59.0 / 24, 37.0 / 24, -9.0 / 24};
 
-/// Adams-Bashforth of p steps: the polynomial through the last p slopes, integrated over the next step.
+/// Adams-Bashforth of p steps integrates the polynomial through the last p slopes over the next step.
 ///
-///     y' = y + h (beta_1 f_n + beta_2 f_n-1 + ... + beta_p f_n-p+1)
+/// y' = y + h (beta_1 f_n + beta_2 f_n-1 + ... + beta_p f_n-p+1)
 ///
-/// Order p with one evaluation per step; rk4 makes the first p - 1 steps. Little stability: without damping
-/// ab2 grows slowly at any step, ab3 is stable for omega h <= 0.72, ab4 for 0.43; on a decay |lambda| h <= 1,
-/// 6/11, 3/10. Bashforth, Adams 1883; Hairer, Norsett, Wanner I, III.1.
+/// The order is p with one evaluation per step; rk4 makes the first p - 1 steps. There is little stability:
+/// without damping ab2 grows slowly at any step, ab3 is stable for omega h <= 0.72, ab4 for 0.43; on a decay
+/// |lambda| h <= 1, 6/11, 3/10. Bashforth, Adams 1883; Hairer, Norsett, Wanner I, III.1.
 void step_adams_bashforth(std::span<const double> beta, const System& f, double t, double h, State& y,
                           Workspace& work) {
   work.history.insert(work.history.begin(), f(t, y));

@@ -9,13 +9,13 @@ constexpr double kAm2[] = {1.0 / 2, 1.0 / 2};
 constexpr double kAm3[] = {5.0 / 12, 8.0 / 12, -1.0 / 12};
 constexpr double kAm4[] = {9.0 / 24, 19.0 / 24, -5.0 / 24, 1.0 / 24};
 
-/// Adams-Moulton of order p: the polynomial through the last p - 1 slopes and the one that is looked for.
+/// Adams-Moulton of order p integrates the polynomial through the last p - 1 slopes and the unknown one.
 ///
-///     y' = y + h (beta_0 f(t + h, y') + beta_1 f_n + ... + beta_p-1 f_n-p+2)
+/// y' = y + h (beta_0 f(t + h, y') + beta_1 f_n + ... + beta_p-1 f_n-p+2)
 ///
-/// rk4 makes the first p - 2 steps, Newton each other (lab/methods/implicit.h). am2 is the trapezoidal rule:
-/// stable at any step, |R| = 1 without damping. am3 and am4 grow slowly without damping; on a decay they are
-/// stable for |lambda| h <= 6 and 3. Moulton 1926; Hairer, Norsett, Wanner I, III.1.
+/// rk4 makes the first p - 2 steps, and Newton's method all others (lab/methods/implicit.h). am2 is the
+/// trapezoidal rule: stable at any step, |R| = 1 without damping. am3 and am4 grow slowly without damping; on
+/// a decay they are stable for |lambda| h <= 6 and 3. Moulton 1926; Hairer, Norsett, Wanner I, III.1.
 void step_adams_moulton_of(std::span<const double> beta, const System& f, double t, double h, State& y,
                            Workspace& work) {
   work.history.insert(work.history.begin(), f(t, y));

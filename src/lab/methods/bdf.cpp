@@ -9,14 +9,14 @@ constexpr double kBdf2[] = {3.0 / 2, -2, 1.0 / 2};
 constexpr double kBdf3[] = {11.0 / 6, -3, 3.0 / 2, -1.0 / 3};
 constexpr double kBdf4[] = {25.0 / 12, -4, 3, -4.0 / 3, 1.0 / 4};
 
-/// Backward differentiation of order p: the slope at the end is that of the polynomial through the last p
-/// states and the one that is looked for.
+/// In backward differentiation of order p the slope at the end is that of the polynomial through the last p
+/// states and the unknown one.
 ///
-///     alpha_0 y' + alpha_1 y_n + ... + alpha_p y_n-p+1 = h f(t + h, y')
+/// alpha_0 y' + alpha_1 y_n + ... + alpha_p y_n-p+1 = h f(t + h, y')
 ///
-/// rk4 makes the first p - 1 steps, Newton each other (lab/methods/implicit.h). For stiff and damped motion:
-/// bdf2 is stable at any step; bdf3 and bdf4 let undamped oscillations of middling omega h grow. Order 1 is
-/// implicit_euler. Curtiss, Hirschfelder 1952; Hairer, Wanner II, V.1.
+/// rk4 makes the first p - 1 steps, and Newton's method all others (lab/methods/implicit.h). It suits stiff
+/// and damped motion: bdf2 is stable at any step; bdf3 and bdf4 let undamped oscillations of medium omega h
+/// grow. Order 1 is implicit_euler. Curtiss, Hirschfelder 1952; Hairer, Wanner II, V.1.
 void step_bdf_of(std::span<const double> alpha, const System& f, double t, double h, State& y,
                  Workspace& work) {
   work.history.insert(work.history.begin(), y);

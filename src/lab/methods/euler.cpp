@@ -2,12 +2,12 @@
 
 namespace hooke::lab {
 
-/// Explicit Euler: both slopes at the start of the step.
+/// Explicit Euler takes both slopes at the start of the step.
 ///
-///     y' = y + h f(t, y)
+/// y' = y + h f(t, y)
 ///
-/// Order 1. An undamped oscillation grows at any step, |R|^2 = 1 + (omega h)^2; a damped one does where
-/// omega h > 2 zeta (zeta < 1). Euler 1768, "Institutionum calculi integralis", I.2.7.
+/// It has order 1. An undamped oscillation grows at any step, |R|^2 = 1 + (omega h)^2; a damped one does
+/// where omega h > 2 zeta (zeta < 1). Euler 1768, "Institutionum calculi integralis", I.2.7.
 void step_euler(const System& f, double t, double h, State& y, Workspace&) {
   y += h * f(t, y);
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-10;
 
-/// Growth without damping is of fourth order and more: at smaller omega h it drowns in rounding.
+/// Growth without damping is of fourth order or higher, so that rounding hides it at smaller omega h.
 constexpr double kVisible = 0.05;
 
 }  // namespace
@@ -21,7 +21,7 @@ std::array<std::complex<double>, 2> eigenvalues(Oscillator o) {
   const double half = 0.5 * o.damping;
   const std::complex<double> root = std::sqrt(std::complex<double>(half * half - o.stiffness));
   const std::complex<double> larger = -half - root;
-  // Not -half + root, which cancels when the damping is strong.
+  // The form -half + root would cancel when the damping is strong.
   return {larger, std::abs(larger) > 0 ? o.stiffness / larger : 0.0};
 }
 

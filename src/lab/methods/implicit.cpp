@@ -16,9 +16,11 @@ constexpr int kMostHalvings = 30;
 constexpr int kMostLeaps = 10;
 constexpr int kMostStartUpParts = 10000;
 constexpr int kMostStepsByKept = 8;
-constexpr double kFastByKept = 0.1;    ///< What a step by an earlier matrix leaves of the residual, at most.
-constexpr double kOfTolerance = 1e-3;  ///< The last step leaves an error like itself, unlike Newton's.
-constexpr double kSolved = 1e-15;      ///< A residual of rounding.
+/// Largest share of the residual that a step by an earlier matrix may leave.
+constexpr double kFastByKept = 0.1;
+/// A step by an earlier matrix leaves an error of its own size, unlike Newton's.
+constexpr double kOfTolerance = 1e-3;
+constexpr double kSolved = 1e-15;  ///< Relative residual that is only rounding.
 
 Error not_converged(const System& f, double t) {
   char text[96];
@@ -27,13 +29,13 @@ Error not_converged(const System& f, double t) {
   return {ErrorCode::kLimitExceeded, f.name(), text};
 }
 
-/// r(v) of implicit.h, at one v after the other.
+/// Evaluates r(v) of implicit.h at one v after the other.
 class Residual {
  public:
   Residual(const System& f, double t, double gamma, const State& known, State& y)
       : f_(f), t_(t), gamma_(gamma), known_(known), y_(y) {}
 
-  /// Moves y to this velocity. \return |r|.
+  /// Moves y to this velocity and evaluates r. \return |r|.
   double set(const State& velocity) {
     f_.v(y_) = velocity;
     f_.x(y_) = f_.x(known_) + gamma_ * velocity;
@@ -51,8 +53,9 @@ class Residual {
   State& y_;
 };
 
-/// Newton's steps by the matrix of an earlier state, for as long as each leaves little of the residual: while
-/// the motion is smooth no other is needed. \return Whether they arrived; if not, y is where they got.
+/// Makes Newton's steps by the matrix of an earlier state, as long as each leaves little of the residual.
+/// While the motion is smooth no other matrix is needed. \return Whether they converged; if not, y is where
+/// they ended.
 bool solve_by_kept(const ImplicitMatrix& matrix, Residual& r, double tolerance, State& velocity) {
   double size = r.set(velocity);
   for (int i = 0; i < kMostStepsByKept; ++i) {
@@ -98,7 +101,7 @@ State ImplicitMatrix::solve_whole(const System& f, const State& right) const {
 }
 
 void solve_implicit(const System& f, double t, double gamma, const State& known, State& y, Workspace& work) {
-  // Force laws know single precision only: nothing smaller than their rounding can be reached.
+  // Force laws compute in single precision, so that nothing smaller than their rounding can be reached.
   const double tolerance = f.has_laws() ? 1e-5 : 1e-10;
   if (work.matrix == nullptr) work.matrix = std::make_shared<ImplicitMatrix>();
   ImplicitMatrix& matrix = *work.matrix;
@@ -123,7 +126,7 @@ void solve_implicit(const System& f, double t, double gamma, const State& known,
       return;
     }
     if (!(next <= size)) {
-      // A kink (a spring gone slack, a contact) can wall off the way down; the whole step lands behind it.
+      // A kink (a spring going slack, a contact) may keep |r| from falling; the whole step lands behind it.
       if (++leaps > kMostLeaps) break;
       velocity += step;
       next = r.set(velocity);

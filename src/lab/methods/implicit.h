@@ -7,24 +7,26 @@
 
 namespace hooke::lab {
 
-/// 1 - gamma J at some state, J = df/dy, factored: what every implicit method solves with. Of
+/// Holds the factors of 1 - gamma J at some state, with J = df/dy, which every implicit method solves with.
+/// In
 ///
-///     dx - gamma dv = a,   dv - gamma (da/dx dx + da/dv dv) = b
+/// dx - gamma dv = a,   dv - gamma (da/dx dx + da/dv dv) = b
 ///
-/// dx = a + gamma dv is eliminated, so that half the size is left (Eigen's SparseLU; drag in wind makes it
-/// unsymmetric):
+/// dx = a + gamma dv is eliminated, so that half the size is left:
 ///
-///     (1 - gamma da/dv - gamma^2 da/dx) dv = b + gamma da/dx a
+/// (1 - gamma da/dv - gamma^2 da/dx) dv = b + gamma da/dx a
+///
+/// Eigen's SparseLU factors it, because drag in wind makes it unsymmetric.
 class ImplicitMatrix {
  public:
-  /// \return Whether it is regular.
+  /// Factors the matrix at (t, y). \return Whether it is regular.
   bool factor(const System& f, double t, const State& y, double gamma);
-  /// 0 before a matrix was factored.
+  /// Gamma of the matrix, or 0 before one was factored.
   [[nodiscard]] double gamma() const { return gamma_; }
 
-  /// dv where a = 0.
+  /// Returns dv for a = 0.
   [[nodiscard]] State solve(const State& b) const { return factors_.solve(b); }
-  /// (dx, dv) of (a, b).
+  /// Returns (dx, dv) for right = (a, b).
   [[nodiscard]] State solve_whole(const System& f, const State& right) const;
 
  private:
@@ -34,17 +36,18 @@ class ImplicitMatrix {
   double gamma_ = 0;
 };
 
-/// Solves y = known + gamma f(t, y), from `y` as a first guess: one step of any implicit method of this
-/// laboratory. With x = X + gamma v eliminated, for the velocities alone:
+/// Solves y = known + gamma f(t, y), which is one step of any implicit method here; `y` is the first guess.
+/// With x = X + gamma v eliminated, only the velocities are unknown:
 ///
-///     r(v) = v - V - gamma a(t, X + gamma v, v) = 0,   r' = 1 - gamma da/dv - gamma^2 da/dx
+/// r(v) = v - V - gamma a(t, X + gamma v, v) = 0,   r' = 1 - gamma da/dv - gamma^2 da/dx
 ///
-/// Newton, first by the matrix kept from an earlier step (work.matrix), while each step leaves a tenth of
-/// |r|; then by a new one each time, halving a step until |r| falls, or taking it whole where no part of it
-/// lets |r| fall. Without convergence in 60 steps work.error is set.
+/// Newton's method first uses the matrix of an earlier step (work.matrix), while each step leaves at most a
+/// tenth of |r|. Then it factors a new matrix each time, and halves a step until |r| falls; if no part of a
+/// step lets |r| fall, it takes the whole step. It sets work.error without convergence in 60 steps, after ten
+/// such whole steps, or when the matrix is singular.
 void solve_implicit(const System& f, double t, double gamma, const State& known, State& y, Workspace& work);
 
-/// One step of rk4, in as many parts as keep it stable: what multistep methods begin with.
+/// Makes one step by rk4, in as many parts as keep it stable. Multistep methods begin with it.
 void start_up(const System& f, double t, double h, State& y, Workspace& work);
 
 }  // namespace hooke::lab

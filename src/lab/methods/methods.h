@@ -4,9 +4,9 @@
 #include "lab/methods/method.h"
 
 /// \file
-/// Every method: its step, and its growth on an oscillator. One file each, to be read side by side, simplest
-/// first: euler, symplectic_euler, taylor2_paper, paper, taylor2, taylor3, heun, midpoint, verlet, rk4,
-/// adams_bashforth, implicit_euler, adams_moulton, bdf; sundials for those with tolerances.
+/// Declares every method: its step, and its growth on an oscillation. Each has one file, to be read side by
+/// side, simplest first: euler, symplectic_euler, taylor2_paper, paper, taylor2, taylor3, heun, midpoint,
+/// verlet, rk4, adams_bashforth, implicit_euler, adams_moulton, bdf; sundials for those with tolerances.
 
 namespace hooke::lab {
 
@@ -70,7 +70,8 @@ double growth_bdf3(Oscillator o);
 void step_bdf4(const System& f, double t, double h, State& y, Workspace& work);
 double growth_bdf4(Oscillator o);
 
-/// By tolerance, with SUNDIALS (sundials.cpp); without it (no_sundials.cpp) a step gives an error.
+/// These methods keep a tolerance by means of SUNDIALS (sundials.cpp). Without the library (no_sundials.cpp)
+/// a step gives an error.
 extern const bool kHasSundials;
 void step_adams_moulton(const System& f, double t, double h, State& y, Workspace& work);
 void step_bdf(const System& f, double t, double h, State& y, Workspace& work);

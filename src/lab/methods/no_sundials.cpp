@@ -1,6 +1,6 @@
 #include "lab/methods/methods.h"
 
-/// What stands for sundials.cpp where the library is not installed.
+/// This stands in for sundials.cpp where the library is not installed.
 
 namespace hooke::lab {
 

@@ -1,4 +1,4 @@
-/// Orders and limits of stability, by experiment and by theory.
+/// Measures orders and limits of stability, by experiment and by theory.
 
 #include "base/float_environment.h"
 #include "lab/methods/growth.h"
@@ -32,7 +32,7 @@ double largest_distance(const std::vector<DVec3>& a, const std::vector<DVec3>& b
   return largest;
 }
 
-/// A straight chain in empty space whose last mass was pushed along it, lightly: it stays linear.
+/// A straight chain in empty space, whose last mass was pushed along it so lightly that it stays linear.
 struct Line {
   Chain chain;
   double stiffness = 0;  ///< [N/m]
@@ -62,9 +62,9 @@ Result<World> make_world(const Line& line) {
   return world;
 }
 
-constexpr double kMostGrowth = 1e8;  ///< Of the energy.
+constexpr double kMostGrowth = 1e8;  ///< Largest growth of the energy that is followed.
 
-/// Logarithm of the growth of the largest energy from the first quarter of a run to its last.
+/// Returns the logarithm of the growth of the largest energy from the first quarter of a run to its last.
 Result<double> growth_of_run(std::string_view stepper, const Line& line, int steps) {
   const Result<World> world = make_world(line);
   if (!world) return world.error();
@@ -73,7 +73,7 @@ Result<double> growth_of_run(std::string_view stepper, const Line& line, int ste
   if (!run) return run.error();
   double first = 0;
   double last = 0;
-  // Before the masses pass one another, and the chain is linear no more.
+  // The run ends before the masses pass one another and the chain is no longer linear.
   const double most = kMostGrowth * run.value().energy().total();
   for (int i = 0; i < steps; ++i) {
     if (!run.value().advance()) return std::numeric_limits<double>::infinity();
@@ -85,8 +85,8 @@ Result<double> growth_of_run(std::string_view stepper, const Line& line, int ste
   return first > 0 ? std::log(last / first) : 0.0;
 }
 
-/// Largest value for which `grows` says no, by doubling from `start` up to `end` and bisection in its
-/// logarithm; 0 if already the first grows, infinity if none does.
+/// Returns the largest value for which `grows` says no. It doubles from `start` up to `end`, then bisects in
+/// the logarithm. The result is 0 if already `start` grows, and infinity if nothing does.
 template <class Grows>
 Result<double> bisect(double start, double end, Grows&& grows) {
   double low = start;
@@ -163,7 +163,7 @@ Result<double> largest_stable_stiffness(std::string_view stepper, const Chain& c
   if (const auto method = method_for(stepper, chain); !method) return method.error();
   constexpr int kSteps = 2000;
   const double unit = chain.mass / (chain.dt * chain.dt);
-  // Methods that grow at any stiffness do it slowly: at omega dt = 0.1 by 1e-5 per step and more.
+  // Methods that grow at any stiffness do so slowly: at omega dt = 0.1 by 1e-5 per step and more.
   const Result<double> slow = growth_of_run(stepper, {{1, chain.mass, chain.dt}, 0.01 * unit, 0}, 20000);
   if (!slow) return slow.error();
   if (slow.value() > 0.1) return 0.0;
@@ -189,7 +189,8 @@ Result<double> largest_stable_step(std::string_view stepper, double zeta) {
   if (const auto method = method_for(stepper); !method) return method.error();
   if (!(zeta >= 0 && zeta <= 100)) return out_of_range("zeta", "0 to 100");
   constexpr int kSteps = 4000;
-  constexpr double kSeen = 3e-3;  // of the energy; the sampling of an oscillation's maxima is finer
+  // Growth of the energy that counts; the error of sampling an oscillation's maxima is smaller.
+  constexpr double kSeen = 3e-3;
   return bisect(1e-3, 1e3, [&](double omega_dt) -> Result<bool> {
     const Chain one;
     const double omega = omega_dt / one.dt;

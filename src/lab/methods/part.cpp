@@ -23,7 +23,7 @@ bool is_stable(const Method& method, const Oscillation& o, double h) {
   return is_stable(method.growth, {o.omega_squared * h * h, o.damping * h}, tolerated(method));
 }
 
-/// The oscillation that the method would let grow fastest, if there is one.
+/// Returns the unstable oscillation that the method would let grow fastest, if there is one.
 std::optional<Oscillation> worst(const System& system, const Method& method, double t, double h) {
   std::optional<Oscillation> result;
   double most = 0;
@@ -59,7 +59,7 @@ Error not_finite(const Part& part) {
   return {ErrorCode::kLimitExceeded, std::string(part.method->info.name), text};
 }
 
-/// Coordinates of turns (turn.h) tell one step from the next up to about a radian.
+/// Coordinates of rotations (turn.h) can follow a step of up to about a radian.
 Result<void> rotates_slowly(const Part& part) {
   if (!part.system.is_body()) return {};
   const double angle = length(part.system.body(part.start_time, part.y).spin) * part.h;
@@ -73,7 +73,7 @@ Result<void> rotates_slowly(const Part& part) {
 }  // namespace
 
 Result<void> advance(Part& part) {
-  if (part.y.size() == 0) {  // all points are held
+  if (part.y.size() == 0) {  // This happens when all points are held.
     ++part.outputs;
     return {};
   }

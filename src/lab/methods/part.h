@@ -8,13 +8,13 @@
 
 namespace hooke::lab {
 
-/// One object on its way: its system, its method, its state.
+/// A Part is one object of a run, with its system, its method and its state.
 struct Part {
   System system;
   Bodies bodies = {};
   const Method* method = nullptr;
   double start_time = 0;  ///< [s]
-  double h = 0;           ///< Of the method [s].
+  double h = 0;           ///< Step of the method [s].
   int steps_per_output = 1;
   std::uint64_t outputs = 0;
   State y = {};
@@ -27,20 +27,22 @@ struct Part {
   }
 };
 
-/// One output step. Errors: see Run::advance; state and time are then those before.
+/// Makes one output step. After an Error (see Run::advance) state and time are those before.
 Result<void> advance(Part& part);
 
-/// Moves `y`, which is the part's at `t`, by `seconds` of either sign, in as many steps as `h` asks for; what
-/// the method keeps from step to step goes where they are shorter. Errors: the method's; not finite.
+/// Moves `y`, which is the state of the part at `t`, by `seconds` of either sign, in steps no longer than
+/// part.h. If the steps have another length, the history of the method is reset first. Errors: those of the
+/// method, or a state that is not finite.
 Result<void> take_steps(Part& part, double t, double seconds, State& y);
 
-/// Does the method suit the system and the step? Errors: see Run::create.
+/// Checks that the method suits the system and the step. Errors: see Run::create.
 Result<void> check(const Part& part, const Options& options);
 
-/// What `auto` takes, see Options::stepper.
+/// Returns the method that `auto` stands for; see Options::stepper.
 [[nodiscard]] const Method* automatic_method(const System& system, double start_time, double h);
 
-/// Sets method and steps of `part` so that the declared accuracy is kept. Errors: it cannot be.
+/// Sets the method and the steps of `part` so that the declared accuracy is kept, or returns an Error if it
+/// cannot be.
 Result<void> reach(const Accuracy& accuracy, const Options& options, Part& part);
 
 }  // namespace hooke::lab

@@ -12,7 +12,7 @@ namespace {
 
 using collision::Gap;
 
-/// The nearest triangle's gap; out of reach if there is none within `reach`.
+/// Returns the gap to the nearest triangle, or one beyond `reach` if there is none within it.
 Gap gap_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
   std::vector<std::uint32_t> near;
   collision::find_triangles_near(mesh, x, reach, near);
@@ -31,8 +31,8 @@ Gap gap_to_mesh(const state::Mesh& mesh, Vec3 x, Real reach) {
 Gap gap_to(const Bodies::Entry& entry, DVec3 x, double radius) {
   const state::ColliderShape& shape = entry.shape;
   const Vec3 local = rotate(conjugate(entry.pose.rotation), vector_cast<Real>(x - entry.pose.position));
-  // A point that is deeper than this inside a mesh that is no MeshTree::kPlanes stays there: twice its radius
-  // and 5 cm.
+  // A point that is deeper than twice its radius and 5 cm inside a mesh without MeshTree::kPlanes stays
+  // there.
   const Real reach = static_cast<Real>(2 * radius + 0.05);
   Gap gap = shape.shape.kind == ShapeKind::kMesh ? gap_to_mesh(*shape.mesh, local, reach)
                                                  : collision::gap_to_shape(shape.shape, local);

@@ -6,22 +6,22 @@
 
 namespace hooke::lab {
 
-/// The static bodies of a World, and how points of one object answer them.
+/// These are the static bodies of a World, which the points of one object cannot enter.
 struct Bodies {
   struct Entry {
     state::ColliderShape shape;
-    Pose pose;            ///< Of the shape's frame.
-    double friction = 0;  ///< Of the pair, sqrt(a b).
+    Pose pose;            ///< Pose of the shape's frame.
+    double friction = 0;  ///< Friction of the pair, sqrt(a b).
   };
-  std::vector<Entry> entries;  ///< Those that collide.
+  std::vector<Entry> entries;  ///< The bodies that collide with the object.
 };
 
 [[nodiscard]] Bodies bodies_near(const state::Tables& tables, const state::Deformable& object);
 
-/// Puts each free point that is inside a body back on its surface. With n out of the surface, it loses its
-/// velocity into it, and of the rest what friction takes (restitution 0, Coulomb):
+/// Puts each free point that is inside a body back on its surface. With n out of the surface, the point loses
+/// its velocity into the surface, and friction takes a part of the rest (restitution 0, Coulomb):
 ///
-///     v -= n.v n  where n.v < 0;   |v_t| falls by at most mu times that
+/// v -= n.v n  where n.v < 0;   |v_t| falls by at most mu times that
 ///
 /// Distances have the engine's own precision. Returns whether anything was moved.
 bool push_out(const System& system, const Bodies& bodies, State& y);

@@ -1,4 +1,4 @@
-/// The table of methods: what is listed, refused and explained comes from here.
+/// This is the table of methods, from which they are listed, refused and explained.
 
 #include "base/float_environment.h"
 #include "lab/methods/methods.h"

@@ -10,8 +10,8 @@
 #include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-/// Methods that choose their own order and steps so that the error of each stays below the tolerance, by the
-/// SUNDIALS library (Hindmarsh et al. 2005, ACM TOMS 31). A step of the laboratory is many of theirs.
+/// The SUNDIALS library (Hindmarsh et al. 2005, ACM TOMS 31) chooses order and steps so that the error of
+/// each step stays below the tolerance. A step of the laboratory is many of the library.
 
 namespace hooke::lab {
 
@@ -19,11 +19,13 @@ const bool kHasSundials = true;
 
 namespace {
 
-constexpr long kMostSteps = 1000000;  ///< Of theirs in one of ours.
+constexpr long kMostSteps = 1000000;  ///< Steps of the library in one of the laboratory.
 constexpr int kKrylovDimension = 60;
-constexpr double kGammaMayChange = 0.3;  ///< By this share, before the preconditioner is made anew.
+/// By this share gamma may change before the preconditioner is made anew.
+constexpr double kGammaMayChange = 0.3;
 
-/// SUNDIALS' memory for one system, from the first step to the next change of y from outside.
+/// An Integrator is the memory of SUNDIALS for one system, from the first step to the next change of y from
+/// outside.
 struct Integrator {
   SUNContext context = nullptr;
   N_Vector y = nullptr;
@@ -54,7 +56,7 @@ Eigen::Map<State> map_of(N_Vector vector) {
 
 int slope(realtype t, N_Vector y, N_Vector result, void* user) {
   const State value = (*static_cast<Integrator*>(user)->system)(t, map_of(y));
-  if (!value.allFinite()) return 1;  // they try a smaller step
+  if (!value.allFinite()) return 1;  // A positive value makes the library try a smaller step.
   map_of(result) = value;
   return 0;
 }
@@ -67,8 +69,8 @@ int jacobian_times(N_Vector direction, N_Vector result, realtype t, N_Vector y, 
   return 0;
 }
 
-// GMRES solves CVODE's linear equations in a few rounds, instead of hundreds where springs are stiff, when
-// the matrix of an earlier step prepares them.
+// GMRES solves CVODE's linear equations. Preconditioned by the matrix of an earlier step it needs a few
+// rounds, instead of hundreds where springs are stiff.
 
 // NOLINTNEXTLINE(readability-function-size): the signature is CVODE's
 int factor_preconditioner(realtype t, N_Vector y, N_Vector, booleantype may_keep, booleantype* is_new,
@@ -117,7 +119,7 @@ bool begin_dormand_prince(Integrator& i, double t, const Workspace& work) {
          ERKStepSetTableNum(i.erk, ARKODE_DORMAND_PRINCE_7_4_5) == 0;
 }
 
-/// Errors come back as values: nothing is to be printed.
+/// Errors come back as values, so that the library must print nothing.
 void no_handler(int, const char*, const char*, char*, void*) {}
 
 std::shared_ptr<Integrator> make(Begin begin, const System& f, double t, const State& y,

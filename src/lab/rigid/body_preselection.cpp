@@ -8,13 +8,13 @@ namespace hooke::lab {
 
 namespace {
 
-/// The surface of a body's shapes, without their skins.
+/// A Surface is the surface of a body's shapes, without their skins.
 struct Surface {
   std::vector<DVec3> positions = {};
   std::vector<geometry::Triangle> triangles = {};
 };
 
-/// A solid without faces, as the core of a sphere or a capsule, is a triangle without area.
+/// A solid without faces, such as the core of a sphere or a capsule, becomes a triangle without area.
 void add_solid(const geometry::ConvexSolid& solid, Surface& surface) {
   const auto first = static_cast<std::uint32_t>(surface.positions.size());
   const auto last = static_cast<std::uint32_t>(solid.vertices.size()) - 1;
@@ -41,7 +41,7 @@ geometry::RigidPose middle_of(const DenseMotion& motion) {
   return {at.center, at.rotation};
 }
 
-/// How far a turn takes any point of the body from where it is in the middle of the step [m].
+/// Returns how far rotation takes any point of the body from where it is in the middle of the step [m].
 double largest_swing(const MovingVolumes& body) {
   const double turn = 0.5 * body.motion.largest_rotation();
   return turn > 0 ? std::min(2.0, turn) * body.radius : 0;
@@ -69,7 +69,8 @@ bool may_collide(Preselection kind, const MovingVolumes& a, const MovingVolumes&
   const geometry::RigidPose at_b = middle_of(b.motion);
   const std::array<DVec3, 4> centers_a = a.motion.centers();
   const std::array<DVec3, 4> centers_b = b.motion.centers();
-  double moved = 0;  // of one center against the other: it stays within the hull of the control points
+  // Largest motion of one center against the other; it stays within the hull of the control points.
+  double moved = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     const DVec3 apart = (centers_b[i] - centers_a[i]) - (at_b.position - at_a.position);
     moved = std::max(moved, length(apart));

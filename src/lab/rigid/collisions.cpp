@@ -80,7 +80,7 @@ bool Collisions::may_collide(const Outcome& a, const Outcome& b) const {
   return false;
 }
 
-/// \return Whether regions were joined; those have to run again.
+/// Joins regions whose swept boxes overlap. \return Whether any were joined; those must run again.
 bool Collisions::join_crossing(std::vector<Outcome>& regions) const {
   bool joined = false;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -95,7 +95,7 @@ bool Collisions::join_crossing(std::vector<Outcome>& regions) const {
       into.done = false;
       regions.erase(regions.begin() + static_cast<std::ptrdiff_t>(j));
       joined = true;
-      j = i + 1;  // the joined region may cross those before
+      j = i + 1;  // The joined region may overlap earlier ones.
     }
     if (!regions[i].done) std::sort(regions[i].members.begin(), regions[i].members.end());
   }

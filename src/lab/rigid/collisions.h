@@ -8,25 +8,25 @@
 
 namespace hooke::lab {
 
-/// Bodies that collide, in regions: those that meet within a step take it together, and only they take it
-/// again where it has to be canceled (the paper's 4.5.1).
+/// Bodies that collide are kept in regions. A region consists of bodies that meet within a step; they take it
+/// together, and only they take it again where it has to be canceled (the paper's 4.5.1).
 class Collisions {
  public:
-  /// Errors: as of rigid_bodies.
+  /// Errors are those of rigid_bodies.
   static Result<Collisions> create(const state::Tables& tables, const Options& options);
 
-  /// Moves the parts that collide from `t` by `dt`, an output step. Regions whose bodies' ways cross are
-  /// joined and begin the step again. Errors: a method's; the parts are then not to be used.
+  /// Moves the parts that collide from `t` by an output step `dt`. Regions whose swept boxes overlap are
+  /// joined and begin the step again. After an Error of a method the parts must not be used.
   Result<void> advance(double t, double dt, std::vector<Part>& parts);
 
-  /// Whether a part collides; the others move freely.
+  /// Tells whether a part collides; the others move freely.
   [[nodiscard]] bool collides(std::size_t part) const {
     return part < collides_.size() && collides_[part] != 0;
   }
   [[nodiscard]] const CollisionReport& report() const { return report_; }
 
  private:
-  /// A region after its step: what to join, and what to count.
+  /// This is the result of one region after its step.
   struct Outcome {
     std::vector<std::uint32_t> members = {};
     std::vector<Box> swept = {};

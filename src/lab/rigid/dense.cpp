@@ -21,7 +21,7 @@ bool is_one_convex(const RigidBody& body) {
   return body.shapes.size() == 1 && body.shapes[0].mesh == nullptr;
 }
 
-/// How far from the center of mass turning can move anything.
+/// Returns how far from the center of mass a point can be that rotation moves; a skin does not count.
 double lever_of(const RigidBody& body) {
   double lever = 0;
   for (const RigidShape& shape : body.shapes) {
@@ -66,7 +66,7 @@ DenseMotion::DenseMotion(const System& system, double t, double h, const State& 
   center_ = {coordinates(x0, 0), coordinates(x1, 0), coordinates(v0, 0), coordinates(v1, 0)};
   rotation_ = {coordinates(x0, 1), coordinates(x1, 1), coordinates(v0, 1), coordinates(v1, 1)};
   rates_ = center_.rates(h);
-  // |omega| = |p'| / sqrt(s) <= |p'| where p' is across p, and |p'| / s along it.
+  // Across p, |omega| = |p'| / sqrt(s) <= |p'|; along p, |omega| = |p'| / s.
   for (const DVec3 rate : rotation_.rates(h)) spin_ = std::max(spin_, length(rate));
 }
 
@@ -95,7 +95,7 @@ std::array<DVec3, 4> DenseMotion::centers() const {
 }
 
 BodyGap DensePair::gap(double share) const {
-  // Meshes are searched as far as the bodies get on their way.
+  // Meshes are searched as far as the bodies can get within the step.
   const double reach = motion_a.seconds() > 0 || motion_b.seconds() > 0
                            ? 0.1 + closing({}) * std::max(motion_a.seconds(), motion_b.seconds())
                            : 0.1;
@@ -123,7 +123,7 @@ std::optional<double> first_contact(const DensePair& pair, double allowance) {
   for (int round = 0; round < kMostRounds; ++round) {
     const double closing = pair.closing(gap.normal);
     if (!(closing * h > 0)) return {};
-    // To half of the allowance: from there on it counts.
+    // The bodies advance until half of the allowance is left; from there on it counts as a contact.
     share += (gap.distance - target) / (closing * h);
     if (!(share < 1)) return {};
     gap = pair.gap(share);
@@ -138,7 +138,8 @@ std::optional<double> contact_root(const DensePair& pair, double epsilon) {
   for (int i = 1; i <= kSamples; ++i) {
     double high = static_cast<double>(i) / kSamples;
     double at_high = pair.gap(high).distance;
-    // Where bodies part at the start, half of epsilon below the surface.
+    // Where the bodies already touch or overlap at the start, the root is sought at a depth of half of
+    // epsilon.
     const double target = at_low > 0 ? 0 : -0.5 * epsilon;
     if (!(at_high < target && at_low > target)) {
       low = high;
@@ -179,7 +180,7 @@ bool may_collide(const DensePair& pair, double reach) {
     return solid;
   };
   if (pair.a.shapes[0].solid.vertices.empty() || pair.b.shapes[0].solid.vertices.empty()) return true;
-  // B is at rest in this view. A leaves the straight way by less than its control points do.
+  // In this frame B does not move. A leaves the straight path by less than its control points do.
   const std::array<DVec3, 4> of_a = pair.motion_a.centers(), of_b = pair.motion_b.centers();
   const DVec3 displacement = (of_a[3] - of_a[0]) - (of_b[3] - of_b[0]);
   double aside = 0;

@@ -8,10 +8,11 @@ namespace hooke::lab {
 namespace {
 
 constexpr int kMostSweeps = 20000;
-constexpr double kConverged = 1e-14;  ///< Change of velocity in a sweep, in units of the largest velocity.
-constexpr double kNoChange = 1e-15;   ///< Change of an impulse in a sweep, in units of itself.
+constexpr double kConverged = 1e-14;  ///< Change of velocity in a sweep, as a share of the largest velocity.
+constexpr double kNoChange = 1e-15;   ///< Change of an impulse in a sweep, as a share of itself.
 constexpr int kMostImpactsOfPair = 200;
-constexpr double kClosingSpeed = 1e-12;  ///< Likewise, of a speed that counts as coming together.
+/// Speed that counts as closing, as a share of the largest velocity.
+constexpr double kClosingSpeed = 1e-12;
 
 DVec3 response(const ImpulseBody& body, DVec3 lever, DVec3 impulse) {
   return body.inverse_mass * impulse + cross(body.inverse_inertia * cross(lever, impulse), lever);
@@ -22,7 +23,7 @@ void push(ImpulseBody& body, DVec3 lever, DVec3 impulse) {
   body.spin += body.inverse_inertia * cross(lever, impulse);
 }
 
-/// One point among the others: how its impulse changes its own velocity.
+/// A Row is one contact point, with how its impulse changes its own velocity.
 class Row {
  public:
   Row(std::span<ImpulseBody> bodies, ImpulsePoint& point)
@@ -36,12 +37,13 @@ class Row {
     const DVec3 of_u = answer(u_);
     const double uu = dot(u_, of_u), uw = dot(w_, of_u), ww = dot(w_, answer(w_));
     const double apart = 0.5 * (uu - ww);
-    across_ = 0.5 * (uu + ww) + std::sqrt(apart * apart + uw * uw);  // the larger eigenvalue
+    // The larger eigenvalue of the response across the normal.
+    across_ = 0.5 * (uu + ww) + std::sqrt(apart * apart + uw * uw);
   }
 
-  /// Of the impulse on b, by solve() [N s].
+  /// Returns the last change of the impulse on b by solve() [N s].
   [[nodiscard]] DVec3 last_change() const { return change_; }
-  /// Adds to the impulse, whatever is allowed: the next solve() brings it back to that.
+  /// Adds to the impulse without regard to its bounds; the next solve() restores these.
   void go_on(DVec3 impulse) {
     const double along = dot(point_.contact.normal, impulse);
     point_.lambda += along;
@@ -49,7 +51,7 @@ class Row {
     apply(impulse);
   }
 
-  /// \return The change of velocity [m/s], without that of rounding.
+  /// Solves the point alone. \return The change of velocity [m/s], without that of rounding.
   double solve() {
     if (!(normal_ > 0)) return 0;
     const DVec3 n = point_.contact.normal;
@@ -101,7 +103,7 @@ double largest_speed(std::span<const ImpulseBody> bodies, std::span<const Impuls
   return largest;
 }
 
-/// Points of one pair of bodies.
+/// A Group is the points of one pair of bodies.
 struct Group {
   std::size_t first = 0, count = 0;
   int impacts = 0;
@@ -117,7 +119,7 @@ std::vector<Group> groups_of(std::span<const ImpulsePoint> points) {
   return groups;
 }
 
-/// The group with the point that closes fastest, faster than `enough` [m/s]; null if there is none.
+/// Returns the group with the point that closes fastest, if faster than `enough` [m/s], else null.
 Group* find_fastest(std::span<const ImpulseBody> bodies, std::span<const ImpulsePoint> points, double enough,
                     std::vector<Group>& groups) {
   Group* next = nullptr;
@@ -167,7 +169,7 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
     rows.emplace_back(bodies, point);
   }
   const double enough = kConverged * largest_speed(bodies, points);
-  std::vector<DVec3> momentum(points.size());  // of the sweeps before, as impulses on b
+  std::vector<DVec3> momentum(points.size());  // Sum of the changes of earlier sweeps, as impulses on b.
   double size = 0;
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     const double before = size;
@@ -178,7 +180,8 @@ bool solve_impulses(std::span<ImpulseBody> bodies, std::span<ImpulsePoint> point
       size += length_squared(row.last_change());
     }
     if (!(change > enough)) return true;
-    if (sweep + 1 == kMostSweeps) break;  // a sweep is last: it ends with impulses that are allowed
+    // The end is a sweep, because it leaves impulses within their bounds.
+    if (sweep + 1 == kMostSweeps) break;
     const double beta = size < before ? size / before : 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const DVec3 on = beta * momentum[i];

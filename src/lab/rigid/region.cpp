@@ -11,9 +11,9 @@ namespace {
 using Search = CollisionOptions::Search;
 using Sweep = CollisionOptions::Sweep;
 
-constexpr int kManyEvents =
-    1000;                        ///< Hits and limits of one region in one output step, before it is hurried.
-constexpr double kDone = 1e-12;  ///< Share of an output step that is nothing.
+/// After this many impacts and limits of one region in one output step nothing bounces.
+constexpr int kManyEvents = 1000;
+constexpr double kDone = 1e-12;  ///< Share of an output step that counts as done.
 
 }  // namespace
 
@@ -32,8 +32,8 @@ Part& Region::part(std::uint32_t body) {
   return parts_[static_cast<std::size_t>(bodies_[body].part)];
 }
 
-/// Listing 11. What is left of the step is tried; a try that ends too deep is canceled, and a shorter one
-/// made; one that ends in a hit, or clear, stays.
+/// This is listing 11. It tries what is left of the step. A try that ends too deep is canceled, and a shorter
+/// one is made. A try that ends clear or in an impact stays.
 Result<void> Region::advance(double t, double dt) {
   time_ = t;
   resting_.clear();
@@ -45,7 +45,7 @@ Result<void> Region::advance(double t, double dt) {
     carry(h);
     if (const auto moved = step_all(attempt); !moved) return moved.error();
     find_pairs(attempt);
-    if (first && respond(0)) {  // what touches at the start is known only now, and had no say in the step
+    if (first && respond(0)) {  // What touches at the start is known only now, and had no force on this try.
       reset();
       continue;
     }
@@ -65,9 +65,9 @@ Result<void> Region::advance(double t, double dt) {
     h = known_ > kDone * dt ? std::min(left, longer_step(attempt)) : left;
     if (events == kManyEvents && patient_) {
       ++report_.zeno;
-      patient_ = false;  // from now on nothing bounces
+      patient_ = false;  // From now on nothing bounces.
     }
-    if (events == 2 * kManyEvents) break;  // and here it stands until the step is over
+    if (events == 2 * kManyEvents) break;  // The bodies stand still for the rest of the step.
   }
   finish(t + dt);
   return {};
@@ -79,7 +79,7 @@ void Region::cancel(const Attempt& attempt) {
   report_.resimulated_seconds += attempt.h * static_cast<double>(members_.size());
 }
 
-/// Takes a try as it is, and lets what touches at its end respond. \return Whether something did.
+/// Accepts a try as it is, and lets what touches at its end respond. \return Whether something did.
 bool Region::keep(const Attempt& attempt) {
   accept(attempt);
   known_ = std::max(0.0, known_ - attempt.h);
@@ -90,7 +90,7 @@ bool Region::keep(const Attempt& attempt) {
   return true;
 }
 
-/// Forgets what only counts within an output step, which ends at `end` [s].
+/// Resets what only counts within an output step, which ends at `end` [s].
 void Region::finish(double end) {
   time_ = end;
   tries_ = 0;
@@ -119,7 +119,7 @@ Result<void> Region::step_all(Attempt& attempt) {
   return {};
 }
 
-/// The next try after one that was canceled [s].
+/// Returns the length of the next try after a canceled one [s].
 double Region::shorter_step(const Attempt& attempt) {
   const double h = attempt.h;
   const double half = 0.5 * h;
@@ -130,7 +130,7 @@ double Region::shorter_step(const Attempt& attempt) {
   if (search == Search::kHalving) return half;
   double step = 0;
   if (attempt.first_share < 1) {
-    step = known_;  // where the way saw them touch
+    step = known_;  // The path reached a contact there.
   } else if (search == Search::kBackward) {
     if (tries_ == 1) report_.backward_error = std::max(report_.backward_error, backward_error(attempt));
     step = h - attempt.depth / attempt.closing_speed;
@@ -149,7 +149,7 @@ double Region::shorter_step(const Attempt& attempt) {
   return step > 0.001 * h && step < 0.999999 * h ? step : half;
 }
 
-/// The next try after a clear one, short of a collision that is known [s].
+/// Returns the length of the next try after a clear one, shorter than the time to a known collision [s].
 double Region::longer_step(const Attempt& attempt) {
   if (setting_.options.search == Search::kHalving) return setting_.dt;
   ++tries_;
@@ -162,8 +162,9 @@ double Region::longer_step(const Attempt& attempt) {
   return known_ * std::max(0.01, gap / (gap + depth_known_));
 }
 
-/// The paper's backward step (4.5.1), from the overlap by its depth over its speed: how far from where the
-/// method was at that time it leaves the bodies [m]. Only methods that are symmetric in time come back.
+/// Measures the paper's backward step (4.5.1), which goes back from the overlap by its depth over its speed.
+/// Returns how far from the method's own motion at that time it leaves the bodies [m]. Only methods that are
+/// symmetric in time get there exactly.
 double Region::backward_error(const Attempt& attempt) {
   const double back = attempt.depth / attempt.closing_speed;
   if (!(back > 0 && back < attempt.h)) return 0;
@@ -182,7 +183,7 @@ double Region::backward_error(const Attempt& attempt) {
   return error;
 }
 
-/// What methods keep from step to step is of another motion.
+/// The history that methods keep describes another motion.
 void Region::reset() {
   for (const std::uint32_t body : members_) part(body).work.reset();
 }
@@ -202,7 +203,7 @@ void Region::accept(const Attempt& attempt) {
   }
 }
 
-/// The limit of tries: the bodies are clear, and take their hit where they are, moved together.
+/// At the limit of tries the bodies are clear. They are moved together, and their impact is resolved there.
 void Region::give_up(const Attempt& attempt) {
   ++report_.limit_reached;
   tries_ = 0;
@@ -215,7 +216,8 @@ void Region::give_up(const Attempt& attempt) {
   respond(0);
 }
 
-/// Moves two bodies along n until they touch, shared by their inverse masses; what has an axle turns.
+/// Moves two bodies along n until they touch, shared by their inverse masses. A body with an axle rotates
+/// instead.
 void Region::project(BodyPair pair, double distance, DVec3 normal) {
   if (bodies_[pair.a].axle || bodies_[pair.b].axle) {
     project_by_rotating(pair);
@@ -231,15 +233,15 @@ void Region::project(BodyPair pair, double distance, DVec3 normal) {
   if (sum > of_a) part(pair.b).system.move_center(part(pair.b).y, (-distance * (sum - of_a) / sum) * normal);
 }
 
-/// Where they are deepest. A body is moved as an impulse there would change its velocity, but that what has
-/// no axle does not turn.
+/// Does the same at the deepest point. A body moves as an impulse there would change its velocity, but only a
+/// body with an axle rotates.
 void Region::project_by_rotating(BodyPair pair) {
   const std::vector<Contact> contacts = contacts_of(pair, now(pair.a), now(pair.b));
   const auto deepest =
       std::min_element(contacts.begin(), contacts.end(),
                        [](const Contact& x, const Contact& y) { return x.distance < y.distance; });
   if (deepest == contacts.end()) return;
-  /// Of its answers to a push of 1 along n: the turn about its axle, and the way along n.
+  /// This is the response to a push of 1 along n: the rotation about the axle, and the displacement along n.
   struct Answer {
     double rotation = 0, displacement = 0;
   };

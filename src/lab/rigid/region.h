@@ -11,39 +11,39 @@
 #include <vector>
 
 /// \file
-/// Rollback of bodies that may meet (the paper's 4.3.2, listing 11), with what the listing lacks: time that
-/// is processed counts, a resting contact is no collision, the limit has an outcome, and the way is looked at
-/// as well as its end.
+/// Moves bodies that may meet, with rollback (the paper's 4.3.2, listing 11). It adds what the listing lacks:
+/// processed time counts, a resting contact is no collision, the limit of tries has an outcome, and the path
+/// is tested as well as its end.
 
 namespace hooke::lab {
 
-/// Two bodies, as indices into Region's list; the first is the lower row.
+/// A BodyPair is two bodies, as indices into Region's list; the first is the lower row.
 struct BodyPair {
   std::uint32_t a = 0, b = 0;
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
-/// What the collider needs to know beside the bodies.
+/// This is what the collider needs to know besides the bodies.
 struct CollisionSetting {
   CollisionOptions options = {};
   std::vector<MaterialPairDesc> materials = {};
-  double dt = 0;                          ///< Of an output step [s].
+  double dt = 0;                          ///< Length of an output step [s].
   std::vector<BodyVolumes> volumes = {};  ///< By body.
 };
 
-/// Bodies that take their steps together.
+/// A Region is a set of bodies that take their steps together.
 class Region {
  public:
-  /// `bodies` are all bodies; `members` those of the region that move, `others` those that stand. `parts` are
-  /// all that move, by RigidBody::part.
+  /// `bodies` are all bodies; `members` are those of the region that move, `others` those that stand. `parts`
+  /// are all that move, indexed by RigidBody::part.
   Region(const CollisionSetting& setting, const std::vector<RigidBody>& bodies,
          std::vector<std::uint32_t> members, const std::vector<std::uint32_t>& others,
          std::vector<Part>& parts, CollisionReport& report);
 
-  /// Moves its parts from `t` by `dt`. Errors: a method's.
+  /// Moves its parts from `t` by `dt`. Errors are those of a method.
   Result<void> advance(double t, double dt);
 
-  /// Boxes around all that the members, in their order, swept in advance().
+  /// Returns boxes around all that the members, in their order, swept in advance().
   [[nodiscard]] const std::vector<Box>& swept() const { return swept_; }
   [[nodiscard]] const std::vector<std::uint32_t>& members() const { return members_; }
 
@@ -53,18 +53,18 @@ class Region {
     double distance = 0;
     DVec3 normal = {};
   };
-  /// A step that was tried.
+  /// An Attempt is a step that was tried.
   struct Attempt {
     double h = 0;
     std::vector<State> ends = {};           ///< Of the members.
-    std::vector<DenseMotion> motions = {};  ///< By body.
-    std::vector<Overlap> overlaps = {};     ///< At the end.
-    bool deep = false;                      ///< Deeper than allowed, there or on the way.
+    std::vector<DenseMotion> motions = {};  ///< By index of the body.
+    std::vector<Overlap> overlaps = {};     ///< Overlaps at the end.
+    bool deep = false;                      ///< Some pair is deeper than allowed, at the end or on the path.
     bool touches = false;
-    BodyPair pair = {};        ///< The deepest.
-    double depth = 0;          ///< Of it at the end [m]; 0 where only the way saw it.
-    double closing_speed = 0;  ///< Its speed there [m/s].
-    double first_share = 1;    ///< When the way saw it.
+    BodyPair pair = {};        ///< The deepest pair.
+    double depth = 0;          ///< Its depth at the end [m]; 0 where only the test of the path saw it.
+    double closing_speed = 0;  ///< Its speed at the end [m/s].
+    double first_share = 1;    ///< Share of the step at which the path reached a contact; 1 if it did not.
   };
   struct Pull {
     DVec3 linear = {}, angular = {};  ///< [m/s^2], [rad/s^2]
@@ -83,13 +83,13 @@ class Region {
   void project(BodyPair pair, double distance, DVec3 normal);
   void project_by_rotating(BodyPair pair);
 
-  // region_judge.cpp
+  // These are in region_crossings.cpp.
   void find_pairs(const Attempt& attempt);
   void evaluate(Attempt& attempt);
   void evaluate_end(Attempt& attempt, BodyPair pair);
   void evaluate_path(Attempt& attempt);
 
-  // region_respond.cpp
+  // These are in region_respond.cpp.
   bool respond(double h);
   void write_velocities(const std::vector<ImpulseBody>& bodies);
   void carry(double h);
@@ -111,18 +111,18 @@ class Region {
   std::vector<Part>& parts_;
   CollisionReport& report_;
   std::vector<Box> swept_;
-  std::vector<BodyPair> pairs_;        ///< Candidates of the last try.
-  std::vector<ImpulsePoint> resting_;  ///< Of the last clear state: points that no speed parts.
-  std::vector<Pull> pulls_;            ///< Likewise, by body.
-  double time_ = 0;                    ///< Of the last clear state [s].
-  double known_ = 0;                   ///< From it to a collision that is known [s]; 0: none.
-  double depth_known_ = 0;             ///< Of the overlap there [m].
+  std::vector<BodyPair> pairs_;        ///< Candidates of the last attempt.
+  std::vector<ImpulsePoint> resting_;  ///< Contacts of the last clear state that do not separate.
+  std::vector<Pull> pulls_;            ///< Accelerations of that state, by body.
+  double time_ = 0;                    ///< Time of the last clear state [s].
+  double known_ = 0;                   ///< Time from it to a known collision [s]; 0: none.
+  double depth_known_ = 0;             ///< Depth of the overlap there [m].
   BodyPair pair_known_ = {};
-  int tries_ = 0;        ///< In a row that were canceled.
-  bool patient_ = true;  ///< False when hits come without end.
+  int tries_ = 0;        ///< Canceled attempts in a row.
+  bool patient_ = true;  ///< False when impacts come without end; then nothing bounces.
 };
 
-/// Around all that a body sweeps over.
+/// Returns a box around all that a body sweeps over.
 [[nodiscard]] Box swept_bounds(const RigidBody& body, const DenseMotion& motion);
 
 }  // namespace hooke::lab

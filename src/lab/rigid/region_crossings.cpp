@@ -1,4 +1,4 @@
-/// What a try of a Region left: who is near whom, who is too deep, who touches.
+/// Evaluates a try of a Region: which bodies are near each other, too deep, or touching.
 
 #include "lab/rigid/region.h"
 
@@ -18,7 +18,7 @@ Box grown(Box box, double by) {
 
 }  // namespace
 
-/// The shapes at the start, as far as they may turn, wherever the center goes.
+/// Takes the shapes at the start, grown by how far they may rotate, along the path of the center.
 Box swept_bounds(const RigidBody& body, const DenseMotion& motion) {
   if (!std::isfinite(body.radius)) return bounds_of(body, motion.at(0));
   const BodyMotion start = motion.at(0);
@@ -34,7 +34,7 @@ void Region::find_pairs(const Attempt& attempt) {
   pairs_.clear();
   const CollisionOptions& options = setting_.options;
   const auto collide = [&](std::uint32_t a, std::uint32_t b) {
-    if (options.preselection == Preselection::kBox) {  // tighter than a margin: swept along the way
+    if (options.preselection == Preselection::kBox) {  // Swept boxes are tighter than a margin.
       return overlap(grown(swept_bounds(bodies_[a], attempt.motions[a]), options.epsilon),
                      swept_bounds(bodies_[b], attempt.motions[b]));
     }
@@ -80,7 +80,7 @@ void Region::evaluate_end(Attempt& attempt, BodyPair pair) {
     attempt.touches = attempt.touches || comes;
     return;
   }
-  // What overlapped at the start already is moved apart, not tried again.
+  // Bodies that overlapped at the start already are moved apart, not tried again.
   if (!comes || dense(attempt, pair).gap(0).distance < -options.epsilon) return;
   if (attempt.deep && -gap.distance <= attempt.depth) return;
   attempt.deep = true;

@@ -1,4 +1,4 @@
-/// What bodies of a Region do to each other where they touch: hits at once, rest through a step.
+/// Computes what bodies of a Region do to each other: impacts act at once, resting contacts through a step.
 
 #include "lab/rigid/region.h"
 
@@ -11,18 +11,18 @@ namespace hooke::lab {
 
 namespace {
 
-/// Bounces that would be over within this share of an output step are none (Zeno).
+/// Bounces that would last less than this share of an output step count as none (Zeno).
 constexpr double kShortFlight = 0.01;
-constexpr double kMore = 1.0001;         ///< A little more than all of it.
-constexpr double kAtRest = 1e-12;        ///< Share of a speed that is rounding,
-constexpr double kOfShortFlight = 1e-6;  ///< and of the speed of a bounce that is none.
+constexpr double kMore = 1.0001;         ///< A little more than the whole.
+constexpr double kAtRest = 1e-12;        ///< Share of a speed that is rounding.
+constexpr double kOfShortFlight = 1e-6;  ///< Share of the speed of a short flight that is rest.
 
 }  // namespace
 
 std::vector<Contact> Region::contacts_of(BodyPair pair, const BodyMotion& a, const BodyMotion& b) const {
   std::vector<Contact> contacts;
   const double epsilon = setting_.options.epsilon;
-  // Farther than what counts as a touch: what rests at the very limit still rests after rounding.
+  // The search reaches farther than epsilon, so that a contact at the very limit still counts after rounding.
   const ContactQuery query = {ContactSearch(setting_.options), 2 * epsilon, 2 * epsilon, setting_.materials};
   find_contacts(bodies_[pair.a], a, bodies_[pair.b], b, query, contacts);
   return contacts;
@@ -33,9 +33,9 @@ bool Region::is_resting(BodyPair pair) const {
                      [&](const ImpulsePoint& p) { return p.a == pair.a && p.b == pair.b; });
 }
 
-/// Whether a point of contact is one that rested at the last clear state, as far as it may have slid in `h`.
-/// Curved ways press what rests together; that is no hit. They do so by no more than the turning of the
-/// bodies turns their speeds in that time: what comes in faster has met another side.
+/// Tells whether a contact point is one that rested at the last clear state, within what it may have slid in
+/// `h`. Curved paths press resting bodies together, which is no impact. Their speed is then at most what the
+/// rotation of the bodies in that time turns their velocities by; what closes faster has met another side.
 bool Region::rested(BodyPair pair, const Contact& contact, double closing_speed, double h) const {
   if (!is_resting(pair)) return false;
   const auto speed = [&](std::uint32_t body) {
@@ -60,7 +60,7 @@ std::vector<ImpulseBody> Region::impulse_bodies() const {
   return result;
 }
 
-/// Accelerations that forces give, without what bodies rest on.
+/// Returns the accelerations by forces, without those of resting contacts.
 std::vector<Region::Pull> Region::pulls() {
   std::vector<Pull> result(bodies_.size());
   for (const std::uint32_t body : members_) {
@@ -73,17 +73,17 @@ std::vector<Region::Pull> Region::pulls() {
   return result;
 }
 
-/// Hits where bodies come together, and keeps what then rests. `h` is the way since the last time [s].
+/// Resolves impacts where bodies close, and stores what then rests. `h` is the time since the last call [s].
 /// \return Whether anything touches.
 bool Region::respond(double h) {
   std::vector<ImpulseBody> bodies = impulse_bodies();
   std::vector<Pull> pull = pulls();
   std::vector<ImpulsePoint> points;
-  std::vector<double> short_flight, no_bounce;  // speeds
+  std::vector<double> short_flight, no_bounce;  // Speeds [m/s].
   for (const BodyPair pair : pairs_) {
     for (const Contact& contact : contacts_of(pair, now(pair.a), now(pair.b))) {
       points.push_back({.a = pair.a, .b = pair.b, .contact = contact});
-      // Back after 2 v / a, where one of them stands and the other is pulled to it by a.
+      // A bounce returns after 2 v / a, if one body stands and the other is pulled to it by a.
       const double a = std::max(length(pull[pair.a].linear), length(pull[pair.b].linear));
       short_flight.push_back(0.5 * a * kShortFlight * setting_.dt);
       const double speed = -normal_speed(bodies, points.back());
@@ -117,8 +117,8 @@ void Region::write_velocities(const std::vector<ImpulseBody>& bodies) {
   }
 }
 
-/// What bodies rest on pushes through the step as a constant force: the one that leaves them no speed into
-/// each other at its end (Moreau's time stepping, here with any method for the step).
+/// Resting contacts push through the step as a constant force, which leaves the bodies no closing speed at
+/// its end (Moreau's time stepping, here with any method for the step).
 void Region::carry(double h) {
   for (const std::uint32_t body : members_) part(body).system.set_load({}, {});
   if (resting_.empty()) return;

@@ -22,7 +22,7 @@ Error has_no_corners(const RigidBody& body, ShapeKind kind) {
           " has no corners; the laboratory collides spheres, capsules, boxes, hulls, half-spaces and meshes"};
 }
 
-/// The core in the frame of its shape.
+/// Returns the core in the frame of its shape.
 geometry::ConvexSolid solid_of(const state::ColliderShape& s) {
   if (s.shape.kind == ShapeKind::kSphere) return geometry::solid_sphere(in_double(s.shape.radius));
   if (s.shape.kind == ShapeKind::kCapsule)
@@ -40,12 +40,12 @@ double radius_of(const RigidShape& shape) {
   return radius;
 }
 
-/// The surfaces of solids, each made once.
+/// Surfaces makes the surface of each mesh once.
 class Surfaces {
  public:
   using Surface = std::shared_ptr<const geometry::ContactMesh>;
 
-  /// Null for a mesh that is no solid.
+  /// Returns null for a mesh that is no solid.
   Surface of(const std::shared_ptr<const state::Mesh>& mesh) {
     for (const auto& [known, surface] : made_) {
       if (known == mesh) return surface;
@@ -67,8 +67,8 @@ bool is_mesh(const RigidBody& body) {
                      [](const RigidShape& shape) { return shape.mesh != nullptr; });
 }
 
-/// Beside a solid of triangles what has corners is one, too; a mesh that is none has no inside to keep out
-/// of.
+/// Gives meshes a surface, and also boxes and hulls if any body has a mesh. If a body with a mesh moves, a
+/// mesh without an inside is an Error.
 Result<void> add_surfaces(std::vector<RigidBody>& bodies) {
   const bool any_moves = std::any_of(bodies.begin(), bodies.end(),
                                      [](const RigidBody& body) { return body.is_free && is_mesh(body); });

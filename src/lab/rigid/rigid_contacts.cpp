@@ -1,4 +1,4 @@
-/// Pairs of shapes: how far they are apart, and where they touch.
+/// Tests pairs of shapes: how far they are apart, and where they touch.
 
 #include "collision/distance/pair_surface.h"
 #include "lab/rigid/rigid_body.h"
@@ -15,20 +15,20 @@ namespace {
 using geometry::ConvexSolid;
 using geometry::SolidGap;
 
-/// Farther than anything that is asked.
+/// A distance larger than any that is asked for.
 constexpr double kNothing = 1e30;
 
-/// A plane: solid below it.
+/// A Plane is solid below.
 struct Plane {
   DVec3 normal = {};
   double offset = 0;
 };
 
-/// A shape where its body is.
+/// This is a shape at the position of its body.
 struct PlacedRigidShape {
   const RigidShape& shape;
-  ConvexSolid solid = {};  ///< Of convex ones.
-  DVec3 position = {};     ///< Of the frame of others.
+  ConvexSolid solid = {};  ///< Set for convex shapes.
+  DVec3 position = {};     ///< Position of the frame of other shapes.
   Quaternion<double> rotation = {};
 
   PlacedRigidShape(const RigidShape& s, const BodyMotion& at)
@@ -52,7 +52,7 @@ double height_over(const Plane& plane, const ConvexSolid& solid) {
   return low - solid.skin;
 }
 
-/// The paper's test of a sphere: the distance to the plane of each face that its center is over.
+/// Applies the paper's test of a sphere: the distance to the plane of each face that its center is above.
 SolidGap gap_to_faces(const ConvexSolid& solid, const ConvexSolid& ball) {
   SolidGap best = {kNothing, {0, 1, 0}};
   const DVec3 center = ball.vertices[0];
@@ -81,7 +81,7 @@ SolidGap convex_gap(const ConvexSolid& a, const ConvexSolid& b, const ContactSea
   return geometry::gap_between(a, b);
 }
 
-/// Triangles of a mesh that come within `reach` of a solid, as solids of their own.
+/// Returns the triangles of a mesh within `reach` of a solid, each as a solid of its own.
 std::vector<ConvexSolid> triangles_near(const PlacedRigidShape& mesh, const ConvexSolid& solid,
                                         double reach) {
   const Quaternion<double> back = conjugate(mesh.rotation);
@@ -105,7 +105,7 @@ std::vector<ConvexSolid> triangles_near(const PlacedRigidShape& mesh, const Conv
   return result;
 }
 
-/// To a plane a mesh is its vertices.
+/// A mesh is tested against a plane by its vertices.
 ConvexSolid vertices_of(const PlacedRigidShape& mesh) {
   ConvexSolid solid;
   for (const Vec3 v : mesh.shape.mesh->desc.positions)
@@ -113,7 +113,7 @@ ConvexSolid vertices_of(const PlacedRigidShape& mesh) {
   return solid;
 }
 
-/// Solids of triangles, or one and what can be taken as such.
+/// Tells whether both shapes have a surface and at least one is a mesh.
 bool are_surfaces(const PlacedRigidShape& a, const PlacedRigidShape& b) {
   return a.shape.surface && b.shape.surface && (a.is_mesh() || b.is_mesh());
 }
@@ -137,8 +137,8 @@ std::vector<collision::MeshContact> ball_contacts(const PlacedRigidShape& ball, 
   return contacts;
 }
 
-/// Calls `visit(contact)` for each place where solids of triangles touch, or one and a ball, with normals
-/// from a to b. \return Whether the two are that.
+/// Calls `visit(contact)` for each contact of two surfaces, or of a surface and a sphere, with normals from a
+/// to b. \return Whether the shapes are of these kinds.
 template <class Visit>
 bool for_each_mesh_contact(const PlacedRigidShape& a, const PlacedRigidShape& b,
                            const ContactSearch& contact_search, double reach, Visit&& visit) {

@@ -12,9 +12,9 @@ namespace hooke::geometry {
 namespace {
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
-constexpr double kParallel = 1e-12;  ///< Square of the sine below which directions count as one.
+constexpr double kParallel = 1e-12;  ///< Square of the sine below which directions count as the same.
 
-/// Shadow of the core along n.
+/// A Shadow is the projection of the core onto n.
 struct Shadow {
   double low = kBoundless, high = -kBoundless;
 };
@@ -43,7 +43,7 @@ void keep_directions(ConvexSolid& solid) {
   }
 }
 
-/// The direction that holds the cores farthest apart, or lets them overlap least.
+/// Returns the direction along which the cores are farthest apart, or overlap least.
 std::optional<SolidGap> best_axis(const ConvexSolid& a, const ConvexSolid& b) {
   SolidGap best = {-kBoundless, {}};
   const auto ask = [&](DVec3 n) {
@@ -75,7 +75,7 @@ struct Nearest {
   DVec3 on_a = {}, on_b = {};
 };
 
-/// Corners of `solid` against the faces of `other`.
+/// Compares the corners of `solid` with the faces of `other`.
 void ask_corners(const ConvexSolid& solid, const ConvexSolid& other, bool swapped, Nearest& nearest) {
   for (const DVec3 v : solid.vertices) {
     for (const ConvexSolid::Face& face : other.faces) {
@@ -89,7 +89,7 @@ void ask_corners(const ConvexSolid& solid, const ConvexSolid& other, bool swappe
   }
 }
 
-/// A single vertex is an edge of no length.
+/// A single vertex counts as an edge of no length.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const ConvexSolid& solid) {
   if (solid.edges.empty()) return {{0, 0}};
   return solid.edges;
@@ -110,7 +110,7 @@ Nearest nearest_features(const ConvexSolid& a, const ConvexSolid& b) {
   return nearest;
 }
 
-/// Of cores that share a point and have no faces: across what they have of edges, or upward.
+/// Returns a direction for cores that share a point and have no faces: across their edges, or upward.
 DVec3 direction_without_faces(const ConvexSolid& a, const ConvexSolid& b) {
   const DVec3 up = {0, 1, 0};
   for (const ConvexSolid* solid : {&a, &b}) {
@@ -161,7 +161,7 @@ ConvexSolid solid_hull(const ConvexHull& hull) {
   for (const ConvexHull::Face& face : hull.faces) {
     ConvexSolid::Face own;
     for (std::size_t i = 0; i < face.count; ++i) own.loop.push_back(hull.loop[face.first + i]);
-    // Newell's normal: of all corners, which float rounds off the plane.
+    // Newell's normal uses all corners, which rounding to float moves off the plane.
     const DVec3 origin = solid.vertices[own.loop[0]];
     DVec3 normal = {};
     for (std::size_t i = 2; i < own.loop.size(); ++i)
@@ -196,7 +196,7 @@ SolidGap gap_between(const ConvexSolid& a, const ConvexSolid& b) {
   const Nearest nearest = nearest_features(a, b);
   const double distance = std::sqrt(nearest.distance_squared);
   const DVec3 otherwise = axis ? axis->normal : direction_without_faces(a, b);
-  // The planes tell the distance of faces better than the difference of their points does.
+  // The planes give the distance of faces with less rounding than the difference of their points.
   if (axis && distance <= axis->distance * (1 + 1e-9)) return {axis->distance - skins, axis->normal};
   return {distance - skins, direction_or(nearest.on_b - nearest.on_a, otherwise)};
 }

@@ -15,7 +15,8 @@ double farthest_along(const ConvexSolid& solid, DVec3 n) {
   return farthest;
 }
 
-/// A segment along `edge` shifted by `way`: a plate with its rims; a longer segment where they are parallel.
+/// Returns a segment along `edge` shifted by `displacement`: a parallelogram with its rims, or a longer
+/// segment where they are parallel.
 ConvexSolid plate_of(const ConvexSolid& segment, DVec3 displacement) {
   const DVec3 a = segment.vertices[0], b = segment.vertices[1];
   const DVec3 along = direction_or(b - a, {});
@@ -44,7 +45,7 @@ bool faces_forward(const ConvexSolid::Face& face, DVec3 displacement) {
   return dot(face.normal, displacement) > 0;
 }
 
-/// Whether the edge runs from `from` to `to` in the loop of the face.
+/// Tells whether the edge runs from `from` to `to` in the loop of the face.
 bool has_edge(const ConvexSolid::Face& face, std::uint32_t from, std::uint32_t to) {
   for (std::size_t i = 0; i < face.loop.size(); ++i) {
     if (face.loop[i] == from && face.loop[(i + 1) % face.loop.size()] == to) return true;
@@ -53,7 +54,7 @@ bool has_edge(const ConvexSolid::Face& face, std::uint32_t from, std::uint32_t t
 }
 
 /// Appends a face at each edge of the silhouette, between the solid and its moved copy. Such an edge has a
-/// face on either side: it is in the loop of one that looks ahead, and backwards in that of one that does
+/// face on either side: it is in the loop of one that faces forward, and reversed in that of one that does
 /// not.
 void add_silhouette(const ConvexSolid& solid, DVec3 displacement, ConvexSolid& result) {
   const auto count = static_cast<std::uint32_t>(solid.vertices.size());
@@ -87,7 +88,7 @@ ConvexSolid extruded(const ConvexSolid& solid, DVec3 displacement) {
   if (count == 2) return plate_of(solid, displacement);
   ConvexSolid result = solid;
   for (std::uint32_t i = 0; i < count; ++i) result.vertices.push_back(solid.vertices[i] + displacement);
-  // Faces that look ahead are those of the moved copy.
+  // Faces that face forward are those of the moved copy.
   for (ConvexSolid::Face& face : result.faces) {
     if (!faces_forward(face, displacement)) continue;
     face.offset += dot(face.normal, displacement);

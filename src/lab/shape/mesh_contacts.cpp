@@ -24,15 +24,15 @@ using geometry::TrianglePair;
 
 using Pairs = std::vector<TrianglePair>;
 
-constexpr double kRounding = 1e-12;  ///< Of the sizes involved.
+constexpr double kRounding = 1e-12;  ///< Share of the sizes involved.
 constexpr double kParallel = 1e-9;   ///< Sine of the angle below which directions are parallel.
-constexpr double kCoplanar = 1e-9;   ///< Scores of faces this near are the same.
+constexpr double kCoplanar = 1e-9;   ///< Clearances this close count as equal.
 
-/// A mesh and where its vertices are in the frame of the search, that of b.
+/// This is a mesh with its vertices in the frame of the search, which is that of b.
 struct PlacedContactMesh {
   const ContactMesh& mesh;
   std::vector<DVec3> positions;
-  RigidPose pose;  ///< From the mesh's own frame to that of the search.
+  RigidPose pose;  ///< Pose of the mesh's own frame in that of the search.
 
   PlacedContactMesh(const ContactMesh& solid, const RigidPose& place) : mesh(solid), pose(place) {
     positions.reserve(solid.positions.size());
@@ -45,7 +45,7 @@ struct PlacedContactMesh {
   [[nodiscard]] geometry::Segment<double> edge(std::uint32_t e) const {
     return {positions[mesh.topology.edges[e][0]], positions[mesh.topology.edges[e][1]]};
   }
-  /// The place of its surface nearest to a point, in the frame of the search; with the face's normal.
+  /// Returns the point of its surface nearest to p, in the frame of the search, with the face's normal.
   [[nodiscard]] SolidPoint closest(DVec3 p, Search search) const {
     SolidPoint place = closest_on_solid(mesh, to_local(pose, p), search);
     place.point = to_world(pose, place.point);
@@ -53,17 +53,18 @@ struct PlacedContactMesh {
   }
 };
 
-/// Everything of one search but its pairs.
+/// TwoMeshes holds all of one search except its pairs.
 struct TwoMeshes {
   PlacedContactMesh a, b;
   double margin = 0;
   Search search = Search::kAll;
-  double rounding = 0;  ///< Lengths below are nothing [m].
+  double rounding = 0;  ///< Lengths below this count as zero [m].
 };
 
 // --- Vertices ---
 
-/// How far the edges at the vertex keep away from the side behind a plane with this normal: the least sine.
+/// Returns the least sine of the angles of the edges at the vertex with a plane of this normal. Positive
+/// means that all edges rise above the plane.
 double clearance(const PlacedContactMesh& own, std::uint32_t vertex, DVec3 normal) {
   double least = 1;
   const DVec3 from = own.positions[vertex];
@@ -76,7 +77,7 @@ double clearance(const PlacedContactMesh& own, std::uint32_t vertex, DVec3 norma
   return least;
 }
 
-/// The face through which a vertex near the surface is pushed out.
+/// Returns the face through which a vertex near the surface is pushed out.
 SolidPoint face_for(const PlacedContactMesh& own, std::uint32_t vertex, const PlacedContactMesh& other,
                     const SolidPoint& nearest, const TwoMeshes& scene) {
   const DVec3 p = to_local(other.pose, own.positions[vertex]);
@@ -99,7 +100,7 @@ SolidPoint face_for(const PlacedContactMesh& own, std::uint32_t vertex, const Pl
   return best;
 }
 
-/// Contacts of the vertices of `own` with `other`; normals point out of `other`.
+/// Finds contacts of the vertices of `own` with `other`; normals point out of `other`.
 void find_vertex_contacts(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
                           const TwoMeshes& scene, std::vector<MeshContact>& found) {
   const geometry::OrientedBox& bounds = other.mesh.tree.nodes[0].volume;
@@ -118,7 +119,7 @@ void find_vertex_contacts(const PlacedContactMesh& own, const PlacedContactMesh&
       place = face_for(own, v, other, nearest, scene);
       out = other.normal(place.triangle);
       const double height = dot(out, p - place.point);
-      // What is outside is not deep, what is inside is no less deep than it is far from the surface.
+      // A vertex outside has no depth, and one inside is at least as deep as it is far from the surface.
       depth = distance > scene.rounding ? -std::max(height, 0.0) : std::max(-height, -distance);
     }
     out = normalize(out);
@@ -133,7 +134,7 @@ void find_vertex_contacts(const PlacedContactMesh& own, const PlacedContactMesh&
 
 // --- Edges that go through faces ---
 
-/// Where an edge goes through a triangle: `fraction` of the edge.
+/// A Pierce is where an edge goes through a triangle, at `fraction` of the edge.
 struct Pierce {
   std::uint32_t edge = 0;
   double fraction = 0;
@@ -144,7 +145,7 @@ struct Pierce {
   }
 };
 
-/// Pairs (edge of `own`, triangle of `other`) that may meet.
+/// Returns pairs (edge of `own`, triangle of `other`) that may intersect.
 Pairs edge_face_pairs(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
                       const Pairs& near, Search search) {
   Pairs pairs;
@@ -164,8 +165,9 @@ Pairs edge_face_pairs(const PlacedContactMesh& own, const PlacedContactMesh& oth
   return pairs;
 }
 
-/// Edges that lie in a face's plane do not go through it. Flat and concave ones are left out: where solids
-/// overlap, what stands out most is a vertex of either or a convex edge of one in a face of the other.
+/// Finds where edges go through faces; an edge in a face's plane does not. Flat and concave edges are left
+/// out: where solids overlap, the deepest feature is a vertex of either or a convex edge of one in a face of
+/// the other.
 std::vector<Pierce> find_pierces(const PlacedContactMesh& own, const PlacedContactMesh& other,
                                  const Pairs& pairs) {
   std::vector<Pierce> pierces;
@@ -183,7 +185,7 @@ std::vector<Pierce> find_pierces(const PlacedContactMesh& own, const PlacedConta
   return pierces;
 }
 
-/// The edge that two triangles share, kNone without one.
+/// Returns the edge that two triangles share, or kNone.
 std::uint32_t shared_edge(const ContactMesh& mesh, std::uint32_t face, std::uint32_t other) {
   for (const std::uint32_t e : mesh.topology.triangle_edges[face]) {
     const auto& sides = mesh.topology.edge_sides[e].triangles;
@@ -192,14 +194,14 @@ std::uint32_t shared_edge(const ContactMesh& mesh, std::uint32_t face, std::uint
   return geometry::kNone;
 }
 
-/// The contact of an edge of one solid with an edge of the other; `out` points out of the other.
+/// Returns the contact of an edge of one solid with an edge of the other; `out` points out of the other.
 MeshContact edge_contact(std::uint32_t own_edge, std::uint32_t other_edge, bool own_is_a, DVec3 point,
                          DVec3 out, double depth) {
   if (own_is_a) return {MeshContactKind::kEdgeEdge, own_edge, other_edge, point, -out, depth};
   return {MeshContactKind::kEdgeEdge, other_edge, own_edge, point, out, depth};
 }
 
-/// Adds the contacts of one part of an edge inside the other solid, from `in` to `out`.
+/// Adds the contacts of the part of an edge inside the other solid, from `in` to `out`.
 class InnerPart {
  public:
   InnerPart(const PlacedContactMesh& own, const PlacedContactMesh& other, bool own_is_a,
@@ -221,8 +223,8 @@ class InnerPart {
   }
 
  private:
-  /// If the faces that the edge goes through meet in an edge right over it, and the way out over that edge is
-  /// no longer than the one through the nearest face.
+  /// Adds a contact of two edges if the faces that the edge goes through meet in an edge right over it, and
+  /// the displacement out over that edge is no longer than `exit_depth`. \return Whether it did.
   bool add_edges(const Pierce& in, const Pierce& out, DVec3 middle, double exit_depth,
                  std::vector<MeshContact>& found) const {
     const DVec3 n_in = other_.normal(in.face);
@@ -233,7 +235,7 @@ class InnerPart {
     DVec3 normal = normalize(cross(along_own, normalize(along_other)));
     if (!(length(along_other) > kParallel) || normal == DVec3{}) return false;
     if (dot(normal, n_in + n_out) < 0) normal = -normal;
-    // The place over the edge where both planes meet: middle + depth normal + shift along_own.
+    // Both planes meet over the edge at middle + depth normal + shift along_own.
     const double h_in = dot(n_in, other_.positions[other_.mesh.triangles[in.face][0]] - middle);
     const double h_out = dot(n_out, other_.positions[other_.mesh.triangles[out.face][0]] - middle);
     const double a11 = dot(n_in, normal);
@@ -312,7 +314,7 @@ Pairs edge_pairs(const TwoMeshes& scene, const Pairs& near) {
   return pairs;
 }
 
-/// Whether the solid at the edge is all behind the plane through it with the normal `out`.
+/// Tells whether the solid at the edge is all behind the plane through it with the normal `out`.
 bool is_behind(const PlacedContactMesh& placed, std::uint32_t edge, DVec3 out) {
   const geometry::EdgeSides& sides = placed.mesh.topology.edge_sides[edge];
   const auto [start, end] = placed.edge(edge);
@@ -337,7 +339,7 @@ void find_near_edges(const TwoMeshes& scene, const Pairs& near, std::vector<Mesh
     if (!is_inner(pair.fraction_a) || !is_inner(pair.fraction_b)) continue;
     const DVec3 across = cross(normalize(a.end - a.start), normalize(b.end - b.start));
     if (!(length(across) > kParallel)) continue;
-    DVec3 normal = normalize(across);  // from a to b
+    DVec3 normal = normalize(across);  // Points from a to b.
     const auto& faces = scene.a.mesh.topology.edge_sides[edge_a].triangles;
     if (dot(normal, scene.a.normal(faces[0]) + scene.a.normal(faces[1])) < 0) normal = -normal;
     const double gap = dot(normal, pair.point_b - pair.point_a);
@@ -350,7 +352,7 @@ void find_near_edges(const TwoMeshes& scene, const Pairs& near, std::vector<Mesh
 
 // --- All of them ---
 
-/// Orders the contacts; of two of the same edges the deeper one stays.
+/// Sorts the contacts; of two with the same features the deeper one stays.
 void tidy(std::vector<MeshContact>& found) {
   std::stable_sort(found.begin(), found.end(), [](const MeshContact& x, const MeshContact& y) {
     if (x.kind != y.kind || x.feature_a != y.feature_a || x.feature_b != y.feature_b) {
@@ -365,7 +367,7 @@ void tidy(std::vector<MeshContact>& found) {
   found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
 }
 
-/// Whether p is outside at a place of the surface, and no triangle that has the place comes nearer to p
+/// Tells whether p is outside at a point of the surface, and no triangle with that point comes nearer to p
 /// elsewhere.
 bool is_nearest_around(const ContactMesh& mesh, DVec3 p, const SolidPoint& place, double rounding) {
   if (!(place.signed_distance > 0)) return false;

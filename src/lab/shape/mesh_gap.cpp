@@ -18,10 +18,10 @@ using geometry::TrianglePair;
 
 using Pairs = std::vector<TrianglePair>;
 
-constexpr double kFirstMargin = 1e-4;  ///< Of the sizes.
-constexpr double kGrowth = 8;          ///< Of the margin, from one look to the next.
+constexpr double kFirstMargin = 1e-4;  ///< Share of the sizes.
+constexpr double kGrowth = 8;          ///< Growth of the margin from one search to the next.
 
-/// The features of two meshes that are to be compared, in ascending order.
+/// These are the features of two meshes to compare, in ascending order.
 struct Features {
   Pairs vertex_face;  ///< A vertex of a, a triangle of b.
   Pairs face_vertex;
@@ -57,10 +57,10 @@ Features features_of(const ContactMesh& a, const ContactMesh& b, const Pairs& tr
   return features;
 }
 
-/// The nearest two places so far, in the frame of b; of equally near ones the first.
+/// These are the nearest two points so far, in the frame of b; of equally near ones the first.
 struct NearestPoints {
   double distance_squared = std::numeric_limits<double>::infinity();
-  DVec3 offset = {};  ///< From a to b.
+  DVec3 offset = {};  ///< Offset from a to b.
 
   void take(double squared, DVec3 from_a_to_b) {
     if (!(squared < distance_squared)) return;

@@ -4,17 +4,17 @@
 
 namespace hooke::collision {
 
-/// How far apart two solids of triangles are.
+/// A MeshGap tells how far two solids of triangles are apart.
 struct MeshGap {
-  double distance = 0;             ///< [m]; negative: minus the largest depth of their contacts.
-  DVec3 normal = {0.0, 1.0, 0.0};  ///< Of length one, from a to b.
+  /// Distance [m]; negative: minus the largest depth of their contacts.
+  double distance = 0;
+  DVec3 normal = {0.0, 1.0, 0.0};  ///< Unit vector from a to b.
 };
 
-/// Of solids that are apart the distance of the two places nearest to each other, of a vertex and a face or
-/// of two edges; of those that touch or overlap what find_mesh_contacts says of the deepest place. What is
-/// farther apart than `reach` [m] (positive) is `reach` apart, and so is all that is not finite. Both ways of
-/// search give the same bits; by the tree places are looked for within a margin that grows until it holds
-/// one.
+/// Returns the gap of two solids. Apart, it is the least distance of a vertex and a face or of two edges.
+/// Where they touch or overlap, it is that of the deepest contact of find_mesh_contacts. What is farther
+/// apart than `reach` [m] (positive), or not finite, is reported as `reach` apart. Both ways of search give
+/// the same bits; the search by tree uses a margin that grows until it holds the nearest pair.
 [[nodiscard]] MeshGap find_mesh_gap(const geometry::ContactMesh& a, const geometry::RigidPose& pose_a,
                                     const geometry::ContactMesh& b, const geometry::RigidPose& pose_b,
                                     double reach, geometry::Search search);

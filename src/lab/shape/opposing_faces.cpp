@@ -21,7 +21,7 @@ DVec3 middle_of(const DTriangle& t) {
   return 1.0 / 3.0 * (t[0] + t[1] + t[2]);
 }
 
-/// The `k` of the faces nearest to `p`, nearest first.
+/// Returns the `k` faces nearest to `p`, nearest first.
 Faces nearest(const MeshView& mesh, Faces faces, DVec3 p, int k) {
   std::vector<std::pair<double, std::uint32_t>> ranked;
   ranked.reserve(faces.size());
@@ -41,7 +41,7 @@ Faces all_faces(const MeshView& mesh) {
   return faces;
 }
 
-/// About the mean of the middles, around the corners.
+/// Returns a sphere about the mean of the middles, around the corners.
 BoundingSphere sphere_around(const MeshView& mesh, const Faces& faces) {
   DVec3 sum = {};
   for (const std::uint32_t t : faces) sum += middle_of(mesh.corners(t));
@@ -60,21 +60,23 @@ void find_opposing_faces(const ContactMesh& a, const RigidPose& pose_a, const Co
   if (a.triangles.empty() || b.triangles.empty()) return;
   const RigidPose a_in_b = relative_pose(pose_a, pose_b);
   const BoundingSphere sphere_a = {to_world(a_in_b, a.sphere.center), a.sphere.radius};
-  if (!may_overlap(b.sphere, sphere_a, {}, 0)) return;  // 0; not for what is not a number
+  // Step 0, which is also the end for a pose that is not a number.
+  if (!may_overlap(b.sphere, sphere_a, {}, 0)) return;
   std::vector<DVec3> moved;
   moved.reserve(a.positions.size());
   for (const DVec3& p : a.positions) moved.push_back(to_world(a_in_b, p));
   const MeshView view_a = {moved, a.triangles};
   const MeshView view_b = b.view();
 
-  const Faces near_a = nearest(view_a, all_faces(view_a), b.sphere.center, k);  // 1
-  const BoundingSphere around_a = sphere_around(view_a, near_a);                // 2
-  const Faces near_b = nearest(view_b, all_faces(view_b), around_a.center, k);  // 3
-  const BoundingSphere around_b = sphere_around(view_b, near_b);                // 4
-  result.faces_a = nearest(view_a, near_a, around_b.center, k);                 // 6
+  const Faces near_a = nearest(view_a, all_faces(view_a), b.sphere.center, k);  // Step 1.
+  const BoundingSphere around_a = sphere_around(view_a, near_a);                // Step 2.
+  const Faces near_b = nearest(view_b, all_faces(view_b), around_a.center, k);  // Step 3.
+  const BoundingSphere around_b = sphere_around(view_b, near_b);                // Step 4.
+  // Step 6; the order of 5 and 6 does not matter.
+  result.faces_a = nearest(view_a, near_a, around_b.center, k);
   result.faces_b = nearest(view_b, near_b, around_a.center, k);
   result.last_step = 5;
-  if (!may_overlap(around_a, around_b, {}, 0)) return;  // 5
+  if (!may_overlap(around_a, around_b, {}, 0)) return;  // Step 5.
   result.last_step = 7;
   const std::size_t count_a = result.faces_a.size();
   const std::size_t count_b = result.faces_b.size();

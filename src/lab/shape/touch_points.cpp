@@ -1,4 +1,5 @@
-/// Where two convex solids touch: their features at the planes of contact, met in two dimensions.
+/// Finds where two convex solids touch: it intersects their features at the planes of contact in two
+/// dimensions.
 
 #include "lab/shape/convex_solid.h"
 
@@ -24,7 +25,7 @@ double distance2(Point2 a, Point2 b) {
   return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
 }
 
-/// Axes of a plane.
+/// These are the axes of a plane.
 struct Plane2 {
   DVec3 u = {}, w = {};
   [[nodiscard]] Point2 of(DVec3 v) const { return {dot(u, v), dot(w, v)}; }
@@ -35,7 +36,7 @@ Plane2 plane_across(DVec3 n) {
   return {u, cross(n, u)};
 }
 
-/// Andrew's monotone chain: counter-clockwise, without points on its sides.
+/// Applies Andrew's monotone chain. The outline is counter-clockwise, without points on its sides.
 std::vector<Point2> convex_outline(std::vector<Point2> points) {
   std::sort(points.begin(), points.end(),
             [](Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
@@ -56,7 +57,8 @@ std::vector<Point2> convex_outline(std::vector<Point2> points) {
   return outline;
 }
 
-/// Corners of the core within `tolerance` of the plane across n that holds it on its inner side.
+/// Returns the corners of the core within `tolerance` of the plane across n that bounds the core on the side
+/// of n.
 std::vector<Point2> feature(const ConvexSolid& solid, DVec3 n, const Plane2& plane, double tolerance) {
   double high = -std::numeric_limits<double>::infinity();
   for (const DVec3 v : solid.vertices) high = std::max(high, dot(n, v));
@@ -139,7 +141,8 @@ std::vector<DVec3> contact_points(const ConvexSolid& a, const ConvexSolid& b, co
   places.add_corners(of_a, of_b);
   places.add_corners(of_b, of_a);
   places.add_crossings(of_a, of_b);
-  if (places.found.empty()) {  // features that miss each other by a little: between their nearest corners
+  if (places.found.empty()) {  // The features miss each other by a little, so the contact is between their
+                               // nearest corners.
     Point2 best_a = of_a[0];
     for (const Point2 p : of_a) {
       if (distance2(p, nearest_on(p, of_b)) < distance2(best_a, nearest_on(best_a, of_b))) best_a = p;

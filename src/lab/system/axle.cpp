@@ -8,7 +8,7 @@ namespace hooke::lab {
 
 namespace {
 
-constexpr double kOffCenter = 1e-4;  ///< Of the radius: anchors are given in float.
+constexpr double kOffCenter = 1e-4;  ///< Share of the radius; anchors are given in float.
 
 bool holds(const state::Hook& hook, std::uint32_t body) {
   return !hook.broken && (hook.a.body == body || hook.b.body == body);
@@ -31,7 +31,7 @@ std::optional<Axle> axle_of(const state::Tables& tables, std::uint32_t body) {
   if (tables.bodies.traits[body].kind != BodyKind::kDynamic || hook == tables.hooks.end()) return {};
   if (std::any_of(hook + 1, tables.hooks.end(), is_held)) return {};
   const state::HookPlace& world = hook->a.body == body ? hook->b : hook->a;
-  const bool is_free = hook->freedom[3] == HookFreedom{};  // the angle about the axis
+  const bool is_free = hook->freedom[3] == HookFreedom{};  // The freedom of the angle about the axis.
   if (hook->kind != HookKind::kHinge || world.body != state::HookPlace::kWorld || world.is_point() ||
       !is_free)
     return {};

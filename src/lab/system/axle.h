@@ -8,27 +8,27 @@
 #include <optional>
 
 /// \file
-/// Bodies that only turn about an axis: wheels.
+/// Describes bodies that only rotate about a fixed axis: wheels.
 
 namespace hooke::lab {
 
-/// What a hinge between a body and the world leaves of the body's motion, where the axis goes through its
-/// center of mass: with the moment of inertia I about the unit axis a, and a torque M,
+/// An axle is what a hinge between a body and the world leaves of the body's motion, if the axis goes through
+/// its center of mass. With the moment of inertia I about the unit axis a, and a torque M,
 ///
-///     center = const,   omega = s a,   I s' = a.M
+/// center = const,   omega = s a,   I s' = a.M
 ///
-/// whatever the other moments are; they and all forces go into the bearing.
+/// whatever the other moments are. The bearing takes them and all forces.
 struct Axle {
-  DVec3 axis = {};     ///< Unit, in the world.
-  double inertia = 0;  ///< About it [kg m^2].
+  DVec3 axis = {};     ///< Unit vector, in the world.
+  double inertia = 0;  ///< Moment about the axis [kg m^2].
 };
 
-/// The axle of a dynamic body; nothing without one. A hinge is none that has limits, a motor or a spring, or
-/// is farther than 1e-4 of the body's radius from its center of mass, or has a body on its other side; nor is
-/// one of several hooks of a body.
+/// Returns the axle of a dynamic body, or nothing. A hinge makes no axle if it has limits, a motor or a
+/// spring, if it is farther than 1e-4 of the body's radius from the center of mass, if another body is at its
+/// other end, or if the body has several hooks.
 [[nodiscard]] std::optional<Axle> axle_of(const state::Tables& tables, std::uint32_t body);
 
-/// Whether any hook holds the body.
+/// Tells whether any hook holds the body.
 [[nodiscard]] bool is_hooked(const state::Tables& tables, std::uint32_t body);
 
 }  // namespace hooke::lab

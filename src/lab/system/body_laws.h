@@ -7,13 +7,12 @@
 
 namespace hooke::lab {
 
-/// The user's force laws over bodies and what they are shown: all bodies that forces move, in a world of
-/// their own, in the World's precision. The one that is asked for stands where it is now; the others where
-/// they were when `place` was called for them last, at the start of the step: bodies are integrated one by
-/// one.
+/// Calls the user's force laws over bodies. Laws see all dynamic bodies, in a copy of the World and in its
+/// precision. The body whose load is asked for stands where it is now. The others stand where the last call
+/// of place(), at the start of their step, put them, because bodies are integrated one by one.
 class BodyLaws {
  public:
-  /// Null when there is no such law.
+  /// Returns null when there is no such law.
   static std::shared_ptr<BodyLaws> create(const state::Tables& tables) {
     const auto asks = [](const state::ForceLawEntry& entry) { return entry.body_law != nullptr; };
     const bool any = std::any_of(tables.force_laws.begin(), tables.force_laws.end(), asks);
@@ -45,10 +44,10 @@ class BodyLaws {
 
   struct Load {
     DVec3 force = {};   ///< [N]
-    DVec3 torque = {};  ///< About the center, in world axes [N m].
+    DVec3 torque = {};  ///< Torque about the center, in world axes [N m].
   };
 
-  /// What all laws do to the body of `row`.
+  /// Returns what all laws together do to the body of `row`.
   Load load(std::uint32_t row, double time, const BodyMotion& now) {
     state::Bodies& bodies = world_.tables.bodies;
     const DVec3 center = bodies.center[row];

@@ -15,19 +15,20 @@
 #include <vector>
 
 /// \file
-/// The forces of one object as rows: which points a row acts on, and with what. Each row has one function,
+/// Represents the forces of one object as rows, which know the points that they act on. Each row has one
+/// function,
 ///
-///     template <class T> Forces<T, n> force(const Points<T, n>& p) const
+/// template <class T> Forces<T, n> force(const Points<T, n>& p) const
 ///
-/// which doubles, directions and series in time go through alike (series.h).
+/// for doubles, for directional derivatives and for series in time (series.h).
 
 namespace hooke::lab {
 
-/// What a row knows of its n points.
+/// These are the n points of a row.
 template <class T, int n>
 struct Points {
   std::array<Vector3<T>, n> x, v;
-  std::array<DVec3, n> wind;  ///< [m/s]
+  std::array<DVec3, n> wind;  ///< Wind at each point [m/s].
 };
 
 template <class T, int n>
@@ -48,7 +49,7 @@ struct SpringRow {
 /// E = k (theta - theta_0)^2 / 2, F_i = -(k (theta - theta_0) + c theta') G_i.
 struct BendRow {
   static constexpr int kPoints = 4;
-  std::array<std::uint32_t, 4> at = {};  ///< The ends of the edge, then the wings.
+  std::array<std::uint32_t, 4> at = {};  ///< The ends of the edge, then the two opposite vertices.
   double stiffness = 0;                  ///< [N m]
   double damping = 0;                    ///< [N m s]
   double rest_angle = 0;                 ///< [rad]
@@ -64,7 +65,7 @@ struct BendRow {
     return f;
   }
 
-  /// theta - theta_0 in (-pi, pi].
+  /// Returns theta - theta_0 in (-pi, pi].
   template <class T>
   [[nodiscard]] T opening(T angle) const {
     constexpr double kPi = std::numbers::pi;
@@ -76,7 +77,7 @@ struct BendRow {
 /// E = k |q|^2 / 2, F_i = -k K_i (1 + tau |q|' / |q|) q, see elements::isometric_bend.
 struct CurvatureRow {
   static constexpr int kPoints = 4;
-  std::array<std::uint32_t, 4> at = {};  ///< The ends of the edge, then the wings.
+  std::array<std::uint32_t, 4> at = {};  ///< The ends of the edge, then the two opposite vertices.
   double stiffness = 0;                  ///< k [N/m]
   double damping = 0;                    ///< tau [s]
   std::array<double, 4> weights = {};
@@ -94,11 +95,11 @@ struct CurvatureRow {
   }
 };
 
-/// A triangle in the wind; a third of the force on each corner.
+/// A triangle feels the wind; a third of the force acts on each corner.
 struct SailRow {
   static constexpr int kPoints = 3;
   std::array<std::uint32_t, 3> at = {};
-  double density = 0;  ///< Of the air [kg/m^3].
+  double density = 0;  ///< Density of the air [kg/m^3].
   double drag = 0, lift = 0;
 
   template <class T>
@@ -111,7 +112,7 @@ struct SailRow {
   }
 };
 
-/// A segment of a rope in the wind; half of the force on each end.
+/// A segment of a rope feels the wind; half of the force acts on each end.
 struct StrandRow {
   static constexpr int kPoints = 2;
   std::array<std::uint32_t, 2> at = {};
@@ -125,7 +126,7 @@ struct StrandRow {
   }
 };
 
-/// Gravity, fields and drag on one point.
+/// Gravity, fields and drag act on one point.
 struct PointRow {
   static constexpr int kPoints = 1;
   std::array<std::uint32_t, 1> at = {};
@@ -135,7 +136,7 @@ struct PointRow {
   double half_rho_area = 0;  ///< rho C_d A / 2 [kg/m]
   DVec3 uniform = {};        ///< Gravity and the uniform fields together [m/s^2].
   DVec3 magnetic = {};       ///< All magnetic fields together [T].
-  DVec3 load = {};           ///< Of what a body rests on [N].
+  DVec3 load = {};           ///< Force of the contacts of a body [N].
   const std::vector<FieldDesc>* attractors = nullptr;
 
   template <class T>
@@ -150,17 +151,18 @@ struct PointRow {
   }
 };
 
-/// Euler's equations for the turn p of a body (turn.h): with the inertia I about the principal axes,
+/// These are Euler's equations for the rotation p of a body (turn.h). With the inertia I about the principal
+/// axes,
 ///
-///     I omega' = torque - omega x I omega   (in those axes),   omega' -= damping omega
+/// I omega' = torque - omega x I omega   (in those axes),   omega' -= damping omega
 ///
-/// As a row on a point of mass 1, its force is p''.
+/// The row acts on a point of mass 1 whose position is p, so that its force is p''.
 struct RotationRow {
   static constexpr int kPoints = 1;
   std::array<std::uint32_t, 1> at = {};
-  std::array<DVec3, 3> axes = {};  ///< Principal, in the world, where p = 0.
-  DVec3 inertia = {};              ///< About them [kg m^2].
-  DVec3 torque = {};               ///< Of what the body rests on, in world axes [N m].
+  std::array<DVec3, 3> axes = {};  ///< Principal axes in the world, where p = 0.
+  DVec3 inertia = {};              ///< Moments about them [kg m^2].
+  DVec3 torque = {};               ///< Torque of the contacts, in world axes [N m].
   double damping = 0;              ///< [1/s]
 
   template <class T>
@@ -172,7 +174,7 @@ struct RotationRow {
         in_axes(turned(-p, vector_cast<T>(torque))) - cross(own, weighted(own, inertia));
     const DVec3 inverse = {1 / inertia.x, 1 / inertia.y, 1 / inertia.z};
     const Vector3<T> spin_up = turned(p, out_of_axes(weighted(moment, inverse))) - damping * omega;
-    // omega' s + omega s' = p'' + p x p'' / 2, solved for p''.
+    // omega' s + omega s' = p'' + p x p'' / 2 is solved for p''.
     const Vector3<T> b = rotation_scale(p) * spin_up + (0.5 * dot(p, points.v[0])) * omega;
     return {(1 / rotation_scale(p)) * rotation_rate(p, b)};
   }

@@ -5,14 +5,14 @@
 
 namespace hooke::lab {
 
-/// The user's force laws and what they are shown: the World's own tables, in the World's own precision, with
-/// the object where it is now. A law is a black box: it has no derivatives.
+/// Calls the user's force laws. They see a copy of the World's tables, in its precision, with the object
+/// where it is now. A law is a black box: it has no derivatives.
 class Laws {
  public:
   Laws(const state::Tables& tables, std::uint32_t object)
       : tables_(tables), object_(object), forces_(tables.particles.position.size()) {}
 
-  /// Adds the force of all laws on the object's rows [N].
+  /// Adds the forces of all laws on the object's rows [N].
   void add(double time, const std::vector<DVec3>& x, const std::vector<DVec3>& v, std::vector<DVec3>& force) {
     const state::Deformable& object = tables_.objects[object_];
     const std::size_t first = object.particles.first;

@@ -7,10 +7,10 @@
 
 namespace hooke::lab {
 
-/// A number that knows how it moves: the first N coefficients of its power series in one variable,
-/// c0 + c1 t + c2 t^2 + ... A formula written as a template and evaluated on Series gives exact derivatives,
+/// A Series is a number as a function of one variable, by the first N coefficients of its power series, c0 +
+/// c1 t + c2 t^2 + ... A formula written as a template and evaluated on Series gives exact derivatives,
 /// without a second formula: along any direction with N = 2, in time, one order after the other, with more.
-/// The recurrences are those of Moore 1966, "Interval Analysis", chapter 11. Comparisons look at c0 alone.
+/// The recurrences are those of Moore 1966, "Interval Analysis", chapter 11. Comparisons use c0 alone.
 template <int N>
 struct Series {
   std::array<double, N> c = {};
@@ -41,7 +41,7 @@ struct Series {
     }
     return r;
   }
-  /// q b = a, solved for q from the lowest coefficient on.
+  /// Solves q b = a for q, from the lowest coefficient on.
   friend Series operator/(const Series& a, const Series& b) {
     Series q;
     for (int i = 0; i < N; ++i) {
@@ -51,7 +51,7 @@ struct Series {
     }
     return q;
   }
-  /// r r = a, likewise; `a` must be positive.
+  /// Solves r r = a for r, from the lowest coefficient on; `a` must be positive.
   friend Series sqrt(const Series& a) {
     Series r;
     r.c[0] = std::sqrt(a.c[0]);
@@ -62,7 +62,7 @@ struct Series {
     }
     return r;
   }
-  /// theta' = (x y' - y x') / (x^2 + y^2), integrated term by term.
+  /// Integrates theta' = (x y' - y x') / (x^2 + y^2) term by term.
   friend Series atan2(const Series& y, const Series& x) {
     const Series rate = (x * derivative(y) - y * derivative(x)) / (x * x + y * y);
     Series angle(math::atan2(y.c[0], x.c[0]));
@@ -71,7 +71,7 @@ struct Series {
   }
 
  private:
-  /// One coefficient is lost: the last is zero.
+  /// One coefficient is lost, so that the last is zero.
   static Series derivative(const Series& a) {
     Series r;
     for (int i = 1; i < N; ++i) r.c[i - 1] = i * a.c[i];

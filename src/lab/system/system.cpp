@@ -12,7 +12,7 @@ namespace hooke::lab {
 
 namespace {
 
-/// Derivative of order `n` (0: the place itself) of a held point's motion.
+/// Returns the derivative of order `n` of a held point's motion; order 0 is the position.
 DVec3 held(const state::Pin& pin, double t, int n) {
   const MotionDesc& motion = pin.motion;
   const double age = t - pin.start_time;
@@ -41,7 +41,7 @@ DVec3 held(const state::Pin& pin, double t, int n) {
          (vector_cast<double>(after->offset) - vector_cast<double>(before->offset));
 }
 
-/// Term `i` of a coordinate: of a series its coefficient, of a double the number itself.
+/// Returns term `i` of a coordinate: the coefficient of a series, or a double itself.
 double& term(double& number, int) {
   return number;
 }
@@ -128,7 +128,8 @@ State System::operator()(double t, const State& y) const {
   return slope;
 }
 
-/// One coefficient after the other: those of x and v up to order i give that of a, and so the next of v.
+/// Finds one coefficient after the other: those of x and v up to order i give that of a, and so the next of
+/// v.
 std::vector<State> System::acceleration_and_derivatives(double t, const State& y, int count) const {
   using Term = Series<3>;
   evaluations_ += static_cast<std::uint64_t>(count);

@@ -15,24 +15,25 @@
 #include <vector>
 
 /// \file
-/// One object of a World as y' = f(t, y).
+/// Represents one object of a World as y' = f(t, y).
 
 namespace hooke::lab {
 
-/// y = (x, v): positions [m] and velocities [m/s] of the n free points. A body is two: its center of mass and
-/// its turn [rad], [rad/s], which turn.h moves like a point. Held points are not in y: where they are is
-/// known.
+/// y = (x, v) holds positions [m] and velocities [m/s] of the n free points. A body is two points: its center
+/// of mass and its rotation [rad], [rad/s], which turn.h moves like a point. Held points are not in y,
+/// because their motion is known.
 using State = Eigen::VectorXd;
 
-/// Where a body is and how it moves.
+/// This is where a body is and how it moves.
 struct BodyMotion {
-  DVec3 center = {};                 ///< Of mass [m].
-  Quaternion<double> rotation = {};  ///< From the principal axes of inertia to the world; unit.
-  DVec3 velocity = {};               ///< Of the center [m/s].
+  DVec3 center = {};                 ///< Center of mass [m].
+  Quaternion<double> rotation = {};  ///< Rotation from the principal axes of inertia to the world; unit.
+  DVec3 velocity = {};               ///< Velocity of the center [m/s].
   DVec3 spin = {};                   ///< Angular velocity in world axes [rad/s].
 };
 
-/// Entries of da/dx and da/dv, the derivatives of accelerations: row and column count coordinates of points.
+/// These are the entries of da/dx and da/dv, the derivatives of accelerations. Rows and columns count
+/// coordinates of points.
 struct Jacobian {
   struct Entry {
     int row = 0, column = 0;
@@ -42,8 +43,9 @@ struct Jacobian {
   std::vector<Entry> by_velocity;  ///< [1/s]
 };
 
-/// The fastest oscillation that the rows at one point can make: an upper bound (Gershgorin) of omega^2 and of
-/// the rate of its damping, lambda^2 + damping lambda + omega^2 = 0, and the row that adds most to it.
+/// This is the fastest oscillation that the rows at one point can make: an upper bound (Gershgorin) of
+/// omega^2 and of the rate of its damping, lambda^2 + damping lambda + omega^2 = 0. `row` is the row that
+/// adds most to it.
 struct Oscillation {
   double omega_squared = 0;  ///< [1/s^2]
   double damping = 0;        ///< [1/s]
@@ -55,96 +57,96 @@ class BodyLaws;
 
 class System {
  public:
-  /// Object `object` of the tables. Errors: a rigid spring or segment.
+  /// Makes the system of object `object` of the tables. The Error tells of a rigid spring or segment.
   static Result<System> create(const state::Tables& tables, std::uint32_t object);
-  /// A rigid body that moves freely, or as told (kinematic). `laws` may be null.
+  /// Makes the system of a rigid body that moves freely, or as told (kinematic). `laws` may be null.
   static System create_body(const state::Tables& tables, std::uint32_t row, std::shared_ptr<BodyLaws> laws);
 
   [[nodiscard]] State initial_state() const;
-  [[nodiscard]] Eigen::Index coordinates() const { return coordinates_; }  ///< 3 per free point.
+  [[nodiscard]] Eigen::Index coordinates() const { return coordinates_; }  ///< Three per free point.
 
-  // The parts of y.
+  // These are the parts of y.
   [[nodiscard]] auto x(State& y) const { return y.head(coordinates_); }
   [[nodiscard]] auto v(State& y) const { return y.segment(coordinates_, coordinates_); }
   [[nodiscard]] auto x(const State& y) const { return y.head(coordinates_); }
   [[nodiscard]] auto v(const State& y) const { return y.segment(coordinates_, coordinates_); }
 
-  /// y' = (v, a). Counts as one evaluation, as do those below that say so.
+  /// Returns y' = (v, a). This counts as one evaluation.
   [[nodiscard]] State operator()(double t, const State& y) const;
-  /// a(t, x, v). One evaluation.
+  /// Returns a(t, x, v). This counts as one evaluation.
   [[nodiscard]] State acceleration(double t, const State& y) const;
-  /// a, its derivative in time along the solution (jerk), and that one's (snap): `count` of them, 1 to 3;
-  /// exact, by series. `count` evaluations. Precondition: differentiable().
+  /// Returns `count` (1 to 3) of a, its derivative in time along the solution (jerk), and that one's (snap),
+  /// exactly, by series. This counts as `count` evaluations. Precondition: differentiable().
   [[nodiscard]] std::vector<State> acceleration_and_derivatives(double t, const State& y, int count) const;
-  /// J direction, J = df/dy; exact where differentiable(), force laws and gusts are taken as constant.
+  /// Returns J direction, with J = df/dy. It is exact where differentiable(); force laws and gusts are taken
+  /// as constant.
   [[nodiscard]] State jacobian_times(double t, const State& y, const State& direction) const;
   [[nodiscard]] Jacobian jacobian(double t, const State& y) const;
 
   [[nodiscard]] Energy energy(double t, const State& y) const;
-  /// One per free point, if any row acts on it.
+  /// Returns one oscillation per free point on which any row acts.
   [[nodiscard]] std::vector<Oscillation> oscillations(double t, const State& y) const;
-  /// "spring 3 of particles 1 (k = 1e+05 N/m)"
+  /// Returns a name such as "spring 3 of particles 1 (k = 1e+05 N/m)".
   [[nodiscard]] std::string row_name(std::size_t row) const;
 
-  /// Of all points of the object, held or not, in the order of their maker. Of a body four: its center, and
-  /// where its three axes meet the sphere around it.
+  /// Returns the positions of all points of the object, held or not, in the order of their creation. A body
+  /// has four: its center, and where its three axes meet the sphere around it.
   [[nodiscard]] std::vector<DVec3> positions(double t, const State& y) const;
   [[nodiscard]] std::vector<DVec3> velocities(double t, const State& y) const;
 
-  /// Nothing in f is unknown to series: no force law, no gusts.
+  /// Tells whether series can represent all of f: there are no force laws and no gusts.
   [[nodiscard]] bool differentiable() const { return !has_laws() && !gusts_; }
-  /// Forces depend on velocities.
+  /// Tells whether forces depend on velocities.
   [[nodiscard]] bool velocity_dependent() const { return velocity_dependent_; }
-  /// Nothing but gravity and uniform fields acts.
+  /// Tells whether nothing but gravity and uniform fields acts.
   [[nodiscard]] bool ballistic() const { return ballistic_; }
   [[nodiscard]] bool has_laws() const { return laws_ != nullptr || body_laws_ != nullptr; }
 
   [[nodiscard]] PointRef::Kind kind() const { return kind_; }
   [[nodiscard]] std::uint32_t slot() const { return slot_; }
-  [[nodiscard]] std::string name() const;  ///< "particles 1"
+  [[nodiscard]] std::string name() const;  ///< Such as "particles 1".
   [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t evaluations() const { return evaluations_; }
 
-  // Of bodies.
+  // These are for bodies.
   [[nodiscard]] bool is_body() const { return kind_ == PointRef::Kind::kNone; }
   [[nodiscard]] BodyMotion body(double t, const State& y) const;
-  // Of a body that moves freely:
-  /// Of its center [m/s^2], and of its spin [rad/s^2].
+  /// Returns the accelerations of the center [m/s^2] and of the spin [rad/s^2], for a body that moves freely.
   [[nodiscard]] std::array<DVec3, 2> body_acceleration(double t, const State& y) const;
   void set_velocity(State& y, DVec3 velocity, DVec3 spin) const;
   void move_center(State& y, DVec3 displacement) const;
-  /// Turns it by 2 tan(angle / 2) about an axis, both in `turn` (turn.h); its spin stays.
+  /// Rotates the body by the rotation vector `turn`, 2 tan(angle / 2) times an axis (turn.h). Its spin stays.
   void rotate_by(State& y, DVec3 turn) const;
-  /// Force and torque about the center from now on, in world axes [N], [N m]. Bearings take what an axle does
-  /// not follow.
+  /// Sets the force [N] and the torque about the center [N m] that act from now on, in world axes. A bearing
+  /// takes what an axle cannot follow.
   void set_load(DVec3 force, DVec3 torque);
   /// Shows force laws where the body is at the start of a step, for what they do to other bodies.
   void show_laws(double t, const State& y) const;
-  /// Takes the rotation of `y` as the new origin of turns, if it is far from the old one. \return Whether it
-  /// was: states kept from before then mean nothing.
+  /// Takes the rotation of `y` as the new origin of rotation coordinates, if it is far from the old one.
+  /// \return Whether it did; then states kept from before are meaningless.
   bool lay_chart(State& y);
-  /// False after a step that turned a body so far that its coordinates do not tell where it is.
+  /// Returns false after a step in which a body rotated so far that its coordinates are ambiguous.
   [[nodiscard]] bool rotation_is_known(const State& y) const;
 
-  /// Free point `i` of y: its row of the object, for contacts.
+  /// Returns the row of free point `i` of y in the object, for contacts.
   [[nodiscard]] std::uint32_t row_of_free(Eigen::Index i) const { return free_rows_[i]; }
   [[nodiscard]] double radius(std::uint32_t row) const { return radius_[row]; }
 
  private:
   static constexpr int kHeld = -1;
 
-  /// Positions and velocities of all rows of the object at one time.
+  /// These are positions and velocities of all rows of the object at one time.
   template <class T>
   struct Motion {
     std::vector<Vector3<T>> x, v;
   };
 
   PointRow add_fields(const state::Tables& tables);
-  /// Says which fields are left out.
+  /// Notes which fields are left out.
   void note_fields(const state::Tables& tables);
-  /// Lets a body turn about the axle of its hinge alone, or says that its hooks are left out.
+  /// Lets a body rotate about the axle of its hinge alone, or notes that its hooks are left out.
   void add_axle(const state::Tables& tables, std::uint32_t row, DVec3 spin);
-  /// Says which loads of a body are left out.
+  /// Notes which loads of a body are left out.
   void note_loads(const state::Tables& tables, std::uint32_t row);
   void add_points(const state::Tables& tables, const state::Deformable& object);
   Result<void> add_springs(const state::Tables& tables, const state::Deformable& object);
@@ -165,10 +167,10 @@ class System {
   }
   template <class T>
   Motion<T> motion(double t, const std::vector<State>& x_terms, const std::vector<State>& v_terms) const;
-  /// Of all rows, without force laws; meaningless for held ones.
+  /// Returns accelerations of all rows, without force laws; they are meaningless for held rows.
   template <class T>
   std::vector<Vector3<T>> accelerations(const Motion<T>& motion, const std::vector<DVec3>& wind) const;
-  /// Calls `visit(row)` for each row of each table.
+  /// Calls `visit(row)` for each row of each kind.
   template <class Visit>
   void for_each_row(Visit&& visit) const {
     for (const SpringRow& row : springs_) visit(row);
@@ -182,11 +184,11 @@ class System {
   [[nodiscard]] std::vector<DVec3> wind(double t, const std::vector<DVec3>& x) const;
   [[nodiscard]] std::vector<DVec3> body_positions(double t, const State& y) const;
   [[nodiscard]] BodyMotion body_of(const Motion<double>& motion, double t) const;
-  /// Adds what force laws do to a body, to the accelerations of its two rows.
+  /// Adds the effect of force laws on a body to the accelerations of its two rows.
   void add_body_laws(double t, const Motion<double>& motion, std::vector<DVec3>& accelerations) const;
   [[nodiscard]] Motion<double> motion_now(double t, const State& y) const;
 
-  std::vector<SpringRow> springs_;  ///< Of the table, then the segments of a rope.
+  std::vector<SpringRow> springs_;  ///< Springs of the table, then the segments of a rope.
   std::vector<std::string> spring_names_;
   std::vector<BendRow> bends_;
   std::vector<CurvatureRow> curvatures_;
@@ -194,18 +196,18 @@ class System {
   std::vector<StrandRow> strands_;
   std::vector<PointRow> points_;
   std::vector<RotationRow> turns_;       ///< One for a body that moves freely.
-  Quaternion<double> chart_ = {};        ///< Of a body, where its turn is zero.
-  std::optional<DVec3> kinematic_spin_;  ///< Of a body that moves as told [rad/s].
-  std::optional<Axle> axle_;             ///< Of a body that only turns.
+  Quaternion<double> chart_ = {};        ///< Rotation of a body where its coordinates p are zero.
+  std::optional<DVec3> kinematic_spin_;  ///< Spin of a kinematic body [rad/s].
+  std::optional<Axle> axle_;             ///< Set for a body that only rotates about an axis.
   std::shared_ptr<const std::vector<FieldDesc>> attractors_;
-  std::shared_ptr<Laws> laws_;           ///< None: null.
-  std::shared_ptr<BodyLaws> body_laws_;  ///< Shared by all bodies. None: null.
-  std::uint32_t body_row_ = 0;           ///< In the World's tables.
+  std::shared_ptr<Laws> laws_;           ///< Null if there are none.
+  std::shared_ptr<BodyLaws> body_laws_;  ///< Shared by all bodies; null if there are none.
+  std::uint32_t body_row_ = 0;           ///< Row in the World's tables.
 
   Eigen::Index coordinates_ = 0;
   std::vector<std::uint32_t> free_rows_;
-  std::vector<int> free_of_row_;  ///< Or kHeld.
-  std::vector<state::Pin> pins_;  ///< By row; of held ones.
+  std::vector<int> free_of_row_;  ///< Index of the free point, or kHeld.
+  std::vector<state::Pin> pins_;  ///< Motions of held points, by row.
   std::vector<std::uint32_t> row_of_point_;
   std::vector<double> mass_, radius_;
   std::vector<DVec3> start_x_, start_v_;

@@ -1,4 +1,4 @@
-/// A rigid body as a system of two points: its center of mass and its turn.
+/// Represents a rigid body as a system of two points: its center of mass and its rotation.
 
 #include "lab/system/body_laws.h"
 #include "lab/system/system.h"
@@ -11,17 +11,17 @@ namespace hooke::lab {
 
 namespace {
 
-constexpr std::uint32_t kCenter = 0;  ///< Rows.
+constexpr std::uint32_t kCenter = 0;  ///< Table rows of the system.
 constexpr std::uint32_t kTurn = 1;
-constexpr double kMostTurn = 8;  ///< |p| after a step: 152 degrees.
-constexpr double kFarTurn = 1;   ///< |p| beyond which a chart is laid anew: 53 degrees.
+constexpr double kMostTurn = 8;  ///< Largest |p| after a step: 152 degrees.
+constexpr double kFarTurn = 1;   ///< |p| beyond which a new chart is laid: 53 degrees.
 
 std::array<DVec3, 3> axes_of(Quaternion<double> rotation) {
   return {rotate(rotation, DVec3{1, 0, 0}), rotate(rotation, DVec3{0, 1, 0}),
           rotate(rotation, DVec3{0, 0, 1})};
 }
 
-/// The path of a body that moves as told: its own, or on with the velocity it has.
+/// Returns the path of a kinematic body: its own, or a straight one at its present velocity.
 state::Pin path_of(const state::Tables& tables, std::uint32_t row) {
   const state::Bodies& bodies = tables.bodies;
   state::Pin pin;
@@ -73,7 +73,7 @@ System System::create_body(const state::Tables& tables, std::uint32_t row, std::
                     .axes = axes_of(system.chart_),
                     .inertia = vector_cast<double>(mass.inertia),
                     .damping = static_cast<double>(traits.angular_damping)}};
-  system.velocity_dependent_ = true;  // by the gyroscopic term
+  system.velocity_dependent_ = true;  // This is because of the gyroscopic term.
   system.body_row_ = row;
   system.body_laws_ = std::move(laws);
   if (system.body_laws_ != nullptr && system.body_laws_->body_count() > 1) {
@@ -91,7 +91,8 @@ void System::add_axle(const state::Tables& tables, std::uint32_t row, DVec3 spin
   axle_ = axle_of(tables, row);
   if (axle_) {
     start_v_ = {{}, dot(axle_->axis, spin) * axle_->axis};
-    // The same moment about every axis: nothing gyroscopic is left, and about its own it is as it was.
+    // With the same moment about every axis nothing gyroscopic is left, and the moment about the axle is
+    // unchanged.
     const double inertia = axle_->inertia;
     turns_[0].inertia = {inertia, inertia, inertia};
     set_load({}, {});
@@ -129,7 +130,7 @@ void System::add_body_laws(double t, const Motion<double>& m, std::vector<DVec3>
   BodyLaws::Load load = body_laws_->load(body_row_, t, body_of(m, t));
   RotationRow turn = turns_[0];
   Points<double, 1> point = {.x = {m.x[kTurn]}, .v = {m.v[kTurn]}, .wind = {}};
-  if (axle_) {  // its bearings take the rest
+  if (axle_) {  // The bearings take the other components.
     load = {.torque = dot(axle_->axis, load.torque) * axle_->axis};
   }
   turn.torque += load.torque;
@@ -142,7 +143,7 @@ std::array<DVec3, 2> System::body_acceleration(double t, const State& y) const {
   const Motion<double> m = motion_now(t, y);
   const DVec3 p = m.x[kTurn], rate = m.v[kTurn];
   const DVec3 second = {a[3 * kTurn], a[3 * kTurn + 1], a[3 * kTurn + 2]};
-  // omega s = p' + p x p' / 2, differentiated.
+  // This is omega s = p' + p x p' / 2, differentiated.
   const DVec3 spin_up = second + 0.5 * cross(p, second) - (0.5 * dot(p, rate)) * spin_of(p, rate);
   return {DVec3{a[0], a[1], a[2]}, (1 / rotation_scale(p)) * spin_up};
 }
@@ -170,7 +171,7 @@ void System::rotate_by(State& y, DVec3 turn) const {
   const BodyMotion now = body(0, y);
   auto old = x(y).segment<3>(3 * kTurn);
   const DVec3 p = {old[0], old[1], old[2]};
-  // Rodrigues' rule for one turn after another.
+  // This is Rodrigues' rule for two rotations in sequence.
   const DVec3 both = (1 / (1 - 0.25 * dot(turn, p))) * (turn + p + 0.5 * cross(turn, p));
   old = Eigen::Vector3d(both.x, both.y, both.z);
   set_velocity(y, now.velocity, now.spin);

@@ -56,7 +56,7 @@ Result<System> System::create(const state::Tables& tables, std::uint32_t object_
   return system;
 }
 
-/// What acts on all points and bodies alike; centers of attraction go to their own list.
+/// Adds the fields that act on all points and bodies alike; centers of attraction go to their own list.
 PointRow System::add_fields(const state::Tables& tables) {
   auto attractors = std::make_shared<std::vector<FieldDesc>>();
   PointRow all = {.uniform = vector_cast<double>(tables.desc.gravity)};
@@ -111,7 +111,8 @@ void System::add_points(const state::Tables& tables, const state::Deformable& ob
   pins_.resize(object.particles.count);
   for (const state::Pin& pin : tables.pins) {
     const std::uint32_t row = pin.particle - object.particles.first;
-    if (row < object.particles.count) pins_[row] = pin;  // unsigned: also those before the object
+    // The index is unsigned, so that this also excludes rows before the object.
+    if (row < object.particles.count) pins_[row] = pin;
   }
 }
 
@@ -186,7 +187,7 @@ void System::add_air(const state::Tables& tables, const state::Deformable& objec
   }
 }
 
-/// What the methods want to know of the forces as a whole.
+/// Notes what the methods must know of the forces as a whole.
 void System::note(const state::Tables& tables, const state::Deformable& object) {
   const WindDesc& wind = tables.desc.wind;
   gusts_ = object.feels_air() && (wind.gust != Real(0) || wind.side_gust != Real(0));

@@ -1,4 +1,4 @@
-/// What a system knows of itself beside f: its Jacobian, its energy, its stiffest part.
+/// Computes what a system knows besides f: its Jacobian, its energy, its stiffest part.
 
 #include "lab/system/series.h"
 #include "lab/system/system.h"
@@ -20,8 +20,8 @@ Direction& coordinate(Vector3<Direction>& a, int i) {
   return i == 0 ? a.x : (i == 1 ? a.y : a.z);
 }
 
-/// Calls `visit(output, input, of_velocity, derivative)` for each derivative of a row's forces that is not
-/// zero: output and input count the coordinates of the row's points, three for each.
+/// Calls `visit(output, input, of_velocity, derivative)` for each nonzero derivative of a row's forces.
+/// Output and input count the coordinates of the row's points, three for each.
 template <class Row, class Visit>
 void differentiate(const Row& row, Points<Direction, Row::kPoints> p, Visit&& visit) {
   constexpr int kPoints = Row::kPoints;
@@ -40,8 +40,9 @@ void differentiate(const Row& row, Points<Direction, Row::kPoints> p, Visit&& vi
   }
 }
 
-/// Gershgorin: no eigenvalue of M^-1 K is larger than the largest sum of the sizes of a row's blocks. A row's
-/// force is k times a gradient G of its length or angle, its blocks k G_i G_j^T: for a spring |G| = 1.
+/// Bounds eigenvalues by Gershgorin's theorem: none of M^-1 K is larger than the largest sum of the sizes of
+/// a row's blocks. A row's force is k times a gradient G of its length or angle, and its blocks are k G_i
+/// G_j^T; for a spring |G| = 1.
 class RowSums {
  public:
   RowSums(const std::vector<int>& free_of_row, const std::vector<double>& mass)
@@ -66,7 +67,8 @@ class RowSums {
 
   struct Sum {
     double omega_squared = 0, damping = 0, largest = 0;
-    std::size_t number = ~std::size_t{0};  ///< Of the row that adds most; beyond all rows: air friction.
+    /// Number of the row that adds most; beyond all rows it stands for air friction.
+    std::size_t number = ~std::size_t{0};
   };
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
 
