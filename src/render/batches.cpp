@@ -12,7 +12,7 @@ namespace hooke::render {
 
 namespace {
 
-/// A copy of a mesh on its way into a batch.
+/// An Item is a copy of a mesh that will go into a batch.
 struct Item {
   Batch batch;
   Instance instance;
@@ -43,7 +43,7 @@ std::array<float, 4> linear_of(Color color, float opacity) {
   return {c[0], c[1], c[2], std::clamp(opacity, 0.0F, 1.0F)};
 }
 
-/// Collects items; knows each geometry's box and order of appearance.
+/// Collects items; it keeps each geometry's box and order of appearance.
 class Collector {
  public:
   explicit Collector(Vec3 eye) : eye_(eye) {}
@@ -67,7 +67,7 @@ class Collector {
     std::stable_sort(items_.begin(), items_.end(), drawn_before);
     const Item* previous = nullptr;
     for (const Item& item : items_) {
-      // See-through copies stay apart: others may lie between them.
+      // See-through copies stay apart, because others may lie between them.
       const bool joins = previous != nullptr && item.batch.alpha != AlphaMode::kBlend &&
                          !item.batch.is_in_order && batch_key(*previous) == batch_key(item);
       if (!joins) {
@@ -125,7 +125,7 @@ Result<Item> make_item(const DrawMesh& mesh, std::size_t index) {
   return item;
 }
 
-/// All tubes go into one mesh, each a range of its own.
+/// Adds all tubes to one mesh, each as a range of its own.
 void collect_ropes(const std::vector<DrawRope>& ropes, SharedMeshes& shared, Collector& collector) {
   MeshGeometry& mesh = *shared.ropes;
   mesh.vertices.clear();
@@ -145,7 +145,7 @@ void collect_ropes(const std::vector<DrawRope>& ropes, SharedMeshes& shared, Col
                      {std::max(rope.shininess, 1.0F), std::max(rope.specular, 0.0F), 0, 0}};
     items.push_back(std::move(item));
   }
-  // Only now is the mesh whole and its box known.
+  // Only now is the mesh complete and its box known.
   for (Item& item : items) collector.add(std::move(item), Mat4{});
 }
 
@@ -156,7 +156,8 @@ void collect_spheres(const DrawList& list, int height_px, const SharedMeshes& sh
     if (!is_finite(sphere.center) || !(sphere.radius > 0)) continue;
     const float distance = std::max(length(sphere.center - list.camera.eye), 1e-3F);
     const float radius_px = pixels * sphere.radius / distance;
-    // The silhouette of each is within half a pixel of the circle at the size where the next one starts.
+    // The silhouette of each sphere is within half a pixel of the circle at the size where the next one
+    // starts.
     const std::size_t detail = radius_px < 8 ? 0 : radius_px < 60 ? 1 : 2;
     Item item;
     item.batch.geometry = shared.spheres[detail];

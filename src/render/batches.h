@@ -9,21 +9,21 @@
 #include <vector>
 
 /// \file
-/// Turns a draw list into few draw calls: ropes become one mesh, spheres instances of one sphere, equal
+/// Turns a draw list into few draw calls: all ropes become one mesh, spheres instances of one sphere, equal
 /// meshes one batch.
 
 namespace hooke::render {
 
-/// What the vertex shader knows of one copy of a mesh.
+/// An Instance is what the vertex shader knows of one copy of a mesh.
 struct Instance {
-  std::array<float, 12> rows = {};  ///< The affine matrix by rows.
-  std::array<float, 4> color = {};  ///< Linear; the last is the opacity.
+  std::array<float, 12> rows = {};  ///< Rows of the affine matrix.
+  std::array<float, 4> color = {};  ///< Linear color; the last is the opacity.
   std::array<float, 4> gloss = {};  ///< Exponent, strength, two unused.
 };
 
 constexpr std::size_t kNoMesh = static_cast<std::size_t>(-1);
 
-/// One draw call.
+/// A Batch is one draw call.
 struct Batch {
   std::shared_ptr<const MeshGeometry> geometry;
   std::shared_ptr<const Image> texture;
@@ -36,18 +36,18 @@ struct Batch {
   bool mirrored = false;
   bool casts_shadow = true;
   bool is_in_order = false;
-  std::size_t mesh = kNoMesh;  ///< Its first entry in DrawList::meshes, to name it in errors.
+  std::size_t mesh = kNoMesh;  ///< Index of its first entry in DrawList::meshes, to name it in errors.
 };
 
 struct Batches {
-  std::vector<Batch>
-      batches;  ///< What is in order first, then solid, holed, and see-through from far to near.
+  std::vector<Batch> batches;  ///< First meshes that are drawn in order, then solid, holed, and see-through
+                               ///< ones from far to near.
   std::vector<Instance> instances;
-  std::vector<Bounds> objects;  ///< One box for each drawn thing, for near and far.
-  Bounds casters;               ///< Around everything that casts a shadow.
+  std::vector<Bounds> objects;  ///< One box for each drawn thing, for near and far distances.
+  Bounds casters;               ///< Box around everything that casts a shadow.
 };
 
-/// Meshes that the list does not bring but every frame needs; kept by the renderer.
+/// These are meshes that every frame needs but no list brings; the renderer keeps them.
 struct SharedMeshes {
   std::array<std::shared_ptr<const MeshGeometry>, 3> spheres;  ///< From coarse to fine.
   std::shared_ptr<MeshGeometry> ropes;                         ///< Filled by make_batches.
@@ -55,10 +55,10 @@ struct SharedMeshes {
 
 SharedMeshes make_shared_meshes();
 
-/// kOutOfRange, naming the mesh, for index ranges outside the geometry.
+/// Makes the batches. The Error kOutOfRange names a mesh whose index range is outside of its geometry.
 Result<Batches> make_batches(const DrawList& list, int height_px, SharedMeshes& shared);
 
-/// The linear light of an sRGB color.
+/// Returns the linear light of an sRGB color.
 std::array<float, 3> linear_of(Color color);
 
 }  // namespace hooke::render

@@ -39,7 +39,7 @@ class Pen {
   void draw(const DBox& box) const {
     draw(OrientedBox{0.5 * (box.lower + box.upper), {}, 0.5 * (box.upper - box.lower)});
   }
-  /// Three great circles.
+  /// Draws three great circles.
   void draw(const BoundingSphere& sphere) const {
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = [&](int part) {

@@ -8,16 +8,17 @@
 #include <vector>
 
 /// \file
-/// Bounding volumes as lines: the paper's figure 7.
+/// Draws bounding volumes as lines, as in the paper's figure 7.
 
 namespace hooke::render {
 
-/// The volume of that name; nothing for others, and for "all_pairs", which has none.
+/// Returns the volume of that name, or nothing for other names and for "all_pairs", which has no volume.
 std::optional<Preselection> bounding_volume_named(std::string_view name);
 
-/// Adds the volume around the triangles: of a tree the eight nodes three levels below its root, or the leaves
-/// above them. `in_body` takes the geometry to its body's frame, where the volume is made once for all;
-/// `body`, a turn and a shift, to the list's. A box along the axes is made in the list's frame.
+/// Adds the volume around the triangles as lines. Of a tree it draws the eight nodes three levels below its
+/// root, or the leaves above them. `in_body` takes the geometry to its body's frame, where the volume is made
+/// once; `body`, a rotation and a shift, takes it to the list's frame. A box along the axes is made in the
+/// list's frame.
 void add_bounding_lines(const MeshGeometry& mesh, const Mat4& in_body, const Mat4& body, Preselection kind,
                         std::vector<DrawLine>& lines);
 

@@ -9,7 +9,7 @@
 
 namespace hooke::render {
 
-/// Either an EGL context or a window, never both.
+/// This is either an EGL context or a window, never both.
 struct ContextData {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext egl = EGL_NO_CONTEXT;
@@ -19,8 +19,8 @@ struct ContextData {
   ContextData(const ContextData&) = delete;
   ContextData& operator=(const ContextData&) = delete;
   ~ContextData() {
-    // The display itself stays open: every context of the process shares it, and EGL does not count its
-    // users.
+    // The display itself stays open, because every context of the process shares it, and EGL does not count
+    // its users.
     if (egl != EGL_NO_CONTEXT) {
       if (eglGetCurrentContext() == egl) {
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -73,7 +73,8 @@ Result<EGLContext> create_egl_context(EGLDisplay display) {
 }  // namespace
 
 Result<Context> Context::create_headless() {
-  // The loader ends the program if a library or a function is missing, so ask before each first use.
+  // The loader ends the program if a library or a function is missing, so each is tested before its first
+  // use.
   if (!epoxy_has_egl()) return no_headless("there is no EGL library");
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!has_word(extensions, "EGL_MESA_platform_surfaceless") ||

@@ -11,24 +11,25 @@ namespace hooke::render {
 
 struct ContextData;
 
-/// An OpenGL 3.3 core context, with a window or without. Copies share it; the last one closes it. It belongs
-/// to the thread that uses it: one thread at a time.
+/// A Context is an OpenGL 3.3 core context, with a window or without. Copies share it, and the last one
+/// closes it. Only one thread at a time may use it.
 class Context {
  public:
-  /// Draws without a display: EGL on the surfaceless platform (Mesa). kUnsupported if the machine has none.
+  /// Makes a context that draws without a display, by EGL on the surfaceless platform (Mesa). The Error is
+  /// kUnsupported if the machine has none.
   static Result<Context> create_headless();
 
-  /// A window that can be resized, `width` by `height` in screen units. kUnsupported without a display.
-  /// One window at a time: closing it ends the window system's library for all.
+  /// Makes a resizable window, `width` by `height` in screen units. The Error is kUnsupported without a
+  /// display. There may be one window at a time, because closing it ends the library of windows for all.
   static Result<Context> create_window(const std::string& title, int width, int height);
 
-  /// Makes the context the calling thread's current one; an Error if the driver refuses.
+  /// Makes the context current in the calling thread; returns an Error if the driver refuses.
   [[nodiscard]] Result<void> make_current() const;
 
-  /// The window, for input; null for a headless context.
+  /// Returns the window, for input; null for a headless context.
   [[nodiscard]] GLFWwindow* window() const;
 
-  /// The driver's own name, for reports.
+  /// Returns the driver's own name, for reports.
   [[nodiscard]] std::string driver() const;
 
  private:

@@ -8,11 +8,11 @@ namespace hooke::render {
 
 namespace {
 
-// A white surface facing the sun comes out a little below the brightest value, one in the shadow at about a
-// quarter of that.
+// A white surface facing the sun is a little below the brightest value, one in the shadow at about a quarter
+// of that.
 constexpr float kSunStrength = 1.8F;
 constexpr float kAmbientStrength = 1.0F;
-// The fog hides the ground's end but nothing of the scene: 0.7 % at the farthest object.
+// The fog hides the ground's end but nothing of the scene: it is 0.7 % at the farthest object.
 constexpr float kFogReach = 12;
 
 std::array<float, 4> vec4_of(Vec3 v, float w) {
@@ -46,7 +46,7 @@ FrameUniforms make_frame(const DrawList& list, const View& view, const ShadowVie
   const auto below = list.ground ? linear_of(list.ground->color) : horizon;
   for (std::size_t i = 0; i < 3; ++i) {
     frame.sky_light[i] = ambient * 0.5F * (zenith[i] + horizon[i]);
-    // What the ground throws back of the light that falls on it.
+    // The ground reflects a part of the light that falls on it.
     frame.ground_light[i] =
         below[i] * 0.6F * (frame.sky_light[i] + 0.15F * frame.sun_color[i] * std::max(sun.y, 0.0F));
   }

@@ -15,7 +15,7 @@ GpuMesh make_gpu_mesh(const std::shared_ptr<const MeshGeometry>& geometry) {
   mesh.vertex_array = make_vertex_array();
   mesh.vertices = make_buffer();
   mesh.indices = make_buffer();
-  // Differ from the geometry's, so that the first update uploads.
+  // The revisions differ from those of the geometry, so that the first update uploads.
   mesh.vertex_revision = geometry->vertex_revision - 1;
   mesh.topology_revision = geometry->topology_revision - 1;
   glBindVertexArray(mesh.vertex_array.name());
@@ -56,7 +56,7 @@ void upload_pixels(const Image& image) {
 Result<const GpuMesh*> GpuCache::update(const std::shared_ptr<const MeshGeometry>& geometry,
                                         const std::string& where) {
   auto place = meshes_.find(geometry.get());
-  // A new object may live at a dead one's address.
+  // A new object may have the address of one that was destroyed.
   if (place != meshes_.end() && place->second.owner.expired()) {
     meshes_.erase(place);
     place = meshes_.end();

@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 /// \file
-/// Copies of geometry and textures on the graphics card, kept while their owners live.
+/// Keeps copies of geometry and textures on the graphics card while their owners live.
 
 namespace hooke::render {
 
@@ -29,14 +29,15 @@ struct GpuTexture {
 
 class GpuCache {
  public:
-  /// The copy, brought up to date. `where` names the mesh in the error for indices beyond the vertices.
+  /// Brings the copy up to date and returns it. `where` names the mesh in the error for indices beyond the
+  /// vertices.
   Result<const GpuMesh*> update(const std::shared_ptr<const MeshGeometry>& geometry,
                                 const std::string& where);
 
-  /// The texture, uploaded once: an image that is shown must not change.
+  /// Uploads the texture once and returns it; an image that is shown must not change.
   Result<GLuint> update(const std::shared_ptr<const Image>& image, const std::string& where);
 
-  /// Frees what nobody owns any more.
+  /// Frees copies whose owners are gone.
   void remove_orphans();
 
  private:

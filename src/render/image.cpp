@@ -9,8 +9,8 @@
 #include <memory>
 #include <system_error>
 
-// Static, because other libraries of a program bring their own copies. The formats left out are those nobody
-// needs and whose decoders had the most faults.
+// These functions are static, because other libraries of a program bring their own copies. Formats that
+// nobody needs and whose decoders had the most faults are left out.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

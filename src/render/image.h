@@ -9,7 +9,7 @@
 
 namespace hooke::render {
 
-/// Bytes of sRGB color, rows from top to bottom without padding.
+/// An Image is bytes of sRGB color, in rows from top to bottom without padding.
 struct Image {
   int width = 0;
   int height = 0;
@@ -19,13 +19,13 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// Whether the sizes are positive, the channels 3 or 4 and the pixels as many as these say.
+/// Tells whether the sizes are positive, the channels 3 or 4 and the pixels as many as these say.
 bool is_consistent(const Image& image);
 
-/// Writes a temporary file beside `path` and renames it, so `path` is never half a picture.
+/// Writes the picture by process::write_file, so that `path` never leads to an incomplete file.
 Result<void> write_png(const Image& image, const std::string& path);
 
-/// What a file from elsewhere may cost.
+/// These limits bound the cost of a file from an unknown source.
 struct ImageLimits {
   std::size_t max_file_bytes = std::size_t{64} << 20;
   int max_side = 8192;  ///< [px]

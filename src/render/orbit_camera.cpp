@@ -11,7 +11,7 @@ constexpr float kRadiansPerDegree = std::numbers::pi_v<float> / 180;
 // At the pole the picture would flip.
 constexpr float kMaxPitch = 89 * kRadiansPerDegree;
 
-/// From the target to the eye, unit length.
+/// Returns the unit vector from the target to the eye.
 Vec3 back_of(const OrbitCamera& orbit) {
   return {std::cos(orbit.pitch) * std::sin(orbit.yaw), std::sin(orbit.pitch),
           std::cos(orbit.pitch) * std::cos(orbit.yaw)};

@@ -10,7 +10,7 @@ namespace hooke::render {
 
 namespace {
 
-/// A triangle of the list: which mesh, and its corners where the list has them.
+/// A Source is a triangle of the list: its mesh, and its corners in the frame of the list.
 struct Source {
   std::size_t mesh = 0;
   std::array<Vertex, 3> corners = {};
@@ -54,7 +54,7 @@ geometry::SolidMesh triangles_of(const std::vector<Source>& sources) {
   return mesh;
 }
 
-/// The triangle's vertex at a point of it, by the areas that the point and its sides enclose.
+/// Returns the triangle's vertex at a point, interpolated by the areas that the point and its sides enclose.
 Vertex vertex_at(const Source& source, DVec3 p) {
   const auto at = [&](std::size_t k) { return vector_cast<double>(source.corners[k].position) - p; };
   const DVec3 normal = cross(at(1) - at(0), at(2) - at(0));
@@ -71,7 +71,7 @@ Vertex vertex_at(const Source& source, DVec3 p) {
   return vertex;
 }
 
-/// A run without triangles of what has the look of `mesh`, in a geometry in world coordinates.
+/// Returns an empty run of triangles with the look of `mesh`, in a geometry in world coordinates.
 DrawMesh run_of(const DrawMesh& mesh, const std::shared_ptr<MeshGeometry>& geometry) {
   DrawMesh run = mesh;
   run.geometry = geometry;
@@ -82,7 +82,7 @@ DrawMesh run_of(const DrawMesh& mesh, const std::shared_ptr<MeshGeometry>& geome
   return run;
 }
 
-/// Appends a face of the tree, a part of the triangle of `source`, as a fan of triangles.
+/// Appends a face of the tree, which is a part of the triangle of `source`, as a fan of triangles.
 void add_face(const BspTree& tree, const BspFace& face, const Source& source, MeshGeometry& geometry) {
   const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
   for (std::uint32_t k = 0; k < face.corner_count; ++k) {

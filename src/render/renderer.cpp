@@ -17,7 +17,7 @@ namespace hooke::render {
 
 namespace {
 
-/// A buffer that is filled anew every frame, and the vertex array that reads it.
+/// This is a buffer that is filled anew every frame, and the vertex array that reads it.
 struct Stream {
   GlName vertex_array;
   GlName buffer;
@@ -29,23 +29,23 @@ struct GroundMesh {
   GLsizei vertex_count = 0;
 };
 
-/// What the line shader reads of one line.
+/// This is what the line shader reads of one line.
 struct LineInstance {
   std::array<float, 4> from = {};
   std::array<float, 3> to = {};
   std::array<float, 4> color = {};
 };
 
-/// The outermost ring of the ground mesh, whose innermost ring is at one half.
+/// Radius of the outermost ring of the ground mesh, whose innermost ring has radius one half.
 constexpr float kGroundRadius = 16384;
 
 constexpr int kGroundSides = 32;
 
-/// What both passes draw.
+/// This is what both passes draw.
 struct Prepared {
   Batches batches;
   std::vector<const GpuMesh*> meshes;  ///< One for each batch.
-  std::vector<GLuint> textures;        ///< 0 is none.
+  std::vector<GLuint> textures;        ///< 0 means none.
 };
 
 }  // namespace
@@ -55,7 +55,7 @@ struct RendererData {
   RendererData(const RendererData&) = delete;
   RendererData& operator=(const RendererData&) = delete;
   // The members are deleted after this body, in the context they belong to. If the driver refuses, the
-  // context is gone and its objects with it.
+  // context and its objects are gone.
   ~RendererData() { static_cast<void>(context.make_current()); }
 
   Context context;
@@ -111,7 +111,7 @@ Stream make_text_stream() {
   return stream;
 }
 
-/// Rings whose radius doubles, so that no triangle is so large that its depth loses digits.
+/// Makes rings whose radius doubles, so that no triangle is so large that its depth loses digits.
 GroundMesh make_ground_mesh() {
   std::vector<Vec3> vertices;
   const auto at = [](int side, float radius) {
@@ -134,7 +134,7 @@ GroundMesh make_ground_mesh() {
   return mesh;
 }
 
-/// Brings everything to the graphics card, or says what is wrong with it.
+/// Brings everything to the graphics card, or returns what is wrong with it.
 Result<Prepared> prepare(RendererData& data, const DrawList& list) {
   auto batches = make_batches(list, data.picture.height, data.shared);
   if (!batches) return batches.error();
@@ -182,7 +182,7 @@ void draw_shadow_map(const RendererData& data, const Prepared& prepared) {
   glViewport(0, 0, data.shadow_map->size, data.shadow_map->size);
   glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT);
-  // Open surfaces shadow on both sides.
+  // Open surfaces cast shadows from both sides.
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5F, 2);
@@ -207,7 +207,7 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
     bind_surface(prepared.textures[i]);
     if (batch.alpha == AlphaMode::kCutout) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     if (see_through && batch.two_sided) {
-      // The far side first.
+      // The far side is drawn first.
       glEnable(GL_CULL_FACE);
       glCullFace(GL_FRONT);
       draw_batch(data, batch, *prepared.meshes[i]);
@@ -227,7 +227,7 @@ void draw_meshes(const RendererData& data, const Prepared& prepared, bool see_th
 void draw_ground(const RendererData& data, const Ground& ground, const View& view, float fog_distance) {
   const float above = view.eye.y - ground.height;
   if (!(above > 0)) return;
-  // Far enough for its rim to be less than a pixel below the horizon and deep in the fog.
+  // The rim is far enough to be less than a pixel below the horizon and deep in the fog.
   const float scale = std::max(above, 6 * fog_distance / kGroundRadius);
   const auto color = linear_of(ground.color);
   const auto line = linear_of(ground.line_color);
@@ -286,7 +286,7 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   glViewport(0, 0, data.picture.width, data.picture.height);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glDepthMask(GL_TRUE);
-  // The sky covers every pixel that nothing else does.
+  // No color is cleared, because the sky covers every pixel that nothing else does.
   glClear(GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, data.shadow_map ? data.shadow_map->texture.name() : 0);
@@ -307,7 +307,7 @@ void draw_picture(const RendererData& data, const DrawList& list, const Prepared
   glBindVertexArray(0);
 }
 
-/// State that another user of the context (a user interface) may have left.
+/// Resets state that another user of the context (a user interface) may have left.
 void reset_state() {
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);

@@ -13,18 +13,18 @@ namespace hooke::render {
 struct RendererOptions {
   int width = 1280;  ///< [px], 1 to 8192.
   int height = 720;
-  int samples = 4;             ///< Per pixel, for smooth edges; 1 is none. The driver may give fewer.
-  int shadow_map_size = 2048;  ///< [px], 256 to 8192; 0 draws no shadows.
+  int samples = 4;             ///< Samples per pixel, for smooth edges; 1 is none. The driver may give fewer.
+  int shadow_map_size = 2048;  ///< Size [px], 256 to 8192; 0 draws no shadows.
 };
 
 struct RendererData;
 
-/// Draws lists into a picture of its own, which is then read, or shown in the context's window. Must be used
-/// by the thread of its context.
+/// A Renderer draws lists into a picture of its own, which is then read, or shown in the context's window.
+/// Only the thread of its context may use it.
 class Renderer {
  public:
-  /// Compiles the shaders and makes the picture; an Error if the driver lacks something or a size is too
-  /// large.
+  /// Compiles the shaders and makes the picture. It returns an Error if the driver lacks something or a size
+  /// is too large.
   static Result<Renderer> create(const Context& context, const RendererOptions& options = {});
 
   Renderer(Renderer&&) noexcept;
@@ -34,14 +34,15 @@ class Renderer {
   /// Changes the picture's size; what was drawn is lost. After an Error the old picture stays.
   Result<void> resize(int width, int height);
 
-  /// Draws one picture. kOutOfRange, naming the mesh, if indices leave its vertices; nothing is drawn then.
+  /// Draws one picture. If indices leave the vertices of a mesh, the Error kOutOfRange names it, and nothing
+  /// is drawn.
   Result<void> draw(const DrawList& list);
 
-  /// The picture drawn last, RGB.
+  /// Returns the picture drawn last, as RGB.
   [[nodiscard]] Result<Image> read_image() const;
 
-  /// Fills the window with the picture; the caller swaps the buffers. `width` and `height` are the window's
-  /// framebuffer [px].
+  /// Fills the window with the picture; the caller swaps the buffers. `width` and `height` are those of the
+  /// window's framebuffer [px].
   Result<void> present(int width, int height) const;
 
   [[nodiscard]] int width() const;

@@ -13,7 +13,8 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kRoundSides = 32;
 constexpr int kShapeCapRings = 10;
 
-/// A closed outline turned about the y axis: radius and height, normal in the same plane, v.
+/// This is a point of an outline that is rotated about the y axis: radius and height, normal in the same
+/// plane, v.
 struct ProfilePoint {
   float radius = 0;
   float height = 0;
@@ -22,7 +23,7 @@ struct ProfilePoint {
   float v = 0;
 };
 
-/// Joins two rings of `count` vertices each, the second further along, seen from outside.
+/// Joins two rings of `count` vertices each, the second farther along, seen from outside.
 void add_band(std::uint32_t first, std::uint32_t second, std::uint32_t count, MeshGeometry& geometry) {
   for (std::uint32_t i = 0; i + 1 < count; ++i) {
     const std::uint32_t a = first + i;
@@ -31,7 +32,7 @@ void add_band(std::uint32_t first, std::uint32_t second, std::uint32_t count, Me
   }
 }
 
-/// The profile runs from the top to the bottom.
+/// Makes a shape of revolution; the profile runs from the top to the bottom.
 MeshGeometry make_turned(std::span<const ProfilePoint> profile) {
   MeshGeometry geometry;
   const auto ring = static_cast<std::uint32_t>(kRoundSides + 1);
@@ -47,7 +48,7 @@ MeshGeometry make_turned(std::span<const ProfilePoint> profile) {
            part,
            point.v});
     }
-    // Bands go downward, so the upper ring is the second one for a counter-clockwise outside.
+    // Bands go downward, so the upper ring is the second one, to be counter-clockwise from outside.
     if (first >= ring) add_band(first, first - ring, ring, geometry);
   }
   return geometry;
@@ -125,9 +126,10 @@ MeshGeometry make_capsule(float radius, float half_height) {
   for (int end = 0; end < 2; ++end) {
     const float shift = end == 0 ? half_height : -half_height;
     for (int i = 0; i <= kShapeCapRings; ++i) {
-      // Zero at the upper pole, pi at the lower one.
+      // The angle is zero at the upper pole, pi at the lower one.
       const float angle = 0.5F * kPi * (static_cast<float>(i) / kShapeCapRings + static_cast<float>(end));
-      // Exactly zero at both poles, or the triangles there would have an area, and it could face inward.
+      // The radius must be exactly zero at both poles. Otherwise the triangles there would have an area and
+      // could face inward.
       const float s = std::max(std::sin(angle), 0.0F);
       const float c = std::cos(angle);
       profile.push_back({radius * s, shift + radius * c, s, c, 0});
@@ -146,7 +148,7 @@ MeshGeometry make_cylinder(float radius, float half_height) {
 }
 
 MeshGeometry make_cone(float radius, float half_height) {
-  // The side's normal is across the line from the tip to the rim.
+  // The side's normal is perpendicular to the line from the tip to the rim.
   const float outward = 2 * half_height;
   const ProfilePoint profile[] = {{0, half_height, outward, radius, 1},
                                   {radius, -half_height, outward, radius, 0},
@@ -163,7 +165,7 @@ void update_normals(MeshGeometry& geometry) {
     const std::uint32_t c = geometry.indices[i + 2];
     if (std::max({a, b, c}) >= sums.size()) continue;
     const Vec3 origin = geometry.vertices[a].position;
-    // Twice the area times the unit normal.
+    // This is twice the area times the unit normal.
     const Vec3 normal = cross(geometry.vertices[b].position - origin, geometry.vertices[c].position - origin);
     sums[a] += normal;
     sums[b] += normal;

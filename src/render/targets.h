@@ -4,11 +4,12 @@
 #include "render/image.h"
 
 /// \file
-/// The pictures that are drawn into.
+/// Makes the pictures that are drawn into.
 
 namespace hooke::render {
 
-/// A picture with several samples per pixel, and its average in a texture. Both store sRGB.
+/// A PictureTarget is a picture with several samples per pixel, and its average in a texture. Both store
+/// sRGB.
 struct PictureTarget {
   int width = 0;
   int height = 0;
@@ -19,16 +20,17 @@ struct PictureTarget {
   GlName texture;
 };
 
-/// kOutOfRange for sizes outside 1 to 8192, kUnsupported if the driver cannot make it.
+/// Makes a target. The Error is kOutOfRange for sizes outside 1 to 8192, kUnsupported if the driver cannot
+/// make it.
 Result<PictureTarget> make_picture_target(int width, int height, int samples);
 
 /// Averages the samples into the texture.
 void resolve(const PictureTarget& target);
 
-/// The averaged picture, RGB, top row first.
+/// Returns the averaged picture, RGB, top row first.
 Image read_pixels(const PictureTarget& target);
 
-/// A square depth texture that compares when it is read.
+/// A ShadowTarget is a square depth texture that compares depths when it is read.
 struct ShadowTarget {
   int size = 0;
   GlName framebuffer;

@@ -11,7 +11,7 @@ namespace hooke::render {
 namespace {
 
 constexpr std::size_t kMaxCharacters = 2000;
-// The font's own documentation: about 270 bytes for each character.
+// The font's own documentation says about 270 bytes for each character.
 constexpr std::size_t kBytesPerCharacter = 320;
 constexpr float kFontLineHeight = 12;
 

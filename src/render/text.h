@@ -8,7 +8,7 @@
 namespace hooke::render {
 
 struct TextVertex {
-  float x_px = 0;  ///< From the top left corner.
+  float x_px = 0;  ///< Position from the top left corner.
   float y_px = 0;
   std::array<float, 3> color = {};  ///< Linear.
 };

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSides = 14;
 constexpr int kTubeCapRings = 4;
 
-/// A point of the curve and the direction in which it runs (unit length).
+/// A Station is a point of the curve and its unit tangent.
 struct Station {
   Vec3 point;
   Vec3 tangent;
@@ -26,8 +26,9 @@ std::vector<Vec3> usable_points(std::span<const Vec3> points, float radius) {
   return result;
 }
 
-/// The Catmull-Rom curve with centripetal knots (Yuksel, Schaefer, Keyser 2011), which makes no loops where
-/// points are close together. Barry and Goldman's pyramid, at `part` of the way from p1 to p2.
+/// Returns a point at `part` of the way from p1 to p2 on the Catmull-Rom curve with centripetal knots, by
+/// Barry and Goldman's pyramid. This curve makes no loops where points are close together (Yuksel, Schaefer,
+/// Keyser 2011).
 Vec3 curve_point(const std::array<Vec3, 4>& p, float part) {
   std::array<float, 4> t = {};
   for (std::size_t i = 1; i < 4; ++i) t[i] = t[i - 1] + std::sqrt(std::max(length(p[i] - p[i - 1]), 1e-9F));
@@ -42,7 +43,7 @@ Vec3 curve_point(const std::array<Vec3, 4>& p, float part) {
   return mix(mix(a, b, 0, 2), mix(b, c, 1, 3), 1, 2);
 }
 
-/// The curve cut so fine that one piece is about as long as the rope is thick.
+/// Cuts the curve so finely that one piece is about as long as the rope is thick.
 std::vector<Station> make_stations(const std::vector<Vec3>& points, float radius) {
   std::vector<Station> stations;
   const std::size_t last = points.size() - 1;
@@ -65,7 +66,8 @@ std::vector<Station> make_stations(const std::vector<Vec3>& points, float radius
   return stations;
 }
 
-/// A circle of vertices about `center`: `lean` 0 is across the axis, 1 points along it.
+/// Adds a circle of vertices about `center`. Their normals are across the axis where `lean` is 0 and along it
+/// where `lean` is 1.
 void add_ring(Vec3 center, float radius, const Mat3& frame, float lean, MeshGeometry& geometry) {
   const float flat = std::sqrt(std::max(1 - lean * lean, 0.0F));
   for (int i = 0; i < kSides; ++i) {
@@ -85,10 +87,10 @@ void join_rings(std::uint32_t first, std::uint32_t ring_count, MeshGeometry& geo
   }
 }
 
-/// `frame` carried to the next tangent by the smallest turn, so that the tube does not twist.
+/// Returns `frame` rotated to the next tangent by the smallest rotation, so that the tube does not twist.
 Mat3 carried_frame(const Mat3& frame, Vec3 tangent) {
   Vec3 x = normalize(frame.x - dot(frame.x, tangent) * tangent);
-  // A hairpin within one piece: the old x axis runs along the rope, the old y axis cannot.
+  // In a hairpin within one piece the old x axis runs along the rope; the old y axis cannot.
   if (x == Vec3{}) x = normalize(cross(frame.y, tangent));
   return {x, cross(tangent, x), tangent};
 }
@@ -101,7 +103,7 @@ void add_tube(std::span<const Vec3> points, float radius, MeshGeometry& geometry
   if (usable.size() < 2) return;
   const std::vector<Station> stations = make_stations(usable, radius);
 
-  // A polygon seen from all sides is on average this much narrower than its circle.
+  // Seen from all sides, a polygon is on average this much narrower than its circle.
   const float widening = 2 / (1 + std::cos(std::numbers::pi_v<float> / kSides));
   const float ring_radius = widening * radius;
   const auto first = static_cast<std::uint32_t>(geometry.vertices.size());

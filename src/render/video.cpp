@@ -30,14 +30,14 @@ bool ends_in(const std::string& text, const std::string& ending) {
   return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-/// The name of a numbered picture around its number.
+/// This is the name of a numbered picture before and after its number.
 struct NumberedName {
   std::string before;
   std::size_t digits = 0;
   std::string after;
 };
 
-/// Only %d, %Nd and %0Nd with N of one digit: the name comes from a user and never reaches printf.
+/// Accepts only %d, %Nd and %0Nd with N of one digit. The name comes from a user and never reaches printf.
 std::optional<NumberedName> parse_numbered(const std::string& path) {
   const std::size_t start = path.find('%');
   if (start == std::string::npos || path.find('%', start + 1) != std::string::npos) return std::nullopt;
@@ -80,7 +80,8 @@ Result<Format> format_of(const VideoOptions& options) {
   return Error{ErrorCode::kOutOfRange, options.path, "the name must end in .mp4, .gif or %04d.png"};
 }
 
-/// The film goes to standard output, by a name: the encoder goes back in it, and reads it again.
+/// Returns the words that start ffmpeg. The film goes to standard output by a file name, because the encoder
+/// seeks back in it and reads it again.
 std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format format) {
   std::vector<std::string> words = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y"};
   const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
@@ -127,9 +128,9 @@ std::vector<std::string> ffmpeg_arguments(const VideoOptions& options, Format fo
 struct VideoData {
   VideoOptions options;
   Format format = Format::kMp4;
-  NumberedName name;                     ///< Of numbered pictures.
-  std::optional<process::NewFile> film;  ///< What ffmpeg writes.
-  Descriptor input;                      ///< Our end of ffmpeg's input.
+  NumberedName name;                     ///< Set for numbered pictures.
+  std::optional<process::NewFile> film;  ///< The file that ffmpeg writes.
+  Descriptor input;                      ///< This program's end of ffmpeg's input.
   std::unique_ptr<std::FILE, MessageCloser> messages;
   process::Child ffmpeg;
   int frame_count = 0;
@@ -147,13 +148,13 @@ struct VideoData {
     film.reset();
   }
 
-  /// Whether ffmpeg ended well.
+  /// Waits for ffmpeg; returns whether it ended without an error.
   bool wait_for_end() {
     const int status = ffmpeg.wait();
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
 
-  /// The beginning of what ffmpeg said.
+  /// Returns the beginning of ffmpeg's messages.
   std::string read_messages() {
     std::array<char, 400> text{};
     std::rewind(messages.get());
@@ -179,7 +180,8 @@ Result<void> start_ffmpeg(VideoData& data) {
   if (!film) return data.fail(film.error().code, film.error().message);
   data.film.emplace(std::move(*film));
 
-  // A socket instead of a pipe: writing to it can be told not to raise SIGPIPE when ffmpeg has ended.
+  // This is a socket and not a pipe, because a write to a socket can be told not to raise SIGPIPE when ffmpeg
+  // has ended.
   std::array<int, 2> ends = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return data.fail(ErrorCode::kUnsupported, std::strerror(errno));
@@ -241,7 +243,7 @@ Result<void> VideoWriter::add(const Image& frame) {
   const int number = data.frame_count++;
   if (data.format == Format::kPictures) return write_png(frame, numbered(data.name, number));
   if (send_all(data.input.number(), frame.pixels.data(), frame.pixels.size())) return {};
-  // It has ended or is about to: what it said last is the reason.
+  // ffmpeg has ended or is about to; its last message is the reason.
   data.input.close();
   data.wait_for_end();
   return data.fail(ErrorCode::kFileNotWritable, "ffmpeg ended early: " + data.read_messages());
@@ -251,7 +253,7 @@ Result<void> VideoWriter::finish() {
   VideoData& data = *data_;
   if (data.failed) return Error{ErrorCode::kFileNotWritable, data.options.path, "the film has failed before"};
   if (data.frame_count == 0) return data.fail(ErrorCode::kOutOfRange, "a film needs at least one frame");
-  data.failed = true;  // nothing can be added from here on
+  data.failed = true;  // Nothing can be added from here on.
   if (data.format == Format::kPictures) return {};
   data.input.close();
   if (!data.wait_for_end()) {

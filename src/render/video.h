@@ -10,10 +10,12 @@
 namespace hooke::render {
 
 struct VideoOptions {
-  std::string path;  ///< Ends in .mp4 or .gif; or in .png with one %0Nd for the frame number, counted from 0.
-  int width = 1280;  ///< [px]; even for .mp4, whose colors are stored for 2 x 2 pixels.
+  /// Ends in .mp4 or .gif; or in .png with one %0Nd for the frame number, counted from 0.
+  std::string path;
+  /// Size [px]; even for .mp4, whose colors are stored for 2 x 2 pixels.
+  int width = 1280;
   int height = 720;
-  int frames_per_second = 60;  ///< 1 to 240. A .gif shows at most 50 and drops frames beyond.
+  int frames_per_second = 60;  ///< 1 to 240. A .gif shows at most 50; further frames are dropped.
 };
 
 struct VideoData;
@@ -23,18 +25,18 @@ struct VideoData;
 /// one by one.
 class VideoWriter {
  public:
-  /// kUnsupported if there is no ffmpeg, kOutOfRange for a size or name that the format does not have,
-  /// kFileNotWritable if the folder refuses.
+  /// Starts a film. The Error is kUnsupported if there is no ffmpeg, kOutOfRange for a size or name that the
+  /// format does not have, and kFileNotWritable if the folder refuses.
   static Result<VideoWriter> create(const VideoOptions& options);
 
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();
 
-  /// The next frame: RGB, of the film's size. After an Error every further call gives an Error.
+  /// Adds the next frame: RGB, of the film's size. After an Error every further call gives an Error.
   Result<void> add(const Image& frame);
 
-  /// Waits until the film is written and gives it its name. Call once, last.
+  /// Waits until the film is written and gives it its name. Call it once, last.
   Result<void> finish();
 
  private:

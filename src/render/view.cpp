@@ -16,19 +16,19 @@ std::array<Vec3, 8> corners_of(const Bounds& bounds) {
   return corners;
 }
 
-/// Any unit vector at a right angle to the unit vector `axis`.
+/// Returns some unit vector perpendicular to the unit vector `axis`.
 Vec3 perpendicular_to(Vec3 axis) {
   const Vec3 other = std::abs(axis.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
   return normalize(cross(axis, other));
 }
 
-/// Columns right, up, back turned into the matrix that maps world to camera coordinates.
+/// Returns the matrix from world to camera coordinates, for the axes right, up and back.
 Mat4 make_look(Vec3 right, Vec3 up, Vec3 back, Vec3 eye) {
   const Mat3 rotation = transpose(Mat3{right, up, back});
   return affine(rotation, -(rotation * eye));
 }
 
-/// Box scaled to -1..1; z of the camera is negative in front of it.
+/// Returns the matrix that scales the box to -1..1; z of the camera is negative in front of it.
 Mat4 make_orthographic(const Bounds& box) {
   const Vec3 size = box.high - box.low;
   const Vec3 middle = center_of(box);
@@ -38,7 +38,7 @@ Mat4 make_orthographic(const Bounds& box) {
            {-2 * middle.x / size.x, -2 * middle.y / size.y, 2 * middle.z / size.z, 1}}};
 }
 
-/// Next size of the series 2^(k/4), so that a breathing scene rarely changes it.
+/// Returns the next size of the series 2^(k/4), so that a scene whose size varies a little rarely changes it.
 float rounded_up(float size) {
   return std::exp2(std::ceil(4 * std::log2(std::max(size, 1e-3F))) / 4);
 }
@@ -104,7 +104,8 @@ View make_view(const Camera& camera, float aspect, std::span<const Bounds> objec
     for (const Vec3 corner : corners_of(box)) view.reach = std::max(view.reach, length(corner - view.eye));
   }
   if (ground != nullptr) nearest = std::min(nearest, std::abs(view.eye.y - ground->height));
-  // 24 bits of depth over a range of 1 : 2000 still tell 1/8000 of the distance apart at the far end.
+  // With 24 bits of depth over a range of 1 : 2000, distances that differ by 1/8000 are still distinct at the
+  // far end.
   view.near_distance = std::max(0.5F * nearest, view.reach / 2000);
 
   const float half_angle =
@@ -126,8 +127,8 @@ ShadowView make_shadow_view(const View& view, const Bounds& casters, Vec3 direct
   const Vec3 right = perpendicular_to(back);
   const Mat4 look = make_look(right, cross(back, right), back, Vec3{});
 
-  // What the camera sees is its pyramid up to the farthest object. A shadow keeps its x and y in this frame,
-  // so only casters inside the pyramid's outline matter.
+  // The camera sees a pyramid up to the farthest object. A shadow keeps its x and y in this frame, so only
+  // casters inside the pyramid's outline matter.
   Bounds seen;
   extend(seen, transform_point(look, view.eye));
   for (int i = 0; i < 4; ++i) {
@@ -142,7 +143,7 @@ ShadowView make_shadow_view(const View& view, const Bounds& casters, Vec3 direct
   const Vec3 high = {std::min(box.high.x, seen.high.x), std::min(box.high.y, seen.high.y), box.high.z};
   if (low.x < high.x && low.y < high.y) box = {low, high};
 
-  // A margin of the filter's width, and room to move by whole texels.
+  // There is a margin of the filter's width, and room to move by whole texels.
   const float side = rounded_up(1.02F * std::max(box.high.x - box.low.x, box.high.y - box.low.y));
   ShadowView shadow;
   shadow.texel_size = side / static_cast<float>(map_size);

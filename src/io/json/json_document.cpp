@@ -7,14 +7,14 @@ namespace hooke::io {
 
 namespace {
 
-/// In longer lines columns are counted in bytes, so that a hostile file cannot make its errors slow.
+/// In longer lines columns count bytes, so that a hostile file cannot make its errors slow.
 constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
-/// Of a key in a message [bytes].
+/// Longest key shown in a message [bytes].
 constexpr std::size_t kLongestKey = 64;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Builds the tree from the parser's events. The parser reports no positions, so a cursor follows it through
-/// the source: between two events stand only spaces, comments, commas and colons, which the parser has
+/// the source. Between two events stand only spaces, comments, commas and colons, which the parser has
 /// already accepted.
 class TreeBuilder {
  public:
@@ -23,7 +23,7 @@ class TreeBuilder {
     if (source_.starts_with(kByteOrderMark)) cursor_ = kByteOrderMark.size();
   }
 
-  // The names and signatures of these functions are those of nlohmann's SAX interface.
+  // nlohmann's SAX interface prescribes the names and signatures of these functions.
   bool null() { return add_scalar(JsonNode::Kind::kNull, 4); }
   bool boolean(bool value) {
     if (!add_scalar(JsonNode::Kind::kBoolean, value ? 4 : 5)) return false;
@@ -81,7 +81,8 @@ class TreeBuilder {
   std::string key_;
   std::size_t key_offset_ = 0;
   JsonNode* last_ = nullptr;
-  std::vector<JsonNode*> open_;  ///< Stable: a container grows only while nothing inside it is open.
+  /// Pointers stay valid: a container grows only while nothing inside it is open.
+  std::vector<JsonNode*> open_;
 };
 
 std::size_t TreeBuilder::next_token() {
@@ -185,7 +186,7 @@ void TreeBuilder::report_repeated_keys(const JsonNode& object) {
   }
 }
 
-/// The parser's sentence without its prefix, position and quotation of the source.
+/// Returns the parser's sentence without its prefix, position and quotation of the source.
 std::string plain_reason(std::string message) {
   for (const std::string_view mark : {"syntax error while parsing", "] ", ": "}) {
     const std::size_t found = message.find(mark);
@@ -223,7 +224,7 @@ void find_lines(JsonDocument& document) {
   }
 }
 
-/// The child named by the first step of a path, or null; removes the step from the path.
+/// Returns the child named by the first step of a path, or null, and removes the step from the path.
 const JsonNode* step_down(const JsonNode& node, std::string_view& path) {
   if (path.starts_with('[')) {
     const std::size_t end = std::min(path.find(']'), path.size());

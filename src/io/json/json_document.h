@@ -10,38 +10,38 @@
 
 namespace hooke::io {
 
-/// Largest source [bytes], deepest nesting and most values of a document that is read.
+/// A document that is read has at most this many bytes.
 inline constexpr std::size_t kLargestJson = std::size_t{64} << 20U;
 inline constexpr std::size_t kDeepestJson = 64;
 inline constexpr std::size_t kMostJsonValues = 2'000'000;
-/// Line ends and tabs. The parser spells out those before a mistake one by one, which takes time.
+/// This bounds line ends and tabs. The parser spells out those before a mistake one by one, which takes time.
 inline constexpr std::size_t kMostJsonBreaks = 8'000'000;
-/// Errors of one file that are reported.
+/// At most this many errors of one file are reported.
 inline constexpr std::size_t kMostErrors = 100;
 
-/// A parsed file: its tree, and what is needed to say where in the file something stands.
+/// A JsonDocument is a parsed file: its tree, and what is needed to tell where in the file something stands.
 struct JsonDocument {
-  std::string name = {};  ///< Of the file, for messages.
+  std::string name = {};  ///< Name of the file, for messages.
   std::string source = {};
   std::vector<std::uint32_t> line_starts = {};  ///< Offset of the first byte of each line.
   JsonNode root = {};
 
-  /// "name:line:column" of a byte of the source; both from 1, columns in characters.
+  /// Returns "name:line:column" of a byte of the source; both count from 1, columns in characters.
   [[nodiscard]] std::string place(std::uint32_t offset) const;
-  /// The number at a node as the user wrote it.
+  /// Returns the number at a node as the user wrote it.
   [[nodiscard]] std::string number_text(const JsonNode& node) const;
-  /// The node at a path such as "ropes[0].masses", or the closest one above it. Never null.
+  /// Returns the node at a path such as "ropes[0].masses", or the closest one above it. Never null.
   [[nodiscard]] const JsonNode& find_closest(std::string_view path) const;
 };
 
-/// An error at an offset, still without its path: lets a caller sort before it formats.
+/// A JsonError is an error at an offset, which callers sort by before they format a message.
 struct JsonError {
   std::uint32_t offset = 0;
   Error error = {};
 };
 
-/// Reads JSON with comments and an optional byte order mark. On a syntax error the tree is what was read
-/// until there. Errors: syntax, nesting, size, repeated keys.
+/// Reads JSON with comments and an optional byte order mark. After a syntax error the tree is what was read
+/// up to there. Errors tell of syntax, nesting, size and repeated keys.
 [[nodiscard]] std::vector<JsonError> parse_json(std::string source, std::string name, JsonDocument& document);
 
 }  // namespace hooke::io

@@ -44,7 +44,7 @@ std::string scalar_text(const JsonNode& node) {
   }
 }
 
-/// Appends the node on one line; false as soon as the line is wider than `width`.
+/// Appends the node on one line; returns false as soon as the line is wider than `width`.
 bool append_flat(std::string& line, const JsonNode& node, std::size_t width) {
   const bool object = node.kind == JsonNode::Kind::kObject;
   if (!object && node.kind != JsonNode::Kind::kArray) {
@@ -178,7 +178,7 @@ std::string in_quotes(std::string_view text) {
   std::string result = "'";
   std::string_view shown = text.substr(0, kLongest);
   if (text.size() > kLongest) {
-    // Do not cut a character of several bytes in two.
+    // A character of several bytes must not be cut in two.
     while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U) {
       shown.remove_suffix(1);
     }

@@ -29,13 +29,13 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using process::Descriptor;
 
-constexpr std::size_t kMaxReason = 400;  // bytes of a refusal that are shown
+constexpr std::size_t kMaxReason = 400;  // Bytes of a refusal that are shown.
 constexpr const char* kProgram = "hooke-import";
 
-/// As set_importer_folder was told; null before.
+/// Folder set by set_importer_folder; null before.
 std::atomic<const char*> importer_folder = nullptr;
 
-/// The importer in a folder; empty if it is not there, or the folder is empty.
+/// Returns the importer in a folder; empty if it is not there, or if the folder is empty.
 std::string find_in(const std::string& folder) {
   const std::string path = (fs::path(folder) / kProgram).string();
   return !folder.empty() && ::access(path.c_str(), X_OK) == 0 ? path : std::string();
@@ -75,7 +75,7 @@ std::vector<std::string> arguments(const std::string& program, const std::string
           options.fit ? number_text(*options.fit) : "none"};
 }
 
-/// One pipe's end and what came out of it.
+/// A Stream is one pipe's end and the bytes that came out of it.
 struct Stream {
   Descriptor& end;
   std::vector<std::byte> bytes = {};
@@ -83,7 +83,7 @@ struct Stream {
   bool overflowed = false;
 };
 
-/// Appends what is there. Closes at the end of the stream, on an error and past the limit.
+/// Appends what is available. Closes the pipe at the end of the stream, on an error and past the limit.
 void drain(Stream& stream) {
   std::array<std::byte, std::size_t{1} << 16> buffer;
   const ssize_t size = ::read(stream.end.number(), buffer.data(), buffer.size());
@@ -99,7 +99,7 @@ void drain(Stream& stream) {
   if (stream.overflowed) stream.end.close();
 }
 
-/// Reads both streams to their ends. False when the deadline passed first.
+/// Reads both streams to their ends; returns false when the deadline passed first.
 bool drain_both(Stream& output, Stream& reason, Clock::time_point deadline) {
   while (output.end.number() >= 0 || reason.end.number() >= 0) {
     std::array<pollfd, 2> waiting = {{{output.end.number(), POLLIN, 0}, {reason.end.number(), POLLIN, 0}}};
@@ -114,7 +114,7 @@ bool drain_both(Stream& output, Stream& reason, Clock::time_point deadline) {
   return true;
 }
 
-/// The last line that was written, made harmless.
+/// Returns the last line that was written, made printable.
 std::string last_line(const std::vector<std::byte>& bytes) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   while (!text.empty() && text.back() == '\n') text.remove_suffix(1);

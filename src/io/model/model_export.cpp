@@ -76,7 +76,7 @@ Result<void> export_checked(const Model& model, const std::string& path) {
   std::filesystem::path library = file;
   library.replace_extension(".mtl");
   const io::ObjText text = io::write_obj(model, library.filename().string());
-  // The materials first: an .obj that is there finds its .mtl.
+  // The materials are written first, so that an .obj file always finds its .mtl file.
   if (auto written = process::write_file(library.string(), text.mtl); !written) return written;
   return process::write_file(path, text.obj);
 }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::array<char, 8> kMagic = {'h', 'o', 'o', 'k', 'e', 'm', 'd', 'l'};
 constexpr std::uint32_t kVersion = 1;
-constexpr float kUnitTolerance = 1e-3f;  // of a squared length: float rounding is a thousand times less
+// Tolerance of a squared length; rounding to float is a thousand times less.
+constexpr float kUnitTolerance = 1e-3f;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
@@ -41,7 +42,7 @@ Error wrong(std::string message) {
   return {.code = ErrorCode::kOutOfRange, .message = std::move(message)};
 }
 
-/// Length of the UTF-8 sequence at the start of `text`; 0 if there is no printable one.
+/// Returns the length of the UTF-8 sequence at the start of `text`, or 0 if it is not printable.
 std::size_t clean_sequence(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7F ? 1 : 0;
@@ -52,14 +53,15 @@ std::size_t clean_sequence(std::string_view text) {
     if ((byte(i) & 0xC0u) != 0x80u) return 0;
     code = (code << 6u) | (byte(i) & 0x3Fu);
   }
-  constexpr std::array<std::uint32_t, 5> kSmallest = {0, 0, 0xA0, 0x800, 0x10000};  // 0x80-0x9F are controls
+  // 0x80 to 0x9F are control characters.
+  constexpr std::array<std::uint32_t, 5> kSmallest = {0, 0, 0xA0, 0x800, 0x10000};
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
   const bool format_control = (code >= 0x200B && code <= 0x200F) || (code >= 0x2028 && code <= 0x202E);
   return code < kSmallest[size] || code > 0x10FFFF || surrogate || format_control ? 0 : size;
 }
 
 bool in_range(float value, float low, float high) {
-  return value >= low && value <= high;  // false for a NaN
+  return value >= low && value <= high;  // This is false for a NaN.
 }
 
 bool is_sound(const ModelVertex& vertex) {
@@ -102,7 +104,7 @@ Result<void> check_counts(std::size_t vertices, std::size_t indices, std::size_t
   return {};
 }
 
-/// Takes values off the front of a span, and refuses when it is too short.
+/// Takes values off the front of a span, and refuses when the span is too short.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -116,7 +118,7 @@ class Reader {
 
   template <class T>
   [[nodiscard]] bool take_column(std::vector<T>& column, std::size_t count) {
-    if (count > rest_.size() / sizeof(T)) return false;  // before allocating
+    if (count > rest_.size() / sizeof(T)) return false;  // This is checked before memory is allocated.
     column.resize(count);
     return take(column.data(), count * sizeof(T));
   }

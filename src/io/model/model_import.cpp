@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxFolderEntries = 100000;  // a larger folder is not searched to its end
+constexpr int kMaxFolderEntries = 100000;  // A larger folder is not searched to its end.
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -29,19 +29,19 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Whether `folder` itself holds a regular file of this name.
+/// Tells whether `folder` itself holds a regular file of this name.
 bool has_file(const fs::path& folder, const std::string& name) {
   std::error_code error;
   const auto real = io::resolve_in_folder(folder, name);
   return real && fs::is_regular_file(*real, error);
 }
 
-/// The file of this name in `folder`, upper and lower case being the same; empty if there is none.
+/// Returns the file of this name in `folder`, without regard to case; empty if there is none.
 std::string find_image(const fs::path& folder, const std::string& name) {
   if (has_file(folder, name)) return (folder / name).string();
   std::error_code error;
   int seen = 0;
-  std::string best;  // the smallest name, so that the folder's order does not matter
+  std::string best;  // The smallest name is taken, so that the folder's order does not matter.
   for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), end;
        !error && entry != end && seen < kMaxFolderEntries; entry.increment(error), ++seen) {
     const std::string candidate = entry->path().filename().string();
@@ -56,7 +56,7 @@ void find_textures(Model& model, const fs::path& path) {
   for (ModelMaterial& material : model.materials) {
     if (material.texture.empty()) continue;
     material.texture = find_image(path.parent_path(), material.texture);
-    // glTF multiplies image and color; the older formats put the image in the color's place.
+    // glTF multiplies image and color; in the older formats the image replaces the color.
     const bool replaces_color = ending != ".gltf" && ending != ".glb";
     if (!material.texture.empty() && replaces_color) material.color = {1.0f, 1.0f, 1.0f};
   }
@@ -103,7 +103,7 @@ Result<Model> import_model(const std::string& path, const ImportOptions& options
   const base::FloatEnvironment environment;
   try {
     return import_checked(path, options);
-  } catch (const std::exception&) {  // no memory; or a path that no folder can have
+  } catch (const std::exception&) {  // Memory has run out, or the path is one that no folder can have.
     return Error{ErrorCode::kLimitExceeded, path, "not enough memory for this model"};
   }
 }

@@ -16,16 +16,17 @@ using geometry::Weld;
 using geometry::weld;
 using geometry::weld_distance;
 
-/// Above this number of faces around a point its corners keep their faces' normals: comparing all pairs would
-/// take the square of it.
+/// Above this number of faces around a point its corners keep their faces' normals, because comparing all
+/// pairs takes the square of it.
 constexpr std::size_t kMaxFan = 1024;
 
-/// Of a surface's area, this part may face away from its stored normals before they are all made anew.
+/// If more than this share of a material's area faces away from its stored normals, all of them are made
+/// anew.
 constexpr double kOpposingPart = 0.01;
 
-/// The corners around each point, point after point.
+/// These are the corners around each point, point after point.
 struct Fans {
-  std::vector<std::uint32_t> start;  ///< One more than points.
+  std::vector<std::uint32_t> start;  ///< One more entry than points.
   std::vector<std::uint32_t> corners;
 };
 
@@ -56,7 +57,7 @@ double corner_angle(std::span<const DVec3> points, const Triangle& triangle, std
   return std::atan2(length(cross(u, v)), dot(u, v));
 }
 
-/// Everything about one drawn vertex, for finding equal ones.
+/// A VertexKey holds the bits of one drawn vertex, to find equal ones.
 struct VertexKey {
   std::array<std::uint32_t, 8> bits = {};
   friend bool operator==(const VertexKey&, const VertexKey&) = default;
@@ -73,12 +74,12 @@ struct VertexHash {
   }
 };
 
-/// Collects drawn vertices, equal ones once.
+/// Collects drawn vertices, each different one once.
 class VertexTable {
  public:
   std::uint32_t add(const ModelVertex& vertex) {
     ModelVertex plain = vertex;
-    for (float& v : plain.position) v += 0.0f;  // -0 and 0 are the same place
+    for (float& v : plain.position) v += 0.0f;  // This turns -0 into 0, which is the same position.
     for (float& v : plain.normal) v += 0.0f;
     for (float& v : plain.uv) v += 0.0f;
     VertexKey key;
@@ -95,12 +96,13 @@ class VertexTable {
   std::vector<ModelVertex> vertices_;
 };
 
-/// The triangles of a soup that have a direction, outward, with their corners in the soup and welded.
+/// These are the triangles of a soup that have an area, turned outward, with their corners in the soup and
+/// welded.
 struct Faces {
-  std::vector<DVec3> points;               ///< Welded.
-  std::vector<Triangle> welded;            ///< Into `points`.
-  std::vector<Triangle> given;             ///< Into the soup's positions.
-  std::vector<std::uint32_t> material_of;  ///< For each face.
+  std::vector<DVec3> points;               ///< Welded points.
+  std::vector<Triangle> welded;            ///< Indices into `points`.
+  std::vector<Triangle> given;             ///< Indices into the soup's positions.
+  std::vector<std::uint32_t> material_of;  ///< One for each face.
 };
 
 Faces find_faces(const Soup& soup) {
@@ -126,7 +128,7 @@ Faces find_faces(const Soup& soup) {
   return faces;
 }
 
-/// Whether the stored normals of a material's faces are there and look to the side the faces look to.
+/// Tells for each material whether its stored normals exist and point to the side that its faces do.
 std::vector<std::uint8_t> find_trusted(const Soup& soup, const Faces& faces) {
   std::vector<double> area(soup.materials.size(), 0.0);
   std::vector<double> opposing(soup.materials.size(), 0.0);
@@ -157,7 +159,8 @@ std::vector<DVec3> crease_normals(std::span<const DVec3> points, std::span<const
     for (std::size_t i = 0; i < 3; ++i) angle.push_back(corner_angle(points, triangles[t], i));
   }
   const Fans fans = find_fans(points.size(), triangles);
-  const double least_cosine = std::cos(std::clamp(crease, 0.0, 3.2)) - 1e-9;  // coplanar faces stay together
+  // The slack keeps coplanar faces together.
+  const double least_cosine = std::cos(std::clamp(crease, 0.0, 3.2)) - 1e-9;
   std::vector<DVec3> normals(3 * triangles.size());
   for (std::uint32_t corner = 0; corner < normals.size(); ++corner) {
     const std::uint32_t p = triangles[corner / 3][corner % 3];

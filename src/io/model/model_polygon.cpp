@@ -10,7 +10,7 @@ namespace {
 /// Up to this many corners the best ear is taken, above it the first one.
 constexpr std::size_t kMaxChoosy = 64;
 
-/// Of the squared extent: an area below it is none.
+/// Share of the squared extent below which an area counts as zero.
 constexpr double kFlat = 1e-12;
 
 struct Point {
@@ -19,12 +19,12 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// Twice the signed area.
+/// Returns twice the signed area.
 double doubled_area(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The polygon seen along its mean normal (Newell), counter-clockwise.
+/// Returns the polygon seen along its mean normal (Newell), counter-clockwise.
 std::vector<Point> flatten(std::span<const DVec3> corners) {
   DVec3 normal = {};
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -71,7 +71,7 @@ class Clipper {
     return {left_[(i + n - 1) % n], left_[i], left_[(i + 1) % n]};
   }
 
-  /// Height over the longest side by that side: 0 for none, 0.87 for equal sides.
+  /// Returns the height over the longest side divided by that side: 0 for a flat ear, 0.87 for equal sides.
   [[nodiscard]] double quality(std::size_t i) const {
     const auto [a, b, c] = around(i);
     const auto squared = [&](std::uint32_t p, std::uint32_t q) {
@@ -83,8 +83,8 @@ class Clipper {
     return area > flat_ ? area / std::max({squared(a, b), squared(b, c), squared(c, a)}) : 0.0;
   }
 
-  /// Whether no other corner lies in the triangle or on it. A corner at the place of one of the three does
-  /// not count: holes are cut in by such pairs.
+  /// Tells whether no other corner lies in the triangle or on it. A corner at the position of one of the
+  /// three does not count, because holes are cut in by such pairs.
   [[nodiscard]] bool is_empty(std::size_t i) const {
     const auto [ia, ib, ic] = around(i);
     const Point a = points_[ia];
@@ -97,7 +97,7 @@ class Clipper {
     });
   }
 
-  /// The ear to clip: empty and not flat, or what comes closest in a polygon that crosses itself.
+  /// Returns the ear to clip: empty and not flat, or the closest to that in a polygon that crosses itself.
   [[nodiscard]] std::size_t choose() const {
     const std::size_t n = left_.size();
     std::size_t best = start_;

@@ -11,8 +11,8 @@
 #include <vector>
 
 /// \file
-/// Writers of mesh formats, each from a model that `check_model` accepts to the bytes of a file, in meters.
-/// The same model gives the same bytes. Images are referred to by their bare names, not copied.
+/// Writes mesh formats, each from a model that `check_model` accepts to the bytes of a file, in meters. The
+/// same model gives the same bytes. Images are referred to by their bare names, not copied.
 
 namespace hooke::io {
 
@@ -33,18 +33,20 @@ inline void put_text(Bytes& bytes, std::string_view text) {
   if (!text.empty()) std::memcpy(bytes.data() + at, text.data(), text.size());
 }
 
-/// The image's name without its folders; empty for none, and for a name that no format can hold.
+/// Returns the image's name without its folders. It is empty for none, and for a name that no format can
+/// hold.
 [[nodiscard]] std::string image_name(const ModelMaterial& material);
 
-/// Printable ASCII of at most `size` bytes for each material, no two the same even when case is ignored.
+/// Returns a name for each material, in printable ASCII of at most `size` bytes. No two are the same, even
+/// when case is ignored.
 [[nodiscard]] std::vector<std::string> plain_material_names(const Model& model, std::size_t size);
 
-/// As on screen, from linear, each [0, 1].
+/// Converts a linear value to sRGB, each in [0, 1].
 [[nodiscard]] float srgb_of_linear(float value);
 
 [[nodiscard]] bool has_uvs(const Model& model);
 
-/// y up to z up.
+/// Converts a vector from y up to z up.
 [[nodiscard]] inline std::array<float, 3> stand_on_z(const std::array<float, 3>& v) {
   return {v[0], -v[2], v[1]};
 }
@@ -54,17 +56,18 @@ struct ObjText {
   std::string mtl;
 };
 
-/// y up; positions, normals and texture coordinates once each. `library` is the name of the .mtl file.
+/// Writes with y up, and each position, normal and texture coordinate once. `library` is the name of the .mtl
+/// file.
 [[nodiscard]] ObjText write_obj(const Model& model, std::string_view library);
 
-/// Binary, z up. Materials, texture coordinates and smooth normals have no place in it.
+/// Writes the binary form with z up. It has no place for materials, texture coordinates and smooth normals.
 [[nodiscard]] Bytes write_stl(const Model& model);
 
-/// One mesh, a primitive for each part, the image by its name beside the file.
+/// Writes one mesh with a primitive for each part. The image is referred to by its name beside the file.
 [[nodiscard]] Bytes write_glb(const Model& model);
 
-/// z up, smoothing groups from the creases of the normals. Objects hold at most 65535 vertices and faces
-/// each, so a large model becomes several.
+/// Writes with z up, and smoothing groups from the creases of the normals. Objects hold at most 65535
+/// vertices and faces each, so a large model becomes several.
 [[nodiscard]] Bytes write_3ds(const Model& model);
 
 }  // namespace hooke::io

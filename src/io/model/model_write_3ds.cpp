@@ -14,11 +14,11 @@ namespace hooke::io {
 
 namespace {
 
-constexpr std::size_t kMaxPerObject = 65535;  // vertices, and faces: the format counts in 16 bits
+constexpr std::size_t kMaxPerObject = 65535;  // The format counts vertices and faces in 16 bits.
 constexpr std::size_t kMaxMaterialName = 16;
-constexpr double kSameNormal = 0.97;  // cosine of 14 degrees: normals made for each corner differ a little
+constexpr double kSameNormal = 0.97;  // Cosine of 14 degrees; normals made for each corner differ a little.
 
-/// Writes a chunk's header now and its size when the chunk ends.
+/// Writes a chunk's header now and its size on destruction.
 class Chunk {
  public:
   Chunk(Bytes& bytes, std::uint16_t kind) : bytes_(bytes), start_(bytes.size()) {
@@ -68,13 +68,13 @@ void put_material(Bytes& bytes, const ModelMaterial& material, const std::string
     const Chunk name_chunk(bytes, 0xA000);
     put_name(bytes, name);
   }
-  put_color(bytes, 0xA010, material.color);         // ambient
-  put_color(bytes, 0xA020, material.color);         // diffuse
-  put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});  // specular
-  put_chunk(bytes, 0xA100, std::uint16_t{3});       // Phong; a shading without highlights loses the exponent
-  put_percent(bytes, 0xA040, material.shininess);   // read back as the exponent
-  put_percent(bytes, 0xA041, 50.0f);                // strength of the highlight
-  put_percent(bytes, 0xA050, 100.0f * (1.0f - material.opacity));  // transparency
+  put_color(bytes, 0xA010, material.color);         // Ambient.
+  put_color(bytes, 0xA020, material.color);         // Diffuse.
+  put_color(bytes, 0xA030, {0.03f, 0.03f, 0.03f});  // Specular.
+  put_chunk(bytes, 0xA100, std::uint16_t{3});       // Phong; a shading without highlights loses the exponent.
+  put_percent(bytes, 0xA040, material.shininess);   // Read back as the exponent.
+  put_percent(bytes, 0xA041, 50.0f);                // Strength of the highlight.
+  put_percent(bytes, 0xA050, 100.0f * (1.0f - material.opacity));  // Transparency.
   const std::string image = image_name(material);
   if (image.empty()) return;
   const Chunk texture(bytes, 0xA200);
@@ -83,7 +83,8 @@ void put_material(Bytes& bytes, const ModelMaterial& material, const std::string
   put_name(bytes, image);
 }
 
-/// Triangles around each welded point, and for each triangle the patch of smooth surface it is part of.
+/// Patches has the triangles around each welded point, and for each triangle the patch of smooth surface it
+/// belongs to.
 class Patches {
  public:
   explicit Patches(const Model& model) : model_(model) {
@@ -98,8 +99,8 @@ class Patches {
     unite_smooth_neighbors();
   }
 
-  /// A set of smoothing groups, one bit, for each triangle: patches that meet share no bit. With more than 32
-  /// patches at a place some do, and their crease gets lost.
+  /// Returns a set of smoothing groups, one bit, for each triangle. Patches that meet share no bit. With more
+  /// than 32 patches at a point some do, and the crease between them is lost.
   [[nodiscard]] std::vector<std::uint32_t> masks() {
     std::vector<std::vector<std::uint32_t>> patches_at(point_count_);
     std::vector<std::vector<std::uint32_t>> points_of(parent_.size());
@@ -122,7 +123,8 @@ class Patches {
       if (!points_of[patch].empty())
         mask[patch] = 1u << (~taken == 0 ? 31u : static_cast<unsigned>(std::countr_one(taken)));
     }
-    for (std::uint32_t t = 0; t < parent_.size(); ++t) mask[t] = mask[root(t)];  // a root is its own, first
+    // The root of a patch is its first triangle.
+    for (std::uint32_t t = 0; t < parent_.size(); ++t) mask[t] = mask[root(t)];
     return mask;
   }
 
@@ -134,10 +136,10 @@ class Patches {
 
   struct Edge {
     std::uint32_t triangle = 0;
-    std::array<DVec3, 2> normals = {};  ///< At its ends, the lower point first.
+    std::array<DVec3, 2> normals = {};  ///< Normals at the two ends of the edge, the lower point first.
   };
 
-  /// Two triangles are of one patch when they have about the same normals at both ends of their edge.
+  /// Joins two triangles into one patch when they have about the same normals at both ends of their edge.
   void unite_smooth_neighbors() {
     std::map<std::array<std::uint32_t, 2>, Edge> first_at;
     for (std::uint32_t t = 0; t < parent_.size(); ++t) {
@@ -169,14 +171,14 @@ class Patches {
   std::vector<std::uint32_t> parent_;
 };
 
-/// What one object of the file holds.
+/// This is the content of one object of the file.
 class Object {
  public:
   [[nodiscard]] bool is_full() const {
     return faces.size() == kMaxPerObject || positions.size() + 3 > kMaxPerObject;
   }
 
-  /// The number of a vertex; the same place and image coordinate get the same number.
+  /// Returns the number of a vertex; equal positions and image coordinates get the same number.
   [[nodiscard]] std::uint16_t add(const ModelVertex& vertex) {
     const auto next = static_cast<std::uint16_t>(positions.size());
     const auto [entry, is_new] = known_.try_emplace({vertex.position, vertex.uv}, next);
@@ -214,7 +216,7 @@ std::vector<Object> split(const Model& model) {
   return objects;
 }
 
-/// Faces, the materials they have, and their smoothing groups.
+/// Writes the faces, their materials and their smoothing groups.
 void put_faces(Bytes& bytes, const Object& object, const std::vector<std::string>& names) {
   constexpr std::uint16_t kAllEdgesVisible = 7;
   const Chunk chunk(bytes, 0x4120);
@@ -223,7 +225,7 @@ void put_faces(Bytes& bytes, const Object& object, const std::vector<std::string
     put(bytes, face);
     put(bytes, kAllEdgesVisible);
   }
-  for (std::size_t first = 0; first < object.faces.size();) {  // parts are runs of one material
+  for (std::size_t first = 0; first < object.faces.size();) {  // Parts are runs of one material.
     std::size_t last = first;
     while (last < object.faces.size() && object.material_of[last] == object.material_of[first]) ++last;
     const Chunk material(bytes, 0x4130);
@@ -239,7 +241,8 @@ void put_object(Bytes& bytes, const Object& object, std::size_t number, const st
                 bool with_uvs) {
   const Chunk chunk(bytes, 0x4000);
   std::array<char, 16> name = {};
-  std::snprintf(name.data(), name.size(), "model%05zu", number % 100000);  // ten characters are the most
+  // Names have at most ten characters.
+  std::snprintf(name.data(), name.size(), "model%05zu", number % 100000);
   put_name(bytes, name.data());
   const Chunk mesh(bytes, 0x4100);
   {
@@ -272,7 +275,7 @@ Bytes write_3ds(const Model& model) {
     for (std::size_t m = 0; m < model.materials.size(); ++m) {
       put_material(bytes, model.materials[m], names[m]);
     }
-    put_chunk(bytes, 0x0100, 1.0f);  // master scale
+    put_chunk(bytes, 0x0100, 1.0f);  // Master scale.
     for (std::size_t i = 0; i < objects.size(); ++i) put_object(bytes, objects[i], i, names, with_uvs);
   }
   return bytes;

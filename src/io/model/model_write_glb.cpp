@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFloat = 5126;  // numbers of OpenGL, which glTF takes over
+constexpr int kFloat = 5126;  // These are constants of OpenGL that glTF uses.
 constexpr int kUnsignedInt = 5125;
 constexpr int kVertexBuffer = 34962;
 constexpr int kIndexBuffer = 34963;
 
-/// For a URI: everything but letters, digits and "-._~" as %XX (RFC 3986).
+/// Encodes a text for a URI: everything but letters, digits and "-._~" becomes %XX (RFC 3986).
 std::string percent_encoded(const std::string& text) {
   constexpr std::string_view kHexDigits = "0123456789ABCDEF";
   std::string result;
@@ -34,7 +34,8 @@ std::string percent_encoded(const std::string& text) {
   return result;
 }
 
-/// The roughness whose highlight has this Blinn-Phong exponent: exponent = 2 / roughness^4 - 2 (Karis, 2013).
+/// Returns the roughness whose highlight has this Blinn-Phong exponent: exponent = 2 / roughness^4 - 2
+/// (Karis, 2013).
 float roughness_of(float shininess) {
   return std::pow(2.0f / (shininess + 2.0f), 0.25f);
 }
@@ -56,7 +57,7 @@ void put_materials(Json& document, const Model& model) {
   }
 }
 
-/// The bounds that glTF wants with positions.
+/// Writes the bounds that glTF requires with positions.
 void put_bounds(Json& accessor, const Model& model) {
   std::array<float, 3> low = model.vertices[0].position;
   std::array<float, 3> high = low;
@@ -134,7 +135,7 @@ Bytes write_glb(const Model& model) {
   put(bytes, static_cast<std::uint32_t>(vertex_bytes + index_bytes));
   put_text(bytes, std::string_view("BIN\0", 4));
   for (ModelVertex vertex : model.vertices) {
-    vertex.uv[1] = 1.0f - vertex.uv[1];  // glTF counts rows from the top
+    vertex.uv[1] = 1.0f - vertex.uv[1];  // glTF counts rows from the top.
     put(bytes, vertex);
   }
   for (const std::uint32_t index : model.indices) put(bytes, index);

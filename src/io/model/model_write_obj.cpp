@@ -8,14 +8,14 @@ namespace hooke::io {
 
 namespace {
 
-/// The shortest text that reads back as the same float, whatever the locale.
+/// Appends the shortest text that reads back as the same float, whatever the locale.
 void append(std::string& text, float value) {
   std::array<char, 32> buffer = {};
   text += ' ';
   text.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
 }
 
-/// Writes each different tuple once and knows its number, from 1 on.
+/// Writes each different tuple once and returns its number, which starts at 1.
 template <std::size_t kSize>
 class Lines {
  public:

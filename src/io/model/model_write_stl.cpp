@@ -18,7 +18,8 @@ DVec3 wide(const std::array<float, 3>& v) {
 Bytes write_stl(const Model& model) {
   Bytes bytes;
   bytes.reserve(kTitleSize + 4 + model.indices.size() / 3 * 50);
-  put_text(bytes, "binary, meters, z up");  // never "solid": that word begins the text form
+  // The header must not begin with "solid", which begins the text form.
+  put_text(bytes, "binary, meters, z up");
   bytes.resize(kTitleSize);
   put(bytes, static_cast<std::uint32_t>(model.indices.size() / 3));
   for (std::size_t i = 0; i < model.indices.size(); i += 3) {

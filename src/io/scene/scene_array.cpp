@@ -6,7 +6,7 @@ namespace hooke {
 
 namespace {
 
-/// splitmix64 (Steele et al. 2014): the same numbers on every machine.
+/// This is splitmix64 (Steele et al. 2014), which gives the same numbers on every machine.
 std::uint64_t mixed(std::uint64_t word) {
   word += 0x9E3779B97F4A7C15ULL;
   word = (word ^ (word >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -14,7 +14,7 @@ std::uint64_t mixed(std::uint64_t word) {
   return word ^ (word >> 31U);
 }
 
-/// Uniform in [low, high): the upper 53 bits are exact in a double.
+/// Returns a number uniform in [low, high); the upper 53 bits are exact in a double.
 double uniform(std::uint64_t word, double low, double high) {
   constexpr double kUnit = 1.0 / 9007199254740992.0;  // 2^-53
   return low + (high - low) * (static_cast<double>(mixed(word) >> 11U) * kUnit);

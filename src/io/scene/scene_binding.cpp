@@ -28,7 +28,7 @@ std::string hint(const Kind& kind, std::string_view key) {
       best = &field;
     }
   }
-  // Two edits make any two short words alike.
+  // Two edits can make any two short words equal, so that these are not suggested.
   const bool alike = best != nullptr && smallest < static_cast<int>(std::strlen(best->key));
   return alike ? ", did you mean '" + std::string(best->key) + "'?" : "";
 }
@@ -52,7 +52,7 @@ std::string list_of_choices(const Kind& kind) {
   return words;
 }
 
-/// Required keys are there, and one of the choices, if the kind has any.
+/// Checks that required keys are present, and one of the choices, if the kind has any.
 bool check_presence(Reader& reader, const JsonNode& node, const Kind& kind) {
   bool good = true;
   bool choosing = false;
@@ -291,7 +291,7 @@ bool check_name(Reader& reader, const JsonNode& node, const std::string& name) {
 
 namespace {
 
-/// The forms of a rotation that are written for people.
+/// These are the forms of a rotation that are written for people.
 struct AxisAngle {
   DVec3 axis = {0, 1, 0};
   double angle_deg = 0;

@@ -16,24 +16,24 @@
 #include <vector>
 
 /// \file
-/// How members of structs and keys of JSON objects belong together. A `Kind` is the table of one JSON object:
-/// a `Field` for each key, made from the path of members that leads to its value. Reading, writing,
-/// comparing, the schema and the documentation all walk the same tables (scene_table.cpp).
+/// Connects members of structs with keys of JSON objects. A `Kind` is the table of one JSON object. It has a
+/// `Field` for each key, made from the path of members that leads to its value. Reading, writing, comparing,
+/// the schema and the documentation all use the same tables (scene_table.cpp).
 ///
-/// Order to read: Rule, Field, Kind, the functions over kinds, Codec (what a value of a type looks like in
-/// JSON), field() and group() that make table rows.
+/// Read in this order: Rule, Field, Kind, the functions over kinds, Codec (what a value of a type looks like
+/// in JSON), field() and group(), which make table rows.
 
 namespace hooke::io {
 
 struct Kind;
 
-/// What a number must obey, and how long a list may be.
+/// A Rule says what a number must obey, and how long a list may be.
 struct Rule {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  bool above_least = false;         ///< `least` itself is excluded.
-  bool rigid = false;               ///< The word "rigid" stands for infinity.
-  std::size_t fewest_elements = 0;  ///< Of a list; of a text, bytes.
+  bool above_least = false;         ///< Whether `least` itself is excluded.
+  bool rigid = false;               ///< Whether the word "rigid" stands for infinity.
+  std::size_t fewest_elements = 0;  ///< Least number of elements of a list, or of bytes of a text.
 };
 
 inline constexpr Rule kAny = {};
@@ -52,21 +52,21 @@ class Reader {
   Reader(const JsonDocument& document, std::vector<JsonError>& errors)
       : document_(document), errors_(errors) {}
 
-  /// The current value is wrong. Always false, so that a reader can return it.
+  /// Reports that the current value is wrong. Always returns false, so that a reader can return it.
   bool fail(const JsonNode& node, ErrorCode code, std::string reason);
-  /// The current value is not of the wanted kind.
+  /// Reports that the current value is not of the wanted kind; returns false.
   bool fail_type(const JsonNode& node, const char* wanted);
   /// Checks a finite number against a rule.
   bool check(const JsonNode& node, double value, const Rule& rule);
-  /// An error at the key of a child of the current object.
+  /// Reports an error at the key of a child of the current object.
   void fail_key(const JsonNode& child, std::string reason);
-  /// Enough errors were found: reading on is of no use.
+  /// Tells whether enough errors were found to stop reading.
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
 
   void enter(std::string_view key) { path_.push_back({key, 0}); }
   void enter(std::size_t index) { path_.push_back({{}, index}); }
   void leave() { path_.pop_back(); }
-  /// Unit of the value that is being read, for messages; returns the one before.
+  /// Sets the unit of the value that is being read, for messages; returns the previous one.
   const char* set_unit(const char* unit) { return std::exchange(unit_, unit); }
 
  private:
@@ -82,7 +82,7 @@ class Reader {
   const char* unit_ = "";
 };
 
-/// One key of a JSON object. The functions take the object that the kind describes.
+/// A Field is one key of a JSON object. Its functions take the object that the kind describes.
 struct Field {
   enum class Use : std::uint8_t {
     kOptional,
@@ -100,36 +100,37 @@ struct Field {
   bool (*same)(const void* a, const void* b) = nullptr;
   JsonNode (*schema)(const Rule& rule) = nullptr;
   std::string (*type)() = nullptr;
-  void (*choose)(void* object) = nullptr;  ///< Of a choice: this one is there.
+  void (*choose)(void* object) = nullptr;  ///< Makes the object have this choice.
   bool (*chosen)(const void* object) = nullptr;
   const Kind& (*group)() = nullptr;  ///< The value is an object that describes members of the same struct.
 
   [[nodiscard]] bool is_choice() const { return use == Use::kChoice; }
 };
 
-/// One kind of JSON object: the table of its keys.
+/// A Kind is one kind of JSON object: the table of its keys.
 struct Kind {
   const char* name = "";
   const char* help = "";
   std::vector<Field> fields = {};
   const void* (*defaults)() = nullptr;
-  /// What no single key can check; called when all keys were read without an error. False after a failure.
+  /// Checks what no single key can. It is called when all keys were read without an error, and returns false
+  /// after a failure.
   bool (*check)(Reader& reader, const JsonNode& node, const void* object) = nullptr;
 };
 
 bool read_object(Reader& reader, const JsonNode& node, const Kind& kind, void* object);
-/// Leaves out what equals the default, unless it is required or chosen.
+/// Writes an object without what equals the default, unless a key is required or chosen.
 [[nodiscard]] JsonNode write_object(const Kind& kind, const void* object);
 [[nodiscard]] bool same_object(const Kind& kind, const void* a, const void* b);
 
-/// "{"$ref": "#/definitions/rope"}".
+/// Returns the JSON of a reference such as {"$ref": "#/definitions/rope"}.
 [[nodiscard]] JsonNode schema_reference(const Kind& kind);
 [[nodiscard]] JsonNode schema_number(const Rule& rule, bool integer);
-/// "greater than 0", "2 to 65536", empty when everything is accepted.
+/// Returns text such as "greater than 0" or "2 to 65536"; it is empty when everything is accepted.
 [[nodiscard]] std::string range_text(const Rule& rule);
 bool read_number(Reader& reader, const JsonNode& node, const Rule& rule, double& value);
 
-/// The table of a struct; specialized in scene_table_*.cpp.
+/// Returns the table of a struct; specialized in scene_table_*.cpp.
 template <class T>
 const Kind& kind_of();
 
@@ -143,7 +144,7 @@ struct EnumName {
   const char* name;
   int value;
 };
-/// The words for an enumeration; specialized in scene_table.h.
+/// Returns the words for an enumeration; specialized in scene_table.h.
 template <class E>
 std::span<const EnumName> names_of();
 bool read_word(Reader& reader, const JsonNode& node, std::span<const EnumName> names, int& value);
@@ -154,7 +155,7 @@ inline constexpr bool kByName = false;
 // -- Codecs: what a value of a type looks like in JSON.
 // ------------------------------------------------------
 
-/// A struct with a table.
+/// This is the codec of a struct with a table.
 template <class T>
 struct Codec {
   static bool read(Reader& reader, const JsonNode& node, const Rule& /*rule*/, T& value) {
@@ -177,7 +178,7 @@ struct Codec<T> {
     if (rule.rigid && node.kind != JsonNode::Kind::kNumber)
       return reader.fail_type(node, "a number or \"rigid\"");
     if (!read_number(reader, node, rule, number)) return false;
-    // The shortest text of the largest number is a little more than it.
+    // The shortest text of the largest number is a little more than that number.
     constexpr auto kMost = std::numeric_limits<T>::max();
     constexpr double kRounding = 1 + static_cast<double>(std::numeric_limits<T>::epsilon()) / 4;
     if (std::abs(number) / kRounding > static_cast<double>(kMost)) {
@@ -191,7 +192,7 @@ struct Codec<T> {
     return true;
   }
   static JsonNode write(T value) { return std::isinf(value) ? make_string("rigid") : make_number(value); }
-  /// With their signs: a scene that has -0 runs to other bits.
+  /// The sign of zero counts, because a scene that has -0 gives other bits.
   static bool same(T a, T b) { return a == b && std::signbit(a) == std::signbit(b); }
   static JsonNode schema(const Rule& rule) { return schema_number(rule, false); }
   static std::string type() { return "number"; }
@@ -269,7 +270,7 @@ struct Codec<E> {
   }
 };
 
-/// Opens a list of exactly (or at least) so many elements.
+/// Checks that the node is a list of a number of elements in [fewest, most]; reports an error if not.
 bool expect_list(Reader& reader, const JsonNode& node, std::size_t fewest, std::size_t most);
 [[nodiscard]] JsonNode schema_list(JsonNode element, std::size_t fewest, std::size_t most);
 
@@ -317,11 +318,11 @@ struct Codec<Vector3<T>> {
   static std::string type() { return "[x, y, z]"; }
 };
 
-/// The object form of a rotation: {"axis", "angle_deg"}, or {"euler_deg"}.
+/// This is the object form of a rotation: {"axis", "angle_deg"}, or {"euler_deg"}.
 template <>
 const Kind& kind_of<Quat>();
 
-/// [x, y, z, w], or {"axis", "angle_deg"}, or {"euler_deg"}.
+/// A rotation is [x, y, z, w], or {"axis", "angle_deg"}, or {"euler_deg"}.
 template <>
 struct Codec<Quat> {
   static bool read(Reader& reader, const JsonNode& node, const Rule& rule, Quat& value);
@@ -386,7 +387,7 @@ struct Codec<std::vector<T>> {
 /// Checks the name of an object, material or mesh.
 bool check_name(Reader& reader, const JsonNode& node, const std::string& name);
 
-/// A list whose elements are the values of a JSON object; the keys are their names.
+/// This is the codec of a list that is written as a JSON object; the keys are the names of its elements.
 template <class T>
 requires kByName<T>
 struct Codec<std::vector<T>> {
@@ -445,7 +446,7 @@ auto& reach(auto& object) {
   }
 }
 
-/// The functions of a row for the member that `First, Rest...` lead to.
+/// These are the functions of a table row for the member that `First, Rest...` lead to.
 template <auto First, auto... Rest>
 struct Path {
   using Object = typename MemberTraits<decltype(First)>::ObjectType;
@@ -462,7 +463,7 @@ struct Path {
   static bool same(const void* a, const void* b) { return Codec<Value>::same(in(a), in(b)); }
 };
 
-/// A key whose value is the member at the path `Members...`.
+/// Makes a key whose value is the member at the path `Members...`.
 template <auto... Members>
 Field field(const char* key, const char* unit, Rule rule, const char* help) {
   using P = Path<Members...>;
@@ -482,7 +483,7 @@ inline Field required(Field row) {
   return row;
 }
 
-/// A key whose value is an object that describes several members of the same struct.
+/// Makes a key whose value is an object that describes several members of the same struct.
 inline Field group(const char* key, const Kind& (*table)(), const char* help) {
   Field row;
   row.key = key;
@@ -491,7 +492,7 @@ inline Field group(const char* key, const Kind& (*table)(), const char* help) {
   return row;
 }
 
-/// A row that is there when the enumerator at the path `Members...` has the value `Choice`.
+/// Makes a key that is there when the enumerator at the path `Members...` has the value `Choice`.
 template <auto Choice, auto... Members>
 Field choice(Field row) {
   using P = Path<Members...>;

@@ -34,22 +34,23 @@ class Builder {
   [[nodiscard]] ContactDesc surface_of(const std::string& material, ContactDesc surface) const;
   /// Fills in what a body's description names: its material, its mesh, its parts.
   [[nodiscard]] BodyDesc resolve(const SceneBody& body) const;
-  /// Those of an object, and under other names those of a mesh it is made of, which is placed in its frame.
+  /// Adds the connection points of an object. Those of a mesh that it is made of are placed in its frame,
+  /// under other names.
   void add_places_of(const std::string& mesh, Vec3 position, Quat rotation,
                      std::vector<ConnectionPointDesc>& points) const;
-  /// What is drawn for a shape that refers to a mesh of this name; null for other shapes.
+  /// Returns what is drawn for a shape that refers to a mesh of this name; null for other shapes.
   std::shared_ptr<const Model> drawn_model(ShapeKind kind, const std::string& mesh);
   std::vector<SceneObject::Part> drawn_parts(const SceneBody& body);
   [[nodiscard]] SceneObject make_object(const SceneTag& tag, SceneObject::Kind kind, const std::string& path,
                                         std::size_t instance) const;
-  /// The object that copy `i` of a hook names; null for the world.
+  /// Returns the object that copy `i` of a hook names; null for the world.
   Result<const SceneObject*> find_end(const std::string& name, const SceneArray& array, std::size_t i) const;
   [[nodiscard]] HookEnd end_at(const SceneObject* object, const std::optional<ScenePoint>& point) const;
-  /// The name of an end as an object, or the first copy of an array, and a point.
+  /// Splits the name of an end into an object, or the first copy of an array, and a point.
   [[nodiscard]] EndName split_end(const std::string& name) const;
   template <class IdType>
   bool keep(SceneObject& object, IdType SceneObject::*member, const Result<IdType>& added);
-  /// Points of one instance that a pin holds.
+  /// Returns the points of one instance that a pin holds.
   std::vector<std::uint32_t> pick(const ScenePin& pin, const std::vector<DVec3>& points, std::size_t columns);
   std::vector<PinDesc> pins_of(const std::vector<ScenePin>& pins, const std::vector<DVec3>& points,
                                std::size_t columns, const std::string& path);
@@ -122,7 +123,8 @@ void Builder::add_places_of(const std::string& mesh, Vec3 position, Quat rotatio
   }
 }
 
-/// Polygons as fans, every face flat; null for points without a hull, of which the world says why.
+/// Makes polygons as fans, with flat faces. It returns null for points without a hull, which the world then
+/// reports.
 std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
   const Result<geometry::ConvexHull> hull = geometry::make_convex_hull(mesh.positions);
   if (!hull) return nullptr;
@@ -135,7 +137,8 @@ std::shared_ptr<const Model> hull_model(const MeshDesc& mesh) {
     }
   }
   constexpr double kFlat =
-      1e-3;  // [rad], far less than any two faces of a hull that can be told apart by eye
+      // This crease angle [rad] is far less than that of any two faces of a hull that the eye can tell apart.
+      1e-3;
   return std::make_shared<const Model>(model_of(faces, kFlat));
 }
 
@@ -226,7 +229,7 @@ std::vector<PinDesc> Builder::pins_of(const std::vector<ScenePin>& pins, const s
     const std::vector<std::uint32_t> picked = pick(pins[i], points, columns);
     if (picked.empty()) fail(indexed(path + ".pins", i), ErrorCode::kOutOfRange, "there is no such point");
     for (const std::uint32_t point : picked) {
-      // The first pin of a point counts: a corner belongs to a row and to a column.
+      // The first pin of a point counts, because a corner belongs to a row and to a column.
       if (!held[point]) result.push_back({.point = point, .motion = pins[i].motion});
       held[point] = true;
     }
@@ -276,7 +279,7 @@ std::vector<DVec3> points_of(const ClothDesc& cloth, const Model* model) {
   return points;
 }
 
-/// Of a copy of an object whose places are in the world.
+/// Moves the connection points of a copy of an object whose points are given in the world.
 std::vector<ConnectionPointDesc> moved(std::vector<ConnectionPointDesc> points, DVec3 offset) {
   for (ConnectionPointDesc& point : points) point.position += offset;
   return points;
@@ -366,7 +369,7 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
     object.model = model;
     const Result<SolidId> added = data_.world.add_solid(placed(desc, data_.placement));
     if (!keep(object, &SceneObject::solid, added)) return;
-    // The lattice in a mesh is known only now.
+    // The points of a solid made of a mesh are known only now.
     std::vector<DVec3> points(data_.world.positions(added.value()).size());
     for (std::size_t k = 0; k < points.size(); ++k) {
       points[k] = data_.placement.own_point(data_.world.positions(added.value())[k]);
@@ -374,7 +377,7 @@ void Builder::build(const SceneSolid& solid, const std::string& path) {
     if (!reserve(points.size(), path)) return;
     for (const PinDesc& pin : pins_of(solid.pins, points, 0, path)) {
       const MotionDesc motion = placed(pin.motion, data_.placement);
-      (void)data_.world.pin(point(added.value(), pin.point), motion);  // a motion that was checked
+      (void)data_.world.pin(point(added.value(), pin.point), motion);  // The motion was checked before.
     }
   }
 }
@@ -411,7 +414,7 @@ Result<const SceneObject*> Builder::find_end(const std::string& name, const Scen
   if (name.empty()) return static_cast<const SceneObject*>(nullptr);
   auto found = data_.row_of.find(name);
   if (array.kind != SceneArray::Kind::kSingle) {
-    // An object without a name is called by its path, which looks like that of a copy.
+    // An object without a name is called by its path, which looks like the name of a copy.
     const bool is_path = found != data_.row_of.end() && data_.objects[found->second].path == name;
     const std::optional<CopyName> first = is_path ? std::nullopt : take_copy_name(name);
     if (found == data_.row_of.end()) {
@@ -513,8 +516,8 @@ Result<Model> read_model(const Scene& scene, const SceneMesh& mesh) {
   return import_model(file.value(), mesh.import);
 }
 
-/// The connection points of a mesh, all as places: what it becomes has its points in another order. Numbers
-/// are those of vertices as they stand in the scene, or as the model was read.
+/// Returns the connection points of a mesh, all as positions, because an object made of it has its points in
+/// another order. Indices are those of vertices as they stand in the scene, or as the model was read.
 Result<std::vector<ConnectionPointDesc>> places_of(const SceneMesh& mesh, const MeshDesc& model) {
   const MeshDesc& read = mesh.file.empty() ? mesh.mesh : model;
   std::vector<ConnectionPointDesc> places = mesh.connection_points;
@@ -618,7 +621,7 @@ PointRef point_of(const World& world, const SceneObject& object, ScenePoint want
 Error scene_error(const Scene& scene, const std::string& path, const Error& error) {
   const std::size_t dot = error.where.find('.');
   std::string rest = dot == std::string::npos ? "" : error.where.substr(dot);
-  // The world knows the members by their place in the description, where the scene has them in another.
+  // The world names members by their path in the description, which is another one in the scene.
   if (rest.starts_with(".parts[")) rest.insert(0, ".shape");
   if (rest.starts_with(".contact.")) rest.erase(0, std::string_view(".contact").size());
   if (rest.starts_with(".pins[")) rest = ".pins";

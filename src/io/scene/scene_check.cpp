@@ -13,18 +13,18 @@ namespace hooke::io {
 
 namespace {
 
-/// What a name stands for.
+/// This is what a name stands for.
 struct NamedObject {
   std::string path = {};
   SceneObject::Kind kind = SceneObject::Kind::kBody;
   bool is_array = false;
   std::size_t instances = 1;
-  std::size_t points = 0;  ///< Of each instance; 0 if not known.
+  std::size_t points = 0;  ///< Points of each instance; 0 if not known.
   const SceneBody* body = nullptr;
   std::optional<HookKind> hook = {};
 };
 
-/// What a quantity is measured on.
+/// A Subject is what a quantity is measured on.
 enum class Subject : std::uint8_t { kWorld, kObject, kPoint, kRope, kBody, kHook, kHookOrRope, kHookOrWorld };
 
 class Checker {
@@ -49,13 +49,14 @@ class Checker {
     errors_.push_back({document_.find_closest(path).offset, {code, path, std::move(reason)}});
   }
   [[nodiscard]] bool full() const { return errors_.size() >= kMostErrors; }
-  /// What stands at this path changes nothing.
+  /// Reports that what stands at this path changes nothing.
   void ignore(const std::string& path, const std::string& reason) {
     if (ignored_.size() >= kMostErrors) return;
     ignored_.push_back(
         {document_.find_closest(path).offset, {ErrorCode::kOutOfRange, path, "has no effect: " + reason}});
   }
-  /// The reader found something wrong here: members may be defaults, and more errors would mislead.
+  /// Tells whether the reader found an error here. Members may then be defaults, and more errors would
+  /// mislead.
   [[nodiscard]] bool is_damaged(const std::string& path) const {
     return std::any_of(errors_.begin(), errors_.begin() + static_cast<std::ptrdiff_t>(found_before_),
                        [&](const JsonError& one) { return one.error.where.starts_with(path); });
@@ -72,12 +73,12 @@ class Checker {
   void check_hook(const SceneHook& hook, const std::string& path);
   void check_hook_end(const SceneHook& hook, const std::string& end, const std::optional<ScenePoint>& point,
                       const std::string& path);
-  /// A ball that holds a point turns freely.
+  /// A ball hook that holds points leaves their rotation free, so that rotational keys do nothing.
   void check_ball_of_points(const SceneHook& hook, const std::string& path);
   void check_seam(const SceneSeam& seam, const std::string& path);
   void check_seam_edge(const SceneSeam& seam, const std::string& edge,
                        const std::vector<std::uint32_t>& points, const std::string& path);
-  /// Whether there are as many copies of an end as an array counts through.
+  /// Checks that an end has as many copies as an array counts through.
   void check_copies(const SceneArray& array, const std::string& name, const NamedObject& object,
                     const std::string& path);
   void check_event(const SceneEvent& event, const std::string& path);
@@ -86,10 +87,10 @@ class Checker {
   void check_expectation(const SceneExpectation& expectation, const std::string& path);
   void check_subject(const SceneExpectation& expectation, Subject subject, const NamedObject& object,
                      const std::string& path);
-  /// The object of a name or of the name of its array, whatever its copy; null after an error.
+  /// Returns the object of a name, or of the name of its array, whatever its copy; null after an error.
   const NamedObject* find_named(const std::string& name, const std::string& path);
   const NamedObject* find_object(const std::string& name, const std::string& path);
-  /// Whether an object or array has this name, or a copy of one.
+  /// Tells whether an object or array has this name, or whether it names a copy of one.
   [[nodiscard]] bool is_known(const std::string& name) const;
   void check_point(ScenePoint point, std::size_t count, const std::string& path);
   void check_pins(const std::vector<ScenePin>& pins, std::size_t count, const ClothDesc* grid,
@@ -108,7 +109,8 @@ class Checker {
   std::unordered_set<std::string> materials_;
   std::unordered_set<std::string> meshes_;
   std::size_t total_ = 0;
-  bool names_damaged_ = false;  ///< A name was not read: what refers to it would seem to refer to nothing.
+  /// Whether some name was not read; references to it would seem to refer to nothing.
+  bool names_damaged_ = false;
 };
 
 bool has_points(SceneObject::Kind kind) {
@@ -192,7 +194,7 @@ void Checker::collect_hooks(const SceneObjects& objects, const std::string& pref
                          .hook = hook.desc.kind});
   }
   for (std::size_t i = 0; i < objects.seams.size(); ++i) {
-    // How many stitches there are shows when it is sewn.
+    // The number of stitches is known only when the seam is sewn.
     add_name(objects.seams[i].name, {.path = indexed(prefix + "seams", i),
                                      .kind = SceneObject::Kind::kHook,
                                      .is_array = true,
@@ -755,7 +757,7 @@ Result<std::string> locate_file(const std::string& scene_path, const std::string
   if (relative.is_absolute() || relative.empty() || *relative.begin() == "..") return outside;
   const fs::path folder = fs::path(scene_path).parent_path();
   const fs::path joined = folder.empty() ? relative : folder / relative;
-  // A link inside the folder may still point out of it.
+  // A link inside the folder may still lead out of it.
   std::error_code failure;
   const fs::path root = fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), failure);
   if (failure) return joined.string();
@@ -771,7 +773,7 @@ void check_scene(const Scene& scene, const JsonDocument& document, bool files_mu
                  std::vector<JsonError>& errors, std::vector<JsonError>& ignored) {
   const bool clean = errors.empty();
   Checker checker(scene, document, errors, ignored);
-  // Too many objects are not looked at one by one.
+  // Too many objects are not checked one by one.
   if (clean) checker.check_total();
   if (clean && !errors.empty()) return;
   checker.collect_names();

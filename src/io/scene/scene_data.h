@@ -8,68 +8,69 @@
 
 namespace hooke {
 
-/// A force of the timeline that acts for some more steps.
+/// An ActiveForce is a force of the timeline that acts for some more steps.
 struct ActiveForce {
-  std::size_t event = 0;  ///< In SimulationData::timeline.
+  std::size_t event = 0;  ///< Index into SimulationData::timeline.
   std::uint32_t steps_left = 0;
 };
 
-/// A mesh of the scene, read.
+/// A SceneModel is a mesh of the scene, after it was read.
 struct SceneModel {
   MeshId id = {};
   std::shared_ptr<const Model> model = {};
-  std::shared_ptr<const Model> hull = {};  ///< Of its points; made when the first body asks for it.
-  std::vector<ConnectionPointDesc> connection_points = {};  ///< All as places.
+  std::shared_ptr<const Model> hull = {};  ///< Hull of its points; made when the first body asks for it.
+  std::vector<ConnectionPointDesc> connection_points = {};  ///< All given as positions.
 };
 
-/// What a Simulation owns. Built by scene_build.cpp, stepped by scene_simulation.cpp, measured by
-/// scene_measure.cpp.
+/// SimulationData is what a Simulation owns. scene_build.cpp builds it, scene_simulation.cpp steps it, and
+/// scene_measure.cpp measures it.
 struct SimulationData {
   Scene scene;
   World world;
-  Placement placement = {};                                       ///< Of the scene's frame in the world.
-  std::unordered_map<std::string, std::size_t> material_of = {};  ///< From names to Scene::materials.
+  Placement placement = {};  ///< Placement of the scene's frame in the world.
+  std::unordered_map<std::string, std::size_t> material_of = {};  ///< Maps names to Scene::materials.
   std::unordered_map<std::string, SceneModel> models = {};
   std::vector<SceneObject> objects = {};
-  std::unordered_map<std::string, std::size_t> row_of = {};  ///< From names to `objects`.
-  std::size_t points = 0;                                    ///< Added so far, for kMostScenePoints.
-  std::vector<SceneEvent> timeline = {};                     ///< Of the scene, placed in the world.
-  std::vector<std::size_t> events = {};                      ///< `timeline` in the order of its steps.
-  std::size_t next_event = 0;                                ///< In `events`.
+  std::unordered_map<std::string, std::size_t> row_of = {};  ///< Maps names to `objects`.
+  std::size_t points = 0;                                    ///< Points added so far, for kMostScenePoints.
+  std::vector<SceneEvent> timeline = {};                     ///< Timeline of the scene, placed in the world.
+  std::vector<std::size_t> events = {};  ///< Indices of `timeline` in the order of its steps.
+  std::size_t next_event = 0;            ///< Index into `events`.
   std::vector<ActiveForce> forces = {};
-  std::uint32_t contacts = 0;  ///< Of the last step.
+  std::uint32_t contacts = 0;  ///< Contacts of the last step.
   std::vector<SceneVerdict> verdicts = {};
   std::vector<Error> errors = {};
 };
 
 namespace io {
 
-/// The number that a material has in the world's table of pairs: its place in the list plus one.
+/// Returns the number of a material in the world's table of pairs: its place in the list plus one.
 [[nodiscard]] std::uint16_t material_number(const Scene& scene, const std::string& name);
 
-/// The world as described, with the pairs of materials that are named.
+/// Returns the description of the world, with the pairs of materials that have names.
 [[nodiscard]] WorldDesc world_of(const Scene& scene);
 
 /// Reads and adds the meshes.
 void build_meshes(SimulationData& data, std::vector<Error>& errors);
 
-/// Adds objects of the scene or of an event; `prefix` is "" or "timeline[3].add.". What fails is left out.
+/// Adds objects of the scene or of an event; `prefix` is "" or "timeline[3].add.". Objects that fail are left
+/// out.
 void build_objects(const SceneObjects& objects, const std::string& prefix, SimulationData& data,
                    std::vector<Error>& errors);
 
 /// Fills `row_of` from `objects`.
 void index_objects(SimulationData& data);
 
-/// The handle of a point; of kind kNone for an object without points.
+/// Returns the handle of a point; it is of kind kNone for an object without points.
 [[nodiscard]] PointRef point_of(const World& world, const SceneObject& object, ScenePoint point);
 
-/// An error of the world about "rope.masses" as one of the scene about "ropes[0].masses".
+/// Turns an error of the world about "rope.masses" into one of the scene about "ropes[0].masses".
 [[nodiscard]] Error scene_error(const Scene& scene, const std::string& path, const Error& error);
 
 /// Evaluates an expectation now.
 [[nodiscard]] SceneVerdict measure_expectation(const SimulationData& data, std::size_t index);
 
-/// The number of steps after which an expectation is due.
+/// Returns the number of steps after which an expectation is due.
 [[nodiscard]] std::uint32_t due_step(const Scene& scene, const SceneExpectation& expectation);
 
 }  // namespace io

@@ -30,7 +30,7 @@ class IgnoredKeys {
   [[nodiscard]] std::vector<JsonError> take() { return std::move(found_); }
 
  private:
-  /// Those of `keys` that the object at `path` has are of no use, if `is_so`.
+  /// If `is_so`, reports those of `keys` that the object at `path` has, because they have no use.
   void ignore(const std::string& path, Keys keys, bool is_so, const char* reason) {
     if (!is_so) return;
     const JsonNode& object = document_.find_closest(path);

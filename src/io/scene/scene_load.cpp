@@ -28,7 +28,7 @@ Error error_at(const SceneSource* source, const std::string& path, ErrorCode cod
 
 namespace {
 
-/// In the order of the file, with their places.
+/// Returns the errors in the order of the file, with their places.
 std::vector<Error> finish(const JsonDocument& document, std::vector<JsonError> found) {
   std::stable_sort(found.begin(), found.end(),
                    [](const JsonError& a, const JsonError& b) { return a.offset < b.offset; });
@@ -38,7 +38,7 @@ std::vector<Error> finish(const JsonDocument& document, std::vector<JsonError> f
   for (JsonError& one : found) {
     const std::string place = document.place(one.offset);
     std::string& where = one.error.where;
-    // Keys are the user's: an error stays one readable line whatever they are.
+    // Keys come from the user; an error must stay one readable line whatever they are.
     constexpr std::size_t kLongestPath = 300;
     if (where.size() > kLongestPath) where.resize(kLongestPath);
     for (char& c : where) c = static_cast<unsigned char>(c) < ' ' || c == 127 ? '?' : c;
@@ -49,7 +49,7 @@ std::vector<Error> finish(const JsonDocument& document, std::vector<JsonError> f
   return errors;
 }
 
-/// A file of a newer version is not read at all: what it says may have another meaning.
+/// A file of a newer version is not read at all, because its content may have another meaning.
 bool check_version(const JsonDocument& document, std::vector<JsonError>& errors) {
   const JsonNode* version = document.root.find("version");
   if (version == nullptr || version->kind != JsonNode::Kind::kNumber || version->number <= kSceneVersion) {
@@ -62,7 +62,7 @@ bool check_version(const JsonDocument& document, std::vector<JsonError>& errors)
   return false;
 }
 
-/// What the scene says and nothing comes of.
+/// Returns warnings about parts of the scene that have no effect.
 std::vector<Error> warnings_of(const Scene& scene, const JsonDocument& document,
                                std::vector<JsonError> ignored) {
   for (JsonError& one : find_ignored_keys(scene, document)) ignored.push_back(std::move(one));
@@ -80,7 +80,7 @@ Loaded<Scene> read_scene(std::string text, std::string name, bool files_must_exi
   auto source = std::make_shared<SceneSource>();
   JsonDocument& document = source->document;
   std::vector<JsonError> errors = parse_json(std::move(text), name, document);
-  // Repeated keys leave a whole tree, everything else a torn one.
+  // After repeated keys the tree is complete; after all other errors it is not.
   const bool parsed = std::all_of(errors.begin(), errors.end(), [](const JsonError& one) {
     return one.error.code == ErrorCode::kUnknownKey;
   });

@@ -66,7 +66,8 @@ double point_figure(const SimulationData& data, const SceneObject& object, const
   return length(vector_cast<double>(view.offset(index)));
 }
 
-/// Of the segment that is asked for; of the whole rope, the largest tension or torque and the sum of twists.
+/// Returns the figure of the segment that is asked for. For the whole rope it is the largest tension or
+/// torque, or the sum of twists.
 double segment_figure(const World& world, RopeId rope, const SceneExpectation& wanted) {
   const std::vector<Real> figures = wanted.quantity == Quantity::kTension ? world.tensions(rope)
                                     : wanted.quantity == Quantity::kTwist ? world.twists(rope)
@@ -194,7 +195,7 @@ std::string short_digits(double value) {
   return {text, end.ptr};
 }
 
-/// The word of the scene file, with spaces.
+/// Returns the word of the scene file, with spaces.
 template <class E>
 std::string word_of(E value) {
   std::string word = Codec<E>::write(value).text;

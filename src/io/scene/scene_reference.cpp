@@ -12,11 +12,11 @@ std::string help_with_unit(const Field& field) {
   return *field.unit == '\0' ? field.help : std::string(field.help) + " [" + field.unit + "]";
 }
 
-/// What the key has when it is not given; null when it must be given or has nothing to show.
+/// Returns the value of a key that is not given. It is null when the key is required or has nothing to show.
 JsonNode default_of(const Kind& kind, const Field& field) {
   const bool shown = field.use == Field::Use::kOptional && field.write != nullptr;
   JsonNode value = shown ? field.write(kind.defaults()) : JsonNode{};
-  const bool unsayable = value.text == "rigid" && !field.rule.rigid;  // a bound that is not there
+  const bool unsayable = value.text == "rigid" && !field.rule.rigid;  // The bound does not exist.
   const bool empty = value.kind == JsonNode::Kind::kObject || unsayable ||
                      (value.kind == JsonNode::Kind::kString && value.text.empty());
   return empty ? JsonNode{} : value;
@@ -25,7 +25,7 @@ JsonNode default_of(const Kind& kind, const Field& field) {
 JsonNode field_schema(const Kind& kind, const Field& field) {
   JsonNode value = field.group != nullptr ? schema_reference(field.group()) : field.schema(field.rule);
   if (value.find("$ref") != nullptr) {
-    // Draft 7 ignores what stands beside a reference.
+    // Draft 7 of JSON Schema ignores what stands beside a reference.
     JsonNode all = make_array();
     all.add(std::move(value));
     value = make_object();

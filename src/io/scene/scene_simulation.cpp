@@ -24,7 +24,7 @@ void record(SimulationData& data, std::size_t event, const Result<void>& done) {
   data.errors.push_back(io::scene_error(data.scene, io::indexed("timeline", event), done.error()));
 }
 
-/// The object of this name, or all copies of an array.
+/// Removes the object of this name, or all copies of an array.
 Result<void> remove_objects(SimulationData& data, const std::string& name) {
   const auto named = [&](const SceneObject& object) {
     if (!object.name.starts_with(name)) return false;
@@ -36,7 +36,7 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
   for (const SceneObject& object : data.objects) {
     if (!named(object)) continue;
     names.push_back(object.name);
-    // Ids of other kinds are null, and removing nothing does nothing.
+    // Ids of other kinds are null, and their removal does nothing.
     bodies.push_back(object.body);
     data.world.remove(object.rope);
     data.world.remove(object.cloth);
@@ -51,7 +51,7 @@ Result<void> remove_objects(SimulationData& data, const std::string& name) {
     return std::binary_search(names.begin(), names.end(), held);
   };
   const std::size_t removed = std::erase_if(data.objects, [&](const SceneObject& object) {
-    // The hooks of an object go with it.
+    // The hooks of an object are removed with it.
     return named(object) || gone(object.hooked[0]) || gone(object.hooked[1]);
   });
   if (removed == 0) {
@@ -154,11 +154,11 @@ void apply_due_events(SimulationData& data) {
   std::erase_if(data.forces, [](const ActiveForce& force) { return force.steps_left == 0; });
 }
 
-/// What a reader would have refused: a scene may also be made or changed in code.
+/// Checks what a reader would have refused, because a scene may also be made or changed in code.
 std::vector<Error> check(const Scene& scene) {
   const io::JsonDocument nothing;
   std::vector<io::JsonError> found;
-  std::vector<io::JsonError> ignored;  // was said when the file was read
+  std::vector<io::JsonError> ignored;  // These were reported when the file was read.
   io::check_scene(scene, scene.source ? scene.source->document : nothing, false, found, ignored);
   std::vector<Error> errors;
   errors.reserve(found.size());
@@ -169,7 +169,8 @@ std::vector<Error> check(const Scene& scene) {
   return errors;
 }
 
-/// Places and directions of an event, in the world. What it adds is placed when it is built.
+/// Transforms positions and directions of an event to the world. Objects that it adds are placed when they
+/// are built.
 void place(SceneEvent& event, const Placement& at) {
   if (event.at) event.at = at.point(*event.at);
   event.motion = placed(event.motion, at);

@@ -120,7 +120,7 @@ const Kind& steering_event_kind() {
   return kind;
 }
 
-/// The lists of objects, at the path `Prefix...` of a struct.
+/// Makes keys for the lists of objects, at the path `Prefix...` of a struct.
 template <auto... Prefix>
 std::vector<Field> object_rows() {
   return {

@@ -5,9 +5,9 @@
 #include "io/scene/scene_binding.h"
 
 /// \file
-/// The tables of the scene format: one Kind for each JSON object. scene_table.cpp has the scene, world,
-/// timeline, camera and expectations; scene_table_bodies.cpp has bodies, scene_table_hooks.cpp what joins
-/// them, scene_table_objects.cpp what else a world holds.
+/// Declares the tables of the scene format: one Kind for each JSON object. scene_table.cpp has the scene,
+/// world, timeline, camera and expectations; scene_table_bodies.cpp has bodies, scene_table_hooks.cpp what
+/// joins them, scene_table_objects.cpp all other objects.
 
 namespace hooke::io {
 
@@ -16,7 +16,7 @@ inline constexpr bool kByName<SceneMesh> = true;
 template <>
 inline constexpr bool kByName<SceneMaterial> = true;
 
-/// An index, or "last".
+/// A point is an index, or "last".
 template <>
 struct Codec<ScenePoint> {
   static bool read(Reader& reader, const JsonNode& node, const Rule& rule, ScenePoint& value);
@@ -26,7 +26,7 @@ struct Codec<ScenePoint> {
   static std::string type() { return "whole number or `\"last\"`"; }
 };
 
-/// A place, or the number of a point; the name is the key.
+/// A connection point is a position, or the number of a point; its name is the key.
 template <>
 inline constexpr bool kByName<ConnectionPointDesc> = true;
 template <>
@@ -38,7 +38,7 @@ struct Codec<ConnectionPointDesc> {
   static std::string type() { return "[x, y, z] or whole number"; }
 };
 
-/// A point, or an object of kind "pin". A still point is written in the short form.
+/// A pin is a point, or an object of kind "pin". A still point is written in the short form.
 template <>
 struct Codec<ScenePin> {
   static bool read(Reader& reader, const JsonNode& node, const Rule& rule, ScenePin& value);
@@ -48,13 +48,10 @@ struct Codec<ScenePin> {
   static std::string type() { return "[pin](#pin) or point"; }
 };
 
-/// Every kind, in the order of the documentation.
+/// Returns every kind, in the order of the documentation.
 [[nodiscard]] std::span<const Kind* const> all_kinds();
-/// Those of scene_table_bodies.cpp.
 [[nodiscard]] std::span<const Kind* const> body_kinds();
-/// Those of scene_table_hooks.cpp.
 [[nodiscard]] std::span<const Kind* const> hook_kinds();
-/// Those of scene_table_objects.cpp.
 [[nodiscard]] std::span<const Kind* const> object_kinds();
 
 template <>

@@ -1,4 +1,4 @@
-/// Tables of rigid bodies: shapes, parts, filters, the body itself.
+/// Holds the tables of rigid bodies: shapes, parts, filters, the body itself.
 
 #include "io/scene/scene_table.h"
 #include "io/scene/scene_table_tags.h"
@@ -7,7 +7,7 @@ namespace hooke::io {
 
 namespace {
 
-/// The tables of shapes for an Owner whose Shape is at the path `Members...`.
+/// These are the tables of shapes for an Owner whose Shape is at the path `Members...`.
 template <class Owner, auto... Members>
 struct ShapeTables {
   static const Kind& half_space() {

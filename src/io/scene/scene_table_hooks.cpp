@@ -1,4 +1,4 @@
-/// Tables of hooks: limits, springs, motors, freedoms, the hook itself.
+/// Holds the tables of hooks: limits, springs, motors, freedoms, the hook itself.
 
 #include "io/scene/scene_table.h"
 #include "io/scene/scene_table_tags.h"

@@ -89,7 +89,7 @@ const Kind& kind_of<SceneLoad>() {
 
 namespace {
 
-/// What is wrong with a key of an array of this kind; null if nothing.
+/// Returns what is wrong with a key of an array of this kind; null if nothing.
 const char* misplaced(const std::string& key, SceneArray::Kind kind) {
   const bool random = kind == SceneArray::Kind::kRandom;
   const bool list = kind == SceneArray::Kind::kList;
@@ -149,7 +149,7 @@ const Kind& kind_of<SceneArray>() {
 
 namespace {
 
-/// A rope's keys under the names of the paper's builder, then the others.
+/// Has a rope's keys under the names of the paper's builder, then the others.
 std::vector<Field> rope_rows() {
   constexpr auto kDesc = &SceneRope::desc;
   return {

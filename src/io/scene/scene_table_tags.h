@@ -5,7 +5,7 @@
 #include <type_traits>
 
 /// \file
-/// What the tables of all named objects share.
+/// Holds what the tables of all named objects share.
 
 namespace hooke::io {
 
@@ -27,7 +27,8 @@ bool check_tagged(Reader& reader, const JsonNode& node, const void* object) {
   return check_named(reader, node, tag.name);
 }
 
-/// The rows of SceneTag, which every object but a field has; the laboratory has no steppers for bodies.
+/// Adds the keys of SceneTag, which every object but a field has. Bodies have no key for a stepper of the
+/// laboratory.
 template <class T>
 void add_tag_rows(std::vector<Field>& rows) {
   rows.insert(

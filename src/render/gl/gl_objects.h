@@ -8,11 +8,11 @@
 #include <utility>
 
 /// \file
-/// Ownership of OpenGL names. Everything here needs the owning context to be current.
+/// Owns OpenGL objects. The owning context must be current in all of this.
 
 namespace hooke::render {
 
-/// One OpenGL object, deleted with this value.
+/// A GlName owns one OpenGL object and deletes it on destruction.
 class GlName {
  public:
   using Destroy = void (*)(GLuint name);
@@ -44,13 +44,14 @@ GlName make_texture();
 GlName make_framebuffer();
 GlName make_renderbuffer();
 
-/// A linked program; the driver's message if the shaders do not compile. `title` names it in the error.
+/// Links a program, or returns the driver's message if the shaders do not compile. `title` names it in the
+/// error.
 Result<GlName> make_program(const std::string& title, const std::string& vertex, const std::string& fragment);
 
-/// A place in the bound buffer, as OpenGL wants it: disguised as a pointer.
+/// Returns an offset into the bound buffer in the form that OpenGL wants, as a pointer.
 const void* buffer_offset(std::size_t bytes);
 
-/// All pending OpenGL errors as one Error; none is success.
+/// Turns all pending OpenGL errors into one Error; without any it returns success.
 Result<void> take_gl_error(const std::string& where);
 
 }  // namespace hooke::render

@@ -4,7 +4,7 @@
 
 namespace hooke::render {
 
-/// All compiled shaders. Samplers are bound to units once: 0 is the surface or picture, 1 the shadow map.
+/// These are all compiled shaders. Samplers have fixed units: 0 is the surface or picture, 1 the shadow map.
 struct Programs {
   GlName mesh;
   GLint mesh_has_texture = -1;
@@ -22,7 +22,7 @@ struct Programs {
   GlName present;
 };
 
-/// The first error of the driver's compiler, if any.
+/// Compiles all shaders, or returns the first error of the driver's compiler.
 Result<Programs> make_programs();
 
 }  // namespace hooke::render

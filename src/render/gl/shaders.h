@@ -3,7 +3,7 @@
 #include <string>
 
 /// \file
-/// The GLSL sources. All of them share the uniform block Frame, laid out like FrameUniforms in renderer.cpp.
+/// The GLSL sources share the uniform block Frame, whose layout is that of FrameUniforms in render/frame.h.
 
 namespace hooke::render {
 
@@ -14,11 +14,11 @@ struct ShaderSource {
 
 ShaderSource mesh_shader();           ///< Lit triangles, instanced.
 ShaderSource shadow_shader();         ///< Depth only, instanced.
-ShaderSource cutout_shadow_shader();  ///< Depth where the texture is not a hole.
+ShaderSource cutout_shadow_shader();  ///< Depth where the texture has no hole.
 ShaderSource ground_shader();         ///< The plane with its grid.
 ShaderSource sky_shader();            ///< The gradient behind everything.
 ShaderSource line_shader();           ///< Lines of a width in pixels, instanced.
 ShaderSource text_shader();           ///< Triangles in pixels.
-ShaderSource present_shader();        ///< The finished picture into a window.
+ShaderSource present_shader();        ///< Shows the finished picture in a window.
 
 }  // namespace hooke::render
