@@ -13,12 +13,12 @@ namespace hooke::check {
 
 namespace {
 
-// Why a case is not turned.
+// These are reasons why a case is not turned.
 constexpr const char* kOnlyInPlane = "balanced in a plane: any rounding across it grows, as it does in truth";
 constexpr const char* kGustsOfPlaces = "gusts belong to places of the world";
 constexpr const char* kOfLaboratory = "of the laboratory, whose worlds are not turned";
 
-/// V1 to V24: points, springs, ropes and pendulums.
+/// These are V1 to V24: points, springs, ropes and pendulums.
 std::vector<CheckCase> cases_of_points_and_ropes() {
   return {
       {"V1", "Free fall", free_fall, 1.0 / 60},
@@ -48,7 +48,7 @@ std::vector<CheckCase> cases_of_points_and_ropes() {
   };
 }
 
-/// V25 to V61: rigid bodies that turn, hit, rub, roll and stand.
+/// These are V25 to V61: rigid bodies that rotate, collide, slide, roll and stand.
 std::vector<CheckCase> cases_of_bodies() {
   return {
       {"V25", "Turning over (Dzhanibekov)", turning_over},
@@ -91,7 +91,7 @@ std::vector<CheckCase> cases_of_bodies() {
   };
 }
 
-/// V62 to V77: rods, jelly and cloth.
+/// These are V62 to V77: rods, jelly and cloth.
 std::vector<CheckCase> cases_of_soft_matter() {
   return {
       {"V62", "Cantilevers", cantilevers},
@@ -113,7 +113,7 @@ std::vector<CheckCase> cases_of_soft_matter() {
   };
 }
 
-/// V81 to V94: water and air, and what the step does to an answer.
+/// These are V81 to V94: water and air, and how the step affects an answer.
 std::vector<CheckCase> cases_of_surroundings_and_time() {
   return {
       {"V81", "Floating bodies", floating_bodies_in_water},
@@ -126,7 +126,7 @@ std::vector<CheckCase> cases_of_surroundings_and_time() {
   };
 }
 
-/// I1 to I23: what the engine itself promises.
+/// These are I1 to I23: what the engine itself promises.
 std::vector<CheckCase> cases_of_promises() {
   return {
       {"I1", "Rope extension at any resolution", resolution_of_rope},
@@ -153,7 +153,7 @@ std::vector<CheckCase> cases_of_promises() {
   };
 }
 
-/// C1 to C20, T74 and T79: matter of different kinds that acts on each other.
+/// These are C1 to C20, T74 and T79: matter of different kinds that acts on each other.
 std::vector<CheckCase> cases_of_couplings() {
   return {
       {"C1", "Pendulum on a cart", pendulum_on_cart},
@@ -208,7 +208,7 @@ CheckRow failed_row(const std::exception& failure) {
           .achieved = std::numeric_limits<double>::quiet_NaN()};
 }
 
-/// Methods by tolerance choose steps of their own, so they count as those without a limit.
+/// Methods by tolerance choose steps of their own, so they count as those without a limit of stability.
 double laboratory_dt(const CheckCase& check, const std::string& stepper) {
   const auto info = lab::find_stepper(stepper);
   const bool unlimited = info && std::isinf(info.value().imaginary_limit);

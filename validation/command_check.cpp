@@ -30,7 +30,7 @@ const CheckCase* find_case(const std::string& id) {
   return found == all.end() ? nullptr : &*found;
 }
 
-/// The cases that were asked for; none if one of them does not exist.
+/// Returns the cases that were asked for, or none if one of them does not exist.
 std::vector<const CheckCase*> chosen_cases(const CheckOptions& options) {
   std::vector<const CheckCase*> chosen;
   for (const std::string& id : options.cases) {
@@ -53,7 +53,7 @@ void run_and_print(const CheckCase& check, const CheckSetting& setting, std::vec
   }
 }
 
-/// The solver's rows, and below them those of the stepper if one was named.
+/// Runs the solver's rows, and those of the stepper if one was named.
 int check_one(const CheckOptions& options, const std::vector<const CheckCase*>& chosen) {
   std::vector<Ran> ran;
   for (const CheckCase* check : chosen) {
@@ -76,7 +76,7 @@ int check_one(const CheckOptions& options, const std::vector<const CheckCase*>& 
   return failed > 0 ? kFailed : kPassed;
 }
 
-/// Every method, each with every case.
+/// Runs every case by every method.
 int check_all(const CheckOptions& options, const std::vector<const CheckCase*>& chosen) {
   std::vector<Column> columns = {{.stepper = "solver"}};
   for (const lab::StepperInfo& info : lab::steppers()) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60;  ///< [s]
 constexpr double kTolerance = 1e-10;
-constexpr double kNudge = 1e-5;  ///< [m]: a hundred times what a float rounds off a meter.
+constexpr double kNudge = 1e-5;  ///< Displacement [m], a hundred times what a float rounds off a meter.
 
 using Frames = std::array<std::vector<DVec3>, kTruthFrames.size()>;
 
@@ -53,7 +53,7 @@ std::string centimeters(double meters) {
   return text;
 }
 
-/// The p of a difference that grows like t^p between 0.3 and 3 s.
+/// Returns the p of a difference that grows like t^p between 0.3 and 3 s.
 std::string growth(const std::array<double, kTruthFrames.size()>& difference) {
   char text[40];
   std::snprintf(text, sizeof text, "%.1f", std::log10(difference[3] / difference[1]));

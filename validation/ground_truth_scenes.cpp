@@ -1,4 +1,4 @@
-/// The scenes of ground_truth.h. Each holds one object, and nothing that has no law of force.
+/// Has the scenes of ground_truth.h. Each holds one object, and nothing that is without a law of force.
 
 #include "validation/ground_truth.h"
 #include "validation/rig.h"

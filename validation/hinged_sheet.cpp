@@ -12,7 +12,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// By point: what its height adds.
+/// Contribution of each point's height, by point.
 using Weights = std::map<std::uint32_t, double>;
 
 double twice_area(const HingedSheet& sheet, const Triangle& t) {
@@ -33,7 +33,7 @@ void add_slope(const HingedSheet& sheet, const Triangle& t, DVec3 n, double sign
   weights[t[0]] -= of_q + of_r;
 }
 
-/// The second derivatives of the energy with respect to heights.
+/// Returns the second derivatives of the energy with respect to heights.
 Eigen::MatrixXd stiffness_of(const HingedSheet& sheet) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Triangle>> sides;
   for (const Triangle& t : sheet.triangles) {

@@ -8,8 +8,8 @@
 
 namespace hooke::check {
 
-/// A World that a case sees in the case's own frame, wherever that frame lies in the world: what is added is
-/// placed, and what is read comes back as if nothing had been turned or moved.
+/// A PlacedWorld is a World that a case sees in the case's own frame, wherever that frame lies in the world.
+/// What is added is transformed to the world, and what is read is transformed back.
 class PlacedWorld {
  public:
   PlacedWorld(World world, const Placement& at) : world_(std::move(world)), at_(at) {}
@@ -51,7 +51,7 @@ class PlacedWorld {
   [[nodiscard]] DVec3 center_of_mass(BodyId id) const { return at_.own_point(world_.center_of_mass(id)); }
   [[nodiscard]] DVec3 velocity(BodyId id) const { return own(world_.velocity(id)); }
   [[nodiscard]] DVec3 angular_velocity(BodyId id) const { return own(world_.angular_velocity(id)); }
-  /// A direction of the body's frame.
+  /// Returns a direction of the body's frame in the case's frame.
   [[nodiscard]] DVec3 direction(BodyId id, DVec3 of_body) const;
   [[nodiscard]] Real mass(BodyId id) const { return world_.mass(id); }
   [[nodiscard]] Real pressure(ClothId id) const { return world_.pressure(id); }

@@ -43,7 +43,7 @@ std::string verdict_markdown(const CheckRow& row) {
   return row.missed_as_known() ? "known miss: " + row.known_miss : "**fail**";
 }
 
-/// How many times too large the error is; a row that is not a number is worst.
+/// Returns by what factor the error is too large; a row that is not a number is worst.
 double excess(const CheckRow& row) {
   if (row.pass()) return 0;
   const double times = row.error() / row.tolerance;
@@ -68,7 +68,7 @@ std::vector<Ran> rows_of(const std::vector<Ran>& ran, const CheckCase* check) {
   return rows;
 }
 
-/// Cases in the order in which they were run first.
+/// Returns the cases in the order of their first run.
 std::vector<const CheckCase*> cases_of(const std::vector<Column>& columns) {
   std::vector<const CheckCase*> cases;
   for (const Column& column : columns) {
@@ -104,7 +104,7 @@ std::string to_json(const std::vector<Ran>& ran) {
                     {"title", row.title},
                     {"unit", row.unit},
                     {"expected", row.expected},
-                    {"achieved", row.achieved},  // null if not a number
+                    {"achieved", row.achieved},  // Null if it is not a number.
                     {"tolerance", row.tolerance},
                     {"relative", row.measure == CheckRow::Measure::kRelative},
                     {"error", row.error()},

@@ -1,4 +1,4 @@
-/// Arches of blocks without mortar.
+/// Tests arches of blocks without mortar.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kBlocks = 25;
 
-/// A block of a half circle of radius 1 m, a share of that thick and half a meter deep, about its center.
+/// Makes a block of a half circle of radius 1 m, about its center. `thickness` is a share of the radius;
+/// blocks are half a meter deep.
 MeshDesc block_of(double from, double to, double thickness) {
   MeshDesc mesh;
   for (const double z : {-0.25, 0.25}) {
@@ -27,7 +28,7 @@ MeshDesc block_of(double from, double to, double thickness) {
   return mesh;
 }
 
-/// Whether the key stone is still where it was.
+/// Tells whether the key stone is still where it was.
 bool arch_stands(const CheckSetting& setting, double thickness) {
   Rig rig(setting, sleepless());
   rig.add(level_ground(1));
@@ -50,8 +51,8 @@ bool arch_stands(const CheckSetting& setting, double thickness) {
 
 }  // namespace
 
-/// A half circle of blocks that do not slip stands from a thickness of 0.1075 of its radius on (Milankovitch
-/// 1907, for blocks without size; Heyman 1969: 0.106).
+/// A half circle of blocks that do not slip stands if its thickness is at least 0.1075 of its radius
+/// (Milankovitch 1907, for blocks without size; Heyman 1969: 0.106).
 Rows stone_arch(const CheckSetting& setting) {
   const double expected = 0.1075;
   const double found =

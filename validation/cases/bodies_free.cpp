@@ -1,4 +1,4 @@
-/// Bodies that turn freely: no axis, no contact, or one point held.
+/// Tests bodies that rotate freely: no axis, no contact, or one point held.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -16,7 +16,7 @@ WorldDesc floating_bodies() {
   return desc;
 }
 
-/// The complete elliptic integral K of modulus k, by the arithmetic-geometric mean (Gauss).
+/// Returns the complete elliptic integral K of modulus k, by the arithmetic-geometric mean (Gauss).
 double elliptic_quarter(double modulus_squared) {
   double a = 1;
   double b = std::sqrt(1 - modulus_squared);
@@ -28,8 +28,8 @@ double elliptic_quarter(double modulus_squared) {
   return 0.25 * kTau / a;
 }
 
-/// A disc of 0.15 m on a tip 0.1 m below its center, upright but for 1e-4 rad: does it fall in 12 s? The tilt
-/// of one that stands grows at most (1 - (1 - margin)^2)^(-1/2) fold, 7 times at a margin of 1 %.
+/// Tells whether a disc of 0.15 m on a tip 0.1 m below its center, tilted by 1e-4 rad, stays up for 12 s. The
+/// tilt of one that stands grows at most (1 - (1 - margin)^2)^(-1/2) fold, 7 times at a margin of 1 %.
 bool top_sleeps(const CheckSetting& setting, double spin) {
   const double tilt = 1e-4;
   const DVec3 axis = {std::sin(tilt), std::cos(tilt), 0};
@@ -44,7 +44,8 @@ bool top_sleeps(const CheckSetting& setting, double spin) {
   return up;
 }
 
-/// Sums of |m v| and |x x m v + L| over the bodies: what a change of their sum is compared with.
+/// These are the sums of |m v| and |x x m v + L| over the bodies, with which a change of their sum is
+/// compared.
 struct MomentumScale {
   double linear = 0;
   double angular = 0;
@@ -54,7 +55,7 @@ struct Swarm {
   Rig rig;
   MomentumScale scale;
 
-  /// Five boxes or balls on their way into each other.
+  /// Makes five boxes or balls that will collide.
   Swarm(const CheckSetting& setting, const Shape& shape, double restitution, double friction)
       : rig(setting, floating_bodies()) {
     for (int i = 0; i < 5; ++i) {
@@ -89,11 +90,12 @@ Rows conservation_rows(const CheckSetting& setting, const char* what, const Shap
 
 }  // namespace
 
-/// Turned about its middle axis, a body turns over and over (Euler; Landau and Lifshitz, Mechanics, 37):
+/// A body that spins about its middle axis turns over again and again (Euler; Landau and Lifshitz, Mechanics,
+/// 37). The period is
 /// T = 4 K(k) / W, W^2 = (I3 - I2)(L^2 - 2 E I1) / (I1 I2 I3),
-/// k^2 = (I2 - I1)(2 E I3 - L^2) / ((I3 - I2)(L^2 - 2 E I1)) for L^2 > 2 E I2. L and E stay.
+/// k^2 = (I2 - I1)(2 E I3 - L^2) / ((I3 - I2)(L^2 - 2 E I1)) for L^2 > 2 E I2. L and E stay constant.
 Rows turning_over(const CheckSetting& setting) {
-  const double i1 = (0.2 * 0.2 + 0.5 * 0.5) / 12;  // about x, per mass; I2 about z, I3 about y
+  const double i1 = (0.2 * 0.2 + 0.5 * 0.5) / 12;  // Moment about x per mass; I2 is about z, I3 about y.
   const double i2 = (1 + 0.2 * 0.2) / 12;
   const double i3 = (1 + 0.5 * 0.5) / 12;
   const double middle = 6;
@@ -104,7 +106,7 @@ Rows turning_over(const CheckSetting& setting) {
   desc.angular_velocity = real(DVec3{0, aside, middle});
   const BodyId box = rig.add(desc);
 
-  const double energy = i2 * middle * middle + i3 * aside * aside;  // twice
+  const double energy = i2 * middle * middle + i3 * aside * aside;  // Twice the energy.
   const double momentum = i2 * i2 * middle * middle + i3 * i3 * aside * aside;
   const double rate = std::sqrt((i3 - i2) * (momentum - energy * i1) / (i1 * i2 * i3));
   const double modulus = (i2 - i1) * (energy * i3 - momentum) / ((i3 - i2) * (momentum - energy * i1));
@@ -128,12 +130,12 @@ Rows turning_over(const CheckSetting& setting) {
                        length(angular_momentum() - before) / length(before), 1e-4)};
 }
 
-/// A symmetric top (textbook): the spin goes round the body's axis with (I3 - I1) / I1 w3, the axis round L
-/// with L / I1.
+/// In a symmetric top (textbook) the spin goes round the body's axis at (I3 - I1) / I1 w3, and the axis round
+/// L at L / I1.
 Rows free_precession(const CheckSetting& setting) {
   const double radius = 0.5;
   const double half = 0.1;
-  const double along = radius * radius / 2;  // per mass
+  const double along = radius * radius / 2;  // Per mass.
   const double across = (3 * radius * radius + 4 * half * half) / 12;
   const DVec3 spin = {1, 5, 0};
   Rig rig(setting, floating_bodies());
@@ -141,7 +143,7 @@ Rows free_precession(const CheckSetting& setting) {
   desc.angular_velocity = real(spin);
   const BodyId disc = rig.add(desc);
   const DVec3 momentum = {across * spin.x, along * spin.y, 0};
-  const DVec3 aside = {0, 0, 1};  // across L and the axis at the start
+  const DVec3 aside = {0, 0, 1};  // Perpendicular to L and the axis at the start.
   Curve in_body;
   Curve in_space;
   rig.run(60, [&] {
@@ -154,12 +156,12 @@ Rows free_precession(const CheckSetting& setting) {
       relative_row("period of the axis in space", "s", kTau * across / length(momentum), in_space.period())};
 }
 
-/// An upright top stays up if and only if w3^2 > 4 I1 m g l / I3^2, I1 about the tip (textbook).
+/// An upright top stays up if and only if w3^2 > 4 I1 m g l / I3^2, with I1 about the tip (textbook).
 Rows sleeping_top(const CheckSetting& setting) {
   const double radius = 0.15;
   const double half = 0.01;
   const double lever = 0.1;
-  const double along = radius * radius / 2;  // per mass
+  const double along = radius * radius / 2;  // Per mass.
   const double across = (3 * radius * radius + 4 * half * half) / 12 + lever * lever;
   const double expected = std::sqrt(4 * across * kGravity * lever) / along;
   const double found =
@@ -167,7 +169,8 @@ Rows sleeping_top(const CheckSetting& setting) {
   return {relative_row("slowest spin that keeps a top up", "rad/s", expected, found, 0.01)};
 }
 
-/// Nothing from outside: momentum, angular momentum and, where nothing is lost in hits, energy stay.
+/// Without forces from outside, momentum and angular momentum stay, and so does energy where impacts lose
+/// none.
 Rows isolated_bodies(const CheckSetting& setting) {
   Rows rows = conservation_rows(setting, "balls, e = 1", Shape::sphere(real(0.6)), 1, 0);
   for (const Rows& more : {conservation_rows(setting, "rough balls", Shape::sphere(real(0.6)), 0.5, 0.5),

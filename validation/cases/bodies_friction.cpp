@@ -1,4 +1,4 @@
-/// Bodies that slide, stick, roll and topple.
+/// Tests bodies that slide, stick, roll and topple.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDegree = kTau / 360;
 
-/// A plane through the origin that goes down along x by `angle`; coordinates on it.
+/// An Incline is a plane through the origin that goes down along x by `angle`, with coordinates on it.
 struct Incline {
   double angle = 0;
   DVec3 normal = {std::sin(angle), std::cos(angle), 0};
@@ -26,7 +26,7 @@ struct Incline {
   [[nodiscard]] Quat turn() const { return quaternion_about(Vec3{Real(0), Real(0), Real(-1)}, real(angle)); }
 };
 
-/// A box let go on an incline. Both have the friction `friction`.
+/// A box is released on an incline. Both have the friction `friction`.
 struct BoxOnIncline {
   Incline incline;
   Rig rig;
@@ -43,13 +43,13 @@ struct BoxOnIncline {
 
   [[nodiscard]] double place() const { return dot(rig.center(box), incline.down); }
   [[nodiscard]] double speed() const { return dot(rig.velocity(box), incline.down); }
-  /// Between its own up and the normal of the incline [rad].
+  /// Returns the angle between the box's up direction and the normal of the incline [rad].
   [[nodiscard]] double tilt() const {
     return std::acos(std::min(1.0, dot(rig.direction(box, {0, 1, 0}), incline.normal)));
   }
 };
 
-/// Mean speed over the last of `seconds` [m/s].
+/// Returns the mean speed over the last of `seconds` [m/s].
 double creep(const CheckSetting& setting, double slope, double friction, double seconds) {
   BoxOnIncline box(setting, std::atan(slope), friction);
   box.rig.run(seconds - 1);
@@ -58,17 +58,17 @@ double creep(const CheckSetting& setting, double slope, double friction, double 
   return box.place() - before;
 }
 
-/// A wheel of axial inertia b m r^2 and radius 0.1 m.
+/// A Wheel has the axial inertia b m r^2 and the radius 0.1 m.
 struct Wheel {
   const char* name;
   double inertia;
   BodyDesc desc;
 };
 
-/// A light drum with 12 heavy balls on a circle.
+/// A WeightedWheel is a light drum with 12 heavy balls on a circle.
 struct WeightedWheel {
   double ring = 0.075;  ///< Radius of the circle [m].
-  double ball = 0.015;  ///< Of a ball [m].
+  double ball = 0.015;  ///< Radius of a ball [m].
 
   [[nodiscard]] BodyDesc desc() const;
   [[nodiscard]] double inertia() const;
@@ -88,7 +88,7 @@ BodyDesc WeightedWheel::desc() const {
 
 double WeightedWheel::inertia() const {
   const double balls = 12 * 1e4 * 2 * kTau / 3 * ball * ball * ball;
-  const double drum = 0.5 * kTau * 0.01 * 0.1;  // of 1 kg/m^3, 0.1 m in radius and length
+  const double drum = 0.5 * kTau * 0.01 * 0.1;  // Mass of the drum: 1 kg/m^3, 0.1 m in radius and length.
   return (balls * (ring * ring + 0.4 * ball * ball) + drum * 0.5 * 0.01) / ((balls + drum) * 0.01);
 }
 
@@ -106,11 +106,11 @@ void lay(BodyDesc& wheel, double friction) {
 }
 
 struct Rolled {
-  double speed = 0;  ///< At the end [m/s].
-  double slip = 0;   ///< Speed at the contact, share of it.
+  double speed = 0;  ///< Speed at the end [m/s].
+  double slip = 0;   ///< Speed at the contact, as a share of it.
 };
 
-/// From rest, on 20 degrees.
+/// Rolls from rest on a slope of 20 degrees.
 Rolled roll_down(const CheckSetting& setting, double friction, const Wheel& wheel, double seconds) {
   const Incline incline{20 * kDegree};
   Rig rig(setting, sleepless());
@@ -124,8 +124,8 @@ Rolled roll_down(const CheckSetting& setting, double friction, const Wheel& whee
   return {speed, (speed + 0.1 * rig.spin(id).z) / speed};
 }
 
-/// Through a loop of 1440 flat strips, radius 1 m, with `speed` at the bottom: is the ball fast enough at the
-/// top? One that has left the track shortly before has hardly gone away from it, but is slower there.
+/// Tells whether a ball is fast enough at the top of a loop of 1440 flat strips, radius 1 m, with `speed` at
+/// the bottom. A ball that has left the track shortly before is still close to it, but slower there.
 bool loops(const CheckSetting& setting, double speed, double ball) {
   constexpr int kStrips = 1440;
   Rig rig(setting, sleepless());
@@ -155,7 +155,8 @@ bool loops(const CheckSetting& setting, double speed, double ball) {
   return over;
 }
 
-/// A thin rod of 1 m that leans by `lean` against a smooth wall, on a rough floor: does it stand for 5 s?
+/// Tells whether a thin rod of 1 m that leans by `lean` against a smooth wall, on a rough floor, stands for 5
+/// s.
 bool ladder_stands(const CheckSetting& setting, double lean, double radius, double friction) {
   Rig rig(setting, sleepless());
   rig.add(level_ground(friction));
@@ -175,8 +176,8 @@ bool ladder_stands(const CheckSetting& setting, double lean, double radius, doub
 
 }  // namespace
 
-/// A yo-yo: a = g / (1 + I / (m r^2)) (textbook). Its string is a wall that it is pressed to and cannot slip
-/// along, which pulls at the same place.
+/// A yo-yo has a = g / (1 + I / (m r^2)) (textbook). Its string is replaced by a wall on which it cannot
+/// slip, which pulls at the same point.
 Rows yo_yo(const CheckSetting& setting) {
   Rows rows;
   for (const Wheel& wheel : wheels()) {
@@ -199,7 +200,7 @@ Rows yo_yo(const CheckSetting& setting) {
   return rows;
 }
 
-/// A ball that slides with v0 rolls with 5/7 v0 after 2 v0 / (7 mu g), on 12 v0^2 / (49 mu g) (Coriolis).
+/// A ball that slides with v0 rolls with 5/7 v0 after 2 v0 / (7 mu g), over 12 v0^2 / (49 mu g) (Coriolis).
 Rows slide_to_roll(const CheckSetting& setting) {
   const double mu = 0.2;
   const double v0 = 3;
@@ -211,7 +212,7 @@ Rows slide_to_roll(const CheckSetting& setting) {
   desc.contact.friction = real(mu);
   const BodyId ball = rig.add(desc);
   const Curve slip = record(rig, 0.4, [&] { return rig.velocity(ball).x + radius * rig.spin(ball).z; });
-  const double slope = (slip.at(0.3) - slip.at(0.1)) / 0.2;  // it falls in a straight line
+  const double slope = (slip.at(0.3) - slip.at(0.1)) / 0.2;  // The slip falls in a straight line.
   rig.run(0.6);
   const double duration = 2 * v0 / (7 * mu * kGravity);
   const double speed = rig.velocity(ball).x;
@@ -221,7 +222,7 @@ Rows slide_to_roll(const CheckSetting& setting) {
                        rig.center(ball).x - speed * (rig.time() - duration))};
 }
 
-/// Sticks if and only if tan theta <= mu; else a = g (sin theta - mu cos theta) (textbook).
+/// A box sticks if and only if tan theta <= mu; otherwise a = g (sin theta - mu cos theta) (textbook).
 Rows box_on_slope(const CheckSetting& setting) {
   const double angle = 30 * kDegree;
   Rows rows;
@@ -240,7 +241,7 @@ Rows box_on_slope(const CheckSetting& setting) {
   return rows;
 }
 
-/// v0^2 / (2 mu g) (textbook).
+/// The stopping distance is v0^2 / (2 mu g) (textbook).
 Rows stopping_distance(const CheckSetting& setting) {
   Rows rows;
   for (const double mu : {0.2, 0.5}) {
@@ -258,8 +259,8 @@ Rows stopping_distance(const CheckSetting& setting) {
   return rows;
 }
 
-/// A box of base b and height h tips where tan theta > b / h, and only slides where tan theta > mu is met
-/// first (textbook). Gravity leans over slowly, within 4 s: what is put on a slope rocks.
+/// A box of base b and height h tips where tan theta > b / h, and only slides where tan theta > mu comes
+/// first (textbook). Gravity tilts slowly, within 4 s, because a box put on a slope would rock.
 Rows toppling_box(const CheckSetting& setting) {
   const DVec3 half = {0.05, 0.15, 0.05};
   const double expected = std::atan(1.0 / 3);
@@ -280,7 +281,8 @@ Rows toppling_box(const CheckSetting& setting) {
                        slippery.tilt() / kDegree, 0.2)};
 }
 
-/// a = g sin theta / (1 + b), without slip if and only if mu >= tan theta b / (1 + b) (textbook).
+/// The acceleration is a = g sin theta / (1 + b), without slip if and only if mu >= tan theta b / (1 + b)
+/// (textbook).
 Rows rolling_down(const CheckSetting& setting) {
   const double angle = 20 * kDegree;
   Rows rows;
@@ -302,13 +304,13 @@ Rows rolling_down(const CheckSetting& setting) {
   return rows;
 }
 
-/// A plate of 10 kg on 25 balls of 1 kg, pushed by 150 N along the diagonal (the rolling test of
-/// SimBenchmark, Kim and Hwangbo 2018): nothing slips, the balls go half as fast, so that a = F / (M + 25 m
-/// (1 + 2/5) / 4).
+/// A plate of 10 kg on 25 balls of 1 kg is pushed by 150 N along the diagonal (the rolling test of
+/// SimBenchmark, Kim and Hwangbo 2018). Nothing slips, and the balls go half as fast, so that a = F / (M + 25
+/// m (1 + 2/5) / 4).
 Rows rolling_test(const CheckSetting& setting) {
   const double radius = 0.1;
   Rig rig(setting, sleepless());
-  rig.add(level_ground(0.16));  // sqrt(0.16 x 1) = 0.4 below the balls, sqrt(1 x 0.64) = 0.8 above
+  rig.add(level_ground(0.16));  // sqrt(0.16 x 1) = 0.4 below the balls, sqrt(1 x 0.64) = 0.8 above.
   std::vector<BodyId> balls;
   for (int i = 0; i < 25; ++i) {
     const int row = i / 5;
@@ -321,8 +323,8 @@ Rows rolling_test(const CheckSetting& setting) {
   plate.mass = real(10);
   plate.contact.friction = real(0.64);
   const BodyId id = rig.add(plate);
-  rig.run(1);  // until every ball has its share of the weight
-  // Later the plate has left the middle, and balls without load slip.
+  rig.run(1);  // Until every ball has its share of the weight.
+  // Later the plate leaves the middle, and balls without load slip.
   for (int frame = 0; frame < 6; ++frame) {
     must(rig.world().apply_force(id, real(DVec3{150 * std::sqrt(0.5), 0, 150 * std::sqrt(0.5)})));
     rig.step();
@@ -338,7 +340,7 @@ Rows rolling_test(const CheckSetting& setting) {
                        (std::atan2(v.z, v.x) - kTau / 8) / kDegree, 0.1)};
 }
 
-/// A ball that rolls through a loop from 2.7 times its height above the bottom, measured on the way of its
+/// A ball rolls through a loop from 2.7 times its height above the bottom, measured on the path of its
 /// center: v^2 = g R at the top, and 7/10 of v^2 is energy (textbook).
 Rows loop_the_loop(const CheckSetting& setting) {
   const double ball = 0.05;
@@ -350,8 +352,8 @@ Rows loop_the_loop(const CheckSetting& setting) {
                        0.7 * found * found / (kGravity * way), 0.01)};
 }
 
-/// A rod that slides on its lower end with friction above 4/3 has no force that Coulomb's law allows
-/// (Painleve 1895). It must stay finite and gain nothing.
+/// For a rod that slides on its lower end with friction above 4/3 no force satisfies Coulomb's law (Painleve
+/// 1895). It must stay finite and gain no energy.
 Rows painleve_rod(const CheckSetting& setting) {
   double gain = 0;
   bool healthy = true;
@@ -371,8 +373,8 @@ Rows painleve_rod(const CheckSetting& setting) {
           absolute_row("steps of it that were not finite", "", 0, healthy ? 0 : 1, 0)};
 }
 
-/// A ball with a lever l of resistance stops rolling after v0 (7/5) r / (l g), and spinning about the
-/// vertical after (2/5) r^2 w0 / (l g): the torque is l m g (textbook).
+/// A ball with rolling friction l [m] stops rolling after v0 (7/5) r / (l g), and with spinning friction l
+/// stops spinning about the vertical after (2/5) r^2 w0 / (l g); the torque is l m g (textbook).
 Rows resisted_balls(const CheckSetting& setting) {
   const double radius = 0.1;
   const double lever = 0.005;
@@ -399,8 +401,8 @@ Rows resisted_balls(const CheckSetting& setting) {
                        rig.spin(spinning).y)};
 }
 
-/// Against a smooth wall a rod stands if and only if mu >= sin(lean) / (2 (cos(lean) + r / L)), r of its
-/// round ends: for a thin one tan(lean) / 2, as one card of an A-frame (statics).
+/// Against a smooth wall a rod stands if and only if mu >= sin(lean) / (2 (cos(lean) + r / L)), with r of its
+/// round ends. For a thin rod this is tan(lean) / 2, as for one card of an A-frame (statics).
 Rows leaning_ladder(const CheckSetting& setting) {
   const double radius = 0.02;
   Rows rows;

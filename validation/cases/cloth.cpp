@@ -1,4 +1,4 @@
-/// Cloth and closed skins: gas in them, what their rows add up to as a sheet.
+/// Tests cloth and closed cloths: the gas in them, and the stiffness of their rows as a sheet.
 
 #include "validation/cases.h"
 #include "validation/hinged_sheet.h"
@@ -21,7 +21,7 @@ Rows by_cloth(Rows rows) {
   return rows;
 }
 
-/// A sphere of radius r: an octahedron, each of its triangles cut in four three times.
+/// Makes a sphere of radius r: an octahedron with each triangle cut in four three times.
 MeshDesc sphere(double r) {
   MeshDesc mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
                 {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
@@ -44,7 +44,7 @@ MeshDesc sphere(double r) {
   return mesh;
 }
 
-/// Volume and area of a closed cloth.
+/// Returns volume and area of a closed cloth.
 std::pair<double, double> size_of(const Rig& rig, ClothId id) {
   const std::vector<DVec3> x = rig.positions(id);
   double volume = 0;
@@ -56,7 +56,8 @@ std::pair<double, double> size_of(const Rig& rig, ClothId id) {
   return {volume, area};
 }
 
-/// Least and largest angle of shear of the cells of a square of cloth whose rim is sheared by an angle [deg].
+/// Returns the least and largest angle of shear of the cells of a square of cloth whose rim is sheared by an
+/// angle [deg].
 std::pair<double, double> angles_in_frame(const CheckSetting& setting, double degrees, double areal_density) {
   WorldDesc desc = without_air();
   desc.gravity = {};
@@ -99,12 +100,12 @@ std::pair<double, double> angles_in_frame(const CheckSetting& setting, double de
 
 }  // namespace
 
-/// A skin of tension T around gas of the pressure dp above that outside: dp = 2 T / R (Laplace), and
-/// (dp + p0) V stays (Boyle). Springs of force F and length l in an area A pull with T = sum F l / 2 A, and
-/// with R = 3 V / A that is dp = sum F l / 3 V.
+/// A skin of tension T holds gas of the pressure dp above that outside: dp = 2 T / R (Laplace), and (dp + p0)
+/// V stays (Boyle). Springs of force F and length l in an area A pull with T = sum F l / 2 A, and with R = 3
+/// V / A that is dp = sum F l / 3 V.
 Rows balloon(const CheckSetting& setting) {
   CheckSetting fine = setting;
-  fine.substeps = 64;  // one pass leaves a part of the skin's stiffness unused
+  fine.substeps = 64;  // One pass leaves a part of the skin's stiffness unused.
   WorldDesc desc = without_air();
   desc.gravity = {};
   desc.particle_substeps = 4;
@@ -124,7 +125,7 @@ Rows balloon(const CheckSetting& setting) {
 
   const std::vector<DVec3> x = rig.positions(id);
   const auto [now, area] = size_of(rig, id);
-  double pull = 0;  // sum of F l; each edge has two triangles
+  double pull = 0;  // Sum of F l; each edge has two triangles.
   for (const auto& t : rig.world().triangles(id)) {
     for (int i = 0; i < 3; ++i) {
       const double l = length(x[t[i]] - x[t[(i + 1) % 3]]);
@@ -141,9 +142,9 @@ Rows balloon(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
-/// A strip held level by one edge sags under a small load as its hinges let it. Of hinges across the strip
-/// alone each would turn by its moment over B / h, which comes to q L^4 / 8 B (Euler, Bernoulli) where cells
-/// have no size; but diagonals fold, too, and let a strip with free sides sag by up to a quarter more.
+/// A strip held level by one edge sags under a small load as its edges bend. If only edges across the strip
+/// bent, each by its moment over B / h, the end would sag by q L^4 / 8 B (Euler, Bernoulli) for infinitely
+/// small cells. But diagonals fold, too, and let a strip with free sides sag by up to a quarter more.
 Rows overhanging_cloth(const CheckSetting& setting) {
   CheckSetting fine = setting;
   fine.substeps = 64;
@@ -188,9 +189,9 @@ Rows overhanging_cloth(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
-/// In a frame whose four sides turn about its corners, the threads of a fabric turn with them: right angles
-/// become 90 degrees less the angle of shear everywhere (kinematics). A light fabric needs shorter substeps
-/// for the same stiffness; where it has them is said in the table.
+/// In a frame whose four sides rotate about its corners, the threads of a fabric rotate with them: right
+/// angles become 90 degrees less the angle of shear everywhere (kinematics). A light fabric needs shorter
+/// substeps for the same stiffness; the table says where it has them.
 Rows picture_frame(const CheckSetting& setting) {
   struct Trial {
     double degrees, areal_density;
@@ -218,8 +219,8 @@ Rows picture_frame(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
-/// A square plate on four edges under its weight: 0.004062 q a^4 / D at its center, whatever its Poisson
-/// ratio (Navier 1820; Timoshenko).
+/// A square plate on four edges sags under its weight by 0.004062 q a^4 / D at its center, whatever its
+/// Poisson ratio (Navier 1820; Timoshenko).
 Rows supported_plate(const CheckSetting& setting) {
   constexpr int kPoints = 9;
   const double rigidity = 0.02;  // D [N m]
@@ -252,8 +253,7 @@ Rows supported_plate(const CheckSetting& setting) {
   return by_cloth(rows);
 }
 
-/// A balloon under water pulls on its rope with the weight of the water in its place less its own
-/// (Archimedes).
+/// A balloon under water pulls on its rope with the weight of the displaced water less its own (Archimedes).
 Rows tethered_balloon(const CheckSetting& setting) {
   WorldDesc desc = without_air();
   desc.particle_substeps = 4;

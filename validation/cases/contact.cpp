@@ -1,4 +1,4 @@
-/// Friction: a rope over a drum, a block on a slope.
+/// Tests friction: a rope over a drum, a block on a slope.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFriction = 0.3;
 
-// A rope of 200 edges over a sphere, in a plane through its center: half a turn and two legs.
+// A rope of 200 edges lies over a sphere, in a plane through its center: half a turn and two straight ends.
 constexpr int kEdges = 200;
 constexpr double kStrand = 0.005;        ///< Radius of the rope [m].
 constexpr double kBend = 0.2 + kStrand;  ///< Radius of the rope's center line on the drum [m].
@@ -21,7 +21,7 @@ constexpr double kLeg = 0.4;        ///< [m]
 constexpr double kRopeMass = 0.02;  ///< [kg]
 constexpr double kLength = kArc + 2 * kLeg;
 
-/// Center line at the arc length s from the left end.
+/// Returns the center line at the arc length s from the left end.
 DVec3 drum_point(double s) {
   if (s < kLeg) return {-kBend, s - kLeg, 0};
   if (s > kLeg + kArc) return {kBend, kLeg + kArc - s, 0};
@@ -33,7 +33,7 @@ struct Drum {
   Rig rig;
   RopeId rope;
 
-  /// 1 kg on the left, `load` on the right.
+  /// Hangs 1 kg on the left, `load` on the right.
   Drum(const CheckSetting& setting, double load) : rig(setting) {
     rig.add(BodyDesc{.shape = Shape::sphere(real(0.2)), .contact = {.friction = real(kFriction)}});
     RopeDesc desc{.total_mass = real(kRopeMass),
@@ -49,10 +49,9 @@ struct Drum {
   [[nodiscard]] double height(std::size_t i) const { return rig.world().positions(rope)[i].y; }
 };
 
-/// The heaviest load on the right that friction holds against 1 kg on the left. With w = mu_rope g R the
-/// weight of the rope per radian, T' = w cos(phi) + mu (T + w sin(phi)) gives
-/// T(pi) = (T(0) - A) e^(mu pi) - A,  A = -2 mu w / (1 + mu^2); without weight Euler and Eytelwein's e^(mu
-/// phi).
+/// Returns the heaviest load on the right that friction holds against 1 kg on the left. With w = mu_rope g R
+/// the weight of the rope per radian, T' = w cos(phi) + mu (T + w sin(phi)) gives T(pi) = (T(0) - A) e^(mu
+/// pi) - A,  A = -2 mu w / (1 + mu^2). Without weight this is e^(mu phi) of Euler and Eytelwein.
 double slip_load() {
   const double line = kRopeMass / kLength;
   const double a = -2 * kFriction * line * kGravity * kBend / (1 + kFriction * kFriction);
@@ -61,7 +60,8 @@ double slip_load() {
   return right / kGravity - line * kLeg;
 }
 
-/// Whether the rope holds: under 5 mm of way in the last 2 of 3 s. At 1 % over the threshold it runs 95 mm.
+/// Tells whether the rope holds, moving less than 5 mm in the last 2 of 3 s. At 1 % over the threshold it
+/// runs 95 mm.
 bool drum_holds(const CheckSetting& setting, double load) {
   Drum drum(setting, load);
   drum.rig.run(1);
@@ -70,10 +70,10 @@ bool drum_holds(const CheckSetting& setting, double load) {
   return finite && std::abs(drum.height(0) - before) < 0.005;
 }
 
-/// A particle on a slope of `angle` under friction `friction`, let go at rest.
+/// A particle is released at rest on a slope of `angle` under friction `friction`.
 struct Slope {
-  double distance = 0;  ///< Down the slope in the time watched [m].
-  double speed = 0;     ///< Mean over the last second [m/s].
+  double distance = 0;  ///< Distance down the slope in the time observed [m].
+  double speed = 0;     ///< Mean speed over the last second [m/s].
 };
 
 Slope slide(const CheckSetting& setting, double angle, double friction, double seconds) {
@@ -105,7 +105,7 @@ CheckRow slope_row(std::string title, std::string unit, double expected, double 
 
 }  // namespace
 
-/// T2 / T1 = e^(mu phi) (Euler, Eytelwein): see slip_load. Below it the rope does not creep; above it the
+/// T2 / T1 = e^(mu phi) (Euler, Eytelwein), see slip_load. Below it the rope does not creep; above it the
 /// load sinks with a = g (M - M0) / (M + M0 + mass of the rope, at most), M0 the load that slips.
 Rows capstan(const CheckSetting& setting) {
   const double expected = slip_load();

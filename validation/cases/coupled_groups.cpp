@@ -1,4 +1,4 @@
-/// Ropes with what they are tied to: pulleys, beads, loads, tables.
+/// Tests ropes with what they are tied to: pulleys, beads, loads, tables.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -20,7 +20,7 @@ std::vector<DVec3> line(DVec3 from, DVec3 to, int segments) {
   return points;
 }
 
-/// Rows of what ropes and what they are tied to do.
+/// Marks rows as those of coupled groups of ropes.
 Rows by_ties(Rows rows) {
   for (CheckRow& row : rows) row.solver = "rope, ties";
   return rows;
@@ -30,10 +30,10 @@ HookId tie(Rig& rig, BodyId body, RopeId rope, std::uint32_t index) {
   return must(rig.world().add_hook({.a = {.body = body}, .b = {.point = point(rope, index)}}));
 }
 
-/// Two weights on a rope over a wheel that has mass and does not let the rope slip.
+/// Two weights hang on a rope over a wheel that has mass and does not let the rope slip.
 struct Atwood {
   static constexpr double kWheel = 4, kLight = 2, kHeavy = 3, kRadius = 0.25, kStrand = 0.005;
-  static constexpr double kMiddle = kRadius + kStrand;  ///< From the axle to the rope's middle line.
+  static constexpr double kMiddle = kRadius + kStrand;  ///< Distance from the axle to the rope's middle line.
   Rig rig;
   BodyId wheel, light, heavy;
 
@@ -78,7 +78,7 @@ DVec3 on_cycloid(double t) {
   return {kRolling * (t - std::sin(t)), -kRolling * (1 - std::cos(t)), 0};
 }
 
-/// Time of a bead on a wire from rest to the height `bottom` below it, where it passes `x` [s].
+/// Returns the time of a bead on a wire from rest to where it passes `x` [s].
 double bead_time(const CheckSetting& setting, const std::vector<DVec3>& wire, DVec3 start, double x) {
   Rig rig(setting, without_air());
   RopeDesc rope{.points = wire};
@@ -112,8 +112,8 @@ Rows atwood(const CheckSetting& setting) {
                                std::abs(machine.rig.spin(machine.wheel).z), 0.03)});
 }
 
-/// From any start pi sqrt(R / g) to the bottom of a cycloid (Huygens 1673); from its cusp that is the fastest
-/// way (Bernoulli 1696): the straight one takes sqrt(R (pi^2 + 4) / g).
+/// From any start it takes pi sqrt(R / g) to the bottom of a cycloid (Huygens 1673). From its cusp that is
+/// the fastest path (Bernoulli 1696); the straight one takes sqrt(R (pi^2 + 4) / g).
 Rows cycloid(const CheckSetting& setting) {
   std::vector<DVec3> wire;
   for (int i = 0; i <= 400; ++i) wire.push_back(on_cycloid(kTau * i / 400));
@@ -132,8 +132,8 @@ Rows cycloid(const CheckSetting& setting) {
   return by_ties(std::move(rows));
 }
 
-/// A ton on a kilogram of rope, let go at 30 degrees: rope and load swing as one body about the hook, which
-/// is above the load's center.
+/// A ton hangs on a kilogram of rope and is released at 30 degrees. Rope and load swing as one body about the
+/// hook, which is above the load's center.
 Rows swinging_load(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   const double angle = kTau / 12;
@@ -160,7 +160,8 @@ Rows swinging_load(const CheckSetting& setting) {
                                std::max(0.0, energy - rig.energy().total()) / swing, 0.01)});
 }
 
-/// A board of 40 kg on four ropes of 1 kg and EA = 1e6 N, slightly splayed: each hook carries a quarter.
+/// A board of 40 kg hangs on four ropes of 1 kg and EA = 1e6 N, slightly splayed: each hook carries a
+/// quarter.
 Rows table_on_ropes(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   BodyDesc board = moving(box_of({0.5, 0.03, 0.5}), {});

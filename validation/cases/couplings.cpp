@@ -1,4 +1,4 @@
-/// Ropes, bodies and hooks that act on each other, by statics and small swings.
+/// Tests ropes, bodies and hooks that act on each other, by statics and small oscillations.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -33,7 +33,7 @@ HookId tie_to(Rig& rig, BodyId body, RopeId rope, std::uint32_t index, DVec3 pla
 
 }  // namespace
 
-/// w^2 = g / l (1 + m / M) of a mass m on a string of length l from a cart M that runs freely (textbook).
+/// w^2 = g / l (1 + m / M) for a mass m on a string of length l from a cart M that runs freely (textbook).
 Rows pendulum_on_cart(const CheckSetting& setting) {
   Rows rows;
   for (const double cart_mass : {1.0, 4.0}) {
@@ -83,8 +83,8 @@ Rows four_cords(const CheckSetting& setting) {
   return rows;
 }
 
-/// A bead slides on a cord of length S between hooks d apart and h one above the other to where both strands
-/// lean by asin(d / S) from the vertical, and each pulls with m g / (2 cos) (statics).
+/// A bead slides on a cord of length S between hooks d apart, one h above the other. It rests where both
+/// strands lean by asin(d / S) from the vertical, and each pulls with m g / (2 cos) (statics).
 Rows bead_on_cord(const CheckSetting& setting) {
   constexpr int kSegments = 200;
   const double across = 1;
@@ -92,8 +92,8 @@ Rows bead_on_cord(const CheckSetting& setting) {
   const double length_of_cord = 1.6;
   const double sine = across / length_of_cord;
   const double cosine = std::sqrt(1 - sine * sine);
-  const double left = 0.5 * (length_of_cord - rise / cosine);  // the strand to the lower hook
-  // The cord is laid along two straight lines that meet elsewhere on the ellipse about its hooks.
+  const double left = 0.5 * (length_of_cord - rise / cosine);  // The strand to the lower hook.
+  // The cord is laid along two straight lines that meet at another point of the ellipse about its hooks.
   const DVec3 upper = {across, rise, 0};
   const double start_left = 0.75;
   const double base = length(upper);
@@ -117,7 +117,7 @@ Rows bead_on_cord(const CheckSetting& setting) {
                              .anchor = kink}));
   rig.run(15);
   const std::vector<Real> tensions = rig.world().tensions(rope);
-  // Within a straight segment the bead slides until that lies level: it may be half of one off.
+  // Within a straight segment the bead slides until the segment lies level, so it may be half a segment off.
   const double half_segment = 0.5 * length_of_cord / kSegments;
   const double pull = kGravity / (2 * cosine);
   const DVec3 place = rig.positions(bead)[0];
@@ -134,7 +134,7 @@ Rows bead_on_cord(const CheckSetting& setting) {
   return rows;
 }
 
-/// Every hook of what hangs carries the weight below it: a chain of bodies, a rope, a load (statics).
+/// Every hook carries the weight that hangs below it: a chain of bodies, a rope, a load (statics).
 Rows chain_then_rope(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   std::array<HookId, 5> hooks = {};

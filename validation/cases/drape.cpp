@@ -1,4 +1,4 @@
-/// How cloth falls and flutters.
+/// Tests how cloth falls and flutters.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -13,11 +13,13 @@ namespace hooke::check {
 
 namespace {
 
-constexpr double kClothRadius = 0.15;  ///< Of Cusick's drape test (BS 5058) [m].
+constexpr double kClothRadius = 0.15;  ///< Radius of the cloth in Cusick's drape test (BS 5058) [m].
 constexpr double kDiscRadius = 0.09;
-constexpr int kDrapeSubsteps = 16;  ///< Of particles: fewer leave a part of the stiffness of fine cloth.
+/// Particle substeps; fewer leave a part of the stiffness of fine cloth unused.
+constexpr int kDrapeSubsteps = 16;
 
-/// A disc of `rings` rings around its middle, ring i of 6 i points; folded into no direction, by 10 um.
+/// Makes a disc of `rings` rings around its middle; ring i has 6 i points. They are off
+/// the plane by up to 10 um in an irregular pattern, so that no direction of folds is preferred.
 MeshDesc disc(std::uint32_t rings) {
   MeshDesc mesh;
   const auto first_of = [](std::uint32_t ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); };
@@ -44,7 +46,7 @@ MeshDesc disc(std::uint32_t rings) {
   return mesh;
 }
 
-/// The area of the triangles seen from above, each place counted once, by 0.5 mm.
+/// Returns the area of the triangles seen from above, each place counted once, on a grid of 0.5 mm.
 double shadow(const std::vector<DVec3>& x, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   constexpr double kCell = 0.0005;
   constexpr int kSide = 640;
@@ -73,12 +75,13 @@ double shadow(const std::vector<DVec3>& x, const std::vector<std::array<std::uin
 struct Fabric {
   const char* name;
   double areal_density, rigidity;  ///< [kg/m^2], [N m]
-  double spring;                   ///< Of an edge [N/m]: a net of triangles resists shear with 0.43 of it.
-  double least, most;              ///< Drape coefficient [%].
+  /// Stiffness of an edge [N/m]; a mesh of triangles resists shear with 0.43 of it.
+  double spring;
+  double least, most;  ///< Drape coefficient [%].
 };
 
 struct Drape {
-  double coefficient = 0;  ///< [%]
+  double coefficient = 0;  ///< Drape coefficient [%].
   int nodes = 0;           ///< Folds at the rim.
 };
 
@@ -120,13 +123,13 @@ Drape drape_of(const CheckSetting& setting, const Fabric& fabric, std::uint32_t 
   return drape;
 }
 
-/// Flutter is not regular: so long that its mean frequency is known to a few percent.
+/// Flutter is not regular; over this time its mean frequency is known to a few percent.
 constexpr double kFlutterSeconds = 20;
 
-/// What the middle of the free edge of a flag does across the wind.
+/// This is how the middle of the free edge of a flag moves across the wind.
 struct Flutter {
   double frequency = 0;  ///< [Hz]
-  double width = 0;      ///< Root of eight times the mean square: from one side to the other of a sine [m].
+  double width = 0;      ///< Root of eight times the mean square, which is the full width of a sine [m].
 };
 
 Flutter flutter_of(const CheckSetting& setting, double speed) {
@@ -148,7 +151,7 @@ Flutter flutter_of(const CheckSetting& setting, double speed) {
   double mean = 0, square = 0;
   for (const double z : way) mean += z / static_cast<double>(way.size());
   for (const double z : way) square += (z - mean) * (z - mean) / static_cast<double>(way.size());
-  // From one side to the other: ripples about the middle are no turns.
+  // Only motion from one side to the other counts, not ripples about the middle.
   const double aside = 0.2 * std::sqrt(square);
   int turns = 0;
   double side = 0;
@@ -162,8 +165,8 @@ Flutter flutter_of(const CheckSetting& setting, double speed) {
 
 }  // namespace
 
-/// In steady wind U a flag flutters at a frequency in proportion to U, and with a width A of the way of its
-/// end such that f A / U, its Strouhal number, is 0.1 to 0.2.
+/// In steady wind U a flag flutters at a frequency in proportion to U. With the width A of the motion of its
+/// end, its Strouhal number f A / U is 0.1 to 0.2.
 Rows flag_flutter(const CheckSetting& setting) {
   Rows rows;
   std::vector<double> frequency;
@@ -181,9 +184,10 @@ Rows flag_flutter(const CheckSetting& setting) {
   return rows;
 }
 
-/// A disc of cloth of 30 cm is held over a disc of 18 cm; the drape coefficient is the share of the ring
+/// A disc of cloth of 30 cm is held over a disc of 18 cm. The drape coefficient is the share of the ring
 /// between them that its shadow covers (Cusick 1968; BS 5058). Weights and rigidities are those of fabrics;
-/// bands of their coefficients, and of the number of folds, after ISO 9073-9. It must not depend on the mesh.
+/// bands of their coefficients, and of the number of folds, follow ISO 9073-9. It must not depend on the
+/// mesh.
 Rows cusick_drape(const CheckSetting& setting) {
   Rows rows;
   for (const Fabric& fabric :

@@ -1,4 +1,4 @@
-/// Edges, tips and seams, and bodies that are fast for their size.
+/// Tests edges, tips and seams, and bodies that are fast for their size.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -18,8 +18,8 @@ BodyDesc smooth(BodyDesc desc) {
   return desc;
 }
 
-/// A floor of strips of 0.25 m that are cut into 3 and 4 cells by turns: every second corner of a strip lies
-/// within an edge of its neighbor.
+/// Makes a floor of strips of 0.25 m that are cut into 3 and 4 cells by turns, so that every second corner of
+/// a strip lies within an edge of its neighbor.
 MeshDesc floor_with_seams() {
   MeshDesc mesh;
   for (int strip = 0; strip < static_cast<int>(4 * kFloorLength); ++strip) {
@@ -48,8 +48,8 @@ void add_tiles(Rig& rig) {
     rig.add(smooth({.shape = box_of({0.25, 0.5, 1}), .position = {0.25 + 0.5 * i, -0.5, 0}}));
 }
 
-/// Largest change of velocity of a body that has come to rest on a level floor without friction and then
-/// gets 3 m/s [m/s].
+/// Returns the largest change of velocity of a body that has come to rest on a level floor without friction
+/// and then gets 3 m/s [m/s].
 double bump(const CheckSetting& setting, const std::function<void(Rig&)>& add_floor, const BodyDesc& desc) {
   Rig rig(setting, sleepless());
   add_floor(rig);
@@ -78,10 +78,10 @@ Rows seam_rows(const CheckSetting& setting, const std::string& floor,
   return rows;
 }
 
-/// What a body did that was let go a little above others.
+/// This is the result for a body that was released a little above others.
 struct Landing {
-  double overlap = 0;  ///< After 3 s [m].
-  double gain = 0;     ///< Largest rise of the energy over its start, share of m g times 0.2 m.
+  double overlap = 0;  ///< Overlap after 3 s [m].
+  double gain = 0;     ///< Largest rise of the energy over its start, as a share of m g times 0.2 m.
 };
 
 /// Bodies of the fixture stand; `desc` falls.
@@ -98,7 +98,7 @@ Landing land(const CheckSetting& setting, const std::function<void(Rig&)>& add_f
   return landing;
 }
 
-/// A pyramid of four faces, 0.2 m high and as wide, its tip at `tip` 1 up or -1 down.
+/// Makes a pyramid of four faces, 0.2 m high and as wide, with its tip up (`tip` 1) or down (-1).
 Shape spike(Rig& rig, double tip) {
   MeshDesc mesh;
   for (const DVec3 p :
@@ -111,7 +111,7 @@ Shape spike(Rig& rig, double tip) {
   return Shape::hull_of(must(rig.world().add_mesh(mesh)));
 }
 
-/// A roof: two faces that meet along z at the height 0.1 of its frame, up or down by `tip`.
+/// Makes a roof: two faces that meet along z at the height 0.1 of its frame, up or down by `tip`.
 Shape wedge(Rig& rig, double tip) {
   MeshDesc mesh;
   for (const double z : {-0.1, 0.1}) {
@@ -125,7 +125,7 @@ Shape wedge(Rig& rig, double tip) {
   return Shape::hull_of(must(rig.world().add_mesh(mesh)));
 }
 
-/// How many of 40 bodies that fly at a wall of 1 cm are behind it after half a second.
+/// Counts how many of 40 bodies that fly at a wall of 1 cm are behind it after half a second.
 double escapes(const CheckSetting& setting, double slowest, double fastest,
                const std::function<BodyDesc(double speed)>& shot) {
   int escaped = 0;
@@ -159,7 +159,7 @@ BodyDesc plate_shot(double speed) {
   return desc;
 }
 
-/// A rod of 1 m that turns beside a wall, 0.35 m from it: does its end come through?
+/// Tests whether the end of a rod of 1 m that rotates beside a wall, 0.35 m from it, comes through.
 double rod_escapes(const CheckSetting& setting) {
   WorldDesc world = sleepless();
   world.gravity = {};
@@ -185,8 +185,8 @@ Rows fast_bodies(const CheckSetting& setting) {
           absolute_row("rods with 1000 rad/s through it, of 1", "", 0, rod_escapes(setting), 0)};
 }
 
-/// Pairs without a clear normal (Erleben 2018, "Methodology for assessing mesh-based contact point methods"):
-/// the overlap at rest stays below 0.5 % of 0.2 m, and nothing is thrown up.
+/// Pairs without a clear normal (Erleben 2018, "Methodology for assessing mesh-based contact point methods")
+/// must overlap at rest by less than 0.5 % of 0.2 m, and must not throw anything up.
 Rows degenerate_pairs(const CheckSetting& setting) {
   const auto ground = [](Rig& rig) { rig.add(level_ground(0.5)); };
   const auto cliff = [](Rig& rig) {

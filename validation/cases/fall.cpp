@@ -1,4 +1,4 @@
-/// One particle in gravity, in air and in fields.
+/// Tests one particle in gravity, in air and in fields.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -19,7 +19,7 @@ double fallen(const CheckSetting& setting, double seconds) {
   return -rig.positions(id)[0].y;
 }
 
-/// Downward speed of one particle after `seconds`.
+/// Returns the downward speed of one particle after `seconds`.
 double speed_of_fall(const CheckSetting& setting, const ParticlesDesc& desc, double seconds) {
   Rig rig(setting);
   const ParticlesId id = rig.add(desc);
@@ -27,7 +27,7 @@ double speed_of_fall(const CheckSetting& setting, const ParticlesDesc& desc, dou
   return -rig.velocities(id)[0].y;
 }
 
-/// Over the frames of this time [J].
+/// Returns the mean energy over the frames of this time [J].
 double mean_energy(Rig& rig, double seconds) {
   double sum = 0;
   int frames = 0;
@@ -51,7 +51,7 @@ CheckRow speed_row(const char* title, double expected, double achieved, double g
 }  // namespace
 
 /// y = g t^2 / 2 (textbook). Semi-implicit Euler falls g t h / 2 more, h the substep: first order. Methods of
-/// higher order are exact, up to the rounding of g, and then there is no order to be measured.
+/// higher order are exact, up to the rounding of g, so that no order can be measured.
 Rows free_fall(const CheckSetting& setting) {
   const double t = 1.0;
   const double exact = 0.5 * kGravity * t * t;
@@ -122,10 +122,10 @@ Rows quadratic_drag(const CheckSetting& setting) {
   return rows;
 }
 
-/// T^2 = 4 pi^2 a^3 / (G M) (Kepler); v^2 = G M (2/r - 1/a); the Laplace-Runge-Lenz vector
-/// v x L / (G M) - r/|r| keeps its direction. Here e = 0.6, a = 1 m, T = 20 s, from the near end; 100 orbits,
-/// 1000 in the laboratory. Within an orbit the energy of a symplectic method goes up and down with the step:
-/// what counts is what stays of it, so means over an orbit are compared.
+/// T^2 = 4 pi^2 a^3 / (G M) (Kepler); v^2 = G M (2/r - 1/a); the Laplace-Runge-Lenz vector v x L / (G M) -
+/// r/|r| keeps its direction. Here e = 0.6, a = 1 m, T = 20 s, from the pericenter; 100 orbits, 1000 in the
+/// laboratory. Within an orbit the energy of a symplectic method goes up and down with the step, so means
+/// over an orbit are compared.
 Rows kepler_orbit(const CheckSetting& setting) {
   const double period = 20;
   const double strength = kTau * kTau / (period * period);
@@ -142,7 +142,7 @@ Rows kepler_orbit(const CheckSetting& setting) {
   const double exact = -0.5 * strength;
   const double first = mean_energy(rig, period);
 
-  // y grows through zero at the near end, once an orbit.
+  // y grows through zero at the pericenter, once an orbit.
   const Curve height = record(rig, 10.25 * period, [&] { return rig.positions(id)[0].y; });
   rig.run((orbits - 12.25) * period);
   const double last = mean_energy(rig, period);
@@ -171,7 +171,7 @@ Rows kepler_orbit(const CheckSetting& setting) {
            .solver = kParticleSolver}};
 }
 
-/// w = q B / m, the speed stays (textbook).
+/// The rate is w = q B / m, and the speed stays (textbook).
 Rows charge_in_magnetic_field(const CheckSetting& setting) {
   const double charge = 2;
   const double field = 1.5;

@@ -1,4 +1,4 @@
-/// Bodies in liquid, in air and in magnetic fields.
+/// Tests bodies in liquid, in air and in magnetic fields.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -19,7 +19,7 @@ BodyDesc thrown_ball(double radius, double mass) {
   return desc;
 }
 
-/// How deep the bottom of a body lies that comes to rest in water with its surface at y = 0 [m].
+/// Returns how deep the bottom of a body lies that comes to rest in water with its surface at y = 0 [m].
 double floating_depth(const CheckSetting& setting, const BodyDesc& desc, double below_center) {
   Rig rig(setting, without_air());
   must(rig.world().add_field({.kind = FieldDesc::Kind::kLiquid, .density = kWater, .drag = 3}));
@@ -39,9 +39,9 @@ CheckRow row(const char* title, const char* unit, double expected, double achiev
 
 }  // namespace
 
-/// A box floats as deep, and a ball with as much volume below, as its density is a share of the liquid's
-/// (Archimedes); a ball of half the density to its equator. A box moved up and down heaves with
-/// T = 2 pi sqrt(m / (rho g A)), without added mass.
+/// The share of a floating body's volume that is under water is its density over the liquid's (Archimedes); a
+/// ball of half the density floats to its equator. A box that moves up and down has T = 2 pi sqrt(m / (rho g
+/// A)), without added mass.
 Rows floating_bodies_in_water(const CheckSetting& setting) {
   const double share = 0.6;
   const double height = 0.5;
@@ -92,9 +92,9 @@ Rows bodies_in_air(const CheckSetting& setting) {
           row("speed upward, topspin", "m/s", -expected, rise(-30))};
 }
 
-/// Two dipoles m a way r apart on one axis: F = 3 mu0 m^2 / (2 pi r^4), here as the speed after a short time;
-/// side by side half of that, apart. A needle with inertia I in a uniform field: T = 2 pi sqrt(I / (m B)). A
-/// disc floats above another, poles opposed, where F is its weight.
+/// Two dipoles m at a distance r on one axis attract with F = 3 mu0 m^2 / (2 pi r^4), here seen in the speed
+/// after a short time; side by side they repel with half of that. A needle with inertia I in a uniform field
+/// has T = 2 pi sqrt(I / (m B)). A disc floats above another, poles opposed, where F is its weight.
 Rows magnetic_dipoles(const CheckSetting& setting) {
   constexpr double kMu0 = 2e-7 * kTau;  ///< [T m / A]
   const double moment = 100;

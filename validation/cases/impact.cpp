@@ -1,4 +1,4 @@
-/// Bodies that hit each other or the ground.
+/// Tests bodies that collide with each other or the ground.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -24,8 +24,8 @@ BodyDesc bouncing(const Shape& shape, DVec3 position, double restitution) {
   return desc;
 }
 
-/// Heights above the ground of a body that is let go at `height` and bounces: tops between the hits, and the
-/// highest of all samples after the first hit.
+/// These are heights above the ground of a body that is released at `height` and bounces: tops between the
+/// impacts, and the highest of all samples after the first impact.
 struct Bounces {
   std::vector<double> tops;
   double highest = 0;
@@ -53,14 +53,14 @@ Bounces bounce_ball(const CheckSetting& setting, double height, double restituti
   return bounce(rig, ball, kBall, seconds);
 }
 
-/// Zero for a bounce that did not come.
+/// Returns zero for a bounce that did not come.
 double at(const std::vector<double>& tops, std::size_t i) {
   return i < tops.size() ? tops[i] : 0;
 }
 
-/// Two balls on one line.
+/// Two balls move on one line.
 struct HeadOn {
-  double first = 0;  ///< Speeds after the hit [m/s].
+  double first = 0;  ///< Speeds after the impact [m/s].
   double second = 0;
 };
 
@@ -78,8 +78,8 @@ HeadOn head_on(const CheckSetting& setting, double restitution) {
   return {rig.velocity(first).x, rig.velocity(second).x};
 }
 
-/// Five balls that touch, each on two strings of 1 m from points +-0.5 m aside, so that they swing in a
-/// plane; the first `count` come from the side.
+/// Five balls touch, each on two strings of 1 m from points +-0.5 m aside, so that they swing in a plane. The
+/// first `count` come from the side.
 struct Cradle {
   static constexpr int kBalls = 5;
   Rig rig;
@@ -98,18 +98,18 @@ struct Cradle {
     }
   }
 
-  /// Speed of ball i over the largest that the fall gives.
+  /// Returns the speed of ball i over the largest that the fall gives.
   [[nodiscard]] double speed(int i) const {
     const double fastest = std::sqrt(2 * kGravity * (1 - std::cos(0.2)));
     return length(rig.velocity(ball[static_cast<std::size_t>(i)])) / fastest;
   }
 };
 
-/// Largest speed of a ball that should rest, seen a quarter swing after each of ten hits, when as many as
-/// came are near their tops at one end.
+/// Returns the largest speed of a ball that should rest. It is measured a quarter period after each of ten
+/// impacts, when as many balls as came are near their tops at one end.
 double cradle_unrest(const CheckSetting& setting, int count) {
   Cradle cradle(setting, count);
-  const double inertia = 1 + 0.4 * kBall * kBall;  // of a ball about its pivot, over m L^2
+  const double inertia = 1 + 0.4 * kBall * kBall;  // Moment of a ball about its pivot, over m L^2.
   const double quarter = 0.25 * kTau * std::sqrt(inertia / kGravity);
   double unrest = 0;
   cradle.rig.run(2 * quarter);
@@ -121,7 +121,8 @@ double cradle_unrest(const CheckSetting& setting, int count) {
   return unrest;
 }
 
-/// Largest error of speeds once `count` of five balls have come with 1 m/s; `gap` is between neighbors [m].
+/// Returns the largest error of speeds after `count` of five balls have come with 1 m/s; `gap` is between
+/// neighbors [m].
 double row_of_balls(const CheckSetting& setting, int count, double gap) {
   Rig rig(setting, floating_balls());
   std::vector<BodyId> ball;
@@ -142,7 +143,7 @@ double row_of_balls(const CheckSetting& setting, int count, double gap) {
 
 }  // namespace
 
-/// h_n = e^(2n) h_0; with e < 1 it is at rest after sqrt(2 h_0 / g) (1 + e) / (1 - e) (textbook).
+/// h_n = e^(2n) h_0; with e < 1 the ball is at rest after sqrt(2 h_0 / g) (1 + e) / (1 - e) (textbook).
 Rows bouncing_ball(const CheckSetting& setting) {
   const Bounces half = bounce_ball(setting, 5, 0.5, 6);
   const Bounces most = bounce_ball(setting, 5, 0.8, 12);
@@ -156,13 +157,13 @@ Rows bouncing_ball(const CheckSetting& setting) {
   rows.push_back(relative_row("at rest, e = 0.8", "s", std::sqrt(10 / kGravity) * 9, most.stop));
   rows.push_back(relative_row("last top of 70 bounces, 1 m, e = 1", "m", 1,
                               full.tops.size() < 60 ? 0.0 : full.tops.back(), 0.001));
-  // Never above the start: what is allowed is 0.01 % of the height.
+  // The ball must never rise above the start; 0.01 % of the height is allowed.
   rows.push_back(
       absolute_row("rise above the start in 70 bounces", "m", 0, std::max(0.0, full.highest - 1), 1e-4));
   return rows;
 }
 
-/// A box with e = 1 comes back to its height, also from a smaller one, where contacts are not at its corners.
+/// A box with e = 1 returns to its height, also from a smaller box, where contacts are not at its corners.
 Rows bouncing_box(const CheckSetting& setting) {
   Rows rows;
   for (const double half : {0.6, 0.25}) {
@@ -192,8 +193,8 @@ Rows two_body_impact(const CheckSetting& setting) {
   return rows;
 }
 
-/// Two equal balls, e = 1, no friction: after an oblique hit they part at right angles, the struck one along
-/// the line of centers at touch, sin(angle) = offset / (2 r) (textbook).
+/// Two equal balls with e = 1 and no friction separate at right angles after an oblique impact. The one that
+/// was at rest leaves along the line of centers at contact, sin(angle) = offset / (2 r) (textbook).
 Rows oblique_impact(const CheckSetting& setting) {
   Rows rows;
   for (const double offset : {0.5, 1.0, 1.5}) {
@@ -216,7 +217,8 @@ Rows oblique_impact(const CheckSetting& setting) {
   return rows;
 }
 
-/// k balls in, k balls out, the others rest: momentum and energy allow nothing else of hits one by one.
+/// If k balls come in, k balls leave and the others rest: momentum and energy allow nothing else when impacts
+/// happen one by one.
 Rows newtons_cradle(const CheckSetting& setting) {
   Rows rows;
   for (const int count : {1, 2, 3}) {

@@ -1,4 +1,4 @@
-/// Hooks between bodies: pendulums, mechanisms, chains, limits, motors, springs.
+/// Tests hooks between bodies: pendulums, mechanisms, chains, limits, motors, springs.
 
 #include "validation/cases.h"
 #include "validation/planar_mechanism.h"
@@ -28,7 +28,7 @@ HookId hinge(Rig& rig, BodyId a, BodyId b, DVec3 anchor) {
       {.kind = HookKind::kHinge, .a = {a}, .b = {b}, .anchor = anchor, .axis = kAlongZ}));
 }
 
-/// A bar of 1 m on a hinge at its upper end, let go at an angle.
+/// A bar of 1 m hangs on a hinge at its upper end and is released at an angle.
 struct SwingingBar {
   static constexpr double kWidth = 0.1;
   Rig rig;
@@ -40,13 +40,13 @@ struct SwingingBar {
     hinge(rig, {}, body, {});
   }
   [[nodiscard]] double angle() const { return std::atan2(rig.center(body).x, -rig.center(body).y); }
-  /// Of small swings [s]: inertia about the hinge over m g / 2.
+  /// Returns the period of small oscillations [s], from the inertia about the hinge over m g / 2.
   static double small_period() {
     return kTau * std::sqrt((1.0 / 3 + kWidth * kWidth / 12) / (0.5 * kGravity));
   }
 };
 
-/// Bodies of a mechanism, square bars, and how far they are from its motion later.
+/// These are the bodies of a mechanism, square bars, which are compared with its equation of motion.
 struct BuiltMechanism {
   Rig rig;
   std::vector<BodyId> ids;
@@ -65,8 +65,8 @@ struct BuiltMechanism {
     bodies.push_back({mass, mass * (length * length + 4 * half_width * half_width) / 12});
     return ids.back();
   }
-  /// Largest distance of a body from where the equation of motion has it, in 1 s [m]. Positions are half a
-  /// substep ahead (see Energy).
+  /// Returns the largest distance of a body from its position by the equation of motion, in 1 s [m].
+  /// Positions are half a substep ahead (see Energy).
   double error(const PlanarMechanism::PosesOf& poses_of, double start) {
     const PlanarMechanism exact(bodies, poses_of);
     double worst = 0;
@@ -113,7 +113,7 @@ double slider_crank_error(const CheckSetting& setting) {
   return built.error([&](double q) { return shape.poses(q); }, start);
 }
 
-/// 16 links of 1 kg and 0.4 m that hang, and 1000 kg at the end.
+/// A chain of 16 links of 1 kg and 0.4 m hangs, with 1000 kg at its end.
 struct LoadedChain {
   static constexpr int kLinks = 16;
   static constexpr double kLink = 0.4;
@@ -135,7 +135,7 @@ struct LoadedChain {
   }
 };
 
-/// A block of 2 kg that a vertical slider holds.
+/// A vertical slider holds a block of 2 kg.
 struct HungBlock {
   static constexpr double kMass = 2;
   Rig rig;
@@ -178,14 +178,14 @@ Rows swinging_bar(const CheckSetting& setting) {
   return rows;
 }
 
-/// Mechanisms of the library of IFToMM against their own equation of motion (planar_mechanism.h).
+/// Mechanisms of the library of IFToMM are compared with their own equation of motion (planar_mechanism.h).
 Rows mechanisms(const CheckSetting& setting) {
   CheckSetting fine = setting;
   fine.dt = 1.0 / 240;
   fine.substeps = 16;
   Rows rows;
   for (const CheckSetting& own : {setting, fine}) {
-    const double tolerance = own.dt < setting.dt ? 5e-5 : 0.0025;  // 1e-4 and 0.5 % of a crank [m]
+    const double tolerance = own.dt < setting.dt ? 5e-5 : 0.0025;  // 1e-4 and 0.5 % of a crank [m].
     rows.push_back(
         absolute_row("slider-crank: farthest from its motion", "m", 0, slider_crank_error(own), tolerance));
     rows.push_back(absolute_row("four-bar linkage: farthest from its motion", "m", 0,
@@ -230,8 +230,8 @@ Rows hook_limits(const CheckSetting& setting) {
           absolute_row("height of a block at a limit of -0.25 m", "m", -0.25, block.height(), 1e-4)};
 }
 
-/// A motor of torque t turns up a wheel with t / I until it has its speed; one that is told to stand holds a
-/// weight if and only if its force exceeds it (textbook).
+/// A motor of torque t turns up a wheel at t / I until it has its speed. A motor with the target speed zero
+/// holds a weight if and only if its force exceeds it (textbook).
 Rows hook_motors(const CheckSetting& setting) {
   const double radius = 0.2;
   const double torque = 0.5;

@@ -1,5 +1,5 @@
-/// Machines of ropes, drums and bodies: winch, drive, tackle, yo-yo, carousel, brake, and rods that swing
-/// bodies.
+/// Tests machines of ropes, drums and bodies: winch, drive, tackle, yo-yo, carousel, brake, and rods that
+/// swing bodies.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -14,11 +14,12 @@ namespace hooke::check {
 
 namespace {
 
-constexpr double kRadius = 0.25;             ///< Of every drum [m].
-constexpr double kMiddle = kRadius + 0.005;  ///< From its axis to the middle line of a rope on it [m].
-constexpr double kSegment = 0.03;            ///< About the length of a rope's segments [m].
+constexpr double kRadius = 0.25;  ///< Radius of every drum [m].
+/// Distance from its axis to the middle line of a rope on it [m].
+constexpr double kMiddle = kRadius + 0.005;
+constexpr double kSegment = 0.03;  ///< Approximate length of a rope's segments [m].
 
-/// A drum whose axis lies along z.
+/// Describes a drum whose axis lies along z.
 BodyDesc drum(BodyKind kind, DVec3 place, double friction) {
   BodyDesc desc{.kind = kind,
                 .shape = {.kind = ShapeKind::kCylinder, .radius = real(kRadius), .half_height = real(0.1)},
@@ -28,7 +29,7 @@ BodyDesc drum(BodyKind kind, DVec3 place, double friction) {
   return desc;
 }
 
-/// A rope that is laid strand by strand and arc by arc, in the plane z = 0.
+/// Lays a rope strand by strand and arc by arc, in the plane z = 0.
 struct Laid {
   RopeDesc desc{.total_mass = real(0.002), .points = {}, .pins = {}, .drag_coefficient = real(0)};
 
@@ -42,7 +43,7 @@ struct Laid {
     for (int i = 1; i <= segments; ++i)
       desc.points.push_back(from + (i / static_cast<double>(segments)) * (to - from));
   }
-  /// Around a drum, from an angle to another one.
+  /// Lays the rope around a drum, from one angle to another.
   void turn(DVec3 axis, double from, double to) {
     const int segments = static_cast<int>(std::lround(std::abs(to - from) * kMiddle / kSegment));
     for (int i = 1; i <= segments; ++i) {
@@ -53,7 +54,7 @@ struct Laid {
   [[nodiscard]] std::uint32_t last() const { return static_cast<std::uint32_t>(desc.points.size()) - 1; }
 };
 
-/// A ball that touches nothing, on a point of a rope.
+/// Hangs a ball that collides with nothing on a point of a rope.
 BodyId hang(Rig& rig, RopeId rope, std::uint32_t index, double mass, DVec3 velocity = {}) {
   const DVec3 place = rig.positions(rope)[index];
   BodyDesc desc = moving(Shape::sphere(real(0.05)), place);
@@ -73,7 +74,7 @@ HookId on_axle(Rig& rig, BodyId body, const HookMotor& motor) {
                                     .motor = motor}));
 }
 
-/// A drum of 4 kg on an axle with a motor, a rope over its upper half that ends in it, and a load.
+/// A drum of 4 kg has an axle with a motor; a rope over its upper half ends in it and carries a load.
 struct Winch {
   static constexpr double kMass = 4, kLoad = 2;
   Rig rig;
@@ -94,13 +95,14 @@ struct Winch {
   }
 };
 
-/// Rows of what ropes and bodies do together.
+/// Marks rows as those of ropes and bodies together.
 Rows by_machine(Rows rows) {
   for (CheckRow& row : rows) row.solver = "rope, bodies";
   return rows;
 }
 
-/// Tension at the fixed end of a rope over half of a drum that turns at a speed, 1 kg at the other end [N].
+/// Returns the tension at the fixed end of a rope over half of a drum that rotates at `spin`, with 1 kg at
+/// the other end [N].
 double held_end(const CheckSetting& setting, double spin) {
   Rig rig(setting, without_air());
   BodyDesc desc = drum(BodyKind::kKinematic, {}, 0.3);
@@ -121,7 +123,7 @@ double held_end(const CheckSetting& setting, double spin) {
 
 }  // namespace
 
-/// A winch lifts at w r, and its motor's torque is m g r; r to the middle line of the rope.
+/// A winch lifts at w r, and its motor's torque is m g r, with r to the middle line of the rope.
 Rows winch(const CheckSetting& setting) {
   const double spin = 1;
   Winch winch(setting, {.speed = real(spin), .max_force = real(100)});
@@ -135,8 +137,8 @@ Rows winch(const CheckSetting& setting) {
                                   std::abs(torque), 0.01)});
 }
 
-/// A brake of torque M on the axle of a drum: a = (m g r - M) / (m r + I / r), I = M R^2 / 2, and none from m
-/// g r on. It is set when the rope has taken its load up, which asks more of it.
+/// With a brake of torque M on the axle of a drum a = (m g r - M) / (m r + I / r), I = M R^2 / 2, and zero
+/// for M >= m g r. The brake is set only after the rope has taken its load up, which needs more torque.
 Rows braked_drum(const CheckSetting& setting) {
   const double pull = Winch::kLoad * kGravity * kMiddle;
   const auto way = [&](double torque, double seconds) {
@@ -148,7 +150,7 @@ Rows braked_drum(const CheckSetting& setting) {
     return before - winch.rig.center(winch.load).y;
   };
   const double inertia = 0.5 * Winch::kMass * kRadius * kRadius;
-  // The rope turns by half before it has unwound from its drum.
+  // The motion ends before the rope has unwound from its half of the drum.
   const double seconds = 0.5;
   const double a = 0.5 * pull / (Winch::kLoad * kMiddle + inertia / kMiddle);
   return by_machine(
@@ -157,9 +159,9 @@ Rows braked_drum(const CheckSetting& setting) {
        absolute_row("way in 5 s against a brake of 1.02 of it", "mm", 0, 1000 * way(1.02 * pull, 5), 1)});
 }
 
-/// A car on a rope over a driven drum, and a counterweight: they go with the drum while their weights differ
-/// by less than e^(mu pi); beyond it the car falls with (m - c M) g / (m + c M), c = e^(mu pi), M the
-/// counterweight's mass, until the rope is as fast as the drum (Euler and Eytelwein; Atwood).
+/// A car and a counterweight hang on a rope over a driven drum. They go with the drum while the ratio of
+/// their weights is less than e^(mu pi). Beyond it the car falls with (m - c M) g / (m + c M), c = e^(mu pi),
+/// M the counterweight's mass, until the rope is as fast as the drum (Euler and Eytelwein; Atwood).
 Rows elevator(const CheckSetting& setting) {
   const double car = 2;
   const double counter = 1.2;
@@ -202,7 +204,8 @@ Rows elevator(const CheckSetting& setting) {
                                 why)});
 }
 
-/// Over a drum that turns under it a rope slips, and its pulls differ by e^(mu pi) (Euler and Eytelwein).
+/// A rope slips on a drum that rotates under it, and its tensions differ by the factor e^(mu pi) (Euler and
+/// Eytelwein).
 Rows driven_rope(const CheckSetting& setting) {
   const double ratio = std::exp(0.3 * kTau / 2);
   return by_machine(
@@ -265,8 +268,8 @@ Rows unrolling_drum(const CheckSetting& setting) {
        relative_row("its spin", "rad/s", a * seconds / kMiddle, std::abs(rig.spin(body).z), 0.01)});
 }
 
-/// A load on a rope of length l, a way d from the axis of what turns with w, hangs outward by tan a =
-/// w^2 (d + l sin a) / g (statics in the turning frame).
+/// A load hangs on a rope of length l at a distance d from an axis about which it rotates with w. It leans
+/// outward by tan a = w^2 (d + l sin a) / g (statics in the rotating frame).
 Rows carousel(const CheckSetting& setting) {
   Rows rows;
   for (const double spin : {2.0, 4.0}) {
@@ -297,7 +300,8 @@ Rows carousel(const CheckSetting& setting) {
 
 namespace {
 
-/// A rod from the origin to (1, 0, 0) of EI = 1 and GJ = 0.8 N m^2 with a point more beyond either end.
+/// Describes a rod from the origin to (1, 0, 0) of EI = 1 and GJ = 0.8 N m^2, with one more point beyond
+/// either end.
 RopeDesc rod() {
   RopeDesc desc{.total_mass = real(0.001),
                 .bend_stiffness = real(1),
@@ -319,8 +323,8 @@ BodyId heavy_end(Rig& rig, double half, double mass, DVec3 velocity, DVec3 spin)
 
 }  // namespace
 
-/// On the end of a clamped rod a body turns with T = 2 pi sqrt(I L / GJ) where it is clamped too, and swings
-/// with T = 2 pi sqrt(m L^3 / 3 EI) where it hangs by a ball (textbook).
+/// A body on the end of a clamped rod rotates with T = 2 pi sqrt(I L / GJ) where it is clamped, too. It
+/// swings with T = 2 pi sqrt(m L^3 / 3 EI) where a ball hook holds it (textbook).
 Rows bodies_on_rods(const CheckSetting& setting) {
   WorldDesc space = without_air();
   space.gravity = {};

@@ -1,4 +1,4 @@
-/// What a method of integration is: its order, and the stiffness that it bears.
+/// Tests methods of integration: their order, and the stiffness up to which they are stable.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEccentricity = 0.3;
 
-/// A planet of semi-major axis 1 m about a center of strength 1 m^3/s^2, from its near end.
+/// Adds a planet of semi-major axis 1 m about a center of strength 1 m^3/s^2, at its pericenter.
 ParticlesId add_planet(Rig& rig) {
   must(rig.world().add_field({.kind = FieldDesc::Kind::kInverseSquare, .strength = 1}));
   const double speed = std::sqrt((1 + kEccentricity) / (1 - kEccentricity));
@@ -20,7 +20,7 @@ ParticlesId add_planet(Rig& rig) {
       {.particles = {{.position = {1 - kEccentricity, 0, 0}, .velocity = {real(0), real(speed), real(0)}}}});
 }
 
-/// Where it is at a time: x = cos E - e, y = sqrt(1 - e^2) sin E, E - e sin E = t (Kepler).
+/// Returns its position at a time: x = cos E - e, y = sqrt(1 - e^2) sin E, E - e sin E = t (Kepler).
 DVec3 place_of_planet(double time) {
   double anomaly = time;
   for (int i = 0; i < 100; ++i) anomaly = time + kEccentricity * std::sin(anomaly);
@@ -35,8 +35,8 @@ double planet_error(const CheckSetting& setting, double seconds) {
   return length(rig.positions(id)[0] - place_of_planet(seconds));
 }
 
-/// Two masses on springs below a point that is shaken, with friction inside and out, in wind: forces that
-/// depend on place, velocity and time, none of them linear.
+/// Adds two masses on springs below a point that is shaken, with friction inside and out, in wind. Forces
+/// depend on position, velocity and time, and none of them is linear.
 void add_shaken_pendulum(Rig& rig) {
   const MotionDesc shake{.kind = MotionDesc::Kind::kSine,
                          .amplitude = {real(0.1), real(0.2), real(0)},
@@ -63,9 +63,9 @@ CheckRow order_row(std::string title, int expected, double achieved) {
 
 Rows laboratory_orders(const CheckSetting& setting) {
   const auto found = lab::find_stepper(setting.stepper);
-  if (!found || found.value().adaptive) return {};  // "auto" has no order of its own
+  if (!found || found.value().adaptive) return {};  // "auto" has no order of its own.
   const lab::StepperInfo& info = found.value();
-  // Low orders need smaller steps before their leading error is all that one sees.
+  // Low orders need smaller steps before only their leading error is visible.
   const lab::Options options = {.stepper = setting.stepper, .dt = info.order <= 2 ? 0.002 : 0.02};
   Rig orbit(setting, weightless());
   add_planet(orbit);
@@ -95,7 +95,8 @@ CheckRow stiffness_row(const std::string& stepper, double springs) {
   return row;
 }
 
-/// Largest height that a mass on a spring let go from the horizontal reaches in 10 s, at 60 Hz [m].
+/// Returns the largest height that a mass on a spring released from the horizontal reaches in 10 s, at 60 Hz
+/// [m].
 double highest(const CheckSetting& setting, double stiffness) {
   Rig rig(setting);
   const ParticlesId id = rig.add({.particles = {{}, {.position = {1, 0, 0}}},
@@ -108,9 +109,9 @@ double highest(const CheckSetting& setting, double stiffness) {
 
 }  // namespace
 
-/// The error of a method of order p falls by 2^p with half the step: on an orbit, for which the solver is
-/// held against Kepler's equation and the laboratory against rk4 with a far smaller step, and where every
-/// kind of force acts.
+/// The error of a method of order p falls by 2^p with half the step. This is tested on an orbit, with
+/// Kepler's equation as reference for the solver and rk4 with a far smaller step for the laboratory, and on a
+/// motion with every kind of force.
 Rows orders(const CheckSetting& setting) {
   if (setting.laboratory()) return laboratory_orders(setting);
   const double seconds = 2;
@@ -118,9 +119,10 @@ Rows orders(const CheckSetting& setting) {
                     std::log2(planet_error(setting, seconds) / planet_error(finer(setting), seconds)))};
 }
 
-/// The paper's question of stability. Its own stepper diverges from k = 2 m / h^2 = 7200 N/m on, Euler and
-/// its eq. 5 to 7 at any stiffness, Runge-Kutta 4 from 8 m / h^2; so rk4 bears 4 times the stiffness of the
-/// paper's stepper at 4 times its evaluations, and not 40 times at 3 times the cost. The solver has no limit.
+/// Tests the paper's question of stability. Its own stepper diverges for k > 2 m / h^2 = 7200 N/m, Euler and
+/// its eq. 5 to 7 at any stiffness, Runge-Kutta 4 for k > 8 m / h^2. So rk4 allows 4 times the stiffness of
+/// the paper's stepper at 4 times its evaluations, and not 40 times at 3 times the cost. The solver has no
+/// limit.
 Rows stability(const CheckSetting& setting) {
   if (setting.laboratory()) {
     const auto found = lab::find_stepper(setting.stepper);

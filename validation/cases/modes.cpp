@@ -1,4 +1,5 @@
-/// Chains and springs that swing: a hanging chain's modes, a folded chain's fall, a spring that swings.
+/// Tests chains and springs that oscillate: a hanging chain's modes, a folded chain's fall, a swinging
+/// spring.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double kChain = 1;  ///< Length of the chains [m].
 
-/// J0(j sqrt(s / L)), s from the free end.
+/// Returns J0(j sqrt(s / L)), with s from the free end.
 double hanging_shape(double zero, int i, int segments) {
   return std::cyl_bessel_j(0.0, zero * std::sqrt(1 - i / static_cast<double>(segments)));
 }
@@ -39,8 +40,8 @@ double hanging_period(const CheckSetting& setting, double zero, double expected)
   return curve.period();
 }
 
-/// Time over sqrt(L / g) in which the free end of a folded chain falls `way` L, without loss: the midpoint
-/// rule after x = L u^2, which takes the root out of the start.
+/// Returns the time over sqrt(L / g) in which the free end of a folded chain falls by `way` L, without loss.
+/// It uses the midpoint rule after the substitution x = L u^2, which removes the root at the start.
 double folded_fall(double way) {
   const int steps = 10000;
   const double end = std::sqrt(way);
@@ -52,7 +53,7 @@ double folded_fall(double way) {
   return sum;
 }
 
-/// A chain that hangs by both ends, `gap` apart: two strands and a half circle.
+/// Makes a chain that hangs by both ends, `gap` apart: two strands and a half circle.
 std::vector<DVec3> folded(int segments, double gap) {
   const double radius = 0.5 * gap;
   const double strand = 0.5 * (kChain - kTau / 2 * radius);
@@ -71,7 +72,7 @@ std::vector<DVec3> folded(int segments, double gap) {
   return points;
 }
 
-/// A mass on a spring that swings: x aside, y down from the hook.
+/// This is a swinging mass on a spring: x aside, y down from the hook.
 struct SwingingSpring {
   static constexpr double kMass = 1, kAtRest = 1;
   double stiffness = 0;
@@ -147,8 +148,9 @@ Rows hanging_chain_modes(const CheckSetting& setting) {
   return rows;
 }
 
-/// A chain that hangs by both ends, side by side, and one let go: without loss v^2 = g x (2 L - x) / (L - x)
-/// (Calkin and March 1989), so that the end falls faster than a stone, the length in 0.847 of its time.
+/// A chain hangs by both ends, side by side, and one end is released. Without loss v^2 = g x (2 L - x) / (L -
+/// x) (Calkin and March 1989), so that the end falls faster than a stone: it takes 0.847 of the time for the
+/// length.
 Rows falling_folded_chain(const CheckSetting& setting) {
   const double way = 0.97;
   Rig rig(setting, without_air());
@@ -164,7 +166,7 @@ Rows falling_folded_chain(const CheckSetting& setting) {
   });
   const std::vector<double> times = fall.zero_crossings();
   const double stone = std::sqrt(2 * way * kChain / kGravity);
-  // What is let fall: half the chain from the height at which it hangs to a quarter of the length below.
+  // The energy is that of half the chain, falling from its height at rest to a quarter of the length below.
   const double drop = kGravity * kChain / 4;
   const double found = times.empty() ? NAN : times.front() / stone;
   Rows rows = {relative_row("time of a folded chain's end to fall 0.97 L, over free fall's", "",
@@ -180,13 +182,13 @@ Rows falling_folded_chain(const CheckSetting& setting) {
   return rows;
 }
 
-/// A mass on a spring that also swings, against its equation of motion by Runge-Kutta 4; at k / m = 4 g / l,
-/// l the length in balance, the bounce at twice the rate of the swing goes over into it (Vitt and Gorelik
-/// 1933).
+/// A swinging mass on a spring is compared with its equation of motion by Runge-Kutta 4. At k / m = 4 g / l,
+/// with l the length in balance, the vertical oscillation has twice the rate of the swing and turns into it
+/// (Vitt and Gorelik 1933).
 Rows swinging_spring(const CheckSetting& setting) {
   Rows rows;
   add_swinging_spring(setting, 100, "off resonance", rows);
-  // k (L + m g / k) = 4 m g: k = 3 m g / L.
+  // k (L + m g / k) = 4 m g gives k = 3 m g / L.
   add_swinging_spring(setting, 3 * SwingingSpring::kMass * kGravity / SwingingSpring::kAtRest, "2 : 1", rows);
   for (CheckRow& row : rows) row.solver = "springs";
   return rows;

@@ -1,4 +1,4 @@
-/// Pendulums: a mass on a rigid rope of two points, or on a rigid spring.
+/// Tests pendulums: a mass on a rigid rope of two points, or on a rigid spring.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -11,17 +11,18 @@ namespace hooke::check {
 
 namespace {
 
-/// Of rods in the laboratory [N/m]: 1 kg that passes the lowest point at its fastest stretches them by 5e-5.
+/// Stiffness of rods in the laboratory [N/m]. A mass of 1 kg that passes the lowest point at its fastest
+/// stretches them by 5e-5.
 constexpr double kStiff = 1e6;
 
 enum class Rod { kRope, kSpring };
 
-/// Angle from straight down, from the place of the mass relative to its pivot.
+/// Returns the angle from straight down; `arm` leads from the pivot to the mass.
 double angle_of(DVec3 arm) {
   return std::atan2(arm.x, -arm.y);
 }
 
-/// Time from the first to the third passage through the vertical, over 2 pi sqrt(L/g).
+/// Returns the time from the first to the third passage through the vertical, over 2 pi sqrt(L/g).
 double relative_period(const CheckSetting& setting, Rod rod, double angle_deg) {
   const double angle = angle_deg * kTau / 360;
   const DVec3 end = {std::sin(angle), -std::cos(angle), 0};
@@ -51,7 +52,7 @@ struct Amplitude {
   double ratio;
 };
 
-/// T / T0 = 1 / agm(1, cos(theta0 / 2)), computed to six places.
+/// These are T / T0 = 1 / agm(1, cos(theta0 / 2)), computed to six places.
 constexpr std::array<Amplitude, 7> kAmplitudes = {{{30, 1.017409},
                                                    {60, 1.073182},
                                                    {90, 1.180341},
@@ -60,8 +61,8 @@ constexpr std::array<Amplitude, 7> kAmplitudes = {{{30, 1.017409},
                                                    {170, 2.439363},
                                                    {179, 3.901065}}};
 
-/// Whether a pendulum of length `length` stands on its head over a pivot that shakes by `amplitude` at
-/// `rate` [rad/s]: it starts half a degree off and may not fall over in 60 s.
+/// Tells whether a pendulum of length `length` stays upside down over a pivot that shakes by `amplitude` at
+/// `rate` [rad/s]. It starts half a degree off and may not fall over in 60 s.
 bool stands_inverted(const CheckSetting& setting, double length, double amplitude, double rate) {
   Rig rig(setting);
   const double lean = 0.5 * kTau / 360;
@@ -105,7 +106,7 @@ Rows pendulum_amplitude(const CheckSetting& setting) {
   return rows;
 }
 
-/// T / T0 = 1.180341 from 90 deg; in double precision too the step alone decides the error.
+/// T / T0 = 1.180341 from 90 deg. In double precision, too, the step alone decides the error.
 Rows pendulum_right_angle(const CheckSetting& setting) {
   Rows rows;
   for (const Rod rod : {Rod::kRope, Rod::kSpring}) {
@@ -119,7 +120,7 @@ Rows pendulum_right_angle(const CheckSetting& setting) {
   return rows;
 }
 
-/// An inverted pendulum stands over a pivot shaken by a cos(w t) if a w > sqrt(2 g L) (Kapitza 1951), for
+/// An inverted pendulum stays up over a pivot shaken by a cos(w t) if a w > sqrt(2 g L) (Kapitza 1951), for
 /// small a / L. The next term of Mathieu's boundary, -delta = e^2 / 2 - 7 e^4 / 32 with e = a / L and delta =
 /// -g / (L w^2), raises w by 7 e^2 / 32: 0.2 % here.
 Rows inverted_pendulum(const CheckSetting& setting) {

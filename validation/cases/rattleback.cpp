@@ -1,4 +1,4 @@
-/// A stone that turns back when it is spun the wrong way round.
+/// Tests a body that reverses its spin when it is spun in one of the two directions.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -10,15 +10,15 @@ namespace hooke::check {
 
 namespace {
 
-constexpr double kTime = 24;  // [s]; it turns back after 17
+constexpr double kTime = 24;  // Time of the run [s]; the body reverses its spin after 17.
 
-/// The round side of a lying cylinder of 0.5 m, on top of a fixed ball of 1 m: relative curvatures 1 / m
-/// along it and 3 / m across, in one contact. Four balls 0.15 m above it carry the mass, with the principal
-/// axes turned by `skew` [rad] from those of the curvature.
+/// The round side of a lying cylinder of 0.5 m rests on top of a fixed ball of 1 m. The relative curvatures
+/// are 1 / m along it and 3 / m across, in one contact. Four balls 0.15 m above it carry the mass, with the
+/// principal axes rotated by `skew` [rad] from those of the curvature.
 struct Stone {
   Rig rig;
   BodyId body;
-  double start = 0;  ///< Energy [J].
+  double start = 0;  ///< Energy at the start [J].
 
   Stone(const CheckSetting& setting, double skew, double spin) : rig(setting, without_air()) {
     const double round = 0.5;
@@ -55,10 +55,11 @@ CheckRow sign_row(const CheckSetting& setting, const char* title, double skew, d
 
 }  // namespace
 
-/// Where the principal axes of inertia are not those of the curvature, spin one way feeds rocking, which
-/// turns it back; the other way damps the rocking, and the spin goes on (Garcia and Hubbard, Proc. R. Soc.
-/// Lond. A 418, 1988: the sign of the coupling is that of the skew). The shapes have no ellipsoid, so the
-/// curvature that is missing along a cylinder is in the ground: only the relative one counts for rocking.
+/// The principal axes of inertia are not those of the curvature. Then spin in one direction feeds rocking,
+/// which reverses the spin; in the other direction the rocking is damped, and the spin goes on (Garcia and
+/// Hubbard, Proc. R. Soc. Lond. A 418, 1988: the sign of the coupling is that of the skew). Hooke has no
+/// ellipsoids, so the ground has the curvature that a cylinder lacks along its axis; only the relative
+/// curvature matters for rocking.
 Rows rattleback(const CheckSetting& setting) {
   const double skew = 0.3;
   Rows rows = {sign_row(setting, "sign of the spin after 24 s, 2 rad/s: against its sense", skew, 2, -1),

@@ -1,4 +1,4 @@
-/// Ropes that resist bending: cantilevers far from straight, columns that buckle.
+/// Tests ropes that resist bending: cantilevers far from straight, columns that buckle.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -11,7 +11,8 @@ namespace hooke::check {
 
 namespace {
 
-/// A straight rod of 1 m and EI = g, almost without mass: a load of p kg bends it as p = P L^2 / EI says.
+/// Describes a straight rod of 1 m and EI = g, almost without mass, so that a load of p kg bends it by p = P
+/// L^2 / EI.
 RopeDesc rod(DVec3 along, int segments, bool clamped_start, bool clamped_end) {
   RopeDesc desc{.total_mass = real(1e-3),
                 .bend_stiffness = real(kGravity),
@@ -23,18 +24,18 @@ RopeDesc rod(DVec3 along, int segments, bool clamped_start, bool clamped_end) {
   return desc;
 }
 
-/// How a column is held; its top always carries the load.
+/// This is how a column is held; its top always carries the load.
 struct Column {
   bool clamped_below = false, free_above = false, clamped_above = false;
   double k = 1;  ///< Effective length over length (textbook).
   std::string name;
 };
 
-/// Whether a column that is a little crooked has bent visibly after some seconds.
+/// Tells whether a column that is a little crooked has bent visibly after some seconds.
 bool buckles(const CheckSetting& setting, const Column& column, double load) {
   const int segments = 48;
   RopeDesc desc = rod({0, 1, 0}, segments, column.clamped_below, column.clamped_above);
-  // A load of more than a million segments makes the rod bounce on its length.
+  // With a load of more than a million segments the rod would bounce on its length.
   desc.total_mass = real(1e-2);
   const auto last = static_cast<std::uint32_t>(desc.points.size()) - 1;
   const std::uint32_t top = column.clamped_above ? last - 1 : last;
@@ -63,13 +64,14 @@ bool buckles(const CheckSetting& setting, const Column& column, double load) {
   return std::abs(rig.positions(id)[seen].x) > 0.03;
 }
 
-/// Whether a clamped rod of 1 m and EI = 1 bends visibly under its own weight of `weight` [N/m] in 12 s.
+/// Tells whether a clamped rod of 1 m and EI = 1 bends visibly under its own weight of `weight` [N/m] in 12
+/// s.
 bool bows(const CheckSetting& setting, double weight) {
   const int segments = 48;
   RopeDesc desc = rod({0, 1, 0}, segments, true, false);
   desc.bend_stiffness = real(1);
   desc.pins = {{.point = 0}, {.point = 1}};
-  const double share = weight / kGravity / segments;  // of a segment, of which one more is in the clamp
+  const double share = weight / kGravity / segments;  // Mass of a segment; one more segment is in the clamp.
   desc.total_mass = real(share * (segments + 1));
   Rig rig(setting, without_air());
   const RopeId id = rig.add(desc);
@@ -80,8 +82,8 @@ bool bows(const CheckSetting& setting, double weight) {
 
 }  // namespace
 
-/// Where the end of a clamped rod is under a load across it: Bisshopp and Drucker 1945, Mattiasson 1981,
-/// whose figures these are.
+/// The end of a clamped rod under a load across it is where Bisshopp and Drucker 1945 and Mattiasson 1981
+/// have it; the figures are Mattiasson's.
 Rows elastica(const CheckSetting& setting) {
   struct Figure {
     double load, down, in;
@@ -107,7 +109,8 @@ Rows elastica(const CheckSetting& setting) {
   return rows;
 }
 
-/// P L^3 / 3 EI at the end of a clamped rod, of any stiffness: the load times the bend's inverse stays.
+/// The end of a clamped rod sinks by P L^3 / 3 EI at any stiffness: with the load in proportion to EI it is
+/// always the same.
 Rows cantilevers(const CheckSetting& setting) {
   Rows rows;
   for (const double stiffness : {0.1, 10.0, 1000.0}) {
@@ -131,8 +134,8 @@ Rows cantilevers(const CheckSetting& setting) {
   return rows;
 }
 
-/// A rod bent by nothing but a moment M at its end is an arc of curvature M / EI, a circle at 2 pi EI / L
-/// (Euler). The moment is a pair of forces at its last two points, which turns with them.
+/// A rod bent only by a moment M at its end is an arc of curvature M / EI, a circle at 2 pi EI / L (Euler).
+/// The moment is a pair of forces at its last two points, which rotates with them.
 Rows bent_to_circle(const CheckSetting& setting) {
   const int segments = 32;
   RopeDesc desc = rod({1, 0, 0}, segments, true, true);
@@ -165,7 +168,7 @@ Rows bent_to_circle(const CheckSetting& setting) {
   return rows;
 }
 
-/// pi^2 EI / (K L)^2 (Euler 1744), by halving an interval of 10 % to either side.
+/// The load is pi^2 EI / (K L)^2 (Euler 1744), found by bisection of an interval of 10 % to either side.
 Rows euler_columns(const CheckSetting& setting) {
   const std::array<Column, 4> columns = {
       {{.k = 1, .name = "on hinges"},
@@ -189,7 +192,7 @@ Rows euler_columns(const CheckSetting& setting) {
   return rows;
 }
 
-/// A clamped column bows under its own weight q from q L^3 / EI = 7.8373 on (Greenhill 1881).
+/// A clamped column bows under its own weight q for q L^3 / EI > 7.8373 (Greenhill 1881).
 Rows heavy_column(const CheckSetting& setting) {
   const double expected = 7.8373;
   const double found =

@@ -1,4 +1,4 @@
-/// Bodies in the laboratory: the times of their hits, by rollback.
+/// Tests bodies in the laboratory: the times of their impacts, by rollback.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -14,7 +14,7 @@ namespace {
 using Search = lab::CollisionOptions::Search;
 
 constexpr double kStep = 1.0 / 60;
-const double kHeld = static_cast<double>(real(kGravity));  ///< Gravity as a World holds it.
+const double kHeld = static_cast<double>(real(kGravity));  ///< Gravity in the precision of a World.
 
 lab::Run run_of(Rig& rig, Search search, double epsilon) {
   return must(
@@ -31,7 +31,7 @@ BodyDesc elastic(const Shape& shape, DVec3 position, DVec3 velocity = {}) {
   return desc;
 }
 
-/// When the first hit was.
+/// Returns when the first impact was.
 double first_hit(Rig& rig, Search search) {
   lab::Run run = run_of(rig, search, 1e-11);
   while (run.collisions().hits == 0 && run.time() < 5) must(run.advance());
@@ -95,7 +95,7 @@ const char* name_of(Search search) {
   return "advancement";
 }
 
-/// Balls of 1 cm radius that got through a wall of 2 mm within a tenth of a second.
+/// Counts balls of 1 cm radius that got through a wall of 2 mm within a tenth of a second.
 int passed_wall(const CheckSetting& setting) {
   int passed = 0;
   for (double speed = 1; speed < 2e8; speed *= 10) {
@@ -112,9 +112,9 @@ int passed_wall(const CheckSetting& setting) {
 
 }  // namespace
 
-/// Roots of known polynomials (validation.md, V58): h = g t^2 / 2; |d - v t| = r1 + r2; a rod with 1 rad/s
-/// comes down on a ball where sin(angle left) = (r1 + r2) / distance; edges by h = g t^2 / 2. Bounces with e
-/// = 1 come at (2 n - 1) sqrt(2 h / g).
+/// The times are roots of known polynomials (validation.md, V58): h = g t^2 / 2; |d - v t| = r1 + r2. A rod
+/// with 1 rad/s comes down on a ball where sin(angle left) = (r1 + r2) / distance; edges meet by h = g t^2 /
+/// 2. Bounces with e = 1 come at (2 n - 1) sqrt(2 h / g).
 Rows rollback(const CheckSetting& setting) {
   Rows rows;
   for (const Search search : {Search::kHalving, Search::kBackward, Search::kEvent, Search::kAdvancement}) {
@@ -125,7 +125,7 @@ Rows rollback(const CheckSetting& setting) {
     rows.push_back(
         time_row("a rod turns onto a ball" + by, kTau / 4 - std::asin(0.25), time_of_rod(setting, search)));
     rows.push_back(time_row("edges meet after 1 m" + by, std::sqrt(2 / kHeld), time_of_edges(setting, search),
-                            1e-7));  // the edges' rotations are float
+                            1e-7));  // The edges' rotations are float.
   }
   Rig rig(setting);
   rig.add(level_ground(0));
@@ -143,8 +143,8 @@ Rows rollback(const CheckSetting& setting) {
   return rows;
 }
 
-/// V25 and V33 by rk4 with rollback, to 1e-4 (validation.md); but the time of rest, which is seen once a
-/// frame.
+/// These are V25 and V33 by rk4 with rollback, to 1e-4 (validation.md), except the time of rest, which is
+/// seen only once a frame.
 Rows bodies_by_rk4(const CheckSetting& setting) {
   Rows rows;
   const auto add = [&](const char* name, double dt, Rows (*run)(const CheckSetting&)) {

@@ -1,4 +1,4 @@
-/// Ropes in motion: waves, heavy loads, shocks, any stiffness.
+/// Tests ropes in motion: waves, heavy loads, shocks, any stiffness.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -21,7 +21,7 @@ CheckRow limit_row(std::string title, double achieved, double limit) {
           .solver = "rope"};
 }
 
-/// An elastic string of length 1 m pulled to 1.5 m between two pins.
+/// This is an elastic string of length 1 m pulled to 1.5 m between two pins.
 struct String {
   static constexpr int kSegments = 64;
   static constexpr double kStiffness = 50;   ///< EA [N]
@@ -31,7 +31,7 @@ struct String {
   double longitudinal = 0;  ///< Amplitude of the first mode along [m].
 };
 
-/// Period of the string's first mode.
+/// Returns the period of the string's first mode.
 double string_period(const CheckSetting& setting, const String& string) {
   Rig rig(setting, weightless());
   PlacedWorld& world = rig.world();
@@ -61,7 +61,7 @@ double string_period(const CheckSetting& setting, const String& string) {
   return curve.period();
 }
 
-/// How a swing went, as shares of the energy of the swing.
+/// This is the result of a swing, as shares of its energy.
 struct Swing {
   double largest_gain = 0;
   double final_change = 0;
@@ -71,9 +71,8 @@ struct Swing {
 
 enum class Count { kAll, kNotElastic };
 
-/// The energy of springs is left out where it is read off a rounded and linearized length,
-/// which k = 1e9 N/m makes large; it is never negative and none at the start, so what is left may not grow
-/// either.
+/// The energy of springs is left out where it is read off a rounded and linearized length, which k = 1e9 N/m
+/// makes large. It is never negative and zero at the start, so what is left may not grow either.
 double energy_of(const PlacedWorld& world, Count count) {
   const Energy now = world.measure().energy;
   return count == Count::kAll ? now.total() : now.kinetic + now.potential;
@@ -85,7 +84,7 @@ Swing watch(Rig& rig, double seconds, double swing_energy, Count count = Count::
   swing.healthy = rig.run(seconds, [&] {
     const double change = (energy_of(rig.world(), count) - start) / swing_energy;
     swing.final_change = change;
-    // Not std::max alone: it would drop a value that is not a number.
+    // std::max alone would drop a value that is not a number.
     swing.largest_gain = std::isfinite(change) ? std::max(swing.largest_gain, change) : change;
     swing.largest_stretch = std::max(swing.largest_stretch, rig.world().measure().largest_stretch);
   });
@@ -93,7 +92,7 @@ Swing watch(Rig& rig, double seconds, double swing_energy, Count count = Count::
   return swing;
 }
 
-/// A rope of 1 m and 0.1 kg with 1 kg at its end, let go from the horizontal.
+/// A rope of 1 m and 0.1 kg with 1 kg at its end is released from the horizontal.
 Swing swing_rope(const CheckSetting& setting, double stiffness) {
   Rig rig(setting);
   rig.add(RopeDesc{.direction = {real(1), real(0), real(0)},
@@ -106,7 +105,7 @@ Swing swing_rope(const CheckSetting& setting, double stiffness) {
   return watch(rig, 30, 1.05 * kGravity);
 }
 
-/// The same of loose particles, each pair joined by a spring as stiff as the rope.
+/// Swings loose particles, each pair joined by a spring as stiff as the rope.
 Swing swing_springs(const CheckSetting& setting, std::uint32_t segments, double stiffness) {
   ParticlesDesc desc{.pins = {{}}};
   for (std::uint32_t i = 0; i <= segments; ++i) {
@@ -121,9 +120,9 @@ Swing swing_springs(const CheckSetting& setting, std::uint32_t segments, double 
 
 }  // namespace
 
-/// First modes of a string between two pins (textbook): across f = sqrt(T / mu) / (2 l), T the tension, mu
-/// the mass per length as stretched, l the length as stretched; along f = sqrt(EA / mu0) / (2 l0) by the
-/// length and mass per length without load. Here T = EA (1.5 - 1) = 25 N.
+/// These are first modes of a string between two pins (textbook). Across, f = sqrt(T / mu) / (2 l), T the
+/// tension, mu the mass per length as stretched, l the length as stretched. Along, f = sqrt(EA / mu0) / (2
+/// l0) by the length and mass per length without load. Here T = EA (1.5 - 1) = 25 N.
 Rows wave_speeds(const CheckSetting& setting) {
   const double stretched = String::kStretched;
   const double tension = String::kStiffness * (stretched - 1);
@@ -143,7 +142,7 @@ Rows wave_speeds(const CheckSetting& setting) {
            .solver = "rope"}};
 }
 
-/// A swing keeps its energy and a rigid rope its length: 1000 kg on 10 m of rope of 1 kg, let go at 30 deg.
+/// A swing keeps its energy and a rigid rope its length: 1000 kg on 10 m of rope of 1 kg, released at 30 deg.
 Rows crane(const CheckSetting& setting) {
   const double angle = kTau / 12;
   Rig rig(setting);
@@ -181,9 +180,9 @@ Rows folded_rope(const CheckSetting& setting) {
           limit_row("largest gain of energy / m g L", swing.largest_gain, 0.001)};
 }
 
-/// Nothing diverges at any stiffness: let go from the horizontal, kinetic and potential energy never exceed
-/// the start by 0.1 % of the swing, in 30 s. The paper's explicit steps diverge at 60 Hz from k = 7200 N/m
-/// for 1 kg.
+/// Nothing diverges at any stiffness. After a release from the horizontal, kinetic and potential energy never
+/// exceed the start by 0.1 % of the swing, in 30 s. The paper's explicit steps diverge at 60 Hz for k > 7200
+/// N/m and 1 kg.
 Rows any_stiffness(const CheckSetting& setting) {
   Rows rows;
   const auto add = [&](const std::string& title, double stiffness, const Swing& swing, const char* solver) {

@@ -1,4 +1,4 @@
-/// Ropes and springs at rest: extension, shape and tension.
+/// Tests ropes and springs at rest: extension, shape and tension.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -10,19 +10,19 @@ namespace hooke::check {
 
 namespace {
 
-constexpr double kSettleTime = 5.0;          ///< [s]: over 20 decay times of the ropes below.
-constexpr double kSpringsSettleTime = 20.0;  ///< [s]: 20 decay times of two springs.
+constexpr double kSettleTime = 5.0;          ///< Time [s], over 20 decay times of the ropes below.
+constexpr double kSpringsSettleTime = 20.0;  ///< Time [s], 20 decay times of two springs.
 
-/// Load hanging from a rope of `segments` segments.
+/// A load hangs from a rope of `segments` segments.
 struct HangingRope {
   int segments = 16;
-  double stiffness = 200.0;  ///< Of the whole rope [N/m].
+  double stiffness = 200.0;  ///< Stiffness of the whole rope [N/m].
   double rope_mass = 0.2;    ///< [kg]
   double load = 1.0;         ///< [kg]
 };
 
-/// The air brakes, critically for the load: friction inside the rope would make it stiffer for the
-/// laboratory's methods the finer it is.
+/// The air brakes the motion, critically for the load. Friction inside the rope would make a finer rope
+/// stiffer for the laboratory's methods.
 double extension_at_rest(const CheckSetting& setting, const HangingRope& rope) {
   Rig rig(setting);
   const RopeId id = rig.add(
@@ -38,9 +38,9 @@ double extension_at_rest(const CheckSetting& setting, const HangingRope& rope) {
   return -rig.positions(id).back().y - 1.0;
 }
 
-/// Two springs in a row, the joint as heavy as the load, or beside each other, braked by the air: rows that
-/// share a particle pass their forces on by h (c + h k) / m too little in one substep, and so they rest that
-/// much lower.
+/// Two springs hang in a row, with a joint as heavy as the load, or beside each other, and the air brakes
+/// them. Rows that share a particle pass their forces on by h (c + h k) / m too little in one substep, so
+/// they rest that much lower.
 double two_springs(const CheckSetting& setting, double first, double second, bool in_series) {
   Rig rig(setting);
   const auto spring = [](std::uint32_t a, std::uint32_t b, double k) {
@@ -68,10 +68,10 @@ CheckRow extension_row(std::string title, double expected, double achieved, doub
           .solver = "rope"};
 }
 
-/// A rope of 1.5 m between two pins 1 m apart, laid as a V and left to come to rest.
+/// A rope of 1.5 m between two pins 1 m apart is laid as a V and left to come to rest.
 struct Hanging {
-  double sag = 0;          ///< Of the middle point [m].
-  double end_tension = 0;  ///< At the first pin [N].
+  double sag = 0;          ///< Sag of the middle point [m].
+  double end_tension = 0;  ///< Tension at the first pin [N].
 };
 
 Hanging hang_between_pins(const CheckSetting& setting, double mass, Real axial_stiffness) {
@@ -91,7 +91,7 @@ Hanging hang_between_pins(const CheckSetting& setting, double mass, Real axial_s
   const RopeId id = rig.add(desc);
   rig.run(10);
   const std::vector<DVec3> x = rig.positions(id);
-  // The tension of the first segment holds all but the half segment that sits on the pin.
+  // The tension of the first segment holds all but the half segment that belongs to the pin.
   const double stretch = length(x[1]) / length(desc.points[1]) - 1;
   const double tension = setting.laboratory() ? static_cast<double>(axial_stiffness) * stretch
                                               : static_cast<double>(rig.world().tensions(id)[0]);
@@ -116,8 +116,9 @@ Rows hanging_rows(const Hanging& expected, const Hanging& achieved, double toler
 
 }  // namespace
 
-/// M g / k + m g (n + 1) / (2 n k) for a spring of n equal parts with its mass m as n equal lumps at their
-/// lower ends (statics): m g / (2 k) for many. A rope's own end node has half a lump; a load gives the other.
+/// The extension is M g / k + m g (n + 1) / (2 n k) for a spring of n equal parts with its mass m as n equal
+/// lumps at their lower ends (statics): m g / (2 k) for many. A rope's own end node has half a lump; a load
+/// gives the other half.
 Rows hanging_weight(const CheckSetting& setting) {
   Rows rows;
   for (const int n : {1, 2, 8, 64}) {
@@ -133,9 +134,9 @@ Rows hanging_weight(const CheckSetting& setting) {
   return rows;
 }
 
-/// Springs in a row 1/K = 1/k1 + 1/k2, beside each other K = k1 + k2 (textbook). A rope of stiffness K and
-/// mass m under a load M extends by M g / K + m g / (2 K), whatever the number n of its segments: the mean
-/// tension of a hanging rope is (M + m/2) g, and half a segment's mass sits on each end node.
+/// Springs in a row have 1/K = 1/k1 + 1/k2, beside each other K = k1 + k2 (textbook). A rope of stiffness K
+/// and mass m under a load M extends by M g / K + m g / (2 K), whatever the number n of its segments: the
+/// mean tension of a hanging rope is (M + m/2) g, and half a segment's mass is at each end node.
 Rows series_and_parallel(const CheckSetting& setting) {
   const double k1 = 200;
   const double k2 = 300;
@@ -156,8 +157,8 @@ Rows series_and_parallel(const CheckSetting& setting) {
   return rows;
 }
 
-/// The spread of the extension over n, and its mean against M g / K + m g / (2 K); here for a soft and heavy
-/// rope, which stretches to nearly twice its length.
+/// The extension may not depend on n, and its mean is M g / K + m g / (2 K), here for a soft and heavy rope,
+/// which stretches to nearly twice its length.
 Rows resolution_of_rope(const CheckSetting& setting) {
   const HangingRope rope{.stiffness = 20, .rope_mass = 2, .load = 0.5};
   std::vector<double> extensions;
@@ -192,7 +193,7 @@ Rows elastic_catenary(const CheckSetting& setting) {
   const double mass = 1.5;
   const double length = 1.5;
   const double weight = mass * kGravity;
-  const double stiffness = 3 * weight;  // EA [N]: stretches by a tenth
+  const double stiffness = 3 * weight;  // EA [N]; the rope stretches by a tenth.
   const double v = 0.5 * weight;
   const auto span = [&](double h) {
     return h * length / stiffness + 2 * h * length / weight * std::asinh(v / h);

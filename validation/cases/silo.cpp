@@ -1,4 +1,4 @@
-/// Balls in a bin, and what keeps one on a slope.
+/// Tests balls in a bin, and what keeps a ball on a slope.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -10,14 +10,14 @@ namespace hooke::check {
 
 namespace {
 
-/// Loads in [N], means over the time of measuring.
+/// These are loads in [N], means over the time of measuring.
 struct BinLoads {
-  double weight = 0;  ///< Of the balls.
+  double weight = 0;  ///< Weight of the balls.
   double floor = 0;
-  double walls = 0;  ///< Friction that carries balls.
+  double walls = 0;  ///< Friction of the walls that carries balls.
 };
 
-/// A square bin of 0.45 m, open above, on a floor that can go down. All friction is 0.5.
+/// This is a square bin of 0.45 m, open above, on a floor that can go down. All friction is 0.5.
 struct Bin {
   static constexpr double kWidth = 0.45;
   Rig rig;
@@ -44,7 +44,7 @@ struct Bin {
     fill(balls, seed);
   }
 
-  /// Radii of 45 to 55 mm, in loose layers of 16.
+  /// Fills in balls with radii of 45 to 55 mm, in loose layers of 16.
   void fill(int balls, std::uint32_t seed) {
     const auto random = [&] {
       seed = seed * 1664525U + 1013904223U;
@@ -62,7 +62,7 @@ struct Bin {
     }
   }
 
-  /// What the balls put on floor and walls at this moment.
+  /// Adds what the balls exert on floor and walls at this moment.
   void measure() {
     for (const BodyContact& contact : rig.world().body_contacts()) {
       for (const BodyId wall : walls)
@@ -72,7 +72,8 @@ struct Bin {
   }
 };
 
-/// The floor goes down by 3 cm/s for 4 s, until friction of the walls is all in use; over the last 2.7 s.
+/// Lowers the floor by 3 cm/s for 4 s, until the walls' friction is fully in use, and takes means over the
+/// last 2.7 s.
 BinLoads loads(const CheckSetting& setting, int balls, std::uint32_t seed) {
   Bin bin(setting, balls, seed);
   bin.rig.run(1.5);
@@ -87,7 +88,7 @@ BinLoads loads(const CheckSetting& setting, int balls, std::uint32_t seed) {
   return {bin.sum.weight, bin.sum.floor / count, bin.sum.walls / count};
 }
 
-/// Means of two packings, which differ by up to 10 %.
+/// Returns means of two packings, which differ by up to 10 %.
 BinLoads mean_loads(const CheckSetting& setting, int balls) {
   const BinLoads one = loads(setting, balls, 1);
   const BinLoads two = loads(setting, balls, 2);
@@ -98,7 +99,7 @@ double janssen(double weight, double most) {
   return most * (1 - std::exp(-weight / most));
 }
 
-/// Does a ball at rest on a slope of this tangent stay? Its lever of rolling resistance is 20 mm.
+/// Tells whether a ball at rest on a slope of this tangent stays. Its rolling friction is 20 mm.
 bool ball_rests(const CheckSetting& setting, double slope) {
   const double angle = std::atan(slope);
   const double radius = 0.1;
@@ -118,13 +119,13 @@ bool ball_rests(const CheckSetting& setting, double slope) {
 
 }  // namespace
 
-/// Walls that have friction carry a part of what stands in a bin: of a weight W the load
-/// F = F1 (1 - exp(-W / F1)) is left for the floor (Janssen, Z. Ver. Dt. Ing. 39, 1895, p. 1045), in which F1
-/// holds the bin's width, friction and ratio of stresses. The lowest filling gives F1, and that the others.
-/// What lies still gives to floor and walls what it weighs.
+/// Walls with friction carry a part of what stands in a bin. Of a weight W the load F = F1 (1 - exp(-W / F1))
+/// is left for the floor (Janssen, Z. Ver. Dt. Ing. 39, 1895, p. 1045), where F1 depends on the bin's width,
+/// friction and ratio of stresses. The lowest filling gives F1, which predicts the others. Floor and walls
+/// together still carry the whole weight.
 ///
-/// A ball with a lever l of resistance to rolling stays on a slope if and only if tan theta <= l / r, as
-/// moments about its lowest point say where friction is no less than that: the angle of repose of one ball.
+/// A ball with rolling friction l [m] stays on a slope if and only if tan theta <= l / r, by the moments
+/// about its lowest point, where friction is no less than that. This is the angle of repose of one ball.
 Rows silo(const CheckSetting& setting) {
   const BinLoads low = mean_loads(setting, 60);
   const BinLoads middle = mean_loads(setting, 120);

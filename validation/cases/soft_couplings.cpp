@@ -1,4 +1,4 @@
-/// Bodies and ropes with cloth and jelly: loads that lie, hang, float and fly.
+/// Tests bodies and ropes with cloth and jelly: loads that lie, hang, float and fly.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -13,7 +13,7 @@ namespace hooke::check {
 
 namespace {
 
-/// A cube of jelly with an edge of half a meter, about a place.
+/// Describes a cube of jelly with an edge of half a meter.
 SolidDesc jelly(DVec3 place, double density) {
   SolidDesc desc{.cells = {4, 4, 4}, .size = {real(0.5), real(0.5), real(0.5)}, .position = place};
   desc.density = real(density);
@@ -23,7 +23,7 @@ SolidDesc jelly(DVec3 place, double density) {
   return desc;
 }
 
-/// Mean height of the points of a cube that were at a height of its own.
+/// Returns the mean height of those points of a cube that were at the height `own` at the start.
 double level(const Rig& rig, SolidId id, const std::vector<DVec3>& start, double own) {
   const std::vector<DVec3> x = rig.positions(id);
   double sum = 0;
@@ -38,7 +38,7 @@ double level(const Rig& rig, SolidId id, const std::vector<DVec3>& start, double
 
 constexpr double kSheet = 2;  ///< Mass of a sheet [kg].
 
-/// A level sheet of one square meter about the origin, as stiff as a substep carries.
+/// Describes a level sheet of one square meter about the origin, as stiff as a substep carries.
 ClothDesc sheet(int points) {
   ClothDesc desc{.columns = points,
                  .rows = points,
@@ -65,7 +65,7 @@ double lift_of(const Rig& rig, const std::vector<HookId>& hooks) {
   return std::abs(sum.y);
 }
 
-/// Runs on and gives the mean of a figure over two seconds.
+/// Runs on and returns the mean of a figure over two seconds.
 template <class Figure>
 double mean_over(Rig& rig, const Figure& figure) {
   double sum = 0;
@@ -84,7 +84,7 @@ Rows by(const char* solver, Rows rows) {
 
 }  // namespace
 
-/// What holds a hammock up carries it and the load that lies in it (statics).
+/// The supports of a hammock carry it and the load that lies in it (statics).
 Rows load_in_hammock(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   ClothDesc desc = sheet(11);
@@ -112,7 +112,7 @@ Rows load_in_hammock(const CheckSetting& setting) {
                                            (5 + kSheet) * kGravity, lift)});
 }
 
-/// A sheet whose corners hang on ropes, with a ball on it: the ropes carry both (statics).
+/// The corners of a sheet hang on ropes, with a ball on it: the ropes carry both (statics).
 Rows sheet_on_ropes(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   const int n = 11;
@@ -142,7 +142,7 @@ Rows sheet_on_ropes(const CheckSetting& setting) {
     }
     return sum;
   });
-  // Half of a rope's first segment sits on its pin.
+  // Half of a rope's first segment belongs to its pin.
   const double weight = (3 + kSheet + 4 * 0.01 * 0.95) * kGravity;
   return by("rope, cloth, bodies",
             {relative_row("lift of four ropes with a sheet and 3 kg", "N", weight, lift)});
@@ -173,8 +173,8 @@ Rows plate_on_jelly(const CheckSetting& setting) {
                           height(0) - height(mass), 0.05)});
 }
 
-/// A cube of jelly floats as deep as its density is a share of the liquid's (Archimedes), and under water a
-/// rope that holds it at its base pulls with what is missing to its weight.
+/// The share of a floating cube of jelly that is under water is its density over the liquid's (Archimedes).
+/// Under water a rope that holds it at its base pulls with the weight of the displaced water less its own.
 Rows floating_jelly(const CheckSetting& setting) {
   const FieldDesc water{.kind = FieldDesc::Kind::kLiquid, .density = 1000, .drag = 3};
   Rig rig(setting, without_air());
@@ -203,8 +203,8 @@ Rows floating_jelly(const CheckSetting& setting) {
                                               static_cast<double>(held.world().tensions(tether)[0]))});
 }
 
-/// A cube of jelly on a rope: pull and weight are equal, and it swings as a body does, about the rope's pin,
-/// T = 2 pi sqrt((m l^2 + I) / (m g l)).
+/// A cube of jelly hangs on a rope: tension and weight are equal, and it swings as a body does, about the
+/// rope's pin, T = 2 pi sqrt((m l^2 + I) / (m g l)).
 Rows jelly_on_rope(const CheckSetting& setting) {
   Rig rig(setting, without_air());
   SolidDesc cube = jelly({0, -1.25, 0}, 100);
@@ -222,8 +222,8 @@ Rows jelly_on_rope(const CheckSetting& setting) {
             {relative_row("pull of a rope with 12.5 kg of jelly on it", "N", weight, pull)});
 }
 
-/// Free bodies, ropes, cloth and jelly, together at rest, that are hooked to each other and meet: momentum
-/// and angular momentum stay, and energy does not grow.
+/// Free bodies, ropes, cloth and jelly, together at rest, are hooked to each other and collide. Momentum and
+/// angular momentum stay, and energy does not grow.
 Rows free_rooms(const CheckSetting& setting) {
   WorldDesc space = without_air();
   space.gravity = {};
@@ -262,7 +262,7 @@ Rows free_rooms(const CheckSetting& setting) {
   double gain = 0;
   rig.run(60, [&] { gain = std::max(gain, rig.energy().total() / energy - 1); });
   const Measurement end = rig.world().measure();
-  // What all could have: the momentum of the whole mass at the root mean square of the speeds.
+  // The scale is the momentum of the whole mass at the root mean square of the speeds.
   const double mass = 3 + 1 + 0.2 + kSheet + 30 * 0.125 + 0.5;
   const double scale = std::sqrt(2 * energy * mass);
   CheckRow momentum = absolute_row("momentum lost in 60 s, share", "", 0,
@@ -276,7 +276,7 @@ Rows free_rooms(const CheckSetting& setting) {
   return by("all", {momentum, turning, absolute_row("energy gained, share", "", 0, gain, 1e-3)});
 }
 
-/// A ball that flies into a free sheet: what they have together stays (Newton), whatever the cloth takes.
+/// A ball flies into a free sheet: their common momentum stays (Newton), whatever the cloth takes.
 Rows caught_ball(const CheckSetting& setting) {
   WorldDesc space = without_air();
   space.gravity = {};
@@ -293,7 +293,7 @@ Rows caught_ball(const CheckSetting& setting) {
   return by("cloth, bodies", {relative_row("momentum of ball and sheet after the hit", "kg m/s", -1,
                                            rig.world().measure().momentum.y, 1e-4),
                               absolute_row("energy gained, share", "", 0, gain, 1e-3),
-                              // Neither passes: the sheet is before the ball, and as fast at least.
+                              // The ball does not pass: the sheet is before it, and at least as fast.
                               relative_row("sheet is before the ball", "", 1,
                                            mean <= rig.velocity(body).y + 1e-3 ? 1 : 0, 0)});
 }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kDensity = 1000;
 
-/// A bar along an axis with square ends, of `cells` cells across it and as long ones along it.
+/// A Bar lies along an axis and has square ends. It has `cells` cells across, and cells of the same length
+/// along it.
 struct Bar {
   int axis = 0;
   int cells = 2;
@@ -21,7 +22,7 @@ struct Bar {
   double poisson_ratio = 0.3;
 };
 
-/// One meter long. `calm` is the rate at which air friction slows it [1/s].
+/// Describes a bar one meter long. `calm` is the rate at which air friction slows it [1/s].
 SolidDesc desc_of(const Bar& bar, double calm) {
   const double width = 1.0 / bar.length_over_width;
   SolidDesc desc;
@@ -60,7 +61,8 @@ double mean_of(const Rig& rig, SolidId id, const std::vector<std::uint32_t>& poi
   return sum / static_cast<double>(points.size());
 }
 
-/// Held at the far end of its axis, `gravity` downward, until at rest: how far the free end went down [m].
+/// Holds the bar at the end of its axis, with `gravity` downward, until it rests. Returns how far the free
+/// end went down [m].
 double sag_of(const CheckSetting& setting, const Bar& bar, double gravity, double calm, double seconds) {
   Rig rig(setting, fine_world({0, -gravity, 0}));
   SolidDesc desc = desc_of(bar, calm);
@@ -84,8 +86,8 @@ void for_each_corner(std::uint32_t side, const Visitor& visit) {
   }
 }
 
-/// A cube of 1 m made of n x n x n cubes, six tetrahedra to each; their inner corners are moved at random by
-/// up to a fifth of a small cube's side.
+/// This is a cube of 1 m made of n x n x n cubes, six tetrahedra to each. Their inner corners are moved at
+/// random by up to a fifth of a small cube's side.
 struct IrregularCube {
   SolidDesc desc;
   std::vector<std::uint32_t> rim;
@@ -99,7 +101,7 @@ struct IrregularCube {
   }
 
  private:
-  /// A number from -0.5 to 0.5.
+  /// Returns a number from -0.5 to 0.5.
   double random() {
     random_ = random_ * 1664525u + 1013904223u;
     return (random_ >> 8) / 16777216.0 - 0.5;
@@ -134,7 +136,7 @@ struct IrregularCube {
   std::uint32_t random_ = 12345;
 };
 
-/// The areas of the two ends of a bar along x, shared out among their points; those of the lower end are
+/// Returns the areas of the two ends of a bar along x, divided among their points; those of the lower end are
 /// negative.
 std::map<std::uint32_t, double> areas_of_ends(const Rig& rig, SolidId id, const std::vector<DVec3>& points) {
   std::map<std::uint32_t, double> area;
@@ -151,8 +153,8 @@ std::map<std::uint32_t, double> areas_of_ends(const Rig& rig, SolidId id, const 
   return area;
 }
 
-/// How far apart the two faces of a bar across an axis are now, over how far they were at rest. They are at
-/// `half` to both sides of the center in `rest`, the places of the points at rest.
+/// Returns how far two faces of a bar across an axis are apart now, over how far they were at rest. The faces
+/// are at `half` to both sides of the center in `rest`, the positions at rest.
 double stretch_of(const Rig& rig, SolidId id, const std::vector<DVec3>& rest, int axis, double half) {
   std::vector<std::uint32_t> ends[2];
   for (std::uint32_t i = 0; i < rest.size(); ++i) {
@@ -164,8 +166,9 @@ double stretch_of(const Rig& rig, SolidId id, const std::vector<DVec3>& rest, in
 
 }  // namespace
 
-/// A patch test: the rim of an irregular mesh moved by an affine map of 1 %, the inside follows it exactly
-/// (FEM practice). Turned and moved as a whole it has no energy. In units of its side and of E V.
+/// This is a patch test: if the rim of an irregular mesh is moved by an affine map of 1 %, the inside follows
+/// it exactly (FEM practice). Rotated and moved as a whole, the mesh has no energy. Figures are in units of
+/// its side and of E V.
 Rows patch_test(const CheckSetting& setting) {
   const bool exact = sizeof(Real) == sizeof(double);
   const double goal = exact ? 1e-10 : 1e-6;
@@ -202,7 +205,8 @@ Rows patch_test(const CheckSetting& setting) {
   return rows;
 }
 
-/// 10 kN for 3 s on 216 kg: F t^2 / 2 m, and half a substep's way more of a semi-implicit step.
+/// A force of 10 kN acts for 3 s on 216 kg. The displacement is F t^2 / 2 m, plus half a substep of motion by
+/// a semi-implicit step.
 Rows pushed_cubes(const CheckSetting& setting) {
   Rig rig(setting, weightless());
   SolidDesc soft;
@@ -232,9 +236,9 @@ Rows pushed_cubes(const CheckSetting& setting) {
   return rows;
 }
 
-/// A bar pulled at both ends by P per area at rest, held nowhere: stable neo-Hookean matter stretches by s
-/// and narrows by t with t^2 = ((lambda + mu) s - mu) / (lambda s^2) and P = mu (s - t^2 / s) (V71 in three
-/// dimensions). The stress is even, and so the mesh does not matter.
+/// A free bar is pulled at both ends by P per area at rest. Stable neo-Hookean matter stretches by s and
+/// narrows by t with t^2 = ((lambda + mu) s - mu) / (lambda s^2) and P = mu (s - t^2 / s) (V71 in three
+/// dimensions). The stress is even, so the mesh does not matter.
 Rows pulled_bar(const CheckSetting& setting) {
   Rows rows;
   for (const double nu : {0.3, 0.45}) {
@@ -263,7 +267,7 @@ Rows pulled_bar(const CheckSetting& setting) {
   return rows;
 }
 
-/// A bar that hangs by one end gets longer by rho g L^2 / 2 E.
+/// A bar that hangs by one end lengthens by rho g L^2 / 2 E.
 Rows hanging_bar(const CheckSetting& setting) {
   const double expected = kDensity * 1.0 / (2 * 1e5);
   Rows rows;
@@ -280,9 +284,9 @@ Rows hanging_bar(const CheckSetting& setting) {
   return rows;
 }
 
-/// A cantilever under its own weight: q L^4 / 8 E I of Euler and Bernoulli and, with Timoshenko's shear,
-/// q L^2 / 2 k G A more, k = 10 (1 + nu) / (12 + 11 nu). Tetrahedra of even strain are too stiff in bending;
-/// the error goes with the square of the cells, and what two meshes say extrapolates.
+/// A cantilever under its own weight sags by q L^4 / 8 E I (Euler and Bernoulli) and, with Timoshenko's
+/// shear, by q L^2 / 2 k G A more, k = 10 (1 + nu) / (12 + 11 nu). Tetrahedra of even strain are too stiff in
+/// bending; the error goes with the square of the cell size, so two meshes allow an extrapolation.
 Rows cantilever_of_jelly(const CheckSetting& setting) {
   const double width = 0.2, e = 2e5, nu = 0.3, g = 0.125;
   const double shear_factor = 10 * (1 + nu) / (12 + 11 * nu);
@@ -305,7 +309,7 @@ Rows cantilever_of_jelly(const CheckSetting& setting) {
   return rows;
 }
 
-/// A free bar swings along its length with the period 2 L / sqrt(E / rho); what moves sideways lowers the
+/// A free bar oscillates along its length with the period 2 L / sqrt(E / rho); lateral motion lowers the
 /// speed by (nu pi r / L)^2 / 2 with r^2 = b^2 / 6 (Rayleigh, Love). A cube keeps its volume under its own
 /// weight.
 Rows jelly_wave(const CheckSetting& setting) {

@@ -1,4 +1,5 @@
-/// Bodies that spin as they go: tops, crossed shafts, balls that roll, discs that wobble, and stacked blocks.
+/// Tests spinning bodies that also move along: tops, crossed shafts, rolling balls, wobbling discs; and
+/// stacked blocks.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -12,25 +13,26 @@ namespace hooke::check {
 namespace {
 
 constexpr double kOneDegree = kTau / 360;
-constexpr Vec3 kAbout = {Real(0), Real(0), Real(-1)};  ///< Leans the y axis towards x.
+constexpr Vec3 kAbout = {Real(0), Real(0), Real(-1)};  ///< Axis by which the y axis leans towards x.
 
-/// The next angle without a jump.
+/// Returns the next angle without a jump of 2 pi.
 double unwrapped(double before, double now) {
   return now - kTau * std::round((now - before) / kTau);
 }
 
-/// Two shafts that meet at the origin at an angle, joined by a cross.
+/// Two shafts meet at the origin at an angle and are joined by a cross.
 struct CrossedShafts {
   static constexpr double kSpeed = 2;
   double bend;
-  DVec3 along;  ///< Of the driven shaft.
+  DVec3 along;  ///< Direction of the driven shaft.
   Rig rig;
   BodyId driving, driven;
 
   CrossedShafts(const CheckSetting& setting, double angle)
       : bend(angle), along{std::cos(angle), 0, std::sin(angle)}, rig(setting, weightless()) {
     driving = shaft({1, 0, 0}, -0.5, 0, kSpeed, {.speed = real(kSpeed), .max_force = real(1e4)});
-    // At the start the driving fork lies in the plane of both, and the driven shaft is at its fastest.
+    // At the start the driving fork lies in the plane of both shafts, and the driven shaft has its highest
+    // speed.
     driven = shaft(along, 0.5, bend, kSpeed / std::cos(bend), {});
     HookDesc cross{.kind = HookKind::kSixDegrees,
                    .a = {driving},
@@ -54,14 +56,14 @@ struct CrossedShafts {
                                .motor = motor}));
     return id;
   }
-  /// How far a shaft has turned about its own line, from its side that was upright [rad].
+  /// Returns how far a shaft has rotated about its own line [rad]; it was upright at the start.
   [[nodiscard]] double angle(BodyId id, DVec3 direction) const {
     const DVec3 up = rig.direction(id, {0, 1, 0});
     return std::atan2(dot(up, cross(direction, DVec3{0, 1, 0})), up.y);
   }
 };
 
-/// A disc in steady wobble on its rim: how fast it goes round, and the energy it lost, in 1 s.
+/// A disc wobbles steadily on its rim; these are its rate and the energy it lost in 1 s.
 struct Wobble {
   double rate = 0, lost = 0;
 };
@@ -74,7 +76,7 @@ Wobble wobble(const CheckSetting& setting, double lean, double expected) {
   BodyDesc desc = moving(Shape::cylinder(real(radius), real(half)),
                          {0, radius * std::sin(lean) + half * std::cos(lean), 0});
   desc.rotation = quaternion_about(kAbout, real(lean));
-  const DVec3 down = {std::cos(lean), -std::sin(lean), 0};  // from the center to the lowest place of the rim
+  const DVec3 down = {std::cos(lean), -std::sin(lean), 0};  // From the center to the lowest point of the rim.
   desc.angular_velocity = real(-expected * std::sin(lean) * down);
   desc.contact.friction = real(1);
   const BodyId disc = rig.add(desc);
@@ -87,7 +89,7 @@ Wobble wobble(const CheckSetting& setting, double lean, double expected) {
   return {std::abs(angle), 1 - rig.energy().total() / energy};
 }
 
-/// Whether blocks that hang over by `share` of the most that statics allows stay on the table.
+/// Tells whether blocks that hang over by `share` of the most that statics allows stay on the table.
 bool overhang_stands(const CheckSetting& setting, int count, double share) {
   const DVec3 half = {0.2, 0.05, 0.1};
   Rig rig(setting, sleepless());
@@ -109,14 +111,15 @@ bool overhang_stands(const CheckSetting& setting, int count, double share) {
 
 }  // namespace
 
-/// The slow root of I1 W^2 cos(a) - I3 w3 W + m g l = 0 (textbook), started as it goes on.
+/// The rate is the slow root of I1 W^2 cos(a) - I3 w3 W + m g l = 0 (textbook); the top starts in this
+/// motion.
 Rows steady_precession(const CheckSetting& setting) {
   const double radius = 0.15;
   const double half = 0.01;
   const double lever = 0.1;
   const double lean = 30 * kOneDegree;
   const double spin = 40;
-  const double along = radius * radius / 2;  // per mass
+  const double along = radius * radius / 2;  // Per mass.
   const double across = (3 * radius * radius + 4 * half * half) / 12 + lever * lever;
   const double turn = along * spin;
   const double steep = 2 * across * std::cos(lean);
@@ -140,7 +143,7 @@ Rows steady_precession(const CheckSetting& setting) {
           absolute_row("its nutation in 20 s", "deg", 0, nutation / kOneDegree, 0.2)};
 }
 
-/// tan(t2) = tan(t1) / cos(b), so that the driven shaft's speed goes between cos(b) and 1 / cos(b) of the
+/// tan(t2) = tan(t1) / cos(b), so that the driven shaft's speed varies between cos(b) and 1 / cos(b) of the
 /// driving one's (Hooke 1676; textbook).
 Rows hookes_joint(const CheckSetting& setting) {
   CrossedShafts shafts(setting, 30 * kOneDegree);
@@ -165,8 +168,9 @@ Rows hookes_joint(const CheckSetting& setting) {
       relative_row("way of the driving shaft in 7 s", "rad", 7 * CrossedShafts::kSpeed, first)};
 }
 
-/// A ball that rolls into an equal one with the angle f between its way and the line of centers ends at
-/// tan(d) = sin f cos f / (sin^2 f + 2/5) from its way: smooth balls, e = 1 (Alciatore 2004, TP A.4).
+/// A ball rolls into an equal one with the angle f between its path and the line of centers. It ends at
+/// tan(d) = sin f cos f / (sin^2 f + 2/5) from its path, for smooth balls with e = 1 (Alciatore 2004, TP
+/// A.4).
 Rows half_ball_hit(const CheckSetting& setting) {
   const double radius = 0.028575;
   const double cut = 30 * kOneDegree;
@@ -224,7 +228,7 @@ Rows ball_on_turntable(const CheckSetting& setting) {
           relative_row("diameter of its circle, 0.3 m/s", "m", 2 * speed / expected, most - least)};
 }
 
-/// W^2 sin(a) = 4 g / r for a thin disc that rolls round on its rim about a center at rest (Moffatt 2000).
+/// W^2 sin(a) = 4 g / r for a thin disc that rolls on its rim about a center at rest (Moffatt 2000).
 Rows eulers_disk(const CheckSetting& setting) {
   Rows rows;
   for (const double lean : {10.0, 20.0}) {

@@ -1,4 +1,4 @@
-/// Particles and springs in weightlessness: periods, decay, momentum.
+/// Tests particles and springs without gravity: periods, decay, momentum.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -20,7 +20,7 @@ struct Oscillator {
   double damping = 0;    ///< [N s/m]
 };
 
-/// Deviation from rest of a mass on a spring, released at 0.2 m.
+/// Returns the deviation from rest of a mass on a spring, released at 0.2 m.
 Curve released(const CheckSetting& setting, const Oscillator& o, double seconds) {
   Rig rig(setting, weightless());
   const ParticlesId id = rig.add({.particles = {{}, {.position = {1.2, 0, 0}, .mass = real(o.mass)}},
@@ -33,7 +33,7 @@ Curve released(const CheckSetting& setting, const Oscillator& o, double seconds)
   return record(rig, seconds, [&] { return rig.positions(id)[1].x - 1.0; });
 }
 
-/// Damping ratio from the ratio of the first two peaks on one side.
+/// Returns the damping ratio from the ratio of the first two peaks on one side.
 double damping_ratio(const Curve& curve) {
   const std::vector<double> peaks = curve.peaks();
   if (peaks.size() < 4) return std::numeric_limits<double>::quiet_NaN();
@@ -41,7 +41,7 @@ double damping_ratio(const Curve& curve) {
   return decrement / std::hypot(kTau, decrement);
 }
 
-/// Period of one mode of `count` equal masses between two walls, each pair joined by a spring.
+/// Returns the period of one mode of `count` equal masses between two walls, each pair joined by a spring.
 double mode_period(const CheckSetting& setting, int count, int mode, double stiffness) {
   const double spacing = 0.1;
   const auto shape = [&](int i) { return std::sin(0.5 * kTau * mode * i / (count + 1)); };
@@ -103,9 +103,9 @@ Rows simple_oscillator(const CheckSetting& setting) {
   return rows;
 }
 
-/// Logarithmic decrement 2 pi zeta / sqrt(1 - zeta^2), zeta = c / (2 sqrt(k m)). With zeta = 1 the mass comes
-/// to (1 + w t) e^(-w t) of its start after t; with zeta = 2 the slow part leaves (textbook). Implicit steps
-/// add w h / 2 to zeta: 0.0005 here.
+/// The logarithmic decrement is 2 pi zeta / sqrt(1 - zeta^2), zeta = c / (2 sqrt(k m)). With zeta = 1 the
+/// deviation is (1 + w t) e^(-w t) of its start after t; with zeta = 2 the slow part remains (textbook).
+/// Implicit steps add w h / 2 to zeta: 0.0005 here.
 Rows damped_oscillator(const CheckSetting& setting) {
   const double w = 0.5;
   const double mass = 4;
@@ -114,7 +114,7 @@ Rows damped_oscillator(const CheckSetting& setting) {
   };
   const double t = 6;
   const auto at_end = [&](double zeta) { return released(setting, with(zeta), t).last() / 0.2; };
-  const double root = std::sqrt(3.0);  // sqrt(zeta^2 - 1) for zeta = 2
+  const double root = std::sqrt(3.0);  // This is sqrt(zeta^2 - 1) for zeta = 2.
   const double fast = (2 + root) * w;
   const double slow = (2 - root) * w;
   return {{.title = "damping ratio 0.2 from the decrement",

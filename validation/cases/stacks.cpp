@@ -1,4 +1,4 @@
-/// Bodies that stand on each other, and those that fall one after the other.
+/// Tests bodies that stand on each other, and dominoes that fall one after the other.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -11,7 +11,7 @@ namespace hooke::check {
 
 namespace {
 
-/// Cubes of 1 m on the ground, one on the other, each `ratio` times as heavy where it is the last.
+/// Cubes of 1 m stand on the ground, one on the other; the last is `ratio` times as heavy as the others.
 struct Stack {
   Rig rig;
   BodyId ground;
@@ -27,7 +27,7 @@ struct Stack {
     }
   }
 
-  /// Largest |distance between neighbors / edge - 1|, the ground included.
+  /// Returns the largest |distance between neighbors / edge - 1|, the ground included.
   [[nodiscard]] double gap_error() const {
     double worst = 0;
     double below = -0.5;
@@ -44,14 +44,14 @@ struct Stack {
       worst = std::max(worst, std::hypot(rig.center(cube).x, rig.center(cube).z));
     return worst;
   }
-  /// Ends once the top is a whole cube lower: it has fallen.
+  /// Stops when the top is a whole cube lower, because the stack has then fallen.
   void watch(int seconds) {
     const double top = rig.center(cubes.back()).y;
     for (int i = 0; i < seconds && rig.center(cubes.back()).y > top - 1; ++i) rig.run(1);
   }
 };
 
-/// Worst gap and drift of a stack in 60 s.
+/// Returns rows for the largest gap and drift of a stack in 60 s.
 Rows stack_rows(const CheckSetting& setting, const std::string& title, int count, double ratio) {
   Stack stack(setting, count, ratio);
   stack.watch(60);
@@ -65,10 +65,10 @@ void append(Rows& rows, const Rows& more) {
   rows.insert(rows.end(), more.begin(), more.end());
 }
 
-/// Cards of 10 cm x 7 cm x 4 mm in pairs that lean 20 degrees, 10.2 cm apart: flat ones between the
+/// Cards of 10 cm x 7 cm x 4 mm stand in pairs that lean 20 degrees, 10.2 cm apart. Flat cards between the
 /// storeys reach over the upper edges of two pairs, and leave 2 mm to the next.
 struct CardHouse {
-  static constexpr double kHalf = 0.05;  ///< Of a card's length [m].
+  static constexpr double kHalf = 0.05;  ///< Half of a card's length [m].
   Rig rig;
   std::vector<BodyId> cards;
   std::vector<DVec3> start;
@@ -91,7 +91,7 @@ struct CardHouse {
     }
   }
 
-  /// Farthest way of a card, share of its length.
+  /// Returns the largest displacement of a card, as a share of its length.
   [[nodiscard]] double moved() const {
     double worst = 0;
     for (std::size_t i = 0; i < cards.size(); ++i)
@@ -110,7 +110,7 @@ struct CardHouse {
   }
 };
 
-/// Sideways way of the worst box of a pyramid of 30 rows in 60 s [mm].
+/// Returns the sideways displacement of the worst box of a pyramid of 30 rows in 60 s [mm].
 double pyramid_drift(const CheckSetting& setting) {
   Rig rig(setting, sleepless());
   rig.add(level_ground(0.6));
@@ -133,8 +133,8 @@ double pyramid_drift(const CheckSetting& setting) {
   return 1000 * worst;
 }
 
-/// Speed of the wave through dominoes of height `size`, over sqrt(g size): between the tenth and the
-/// seventieth of 80, each taken where it has tilted by 15 degrees.
+/// Returns the speed of the wave through dominoes of height `size`, over sqrt(g size). It is measured between
+/// the tenth and the seventieth of 80, each at the time when it has tilted by 15 degrees.
 double domino_wave(const CheckSetting& setting, double size, double gravity) {
   WorldDesc desc = sleepless();
   desc.gravity = real(DVec3{0, -gravity, 0});
@@ -145,7 +145,7 @@ double domino_wave(const CheckSetting& setting, double size, double gravity) {
   for (int i = 0; i < 80; ++i) {
     BodyDesc stone = moving(box_of({0.08 * size, 0.5 * size, 0.25 * size}), {spacing * i, 0.5 * size, 0});
     stone.contact.friction = real(0.3);
-    // The first is thrown at its top: 1.5 times what brings it over its edge.
+    // The first starts with 1.5 times the spin that brings it over its edge.
     if (i == 0) stone.angular_velocity = real(DVec3{0, 0, -1.5 * std::sqrt(gravity / size)});
     if (i == 0) stone.velocity = real(DVec3{0.75 * std::sqrt(gravity * size), 0, 0});
     stones.push_back(rig.add(stone));
@@ -179,7 +179,8 @@ Rows stack_force(const CheckSetting& setting) {
       relative_row("force of the ground on ten boxes of 1000 kg", "N", 10 * 1000 * kGravity, force, 0.001)};
 }
 
-/// What stands at first stands on: qu3e's issue 54, and Greenhill's limit of soft columns.
+/// A stack that stands at first remains standing. The cases are qu3e's issue 54, and Greenhill's limit of
+/// soft columns.
 Rows tall_stacks(const CheckSetting& setting) {
   Rows rows = stack_rows(setting, "stack of 10", 10, 1);
   append(rows, stack_rows(setting, "stack of 50", 50, 1));
@@ -188,7 +189,7 @@ Rows tall_stacks(const CheckSetting& setting) {
   return rows;
 }
 
-/// The last of ten boxes is the heavier (statics): nothing may move.
+/// The last of ten boxes is the heavier one (statics): nothing may move.
 Rows heavy_tops(const CheckSetting& setting) {
   Rows rows;
   for (const int ratio : {10, 100, 1000, 10000}) {
@@ -197,7 +198,8 @@ Rows heavy_tops(const CheckSetting& setting) {
   return rows;
 }
 
-/// A pair of cards stands from mu = tan(lean) / 2 on, under a load up to tan(lean) (statics): 0.36 of 0.6.
+/// A pair of cards stands for mu >= tan(lean) / 2, under a load for mu >= tan(lean) at most (statics): 0.36,
+/// with mu = 0.6.
 Rows card_house(const CheckSetting& setting) {
   Rows rows;
   for (const int storeys : {1, 3, 4}) {
@@ -211,7 +213,7 @@ Rows card_house(const CheckSetting& setting) {
 }
 
 /// v / sqrt(g H) does not depend on size or gravity (dimensional analysis; McLachlan and others 1983). The
-/// step is 1/240 s times sqrt(H / g) of the smallest, so that the same is computed at any scale.
+/// step is 1/240 s times sqrt(H / g) relative to the smallest, so that every scale computes the same.
 Rows domino_scaling(const CheckSetting& setting) {
   CheckSetting own = setting;
   const auto speed = [&](double size, double gravity) {

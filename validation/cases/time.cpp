@@ -1,4 +1,4 @@
-/// The same physics whatever the display does, and the same wind whatever the step.
+/// Tests that physics does not depend on the display's rate, nor the wind on the step.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -16,7 +16,7 @@ namespace {
 constexpr int kFlagColumns = 13;
 constexpr int kFlagRows = 9;
 
-/// Ropes, cloth and particles in gusts over a ground.
+/// Adds ropes, cloth and particles in gusts over a ground.
 void fill(Rig& rig, const CheckSetting& setting) {
   rig.add(BodyDesc{.shape = Shape::half_space(), .position = {0, -1, 0}});
   rig.add(
@@ -27,7 +27,7 @@ void fill(Rig& rig, const CheckSetting& setting) {
                         .drag_coefficient = real(0.5)});
 }
 
-/// Seconds from one picture to the next.
+/// A Display gives the seconds from one picture to the next.
 using Display = double (*)(int picture);
 
 double at_24_hz(int /*picture*/) {
@@ -43,8 +43,8 @@ double uneven(int picture) {
   return 0.001 * (1 + (picture * 7919) % 53);
 }
 
-/// State after at least 300 fixed steps and 0.6 s, taken as the time of the display allows and read at every
-/// picture.
+/// Returns a hash of the state after at least 300 fixed steps and 0.6 s. Steps are made as the display's time
+/// allows, and the state is read at every picture.
 std::uint64_t state_after(const CheckSetting& setting, Display display) {
   WorldDesc desc;
   desc.wind = {.velocity = {real(5), real(0), real(1)}, .gust = real(0.5)};
@@ -58,7 +58,7 @@ std::uint64_t state_after(const CheckSetting& setting, Display display) {
       rig.step();
       ++steps;
     }
-    // What a viewer does at every picture must not touch the state.
+    // What a viewer does at every picture must not change the state.
     if (!std::isfinite(rig.energy().total())) return 0;
     const Snapshot kept = rig.world().snapshot();
     if (picture % 10 == 0) must(rig.world().restore(kept));
@@ -81,7 +81,8 @@ double root_mean_square(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Root mean square speed about the mean wind of light particles, far apart and carried by it [m/s].
+/// Returns the root mean square speed, relative to the mean wind, of light particles that are far apart and
+/// carried by it [m/s].
 double particle_response(const CheckSetting& setting) {
   const int side = 12;
   WorldDesc desc = windy();
@@ -105,7 +106,7 @@ double particle_response(const CheckSetting& setting) {
   return root_mean_square(speeds);
 }
 
-/// Root mean square distance of a flag's free corner from its mean place [m].
+/// Returns the root mean square distance of a flag's free corner from its mean position [m].
 double flag_response(const CheckSetting& setting) {
   Rig rig(setting, windy());
   ClothDesc desc{.columns = kFlagColumns,
@@ -167,10 +168,10 @@ Rows display_rate(const CheckSetting& setting) {
   return rows;
 }
 
-/// A machine that needs `cost` for a step [s], for a while ten times as much, and shows 60 pictures a second
-/// when it can. Clock (hooke/clock.h) may ask for at most 4 steps between two pictures, so in the overload
-/// the machine makes 1 / cost steps per second, and right after it 60 again; the steps are those of a machine
-/// without load, fewer of them.
+/// A machine needs `cost` for a step [s], for a while ten times as much, and shows 60 pictures a second when
+/// it can. Clock (hooke/clock.h) asks for at most 4 steps between two pictures. So in the overload the
+/// machine makes 1 / cost steps per second, and right after it 60 again. The steps are those of a machine
+/// without load, only fewer.
 Rows overload(const CheckSetting& setting) {
   constexpr double kPicture = 1.0 / 60;
   constexpr double kCost = 0.004;
@@ -180,7 +181,7 @@ Rows overload(const CheckSetting& setting) {
   double now = 0;
   int most = 0;
   int made = 0;
-  // Until `end`, at this cost; returns steps per second.
+  // Runs until `end` at this cost and returns steps per second.
   const auto live = [&](double end, double cost) {
     const double start = now;
     const int before = made;
@@ -196,7 +197,7 @@ Rows overload(const CheckSetting& setting) {
   };
   live(1, kCost);
   const double slow = live(3, 10 * kCost);
-  live(3.2, kCost);  // the last slow picture's time is still owed
+  live(3.2, kCost);  // The last slow picture's time is still to be simulated.
   const double again = live(5.2, kCost);
   Rig calm(setting);
   fill(calm, setting);
@@ -218,7 +219,7 @@ Rows overload(const CheckSetting& setting) {
               rig.healthy() && rig.state_hash() == calm.state_hash() ? 0 : 1, 0)};
 }
 
-/// The wind is a function of time and place, so what it does has the same size at 30, 60, 120 and 240 Hz.
+/// The wind is a function of time and place, so its effect has the same size at 30, 60, 120 and 240 Hz.
 Rows gusts(const CheckSetting& setting) {
   Rows rows;
   add_rates(setting, "particle: rms speed about the mean", "m/s", particle_response, rows);
@@ -228,7 +229,7 @@ Rows gusts(const CheckSetting& setting) {
 
 namespace {
 
-/// Balls in a line that is not quite straight; the first runs into the others.
+/// Makes balls in a line that is not quite straight; the first runs into the others.
 std::vector<BodyDesc> balls_that_collide() {
   std::vector<BodyDesc> balls;
   for (int i = 0; i < 4; ++i) {
@@ -241,7 +242,7 @@ std::vector<BodyDesc> balls_that_collide() {
   return balls;
 }
 
-/// A rectangle of springs with one diagonal; its corners set out with different speeds.
+/// Makes a rectangle of springs with one diagonal, whose corners start with different speeds.
 ParticlesDesc braced_rectangle() {
   ParticlesDesc lattice;
   for (int i = 0; i < 4; ++i) {
@@ -266,8 +267,8 @@ void turn_around(Rig& rig, const std::vector<BodyId>& balls, ParticlesId springs
 
 }  // namespace
 
-/// Elastic hits without friction and springs without damping run backward as they ran forward: with every
-/// velocity turned around all is where it began after the same time (Loschmidt 1876).
+/// Elastic impacts without friction and springs without damping run backward as they ran forward. With every
+/// velocity reversed, all is where it began after the same time (Loschmidt 1876).
 Rows there_and_back(const CheckSetting& setting) {
   WorldDesc space = without_air();
   space.gravity = {};

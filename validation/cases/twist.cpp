@@ -1,4 +1,4 @@
-/// Ropes that resist twist: shafts, and a cable that is turned until it throws a loop.
+/// Tests ropes that resist twist: shafts, and a cable that is twisted until it forms a loop.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -21,7 +21,8 @@ WorldDesc empty_space() {
   return desc;
 }
 
-/// A straight rod from the origin to (1, 0, 0), with a point more beyond either end to clamp it by.
+/// Describes a straight rod from the origin to (1, 0, 0), with one more point beyond either end, by which it
+/// is clamped.
 RopeDesc straight_rod(int segments) {
   RopeDesc desc{.total_mass = real(0.01),
                 .bend_stiffness = real(1),
@@ -40,7 +41,7 @@ BodyDesc hand(BodyKind kind, DVec3 place, double turns_per_second) {
           .collides = false};
 }
 
-/// Points `first` and the next are held by a body.
+/// Makes a body hold the point `first` and the next one.
 void clamp(Rig& rig, BodyId body, RopeId rope, std::uint32_t first) {
   for (std::uint32_t i = first; i < first + 2; ++i) {
     must(rig.world().add_hook(
@@ -54,7 +55,7 @@ double sum_of(const std::vector<Real>& values) {
   return sum;
 }
 
-/// A wire between what stands and what turns it by a quarter turn in a second, then holds it.
+/// A wire runs from a fixed body to one that rotates it by a quarter turn in a second, then holds it.
 struct Shaft {
   Rig rig;
   RopeId rope;
@@ -92,7 +93,7 @@ void add_even_twist(const CheckSetting& setting, Rows& rows) {
   rows.push_back(absolute_row("the same, way from the straight line", "m", 0, away, 2e-5));
 }
 
-/// Clamped along an arc of a quarter circle, pushed off it and left to come back.
+/// Tests a rope that is clamped along an arc of a quarter circle, pushed off it and left to return.
 void add_even_bend(const CheckSetting& setting, Rows& rows) {
   const int segments = 32;
   const double radius = 2 / kPi;
@@ -129,8 +130,8 @@ void add_even_bend(const CheckSetting& setting, Rows& rows) {
       absolute_row("the same, twist that comes of it", "rad", 0, sum_of(rig.world().twists(rope)), 1e-5));
 }
 
-/// The solid angle under which one segment sees the other, with sign, over 4 pi: Klenin and Langowski 2000,
-/// "Computation of writhe in modeling of supercoiled DNA", method 1a.
+/// Returns the signed solid angle under which one segment sees the other, over 4 pi: Klenin and Langowski
+/// 2000, "Computation of writhe in modeling of supercoiled DNA", method 1a.
 double gauss_integral(DVec3 r1, DVec3 r2, DVec3 r3, DVec3 r4) {
   const DVec3 r13 = r3 - r1;
   const DVec3 r14 = r4 - r1;
@@ -144,7 +145,7 @@ double gauss_integral(DVec3 r1, DVec3 r2, DVec3 r3, DVec3 r4) {
   return side == 0 ? 0 : std::copysign(area, side) / (2 * kTau);
 }
 
-/// Writhe of a curve whose ends go on straight along x, which closes far away.
+/// Returns the writhe of a curve whose ends go on straight along x, which closes far away.
 double writhe(std::vector<DVec3> x) {
   constexpr double kFar = 1e4;
   x.insert(x.begin(), x.front() - DVec3{kFar, 0, 0});
@@ -198,8 +199,8 @@ Rows torsion(const CheckSetting& setting) {
   return rows;
 }
 
-/// Turns put into a slack cable are its twist and its writhe, Lk = Tw + Wr (Calugareanu 1959), while no
-/// strand passes another; each that does takes two turns away (Fuller 1971).
+/// The turns put into a slack cable are its twist plus its writhe, Lk = Tw + Wr (Calugareanu 1959), while no
+/// strand passes another. Each passage takes two turns away (Fuller 1971).
 Rows link_of_loop(const CheckSetting& setting) {
   const int segments = 64;
   RopeDesc desc = straight_rod(segments);
@@ -236,13 +237,14 @@ Rows link_of_loop(const CheckSetting& setting) {
 
 namespace {
 
-/// Whether a rod with a twist that is clamped at one end, and at the other to what slides along it, bends
-/// out.
+/// Tells whether a twisted rod bends out that is clamped at one end, and at the other to a body that slides
+/// along it.
 bool throws_itself(const CheckSetting& setting, double twist) {
   const int segments = 48;
   RopeDesc desc = straight_rod(segments);
   desc.twist = real(twist * (segments + 2) / segments);
-  desc.bend_damping = real(0.002);  // Much of it would hide how slowly it grows near the torque sought.
+  // More damping would hide how slowly the bend grows near the torque sought.
+  desc.bend_damping = real(0.002);
   desc.pins = {{.point = 0}, {.point = 1}};
   Rig rig(setting, empty_space());
   const RopeId rope = rig.add(desc);
@@ -261,11 +263,11 @@ bool throws_itself(const CheckSetting& setting, double twist) {
 
 }  // namespace
 
-/// A rod clamped at both ends, which are free to come nearer, bends to a helix when the torque in it passes
-/// 8.9868 EI / L: the first root of tan(M L / 2 EI) = M L / 2 EI (Greenhill 1883).
+/// A rod is clamped at both ends, which are free to approach each other. It bends to a helix when its torque
+/// exceeds 8.9868 EI / L, from the first root of tan(M L / 2 EI) = M L / 2 EI (Greenhill 1883).
 Rows twisted_rod(const CheckSetting& setting) {
   const double expected = 2 * 4.493409;
-  const double stiffness = 0.8;  // GJ over EI
+  const double stiffness = 0.8;  // GJ over EI.
   const double found = bisect(0.9 * expected, 1.1 * expected, 6,
                               [&](double torque) { return !throws_itself(setting, torque / stiffness); });
   CheckRow row = relative_row("torque that throws a twisted rod out, M L / EI", "", expected, found, 0.02);

@@ -1,4 +1,4 @@
-/// Pendulums with more than one angle: a double one, and one that goes round.
+/// Tests pendulums with more than one angle: a double one, and one that moves around the vertical.
 
 #include "validation/cases.h"
 #include "validation/rig.h"
@@ -12,14 +12,15 @@ namespace hooke::check {
 namespace {
 
 constexpr const char* kPlaneSolver = "springs";
-constexpr double kRodStiffness = 1e6;  ///< Of rods in the laboratory [N/m].
+constexpr double kRodStiffness = 1e6;  ///< Stiffness of rods in the laboratory [N/m].
 
-/// Angles from straight down of two rods of 1 m with 1 kg each at its end, and their rates [rad/s].
+/// These are the angles from straight down of two rods of 1 m with 1 kg each at their ends, and their rates
+/// [rad/s].
 using DoubleAngles = std::array<double, 4>;
 
-/// Equations of motion of the double pendulum from its Lagrangian (textbook), d = a - b:
-///   a'' = (-3 g sin a - g sin(a - 2 b) - 2 sin d (b'^2 + a'^2 cos d)) / (3 - cos 2d)
-///   b'' = 2 sin d (2 a'^2 + 2 g cos a + b'^2 cos d) / (3 - cos 2d)
+/// These are the equations of motion of the double pendulum from its Lagrangian (textbook), d = a - b:
+/// a'' = (-3 g sin a - g sin(a - 2 b) - 2 sin d (b'^2 + a'^2 cos d)) / (3 - cos 2d)
+/// b'' = 2 sin d (2 a'^2 + 2 g cos a + b'^2 cos d) / (3 - cos 2d)
 DoubleAngles rates(const DoubleAngles& y) {
   const auto [a, b, va, vb] = y;
   const double d = a - b;
@@ -31,8 +32,8 @@ DoubleAngles rates(const DoubleAngles& y) {
           2 * std::sin(d) * (2 * va * va + 2 * kGravity * std::cos(a) + vb * vb * std::cos(d)) / below};
 }
 
-/// Where the end is after `seconds` from rest at these angles: Runge-Kutta 4 in steps of 0.1 ms, exact to
-/// 1e-10 m.
+/// Returns where the end is after `seconds` from rest at these angles, by Runge-Kutta 4 in steps of 0.1 ms,
+/// exact to 1e-10 m.
 DVec3 end_of_double_pendulum(double a, double b, double seconds) {
   constexpr double kFineStep = 1e-4;
   DoubleAngles y = {a, b, 0, 0};
@@ -47,7 +48,8 @@ DVec3 end_of_double_pendulum(double a, double b, double seconds) {
     const DoubleAngles k2 = rates(moved(k1, kFineStep / 2));
     const DoubleAngles k3 = rates(moved(k2, kFineStep / 2));
     const DoubleAngles k4 = rates(moved(k3, kFineStep));
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] += kFineStep / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    for (std::size_t i = 0; i < y.size(); ++i)
+      y[i] += kFineStep / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   }
   return {std::sin(y[0]) + std::sin(y[1]), -std::cos(y[0]) - std::cos(y[1]), 0};
 }
@@ -82,8 +84,8 @@ void add_double_pendulum(const CheckSetting& setting, double degrees, double tol
                   .solver = kPlaneSolver});
 }
 
-/// A pendulum of 1 m at `angle` from straight down that starts across with `speed`. Its rod is stretched from
-/// the start by the pull on it, g cos(angle) + speed^2, so that it does not ring.
+/// A pendulum of 1 m at `angle` from straight down starts across with `speed`. Its rod is stretched from the
+/// start by its tension, g cos(angle) + speed^2, so that it does not oscillate along its length.
 struct Spherical {
   Rig rig;
   ParticlesId id;
@@ -99,16 +101,18 @@ struct Spherical {
   }
 };
 
-/// Angle about the vertical from one highest place to the next of a pendulum of 1 m that starts across at
-/// `angle` with `speed`. With u the depth below the pivot, E = v^2 / 2 - g u and J the angular momentum about
-/// the vertical, u'^2 = 2 (E + g u) (1 - u^2) - J^2 = 2 g (u - u1) (u2 - u) (u + r) (textbook), so that
-///   phi = 2 Int_u1^u2 J / ((1 - u^2) u') du,
-/// by Gauss and Chebyshev, whose weight 1 / sqrt((u - u1) (u2 - u)) is just what u' brings.
+/// Returns the angle about the vertical from one highest point to the next, of a pendulum of 1 m that starts
+/// across at `angle` with `speed`. With u the depth below the pivot, E = v^2 / 2 - g u and J the angular
+/// momentum about the vertical,
+/// u'^2 = 2 (E + g u) (1 - u^2) - J^2 = 2 g (u - u1) (u2 - u) (u + r) (textbook), so that
+/// phi = 2 Int_u1^u2 J / ((1 - u^2) u') du.
+/// The quadrature is that of Gauss and Chebyshev, whose weight 1 / sqrt((u - u1) (u2 - u)) is a factor
+/// of 1 / u'.
 double apsidal_angle(double angle, double speed) {
   const double u1 = std::cos(angle);
   const double spin = speed * std::sin(angle);
   const double energy = 0.5 * speed * speed - kGravity * u1;
-  // The cubic's roots: u1, and two whose sum is -E/g - u1 and whose product is -1 - (sum) u1.
+  // The roots of the cubic are u1, and two with the sum -E/g - u1 and the product -1 - (sum) u1.
   const double sum = -energy / kGravity - u1;
   const double product = -1 - sum * u1;
   const double root = std::sqrt(0.25 * sum * sum - product);
@@ -123,7 +127,7 @@ double apsidal_angle(double angle, double speed) {
   return kTau / kNodes * integral;
 }
 
-/// The same of the moving pendulum: mean of ten.
+/// Returns the angle of the moving pendulum, as a mean of ten.
 double achieved_apsidal_angle(const CheckSetting& setting, double angle, double speed) {
   Spherical pendulum(setting, angle, speed);
   Rig& rig = pendulum.rig;
@@ -139,7 +143,7 @@ double achieved_apsidal_angle(const CheckSetting& setting, double angle, double 
     climb.add(rig.time(), rig.velocities(pendulum.id)[1].y);
     azimuth.add(rig.time(), turned);
   });
-  // It climbs and falls twice as often as it is highest; the first crossing is the lowest place.
+  // The vertical speed is zero at each lowest and each highest point; the first crossing is a lowest one.
   const std::vector<double> times = climb.zero_crossings();
   const std::size_t whole = (times.size() - 1) / 2;
   return (azimuth.at(times[2 * whole]) - azimuth.at(times[0])) / static_cast<double>(whole);
@@ -147,7 +151,8 @@ double achieved_apsidal_angle(const CheckSetting& setting, double angle, double 
 
 }  // namespace
 
-/// Place and energy of a double pendulum after 3 s, against its equations of motion in two angles.
+/// Position and energy of a double pendulum after 3 s are compared with its equations of motion in two
+/// angles.
 Rows double_pendulum(const CheckSetting& setting) {
   Rows rows;
   add_double_pendulum(setting, 10, 0.01, rows);
@@ -155,8 +160,8 @@ Rows double_pendulum(const CheckSetting& setting) {
   return rows;
 }
 
-/// A conical pendulum goes round with w^2 = g / (L cos theta); one that swings as well goes from one highest
-/// place to the next by apsidal_angle (textbook).
+/// A conical pendulum rotates with w^2 = g / (L cos theta); one that also swings goes from one highest point
+/// to the next by apsidal_angle (textbook).
 Rows conical_pendulum(const CheckSetting& setting) {
   Rows rows;
   for (const double degrees : {20.0, 60.0}) {
