@@ -1,9 +1,10 @@
-/// One pass over the contacts of a pyramid of 100 rows, one thread, for each instruction set of this machine.
+/// Measures one pass over the contacts of a pyramid of 100 rows, in one thread, for each instruction set of
+/// this machine.
 ///
-/// 5050 cubes of edge 1 m and 100 kg touch their neighbors in the row and rest on two below: 14 950 manifolds
-/// of four points, in the order of their bodies, nothing but the solver's part of the step. `solve` is the
-/// bias pass (normals alone), `relax` normals and friction, `prepare` coloring, rows and warm start,
-/// `bodies` the passes over bodies of a substep, `store` the way back. The report's time is for all;
+/// 5050 cubes of edge 1 m and 100 kg touch their neighbors in the row and rest on two below. There are 14 950
+/// manifolds of four points, in the order of their bodies, and only the solver's part of the step runs.
+/// `solve` is the bias pass (normals alone), `relax` normals and friction, `prepare` coloring, rows and warm
+/// start, `bodies` the passes over bodies of a substep, `store` the way back. The report's time is for all;
 /// `ns_per_contact` divides it by 14 950.
 
 #include "parallel/thread_pool.h"
@@ -42,7 +43,8 @@ std::uint32_t add_body(Pyramid& pyramid, DVec3 center, Real mass) {
   return row;
 }
 
-/// The face that cube `b` shares with `a`: the square around `center`, of half sizes across the normal n.
+/// Adds the face that cube `b` shares with `a`: the square around `center`, of half sizes across the normal
+/// n.
 void add_contact(Pyramid& pyramid, std::uint32_t a, std::uint32_t b, Vec3 n, Vec3 half) {
   state::Manifold m;
   m.body_a = a;
@@ -52,7 +54,7 @@ void add_contact(Pyramid& pyramid, std::uint32_t a, std::uint32_t b, Vec3 n, Vec
   m.friction = m.static_friction = Real(0.6);
   const DVec3 to_b = pyramid.bodies.center[b];
   const Vec3 d = vector_cast<Real>(to_b - pyramid.bodies.center[a]);
-  // Cubes one above the other are half an edge apart sideways: they share half a face.
+  // Cubes one above the other are half an edge apart sideways, so that they share half a face.
   const Vec3 middle = a == 0 ? d - Real(0.5) * n : Real(0.5) * d;
   for (int k = 0; k < 4; ++k) {
     const Real u = k % 2 == 0 ? Real(-1) : Real(1);
@@ -92,7 +94,7 @@ Pyramid make_pyramid() {
   return pyramid;
 }
 
-/// A pyramid at rest after a step of 8 substeps, and what it takes to go on.
+/// This is a pyramid at rest after a step of 8 substeps, with what the solver needs to go on.
 struct Bench {
   Pyramid pyramid = make_pyramid();
   parallel::ThreadPool pool{1};

@@ -23,7 +23,8 @@ Box cube_at(Vec3 center) {
   return {center - half, center + half};
 }
 
-/// Same figures on every machine: a step of the generator of Numerical Recipes, in [-1, 1].
+/// This is a step of the generator of Numerical Recipes, in [-1, 1], which gives the same figures on every
+/// machine.
 struct Noise {
   std::uint32_t state = 12345;
 

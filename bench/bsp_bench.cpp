@@ -1,6 +1,7 @@
-/// Rays against a bumpy sphere of n triangles and against a building, one thread, time per ray: by the BSP
-/// tree, by the tree of boxes, by all triangles, and by Embree where it is installed. Then what it takes to
-/// build the trees. `hits` is the share of rays that hit: the same for all.
+/// Casts rays against a bumpy sphere of n triangles and against a building, in one thread, and prints the
+/// time per ray: by the BSP tree, by the tree of boxes, by all triangles, and by Embree where it is
+/// installed. It then measures the time to build the trees. `hits` is the share of rays that hit, the same
+/// for all.
 
 #include "geometry/bsp/bsp_tree.h"
 #include "geometry/building.h"
@@ -26,7 +27,8 @@ struct Ray {
   DVec3 origin, direction;
 };
 
-/// 8 4^n triangles for n up to 9; the building of n rooms squared, four storeys, for 10 and more.
+/// Returns a sphere of 8 4^n triangles for n up to 9, and a building of n rooms squared, four storeys, for 10
+/// and more.
 const SolidMesh& mesh_of(std::int64_t n) {
   static std::map<std::int64_t, SolidMesh> meshes;
   const auto [entry, is_new] = meshes.try_emplace(n);
@@ -36,7 +38,7 @@ const SolidMesh& mesh_of(std::int64_t n) {
     entry->second =
         n < 10 ? test::make_star(static_cast<int>(n), 0.8, random)
                : test::moved(test::make_building(rooms, 4, rooms), {}, 0.5 / (2.1 * n), {-1, -0.1, -1});
-    // What float cannot say would be another mesh for the tree of boxes.
+    // Coordinates are rounded to float, because the tree of boxes would otherwise hold another mesh.
     for (DVec3& p : entry->second.positions) p = vector_cast<double>(vector_cast<float>(p));
   }
   return entry->second;

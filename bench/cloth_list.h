@@ -7,9 +7,9 @@
 #include <limits>
 
 /// \file
-/// Scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100 points,
-/// spacing 2 cm, 1 kg each, hanging flat, two top corners held; structural and shear springs rigid, bend
-/// springs soft.
+/// Makes scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100
+/// points, spacing 2 cm, 1 kg each, hanging flat, two top corners held; structural and shear springs rigid,
+/// bend springs soft.
 
 namespace hooke::bench {
 
@@ -56,8 +56,8 @@ inline ClothList cloth_100(int side = 100) {
   return list;
 }
 
-/// The inner edges of the same cloth with both diagonals by turns, its rows waved by 5 mm so that they fold;
-/// bends by angle, or isometric ones.
+/// Makes bends at the inner edges of the same cloth with both diagonals by turns. Its rows are waved by 5 mm
+/// so that they fold. Bends are by angle, or isometric.
 inline state::Bends wave_cloth(ClothList& list, bool isometric, int side = 100) {
   state::Bends bends;
   const auto point = [side](int column, int row) { return static_cast<std::uint32_t>(row * side + column); };
@@ -86,7 +86,7 @@ inline state::Bends wave_cloth(ClothList& list, bool isometric, int side = 100) 
       const std::uint32_t d = point(column + 1, row + 1);
       const bool even = (row + column) % 2 == 0;
       even ? add(d, a, c, b) : add(b, c, a, d);
-      // The wings of an edge between two cells are where their diagonals do not end.
+      // The opposite vertices of an edge between two cells are where their diagonals do not end.
       if (column > 0) even ? add(a, c, point(column - 1, row), d) : add(a, c, point(column - 1, row + 1), b);
       if (row > 0) even ? add(b, a, point(column + 1, row - 1), d) : add(b, a, point(column, row - 1), c);
     }

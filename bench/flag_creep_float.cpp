@@ -1,4 +1,5 @@
-/// The rows of the laboratory, which is double throughout and knows no limits, and of the solver in float.
+/// Prints the rows of the laboratory, which is double throughout and has no limits, and of the solver in
+/// float.
 #include "hooke/lab.h"
 
 #include "flag_creep.h"

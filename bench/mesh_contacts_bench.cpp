@@ -1,5 +1,5 @@
-/// Contacts of two solids of triangles by trees of oriented boxes and by all pairs, over the number of their
-/// faces: two rings that are linked and touch.
+/// Measures contacts of two solids of triangles by trees of oriented boxes and by all pairs, over the number
+/// of their faces: two rings that are linked and touch.
 
 #include "geometry/meshes.h"
 #include "lab/shape/mesh_contacts.h"

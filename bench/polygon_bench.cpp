@@ -1,5 +1,5 @@
-/// Whether points are in a convex polygon, by each of the ways of hooke/geometry.h: nanoseconds a question,
-/// for 3 to 64 corners. Half of the points are inside.
+/// Measures whether points are in a convex polygon, by each function of hooke/geometry.h: nanoseconds per
+/// question, for 3 to 64 corners. Half of the points are inside.
 
 #include "hooke/geometry.h"
 

@@ -1,5 +1,5 @@
-/// What each preselection leaves of all pairs of triangles of two meshes: a table over meshes, twice the same
-/// mesh in 200 poses around each other. `preselection_table [MODEL...]` takes model files too.
+/// Prints a table of how many pairs of triangles of two meshes each preselection leaves. It compares each
+/// mesh with itself in 200 poses around it. `preselection_table [MODEL...]` takes model files, too.
 
 #include "hooke/model_io.h"
 
@@ -39,7 +39,7 @@ RigidPose random_pose(std::mt19937_64& random, double reach) {
   return {reach * hooke::test::random_vector(random), normalize(hooke::Quaternion<double>{q.x, q.y, q.z, w})};
 }
 
-/// Pairs that overlap, among those that the oriented boxes leave.
+/// Counts the pairs that overlap, among those that the oriented boxes leave.
 std::uint64_t count_true(const Mesh& mesh, const BoundingVolumes& volumes, const RigidPose& b_in_a) {
   std::vector<TrianglePair> found;
   find_candidates(volumes.oriented_box_tree, volumes.oriented_box_tree, b_in_a, 0, found);

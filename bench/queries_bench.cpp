@@ -1,6 +1,6 @@
-/// Queries of a world of 10 000 boxes, balls and capsules that lie about on 100 x 100 m, one thread: time per
-/// query. Ways are 50 m long, from 10 m above to the ground or level at 1 m; the counter `found` is the share
-/// that meets something.
+/// Measures queries of a world of 10 000 boxes, balls and capsules that lie about on 100 x 100 m, in one
+/// thread: time per query. Paths are 50 m long, from 10 m above to the ground or level at 1 m; the counter
+/// `found` is the share that hits something.
 
 #include "hooke/hooke.h"
 
@@ -11,7 +11,8 @@ namespace {
 
 using namespace hooke;
 
-/// Same figures on every machine: a step of the generator of Numerical Recipes, in [0, 1).
+/// This is a step of the generator of Numerical Recipes, in [0, 1), which gives the same figures on every
+/// machine.
 double next(std::uint32_t& state) {
   state = 1664525u * state + 1013904223u;
   return static_cast<double>(state >> 8) / static_cast<double>(1 << 24);

@@ -77,10 +77,10 @@ struct BenchTable {
   std::string csv =
       "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,mean_stretch,max_penetration,"
       "kinetic_energy,state_hash\n";
-  bool same_hashes = true;  ///< No scene's hash depends on the number of workers.
+  bool same_hashes = true;  ///< Whether no scene's hash depends on the number of workers.
 };
 
-/// Runs one scene; nothing if it cannot be read or built, which has been reported then.
+/// Runs one scene; returns nothing if it cannot be read or built, which has then been reported.
 std::optional<BenchRow> time_scene(const std::string& path, int workers, const BenchOptions& options) {
   std::optional<Scene> scene = read_scene(path);
   if (!scene) return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<BenchRow> time_scene(const std::string& path, int workers, const B
   return measure(*simulation, options.steps.value_or(kSteps));
 }
 
-/// Times every scene with every number of workers; nothing as above.
+/// Times every scene with every number of workers; returns nothing if one cannot be read or built.
 std::optional<BenchTable> time_scenes(const BenchOptions& options) {
   BenchTable table;
   Progress progress("timing", options.scenes.size() * options.workers.size());

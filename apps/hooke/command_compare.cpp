@@ -71,14 +71,14 @@ Result<void> check(CompareOptions& options) {
   return {};
 }
 
-/// Only the solver runs what the laboratory refuses.
+/// Tells whether only the solver is asked for, which also runs what the laboratory refuses.
 bool only_solver(const CompareOptions& options) {
   return options.steppers.size() == 1 && options.steppers.front() == kSolverName;
 }
 
-/// Leaves out the steppers that the laboratory does not run this scene by, before the long work, and says so:
-/// one that would diverge is no reason to be without the others. Errors: none is left. The laboratory knows
-/// no names of scenes.
+/// Leaves out, before the long work, the steppers by which the laboratory does not run this scene, and
+/// reports them. One stepper that would diverge must not stop the others. The Error tells that none is left.
+/// The laboratory does not know the names of scenes.
 Result<std::vector<Skipped>> skip_refused(const Stage& stage, CompareOptions& options) {
   std::vector<Skipped> skipped;
   std::optional<Error> first;
@@ -158,7 +158,7 @@ Result<void> write_tables(const Comparison& comparison, const std::filesystem::p
   return done;
 }
 
-/// Draws every plot in both formats. Stops at the first that fails.
+/// Draws every plot in both formats; stops at the first that fails.
 Result<void> write_plots(const Comparison& comparison, const std::filesystem::path& folder,
                          std::vector<Picture>& pictures) {
   const std::vector<Plot> plots = plots_of(comparison);

@@ -11,7 +11,7 @@ namespace hooke::app {
 
 namespace {
 
-/// What is asked of the shapes of two models.
+/// This is an operation on the shapes of two models.
 struct Combination {
   const char* option;
   const char* help;
@@ -19,7 +19,7 @@ struct Combination {
   std::string other = {};
 };
 
-/// The model's surface joined with that of `other`; the look is gone.
+/// Returns the model's surface combined with that of `other`; materials and textures are lost.
 Result<Model> combine(const Model& model, const Combination& combination, const ImportOptions& options) {
   const auto other = import_model(combination.other, options);
   if (!other) return other.error();

@@ -14,34 +14,36 @@ class App;
 
 namespace hooke::app {
 
-/// What the program tells its caller.
+/// This is what the program returns to its caller.
 enum ExitCode : int {
   kGood = 0,
-  kFailed = 1,    ///< It ran, and an expectation or a check failed.
+  /// The program ran, and an expectation or a check failed.
+  kFailed = 1,
   kBadInput = 2,  ///< A file or an argument is wrong.
-  kMachine = 3,   ///< The machine cannot: no OpenGL, no display, no ffmpeg or gnuplot, a write that failed.
+  /// The machine lacks something: OpenGL, a display, ffmpeg or gnuplot, or a write failed.
+  kMachine = 3,
 };
 
-/// Reads the words into what `app` was told about. An exit code when the command is over: after --help, or
+/// Reads the words into the options of `app`. Returns an exit code when the command is over: after --help, or
 /// after an error, which is printed.
 std::optional<int> parse(CLI::App& app, Arguments arguments);
 
-/// Prints one line to stderr, and says how to leave.
+/// Prints the error in one line to stderr and returns the exit code for it.
 ExitCode report(const Error& error);
 
-/// Prints "warning: " and one line to stderr.
+/// Prints "warning: " and the error in one line to stderr.
 void warn(const Error& error);
 
-/// Prints every error and warning; errors are bad input.
+/// Prints every error and warning; errors count as bad input.
 ExitCode report(std::span<const Error> errors, std::span<const Error> warnings);
 
-/// The scene, or nothing after its errors were printed.
+/// Returns the scene, or nothing after its errors were printed.
 std::optional<Scene> read_scene(const std::string& path);
 
-/// The simulation, or nothing after the errors were printed.
+/// Returns the simulation, or nothing after the errors were printed.
 std::optional<Simulation> build_simulation(Scene scene);
 
-/// Settings of a scene that the command line may replace.
+/// These are settings of a scene that the command line may replace.
 struct SceneOverrides {
   std::optional<int> workers;
   std::optional<int> substeps;
@@ -52,15 +54,15 @@ struct SceneOverrides {
 void add_overrides(CLI::App& app, SceneOverrides& overrides);
 void apply(const SceneOverrides& overrides, WorldDesc& world);
 
-/// Adds an option for a number within the bounds; unlike the library's own check it refuses what is no
-/// number.
+/// Adds an option for a number within the bounds. Unlike the library's own check it refuses text that is not
+/// a number.
 void add_number(CLI::App& app, const std::string& name, std::optional<double>& number, double low,
                 double high, const std::string& help);
 
-/// Adds --seconds, within what a scene may say.
+/// Adds --seconds, within the range that a scene may have.
 void add_seconds(CLI::App& app, std::optional<double>& seconds, const std::string& help);
 
-/// Number of steps of `scene` in `seconds`.
+/// Returns the number of steps of `scene` in `seconds`.
 std::uint64_t steps_in(const Scene& scene, double seconds);
 
 }  // namespace hooke::app

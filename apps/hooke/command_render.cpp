@@ -28,7 +28,7 @@ struct RenderOptions {
   std::optional<double> at;
   std::optional<double> trail;  ///< [s]
   StyleWords style;
-  std::string stepper;  ///< Of the laboratory; empty for the solver.
+  std::string stepper;  ///< Method of the laboratory; empty for the solver.
   bool force = false;
   SceneOverrides overrides;
 };
@@ -89,10 +89,10 @@ class Film {
     drawing_.record(simulation_);
   }
 
-  /// Times must not decrease. [s]
+  /// Draws the picture at `time` [s]; times must not decrease.
   Result<render::Image> picture_at(double time, Progress* progress) {
     const double steps = time / static_cast<double>(simulation_.scene().dt);
-    // A time that is a whole number of steps, but for its rounding, needs no step beyond.
+    // A time that is a whole number of steps, except for rounding, needs no step beyond.
     const auto last = static_cast<std::uint64_t>(std::ceil(std::max(steps - 1e-4, 0.0)));
     while (steps_ < last) {
       const std::uint64_t left = last - steps_;

@@ -21,8 +21,8 @@ struct RunOptions {
   std::string csv;
   std::string json;
   bool hash = false;
-  std::uint64_t hash_every = 0;  ///< Steps; 0 is never.
-  std::string stepper;           ///< Of the laboratory; empty for the solver.
+  std::uint64_t hash_every = 0;  ///< Steps between hashes; 0 stands for never.
+  std::string stepper;           ///< Method of the laboratory; empty for the solver.
   bool force = false;
   std::uint32_t turned = 0;  ///< Seed of a placement; 0 for none.
 };

@@ -9,7 +9,7 @@ namespace hooke::app {
 
 namespace {
 
-/// Whether a scene says nothing wrong and nothing in vain: what only warns elsewhere is an error here.
+/// Tells whether a scene has no errors and no keys without effect; warnings count as errors here.
 bool is_good(const std::string& path) {
   Loaded<Scene> scene = load_scene(path);
   report(scene.errors, {});

@@ -14,7 +14,7 @@ namespace hooke::app {
 
 namespace {
 
-/// [px]. In a larger window thin ropes are a little thinner than they might be.
+/// Assumed height of the picture [px]. In a larger window thin ropes are a little thinner than they could be.
 constexpr int kUsualHeight = 720;
 
 struct CommandOptions {
@@ -54,7 +54,7 @@ bool is_model(const std::string& path) {
   return std::any_of(known.begin(), known.end(), [&](const char* e) { return ending == e; });
 }
 
-/// The model standing on a ground.
+/// Makes a scene with the model standing on a ground.
 Result<Scene> scene_of_model(const CommandOptions& options) {
   const ImportOptions import = {.fit = options.fit.value_or(1)};
   const auto model = import_model(options.path, import);
@@ -67,7 +67,7 @@ Result<Scene> scene_of_model(const CommandOptions& options) {
   Scene scene;
   const std::filesystem::path path = options.path;
   scene.title = path.filename().string();
-  // The mesh's file is relative to the scene's, which would lie beside it.
+  // Paths of meshes are relative to the scene, so that the scene gets a path beside the model.
   scene.path = (path.parent_path() / "model.json").string();
   scene.meshes.push_back({.name = "model", .file = path.filename().string(), .import = import});
   scene.materials.push_back({.name = "ground", .color = {0.13F, 0.16F, 0.14F}});
@@ -89,7 +89,7 @@ std::optional<Scene> read(const CommandOptions& options, int& code) {
   return std::nullopt;
 }
 
-/// A simulation that can begin again, and its pictures.
+/// A Show is a simulation that can restart, and its pictures.
 class Show {
  public:
   Show(Simulation simulation, DrawingStyle style)

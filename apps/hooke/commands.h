@@ -4,8 +4,8 @@
 #include <string>
 
 /// \file
-/// The subcommands of `hooke`, one file each. All take the words after their name and return the program's
-/// exit code; see ExitCode.
+/// Declares the subcommands of `hooke`, which have one file each. All take the words after their name and
+/// return the program's exit code; see ExitCode.
 
 namespace hooke::app {
 

@@ -74,8 +74,8 @@ bool use_instructions(const std::string& name, const char* said_by) {
   return static_cast<bool>(used);
 }
 
-/// Takes `--instruction-set NAME` out of the arguments, wherever it stands, and does what it says; without
-/// it, what the environment says.
+/// Removes `--instruction-set NAME` from the arguments, wherever it stands, and applies it. Without it the
+/// environment decides.
 bool choose_instructions(std::vector<std::string>& arguments) {
   const auto option = std::find(arguments.begin(), arguments.end(), "--instruction-set");
   if (option == arguments.end()) {

@@ -12,19 +12,19 @@
 
 namespace hooke::app {
 
-/// Whether the words mean the standard output: "-" or "/dev/stdout".
+/// Tells whether a path means the standard output: "-" or "/dev/stdout".
 bool is_standard_output(const std::string& path);
 
-/// A file that appears under its name only when it is complete. Pipes and devices are written as they are.
+/// An OutputFile appears under its name only when it is complete. Pipes and devices are written directly.
 class OutputFile {
  public:
-  /// kFileNotWritable if the folder or file refuses.
+  /// Opens a file. The Error is kFileNotWritable if the folder or file refuses.
   static Result<OutputFile> create(const std::string& path);
 
-  /// A write that fails shows in finish().
+  /// Writes a text. If that fails, finish() returns the error.
   void write(std::string_view text);
 
-  /// Flushes and gives the file its name. Call once, last.
+  /// Flushes the file and gives it its name. Call it once, last.
   Result<void> finish();
 
  private:
@@ -37,12 +37,12 @@ class OutputFile {
   OutputFile(std::FILE* file, std::string path, std::optional<process::NewFile> whole)
       : whole_(std::move(whole)), file_(file), path_(std::move(path)) {}
 
-  std::optional<process::NewFile> whole_;  ///< None for what is written in place.
+  std::optional<process::NewFile> whole_;  ///< Empty for what is written directly.
   std::unique_ptr<std::FILE, Closer> file_;
   std::string path_;
 };
 
-/// All of it, or an Error and the old file; pipes and devices as above.
+/// Writes all of a text; after an Error the old file is as it was. Pipes and devices are written directly.
 Result<void> write_file(const std::string& path, std::string_view text);
 
 }  // namespace hooke::app

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kSilence{1000};
 constexpr std::chrono::milliseconds kInterval{200};
 constexpr int kWidth = 30;
 
-/// "1:02:03" or "2:03".
+/// Returns text such as "1:02:03" or "2:03".
 std::string clock_text(double seconds) {
   const auto total = std::llround(std::clamp(seconds, 0.0, 3.6e6));
   char text[32];

@@ -6,17 +6,17 @@
 
 namespace hooke::app {
 
-/// A line on stderr that says how far a long work is and when it will be over. Shows nothing unless stderr is
-/// a terminal and the work takes more than a second.
+/// Shows a line on stderr with how far a long task is and when it will be over. It shows nothing unless
+/// stderr is a terminal and the task takes more than a second.
 class Progress {
  public:
   Progress(std::string label, std::uint64_t total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Wipes the line.
+  /// Clears the line.
   ~Progress();
 
-  /// `done` of the total; call it as often as you like.
+  /// Shows that `done` of the total is done; callers may call it as often as they like.
   void show(std::uint64_t done);
 
  private:

@@ -33,7 +33,7 @@ std::string csv_line(const lab::Run& run) {
 
 using Quantity = SceneExpectation::Quantity;
 
-/// Figures that only a step of the solver leaves.
+/// Tells whether only a step of the solver gives the figure.
 bool is_of_solver(Quantity quantity) {
   constexpr Quantity kFigures[] = {Quantity::kTension, Quantity::kPenetration, Quantity::kContacts,
                                    Quantity::kAsleep,  Quantity::kForce,       Quantity::kTorque,
@@ -42,12 +42,13 @@ bool is_of_solver(Quantity quantity) {
   return std::find(std::begin(kFigures), std::end(kFigures), quantity) != std::end(kFigures);
 }
 
-/// What the scene promises of the laboratory's run: with `laboratory` in the scene, as it declares it.
+/// Checks the scene's expectations in the laboratory's run, if the scene has `laboratory` and the run is as
+/// it declares.
 class Promises {
  public:
   Promises(Simulation& simulation, bool are_kept) : simulation_(simulation), are_kept_(are_kept) {}
 
-  /// Checks those that are due after so many steps. Errors: those of show_run.
+  /// Checks those that are due after so many steps. Errors are those of show_run.
   Result<void> check(const lab::Run& run, std::uint64_t step) {
     const Scene& scene = simulation_.scene();
     bool is_shown = false;

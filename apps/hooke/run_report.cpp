@@ -66,7 +66,7 @@ bool passed(const Simulation& simulation) {
          std::all_of(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.passed; });
 }
 
-/// The hooks that broke, the first first.
+/// Returns the hooks that broke, in the order of time.
 static std::vector<const SceneObject*> broken_hooks(const Simulation& simulation) {
   std::vector<const SceneObject*> broken;
   for (const SceneObject& object : simulation.objects()) {
@@ -88,7 +88,7 @@ static Json json_of_breaks(const Simulation& simulation) {
   return list;
 }
 
-/// "'glue' first, at 0.853 s, as it needed 312 N and 4.1 N m; 4 hooks in all".
+/// Returns text such as "'glue' first, at 0.853 s, as it needed 312 N and 4.1 N m; 4 hooks in all".
 static std::string text_of_breaks(const Simulation& simulation) {
   const std::vector<const SceneObject*> broken = broken_hooks(simulation);
   if (broken.empty()) return {};
@@ -120,14 +120,14 @@ void note_refused(const StepReport& step, StepReport& worst) {
     worst.*count.number = std::max(worst.*count.number, step.*count.number);
 }
 
-/// How many contacts, hooks and ropes went which way in the last step.
+/// Returns how many contacts, hooks and ropes took each route in the last step.
 static Json json_of_routes(const RouteCounts& routes) {
   Json json = Json::object();
   for (const RouteName& route : kRouteNames) json[route.name] = routes.*route.number;
   return json;
 }
 
-/// The most of each in any step.
+/// Returns the largest number of each kind in any step.
 static Json json_of_refused(const StepReport& worst) {
   Json json = Json::object();
   for (const RefusedCount& count : refused_counts()) json[count.name] = worst.*count.number;
@@ -163,7 +163,7 @@ std::string run_json(const Simulation& simulation, const RunRecord& record) {
       {"warnings", record.warnings},
       {"problems", json_of_problems(record.problems)},
   };
-  // A file's name may be anything, a report is UTF-8.
+  // The name of a file may have any bytes, but a report is UTF-8.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -9,15 +9,15 @@
 
 namespace hooke::app {
 
-/// What a run of a simulation leaves behind, apart from its last state.
+/// A RunRecord is what a run of a simulation gives besides its last state.
 struct RunRecord {
-  std::string scene;                 ///< As the user named it.
+  std::string scene;                 ///< Name as the user gave it.
   std::vector<double> step_ms = {};  ///< Wall time of each step.
   Energy start = {};
-  StepReport last = {};                    ///< Of the last step.
-  StepReport worst = {};                   ///< The most of everything refused or left undone in any step.
+  StepReport last = {};   ///< Report of the last step.
+  StepReport worst = {};  ///< Largest number of each kind that any step refused or left undone.
   std::vector<std::string> warnings = {};  ///< One line each, of the file and of the run.
-  std::vector<RunWarning> problems = {};   ///< Of the run.
+  std::vector<RunWarning> problems = {};   ///< Problems of the run.
 };
 
 struct StepTimes {
@@ -26,28 +26,28 @@ struct StepTimes {
   double p99 = 0;
 };
 
-/// Zeros without steps.
+/// Returns zeros without steps.
 StepTimes step_times(const std::vector<double>& step_ms);
 
-/// 16 hexadecimal digits.
+/// Returns 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 
-/// Raises `worst` to what `step` refused or left undone.
+/// Raises the counts in `worst` to those that `step` refused or left undone.
 void note_refused(const StepReport& step, StepReport& worst);
 
-/// No expectation that was due failed, and no event.
+/// Tells whether no expectation that was due failed, and no event.
 bool passed(const Simulation& simulation);
 
-/// One JSON object, with a line break at its end.
+/// Returns one JSON object, with a line break at its end.
 std::string run_json(const Simulation& simulation, const RunRecord& record);
 
-/// A few lines to read.
+/// Returns a few lines for people.
 std::string run_summary(const Simulation& simulation, const RunRecord& record);
 
-/// The names of the columns of step_csv.
+/// Returns the names of the columns of csv_line.
 std::string csv_header();
 
-/// The present state as one line.
+/// Returns the present state as one line.
 std::string csv_line(const World& world, std::uint32_t contacts);
 
 }  // namespace hooke::app

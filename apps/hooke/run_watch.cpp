@@ -14,21 +14,23 @@ namespace hooke::app {
 
 namespace {
 
-/// Kinds of trouble; those of StepReport come after them, in the order of kRefusedCounts.
+/// These are kinds of trouble; those of StepReport come after them, in the order of kRefusedCounts.
 enum Kind : int { kStretch, kSlack, kGapAtStart, kGap, kOverlap, kTooStiff, kCells, kLostParts, kFirstCount };
 
-constexpr double kBeyondLimit = 1.1;       ///< Of a declared extension, before it is said.
-constexpr double kOpen = 0.01;             ///< Gap of a hook that is said [m].
-constexpr double kPressed = 0.25;          ///< Overlap of two bodies, over the size of the smaller one.
-constexpr double kOverlapInterval = 0.05;  ///< Between two looks at all contacts [s].
-constexpr double kTooSoft = 1.05;          ///< Jelly, softer than declared by so much.
-constexpr double kTooFlexible = 0.25;      ///< Cloth that bends farther than declared by so much.
-constexpr double kSlackFrom = 1.25;        ///< Cloth, stiffer than what a substep carries by so much,
-constexpr double kFarStretched = 0.02;     ///< that stretches by so much.
-constexpr double kHardlyAny = 2;           ///< The same, beyond which the estimate says no number.
-constexpr double kLost = 0.05;             ///< Share of a mesh's volume that its cells do not have.
+constexpr double kBeyondLimit = 1.1;  ///< Stretch over the declared limit from which on it is reported.
+constexpr double kOpen = 0.01;        ///< Gap of a hook that is reported [m].
+/// Overlap of two bodies, over half of the thinnest side of the smaller one.
+constexpr double kPressed = 0.25;
+constexpr double kOverlapInterval = 0.05;  ///< Time between two checks of all contacts [s].
+constexpr double kTooSoft = 1.05;          ///< Factor by which jelly is softer than declared.
+constexpr double kTooFlexible = 0.25;      ///< Share by which cloth bends farther than declared.
+/// Cloth is reported if it is stiffer by this factor than what a substep carries,
+constexpr double kSlackFrom = 1.25;
+constexpr double kFarStretched = 0.02;  ///< and stretches by this share.
+constexpr double kHardlyAny = 2;        ///< Share of extra bending beyond which the estimate gives no number.
+constexpr double kLost = 0.05;          ///< Share of a mesh's volume that its cells do not have.
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
-constexpr std::int32_t kMostSubsteps = 64;  ///< That a scene may have.
+constexpr std::int32_t kMostSubsteps = 64;  ///< Largest number that a scene may have.
 
 constexpr std::array kRefusedCounts = {
     RefusedCount{&StepReport::rows_quarantined, "rows_quarantined",
@@ -60,7 +62,7 @@ double percent(double ratio) {
   return 100 * ratio;
 }
 
-/// What the scene says of an object of the kind that `list` holds.
+/// Returns the description in the scene of an object of the kind that `list` holds.
 template <class T>
 const T& declared(const Scene& scene, const SceneObject& object, std::vector<T> SceneObjects::*list) {
   static const T usual = {};
@@ -73,14 +75,14 @@ double substep_of(const Scene& scene) {
   return in_double(scene.dt) / (scene.world.substeps * scene.world.particle_substeps);
 }
 
-/// The setting that makes a substep shorter by `factor`, as an advice.
+/// Returns the setting that makes a substep shorter by `factor`, as advice.
 std::string more_substeps(const Scene& scene, double factor, const char* otherwise) {
   const double wanted = std::ceil(scene.world.particle_substeps * factor);
   if (wanted > kMostSubsteps) return otherwise;
   return "particle_substeps " + text_of("%.0f", wanted) + ", or " + otherwise;
 }
 
-/// Size of the smallest cell along an edge [m]; 0 for what has no cells.
+/// Returns the size of the smallest cell along an edge [m]; 0 for a solid without cells.
 double cell_of(const SceneSolid& solid) {
   if (solid.desc.elasticity != SolidDesc::Elasticity::kTetrahedra) return 0;
   if (!solid.mesh.empty()) return in_double(solid.desc.cell);
@@ -95,7 +97,7 @@ double cell_of(const SceneCloth& cloth) {
                   in_double(cloth.desc.height) / std::max(cloth.desc.rows - 1, 1));
 }
 
-/// Half of the thinnest side of a body [m]; 0 where it is not known.
+/// Returns half of the thinnest side of a body [m]; 0 where it is not known.
 double half_size(const Shape& shape) {
   switch (shape.kind) {
     case ShapeKind::kSphere:
@@ -140,10 +142,10 @@ std::optional<RunWarning> softness(const Scene& scene, const SceneSolid& solid) 
       .cure = more_substeps(scene, std::sqrt(softer), "larger cells")};
 }
 
-/// Bends are solved one after the other, once in a substep, and undo in part what their neighbors did: over n
+/// Bends are solved one after the other, once in a substep, and undo in part what their neighbors did. Over n
 /// cells of size a, cloth of rigidity D and density rho bends by about 1 + n^1.3 sqrt(D / rho) h / a^2 times
-/// as far as it should, measured on strips of 5 and 10 cells that hang from a clamped edge. Weight lets no
-/// more of the cloth act as one than its bending length (D / rho g)^(1/3).
+/// as far as it should, measured on strips of 5 and 10 cells that hang from a clamped edge. Under weight, the
+/// part of the cloth that acts as one is at most its bending length (D / rho g)^(1/3).
 std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) {
   const ClothDesc& desc = cloth.desc;
   const double cell = cell_of(cloth);
@@ -170,8 +172,9 @@ std::optional<RunWarning> softness(const Scene& scene, const SceneCloth& cloth) 
       .cure = more_substeps(scene, excess / kTooFlexible, "larger cells")};
 }
 
-/// What a substep carries of the stiffness of a spring along an edge of cloth, k = 1.4 m / h^2 with the mass
-/// m of a point: sheets of 9 to 31 points a side whose edge is pulled stretch as if they had no more [N/m].
+/// Returns the part of the stiffness of a spring along an edge of cloth that a substep carries, k = 1.4 m /
+/// h^2 with the mass m of a point [N/m]. Sheets of 9 to 31 points a side whose edge is pulled stretch as if
+/// they had no more.
 double carried_stiffness(const Scene& scene, const SceneCloth& cloth, std::uint32_t points, double area) {
   const ClothDesc& desc = cloth.desc;
   const double mass = desc.total_mass ? in_double(*desc.total_mass) : in_double(desc.areal_density) * area;
@@ -179,8 +182,8 @@ double carried_stiffness(const Scene& scene, const SceneCloth& cloth, std::uint3
   return 1.4 * mass / points / (h * h);
 }
 
-/// Points keep half the thickness from what they touch: more than a cell of it is more than the cells can
-/// show.
+/// Points keep half the thickness from what they touch. The cells cannot represent a thickness larger than a
+/// cell.
 std::optional<RunWarning> thickness(double cell, Real thickness) {
   if (!(cell > 0) || !(in_double(thickness) > cell)) return std::nullopt;
   return RunWarning{
@@ -193,7 +196,8 @@ std::optional<RunWarning> thickness(double cell, Real thickness) {
       .cure = "less thickness, or larger cells"};
 }
 
-/// A solid that fills a mesh loses what is thinner than its cells, and of what is round the outermost.
+/// A solid that fills a mesh loses parts that are thinner than its cells, and the outermost parts of round
+/// shapes.
 std::optional<RunWarning> lost_parts(const World& world, const SceneObject& object, const SceneSolid& solid) {
   if (object.model == nullptr || !(cell_of(solid) > 0)) return std::nullopt;
   const double whole = volume_of(object.model->mesh);
@@ -254,7 +258,8 @@ bool RunWatch::knows_all(std::span<const SceneObject> objects) {
 void RunWatch::take_new_objects(const Simulation& simulation) {
   const std::span<const SceneObject> objects = simulation.objects();
   if (knows_all(objects)) return;
-  // Both stand in order of creation: what is not found further on is new, what is passed over is gone.
+  // Both lists are in order of creation: an object that is not found further on is new, one that is passed
+  // over is gone.
   std::vector<Watched> now;
   std::size_t next = 0;
   for (const SceneObject& object : objects) {
@@ -271,7 +276,7 @@ void RunWatch::take_new_objects(const Simulation& simulation) {
   watched_ = std::move(now);
 }
 
-/// The springs along the edges of a cloth, which have its limit: of a grid those of its cells.
+/// Returns the springs along the edges of a cloth, which have its limit; of a grid, those of its cells.
 template <class Edge>
 static std::vector<Edge> edges_of(const World& world, const SceneObject& object, const SceneCloth& cloth) {
   std::vector<Edge> edges;
@@ -362,7 +367,7 @@ void RunWatch::take_rope(const World& world, const SceneRope& rope, Watched& wat
   }
 }
 
-/// The largest of its edges' relative elongations.
+/// Returns the largest relative elongation of its edges.
 double RunWatch::stretch_of(const World& world, const Watched& watched) {
   const PointView points = positions_of(world, watched.object);
   double most = 0;
@@ -433,7 +438,7 @@ void RunWatch::look_at_overlaps(const World& world) {
   };
   for (const BodyContact& contact : world.body_contacts()) {
     const double depth = -in_double(contact.separation);
-    if (!(depth > kOpen * kPressed)) continue;  // most contacts: nobody is looked up
+    if (!(depth > kOpen * kPressed)) continue;  // Most contacts end here, before bodies are searched.
     const Watched* a = watched_of(contact.a);
     const Watched* b = watched_of(contact.b);
     if (a == nullptr || b == nullptr) continue;
@@ -501,7 +506,7 @@ void RunWatch::look(const Simulation& simulation, const StepReport& report) {
   for (const Watched& watched : watched_) look_at_softness(simulation, watched);
 }
 
-/// Whether two names are of one object of a scene that asks for many: "flag[0]" and "flag[63]".
+/// Tells whether two names are of copies of one object of a scene: "flag[0]" and "flag[63]".
 static bool are_copies(const std::string& a, const std::string& b) {
   const std::size_t end = a.rfind('[');
   return end != std::string::npos && b.rfind('[') == end && a.compare(0, end, b, 0, end) == 0;
@@ -512,7 +517,7 @@ std::vector<RunWarning> RunWatch::warnings() const {
   std::stable_sort(sorted.begin(), sorted.end(), [](const Worst& a, const Worst& b) {
     return std::pair(a.order, a.kind) < std::pair(b.order, b.kind);
   });
-  // Copies that have the same trouble speak once, by the worst of them.
+  // Copies that have the same trouble give one warning, by the worst of them.
   std::vector<Worst> told;
   std::vector<int> copies;
   for (Worst& one : sorted) {

@@ -7,8 +7,8 @@
 
 namespace hooke::app {
 
-/// The list of descriptions that an object's path leads to, "ropes[2]" or "timeline[0].add.ropes[2]", and
-/// `row`, its place in that list.
+/// Returns the list of descriptions that an object's path leads to, such as "ropes[2]" or
+/// "timeline[0].add.ropes[2]". `row` gets the index in that list.
 const SceneObjects& objects_of(const Scene& scene, const std::string& path, std::size_t& row);
 
 }  // namespace hooke::app

@@ -26,7 +26,7 @@ namespace {
 using WallClock = std::chrono::steady_clock;
 
 constexpr std::size_t kHistory = 600;
-// A slow machine shows the simulation slowly rather than never catching up.
+// A slow machine shows the simulation slowly, because otherwise it would never catch up.
 constexpr int kCatchUpSteps = 4;
 constexpr float kRadiansPerPixel = 0.006F;
 constexpr float kPanelWidth = 300;
@@ -35,12 +35,12 @@ double milliseconds_since(WallClock::time_point start) {
   return std::chrono::duration<double, std::milli>(WallClock::now() - start).count();
 }
 
-/// A value that follows its input slowly enough to be read.
+/// Makes a value follow its input slowly enough to be read.
 void smooth(double& value, double input) {
   value = value > 0 ? 0.92 * value + 0.08 * input : input;
 }
 
-/// One curve of the plot.
+/// This is one curve of the plot.
 struct Curve {
   const char* name = "";
   ImU32 color = 0;
@@ -55,12 +55,12 @@ const std::array<Curve, 4> kCurves = {{
      [](const Energies& e) { return e.kinetic + e.potential + e.elastic; }},
 }};
 
-/// The state of one window between two pictures.
+/// A Session is the state of one window between two pictures.
 struct Session {
   const ViewModel& model;
   bool playing = true;
   Clock clock;
-  double blend = 1;  ///< Where the picture lies between the last two states.
+  double blend = 1;  ///< Position of the picture between the last two states.
   double step_ms = 0;
   double picture_ms = 0;
   std::string problem;
@@ -68,16 +68,16 @@ struct Session {
   render::OrbitCamera camera;
   bool has_camera = false;
   render::DrawList list;
-  std::vector<int> keys;  ///< Pressed since the last picture.
+  std::vector<int> keys;  ///< Keys pressed since the last picture.
 };
 
-/// The user interface's library, from its start to its end.
+/// Starts the library of the user interface and ends it on destruction.
 class UserInterface {
  public:
   explicit UserInterface(GLFWwindow* window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
-    // A window leaves no file behind.
+    // The library must leave no file behind.
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::StyleColorsDark();
     ImGui::GetStyle().WindowRounding = 6;
@@ -142,7 +142,7 @@ void play(Session& session, double elapsed_seconds) {
   session.blend = session.playing ? due.blend : 1;
 }
 
-/// Keeps every stroke for the next picture. The interface's own key states forget a key that is pressed and
+/// Stores every key press for the next picture. The interface's own key states lose a key that is pressed and
 /// released between two pictures, which at three pictures a second is most of them.
 void keep_key(GLFWwindow* window, int key, int /*scancode*/, int action, int /*modifiers*/) {
   auto* session = static_cast<Session*>(glfwGetWindowUserPointer(window));
@@ -187,7 +187,7 @@ void draw_curve(const Session& session, const Curve& curve, ImVec2 corner, ImVec
                                           1.5F);
 }
 
-/// All curves share one scale, so that one sees energy wander from one form to another.
+/// All curves share one scale, so that one sees energy move from one form to another.
 void draw_plot(const Session& session) {
   std::array<double, 2> range = {0, 0};
   for (const Energies& energies : session.history) {
@@ -295,7 +295,7 @@ Result<void> run_window(const ViewModel& model, const ViewOptions& options) {
   if (!renderer) return renderer.error();
   GLFWwindow* window = context.value().window();
   Session session{model, !options.start_paused, clock.value(), 1, 0, 0, {}, {}, {}, false, {}, {}};
-  // Before the interface starts: it passes on to the callbacks it finds.
+  // This comes before the interface starts, which passes events on to the callbacks that it finds.
   glfwSetWindowUserPointer(window, &session);
   glfwSetKeyCallback(window, keep_key);
   const UserInterface interface(window);

@@ -9,7 +9,7 @@ namespace hooke::importer {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
-constexpr std::size_t kLongestName = 4096;  // bytes, with its folders
+constexpr std::size_t kLongestName = 4096;  // Bytes of a name with its folders.
 
 class Names {
  public:
@@ -34,7 +34,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-/// What stands behind each `mtllib`; and the name that the importer tries when that is missing.
+/// Adds what stands behind each `mtllib`, and the name that the importer tries when that is missing.
 void add_of_obj(const std::string& path, std::string_view text, Names& names) {
   constexpr std::string_view kKey = "mtllib";
   for (std::size_t at = 0; (at = text.find(kKey, at)) != std::string_view::npos && !names.is_full();) {
@@ -45,7 +45,7 @@ void add_of_obj(const std::string& path, std::string_view text, Names& names) {
   names.add(std::filesystem::path(path).stem().string() + ".mtl");
 }
 
-/// The string of each "uri" but for data in place.
+/// Adds the string of each "uri", except data in place.
 void add_of_gltf(std::string_view text, Names& names) {
   constexpr std::string_view kKey = "\"uri\"";
   for (std::size_t at = 0; (at = text.find(kKey, at)) != std::string_view::npos && !names.is_full();) {

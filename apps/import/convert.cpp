@@ -19,7 +19,8 @@ namespace hooke::importer {
 namespace {
 
 using io::ImporterExit;
-constexpr unsigned kMaxCorners = 4096;  // of a polygon: triangulating takes the square of it, or the cube
+// Corners of a polygon; triangulating takes the square of it, or the cube.
+constexpr unsigned kMaxCorners = 4096;
 
 using DMat4 = Matrix4<double>;
 using DMat3 = Matrix3<double>;
@@ -35,7 +36,7 @@ DVec3 vector_of(const aiVector3D& v) {
   return {v.x, v.y, v.z};
 }
 
-/// From the frame the importer gives into Hooke's, without scale.
+/// Returns the rotation from the frame that the importer gives into Hooke's, without scale.
 DMat3 rotation_of(const Frame& frame) {
   const DMat3 from_z = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // x, y, z up -> x, z, -y
   const DMat3 from_x = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};  // x up, y, z -> -y, x, z
@@ -52,7 +53,7 @@ float fraction(float value, float fallback) {
   return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : fallback;
 }
 
-/// The Blinn-Phong exponent whose highlight has this roughness: 2 / roughness^4 - 2 (Karis, 2013).
+/// Returns the Blinn-Phong exponent whose highlight has this roughness: 2 / roughness^4 - 2 (Karis, 2013).
 float shininess_of(float roughness) {
   const float squared = std::max(roughness * roughness, 0.04f);
   return std::clamp(2.0f / (squared * squared) - 2.0f, 1.0f, 1000.0f);
@@ -64,7 +65,7 @@ std::string bare_name(const std::string& path) {
   return io::is_bare_file_name(name) ? name : std::string();
 }
 
-/// With each %XX made the byte it stands for.
+/// Replaces each %XX by the byte it stands for.
 std::string percent_decoded(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -145,7 +146,7 @@ class Builder {
     }
   }
 
-  /// Objects that no node of the keyframer names: a .3ds has them where they are.
+  /// Adds objects that no node of the keyframer names; a .3ds has them at their final positions.
   void add_unplaced(const DMat4& transform) {
     for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
       if (!is_placed_[i]) add_mesh(i, transform);
@@ -167,7 +168,7 @@ class Builder {
   }
 
   void add_face(const aiFace& face, const aiMesh& mesh, std::uint32_t base, bool is_mirrored) {
-    if (face.mNumIndices < 3) return;  // points and lines: nothing to collide with
+    if (face.mNumIndices < 3) return;  // Points and lines have nothing to collide with.
     if (face.mNumIndices > kMaxCorners) {
       throw Refusal(ImporterExit::kLimitExceeded, "a polygon of more than 4096 corners");
     }
@@ -196,7 +197,7 @@ class Builder {
   bool has_normals_;
   std::vector<bool> is_placed_ = std::vector<bool>(scene_.mNumMeshes, false);
   io::Soup soup_;
-  std::vector<DVec3> corners_;  ///< Scratch of add_face.
+  std::vector<DVec3> corners_;  ///< Scratch memory of add_face.
 };
 
 void add_nodes(Builder& builder, const aiNode& root) {
@@ -221,7 +222,7 @@ void add_nodes(Builder& builder, const aiNode& root) {
   }
 }
 
-/// Drops the points no triangle uses: their coordinates may be anything.
+/// Drops the points that no triangle uses, because their coordinates may be anything.
 void compact(io::Soup& soup) {
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> moved(soup.positions.size(), kUnused);
@@ -264,7 +265,7 @@ void place(io::Soup& soup, const Frame& frame) {
     if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= io::kMaxModelCoordinate)) {
       throw Refusal(ImporterExit::kOutOfRange, "a coordinate beyond 1e9 m: choose a smaller scale");
     }
-    // As floats from here on, so that welding sees the numbers that are written.
+    // The positions are rounded to float here, so that welding sees the numbers that are written.
     p = vector_cast<double>(vector_cast<float>(p));
   }
 }

@@ -21,7 +21,7 @@ namespace {
 
 using io::ImporterExit;
 
-/// Bytes in memory as assimp reads them.
+/// Serves bytes in memory to assimp.
 class MemoryStream : public Assimp::IOStream {
  public:
   explicit MemoryStream(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -37,7 +37,7 @@ class MemoryStream : public Assimp::IOStream {
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
     const std::size_t base = origin == aiOrigin_CUR ? at_ : origin == aiOrigin_END ? bytes_.size() : 0;
     const std::size_t target = origin == aiOrigin_END ? base - offset : base + offset;
-    if (target > bytes_.size()) return aiReturn_FAILURE;  // a wrapped difference is larger, too
+    if (target > bytes_.size()) return aiReturn_FAILURE;  // A wrapped difference is larger, too.
     at_ = target;
     return aiReturn_SUCCESS;
   }
@@ -86,7 +86,7 @@ std::vector<std::byte> read_regular_file(const std::string& path, std::size_t li
     const ssize_t got = ::read(file.number(), bytes.data() + at, size - at);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw Refusal(ImporterExit::kNotReadable, std::generic_category().message(errno));
-    if (got == 0) break;  // someone cuts the file while it is read
+    if (got == 0) break;  // The file was shortened while it was read.
     at += static_cast<std::size_t>(got);
   }
   bytes.resize(at);
@@ -104,7 +104,7 @@ ModelFolder::ModelFolder(std::string path, std::span<const std::byte> bytes,
       budget -= read.size();
       companions_.emplace(name, std::move(read));
     } catch (const Refusal&) {
-      continue;  // the importer misses it, or does not
+      continue;  // The importer may need it and fail, or may not need it.
     }
   }
 }

@@ -10,16 +10,17 @@
 
 namespace hooke::importer {
 
-/// All bytes of a regular file. Throws a Refusal for a symbolic link that leaves the file's folder, for
-/// folders, pipes and devices and for more than `limit` bytes.
+/// Returns all bytes of a regular file. Throws a Refusal for a symbolic link that leaves the file's folder,
+/// for folders, pipes and devices and for more than `limit` bytes.
 [[nodiscard]] std::vector<std::byte> read_regular_file(const std::string& path, std::size_t limit);
 
-/// What the importers may open: the model and the files that came with it, all in memory. Folders in a name
-/// are dropped; nothing is ever opened or written.
+/// A ModelFolder holds all that the importers may open: the model and the files that came with it, in memory.
+/// Folders in a name are dropped. After construction nothing is read from the disk, and nothing is ever
+/// written.
 class ModelFolder : public Assimp::IOSystem {
  public:
-  /// Reads those of `companions`, bare names, that lie beside the model and fit the budget of its bytes.
-  /// `bytes` must outlive the object.
+  /// Reads those of `companions`, which are bare names, that lie beside the model and fit the budget of its
+  /// bytes. `bytes` must outlive the object.
   ModelFolder(std::string path, std::span<const std::byte> bytes, const std::vector<std::string>& companions);
 
   bool Exists(const char* file) const override;  // NOLINT(readability-identifier-naming): assimp's name
@@ -29,7 +30,7 @@ class ModelFolder : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;      // NOLINT(readability-identifier-naming)
 
  private:
-  /// Null for what is not here.
+  /// Returns null for a file that it does not hold.
   [[nodiscard]] const std::vector<std::byte>* find(const std::string& file) const;
 
   std::string path_;

@@ -11,7 +11,7 @@ namespace hooke::importer {
 
 namespace {
 
-/// Lowers both limits, never raises one.
+/// Lowers both limits and never raises one.
 template <class Kind>
 bool lower_limit(Kind kind, rlim_t value) {
   rlimit limit = {};
@@ -24,7 +24,7 @@ bool lower_limit(Kind kind, rlim_t value) {
 }  // namespace
 
 bool enter_limits() {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // does not outlive the one who waits for it
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // The process must not outlive its parent.
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   bool entered = lower_limit(RLIMIT_CORE, 0) && lower_limit(RLIMIT_CPU, kMaxCpuSeconds) &&
                  lower_limit(RLIMIT_STACK, kMaxStack) && lower_limit(RLIMIT_FSIZE, io::kMaxFlatModelSize);

@@ -11,15 +11,15 @@ inline constexpr std::size_t kMaxStack = std::size_t{8} << 20;
 inline constexpr int kMaxNodeDepth = 64;     ///< Nodes from the root to a leaf.
 inline constexpr int kMaxNodeCount = 16384;  ///< Nodes of one model.
 
-/// Sanitizers need terabytes of address space for their shadow, and calls of the system for their reports.
+/// Sanitizers need terabytes of address space for their shadow memory, and system calls for their reports.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kIsSanitized = true;
 #else
 inline constexpr bool kIsSanitized = false;
 #endif
 
-/// Gives up memory, time, core dumps, new processes and large files for good, before anything is read. False
-/// if the system refuses. Under a sanitizer the memory stays unlimited.
+/// Limits memory, time, core dumps, new processes and large files for good, before anything is read. Returns
+/// false if the system refuses. Under a sanitizer memory and new processes stay unlimited.
 [[nodiscard]] bool enter_limits();
 
 }  // namespace hooke::importer

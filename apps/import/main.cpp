@@ -1,9 +1,9 @@
-/// hooke-import FILE UP SCALE FIT: reads one model file and writes it flat to standard output.
+/// hooke-import FILE UP SCALE FIT reads one model file and writes it in the flat format to standard output.
 ///
-/// UP is format, x, y or z; SCALE a number of meters per unit; FIT a length in meters or "none". The exit
-/// code is an io::ImporterExit and the reason one line on standard error. Made to be started by the hooke
-/// library for each file: it gives up memory and time, reads the file and those that belong to it, seals
-/// itself off from the system, and only then begins to understand what it read.
+/// UP is format, x, y or z; SCALE is a number of meters per unit; FIT is a length in meters or "none". The
+/// exit code is an io::ImporterExit, and the reason is one line on standard error. The hooke library starts
+/// the program for each file. It limits memory and time, reads the file and those that belong to it, seals
+/// itself off from the system, and only then parses what it has read.
 
 #include "companions.h"
 #include "convert.h"
@@ -38,9 +38,9 @@ namespace {
 
 using io::ImporterExit;
 
-constexpr double kCrease = 0.7;  // [rad], 40 degrees: as in model_of
+constexpr double kCrease = 0.7;  // Crease angle of 40 degrees [rad], as in model_of.
 
-/// A file format that may come in, and the one importer that may read it.
+/// This is a file format that may come in, and the one importer that may read it.
 struct Format {
   std::string_view ending;
   std::string_view importer;
@@ -104,7 +104,7 @@ const Format& format_of(const std::string& path) {
   return *format;
 }
 
-/// Leaves only `name` registered: assimp tries other formats on a file it does not recognize.
+/// Leaves only `name` registered, because assimp tries other formats on a file it does not recognize.
 void keep_only(Assimp::Importer& importer, std::string_view name) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     const aiImporterDesc* description = importer.GetImporterInfo(i);
@@ -125,9 +125,10 @@ Model read_model(const Arguments& arguments) {
                                               companion_names(arguments.path, format.ending, bytes));
   Assimp::Importer importer;
   keep_only(importer, format.importer);
-  importer.SetIOHandler(folder.release());  // it takes over
+  importer.SetIOHandler(folder.release());  // The importer owns it from here on.
   if (!kIsSanitized)
-    static_cast<void>(seal_process());  // where there is no seal, the limits are what there is
+    // Where there is no seal, only the limits protect the system.
+    static_cast<void>(seal_process());
   if (format.scan != nullptr) format.scan(bytes);
   const aiScene* scene = importer.ReadFile(arguments.path, 0);
   if (scene == nullptr) {
@@ -182,6 +183,6 @@ ImporterExit run(int count, char** words) {
 
 int main(int count, char** words) {
   const auto exit = hooke::importer::run(count, words);
-  // Whatever assimp left for the end of the process was shaped by the file: do not run it.
+  // What assimp left for the end of the process was shaped by the file, so it is not run.
   ::_exit(static_cast<int>(exit));
 }

@@ -7,7 +7,8 @@
 
 namespace hooke::importer {
 
-/// Why a file is not imported; ends the program with `exit` and the reason on standard error.
+/// A Refusal tells why a file is not imported. It ends the program with `exit` and the reason on standard
+/// error.
 class Refusal : public std::runtime_error {
  public:
   Refusal(io::ImporterExit exit, const std::string& reason) : std::runtime_error(reason), exit_(exit) {}

@@ -25,7 +25,8 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 constexpr std::uint32_t kArchitecture = 0;
 #endif
 
-/// Allowed with any arguments. None takes a name, makes a descriptor or reaches another process.
+/// These calls are allowed with any arguments. None takes a name, makes a descriptor or reaches another
+/// process.
 constexpr std::array kCalls = {
     SYS_brk,        SYS_munmap,        SYS_mremap,       SYS_madvise,        SYS_exit,
     SYS_exit_group, SYS_rt_sigreturn,  SYS_rt_sigaction, SYS_rt_sigprocmask, SYS_sigaltstack,
@@ -37,24 +38,25 @@ constexpr std::uint32_t kAllow = SECCOMP_RET_ALLOW;
 constexpr std::uint32_t kRefuse = SECCOMP_RET_ERRNO | EPERM;
 constexpr std::uint32_t kEnd = SECCOMP_RET_KILL_PROCESS;
 
-/// A program for the kernel's filter, which sees the number of a call and its arguments, in halves.
+/// Builds a program for the kernel's filter, which sees the number of a call and its arguments, in halves.
 class Filter {
  public:
   Filter() {
     load(offsetof(seccomp_data, arch));
-    unless(kArchitecture, kEnd);  // numbers mean other calls
+    unless(kArchitecture, kEnd);  // On another architecture the numbers mean other calls.
     load(offsetof(seccomp_data, nr));
   }
 
   void allow(long call) { when(call, {returning(kAllow)}); }
 
-  /// `writes`: to the two streams that the parent reads.
+  /// Allows `call` to write to the two streams that the parent reads.
   void allow_output(long call) {
     when(call, {loading(low_half(0)), jump(BPF_JEQ, STDOUT_FILENO, 1, 0), jump(BPF_JEQ, STDERR_FILENO, 0, 1),
                 returning(kAllow), returning(kRefuse)});
   }
 
-  /// Memory of no file, not executable: mmap has flags in its fourth argument, mprotect none.
+  /// Allows memory that belongs to no file and is not executable. mmap has flags in its fourth argument,
+  /// mprotect none.
   void allow_memory(long call, bool has_flags) {
     std::vector<sock_filter> body = {loading(low_half(2)), jump(BPF_JSET, PROT_EXEC, 0, 1),
                                      returning(kRefuse)};
@@ -66,7 +68,7 @@ class Filter {
     when(call, body);
   }
 
-  /// Signals to `process` alone.
+  /// Allows signals to `process` alone.
   void allow_signal(long call, pid_t process) {
     when(call, {loading(low_half(0)), jump(BPF_JEQ, static_cast<std::uint32_t>(process), 0, 1),
                 returning(kAllow), returning(kRefuse)});
@@ -87,7 +89,7 @@ class Filter {
     return BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | kind | BPF_K), value,
                     static_cast<std::uint8_t>(then), static_cast<std::uint8_t>(otherwise));
   }
-  /// Of a 64-bit argument, as both processors lay it out: little-endian.
+  /// Returns the offset of the low half of a 64-bit argument; both processors are little-endian.
   static std::size_t low_half(std::size_t argument) {
     return offsetof(seccomp_data, args) + argument * sizeof(std::uint64_t);
   }
@@ -97,7 +99,7 @@ class Filter {
     program_.push_back(jump(BPF_JEQ, value, 1, 0));
     program_.push_back(returning(verdict));
   }
-  /// Runs `body`, which returns, for this call; the number stays loaded for the others.
+  /// Runs `body`, which must return, for this call; the number stays loaded for later ones.
   void when(long call, const std::vector<sock_filter>& body) {
     program_.push_back(jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, body.size()));
     program_.insert(program_.end(), body.begin(), body.end());
@@ -116,7 +118,7 @@ Seal seal_process() {
   filter.allow_output(SYS_writev);
   filter.allow_memory(SYS_mmap, true);
   filter.allow_memory(SYS_mprotect, false);
-  filter.allow_signal(SYS_tgkill, ::getpid());  // abort() ends itself by it
+  filter.allow_signal(SYS_tgkill, ::getpid());  // abort() ends the process by this call.
   return filter.install() ? Seal::kDone : Seal::kUnavailable;
 }
 

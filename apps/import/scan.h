@@ -4,24 +4,25 @@
 #include <span>
 
 /// \file
-/// A look over a file before an importer that recurses gets it. Each throws a Refusal for what would take
-/// its stack or time, and lets everything else pass: the importer judges the rest.
+/// Scans a file before a recursive importer gets it. Each function throws a Refusal for what would take its
+/// stack or time, and lets everything else pass, which the importer judges.
 
 namespace hooke::importer {
 
-/// Chunks of a .3ds: how many, how deep they nest, and how deep its keyframer stacks nodes.
+/// Checks the chunks of a .3ds: how many there are, how deep they nest, and how deep its keyframer stacks
+/// nodes.
 void scan_3ds(std::span<const std::byte> bytes);
 
-/// The JSON of a .gltf: how deep it nests, and how deep its nodes do.
+/// Checks the JSON of a .gltf: how deep it nests, and how deep its nodes do.
 void scan_gltf(std::span<const std::byte> bytes);
 
-/// The same for the first chunk of a .glb.
+/// Checks the JSON in the first chunk of a .glb.
 void scan_glb(std::span<const std::byte> bytes);
 
-/// The header of a .ply: that it ends, and promises no more than there is.
+/// Checks the header of a .ply: that it ends, and promises no more than there is.
 void scan_ply(std::span<const std::byte> bytes);
 
-/// The faces of an .obj: each has corners.
+/// Checks the faces of an .obj: each must have corners.
 void scan_obj(std::span<const std::byte> bytes);
 
 }  // namespace hooke::importer

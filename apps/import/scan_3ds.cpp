@@ -18,7 +18,8 @@ using io::ImporterExit;
 constexpr std::size_t kHeaderSize = 6;
 constexpr std::size_t kMaxChunks = 1000000;
 constexpr std::size_t kMaxChunkDepth = 64;
-constexpr std::size_t kMaxSiblings = 4096;  // of a kind that the importer takes one by recursion
+// Siblings of a kind that the importer takes one by one by recursion.
+constexpr std::size_t kMaxSiblings = 4096;
 
 enum ChunkKind : std::uint16_t {
   kMain = 0x4D4D,
@@ -36,8 +37,8 @@ enum ChunkKind : std::uint16_t {
 
 struct Chunk {
   std::uint16_t kind = 0;
-  std::size_t first = 0;  ///< Of its content.
-  std::size_t last = 0;   ///< One past its content.
+  std::size_t first = 0;  ///< Begin of its content.
+  std::size_t last = 0;   ///< End of its content.
 };
 
 std::uint16_t word_at(std::span<const std::byte> bytes, std::size_t at) {
@@ -55,7 +56,7 @@ std::string text_at(std::span<const std::byte> bytes, std::size_t at, std::size_
   return text;
 }
 
-/// Where the chunks inside `chunk` begin; its end if it holds none.
+/// Returns where the chunks inside `chunk` begin, or its end if it holds none.
 std::size_t first_child(std::span<const std::byte> bytes, const Chunk& chunk) {
   const bool is_track = chunk.kind >= kFirstTrack && chunk.kind <= kLastTrack;
   const bool is_folder = is_track || chunk.kind == kMain || chunk.kind == kEditor || chunk.kind == kMesh ||
@@ -70,8 +71,8 @@ std::size_t first_child(std::span<const std::byte> bytes, const Chunk& chunk) {
   return chunk.last;
 }
 
-/// The tree of keyframer nodes as the importer builds it: a node's number says whether it becomes a child
-/// of the one before it, its sibling, or goes back up.
+/// A NodeTree is the tree of keyframer nodes as the importer builds it. A node's number says whether it
+/// becomes a child of the one before it, its sibling, or goes back up.
 class NodeTree {
  public:
   void add(std::uint16_t track, const std::string& name, std::uint16_t number) {
@@ -117,13 +118,13 @@ class NodeTree {
     return nodes_[above].parent;
   }
 
-  std::vector<Node> nodes_ = {Node{}};  ///< The root first, its own parent.
+  std::vector<Node> nodes_ = {Node{}};  ///< The root comes first and is its own parent.
   std::unordered_map<std::string, std::size_t> node_of_;
   std::size_t current_ = 0;
   std::int32_t last_ = -1;
 };
 
-/// Walks all chunks with a stack of its own.
+/// Walks all chunks with a stack of its own instead of recursion.
 class ChunkWalk {
  public:
   explicit ChunkWalk(std::span<const std::byte> bytes) : bytes_(bytes) {
@@ -159,7 +160,7 @@ class ChunkWalk {
     if (is_recursive && ++level.recursive_count > kMaxSiblings) {
       throw Refusal(ImporterExit::kLimitExceeded, "more than 4096 chunks in a row where one belongs");
     }
-    // Old exporters write sizes a little past the parent's; the parent's end holds.
+    // Old exporters write sizes a little past the parent's; then the parent's end counts.
     level.next = std::min(at + size, level.chunk.last);
     return {word_at(bytes_, at), at + kHeaderSize, level.next};
   }

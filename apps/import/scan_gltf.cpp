@@ -18,13 +18,13 @@ using nlohmann::json;
 
 constexpr int kMaxJsonDepth = 64;
 
-/// Where the string that starts before `i` has its closing quote, or the end of the text.
+/// Returns the position of the closing quote of the string that starts before `i`, or the end of the text.
 std::size_t end_of_string(std::string_view text, std::size_t i) {
   while (i < text.size() && text[i] != '"') i += text[i] == '\\' ? 2 : 1;
   return i;
 }
 
-/// Counts open brackets outside strings: enough to bound any parser's recursion.
+/// Counts open brackets outside strings, which bounds any parser's recursion.
 void scan_depth(std::string_view text) {
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -36,7 +36,7 @@ void scan_depth(std::string_view text) {
   }
 }
 
-/// The nodes below a node, by number; numbers that name no node are left to the importer.
+/// Returns the nodes below a node, by number; the importer handles numbers that name no node.
 std::vector<std::size_t> children_of(const json& node, std::size_t node_count) {
   std::vector<std::size_t> children;
   if (!node.is_object() || !node.contains("children")) return children;
@@ -47,7 +47,7 @@ std::vector<std::size_t> children_of(const json& node, std::size_t node_count) {
   return children;
 }
 
-/// Level by level from the nodes without a parent; a node that is never reached is part of a circle.
+/// Goes level by level from the nodes without a parent; a node that is never reached is part of a cycle.
 void scan_nodes(const json& nodes) {
   if (nodes.size() > static_cast<std::size_t>(kMaxNodeCount)) {
     throw Refusal(ImporterExit::kLimitExceeded, "more than 16384 nodes");

@@ -25,7 +25,7 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-/// Bytes of a number in the binary form; 0 for a word that names no type.
+/// Returns the bytes of a number in the binary form; 0 for a word that names no type.
 std::uint64_t size_of(std::string_view type) {
   constexpr std::array<std::pair<std::string_view, std::uint64_t>, 16> kSizes = {{{"char", 1},
                                                                                   {"uchar", 1},
@@ -48,10 +48,10 @@ std::uint64_t size_of(std::string_view type) {
   return entry == kSizes.end() ? 0 : entry->second;
 }
 
-/// What a header promises to follow.
+/// A Header is what a file's header promises.
 class Header {
  public:
-  /// False at the end of the header.
+  /// Returns false at the end of the header.
   bool add(std::string_view line) {
     const std::string_view word = take_word(line);
     if (word == "format") is_text_ = take_word(line) == "ascii";
@@ -60,7 +60,7 @@ class Header {
     return word != "end_header";
   }
 
-  /// The fewest bytes that can hold all elements: a digit and a line's end each in the text form.
+  /// Returns the fewest bytes that can hold all elements: in the text form, a digit and a line's end each.
   [[nodiscard]] std::uint64_t least_size() const {
     return is_text_ ? 2 * all_elements_ - std::min<std::uint64_t>(all_elements_, 1) : bytes_;
   }
@@ -81,14 +81,14 @@ class Header {
 
   void add_property(std::string_view line) {
     std::string_view type = take_word(line);
-    if (type == "list") type = take_word(line);  // its length at least
+    if (type == "list") type = take_word(line);  // A list has at least its length.
     const std::uint64_t size = size_of(type);
     if (size == 0) throw Refusal(ImporterExit::kBadSyntax, "a property of an unknown type");
     bytes_ += count_ * size;
   }
 
   bool is_text_ = false;
-  std::uint64_t count_ = 0;  ///< Of the element that the next properties belong to.
+  std::uint64_t count_ = 0;  ///< Count of the element that the next properties belong to.
   std::uint64_t all_elements_ = 0;
   std::uint64_t bytes_ = 0;
 };

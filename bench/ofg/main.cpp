@@ -1,6 +1,6 @@
-/// hooke-ofg: how often opposing face geometry sees that two meshes overlap, how many of the pairs of
-/// triangles it finds, and what it costs, over k and mesh size, against brute force and trees. `hooke bench
-/// ofg` starts it.
+/// hooke-ofg measures how often opposing face geometry finds that two meshes overlap, how many of the pairs
+/// of triangles it finds, and what it costs. It varies k and mesh size, and compares with brute force and
+/// trees. `hooke bench ofg` starts it.
 
 #include "geometry/convex/convex_hull.h"
 #include "geometry/meshes.h"
@@ -28,7 +28,7 @@ using hooke::geometry::triangles_overlap;
 using hooke::test::random_vector;
 
 constexpr int kPoses = 40;
-/// How deep the meshes are in each other, of the sum of their radii: where a step of a simulation finds them.
+/// Overlap of the meshes, as a share of the sum of their radii, as a step of a simulation finds it.
 constexpr double kDepth = 0.01;
 
 struct Pair {
@@ -45,7 +45,8 @@ MeshDesc scaled(MeshDesc mesh, Real factor) {
   return mesh;
 }
 
-/// The hull of the mesh before and after a shift: what a convex body passes over in a step without turning.
+/// Returns the hull of the mesh before and after a shift, which is what a convex body passes over in a step
+/// without rotation.
 MeshDesc extruded(const MeshDesc& mesh, hooke::Vec3 shift) {
   std::vector<hooke::Vec3> points = mesh.positions;
   for (const auto& p : mesh.positions) points.push_back(p + shift);
@@ -74,7 +75,7 @@ double unit(std::mt19937_64& random) {
   return hooke::test::signed_unit(random);
 }
 
-/// Pairs that overlap, by the tree, in order.
+/// Returns the pairs that overlap, by the tree, in order.
 std::vector<TrianglePair> pairs_by_tree(const Pair& pair, const RigidPose& pose_b) {
   std::vector<TrianglePair> near;
   find_candidates(pair.a.tree, pair.b.tree, pose_b, 0, near);
@@ -101,7 +102,7 @@ std::size_t count_by_all(const Pair& pair, const RigidPose& pose_b) {
   return count;
 }
 
-/// The second mesh comes from far toward a random place of the first one's box until they touch, and a little
+/// Moves the second mesh from far toward a random point of the first one's box until they touch, and a little
 /// farther.
 RigidPose touching_pose(const Pair& pair, std::mt19937_64& random) {
   const DVec3 q = random_vector(random);
@@ -127,7 +128,7 @@ RigidPose touching_pose(const Pair& pair, std::mt19937_64& random) {
   return at(in - kDepth * reach);
 }
 
-/// The median of the poses: the machine may be busy.
+/// Returns the median over the poses, because the machine may be busy.
 template <class Work>
 double microseconds(const std::vector<RigidPose>& poses, const Work& work) {
   std::vector<double> times;
@@ -141,13 +142,13 @@ double microseconds(const std::vector<RigidPose>& poses, const Work& work) {
   return times[times.size() / 2];
 }
 
-/// All k of one pair of meshes; a line of CSV each.
+/// Measures all k for one pair of meshes, with a line of CSV each.
 void measure(const Pair& pair, bool as_csv, std::FILE* out) {
   std::mt19937_64 random(1);
   std::vector<RigidPose> poses;
   while (poses.size() < kPoses) {
     const RigidPose pose = touching_pose(pair, random);
-    if (!pairs_by_tree(pair, pose).empty()) poses.push_back(pose);  // a few have gone past each other
+    if (!pairs_by_tree(pair, pose).empty()) poses.push_back(pose);  // A few meshes have missed each other.
   }
   std::size_t total = 0;
   for (const RigidPose& pose : poses) total += pairs_by_tree(pair, pose).size();

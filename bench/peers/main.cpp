@@ -48,7 +48,7 @@ int complain(const Error& error, int code) {
   return code;
 }
 
-/// Milliseconds of each step but the first. `prepare` is not timed.
+/// Returns the milliseconds of each step but the first. `prepare` is not timed.
 std::vector<double> time_steps(int steps, const std::function<void()>& prepare,
                                const std::function<void()>& step) {
   std::vector<double> ms;
@@ -63,7 +63,7 @@ std::vector<double> time_steps(int steps, const std::function<void()>& prepare,
   return ms;
 }
 
-/// Body `i` of Hooke's world, as its peers describe it.
+/// Returns body `i` of Hooke's world, as its peers describe it.
 PeerMotion motion_of(const Simulation& simulation, const PeerScene& scene, std::size_t i) {
   const BodyId id = simulation.objects()[i].body;
   const Pose pose = simulation.world().pose(id);
@@ -84,7 +84,7 @@ Outcome run_hooke(Simulation& simulation, const PeerScene& scene, int steps) {
   return outcome;
 }
 
-/// What is moved by hand moves as in `simulation`, a world of Hooke with nothing else in it.
+/// Runs a peer. Kinematic bodies move as in `simulation`, a world of Hooke that holds only these.
 Outcome run_peer(PeerEngine& engine, Simulation& simulation, const PeerScene& scene, int steps) {
   std::vector<std::size_t> driven;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {

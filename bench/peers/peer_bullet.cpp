@@ -10,7 +10,7 @@ namespace hooke::bench {
 
 namespace {
 
-constexpr btScalar kHullMargin = btScalar(0.01);  // the hull grows by it [m]
+constexpr btScalar kHullMargin = btScalar(0.01);  // Distance by which the hull grows [m].
 
 btVector3 bullet(DVec3 v) {
   return {static_cast<btScalar>(v.x), static_cast<btScalar>(v.y), static_cast<btScalar>(v.z)};
@@ -31,7 +31,7 @@ bool is_identity(const PeerPose& pose) {
   return length(pose.position) < 1e-9 && std::abs(std::abs(pose.rotation.w) - 1) < 1e-12;
 }
 
-/// Shapes and bodies, freed with the world.
+/// Owns shapes and bodies, which are freed with the world.
 class Bullet final : public PeerEngine {
  public:
   explicit Bullet(const PeerScene& scene)
@@ -136,7 +136,8 @@ class Bullet final : public PeerEngine {
     states_.push_back(std::make_unique<btDefaultMotionState>(bullet(from.start.pose)));
     btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(from.mass), states_.back().get(),
                                                   shape, bullet(from.inertia));
-    info.m_friction = static_cast<btScalar>(std::sqrt(from.friction));  // it multiplies those of a pair
+    // Bullet multiplies the frictions of a pair.
+    info.m_friction = static_cast<btScalar>(std::sqrt(from.friction));
     info.m_restitution = static_cast<btScalar>(from.restitution);
     auto body = std::make_unique<btRigidBody>(info);
     body->setLinearVelocity(bullet(from.start.velocity));

@@ -7,7 +7,7 @@
 
 namespace hooke::bench {
 
-/// An engine with a scene in it. Settings are those of docs/benchmarks.md.
+/// A PeerEngine is an engine with a scene in it. Settings are those of docs/benchmarks.md.
 class PeerEngine {
  public:
   PeerEngine() = default;
@@ -15,15 +15,15 @@ class PeerEngine {
   PeerEngine& operator=(const PeerEngine&) = delete;
   virtual ~PeerEngine() = default;
 
-  /// Says how a kinematic body moves in the next step: from one motion to the other.
+  /// Sets how a kinematic body moves in the next step, from one motion to the other.
   virtual void drive(std::size_t body, const PeerMotion& from, const PeerMotion& to) = 0;
   virtual void step(double dt) = 0;
   [[nodiscard]] virtual PeerMotion motion(std::size_t body) const = 0;
-  /// Points at which bodies touched in the last step, as the engine counts them.
+  /// Returns the number of points at which bodies touched in the last step, as the engine counts them.
   [[nodiscard]] virtual std::uint32_t contacts() const = 0;
 };
 
-/// Errors (kUnsupported) name a shape that the engine does not have.
+/// The Error kUnsupported names a shape that the engine does not have.
 Result<std::unique_ptr<PeerEngine>> make_bullet(const PeerScene& scene);
 Result<std::unique_ptr<PeerEngine>> make_ode(const PeerScene& scene);
 

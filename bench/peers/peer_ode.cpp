@@ -12,7 +12,7 @@ namespace hooke::bench {
 
 namespace {
 
-constexpr int kMaxContacts = 8;  // of a pair
+constexpr int kMaxContacts = 8;  // Contacts of a pair.
 
 /// ODE counts w first.
 std::array<dReal, 4> ode(DQuat q) {

@@ -25,7 +25,7 @@ Quat narrow(DQuat q) {
   return {static_cast<Real>(q.x), static_cast<Real>(q.y), static_cast<Real>(q.z), static_cast<Real>(q.w)};
 }
 
-/// The pose `inner` of a frame within the frame `outer`.
+/// Returns the pose `inner` of a frame within the frame `outer`.
 PeerPose compose(const PeerPose& outer, const PeerPose& inner) {
   return {outer.position + rotate(outer.rotation, inner.position), outer.rotation * inner.rotation};
 }
@@ -35,7 +35,7 @@ PeerPose inverse_of(const PeerPose& pose) {
   return {-rotate(back, pose.position), back};
 }
 
-/// A shape in the body's frame, and its density.
+/// This is a shape in the body's frame, and its density.
 struct Piece {
   PeerShape shape;
   MassProperties solid;  ///< In the body's frame, of density 1.
@@ -75,7 +75,7 @@ Result<std::vector<Piece>> pieces_of(const SceneBody& body, const SceneObject& o
   return pieces;
 }
 
-/// Mass, inertia and principal frame of a body that forces move.
+/// Computes mass, inertia and principal frame of a body that forces move.
 void weigh(const std::vector<Piece>& pieces, double mass, PeerBody& body) {
   MassProperties sum;
   for (const Piece& piece : pieces) sum = geometry::joined(sum, 1, piece.solid, piece.density);
@@ -108,7 +108,7 @@ Result<PeerBody> make_body(const SceneBody& from, const SceneObject& object, con
   return body;
 }
 
-/// A joint that every engine has.
+/// Tells whether a hook is a joint that every engine has.
 bool is_free_ball(const SceneHook& hook) {
   const HookDesc& desc = hook.desc;
   return desc.kind == HookKind::kBall && desc.limits == HookLimits{} && desc.spring == HookSpring{} &&
@@ -116,7 +116,7 @@ bool is_free_ball(const SceneHook& hook) {
          desc.break_torque == kRigid && hook.anchor;
 }
 
-/// The ball joints of the scene, which has no other hooks.
+/// Returns the ball joints of the scene, or an Error if it has other hooks.
 Result<std::vector<PeerBall>> make_balls(const Scene& scene, const Simulation& simulation) {
   std::unordered_map<std::string_view, std::size_t> body_of;
   std::vector<const SceneObject*> hooks;
@@ -139,7 +139,7 @@ Result<std::vector<PeerBall>> make_balls(const Scene& scene, const Simulation& s
   return balls;
 }
 
-/// What no peer is given; empty for a scene that all can have.
+/// Returns what no peer supports; empty for a scene that all can have.
 std::string beyond_bodies(const Scene& scene) {
   if (!scene.objects.ropes.empty()) return "ropes";
   if (!scene.objects.cloths.empty()) return "cloths";
@@ -192,7 +192,7 @@ Result<double> deepest_overlap(const Scene& scene, const PeerScene& peer,
     const BodyId id = simulation.objects()[i].body;
     const PeerPose pose = compose(now[i].pose, inverse_of(peer.bodies[i].own));
     World& world = simulation.world();
-    // A static body keeps its place.
+    // A static body keeps its position.
     if (peer.bodies[i].kind == BodyKind::kStatic) continue;
     for (const Result<void>& done : {world.set_pose(id, {pose.position, narrow(pose.rotation)}),
                                      world.set_velocity(id, {}), world.set_angular_velocity(id, {})}) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// \file
-/// A scene of rigid bodies in the words that every engine has, so that Hooke and its peers run the same.
+/// Describes a scene of rigid bodies by what every engine has, so that Hooke and its peers run the same.
 
 namespace hooke::bench {
 
@@ -18,37 +18,37 @@ struct PeerPose {
   DQuat rotation = {};
 };
 
-/// Where a body is and how it moves, about its center of mass and along its principal axes.
+/// This is where a body is and how it moves, about its center of mass and along its principal axes.
 struct PeerMotion {
   PeerPose pose = {};
   DVec3 velocity = {};          ///< [m/s]
-  DVec3 angular_velocity = {};  ///< [rad/s], in the world's axes.
+  DVec3 angular_velocity = {};  ///< In world axes [rad/s].
 };
 
-/// One shape of a body. `pose` is in the body's principal frame.
+/// This is one shape of a body. `pose` is in the body's principal frame.
 struct PeerShape {
   Shape shape = {};
   PeerPose pose = {};
-  std::vector<DVec3> points = {};           ///< Of a hull, in the shape's frame.
-  std::shared_ptr<const Model> model = {};  ///< Of a mesh.
+  std::vector<DVec3> points = {};           ///< Points of a hull, in the shape's frame.
+  std::shared_ptr<const Model> model = {};  ///< Set for a mesh.
 };
 
 struct PeerBody {
   BodyKind kind = BodyKind::kStatic;
-  double mass = 0;     ///< [kg]; 0 for a body that nothing moves.
-  DVec3 inertia = {};  ///< About the principal axes [kg m^2].
+  double mass = 0;     ///< Mass [kg]; 0 for a body that forces do not move.
+  DVec3 inertia = {};  ///< Moments about the principal axes [kg m^2].
   PeerMotion start = {};
   PeerPose own = {};  ///< The principal frame in the frame that Hooke gives the body.
   std::vector<PeerShape> shapes = {};
-  double friction = 0.5;  ///< Of a pair: the geometric mean.
+  double friction = 0.5;  ///< Friction of a pair, the geometric mean.
   double restitution = 0;
 };
 
-/// A free ball joint of two bodies, which do not touch each other.
+/// This is a free ball joint of two bodies, which do not touch each other.
 struct PeerBall {
   std::size_t a = 0;
   std::size_t b = 0;
-  DVec3 anchor = {};  ///< At the start [m].
+  DVec3 anchor = {};  ///< Anchor at the start [m].
 };
 
 struct PeerScene {
@@ -59,15 +59,15 @@ struct PeerScene {
   double dt = 1.0 / 60;  ///< [s]
 };
 
-/// Errors (kUnsupported) name what is neither a rigid body nor a free ball joint of two: ropes, cloths, other
-/// hooks, pairs of materials, events.
+/// Makes the scene. The Error kUnsupported names what is neither a rigid body nor a free ball joint of two:
+/// ropes, cloths, other hooks, pairs of materials, events.
 [[nodiscard]] Result<PeerScene> make_peer_scene(const Scene& scene, const Simulation& simulation);
 
-/// The deepest overlap of two bodies of the scene, in these poses, by Hooke's own geometry [m].
+/// Returns the deepest overlap of two bodies of the scene, in these poses, by Hooke's own geometry [m].
 [[nodiscard]] Result<double> deepest_overlap(const Scene& scene, const PeerScene& peer,
                                              const std::vector<PeerMotion>& now);
 
-/// [J]
+/// Returns the kinetic energy [J].
 [[nodiscard]] double kinetic_energy(const PeerScene& peer, const std::vector<PeerMotion>& now);
 
 }  // namespace hooke::bench

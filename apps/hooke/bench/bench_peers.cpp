@@ -21,7 +21,7 @@ constexpr const char* kColumns =
     "scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,max_penetration,kinetic_energy,"
     "state_hash\n";
 
-/// One line of CSV, taken apart.
+/// This is one line of CSV, split into values.
 struct PeerRow {
   std::string line;
   std::vector<std::string> fields;
@@ -55,7 +55,8 @@ std::vector<std::string> words_of(const std::string& program, const PeerBench& o
   return words;
 }
 
-/// Its status, and what it wrote to standard output; standard error is ours.
+/// Runs a program and returns what it wrote to standard output; `status` gets its status. Standard error is
+/// that of this program.
 Result<std::string> run_program(std::vector<std::string> words, int& status) {
   auto pipe = process::make_pipe();
   if (!pipe) return Error{ErrorCode::kUnsupported, words[0], "no pipe"};
@@ -73,7 +74,7 @@ std::string heading() {
                  "ms median", "times", "ms 99 %", "contacts", "overlap mm", "kinetic J");
 }
 
-/// `reference`: the row of Hooke that median times are compared with.
+/// `reference` is the row of Hooke with which median times are compared.
 std::string table_line(const PeerRow& row, const PeerRow& reference) {
   return text_of("%-28s %-7s %7s %9.3f %9.3f %7.2f %9.3f %9s %11.3f %11.4g\n", row.fields[0].c_str(),
                  row.fields[1].c_str(), row.fields[2].c_str(), row.number(3), row.number(4),
@@ -88,7 +89,7 @@ std::vector<std::string> rigid_scenes() {
           "scenes/washer.json"};
 }
 
-/// The runs of one scene that are to be made: Hooke with each number of workers, its peers with one.
+/// Returns the runs of one scene: Hooke with each number of workers, its peers with one.
 std::vector<PeerRow> runs_of(const std::string& scene, const std::vector<int>& workers) {
   constexpr std::array<const char*, 2> kPeers = {"bullet", "ode"};
   std::vector<PeerRow> runs;
@@ -119,7 +120,8 @@ int bench_peers(const PeerBench& options) {
       int status = 0;
       const Result<std::string> line = run_program(words_of(program, options, key), status);
       if (!line) return report(line.error());
-      if (WIFEXITED(status) && WEXITSTATUS(status) == kMachine) continue;  // it has said why
+      // The program has printed the reason itself.
+      if (WIFEXITED(status) && WEXITSTATUS(status) == kMachine) continue;
       const PeerRow row = {line.value(), split(line.value())};
       if (!WIFEXITED(status)) return report({ErrorCode::kUnsupported, scene, key.fields[1] + " crashed"});
       if (status != 0 || row.fields.size() != 10) return kBadInput;

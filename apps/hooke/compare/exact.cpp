@@ -9,12 +9,12 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kAligned = 1e-9;  // of the sine of an angle: one line, but for rounding
+constexpr double kAligned = 1e-9;  // Largest sine of an angle that counts as zero; only rounding exceeds it.
 
-/// One free mass on one spring from a held point. All in SI.
+/// One free mass hangs on one spring from a held point; all values are in SI units.
 struct SpringPendulum {
   DVec3 hook;
-  DVec3 offset;  ///< Of the mass from the hook.
+  DVec3 offset;  ///< Offset of the mass from the hook.
   DVec3 velocity;
   DVec3 gravity;
   double mass = 1;
@@ -27,7 +27,7 @@ double real(Real x) {
   return static_cast<double>(x);
 }
 
-/// Nothing if anything else is in the scene, or if it has air.
+/// Returns nothing if anything else is in the scene, or if the scene has air.
 std::optional<SpringPendulum> find_pendulum(const Stage& stage) {
   const SceneObjects& objects = stage.scene().objects;
   const bool alone = objects.bodies.empty() && objects.ropes.empty() && objects.cloths.empty() &&
@@ -62,14 +62,14 @@ bool parallel(DVec3 a, DVec3 b) {
   return length(cross(a, b)) <= kAligned * length(a) * length(b);
 }
 
-/// y'' = -omega^2 y - 2 a y', from y0 and v0.
+/// This is y'' = -omega^2 y - 2 a y', from y0 and v0.
 struct Oscillator {
   double omega = 1;
   double a = 0;  ///< [1/s]
   double y0 = 0;
   double v0 = 0;
 
-  /// y and y' at `time`.
+  /// Returns y and y' at `time`.
   [[nodiscard]] std::array<double, 2> at(double time) const {
     const double difference = a * a - omega * omega;
     const double rate = std::sqrt(std::abs(difference));
@@ -87,7 +87,7 @@ struct Oscillator {
   }
 };
 
-/// sn(u, k) by the descending arithmetic-geometric mean, for 0 <= k < 1.
+/// Returns sn(u, k) by the descending arithmetic-geometric mean, for 0 <= k < 1.
 double jacobi_sn(double u, double k) {
   constexpr int kMost = 16;
   std::array<double, kMost + 1> a = {1};
@@ -109,7 +109,7 @@ double jacobi_sn(double u, double k) {
   return std::sin(phi);
 }
 
-/// K(k) = pi / (2 agm(1, sqrt(1 - k^2))).
+/// Returns K(k) = pi / (2 agm(1, sqrt(1 - k^2))).
 double quarter_period(double k) {
   double a = 1;
   double b = std::sqrt(1 - k * k);
@@ -136,7 +136,7 @@ std::optional<ExactMotion> exact_motion(const Stage& stage) {
                                  .a = p.damping / (2 * p.mass),
                                  .y0 = distance - rest,
                                  .v0 = dot(p.velocity, along)};
-  // Where the spring would turn around its hook, the line's formula ends.
+  // The formula of the line does not hold beyond the time when the spring would pass through its hook.
   if (!(rest > std::hypot(oscillator.y0, oscillator.v0 / oscillator.omega))) return std::nullopt;
   return ExactMotion{
       .title = "the exact damped oscillator",

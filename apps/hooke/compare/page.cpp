@@ -53,7 +53,7 @@ void replace_all(std::string& text, std::string_view what, const std::string& by
   }
 }
 
-/// The svg element alone, with names of its own: several share the page.
+/// Returns the svg element alone. Its names are made unique, because several pictures share the page.
 std::string embedded(const Picture& picture) {
   const std::size_t start = picture.svg.find("<svg");
   std::string svg = start == std::string::npos ? "" : picture.svg.substr(start);

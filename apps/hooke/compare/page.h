@@ -7,15 +7,15 @@
 
 namespace hooke::app {
 
-/// A drawn plot.
+/// A Picture is a drawn plot.
 struct Picture {
   std::string name;
   std::string caption;
-  std::string svg;  ///< The whole file.
+  std::string svg;  ///< Content of the whole file.
 };
 
-/// One HTML page that needs nothing else: tables, pictures inside, a little style. `note` says why pictures
-/// are missing; empty for none.
+/// Makes one HTML page that needs no other file: tables, pictures inside, a little style. `note` says why
+/// pictures are missing; it is empty if none are.
 std::string make_page(const Comparison& comparison, const std::vector<Picture>& pictures,
                       const std::string& note);
 

@@ -17,10 +17,10 @@ namespace hooke::app {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1500;  // of a curve: more than there are pixels
+constexpr std::size_t kMostPoints = 1500;  // Points of a curve; this is more than there are pixels.
 constexpr std::chrono::seconds kLongestDrawing{60};
 
-// The first six are told apart by people who see fewer colors, too (Okabe and Ito).
+// People with color blindness, too, can tell the first six apart (Okabe and Ito).
 constexpr std::array<const char*, 12> kColors = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
                                                  "#E69F00", "#56B4E9", "#8A6D00", "#7F3FBF",
                                                  "#B22222", "#5F7F7F", "#FF69B4", "#7FA32F"};
@@ -40,7 +40,7 @@ PlotPoint span_of(const std::vector<Sample>& samples, int axis) {
   return span;
 }
 
-/// Every n-th sample, as `point` sees it.
+/// Returns every n-th sample as a point by `point`.
 template <class Point>
 std::vector<PlotPoint> thin(const std::vector<Sample>& samples, const Point& point) {
   std::vector<PlotPoint> points;
@@ -49,7 +49,7 @@ std::vector<PlotPoint> thin(const std::vector<Sample>& samples, const Point& poi
   return points;
 }
 
-/// A range around `span`, larger by `margin` of its size or of `least` on both sides.
+/// Returns the range `span`, larger by `margin` of its size or of `least` on both sides.
 PlotPoint widened(PlotPoint span, double margin, double least) {
   const double more = margin * std::max(span.y - span.x, least);
   return {span.x - more, span.y + more};
@@ -60,7 +60,7 @@ const std::vector<Sample>& guide_of(const Comparison& comparison) {
   return reference.empty() ? comparison.trials.front().samples : reference;
 }
 
-/// The steppers' curves, over them the reference's.
+/// Returns the steppers' curves, and after them the reference's.
 template <class Point>
 std::vector<PlotCurve> curves_of(const Comparison& comparison, bool with_reference, const Point& point) {
   std::vector<PlotCurve> curves;
@@ -153,7 +153,7 @@ Plot energy_plot(const Comparison& comparison) {
       })};
 }
 
-/// The measured orders over whatever `x` makes of a trial and a step.
+/// Returns the measured errors over what `x` makes of a trial and a step.
 template <class X>
 std::vector<PlotCurve> order_curves(const Comparison& comparison, const X& x) {
   std::vector<PlotCurve> curves;
@@ -166,7 +166,7 @@ std::vector<PlotCurve> order_curves(const Comparison& comparison, const X& x) {
                        .color = kColors[i % kColors.size()],
                        .marked = true};
     for (std::size_t k = 0; k < order.dt.size(); ++k) {
-      // What has diverged would leave no room for the others.
+      // A run that has diverged would leave no room for the others.
       const bool shown = order.error[k] < 10 * comparison.reference.extent;
       if (shown) curve.points.push_back({x(trial, order.dt[k]), order.error[k]});
     }
@@ -197,7 +197,7 @@ Plot cost_plot(const Comparison& comparison) {
           })};
 }
 
-/// A text as gnuplot reads it, markup off.
+/// Returns a text as gnuplot reads it, without markup.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -281,7 +281,7 @@ Result<std::string> draw_plot(const Plot& plot, PlotFormat format) {
   const std::string text = script_of(plot, format);
   std::fwrite(text.data(), 1, text.size(), script.get());
   std::rewind(script.get());
-  // -d: the user's own start-up file must not change the picture.
+  // The option -d ignores the user's start-up file, which must not change the picture.
   auto gnuplot = process::Child::start(
       {"gnuplot", "-d"}, {::fileno(script.get()), ::fileno(picture.get()), ::fileno(messages.get())});
   if (!gnuplot) {

@@ -13,38 +13,39 @@ struct PlotPoint {
   double y = 0;
 };
 
-/// One line of a plot.
+/// This is one line of a plot.
 struct PlotCurve {
   std::string title;
   std::string color = "#000000";
   bool dashed = false;
-  bool marked = false;  ///< A mark at each point.
+  bool marked = false;  ///< Whether each point has a mark.
   std::vector<PlotPoint> points = {};
 };
 
 struct PlotAxis {
-  std::string label;  ///< With its unit.
+  std::string label;  ///< Text with its unit.
   bool logarithmic = false;
-  std::optional<PlotPoint> range = {};  ///< Lowest and highest; the curves' own without it.
+  std::optional<PlotPoint> range = {};  ///< Lowest and highest value; without it, those of the curves.
 };
 
-/// What gnuplot draws.
+/// A Plot is what gnuplot draws.
 struct Plot {
-  std::string name;  ///< Of the file, without its ending.
+  std::string name;  ///< Name of the file, without its ending.
   std::string title;
-  std::string caption;  ///< For the page: what there is to see.
+  std::string caption;  ///< Text of the page on what the plot shows.
   PlotAxis x;
   PlotAxis y;
-  bool same_scale = false;  ///< A meter is as long along both axes.
+  bool same_scale = false;  ///< Whether a meter has the same length along both axes.
   std::vector<PlotCurve> curves;
 };
 
 enum class PlotFormat { kPng, kSvg };
 
-/// Trajectory, position, error, energy, order and cost, as far as there is something in them.
+/// Makes plots of trajectory, position, error, energy, order and cost, as far as there are data.
 std::vector<Plot> plots_of(const Comparison& comparison);
 
-/// The picture's bytes, drawn by the program gnuplot. kUnsupported if it is missing or refuses.
+/// Returns the picture's bytes, drawn by the program gnuplot. The Error is kUnsupported if gnuplot is missing
+/// or refuses.
 Result<std::string> draw_plot(const Plot& plot, PlotFormat format);
 
 }  // namespace hooke::app

@@ -11,9 +11,9 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kGone = 1e6;  // [m]
+constexpr double kGone = 1e6;  // Distance beyond which a point counts as gone [m].
 
-/// "rope:15" cut at its last colon, since names may hold colons themselves.
+/// This is a text such as "rope:15", split at its last colon, since names may hold colons themselves.
 struct PointWords {
   std::string object;
   std::string index = "last";
@@ -26,7 +26,8 @@ PointWords cut(const std::string& text, const Simulation& simulation) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-/// What can be watched of an object at the start: its points, of a body that forces move the center of mass.
+/// Returns what can be watched of an object at the start: its points, or the center of mass of a body that
+/// forces move.
 std::vector<DVec3> points_of(const World& world, const SceneObject& object) {
   if (object.kind == SceneObject::Kind::kBody) {
     if (!(world.mass(object.body) > 0)) return {};
@@ -40,7 +41,7 @@ std::vector<DVec3> points_of(const World& world, const SceneObject& object) {
 
 const SceneObject* find_object(const Simulation& simulation, const std::string& name) {
   if (!name.empty()) return simulation.find(name);
-  const SceneObject* body = nullptr;  // taken where nothing has points
+  const SceneObject* body = nullptr;  // Used where no object has points.
   for (const SceneObject& object : simulation.objects()) {
     if (points_of(simulation.world(), object).empty()) continue;
     if (object.kind != SceneObject::Kind::kBody) return &object;
@@ -53,7 +54,7 @@ Result<Player> make_solver_player(const Stage& stage, double dt) {
   Loaded<Simulation> built = Simulation::create(stage.scene());
   if (!built) return built.errors.front();
   const auto simulation = std::make_shared<Simulation>(std::move(*built.value));
-  const SceneObject object = *simulation->find(stage.object.name);  // ids are of one world
+  const SceneObject object = *simulation->find(stage.object.name);  // Ids belong to one world.
   const WorldDesc& desc = stage.scene().world;
   const double evaluations_per_step = static_cast<double>(desc.substeps) * desc.particle_substeps;
   return Player{
@@ -73,7 +74,7 @@ Result<Player> make_solver_player(const Stage& stage, double dt) {
   };
 }
 
-/// "rk4 at 0.00104 s for 'rope', reached 2e-05 m".
+/// Returns a text such as "rk4 at 0.00104 s for 'rope', reached 2e-05 m".
 std::string chosen_text(const lab::Run& run, const Stage& stage) {
   std::string text;
   for (const lab::ObjectReport& report : run.report()) {

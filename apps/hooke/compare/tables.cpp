@@ -9,9 +9,9 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kRounding = 1e-11;  // of the extent: errors below are sums of roundings
+constexpr double kRounding = 1e-11;  // Share of the extent; errors below it are sums of roundings.
 
-/// "1.23e-05"; "any" for infinity; "-" for what is not known.
+/// Returns text such as "1.23e-05"; "any" for infinity; "-" for what is not known.
 std::string word(double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "any";
@@ -26,10 +26,10 @@ std::string number(const std::optional<double>& value) {
   return value ? text_of("%.9g", *value) : "";
 }
 
-/// "measured (theory)".
+/// Returns text such as "measured (theory)".
 std::string pair(const std::optional<double>& measured, const std::optional<double>& theory) {
   if (!measured && !theory) return "-";
-  // The bisection ends somewhere above; both mean that there is no limit, or none above zero.
+  // Both mean that there is no limit; the bisection itself ends at a finite value.
   const auto any = [](const std::optional<double>& value) { return value && std::isinf(*value); };
   if (any(measured) && any(theory)) return "any";
   const auto none = [](const std::optional<double>& value) { return value && !(*value > 0); };
@@ -42,7 +42,7 @@ std::optional<double> theory_of(const Trial& trial) {
                                           : std::nullopt;
 }
 
-/// Energy of the last sample beyond the reference's at the same time [J].
+/// Returns the energy of the last sample minus the reference's at the same time [J].
 std::optional<double> energy_error(const Trial& trial, const Comparison& comparison) {
   const std::size_t count = trial.samples.size();
   if (count == 0 || comparison.reference.samples.size() < count) return std::nullopt;

@@ -13,14 +13,14 @@ namespace hooke::app {
 namespace {
 
 constexpr std::uint64_t kMostSamples = 4000;
-constexpr int kLeastDivisor = 16;  // of the reference's step
+constexpr int kLeastDivisor = 16;  // Least divisor of the reference's step.
 constexpr int kMostDivisor = 4096;
-constexpr double kFarAway = 10;         // extents; beyond them a run has diverged
-constexpr int kHalvings = 4;            // for the order
-constexpr double kOrderSeconds = 1;     // longer runs measure chaos instead
-constexpr double kMostOrderWork = 4e7;  // points times evaluations: half a minute
+constexpr double kFarAway = 10;         // Extents beyond which a run has diverged.
+constexpr int kHalvings = 4;            // Halvings for the order.
+constexpr double kOrderSeconds = 1;     // Longer runs measure chaos instead.
+constexpr double kMostOrderWork = 4e7;  // Points times evaluations, which take half a minute.
 
-/// Sum of wall time over calls.
+/// Sums up wall time over calls.
 class Stopwatch {
  public:
   template <class Call>
@@ -42,7 +42,7 @@ Sample sample_of(const Player& player, double time) {
   return {time, player.position(), player.energy(), 0};
 }
 
-/// Largest distance of the object's points from the watched one, at the start.
+/// Returns the largest distance of the object's points from the watched one, at the start.
 double size_of(const Stage& stage) {
   double size = 0;
   for (const DVec3 p : stage.points) size = std::max(size, length(p - stage.points[stage.point]));
@@ -73,7 +73,7 @@ Result<Player> make_fine_player(const Stage& stage, int& divisor) {
   }
 }
 
-/// As lab::measure_order has it, for the solver: against the reference at one time.
+/// Does for the solver what lab::measure_order does: it compares with the reference at one time.
 std::optional<lab::OrderMeasurement> measure_solver_order(const Stage& stage, const Schedule& schedule,
                                                           const Reference& reference) {
   const auto wanted =

@@ -11,7 +11,7 @@
 
 namespace hooke::app {
 
-/// The watched point and the energy at one time.
+/// A Sample is the watched point and the energy at one time.
 struct Sample {
   double time = 0;      ///< [s]
   DVec3 position = {};  ///< [m]
@@ -19,23 +19,24 @@ struct Sample {
   double error = 0;  ///< Distance from the reference [m]; NaN without one.
 };
 
-/// How long and how often.
+/// A Schedule says how long a run is and how often it is sampled.
 struct Schedule {
-  std::uint64_t steps = 1;   ///< Of the scene.
+  std::uint64_t steps = 1;   ///< Steps of the scene.
   std::uint64_t stride = 1;  ///< Steps between two samples.
   double dt = 0;             ///< [s]
 
   [[nodiscard]] double time(std::size_t sample) const { return static_cast<double>(sample * stride) * dt; }
 };
 
-/// What all are measured against.
+/// A Reference is what all steppers are measured against.
 struct Reference {
-  std::string title;            ///< "the exact ...", or "rk4 at dt/16"; empty if there is none.
-  std::vector<Sample> samples;  ///< One for each of the schedule.
+  std::string title;            ///< Such as "the exact ..." or "rk4 at dt/16"; empty if there is none.
+  std::vector<Sample> samples;  ///< One for each sample of the schedule.
   double extent = 1;            ///< Size of the motion and the object [m].
 };
 
-/// Measured beside theory. Empty where it has no meaning or did not fit into the time.
+/// These are measurements beside theory. They are empty where they have no meaning or did not fit into the
+/// time.
 struct Limits {
   std::optional<lab::OrderMeasurement> order = {};
   int order_in_theory = 0;
@@ -45,33 +46,33 @@ struct Limits {
   std::optional<double> step_in_theory = {};
 };
 
-/// One stepper on the stage.
+/// A Trial is the run of one stepper on the stage.
 struct Trial {
   std::string name;
-  std::vector<Sample> samples;             ///< Fewer than the schedule's if it diverged.
+  std::vector<Sample> samples;             ///< Fewer than in the schedule if it diverged.
   std::optional<double> diverged_at = {};  ///< [s]
-  double cost_ms = 0;                      ///< Measured, per simulated second.
-  double evaluations = 0;                  ///< Of the forces, per simulated second.
+  double cost_ms = 0;                      ///< Measured wall time [ms] per simulated second.
+  double evaluations = 0;                  ///< Evaluations of the forces per simulated second.
   double largest_error = 0;                ///< [m]; NaN without a reference.
   lab::CollisionReport collisions = {};
   std::string note = {};
   Limits limits = {};
 };
 
-/// Steps of `dt` up to `seconds`, with at most a few thousand samples.
+/// Makes steps of `dt` up to `seconds`, with at most a few thousand samples.
 Schedule make_schedule(double seconds, double dt);
 
-/// The exact motion if there is one, else rk4 with the step divided until it is stable, at least by 16.
-/// Errors: as of lab::Run::create.
+/// Returns the exact motion if there is one, else rk4 with the step divided until it is stable, at least by
+/// 16. Errors are those of lab::Run::create.
 Result<Reference> make_reference(const Stage& stage, const Schedule& schedule);
-/// For scenes that the laboratory refuses: no samples, the object's size.
+/// Makes a reference for scenes that the laboratory refuses. It has no samples, only the object's size.
 Reference no_reference(const Stage& stage);
 
-/// Plays one stepper to the end, or until it is ten times the extent away from the reference.
+/// Runs one stepper to the end, or until it is ten times the extent away from the reference.
 Result<Trial> run_trial(const Stage& stage, const std::string& name, bool force, const Schedule& schedule,
                         const Reference& reference);
 
-/// Order and stability of a stepper on this stage.
+/// Measures order and stability of a stepper on this stage.
 Limits measure_limits(const Stage& stage, const std::string& name, const Schedule& schedule,
                       const Reference& reference);
 

@@ -8,9 +8,9 @@ namespace hooke::app {
 
 namespace {
 
-constexpr float kHalfSpaceSize = 50;  ///< [m], of a half-space that is not the ground.
+constexpr float kHalfSpaceSize = 50;  ///< Size of a half-space that is not the ground [m].
 
-/// `place`, filled at the first call.
+/// Returns `place`, which is filled at the first call.
 template <class Make>
 const BodyGeometry::Geometry& once(BodyGeometry::Geometry& place, const Make& make) {
   if (place == nullptr) place = std::make_shared<const render::MeshGeometry>(make());
@@ -28,7 +28,7 @@ BodyGeometry BodyGeometries::find(const Shape& shape, const std::shared_ptr<cons
   const Vec3 round = {shape.radius, shape.half_height, shape.radius};
   switch (shape.kind) {
     case ShapeKind::kSphere:
-      // 5120, 320 and 80 triangles.
+      // These have 5120, 320 and 80 triangles.
       once(spheres_[0], [] { return render::make_sphere(4); });
       once(spheres_[1], [] { return render::make_sphere(2); });
       once(spheres_[2], [] { return render::make_sphere(1); });

@@ -12,21 +12,22 @@
 
 namespace hooke::app {
 
-/// The triangles of a shape: a geometry that many shapes share, and its size along each axis.
+/// A BodyGeometry is the triangles of a shape: a geometry that many shapes share, and its size along each
+/// axis.
 struct BodyGeometry {
   using Geometry = std::shared_ptr<const render::MeshGeometry>;
 
-  /// From fine to coarse, for smaller and smaller pictures; the same where less would not be faster. Null for
-  /// a model that is not there.
+  /// Levels from fine to coarse, for smaller and smaller pictures. They are the same where fewer triangles
+  /// would not be faster, and null for a model that is missing.
   std::array<Geometry, 3> levels;
   Vec3 scale = {1, 1, 1};
-  Vec3 shift = {};  ///< [m], in the shape's frame.
+  Vec3 shift = {};  ///< Offset [m], in the shape's frame.
 };
 
-/// Makes the triangles of shapes, each once: bodies of one geometry are drawn by one call, however many.
+/// Makes the triangles of shapes, each once. All bodies of one geometry are then drawn by one call.
 class BodyGeometries {
  public:
-  /// `model` is that of a mesh or a hull; unused for other shapes.
+  /// Returns the geometry of a shape. `model` is that of a mesh or a hull; other shapes do not use it.
   BodyGeometry find(const Shape& shape, const std::shared_ptr<const Model>& model);
 
  private:
@@ -34,7 +35,8 @@ class BodyGeometries {
 
   std::array<Geometry, 3> spheres_;
   Geometry box_, cylinder_, cone_;
-  std::map<std::pair<Real, Real>, Geometry> capsules_;  ///< By radius and half height: they do not scale.
+  /// By radius and half height, because capsules cannot be scaled.
+  std::map<std::pair<Real, Real>, Geometry> capsules_;
   std::map<std::shared_ptr<const Model>, Geometry> models_;
 };
 

@@ -16,7 +16,7 @@ Vec3 vector_of(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
 }
 
-/// Vertices of one point whose normals agree in the file are one vertex of the surface.
+/// Vertices of one point whose normals agree in the file become one vertex of the surface.
 std::vector<std::uint32_t> normal_groups(const Model& model) {
   using Key = std::tuple<std::uint32_t, int, int, int>;
   std::map<Key, std::uint32_t> group_of_key;
@@ -78,7 +78,7 @@ ClothSurface make_model_surface(const Model& model) {
 
 ClothSurface make_solid_surface(std::span<const Vec3> points,
                                 std::span<const std::array<std::uint32_t, 3>> triangles) {
-  // Triangles at a point that face the same of the six ways share a vertex.
+  // Triangles at a point that face the same of the six directions share a vertex.
   ClothSurface surface;
   surface.geometry = std::make_shared<render::MeshGeometry>();
   std::map<std::pair<std::uint32_t, int>, std::uint32_t> vertex_of;
@@ -111,7 +111,7 @@ void update_surface(ClothSurface& surface, std::span<const Vec3> points) {
   const std::vector<std::uint32_t>& indices = surface.geometry->indices;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const Vec3 a = vertices[indices[i]].position;
-    // Not normalized: large triangles count more.
+    // The normal is not normalized, so that large triangles count more.
     const Vec3 normal = cross(vertices[indices[i + 1]].position - a, vertices[indices[i + 2]].position - a);
     for (std::size_t k = 0; k < 3; ++k) normals[surface.group_of[indices[i + k]]] += normal;
   }

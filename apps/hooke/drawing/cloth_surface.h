@@ -12,32 +12,33 @@
 
 namespace hooke::app {
 
-/// The drawn triangles of a cloth or solid. Several drawn vertices may follow one simulated point: where a
-/// texture has a seam they share the normal, where the model has a crease each side keeps its own.
+/// A ClothSurface is the drawn triangles of a cloth or solid. Several drawn vertices may follow one simulated
+/// point. Where a texture has a seam they share the normal; where the model has a crease each side keeps its
+/// own.
 struct ClothSurface {
   std::shared_ptr<render::MeshGeometry> geometry;
-  std::vector<std::uint32_t> point_of;  ///< For each vertex.
-  std::vector<std::uint32_t> group_of;  ///< For each vertex: those with the same number share a normal.
-  std::vector<Vec3> group_normals;      ///< Scratch of update_surface.
+  std::vector<std::uint32_t> point_of;  ///< Simulated point of each vertex.
+  std::vector<std::uint32_t> group_of;  ///< Group of each vertex; vertices of one group share a normal.
+  std::vector<Vec3> group_normals;      ///< Scratch memory of update_surface.
 };
 
-/// A grid of `columns` x `rows` points, point 0 being the top left corner of the texture.
+/// Makes a grid of `columns` x `rows` points; point 0 is the top left corner of the texture.
 ClothSurface make_grid_surface(std::uint32_t columns, std::uint32_t rows,
                                std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// A model whose simulated vertices are the cloth's points.
+/// Makes the surface of a model whose simulated vertices are the cloth's points.
 ClothSurface make_model_surface(const Model& model);
 
-/// The outer points of a solid, with an edge wherever triangles at rest meet at an angle of a right one or
-/// more.
+/// Makes the surface of a solid from its outer points, with an edge wherever triangles at rest meet at a
+/// right angle or more.
 ClothSurface make_solid_surface(std::span<const Vec3> points,
                                 std::span<const std::array<std::uint32_t, 3>> triangles);
 
-/// The model as it stands in its file.
+/// Returns the model as it stands in its file.
 std::shared_ptr<render::MeshGeometry> geometry_of(const Model& model);
 
-/// Moves the vertices to `points` and recomputes the normals. Points that are missing leave their vertices
-/// where they are.
+/// Moves the vertices to `points` and recomputes the normals. Vertices whose points are missing stay where
+/// they are.
 void update_surface(ClothSurface& surface, std::span<const Vec3> points);
 
 }  // namespace hooke::app

@@ -11,7 +11,7 @@ class App;
 
 namespace hooke::app {
 
-/// What a user says of how a scene is drawn.
+/// These are the options of a user on how a scene is drawn.
 struct StyleWords {
   std::vector<std::string> bounds;
   bool painter = false;
@@ -20,7 +20,7 @@ struct StyleWords {
 /// Adds --bounds and --painter.
 void add_style(CLI::App& app, StyleWords& words);
 
-/// Errors: a name that is no bounding volume's.
+/// Makes the style. The Error tells of a name that is no bounding volume's.
 Result<DrawingStyle> style_of(const StyleWords& words);
 
 }  // namespace hooke::app

@@ -14,15 +14,15 @@ namespace hooke::app {
 
 namespace {
 
-/// Thinner springs than these are drawn as lines: round ones cost a hundred triangles each.
+/// Above this number springs are drawn as lines, because round ones cost a hundred triangles each.
 constexpr std::size_t kMostRoundSprings = 3000;
-constexpr float kLeastRopeRadius = 1.2F;  ///< [px], half the least width of a rope.
-/// [px]: larger spheres are drawn by the finest level, smaller ones by the next; below the second by the
-/// coarsest. None is more than half a pixel off.
+constexpr float kLeastRopeRadius = 1.2F;  ///< Half the least width of a rope [px].
+/// Spheres with a radius above the first [px] are drawn by the finest level, smaller ones by the next, and
+/// below the second by the coarsest. None is more than half a pixel off.
 constexpr std::array<float, 2> kLevelRadius = {40, 10};
-constexpr float kSlabWidth = 20;       ///< Slabs are wider than so many times their thickness.
+constexpr float kSlabWidth = 20;       ///< Slabs are wider than this many times their thickness.
 constexpr float kIronDensity = 7800;   ///< [kg/m^3]
-constexpr float kHookRadius = 0.008F;  ///< Of a distance as it is drawn [m].
+constexpr float kHookRadius = 0.008F;  ///< Radius of the line that shows a distance hook [m].
 const render::Color kIron = {0.30F, 0.31F, 0.33F};
 
 float srgb_of(float linear) {
@@ -34,7 +34,7 @@ render::Color color_of(const std::array<float, 3>& linear) {
   return {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])};
 }
 
-/// What an object without a material looks like.
+/// Returns the color of an object without a material.
 render::Color usual_color(SceneObject::Kind kind) {
   switch (kind) {
     case SceneObject::Kind::kRope:
@@ -69,10 +69,10 @@ std::vector<PaintedRange> model_ranges(const Model& model, const TextureLoader& 
   return ranges;
 }
 
-/// What the ranges of an object, or of a part of it, depend on.
+/// This is what the ranges of an object, or of a part of it, depend on.
 struct Look {
   SceneObject::Kind kind;
-  const std::string& material;  ///< Empty: a model's own materials, or the usual color.
+  const std::string& material;  ///< Empty for a model's own materials, or the usual color.
   const SceneMaterial& look;
   const Model* model;
 };
@@ -85,7 +85,7 @@ std::vector<PaintedRange> ranges_of(const Scene& scene, const Look& look, const 
   return ranges;
 }
 
-/// The ball of iron of that mass.
+/// Returns the radius of an iron ball of that mass.
 float load_radius(Real mass) {
   return std::cbrt(3 * static_cast<float>(mass) / (4 * std::numbers::pi_v<float> * kIronDensity));
 }
@@ -103,7 +103,8 @@ const Model* drawn_materials(const Shape& shape, const std::shared_ptr<const Mod
   return shape.kind == ShapeKind::kMesh ? model.get() : nullptr;
 }
 
-/// Ground: what it would shade lies below it, and its shadow would take the whole shadow map.
+/// A slab serves as ground: it casts no shadow, because the shadow would lie below it and take the whole
+/// shadow map.
 bool is_slab(const Shape& shape) {
   const Vec3 half = shape.half_extents;
   return shape.kind == ShapeKind::kBox && std::min(half.x, half.z) > kSlabWidth * half.y;
@@ -173,7 +174,7 @@ float specular_of(float shininess) {
   return std::clamp(0.03F + 0.004F * shininess, 0.03F, 0.45F);
 }
 
-/// A mesh to be drawn with one finish.
+/// Returns a mesh to be drawn with one finish.
 render::DrawMesh painted(const PaintedRange& range) {
   const Finish& finish = range.finish;
   render::DrawMesh mesh;

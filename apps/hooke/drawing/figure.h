@@ -15,7 +15,7 @@
 
 namespace hooke::app {
 
-/// How a surface is drawn.
+/// A Finish says how a surface is drawn.
 struct Finish {
   render::Color color = {};
   std::shared_ptr<const render::Image> texture = {};
@@ -23,62 +23,62 @@ struct Finish {
   float shininess = 16;
 };
 
-/// Consecutive triangles with one finish.
+/// These are consecutive triangles with one finish.
 struct PaintedRange {
   std::size_t first = 0;
-  std::size_t count = 0;  ///< Indices; 0 is all.
+  std::size_t count = 0;  ///< Number of indices; 0 stands for all.
   Finish finish;
 };
 
-/// A body, or one of its parts.
+/// This is a body, or one of its parts.
 struct FigureSolid {
   BodyGeometry geometry;
-  Vec3 position = {};  ///< In the body's frame [m].
+  Vec3 position = {};  ///< Position in the body's frame [m].
   Quat rotation = {};
   std::vector<PaintedRange> ranges;
   bool casts_shadow = true;
 };
 
-/// A weight that is tied to a point.
+/// This is a weight that is tied to a point.
 struct FigureLoad {
   std::size_t point = 0;
   float radius = 0;  ///< [m]
 };
 
-/// One object's looks and triangles: everything that stays the same from picture to picture, and the buffers
-/// that are filled anew.
+/// A Figure holds the look and the triangles of one object, which stay the same from picture to picture, and
+/// buffers that are filled anew.
 struct Figure {
   SceneObject::Kind kind = SceneObject::Kind::kBody;
-  float radius = 0;                     ///< Of a rope's strand [m].
-  std::vector<PaintedRange> ranges;     ///< Of all but bodies; at least one.
-  std::vector<FigureSolid> solids;      ///< Of a body.
-  bool half_space = false;              ///< The body is one.
-  std::optional<ClothSurface> surface;  ///< Of a cloth or solid.
-  std::vector<float> radii;             ///< Of particles [m].
-  std::vector<SpringDesc> springs;      ///< Of particles.
-  std::vector<FigureLoad> loads;        ///< Of ropes and cloths.
+  float radius = 0;                     ///< Radius of a rope [m].
+  std::vector<PaintedRange> ranges;     ///< Set for all but bodies; at least one.
+  std::vector<FigureSolid> solids;      ///< Set for a body.
+  bool half_space = false;              ///< Whether the body is a half-space.
+  std::optional<ClothSurface> surface;  ///< Set for a cloth or solid.
+  std::vector<float> radii;             ///< Radii of particles [m].
+  std::vector<SpringDesc> springs;      ///< Springs of particles.
+  std::vector<FigureLoad> loads;        ///< Weights of ropes and cloths.
 };
 
-/// Gives the image of a path, or null.
+/// Returns the image of a path, or null.
 using TextureLoader = std::function<std::shared_ptr<const render::Image>(const std::string&)>;
 
-/// Everything that can be prepared about an object of a simulation.
+/// Prepares everything about an object of a simulation that does not change.
 Figure make_figure(const Simulation& simulation, const SceneObject& object, const TextureLoader& textures,
                    BodyGeometries& geometries);
 
-/// A solid's frame and size, in the body's frame.
+/// Returns a solid's frame and size, in the body's frame.
 Mat4 transform_of(const FigureSolid& solid);
 
-/// The pose of a body and the points of the others, relative to the list's origin.
+/// This is the pose of a body and the points of other objects, relative to the list's origin.
 struct FigurePlace {
   Vec3 position = {};
   Quat rotation = {};
   std::span<const Vec3> points = {};
-  float pixel = 0;  ///< [m], what one pixel covers a meter away from `eye`.
+  float pixel = 0;  ///< Size that one pixel covers at a distance of one meter from `eye` [m].
   Vec3 eye = {};
 };
 
-/// Adds a figure to the list. A half-space becomes the list's ground if it is level and the first one.
+/// Adds a figure to the list. The first half-space that is level becomes the list's ground.
 void add_figure(Figure& figure, const FigurePlace& place, render::DrawList& list);
 
 }  // namespace hooke::app

@@ -8,17 +8,17 @@ namespace hooke::app {
 
 namespace {
 
-constexpr double kFovDeg = 40;  ///< Of the automatic view.
+constexpr double kFovDeg = 40;  ///< Vertical field of the automatic view.
 
-/// Slope at keyframe `i`: of the line between its neighbors; at rest at both ends, so that films begin and
-/// end softly.
+/// Returns the slope at keyframe `i`, that of the line between its neighbors. It is zero at both ends, so
+/// that films begin and end softly.
 DVec3 slope(const std::vector<SceneKeyframe>& path, std::size_t i, DVec3 SceneKeyframe::*member) {
   if (i == 0 || i + 1 == path.size()) return {};
   const double span = path[i + 1].time - path[i - 1].time;
   return (1 / span) * (path[i + 1].*member - path[i - 1].*member);
 }
 
-/// Cubic Hermite curve from keyframe `i` to the next; `part` goes from 0 to 1.
+/// Returns a point on the cubic Hermite curve from keyframe `i` to the next; `part` goes from 0 to 1.
 DVec3 between(const std::vector<SceneKeyframe>& path, std::size_t i, double part,
               DVec3 SceneKeyframe::*member) {
   const double span = path[i + 1].time - path[i].time;

@@ -20,9 +20,9 @@ namespace {
 /// The list's origin moves in steps, so that shadows and cached buffers stand still while the camera does
 /// not.
 constexpr double kOriginStep = 64;
-constexpr double kFar = 1e30;  ///< [m], beyond everything.
+constexpr double kFar = 1e30;  ///< A length beyond everything [m].
 
-/// Fields are nowhere, and of hooks only distances can be seen: others lie within what they hold.
+/// Fields are not drawn, and of hooks only distances are, because others lie within what they hold.
 bool is_drawn(const SceneObject& object) {
   if (object.kind == SceneObject::Kind::kHook) {
     return object.hook_kind == HookKind::kDistance && !object.broken;
@@ -86,7 +86,7 @@ void SceneDrawing::record(const Simulation& simulation, double time) {
     state.points.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) state.points[i] = points[i];
   }
-  // A step's time is a sum: half a step early is in time.
+  // A step's time is a sum, so that half a step early still counts as in time.
   const double half_step = static_cast<double>(simulation.scene().dt) / 2;
   const bool due = trail_.empty() || time >= trail_.back().time + trail_interval_.value_or(0) - half_step;
   if (trail_interval_ && due) trail_.push_back(current_);

@@ -17,45 +17,46 @@
 
 namespace hooke::app {
 
-struct Figure;       // one object's looks and triangles; figure.h
-struct FigurePlace;  // where it is; figure.h
+struct Figure;       // Look and triangles of one object; see figure.h.
+struct FigurePlace;  // Where an object is; see figure.h.
 
 struct DrawingStyle {
-  /// Drawn around bodies: the first of these around the first body that is no half-space, and so on, over
-  /// again from the first.
+  /// These volumes are drawn around bodies. The first is drawn around the first body that is no half-space,
+  /// and so on, starting again from the first volume.
   std::vector<Preselection> bounds = {};
-  bool painter = false;  ///< render::paint_in_order; a warning says why not, where it cannot.
+  /// Whether render::paint_in_order is used; where it cannot, a warning gives the reason.
+  bool painter = false;
 };
 
-/// Turns a simulation into what the renderer draws. Keeps copies of the last two states it was shown, so that
-/// a picture may lie between two steps.
+/// Turns a simulation into what the renderer draws. It keeps copies of the last two states, so that a picture
+/// may lie between two steps.
 class SceneDrawing {
  public:
   explicit SceneDrawing(DrawingStyle style = {}) : style_(std::move(style)) {}
 
-  /// Takes a copy of the present state; the copy before it stays for interpolation.
+  /// Copies the present state; the copy before it stays for interpolation.
   void record(const Simulation& simulation) { record(simulation, simulation.world().time()); }
-  /// The same at a time [s] that the world does not know: its points were moved by hand.
+  /// Copies the state with a time [s] of its own, for worlds whose points were moved by hand.
   void record(const Simulation& simulation, double time);
 
-  /// From now on ropes and particles leave a copy of themselves behind every `interval` [s], as on a plate
-  /// that is exposed again and again. Positive.
+  /// Makes ropes and particles leave a copy of themselves behind every `interval` [s] from now on, as in a
+  /// multiple exposure. `interval` is positive.
   void keep_trail(double interval) { trail_interval_ = interval; }
 
-  /// Fills the list with the state at `time` [s]: by straight lines between the two copies, the later one
-  /// beyond it. Camera, bodies and ropes are relative to a place near the camera. `height_px` is the
-  /// picture's: no rope gets thinner than about two pixels.
+  /// Fills the list with the state at `time` [s]: interpolated linearly between the two copies, and the later
+  /// one beyond it. Camera, bodies and ropes are relative to a point near the camera. `height_px` is the
+  /// picture's; no rope gets thinner than about two pixels.
   void fill(double time, int height_px, render::DrawList& list);
 
-  /// One line for each texture that could not be read, and for what could not be painted; cleared by the
-  /// call.
+  /// Returns one line for each texture that could not be read, and for what could not be painted. The call
+  /// clears them.
   [[nodiscard]] std::vector<std::string> take_warnings();
 
  private:
   struct ObjectState {
     std::shared_ptr<Figure> figure;
-    std::vector<DVec3> points;  ///< Of a deformable object.
-    Pose pose;                  ///< Of a body.
+    std::vector<DVec3> points;  ///< Set for a deformable object.
+    Pose pose;                  ///< Set for a body.
   };
   struct State {
     double time = 0;
@@ -78,7 +79,7 @@ class SceneDrawing {
   std::map<std::string, std::shared_ptr<const render::Image>> textures_;
   std::vector<std::string> warnings_;
   std::optional<SceneCamera> camera_;
-  std::optional<Viewpoint> automatic_;  ///< Frames the first state; for scenes without a camera.
+  std::optional<Viewpoint> automatic_;  ///< View of the first state, for scenes without a camera.
   State previous_;
   State current_;
   DrawingStyle style_;
