@@ -1,11 +1,11 @@
-/// The broad phase alone, one thread: milliseconds per step of scenes in which only boxes move.
+/// Measures the broad phase alone in one thread: milliseconds per step of scenes in which only boxes move.
 ///
-/// `pile`: 20 x 20 x 20 cubes of 1 m, 1 m apart, each trembling by up to 2 mm a step about its place.
-/// `spheres`: 5000 boxes of 1 m, 1.1 m apart, falling freely side by side from rest, with a step of 1/60 s.
-/// `large_world`: 1000 x 1000 boxes of 10 x 0.5 x 10 m that stand in a grid, and one falling over them.
-/// `first/N`: what the first step of N cubes of the pile costs; `standing/N` the same for N that stand.
+/// `pile` has 20 x 20 x 20 cubes of 1 m, 1 m apart; each moves by up to 2 mm a step about its position.
+/// `spheres` has 5000 boxes of 1 m, 1.1 m apart, which fall freely from rest, with a step of 1/60 s.
+/// `large_world` has 1000 x 1000 boxes of 10 x 0.5 x 10 m that stand in a grid, and one that falls over them.
+/// `first/N` is the cost of the first step of N cubes of the pile, `standing/N` that of N cubes that stand.
 ///
-/// The counter `pairs` is how many overlap in the last step.
+/// The counter `pairs` is how many pairs overlap in the last step.
 
 #include "collision/broad_phase/broad_phase.h"
 

@@ -1,11 +1,11 @@
-/// Scene "cloth" and a version with tethers against Bullet's soft body on the same list of points and
-/// springs: time of a step and how much the cloth stretches, in one run. Prints CSV.
+/// Compares scene "cloth" and a version with tethers with Bullet's soft body on the same list of points and
+/// springs: the time of a step and how much the cloth stretches, in one run. It prints CSV:
 ///
 ///   engine,setting,ms_step_min,ms_step_median,mean_stretch,largest_stretch
 ///
-/// 100 x 100 points of 1 kg, spacing 2 cm, two top corners held, 19 800 structural and 19 602 shear springs
-/// rigid, 19 600 bend springs soft; 600 steps of 1/60 s; stretch is that of the structural springs after the
-/// last.
+/// The cloth has 100 x 100 points of 1 kg, spacing 2 cm, and two top corners held. Its 19 800 structural and
+/// 19 602 shear springs are rigid, its 19 600 bend springs soft. It runs 600 steps of 1/60 s; stretch is that
+/// of the structural springs after the last.
 
 #include "hooke/hooke.h"
 

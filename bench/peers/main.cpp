@@ -1,6 +1,6 @@
-/// hooke-peers SCENE --engine hooke|bullet|ode: runs a scene of rigid bodies by one engine and prints one
-/// line of CSV. `hooke bench --peers` starts it, once for each engine and number of workers: the product
-/// itself links no other engine.
+/// hooke-peers SCENE --engine hooke|bullet|ode runs a scene of rigid bodies by one engine and prints one line
+/// of CSV. `hooke bench --peers` starts it, once for each engine and number of workers, because the product
+/// itself links no other engine. The columns are
 ///
 ///   scene,engine,workers,ms_step_min,ms_step_median,ms_step_p99,contacts,max_penetration,kinetic_energy,
 ///   state_hash

@@ -10,7 +10,7 @@
 
 namespace hooke::io {
 
-/// A document that is read has at most this many bytes.
+/// These bound the source [bytes], the nesting and the number of values of a document that is read.
 inline constexpr std::size_t kLargestJson = std::size_t{64} << 20U;
 inline constexpr std::size_t kDeepestJson = 64;
 inline constexpr std::size_t kMostJsonValues = 2'000'000;

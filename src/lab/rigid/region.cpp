@@ -45,7 +45,8 @@ Result<void> Region::advance(double t, double dt) {
     carry(h);
     if (const auto moved = step_all(attempt); !moved) return moved.error();
     find_pairs(attempt);
-    if (first && respond(0)) {  // What touches at the start is known only now, and had no force on this try.
+    // What touches at the start is known only now, and exerted no force in this try.
+    if (first && respond(0)) {
       reset();
       continue;
     }
