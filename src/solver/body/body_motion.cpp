@@ -1,6 +1,7 @@
 #include "solver/body/body_motion.h"
 
 #include "math/rotation.h"
+#include "solver/body/body_tuning.h"
 #include "solver/body/free_turn_kernels.h"
 #include "state/body_frames.h"
 
@@ -48,9 +49,8 @@ FreeTurn free_turn(const BodyMass& mass, Quat rotation, Vec3 momentum) {
 
 /// Whether the iteration of the midpoint rule converges at once.
 bool is_slow(const FreeTurn& turn, Real h) {
-  constexpr Real kSlow = Real(0.1);
   const auto [least, most] = std::minmax({turn.inverse.x, turn.inverse.y, turn.inverse.z});
-  return h * length(turn.momentum) * most * most <= kSlow * least;
+  return h * length(turn.momentum) * most * most <= kMidpointTurn * least;
 }
 
 void put_turn(const FreeTurn& turn, int lane, wide::TurnLanes& turns) {
@@ -80,7 +80,6 @@ Quaternion<double> turned_about(int axis, Quaternion<double> axes, DVec3 momentu
 /// are taken. What is nearly right stays: otherwise the root of a square's rounding error spun a ladder,
 /// which leaned at rest, about its own axis.
 Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 momentum, double twice_energy) {
-  constexpr double kLeast = 1e-4;
   const double size = length(momentum);
   const DVec3 l = (1 / size) * rotate(conjugate(axes), momentum);
   const DVec3 square = {l.x * l.x, l.y * l.y, l.z * l.z};
@@ -89,7 +88,7 @@ Quaternion<double> turned_to_energy(Quaternion<double> axes, DVec3 c, DVec3 mome
   const DVec3 free = {c.z - c.y, c.x - c.z, c.y - c.x};  // This direction changes neither sum.
   if (!(length_squared(slope) > 0)) return axes;
   const double lacks = twice_energy / (size * size) - dot(c, square);
-  if (std::abs(lacks) <= kLeast * dot(c, square)) return axes;
+  if (std::abs(lacks) <= kTurnEnergyTolerance * dot(c, square)) return axes;
   const DVec3 nearest = square + (lacks / length_squared(slope)) * slope;
   double low = -std::numeric_limits<double>::infinity();
   double high = -low;
@@ -221,18 +220,14 @@ void keep_rotational_energy(std::uint32_t row, Quat before, Bodies& bodies) {
   if (has > had) bodies.angular_momentum[row] = std::sqrt(had / has) * momentum - pending;
 }
 
-/// From this rotation on the inertia of a body may differ [rad].
-constexpr Real kLeastTurn = Real(0.02);
-
 /// Whether the rows of a body whose S was `scale` at the start of the step ask for too large impulses now.
 bool outgrows_rows(const math::Symmetric3<Real>& scale, const math::Symmetric3<Real>& now) {
-  constexpr Real kMost = Real(3.5);  // 1 + r + 1/r for r = 2
   const math::Symmetric3<Real> inverse = math::inverse(scale);
   Real trace = Real(0);
   for (const Vec3 axis :
        {Vec3{Real(1), Real(0), Real(0)}, Vec3{Real(0), Real(1), Real(0)}, Vec3{Real(0), Real(0), Real(1)}})
     trace += length_squared(now * (inverse * axis));
-  return !(trace <= kMost);
+  return !(trace <= kOutgrownResponse);
 }
 
 /// S of the mean inertia of a body that spins about its angular velocity.
@@ -384,7 +379,6 @@ Real inverse_mass_at(const Bodies& bodies, std::uint32_t row, Vec3 direction, Ve
 }
 
 void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
-  constexpr Real kFarTurn = Real(0.5);  // [rad]
   for (const std::uint32_t i : rows) {
     MotionRecord& m = bodies.motion[i];
     m.dx += h * m.v;
@@ -394,37 +388,37 @@ void move_bodies(std::span<const std::uint32_t> rows, Real h, Bodies& bodies) {
     const Quat before = bodies.rotation[i];
     bodies.rotation[i] = normalize(math::quaternion_of(turn) * before);
     // Far from the free rotation, L would stand for any energy.
-    if (length_squared(turn) > kFarTurn * kFarTurn) keep_rotational_energy(i, before, bodies);
+    if (length_squared(turn) > kEnergyKeepingTurn * kEnergyKeepingTurn)
+      keep_rotational_energy(i, before, bodies);
   }
 }
 
 bool outgrows_rows(const Bodies& bodies, std::uint32_t row, Real h) {
-  constexpr Real kMostTurn = Real(1.5);  // [rad]; after half a turn all is as it was.
   const Vec3 turn = h * bodies.angular_velocity[row];
   if (!gives_way(bodies, row) || !is_gyroscopic(bodies.mass[row])) return false;
   const Real angle = length(turn);
-  if (angle < kLeastTurn) return false;
-  const Quat then = math::quaternion_of(std::min(Real(1), kMostTurn / angle) * turn) * bodies.rotation[row];
+  if (angle < kOtherInertiaTurn) return false;
+  const Quat then =
+      math::quaternion_of(std::min(Real(1), kForeseenTurn / angle) * turn) * bodies.rotation[row];
   return outgrows_rows(inertia_scale(bodies.mass[row], bodies.rotation[row]),
                        inertia_scale(bodies.mass[row], then));
 }
 
 void freeze_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> start_rotation, Real h,
                     bool moved, Bodies& bodies) {
-  constexpr Real kMost = Real(2);
   for (const std::uint32_t i : rows) {
     const state::FrozenInertia& frozen = bodies.frozen_inertia[i];
     if (!frozen.touches || frozen.on) continue;
     const MotionRecord& m = bodies.motion[i];
     const math::Symmetric3<Real>& scale = bodies.scale[i];
     const Vec3 turn = moved ? m.theta_scaled : h * m.omega_scaled;
-    if (length_squared(scale * turn) < kLeastTurn * kLeastTurn) continue;
+    if (length_squared(scale * turn) < kOtherInertiaTurn * kOtherInertiaTurn) continue;
     const math::Symmetric3<Real> now = inertia_scale(bodies.mass[i], bodies.rotation[i]);
     const state::FreeMotionRecord& free = bodies.free_motion[i];
     Vec3 momentum = bodies.angular_momentum[i];
     if (moved) momentum += momentum_of(scale, m.omega_scaled - free.omega_scaled);
     const bool is_other_motion =
-        !moved && length_squared(free.omega_scaled) > kMost * length_squared(now * momentum);
+        !moved && length_squared(free.omega_scaled) > kOtherMotionEnergy * length_squared(now * momentum);
     if (is_other_motion || outgrows_rows(scale, now))
       begin_frozen_inertia(i, momentum, now, start_rotation[i], bodies);
   }

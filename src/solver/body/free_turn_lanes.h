@@ -8,6 +8,7 @@
 #define HOOKE_SOLVER_BODY_FREE_TURN_LANES_H
 #endif
 
+#include "solver/body/body_tuning.h"
 #include "solver/body/free_turn_kernels.h"
 #include "solver/simd/numbers.h"
 
@@ -46,14 +47,13 @@ HWY_INLINE Quad<Number> small_turn(const Triple<Number>& phi) {
 
 template <class Number>
 HWY_INLINE void turn_lanes_freely(Real h, int lane, TurnLanes& turns) {
-  constexpr int kIterations = 3;
   const Quad<Number> axes = {get<Number>(turns.axes[0] + lane), get<Number>(turns.axes[1] + lane),
                              get<Number>(turns.axes[2] + lane), get<Number>(turns.axes[3] + lane)};
   const Triple<Number> inverse = get3<Number>(turns.inverse, lane);
   const Triple<Number> local = turned_back(axes, get3<Number>(turns.momentum, lane));
   const Number half_step(Real(0.5) * h);
   Triple<Number> omega = entrywise(inverse, local);
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kMidpointIterations; ++i) {
     const Quad<Number> turn = small_turn(scaled(half_step, omega));
     omega = turned_by_quaternion(turn, entrywise(inverse, turned_back(turn, local)));
   }
