@@ -9,6 +9,7 @@
 #endif
 
 #include "solver/contact/body_contact_kernels.h"
+#include "solver/contact/contact_tuning.h"
 #include "solver/simd/numbers.h"
 
 #include <cstddef>
@@ -43,7 +44,7 @@ HWY_INLINE void solve_points(ContactBlock& block, int lane, const ContactPass& p
     const Number s = get<Number>(point.separation + lane) +
                      (closing_speed + (dot(j_b, moved_b.theta) - dot(j_a, moved_a.theta)));
     const auto apart = above(s, zero);
-    const Number undo = larger(Number(pass.softness.rate) * s, Number(Real(-3)));
+    const Number undo = larger(Number(pass.softness.rate) * s, Number(-kContactPushOutSpeed));
     const Number bias = choose(apart, inverse_h * s, undo);
     const Number mass_scale = choose(apart, Number(Real(1)), Number(pass.softness.mass_scale));
     const Number impulse_scale = choose(apart, zero, Number(pass.softness.impulse_scale));
@@ -253,30 +254,29 @@ HWY_INLINE Triple<Number> across(const Triple<Number>& n) {
   return scaled(quotient(one, root(dot(t, t))), t);
 }
 
-/// Mean position of the contact. Points count fully up to 5 mm apart and fade out to 2 cm. If none is as near
-/// as that, it is the mean of all.
+/// Mean position of the contact. Points count fully up to kFrictionFullGap and fade out to kFrictionNoGap. If
+/// none is as near as that, it is the mean of all.
 template <class Number>
 struct MeanAnchors {
   Triple<Number> a, b;
 };
 template <class Number>
 HWY_INLINE MeanAnchors<Number> mean_anchors(const Inputs<Number>& inputs, int points) {
-  constexpr Real kFull = Real(0.005);
-  constexpr Real kNone = Real(0.02);
-  constexpr Real kLeast = Real(1e-4);
   const Number zero(Real(0));
   const Number one(Real(1));
   MeanAnchors<Number> mean = {{zero, zero, zero}, {zero, zero, zero}};
   Number sum = zero;
   for (int k = 0; k < points; ++k) {
-    const Number near = Number(Real(1) / (kNone - kFull)) * (Number(kNone) - inputs.separation[k]);
-    const Number weight = inputs.present[k] * (larger(smaller(near, one), zero) + Number(kLeast));
+    const Number near = Number(Real(1) / (kFrictionNoGap - kFrictionFullGap)) *
+                        (Number(kFrictionNoGap) - inputs.separation[k]);
+    const Number weight =
+        inputs.present[k] * (larger(smaller(near, one), zero) + Number(kFrictionLeastWeight));
     sum = sum + weight;
     add(weight, inputs.anchor_a[k], mean.a);
     add(weight, inputs.anchor_b[k], mean.b);
   }
   // A refreshed manifold may have no points now.
-  const Number share = quotient(one, larger(sum, Number(Real(0.5) * kLeast)));
+  const Number share = quotient(one, larger(sum, Number(Real(0.5) * kFrictionLeastWeight)));
   return {scaled(share, mean.a), scaled(share, mean.b)};
 }
 

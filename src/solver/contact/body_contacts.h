@@ -6,6 +6,7 @@
 #include "parallel/range.h"
 #include "parallel/thread_pool.h"
 #include "solver/contact/contact_colors.h"
+#include "solver/contact/contact_tuning.h"
 #include "state/bodies.h"
 #include "state/manifolds.h"
 
@@ -48,10 +49,6 @@
 namespace hooke::solver {
 
 inline constexpr int kContactLanes = 16;
-
-/// Slower impacts do not bounce [m/s]. The second speed is for dense piles.
-inline constexpr Real kLeastImpactSpeed = Real(0.03);
-inline constexpr Real kLeastImpactSpeedInPile = Real(0.2);
 
 /// Rows of up to 16 manifolds of one color: no two of them share a body that moves. A always moves; where
 /// only one body does, it is made A. The last lane that holds a manifold is repeated up to the end, so that a

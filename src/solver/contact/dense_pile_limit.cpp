@@ -1,13 +1,13 @@
 #include "solver/contact/dense_pile_limit.h"
 
+#include "solver/contact/contact_tuning.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace hooke::solver {
 
 namespace {
-
-constexpr Real kPushOutSpeed = Real(3);  // as in solver/contact/body_contacts.h [m/s]
 
 /// The mean velocity, weighted by mass.
 Vec3 velocity_of(std::span<const std::uint32_t> pile, const state::Bodies& bodies) {
@@ -27,11 +27,12 @@ void limit_dense_pile(std::span<const std::uint32_t> pile, state::Bodies& bodies
   for (const std::uint32_t body : pile) {
     state::MotionRecord& m = bodies.motion[body];
     const state::FreeMotionRecord& free = bodies.free_motion[body];
-    const Real fastest = std::max(kPushOutSpeed, length(free.v - mean));
+    const Real fastest = std::max(kContactPushOutSpeed, length(free.v - mean));
     const Real speed = length(m.v - mean);
     if (speed > fastest) m.v = mean + (fastest / speed) * (m.v - mean);
     // The rotation may have the energy of that speed.
-    const Real most = std::max(kPushOutSpeed * std::sqrt(bodies.mass[body].mass), length(free.omega_scaled));
+    const Real most =
+        std::max(kContactPushOutSpeed * std::sqrt(bodies.mass[body].mass), length(free.omega_scaled));
     if (length(m.omega_scaled) > most) m.omega_scaled = free.omega_scaled;
   }
   const Vec3 lost = mean - velocity_of(pile, bodies);

@@ -1,6 +1,7 @@
 #include "solver/contact/direct_contacts.h"
 
 #include "math/rotation.h"
+#include "solver/contact/contact_tuning.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -15,22 +16,6 @@ namespace hooke::solver {
 namespace {
 
 using state::Bodies;
-
-constexpr double kDirectStiffness = 1e5;  ///< D of a row over its effective mass.
-constexpr double kDirectSlop = 1e-5;      ///< Overlap, or gap, that is none, over the smaller body's radius.
-constexpr double kPushOut = 0.5;          ///< Share of overlap that a step removes.
-constexpr double kLargestPush = 0.05;     ///< Largest displacement of that kind in a step [m].
-constexpr int kRounds = 3;                ///< Of friction, each with new limits.
-constexpr int kNewtonSteps = 12;          ///< Newton steps in a round.
-constexpr int kQuickSteps = 3;            ///< Newton steps before softer rows are tried.
-constexpr double kSofterStiffness = 1e2;
-constexpr int kSweeps = 8;  ///< Sweeps where no solution is found.
-constexpr int kSearchSteps = 20;
-constexpr double kTolerance = 1e-7;  ///< Largest gradient over what contacts do.
-
-constexpr double kSticking = 0.999;  ///< Share of its limit: friction with more slid in the last substep.
-/// Friction whose load has changed less than this share is not solved again.
-constexpr double kSameLoad = 0.01;
 
 DirectLever scaled_lever(double scale, Vec3 linear, double sign, Vec3 angular) {
   const auto d = [](Real x) { return static_cast<double>(x); };
@@ -220,7 +205,7 @@ bool evaluate(DirectIsland& island) {
   double done = 0;
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     done = std::max(done, std::abs(island.velocity[i] - island.free[i]));
-  return largest(island.direction) <= kTolerance * done;
+  return largest(island.direction) <= kDirectTolerance * done;
 }
 
 /// The share of the search direction where the energy is least.
@@ -232,8 +217,8 @@ double search(DirectIsland& island) {
   const double start = climb(0, island);
   double low = 0;
   double high = 1;
-  if (climb(1, island) <= 1e-3 * std::abs(start)) return 1;
-  for (int i = 0; i < kSearchSteps; ++i) {
+  if (climb(1, island) <= kDirectSearchTolerance * std::abs(start)) return 1;
+  for (int i = 0; i < kDirectSearchSteps; ++i) {
     const double middle = 0.5 * (low + high);
     (climb(middle, island) > 0 ? high : low) = middle;
   }
@@ -283,8 +268,8 @@ void guess_rows(Guess guess, DirectIsland& island) {
     DirectRow* friction = &island.rows[c.first + c.points];
     const double size =
         std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
-    friction[0].holds = friction[1].holds = all || size < kSticking * c.limit;
-    friction[2].holds = all || std::abs(friction[2].before) < kSticking * c.twist_limit;
+    friction[0].holds = friction[1].holds = all || size < kDirectSticking * c.limit;
+    friction[2].holds = all || std::abs(friction[2].before) < kDirectSticking * c.twist_limit;
   }
 }
 
@@ -333,8 +318,8 @@ void choose_friction(const ContactBlock& block, DirectIsland& island, DirectCont
   const DirectRow* friction = &island.rows[c.first + c.points];
   const double size =
       std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
-  const bool slid =
-      size >= kSticking * slow * load || std::abs(size - fast * load) <= (1 - kSticking) * fast * load;
+  const bool slid = size >= kDirectSticking * slow * load ||
+                    std::abs(size - fast * load) <= (1 - kDirectSticking) * fast * load;
   c.friction = slid ? fast : slow;
 }
 
@@ -353,7 +338,8 @@ bool limit_friction(DirectIsland& island) {
     const double size =
         std::sqrt(friction[0].impulse * friction[0].impulse + friction[1].impulse * friction[1].impulse);
     const auto moved = [](double used, double old, double now) {
-      return used > std::min(kSticking * old, now) && std::abs(now - old) > kSameLoad * std::max(now, old);
+      return used > std::min(kDirectSticking * old, now) &&
+             std::abs(now - old) > kDirectSameLoad * std::max(now, old);
     };
     changed = changed || moved(size, c.limit, limit) ||
               moved(std::abs(friction[2].impulse), c.twist_limit, twist_limit);
@@ -488,7 +474,8 @@ void remove_overlap(DirectIsland& island, Bodies& bodies) {
       DirectRow& row = island.rows[i];
       const bool overlaps = i < c.first + c.points && row.separation < -c.slop;
       any = any || overlaps;
-      row.slope = overlaps ? row.stiffness * std::min(kLargestPush, -kPushOut * row.separation) : 0;
+      row.slope =
+          overlaps ? row.stiffness * std::min(kDirectLargestPush, -kDirectPushOut * row.separation) : 0;
       row.holds = row.holds || overlaps;
     }
     add_impulses(island, c, &DirectRow::slope, island.direction);
@@ -513,7 +500,7 @@ void remove_overlap(DirectIsland& island, Bodies& bodies) {
 struct Attempt {
   double stiffness = kDirectStiffness;  ///< D over effective masses.
   Guess guess = Guess::kSame;
-  int steps = kNewtonSteps;
+  int steps = kDirectNewtonSteps;
 };
 
 /// Finds the solution, with friction by its own loads. False if it is not found.
@@ -526,7 +513,7 @@ bool converge(const Attempt& attempt, DirectIsland& island) {
   }
   limit_friction(island);
   jump(attempt.guess, island);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kDirectFrictionRounds; ++round) {
     if (!descend(attempt.steps, island)) return false;
     if (!limit_friction(island)) break;
   }
@@ -539,7 +526,7 @@ void sweep_rows(DirectIsland& island) {
   island.velocity = island.free;
   for (DirectRow& row : island.rows) row.impulse = row.before;
   for (const DirectContact& c : island.contacts) add_impulses(island, c, &DirectRow::before, island.velocity);
-  for (int i = 0; i < kSweeps; ++i) {
+  for (int i = 0; i < kDirectSweeps; ++i) {
     for (const DirectContact& c : island.contacts) sweep_contact(c, island);
   }
 }
@@ -578,8 +565,9 @@ void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, Dir
 
 void solve_direct_island(const BodyStep& step, DirectIsland& island, BodyContacts& contacts, Bodies& bodies) {
   load_island(static_cast<double>(step.h), contacts, bodies, island);
-  constexpr Attempt kAttempts[] = {
-      {.steps = kQuickSteps}, {.guess = Guess::kAll}, {.stiffness = kSofterStiffness, .guess = Guess::kAll}};
+  constexpr Attempt kAttempts[] = {{.steps = kDirectQuickSteps},
+                                   {.guess = Guess::kAll},
+                                   {.stiffness = kDirectSofterStiffness, .guess = Guess::kAll}};
   const bool solved = std::any_of(std::begin(kAttempts), std::end(kAttempts),
                                   [&](const Attempt& attempt) { return converge(attempt, island); });
   if (!solved) sweep_rows(island);

@@ -2,6 +2,7 @@
 
 #include "math/rotation.h"
 #include "solver/body/body_motion.h"
+#include "solver/contact/contact_tuning.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "state/body_frames.h"
 
@@ -17,18 +18,7 @@ using state::Bodies;
 using state::Manifold;
 using state::MotionRecord;
 
-constexpr std::size_t kMostPoints = 32;   // of an impact
-constexpr double kTogether = 1e-4;        // points that are nearer than this meet at once [m]
-constexpr double kLeastResponse = 1e-12;  // what both together give way is no less [1/kg]
-
-/// How long an impact is iterated, and to what share of its fastest speed.
-struct Effort {
-  int sweeps = 60;
-  int friction_rounds = 8;
-  double converged = 1e-9;
-};
-constexpr Effort kFull = {};
-constexpr Effort kInDensePile = {.sweeps = 8, .friction_rounds = 2, .converged = 1e-2};
+constexpr std::size_t kMostPoints = 32;  // of an impact
 
 /// A body in an impact.
 struct ImpactBody {
@@ -119,7 +109,7 @@ struct Impact {
   std::array<FrictionRow, kMostPoints> friction_row_memory = {};
   std::size_t point_count = 0;
   std::size_t friction_row_count = 0;
-  Effort effort;
+  ImpactEffort effort;
   double fastest = 0;  ///< Largest closing speed of the points [m/s].
 
   [[nodiscard]] std::span<Point> points() { return std::span(point_memory).first(point_count); }
@@ -155,7 +145,7 @@ void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact)
     const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
     const Levers at = {vector_cast<double>(p.anchor_a), vector_cast<double>(p.anchor_b)};
     const double closing_speed = dot(n, impact.velocity(at)) + lag;
-    if (static_cast<double>(p.separation) > kTogether || !(closing_speed < 0)) continue;
+    if (static_cast<double>(p.separation) > kImpactSameTimeGap || !(closing_speed < 0)) continue;
     impact.point_memory[impact.point_count++] = {
         .at = at,
         .n = n,
@@ -163,7 +153,7 @@ void add_points(const Manifold& m, std::size_t lane, double lag, Impact& impact)
         .lag = lag,
         .closing_speed = closing_speed,
         .target = -static_cast<double>(m.restitution) * closing_speed - lag,
-        .mass = 1 / std::max(kLeastResponse, dot(n, impact.response(at, n)))};
+        .mass = 1 / std::max(kLeastImpactResponse, dot(n, impact.response(at, n)))};
     impact.fastest = std::min(impact.fastest, closing_speed);
   }
 }
@@ -291,7 +281,7 @@ bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifold
   const Manifold& first = manifolds[lanes.front().manifold];
   Impact impact = {.a = body_at_impact(bodies, first.body_a, time),
                    .b = body_at_impact(bodies, first.body_b, time),
-                   .effort = pair.in_dense_pile ? kInDensePile : kFull};
+                   .effort = pair.in_dense_pile ? kImpactEffortInPile : kImpactEffort};
   // One of them has to give way: a backed body gives way only where the other does not. The direction is a
   // unit vector in double, lest a heavy partner give way less than rounding takes back.
   const DVec3 n = normalize(vector_cast<double>(first.normal));

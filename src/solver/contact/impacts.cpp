@@ -1,6 +1,7 @@
 #include "solver/contact/impacts.h"
 
 #include "math/rotation.h"
+#include "solver/contact/contact_tuning.h"
 #include "solver/contact/impact_impulse.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "state/body_frames.h"
@@ -20,14 +21,6 @@ using state::Hook;
 using state::Manifold;
 using state::MotionRecord;
 
-constexpr int kMostRefreshes = 5;        // for one impact
-constexpr int kMostImpacts = 16;         // of a pair in a substep; points that then still come together stop
-constexpr int kMostImpactsInPile = 1;    // in a step
-constexpr std::uint32_t kDensePile = 3;  // pairs of a body, from which on it is in a dense pile
-constexpr Real kTouching = Real(1e-3);   // what rests is nearer to its support than this [m]
-constexpr Real kAgainst = Real(0.2);     // least cosine between impulse and support
-constexpr Real kTimeShare = Real(2e-3);  // how exactly a time has to be known, over h
-
 bool is_later(const NextImpact& a, const NextImpact& b) {
   return a.time != b.time ? a.time > b.time : a.index > b.index;
 }
@@ -38,7 +31,8 @@ void find_supports(const std::vector<Manifold>& manifolds, const Bodies& bodies,
   for (const Manifold& m : manifolds) {
     if (m.restitution > Real(0)) continue;
     const auto end = m.point.begin() + m.point_count;
-    if (std::none_of(m.point.begin(), end, [](const auto& p) { return p.separation < kTouching; })) continue;
+    if (std::none_of(m.point.begin(), end, [](const auto& p) { return p.separation < kImpactSupportGap; }))
+      continue;
     if (is_moved(bodies, m.body_a)) impacts.supports.push_back({m.body_a, m.body_b, m.normal});
     if (is_moved(bodies, m.body_b)) impacts.supports.push_back({m.body_b, m.body_a, -m.normal});
   }
@@ -53,7 +47,7 @@ bool is_backed(std::uint32_t body, Vec3 push, int behind, const Bodies& bodies, 
       std::lower_bound(impacts.supports.begin(), impacts.supports.end(), body,
                        [](const Impacts::Support& s, std::uint32_t row) { return s.body < row; });
   for (auto s = first; s != impacts.supports.end() && s->body == body; ++s) {
-    if (!(dot(push, s->outward) > kAgainst)) continue;
+    if (!(dot(push, s->outward) > kImpactSupportCosine)) continue;
     if (!is_moved(bodies, s->other)) return true;
     if (behind > 0 && is_backed(s->other, push, behind - 1, bodies, impacts)) return true;
   }
@@ -101,18 +95,18 @@ void list_pairs(const state::Pairs& pairs, const std::vector<std::uint8_t>& hook
 }
 
 void find_backed_bodies(const std::vector<Manifold>& manifolds, const Bodies& bodies, Impacts& impacts) {
-  constexpr int kMostBehind = 8;
   for (ImpactPair& pair : impacts.pairs) {
     const Vec3 n = manifolds[impacts.lanes[pair.first_lane].manifold].normal;
-    pair.a_is_backed = is_backed(pair.a, -n, kMostBehind, bodies, impacts);
-    pair.b_is_backed = is_backed(pair.b, n, kMostBehind, bodies, impacts);
+    pair.a_is_backed = is_backed(pair.a, -n, kMostBackingBodies, bodies, impacts);
+    pair.b_is_backed = is_backed(pair.b, n, kMostBackingBodies, bodies, impacts);
   }
 }
 
 /// Where bodies are in a dense pile, only pairs that did not touch in the last step bounce.
 void filter_dense_piles(const std::vector<Manifold>& manifolds, const Bodies& bodies, Impacts& impacts) {
   const auto is_in_dense_pile = [&](std::uint32_t body) {
-    return is_moved(bodies, body) && impacts.pairs_begin[body + 1] - impacts.pairs_begin[body] >= kDensePile;
+    return is_moved(bodies, body) &&
+           impacts.pairs_begin[body + 1] - impacts.pairs_begin[body] >= kImpactPairsOfPile;
   };
   for (ImpactPair& pair : impacts.pairs)
     pair.in_dense_pile = is_in_dense_pile(pair.a) || is_in_dense_pile(pair.b);
@@ -158,7 +152,7 @@ Real impact_time(Real gap, Real v, Real a, Real since, Real h, Real least) {
   const Real time = since + Real(2) * gap_since / (root - u);
   // An impact that rounding delays until just after the end would be stopped by the relaxation of this
   // substep.
-  return time <= (Real(1) + kTimeShare) * h ? time : Impacts::kNever;
+  return time <= (Real(1) + kImpactTimeShare) * h ? time : Impacts::kNever;
 }
 
 Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep& step,
@@ -192,10 +186,9 @@ Real lane_time(const ContactLane& at, Real since, Real least, const ContactStep&
 
 /// Whether no point of the body is as fast as half of what bounces. Resting pairs are not tested.
 bool is_slow(const Bodies& bodies, std::uint32_t body) {
-  constexpr Real kSlow = Real(0.5) * kLeastImpactSpeed;
   const state::FreeMotionRecord motion = state::motion_before_contacts(bodies, body);
   const Real turning = bodies.traits[body].radius * length(bodies.scale[body] * motion.omega_scaled);
-  return length(motion.v) + turning < kSlow;
+  return length(motion.v) + turning < kRestingImpactSpeed;
 }
 
 /// The time of the pair's next impact.
@@ -243,9 +236,9 @@ void note_hooked_impact(const HookedImpact& before, Real time, Impacts& impacts)
   impacted->time_sum += time;
 }
 
-/// Whether the change by the impacts goes against a lock of the hook, at more than this share of the speeds.
+/// Whether the change by the impacts goes against a lock of the hook, at more than the share
+/// kImpactAgainstJoint of the speeds.
 bool goes_against(const Hook& hook, const Bodies& bodies, double h, const Impacts& impacts) {
-  constexpr double kShare = 0.1;
   const auto change_of = [&](std::uint32_t body) {
     state::FreeMotionRecord change;
     const HookedImpact* impacted = find_hooked_impact(body, impacts);
@@ -271,7 +264,7 @@ bool goes_against(const Hook& hook, const Bodies& bodies, double h, const Impact
     const double rate = dot(row.n, vector_cast<double>(b.v - a.v)) +
                         dot(row.j_b, vector_cast<double>(b.omega_scaled)) -
                         dot(row.j_a, vector_cast<double>(a.omega_scaled));
-    return std::abs(rate) * (row.n == DVec3{} ? size : 1) > kShare * speed;
+    return std::abs(rate) * (row.n == DVec3{} ? size : 1) > kImpactAgainstJoint * speed;
   });
 }
 
@@ -332,8 +325,8 @@ void resolve_impact(const NextImpact& impact, const ContactStep& step, const sta
   const std::span<const ContactLane> lanes = lanes_of(pair, impacts);
   refill_lanes(lanes, pairs.manifold, impact.time, bodies, contacts);
   const Real time = time_of(pair, step, contacts, bodies, impacts);
-  const bool is_there = std::abs(time - impact.time) <= kTimeShare * step.h;
-  if (!is_there && (time == Impacts::kNever || ++pair.refreshes < kMostRefreshes)) {
+  const bool is_there = std::abs(time - impact.time) <= kImpactTimeShare * step.h;
+  if (!is_there && (time == Impacts::kNever || ++pair.refreshes < kMostImpactRefreshes)) {
     await(impact.index, time, impacts);
     return;
   }
