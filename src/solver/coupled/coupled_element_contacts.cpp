@@ -3,6 +3,7 @@
 
 #include "geometry/closest.h"
 #include "solver/coupled/coupled_group_solution.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
 #include "state/body_frames.h"
@@ -16,24 +17,6 @@ namespace hooke::solver {
 namespace {
 
 using state::ElementContact;
-
-/// A body slides at first if friction needs this many times its weight to stop it in a substep. If it were
-/// held, it would press so hard where it tips over that the friction there seems to hold it.
-constexpr double kMostStopped = 2;
-
-constexpr double kMostDrag = 1e4;  ///< Over the mass at the contact; a contact that is dragged harder sticks.
-/// The same for ropes, where a light one carries many times its weight.
-constexpr double kMostRopeDrag = 1e4;
-/// Overlap of ropes is removed no faster than this [m/s]. Where one end of a segment is wedged, the other end
-/// moves many times as fast as the contact.
-constexpr double kElementPushOutSpeed = 0.05;
-
-/// Overlap, or gap, of a load-bearing contact that counts as none, over the shorter lever: some roundings.
-constexpr double kLoadBearingSlop = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-
-constexpr int kRopeSlidingSolves = 7;
-/// The most by which a rope contact gives way to its force [m/s].
-constexpr double kRopeYieldSpeed = 0.02;
 
 /// The normal and two directions across it.
 std::array<DVec3, CoupledContact::kRows> axes_of(DVec3 n) {

@@ -5,6 +5,7 @@
 
 #include "math/rotation.h"
 #include "solver/coupled/coupled_group_solution.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/joint/hook_breaks.h"
 #include "solver/joint_rows/geometric_stiffness.h"
 #include "solver/soft/particle_contact_solve.h"
@@ -274,7 +275,6 @@ double CoupledGroupSolution::check_ropes(bool& limits_changed) {
 /// touch ropes, a solution in which contacts still pull throws a folded rope far from its position. Another
 /// solution about that state may converge there.
 bool CoupledGroupSolution::gains_energy() const {
-  constexpr double kMostGain = 1.1;
   double before = 0;
   double behind = 0;
   for (const RopeNode& node : b_.ropes.nodes) {
@@ -286,7 +286,7 @@ bool CoupledGroupSolution::gains_energy() const {
     before += length_squared(m.body.v) / m.body.inverse_mass;
     behind += length_squared(m.v) / m.body.inverse_mass;
   }
-  return behind > kMostGain * before;
+  return behind > kMostEnergyGain * before;
 }
 
 void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {

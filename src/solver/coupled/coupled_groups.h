@@ -4,6 +4,7 @@
 
 #include "base/disjoint_sets.h"
 #include "math/symmetric.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/joint_rows/hook_rows.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "solver/linear/block_matrix.h"
@@ -175,17 +176,6 @@ struct CoupledGroup {
   /// Removes members and matrix, but keeps memory.
   void clear();
 };
-
-/// Multiplications of all factorizations of one coupled group in a substep, some 20 ms. The first four
-/// factorizations are always allowed. Rope contacts that switch off and on again could ask for 256. Where one
-/// factorization with all rope contacts costs more, as with segments that each touch all others, every second
-/// rope contact is left out until it fits. This choice knows only who touches whom.
-inline constexpr double kCoupledGroupBudget = 2e7;
-inline constexpr int kFewestFactorizations = 4;
-
-/// The share of a motor row's diagonal that is added as its compliance. A motor asks for a speed and does not
-/// take back what it has yielded.
-inline constexpr double kMotorCompliance = 1e-10;
 
 /// Memory for building coupled groups.
 struct CoupledGroupScratch {

@@ -6,6 +6,7 @@
 #include "base/sort_unique.h"
 #include "base/take_turns.h"
 #include "solver/coupled/coupled_groups.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/soft/element_contact_solve.h"
 
 #include <algorithm>
@@ -21,7 +22,6 @@ using state::HookPlace;
 using state::Tables;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
-constexpr std::size_t kMostRopeContacts = 8;  // for each node of the group's ropes, on average
 constexpr double kNoBudget = std::numeric_limits<double>::infinity();
 
 bool is_of_rope(const Tables& t, std::size_t contact) {

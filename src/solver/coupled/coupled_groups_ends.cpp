@@ -1,6 +1,7 @@
 /// Ends of hooks at points: where they are, and where along a rope they slide.
 
 #include "solver/coupled/coupled_groups.h"
+#include "solver/coupled/coupled_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,10 +79,6 @@ void slide(const Tables& t, Hook& hook) {
   hook.freedom[0].limits = limits_along(t, rope, segment, share);
 }
 
-/// The least share of its own inverse mass that a hooked point keeps. A point that is hooked to something
-/// which does not give way must still show how it was pulled.
-constexpr Real kLeastShare = Real(1e-3);
-
 /// 1 / mass of what holds the other end, if it has `shares` such hooks; a mean over directions [1/kg].
 Real inverse_mass_of(const Tables& t, const HookPlace& end, int shares) {
   const JointBody body = joint_end(t, end);
@@ -117,7 +114,7 @@ void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint
         points.push_back({end->particle[0], record.inverse_mass, record.v});
         const Real held_by = inverse_mass_of(t, other, shares_of(other.body));
         const Real merged = record.inverse_mass * held_by / (record.inverse_mass + held_by);
-        record.inverse_mass = std::max(merged, kLeastShare * record.inverse_mass);
+        record.inverse_mass = std::max(merged, kLeastMassShare * record.inverse_mass);
       }
     }
   }

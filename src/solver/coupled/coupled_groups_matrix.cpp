@@ -1,6 +1,7 @@
 /// The matrix of a coupled group and its right side. Equations: solver/coupled/coupled_groups.h.
 
 #include "solver/coupled/coupled_group_solution.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/joint_rows/geometric_stiffness.h"
 
 #include <algorithm>

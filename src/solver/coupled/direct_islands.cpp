@@ -1,6 +1,7 @@
 #include "solver/coupled/direct_islands.h"
 
 #include "base/sort_unique.h"
+#include "solver/coupled/coupled_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,23 +18,16 @@ using state::Manifold;
 using state::normal_impulse;
 
 constexpr std::uint32_t kNoIsland = DirectIslands::kNoIsland;
-constexpr Real kLargestSag = Real(0.005);     ///< Over the size of a body.
-constexpr Real kLargestBuckling = Real(0.3);  ///< sag H^2 / a^3
-constexpr Real kReleased = Real(0.6);         ///< Share of both, below which an island may become soft again.
-constexpr Real kGross = Real(5);              ///< Multiple of both, above which an island is direct at once.
-constexpr Real kFast = Real(0.5);             ///< An island with a faster body does not become direct [m/s].
-constexpr std::int8_t kStaysDirect = 30;      ///< Steps.
-constexpr std::int8_t kNotEvaluated = -60;    ///< Steps after a refusal, or if it is too large.
 
 /// The direct_state of an island after a step in which it asked for `excess` of what soft contacts may do.
 std::int8_t next_direct_state(std::int8_t most, Real excess) {
   if (most >= kDirect) {
-    if (excess > (most > kDirect ? kReleased : Real(1))) return kDirect + kStaysDirect;
+    if (excess > (most > kDirect ? kReleasedShare : Real(1))) return kDirect + kStaysDirectSteps;
     return most > kDirect ? static_cast<std::int8_t>(most - 1) : std::int8_t{0};
   }
   if (!(excess > Real(1))) return 0;
-  if (excess > kGross) return kDirect + kStaysDirect;
-  return most + 1 < kDirect ? static_cast<std::int8_t>(most + 1) : std::int8_t{kDirect + kStaysDirect};
+  if (excess > kGrossExcess) return kDirect + kStaysDirectSteps;
+  return most + 1 < kDirect ? static_cast<std::int8_t>(most + 1) : std::int8_t{kDirect + kStaysDirectSteps};
 }
 
 /// Twice the radius of a sphere within the smaller body.
@@ -127,7 +121,7 @@ Real excess_of(const IslandDemand& island) {
 }
 
 std::int8_t evaluate(const IslandDemand& island) {
-  if (island.count > kMaxDirectBodies) return kNotEvaluated;
+  if (island.count > kMaxDirectBodies) return kNotEvaluatedSteps;
   // A wave of falling dominoes joins resting heaps one after the other: direct ones become soft with it.
   if (island.least < 0)
     return island.most >= kDirect ? std::int8_t{0} : static_cast<std::int8_t>(island.least + 1);
@@ -144,7 +138,8 @@ void evaluate_new_bodies(std::span<const std::uint32_t> awake, const ContactStep
   direct.demands.assign(bodies.motion.size(), {});
   for (const std::uint32_t body : awake) {
     if (!is_moved(bodies, body)) continue;
-    const bool stands = members[body] == Footing::kStands && length(bodies.motion[body].v) <= kFast;
+    const bool stands =
+        members[body] == Footing::kStands && length(bodies.motion[body].v) <= kDirectIslandSpeed;
     const std::int8_t as = is_new(body) && !stands ? std::int8_t{0} : bodies.direct_state[body];
     IslandDemand& island = direct.demands[direct.sets.root(body)];
     ++island.count;
@@ -274,7 +269,8 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
       direct.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
       // What would be direct for this step only, as new bodies are, is evaluated at its end like others.
       if (!fits)
-        bodies.direct_state[body] = bodies.direct_state[body] == kDirect ? std::int8_t{0} : kNotEvaluated;
+        bodies.direct_state[body] =
+            bodies.direct_state[body] == kDirect ? std::int8_t{0} : kNotEvaluatedSteps;
     }
     if (fits && taken != i) std::swap(direct.islands[taken], direct.islands[i]);
     taken += fits ? 1 : 0;
@@ -355,7 +351,7 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     own.low = own.high = dot(down, vector_cast<Real>(bodies.center[body]));
     own.least = own.most = bodies.direct_state[body];
     // Ragdolls are solved in turn with soft contacts only, and soft islands that are fast fall anyway.
-    const bool falls = own.most < kDirect && length(bodies.motion[body].v) > kFast;
+    const bool falls = own.most < kDirect && length(bodies.motion[body].v) > kDirectIslandSpeed;
     if (members[body] != Footing::kStands || falls) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = direct.sets.root(body);

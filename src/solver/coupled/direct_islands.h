@@ -6,6 +6,7 @@
 #include "parallel/thread_pool.h"
 #include "solver/contact/body_contacts.h"
 #include "solver/contact/direct_contacts.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/coupled/load_bearing_contacts.h"
 #include "state/bodies.h"
 #include "state/manifolds.h"
@@ -38,16 +39,6 @@
 /// shared by what the body rests on.
 
 namespace hooke::solver {
-
-/// Multiplications of one factorization, of one island and of all islands: some milliseconds a step.
-inline constexpr double kDirectIslandBudget = 4e4;
-inline constexpr double kDirectBudget = 1e6;
-inline constexpr std::uint32_t kMaxDirectBodies = 256;
-
-/// direct_state of a body: below 0, its island was refused and is not evaluated for that many steps. From 0
-/// on it counts the steps in which the island asked for a direct solution. From kDirect on the island is
-/// direct for that many steps and more.
-inline constexpr std::int8_t kDirect = 2;
 
 /// What carries each body, by body row: it decides who may be in a direct island. What hangs is no member:
 /// its contacts stay soft, whatever its neighbors are. Islands with a body of a ragdoll stay soft as a whole.

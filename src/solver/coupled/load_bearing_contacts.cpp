@@ -2,6 +2,7 @@
 
 #include "base/sort_unique.h"
 #include "solver/contact/contact_colors.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -17,16 +18,12 @@ using state::LoadBearingContact;
 using state::Manifold;
 using state::normal_impulse;
 
-constexpr Real kTouchingGap = Real(1e-3);   ///< Surfaces so near may press on each other [m].
-constexpr Real kLiesOn = Real(0.3);         ///< Cosine between the normal and gravity.
-constexpr Real kStandingShare = Real(0.5);  ///< Share of load and weight that contacts under a body bring.
-constexpr Real kNeverStands = Real(-1);     ///< Weight of a body that is not tested.
-constexpr Real kStandingShareAgain = Real(0.9);  ///< The same share for a body whose hooks carried it before.
+constexpr Real kNeverStands = Real(-1);  ///< Weight of a body that is not tested.
 
 bool is_touching(const Manifold& m) {
   for (std::int32_t k = 0; k < m.point_count; ++k) {
     const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
-    if (p.normal_impulse > Real(0) || p.separation <= kTouchingGap) return true;
+    if (p.normal_impulse > Real(0) || p.separation <= kLoadTouchingGap) return true;
   }
   return false;
 }
@@ -36,7 +33,7 @@ void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) 
   props.clear();
   for (const Manifold& m : pairs.manifold) {
     const Real slope = dot(m.normal, down);  // positive where a lies on b
-    if (std::abs(slope) < kLiesOn || !is_touching(m)) continue;
+    if (std::abs(slope) < kLiesOnCosine || !is_touching(m)) continue;
     const bool a_is_upper = slope > Real(0);
     props.push_back({.upper = a_is_upper ? m.body_a : m.body_b,
                      .lower = a_is_upper ? m.body_b : m.body_a,
@@ -94,7 +91,7 @@ struct Candidates {
     const Real w = bodies.motion[body].inverse_mass;
     if (w * ground_load.neighbor >= kPressedMass) return true;
     if (!(w * ground_load.group >= kPressedGroup)) return false;
-    return w * load_on(m) > (was_load_bearing(m) ? Real(0.25) : Real(1)) * kPressedLoad * gravity;
+    return w * load_on(m) > (was_load_bearing(m) ? kPressedAgainShare : Real(1)) * kPressedLoad * gravity;
   }
 
   /// Load on the upper body in the last step [N].
@@ -107,7 +104,7 @@ struct Candidates {
   /// Whether `upper` presses on the other body by its weight; false if it leans on its side.
   [[nodiscard]] bool lies_on(std::uint32_t upper, const Manifold& m) const {
     const Real up = dot(m.normal, down) * (upper == m.body_a ? Real(1) : Real(-1));
-    return up > kLiesOn;
+    return up > kLiesOnCosine;
   }
 
   [[nodiscard]] bool was_load_bearing(const Manifold& m) const {
@@ -124,10 +121,9 @@ Manifold* only_manifold(const state::Pair& pair, std::vector<Manifold>& manifold
 /// Marks manifolds upwards from what hangs, since what lies on it holds others in turn. Returns how many.
 std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vector<SupportRole>& support_role,
                    std::uint32_t& refused) {
-  constexpr int kMostLayers = 4;
   std::size_t chosen = 0;
   bool more = true;
-  for (int layer = 0; more && layer < kMostLayers; ++layer) {
+  for (int layer = 0; more && layer < kMostLoadLayers; ++layer) {
     more = false;
     refused = 0;
     for (const state::Pair& pair : pairs.pair) {
@@ -331,7 +327,6 @@ bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop
 void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const state::Pairs& pairs,
                   LoadBearingScratch& scratch) {
   const ContactStep& step = inputs.step;
-  constexpr int kMostPasses = 32;  // one for each hooked body that stands on another one
   find_props(pairs, normalize(step.gravity), scratch.props);
   scratch.carried.resize(bodies.motion.size());
   scratch.weights.assign(bodies.motion.size(), kNeverStands);
@@ -342,7 +337,7 @@ void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const s
     if (inputs.supports.ground_load[body].driven) continue;
     scratch.weights[body] = before / bodies.motion[body].inverse_mass;
   }
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+  for (int pass = 0; pass < kMostStandingPasses; ++pass) {
     if (!find_more_standing(scratch.weights, scratch.props, scratch)) break;
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/contact/body_contacts.h"
+#include "solver/coupled/coupled_tuning.h"
 #include "solver/joint/joints.h"
 #include "state/tables.h"
 
@@ -30,22 +31,6 @@
 ///   store_load_bearing_contacts                              once a step
 
 namespace hooke::solver {
-
-/// From this ratio of masses on contacts bear load; the second is the ratio of the load to the weight of what
-/// hangs.
-inline constexpr Real kLoadBearingMassRatio = Real(2);
-inline constexpr Real kLoadBearingLoadRatio = Real(1);
-
-/// Contacts of a body with the ground bear load if a body that it is locked to is kPressedMass times as
-/// heavy. They also do if all that hangs together with it is kPressedGroup times as heavy and it presses on
-/// the ground with kPressedLoad times its weight, or did so in the last step and still presses with a quarter
-/// of that. Ragdolls (solver/joint/approximate_trees.h) are left out.
-inline constexpr Real kPressedMass = Real(8);
-inline constexpr Real kPressedGroup = Real(25);
-inline constexpr Real kPressedLoad = Real(20);
-
-/// Largest number of load-bearing manifolds in a step: they cost some milliseconds.
-inline constexpr std::size_t kMostLoadBearingManifolds = 512;
 
 /// How a body can hold another body that lies on it.
 enum class SupportRole : std::uint8_t {
