@@ -143,8 +143,7 @@ TEST_SUITE("solver/approximate_trees") {
       REQUIRE_FALSE(is_approximate(exact.rig));
       // It creeps by kLooseSlide at most.
       const double expected = exact.rig.t.hooks[0].value[3];
-      CHECK(std::abs(pair.rig.t.hooks[0].value[3] - expected) <
-            0.02 * expected + 2 * wide::kApproximateSlide);
+      CHECK(std::abs(pair.rig.t.hooks[0].value[3] - expected) < 0.02 * expected + 2 * kApproximateSlide);
       CHECK((expected > 0.2) == (pull > Real(1)));
     }
   }

@@ -1,16 +1,12 @@
 #pragma once
 
 #include "solver/joint/articulations.h"
+#include "solver/joint/joint_tuning.h"
 
 /// \file
 /// Trees whose friction need not be exact: ragdolls.
 
 namespace hooke::solver {
-
-/// Error of a lock, from which on a tree is not approximate [m or rad].
-inline constexpr double kApproximateError = 1e-3;
-/// Ratio of the heaviest to the lightest body, up to which a tree is a ragdoll.
-inline constexpr double kApproximateMasses = 30;
 
 /// Whether a tree is a ragdoll. Nothing hangs on it and it hangs on nothing: its root moves. Its masses
 /// differ by kApproximateMasses at most. Every joint has friction, and nothing drives one.

@@ -87,7 +87,7 @@ JointBody moved(const Link& link, double h) {
 double size_of(const Hook& hook, const Link& a, const Link& b) {
   const double size_a = a.body.inverse_mass > 0 ? length(hook.a.anchor) : 0;
   const double size_b = b.body.inverse_mass > 0 ? length(hook.b.anchor) : 0;
-  return std::max(kLeastLever, size_a + size_b);
+  return std::max(kLeastJointLever, size_a + size_b);
 }
 
 /// A Newton step: makes the rows about the end of the substep as it was found, where C = c + h J (v' - v) for
@@ -169,7 +169,8 @@ void begin_articulation(double h, JointTables tables, Articulation& art) {
 bool begin_next_solution(double h, JointTables tables, Articulation& art) {
   store_impulses(art, tables.hooks);
   const bool grew = stiffen(h, tables.hooks, art);
-  const bool bent = turns_farther(kFastTurn, h, art) && make_rows_ahead(h, tables.hooks, art) > kLargeError;
+  const bool bent =
+      turns_farther(kBentRowsTurn, h, art) && make_rows_ahead(h, tables.hooks, art) > kBentRowsError;
   return grew || bent;
 }
 

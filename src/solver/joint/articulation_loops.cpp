@@ -1,13 +1,12 @@
 #include "solver/joint/articulation_links.h"
 #include "solver/joint/joint_energy.h"
+#include "solver/joint/joint_tuning.h"
 
 #include <span>
 
 namespace hooke::solver {
 
 namespace {
-
-constexpr double kComplianceOfLoops = 1e-5;  ///< Share of each diagonal.
 
 double sign_at(const Articulation::Joint& joint, std::uint32_t link) {
   return link == joint.a ? -1 : 1;
@@ -87,8 +86,7 @@ void assemble(Articulation& art) {
     const int n = art.blocks.free_sizes[i];
     for (int r = 0; r < n; ++r) {
       double& number = art.blocks.factors[block.offset + static_cast<std::size_t>(r * (n + 1))];
-      number +=
-          art.rows[art.blocks.free[art.blocks.pattern.first[i] + r]].gamma + kComplianceOfLoops * number;
+      number += art.rows[art.blocks.free[art.blocks.pattern.first[i] + r]].gamma + kLoopCompliance * number;
     }
   }
 }
@@ -190,11 +188,12 @@ JointWork work_of(double h, const Articulation& art, const Articulation::Joint& 
 
 void solve_loops(double h, Articulation& art, JointTables tables) {
   begin_articulation(h, tables, art);
-  for (int i = 0; i < kMaxSolves; ++i) {
+  for (int i = 0; i < kMostArticulationSolves; ++i) {
     solve_with_bounds(art);
     if (!begin_next_solution(h, tables, art)) break;
   }
-  const bool far = turns_farther(kFarTurn, h, art) || lines_turn_farther(kFarTurn, h, tables.hooks, art);
+  const bool far = turns_farther(kEnergyAccountTurn, h, art) ||
+                   lines_turn_farther(kEnergyAccountTurn, h, tables.hooks, art);
   const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
   store_velocities(art, tables.bodies);
   if (!far) return reset_energy(art, tables.hooks);

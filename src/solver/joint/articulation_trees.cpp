@@ -4,6 +4,7 @@
 
 #include "solver/joint/articulations.h"
 #include "solver/joint/joint_energy.h"
+#include "solver/joint/joint_tuning.h"
 #include "solver/joint/tree_kernels.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "solver/simd/lane_arrays.h"
@@ -21,10 +22,6 @@ namespace hooke::solver {
 namespace {
 
 using state::Hook;
-
-constexpr std::size_t kFewestForLanes = 2;  ///< Below that number, solving one after another is faster.
-/// From that number on, trees are solved on in their block: moving costs half a solution.
-constexpr int kFewestThatStay = 3;
 
 /// Copies the first `kNumbers` numbers of a struct of lanes from one lane to another.
 template <std::size_t kNumbers, class Lanes>
@@ -81,7 +78,7 @@ class Group {
       for (int lane = 0; lane < count; ++lane) give_way(*trees[lane], tables.hooks, lane, fresh_.lanes);
       do {
         solve_block(tables, fresh_);
-      } while (count_busy(fresh_) >= kFewestThatStay);
+      } while (count_busy(fresh_) >= kFewestTreesThatStay);
       for (int lane = 0; lane < count; ++lane) {
         if (!is_free(fresh_.slots[lane])) move_on(tables, lane);
       }
@@ -122,7 +119,7 @@ class Group {
     slot.pass = 0;
     const bool grew = block.lanes.grew[lane] > 0;
     const bool bent = is_bent(hooks, lane, block);
-    return (grew || bent) && ++slot.solution < kMaxSolves;
+    return (grew || bent) && ++slot.solution < kMostArticulationSolves;
   }
 
   /// Makes the rows of a lane again if a body turns fast. Returns whether a lock is off by too much then.
@@ -130,11 +127,11 @@ class Group {
     if constexpr (Kind::kApproximate) {
       return false;
     } else {
-      const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kFastTurn;
+      const bool turns_fast = h_ * std::sqrt(block.lanes.fast[lane]) > kBentRowsTurn;
       if (!turns_fast) return false;
       const double error = wide::make_tree_rows_ahead(h_, *form_, lane, block.lanes);
       give_way(*block.slots[lane].tree, hooks, lane, block.lanes);
-      return error > kLargeError;
+      return error > kBentRowsError;
     }
   }
 
@@ -328,13 +325,13 @@ class Group {
 
   /// Whether a body turns far, or the line of a hook that keeps a distance.
   bool turns_far(const wide::TreeLanes<Kind>& from, int lane) const {
-    if (h_ * std::sqrt(from.fast[lane]) > kFarTurn) return true;
+    if (h_ * std::sqrt(from.fast[lane]) > kEnergyAccountTurn) return true;
     for (std::size_t i = 0; i < form_->joints.size(); ++i) {
       const wide::TreeJoint& joint = form_->joints[i];
       if (joint.kind != HookKind::kDistance) continue;
       const auto v = get(from.links[static_cast<std::size_t>(joint.parent)].v_now, lane);
       const auto speed = length(get(from.links[i].v_now, lane) - v);
-      if (h_ * speed > kFarTurn * std::abs(from.joints[i].value[0][lane])) return true;
+      if (h_ * speed > kEnergyAccountTurn * std::abs(from.joints[i].value[0][lane])) return true;
     }
     return false;
   }
@@ -399,7 +396,7 @@ struct Pool {
   Group<One> alone;
 
   void solve(double h, JointTables tables) {
-    if (trees.size() >= kFewestForLanes) {
+    if (trees.size() >= kFewestTreesForLanes) {
       together.solve(h, trees, tables);
     } else if (!trees.empty()) {
       alone.solve(h, trees, tables);

@@ -1,6 +1,7 @@
 #include "solver/joint/articulations.h"
 
 #include "solver/joint/articulation_links.h"
+#include "solver/joint/joint_tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +14,6 @@ namespace hooke::solver {
 namespace {
 
 using state::Hook;
-
-constexpr int kMostHooks = 8;  ///< Most hooks of a body that is not divided.
-constexpr int kHooksOfPart = 4;
 
 std::uint32_t link_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body) {
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
@@ -79,7 +77,7 @@ void make_frame(std::span<const std::uint32_t> hook_rows, const std::vector<Hook
     const auto next = std::upper_bound(at, body_of.end(), *at);
     const auto count = static_cast<int>(next - at);
     const bool divided = is_dynamic(bodies, *at) && count > most_hooks;
-    const int parts = divided ? (count + kHooksOfPart - 1) / kHooksOfPart : 1;
+    const int parts = divided ? (count + kHooksOfLink - 1) / kHooksOfLink : 1;
     frame.bodies.insert(frame.bodies.end(), static_cast<std::size_t>(parts), *at);
     frame.parts.insert(frame.parts.end(), static_cast<std::size_t>(parts), parts);
     at = next;
@@ -89,7 +87,7 @@ void make_frame(std::span<const std::uint32_t> hook_rows, const std::vector<Hook
   const auto next_link = [&](std::uint32_t body) {
     const std::uint32_t first = link_of(frame.bodies, body);
     if (frame.parts[first] == 1) return first;
-    return first + static_cast<std::uint32_t>(taken[first]++ / kHooksOfPart);
+    return first + static_cast<std::uint32_t>(taken[first]++ / kHooksOfLink);
   };
   for (const std::uint32_t i : hook_rows) {
     const std::uint32_t a = next_link(hooks[i].a.body);
@@ -297,8 +295,8 @@ bool make_articulation(std::span<const std::uint32_t> hook_rows, const std::vect
   art.breakable = std::any_of(hook_rows.begin(), hook_rows.end(),
                               [&](std::uint32_t row) { return hooks[row].can_break(); });
   make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max(), lists.frame);
-  if (!has_loops(lists.frame, bodies)) return make_tree(hooks, bodies, kTreesMayTake * budget, lists, art);
-  make_frame(hook_rows, hooks, bodies, kMostHooks, lists.frame);
+  if (!has_loops(lists.frame, bodies)) return make_tree(hooks, bodies, kTreeBudgetRatio * budget, lists, art);
+  make_frame(hook_rows, hooks, bodies, kMostUndividedHooks, lists.frame);
   return make_blocks(hooks, bodies, budget, lists, art);
 }
 

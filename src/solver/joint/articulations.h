@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include "math/symmetric.h"
+#include "solver/joint/joint_tuning.h"
 #include "solver/joint/tree_kernels.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "solver/linear/block_matrix.h"
@@ -117,10 +118,6 @@ struct Articulation {
   } blocks;
 };
 
-/// How much more a tree may cost: it costs in proportion to its hooks, and iterative joints do worst on large
-/// stars.
-inline constexpr double kTreesMayTake = 10;
-
 /// Memory for making articulations.
 class ArticulationScratch {
  public:
@@ -139,7 +136,7 @@ class ArticulationScratch {
 
 /// Replaces `articulation` by that of hooks that hang together, in any order, and keeps its memory. Returns
 /// false, and a useless articulation, if one solution takes more than `budget` multiplications, or for a tree
-/// kTreesMayTake times as many.
+/// kTreeBudgetRatio times as many.
 [[nodiscard]] bool make_articulation(std::span<const std::uint32_t> hook_rows,
                                      const std::vector<state::Hook>& hooks, const state::Bodies& bodies,
                                      double budget, ArticulationScratch& scratch, Articulation& articulation);

@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include "solver/joint/articulations.h"
+#include "solver/joint/joint_tuning.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
@@ -81,12 +82,6 @@ class BreakScratch {
   std::vector<std::uint32_t> rows_;  ///< Rows of `hooks_`.
   std::vector<std::uint32_t> again_;
 };
-
-/// Number of calls of give_way that look for those that need most. After that, all that need too much give
-/// way.
-inline constexpr int kMostBreakRounds = 16;
-/// Hooks that need as much as the one that needs most, to this share, give way together.
-inline constexpr double kAlikeInNeed = 0.999;
 
 /// What a hook needs in a substep of length h [s], divided by what it can take.
 [[nodiscard]] double need_of(const state::Hook& hook, const HookLoad& load, double h);

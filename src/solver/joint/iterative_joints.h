@@ -4,6 +4,7 @@
 
 #include "parallel/thread_pool.h"
 #include "solver/joint/hook_colors.h"
+#include "solver/joint/joint_tuning.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
@@ -24,8 +25,6 @@ struct JointImpulse {
   DVec3 angular_a = {};  ///< Change of omega~ [sqrt(J)].
   DVec3 angular_b = {};
 };
-
-inline constexpr int kMostFreeHooks = 5;
 
 /// Number of hooks that each end of a hook has beyond kMostFreeHooks.
 struct ExtraHooks {

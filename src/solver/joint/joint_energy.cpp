@@ -174,7 +174,7 @@ double take_excess(const BodySums& before, double work, const Articulation& arti
   double debt = 0;
   state::Hook* const memory = collect_debt(articulation, tables.hooks, debt);
   if (memory == nullptr || !(before.mass > 0)) return 1;
-  const double most = kEnergySlack * before.energy + 0.5 * before.mass * kFreeSpeed * kFreeSpeed;
+  const double most = kEnergySlack * before.energy + 0.5 * before.mass * kEnergyFreeSpeed * kEnergyFreeSpeed;
   const double now = sum_bodies(articulation, tables.bodies).energy;
   debt = std::max(debt + (now - before.energy - work), -most);
   memory->energy_debt = std::min(debt, most);

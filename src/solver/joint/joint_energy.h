@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/joint/articulations.h"
+#include "solver/joint/joint_tuning.h"
 
 /// \file
 /// Joints take energy from one body and give it to another. Only motors, ends that move as told and the
@@ -12,14 +13,6 @@
 /// ton on a rod swings past.
 
 namespace hooke::solver {
-
-/// From this rotation in a substep on there is an energy account [rad].
-inline constexpr double kFarTurn = 0.3;
-
-/// This share of the kinetic energy may have been added at any time, and all bodies may have this speed for
-/// nothing.
-inline constexpr double kEnergySlack = 0.02;
-inline constexpr double kFreeSpeed = 1;  ///< [m/s]
 
 /// Sums over bodies that move.
 struct BodySums {

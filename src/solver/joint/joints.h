@@ -9,6 +9,7 @@
 #include "solver/joint/hook_breaks.h"
 #include "solver/joint/hook_colors.h"
 #include "solver/joint/iterative_joints.h"
+#include "solver/joint/joint_tuning.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
@@ -71,9 +72,6 @@ struct Joints {
   std::vector<SolveScratch> scratch;
   BuildScratch build;
 };
-
-/// Multiplications for one solution of a group; about a millisecond.
-inline constexpr double kArticulationBudget = 2e6;
 
 /// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
 /// Groups that cost more than `budget` multiplications become iterative joints.

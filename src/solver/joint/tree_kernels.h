@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/joint/joint_tuning.h"
 #include "solver/joint_rows/joint_rows.h"
 
 #include <compare>
@@ -50,6 +51,10 @@ struct TreeForm {
   auto operator<=>(const TreeForm&) const = default;
 };
 
+/// How trees are solved, and how many side by side: one vector of the widest instruction set, several of
+/// others. Exact trees use double in both precisions of the engine. `kCompliance` is a share of each
+/// diagonal, above rounding.
+///
 /// An approximate tree is solved once, where others go on until every row is within its bounds. Friction that
 /// slides is viscous: with the speed |v| of the last substep, at least kApproximateSlide and kApproximateJolt
 /// times that before the joints are solved,
@@ -59,19 +64,11 @@ struct TreeForm {
 /// and it is at its bound only if that demands more than kApproximateFriction times as much, as where a jolt
 /// makes it slide. Limits act, and are let go, in the next substep where that causes a speed of
 /// kApproximateSpeed or less.
-inline constexpr double kApproximateSlide = 0.05;  ///< [m/s] or [rad/s]
-inline constexpr double kApproximateJolt = 0.25;
-inline constexpr double kApproximateFriction = 3;
-inline constexpr double kApproximateSpeed = 0.2;  ///< [m/s] or [rad/s]
-
-/// How trees are solved, and how many side by side: one vector of the widest instruction set, several of
-/// others. Exact trees use double in both precisions of the engine. `kCompliance` is a share of each
-/// diagonal, above rounding.
 struct ExactTrees {
   using Lane = double;
   static constexpr int kCount = 8;
   static constexpr bool kApproximate = false;
-  static constexpr double kCompliance = 1e-9;
+  static constexpr double kCompliance = kExactTreeCompliance;
 };
 struct ExactTree : ExactTrees {
   static constexpr int kCount = 1;
@@ -80,7 +77,7 @@ struct ApproximateTrees {
   using Lane = Real;
   static constexpr int kCount = 16;
   static constexpr bool kApproximate = true;
-  static constexpr double kCompliance = 1e-5;
+  static constexpr double kCompliance = kApproximateTreeCompliance;
 };
 struct ApproximateTree : ApproximateTrees {
   static constexpr int kCount = 1;

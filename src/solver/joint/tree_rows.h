@@ -251,7 +251,7 @@ class TreeRows {
     const Triple<Number> v = difference(get3<Number>(b.v, lane_), get3<Number>(a.v, lane_));
     const Triple<Number> turn = difference(get6(b.scale).times(get3<Number>(b.omega_before, lane_)),
                                            get6(a.scale).times(get3<Number>(a.omega_before, lane_)));
-    return {Number(kPushSpeed) + root(dot(v, v)), Number(kPushSpeed) + root(dot(turn, turn))};
+    return {Number(kJointPushSpeed) + root(dot(v, v)), Number(kJointPushSpeed) + root(dot(turn, turn))};
   }
 
   /// The length that a joint's gap is compared with: its levers on bodies that move [m].
@@ -261,7 +261,7 @@ class TreeRows {
       const Triple<Number> r = get3<Number>(anchor, lane_);
       return choose(above(at(link.mass), zero), root(dot(r, r)), zero);
     };
-    return larger(Number(kLeastLever), lever(joint.anchor_a, a) + lever(joint.anchor_b, b));
+    return larger(Number(kLeastJointLever), lever(joint.anchor_a, a) + lever(joint.anchor_b, b));
   }
 
   HWY_INLINE RowNow make_row(const TreeRowForm& form, const Freedoms<Number>& f, const JointEnd<Number>& a,
@@ -308,8 +308,8 @@ class TreeRows {
         now.j_a = scaled(sign, now.j_a);
         now.j_b = scaled(sign, now.j_b);
         now.c = smaller(from_lower, from_upper);
-        now.rate = choose(above(now.c, zero), per_h_, Number(kLimitShare) * per_h_);
-        now.target = smaller(zero - now.rate * now.c, Number(kLimitSpeed));
+        now.rate = choose(above(now.c, zero), per_h_, Number(kJointLimitShare) * per_h_);
+        now.target = smaller(zero - now.rate * now.c, Number(kJointLimitSpeed));
         break;
       }
     }

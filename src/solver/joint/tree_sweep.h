@@ -484,7 +484,7 @@ class TreeSweep {
     const Number bound = at(row.bound);
     Number low = at(row.low);
     Number high = at(row.high);
-    Number least(kNoSpeed);
+    Number least(kJointRoundingSpeed);
     if constexpr (Kind::kApproximate) {
       const Number slack = form.role == RowRole::kMotor ? Number(kApproximateFriction - 1) * high
                                                         : Number(kApproximateSpeed) * at(row.inverse);

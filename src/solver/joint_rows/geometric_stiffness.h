@@ -2,16 +2,13 @@
 
 #include "math/symmetric.h"
 #include "solver/joint_rows/joint_rows.h"
+#include "solver/joint_rows/joint_rows_tuning.h"
 
 /// \file
 /// A force on a body at a lever turns the body back as it rotates. That is a spring, which light bodies
 /// under load must carry implicitly. Equations: solver/joint/articulations.h.
 
 namespace hooke::solver {
-
-inline constexpr double kStiffnessLeft = 0.5;     ///< Trace of h^2 S K S that is left explicit.
-inline constexpr double kStiffnessDamping = 0.2;  ///< Share of the rest that acts on the velocity too.
-inline constexpr double kStiffnessGrowth = 1.5;   ///< Growth beyond which a solution is repeated with it.
 
 inline double trace(const math::Symmetric3<double>& m) {
   return m.xx + m.yy + m.zz;

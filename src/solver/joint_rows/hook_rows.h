@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/joint_rows/joint_rows.h"
+#include "solver/joint_rows/joint_rows_tuning.h"
 #include "state/tables.h"
 
 #include <span>
@@ -9,9 +10,6 @@
 /// Rows of hooks of which an end is a point of a deformable, or has its motion given.
 
 namespace hooke::solver {
-
-/// Compliance of a hook row as a share of its diagonal.
-inline constexpr double kHookCompliance = 1e-6;
 
 /// The present state of a hook's end: a body, the world, or a place between particles, which has no
 /// rotation.

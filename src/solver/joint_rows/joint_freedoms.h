@@ -174,7 +174,7 @@ HWY_INLINE void take_apart(const Axes<Number>& a, const Axes<Number>& b, const T
   const Number s = choose(turned, sine * inverse_size, zero);
   const Triple<Number> y = sum(scaled(c, a.y), scaled(s, a.z));
   const Triple<Number> across = cross(y, b.z);
-  const Number scale = quotient(one, larger(dot(a.x, across), Number(kLeastCosine)));
+  const Number scale = quotient(one, larger(dot(a.x, across), Number(kLeastAngleCosine)));
   f.axis[3] = scaled(scale, across);
   f.axis[4] = y;
   f.axis[5] = scaled(scale, cross(a.x, y));
@@ -209,7 +209,7 @@ HWY_INLINE void take_apart_ball(const Axes<Number>& a, const Quad<Number>& q_a, 
 
   const Triple<Number> both = sum(a.x, b_x);
   f.value[kBallTwist] = two * angle_of(q.x, q.w);
-  f.axis[kBallTwist] = scaled(quotient(two, larger(dot(both, both), Number(kLeastCosine))), both);
+  f.axis[kBallTwist] = scaled(quotient(two, larger(dot(both, both), Number(kLeastAngleCosine))), both);
 }
 
 /// Finds angles only if something depends on them; `before` are those of the last time.

@@ -3,6 +3,7 @@
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/body/body_motion.h"
+#include "solver/joint_rows/joint_rows_tuning.h"
 #include "state/body_frames.h"
 
 #include <algorithm>
@@ -21,10 +22,6 @@ using DQuat = Quaternion<double>;
 using DMat3 = Matrix3<double>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// Errors of a lock, over its levers or as angles, about as large as those of directions kept in Reals.
-/// Redundant locks, such as those of a row of hinges between two walls, would strain to remove them. Points
-/// do not turn.
-constexpr double kRounding = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 // The freedoms of a hook have numbers from 0 to 5. Balls have a cone besides; their twist has number 3.
 constexpr int kTwist = 3;
@@ -73,7 +70,7 @@ void take_apart(const DMat3& a, const DMat3& b, Freedoms& f) {
   f.value[5] = gamma;
   const math::SinCos<double> turn = math::sin_cos(alpha);
   const DVec3 y = a * DVec3{0, turn.cos, turn.sin};
-  const double scale = 1 / std::max(dot(a.x, cross(y, b.z)), kLeastCosine);
+  const double scale = 1 / std::max(dot(a.x, cross(y, b.z)), kLeastAngleCosine);
   f.axis[3] = scale * cross(y, b.z);
   f.axis[4] = y;
   f.axis[5] = scale * cross(a.x, y);
@@ -104,7 +101,7 @@ void take_twist(DQuat a, DQuat b, Freedoms& f) {
   const DVec3 sum = x_axis(a) + x_axis(b);
   f.value[kTwist] = 2 * math::atan2(q.x, q.w);
   f.value[kTwist] -= math::whole_turns(f.value[kTwist]);
-  f.axis[kTwist] = (2 / std::max(length_squared(sum), kLeastCosine)) * sum;
+  f.axis[kTwist] = (2 / std::max(length_squared(sum), kLeastAngleCosine)) * sum;
 }
 
 void take_cone(DQuat a, DQuat b, Freedoms& f) {
@@ -174,8 +171,8 @@ void make_limit(const HookLimits& limits, double value, double h, JointRow& row)
   }
   row.c = std::min(above, below);
   row.low = 0;
-  row.rate = (row.c > 0 ? 1 : kLimitShare) / h;
-  row.target = std::min(-row.rate * row.c, kLimitSpeed);
+  row.rate = (row.c > 0 ? 1 : kJointLimitShare) / h;
+  row.target = std::min(-row.rate * row.c, kJointLimitSpeed);
 }
 
 }  // namespace
@@ -205,8 +202,9 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
                     std::span<JointRow, Hook::kMaxRows> rows) {
   Freedoms f = find_freedoms(hook, a, b);
   for (int i = 0; i < 6; ++i) hook.value[i] = f.value[i];
-  const double fastest_translation = kPushSpeed + length(b.v - a.v);
-  const double fastest_rotation = kPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
+  const double fastest_translation = kJointPushSpeed + length(b.v - a.v);
+  const double fastest_rotation =
+      kJointPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
   const double levers = length(f.r_a) + length(f.r_b);
   int count = 0;
   for_each_row(hook, [&](int i, RowRole role) {
@@ -229,7 +227,8 @@ int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h
     switch (role) {
       case RowRole::kLock:
         if (!is_translation) row.c -= math::whole_turns(row.c);
-        if (!hook.holds_point()) row.c = without_rounding(row.c, kRounding * (is_translation ? levers : 1));
+        if (!hook.holds_point())
+          row.c = without_rounding(row.c, kLockRounding * (is_translation ? levers : 1));
         row.rate = 1 / h;
         row.target = std::clamp(-row.rate * row.c, -fastest, fastest);
         break;
@@ -265,7 +264,7 @@ double joint_gap(const Hook& hook, const JointBody& a, const JointBody& b) {
 }
 
 bool stays_at(std::int8_t bound, double lacks) {
-  return bound < 0 ? lacks <= kNoSpeed : lacks >= -kNoSpeed;
+  return bound < 0 ? lacks <= kJointRoundingSpeed : lacks >= -kJointRoundingSpeed;
 }
 
 std::int8_t side_of(double value, double low, double high) {

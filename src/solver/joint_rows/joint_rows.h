@@ -4,6 +4,7 @@
 
 #include "math/symmetric.h"
 #include "solver/body/joint_body.h"
+#include "solver/joint_rows/joint_rows_tuning.h"
 #include "state/bodies.h"
 #include "state/hooks.h"
 
@@ -75,26 +76,11 @@ int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMa
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, state::Hook::kMaxRows> rows);
 
-inline constexpr double kNoHold = 1e15;       ///< Compliance of a hook without hold [1/kg, 1/(kg m^2)].
-inline constexpr double kNoSpeed = 1e-9;      ///< Speed that rounding leaves [m/s] or [rad/s].
-inline constexpr double kPushSpeed = 10;      ///< Largest correction of an error [m/s] or [rad/s].
-inline constexpr double kLimitShare = 0.2;    ///< Share of what is beyond a limit that a substep takes back.
-inline constexpr double kLimitSpeed = 2;      ///< Largest speed of that [m/s] or [rad/s].
-inline constexpr double kLeastCosine = 0.05;  ///< Cosine of the second angle below which rates stay as is.
-inline constexpr double kLeastLever = 0.01;   ///< Least lever against which a gap is small [m].
-inline constexpr double kFastTurn = 0.03;     ///< Turn in a substep beyond which rows are not straight [rad].
-inline constexpr double kLargeError = 2e-4;   ///< Gap of a joint over its levers, or its angle [rad].
+/// Compliance of a hook without hold: a row with it is as one that is not there [1/kg, 1/(kg m^2)].
+inline constexpr double kNoHold = 1e15;
 
 /// -1 below the bounds, 1 above them.
 [[nodiscard]] std::int8_t side_of(double value, double low, double high);
-
-/// How often free rows are solved anew while rows go to their bounds and are let go again, and how often in
-/// all. After the former number rows only go to their bounds.
-inline constexpr int kFreeBoundPasses = 4;
-inline constexpr int kMostBoundPasses = 16;
-
-/// How often an articulation is solved with bounds in a substep, with rows or a stiffness made anew.
-inline constexpr int kMaxSolves = 4;
 
 /// Whether a row stays at its bound (-1 or 1) if its speed there `lacks` so much [m/s].
 [[nodiscard]] bool stays_at(std::int8_t bound, double lacks);

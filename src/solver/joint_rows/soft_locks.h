@@ -1,5 +1,7 @@
 #pragma once
 
+#include "solver/joint_rows/joint_rows_tuning.h"
+
 #include <algorithm>
 
 namespace hooke::solver {
@@ -13,11 +15,9 @@ struct LockSoftness {
 
 /// The softness for substeps of length h [s].
 inline LockSoftness lock_softness(double h) {
-  constexpr double kHertz = 60;
-  constexpr double kDampingRatio = 5;
   constexpr double kTwoPi = 6.283185307179586;
-  const double omega = kTwoPi * std::min(kHertz, 0.25 / h);
-  const double a = 2 * kDampingRatio + h * omega;
+  const double omega = kTwoPi * std::min(kLockHertz, kLockSubstepShare / h);
+  const double a = 2 * kLockDampingRatio + h * omega;
   const double mass_scale = h * omega * a / (1 + h * omega * a);
   return {omega / a, mass_scale, 1 - mass_scale};
 }
