@@ -178,7 +178,7 @@ void CoupledGroupSolution::give_last_force(std::size_t index, const ContactForce
   coupled.normal = h_ * last.normal;
   if (coupled.firm) {
     double& gamma = along_normal.gamma;
-    gamma = coupled.mobility / kContactStiffness;
+    gamma = coupled.mobility / kRopeContactStiffness;
     // What presses a light rope with many times its weight would otherwise push through it.
     const bool of_ropes = index >= b_.element_contacts.size() && index < b_.first_load_bearing();
     if (of_ropes && gamma * coupled.normal > kRopeYieldSpeed) gamma = kRopeYieldSpeed / coupled.normal;
@@ -189,7 +189,7 @@ void CoupledGroupSolution::give_last_force(std::size_t index, const ContactForce
   coupled.active = coupled.near && (coupled.normal > 0 || coupled.separation <= 0);
   const double size = length(coupled.f);
   const double speed = length(sliding_of(index, true));
-  const bool at_bound = size > 0 && size >= kSlidingShare * coupled.friction * coupled.normal;
+  const bool at_bound = size > 0 && size >= kRopeSlidingShare * coupled.friction * coupled.normal;
   coupled.slides = last.slides || at_bound || speed > last.fast;
   if (coupled.slides) {
     coupled.slides = speed > 0;
@@ -284,7 +284,7 @@ bool CoupledGroupSolution::update_coupled_friction(std::size_t index, bool may_s
   const double most_drag = index < b_.element_contacts.size() ? kMostDrag : kMostRopeDrag;
   coupled.slides = speed > 0 && (!may_stick || most * coupled.mobility < most_drag * speed);
   coupled.drag = coupled.slides ? most / speed : 0;
-  return !coupled.slides || std::abs(coupled.drag - drag) > kConvergedDrag * drag;
+  return !coupled.slides || std::abs(coupled.drag - drag) > kRopeConvergedDrag * drag;
 }
 
 /// Rows of load-bearing contacts join and leave until they are right. From some number of solutions on they
@@ -336,7 +336,7 @@ Unconverged CoupledGroupSolution::update_coupled_contact(std::size_t index, bool
     coupled.active = closing_speed < 0 && !(coupled.firm ? coupled.let_go : let_go);
     coupled.slides = false;
     of = coupled.active;
-    unconverged.impacts = of && coupled.firm && closing_speed < -kImpactSpeed;
+    unconverged.impacts = of && coupled.firm && closing_speed < -kRopeImpactSpeed;
   }
   if (!coupled.active) coupled.f = {};
   return unconverged;
@@ -361,7 +361,7 @@ int CoupledGroupSolution::least_solves_of_contacts() const {
                   b_.contact_rows.begin() + static_cast<std::ptrdiff_t>(b_.first_load_bearing()),
                   [](const CoupledContact& t) { return t.active && t.slides; });
   if (slide) return kRopeSlidingSolves;
-  return any ? kLeastContactSolves : 1;
+  return any ? kLeastRopeContactSolves : 1;
 }
 
 /// Contacts of a jammed rope get no friction for the rest of the substep (solve_again in

@@ -294,7 +294,7 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
   Unconverged unconverged;
   const auto again = [&](int solves) {
     if (unconverged.points && solves < 2 * kMostRopeSolves) return true;
-    const bool slides = solves == kMostRopeSolves && error > kReportedError && let_contacts_slide();
+    const bool slides = solves == kMostRopeSolves && error > kRopeReportedError && let_contacts_slide();
     return solve_again(solves, error, unconverged.pulls, b_.ropes.contact_rows) || slides;
   };
   for (int solves = 1; solves == 1 || (again(solves - 1) && within_budget()); ++solves) {
@@ -307,7 +307,7 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
     unconverged.add(update_coupled_contacts(lets_go(solves)));
     bool limits_changed = false;
     error = check_ropes(limits_changed);
-    const bool long_enough = error <= kLengthTolerance && !limits_changed;
+    const bool long_enough = error <= kRopeLengthTolerance && !limits_changed;
     const bool grew = stiffen();
     const int least = std::max(least_solves(b_.ropes.contact_rows, unconverged), least_solves_of_contacts());
     const bool converged = !unconverged.points && solves >= least;
@@ -316,7 +316,8 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
     for (RopeSetting& setting : b_.settings) setting.first = is_wild || (setting.first && long_enough);
   }
   for (const std::uint32_t c : b_.rope_systems)
-    rope_systems[c].unconverged = rope_systems[c].unconverged || !(error <= kReportedError) || !is_sound();
+    rope_systems[c].unconverged =
+        rope_systems[c].unconverged || !(error <= kRopeReportedError) || !is_sound();
 }
 
 bool CoupledGroupSolution::gives_way(int round) {

@@ -1,6 +1,7 @@
 #include "solver/rope/rope_repulsion.h"
 
 #include "elements/repulsion.h"
+#include "solver/rope/rope_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,11 +36,6 @@ void gather(const state::Tables& t, Repulsion& memory) {
   }
 }
 
-/// Distances in ranges: points nearer than kNear may push each other in this substep, those nearer than
-/// kNoted are noted for it.
-constexpr double kNear = 1.5;
-constexpr double kNoted = 2;
-
 double largest_range(const std::vector<Point>& points) {
   Real range = Real(0);
   for (const Point& point : points) range = std::max(range, point.range);
@@ -61,7 +57,7 @@ bool are_known(const Repulsion& memory) {
   double largest_square = 0;
   for (std::size_t i = 0; i < memory.places.size(); ++i)
     largest_square = std::max(largest_square, length_squared(memory.places[i] - memory.found_at[i] - drift));
-  return 2 * std::sqrt(largest_square) < (kNoted - kNear) * largest_range(memory.points);
+  return 2 * std::sqrt(largest_square) < (kRepulsionNoted - kRepulsionNear) * largest_range(memory.points);
 }
 
 /// Notes what may push each point in `range`. The notes hold until a point has moved too far.
@@ -102,7 +98,7 @@ void find_pairs(parallel::Range range, Real h, Repulsion& memory, Repulsion::Par
     Point& a = memory.points[i];
     const Point& b = memory.points[j];
     const Real r = (a.range + b.range) / 2;
-    const double near = kNear * static_cast<double>(r);
+    const double near = kRepulsionNear * static_cast<double>(r);
     const double square = length_squared(offset);
     if (!(square < near * near)) return;
     const double distance = std::sqrt(square);
@@ -135,7 +131,7 @@ void repel(parallel::ThreadPool& pool, Real h, Repulsion& memory, state::Tables&
   if (memory.points.empty()) return;
   const bool knows = memory.revision == tables.revision &&
                      memory.parts.size() == static_cast<std::size_t>(pool.workers()) && are_known(memory);
-  const double reach = kNoted * largest_range(memory.points);
+  const double reach = kRepulsionNoted * largest_range(memory.points);
   if (!knows) {
     memory.grid.build(memory.places, reach);
     memory.found_at = memory.places;

@@ -1,6 +1,7 @@
 #include "solver/rope/rope_rows.h"
 
 #include "solver/rope/rope_segments.h"
+#include "solver/rope/rope_tuning.h"
 #include "solver/soft/particle_contact_solve.h"
 
 #include <algorithm>
@@ -13,10 +14,6 @@ namespace {
 using V = DVec3;
 using M = math::Symmetric3<double>;
 
-constexpr double kStiffnessOnBody = 10;   ///< Ratio of a point's rho to the heaviest mass that it touches.
-constexpr double kMostStiffness = 1e6;    ///< Largest ratio to its own mass: inverting loses its square.
-constexpr double kTetherRecovery = 10;    ///< Share of a tether's excess length taken back per second [1/s].
-constexpr double kTetherSpeed = 0.1;      ///< Largest speed of that [m/s].
 constexpr double kLargestFinite = 1e300;  ///< A larger stiffness is infinite [N/m].
 
 V across(V n, V v) {
@@ -40,13 +37,13 @@ wide::HWY_NAMESPACE::SegmentState<double> state_of(const RopeSegment& e, const R
 
 /// Speed at which a contact opens [m/s], its gap counted as the speed that would close it in one substep.
 double opening_speed_of(const RopeContactRow& t, V u, double h) {
-  return dot(t.n, u - t.surface) + std::max(t.separation / h, -kPushOutSpeed);
+  return dot(t.n, u - t.surface) + std::max(t.separation / h, -kParticlePushOutSpeed);
 }
 
 /// Whether friction that slides drives its node: it does where N was not right yet, or the sliding has
 /// turned.
 bool drives_by_friction(const RopeContactRow& t, V sliding) {
-  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kContactStiffness);
+  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kRopeContactStiffness);
 }
 
 /// Friction that a contact starts from: that of the last substep, as far as N allows it now.
@@ -102,7 +99,7 @@ bool update_point_contact_row(double h, bool let_go, V u, RopeContactRow& t) {
   t.active = t.active ? t.normal > 0 : opening_speed < 0 && !let_go;
   t.drag = drag_of(t, u);
   t.f = -drag * across(t.n, u - t.surface);
-  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kConvergedDrag * drag);
+  return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kRopeConvergedDrag * drag);
 }
 
 wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, double h) {
@@ -118,11 +115,10 @@ wide::HWY_NAMESPACE::RopeTerms<double> terms_of(const RopeSetting& setting, doub
 /// Turns a force from across the last normal to across the present one. It keeps its size while its node
 /// goes round what it touches; at a new place only the part that is across there too remains.
 V friction_across(V n, V force) {
-  constexpr double kSamePlace = 0.95;  // cosine of the turn
   const V now = across(n, force);
   const double size = length(now);
   const double before = length(force);
-  return size > kSamePlace * before ? (before / size) * now : now;
+  return size > kSameFrictionPlace * before ? (before / size) * now : now;
 }
 
 RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
@@ -130,7 +126,7 @@ RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, c
   RopeContactRow t;
   t.row = static_cast<std::uint32_t>(row);
   t.node = node;
-  t.rho = kContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
+  t.rho = kRopeContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
   t.n = vector_cast<double>(contacts.normal[row]);
   t.surface = vector_cast<double>(contacts.surface_velocity[row]);
   t.lever = vector_cast<double>(contacts.lever[row]);
@@ -142,7 +138,7 @@ RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, c
   t.active = t.n0 > 0 || t.separation <= 0;
   const double size = length(t.f0);
   t.normal = t.n0;
-  if (size > 0 && size >= kSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
+  if (size > 0 && size >= kRopeSlidingShare * t.friction * t.n0) slide(t.f0, size, t);
   // A whole rope would stop if it were held in the first solution.
   if (!(t.friction > 0)) t.slides = true;
   return t;
@@ -244,7 +240,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
   }
   for (RopeContactRow& t : std::span(contact_rows).subspan(first_contact_row)) {
     t.of_point = true;
-    t.rho = std::min(kStiffnessOnBody * heaviest, kMostStiffness * own);
+    t.rho = std::min(kPointStiffnessOnBody * heaviest, kMostPointStiffness * own);
     t.drag = drag_of(t, point.node.v_free);
   }
 }
@@ -323,7 +319,7 @@ M contact_stiffness(const RopeContactRow& t) {
 }
 
 V push_of(const RopeContactRow& t, double h) {
-  const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kPushOutSpeed)) * t.n;
+  const V normal = (t.n0 - t.rho * std::max(t.separation / h, -kParticlePushOutSpeed)) * t.n;
   if (t.dragged) return normal;
   const V held = carried_friction(t);
   if (!t.slides) return normal + held;
@@ -363,7 +359,7 @@ Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, Rope
   if (t.active) {
     const double push = t.n0 - t.rho * opening_speed;
     const V sliding = across(t.n, node.u - t.surface);
-    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kContactStiffness);
+    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kRopeContactStiffness);
     const bool drags_on = drives_by_friction(t, sliding);
     t.normal = std::max(0.0, push);
     t.active = t.normal > 0;
@@ -374,7 +370,7 @@ Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, Rope
   } else {
     t.normal = 0;
     t.active = opening_speed < 0 && !t.let_go;
-    unconverged.impacts = t.active && opening_speed < -kImpactSpeed;
+    unconverged.impacts = t.active && opening_speed < -kRopeImpactSpeed;
   }
   if (!t.active) t.f = {};
   unconverged.ropes = was_active != t.active || slid != t.slides || t.slides || t.dragged;
@@ -415,15 +411,15 @@ double check_segments(const RopeSetting& setting, double h, const std::vector<Ro
 int least_solves(std::span<const RopeContactRow> contact_rows, const Unconverged& unconverged) {
   if (unconverged.pulls) return 2 * kMostRopeSolves;
   if (unconverged.impacts) return kMostRopeSolves;
-  if (unconverged.ropes) return kSlidingSolves;
+  if (unconverged.ropes) return kLeastRopeSlidingSolves;
   const bool active =
       std::any_of(contact_rows.begin(), contact_rows.end(), [](const RopeContactRow& t) { return t.active; });
-  return active ? kLeastContactSolves : 1;
+  return active ? kLeastRopeContactSolves : 1;
 }
 
 bool solve_again(int solves, double error, bool pulls, std::span<RopeContactRow> contact_rows) {
   if (solves != kMostRopeSolves) return solves < 2 * kMostRopeSolves;
-  if (error <= kReportedError || contact_rows.empty()) return pulls;
+  if (error <= kRopeReportedError || contact_rows.empty()) return pulls;
   for (RopeContactRow& t : contact_rows) {
     t.friction = t.drag = 0;
     t.f0 = t.f = {};

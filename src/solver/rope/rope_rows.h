@@ -3,6 +3,7 @@
 #include "math/symmetric.h"
 #include "solver/rope/rope_kernels.h"
 #include "solver/rope/rope_systems.h"
+#include "solver/rope/rope_tuning.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,10 +17,6 @@
 /// groups (solver/coupled/coupled_groups.cpp). Equations: solver/rope/rope_systems.h.
 
 namespace hooke::solver {
-
-inline constexpr double kComplianceInAir = 1e-7;  ///< chi; divided by the lighter end's mass.
-inline constexpr double kComplianceInContact =
-    1e-5;  ///< Rigid segments between stuck nodes are undetermined.
 
 struct RopeNode {
   DVec3 x, v_free, v_before;         ///< Position, velocity with forces, velocity before forces.
@@ -40,16 +37,12 @@ struct RopeSegment {
   bool limited = false;
 };
 
-/// The moment of a bend follows from the change c of direction at the substep's start, from the growth of
-/// its rate r since before the substep, and from a little of r itself: B (c + h beta (r - r0) + h delta r).
-/// Newmark's beta keeps the energy of any stiffness; delta takes the energy of what swings faster than
-/// substeps follow (Newmark 1959, "A method of computation for structural dynamics"). A rope that whips has
-/// its segments linearized anew. Its bends then use c of the substep's end, which takes more energy.
-inline constexpr double kBendNewmark = 0.25;
-inline constexpr double kBendDamping = 0.03;
-
-/// Resistance to bending at an inner node. The change of direction there is m_e - m_d, with the two
-/// segments' vectors over their lengths; its size is 2 sin(angle / 2).
+/// Resistance to bending at an inner node. The moment follows from the change c of direction at the substep's
+/// start, from the growth of its rate r since before the substep, and from a little of r itself:
+/// B (c + h beta (r - r0) + h delta r), with beta and delta of solver/rope/rope_tuning.h (Newmark 1959, "A
+/// method of computation for structural dynamics"). A rope that whips has its segments linearized anew. Its
+/// bends then use c of the substep's end, which takes more energy. The change of direction there is m_e -
+/// m_d, with the two segments' vectors over their lengths; its size is 2 sin(angle / 2).
 struct RopeBend {
   std::uint32_t node = 0;
   double before = 0, behind = 0;  ///< 1 / length of the segments [1/m].
@@ -108,16 +101,6 @@ struct RopeScratch {
     contact_rows.clear();
   }
 };
-
-inline constexpr double kContactStiffness = 1e3;  ///< rho over the mass that the contact holds.
-inline constexpr double kLengthTolerance = 1e-3;  ///< The next substep takes back the rest, as speed.
-inline constexpr double kReportedError = 0.01;
-inline constexpr int kMostRopeSolves = 8;
-inline constexpr int kLeastContactSolves = 2;
-inline constexpr int kSlidingSolves = 4;
-inline constexpr double kSlidingShare =
-    0.9999;  ///< Share of mu N: a node whose friction was this large was sliding.
-inline constexpr double kConvergedDrag = 0.1;  ///< Share by which drag may still change.
 
 /// Appends a rope's nodes, segments and contacts to `s`. `before` holds velocities from before the forces.
 void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityRecord>& before, double h,
@@ -226,7 +209,7 @@ struct NodeConstraint {
 /// for it.
 struct Unconverged {
   bool ropes = false, points = false;
-  bool impacts = false;  ///< A rope meets something faster than kImpactSpeed.
+  bool impacts = false;  ///< A rope meets something faster than kRopeImpactSpeed.
   bool pulls = false;    ///< A rope contact pulls across a gap, or its friction drives: it makes energy.
 
   void add(const Unconverged& other) {
@@ -237,13 +220,10 @@ struct Unconverged {
   }
 };
 
-inline constexpr double kImpactSpeed = 0.1;  ///< [m/s]
-
 /// Whether the energy that a contact gives to a mass counts: more than that of 1 cm/s. A pull where there is
 /// no gap gives none.
 [[nodiscard]] inline bool is_work(double energy, double mass) {
-  constexpr double kLeastEnergy = 0.5e-4;
-  return energy > kLeastEnergy * mass;
+  return energy > kRopeLeastWork * mass;
 }
 
 /// Updates a rope contact's force by u. Where contacts may only `let_go`, none comes into effect any more,

@@ -9,6 +9,7 @@
 #endif
 
 #include "solver/rope/rope_kernels.h"
+#include "solver/rope/rope_tuning.h"
 #include "solver/simd/numbers.h"
 
 #include <hwy/highway.h>
@@ -16,10 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
-constexpr double kWaveDamping = 0.2;       ///< Share of the geometric stiffness that damps waves.
-constexpr double kTransverseFloor = 1e-5;  ///< Share of the lighter end's mass; keeps slack segments defined.
-constexpr double kLimitTolerance = 1e-4;
-constexpr double kFirmer = 1.0001;  ///< A resistance that exceeds `most_along` by this factor counts as firm.
 constexpr double kNoLength = 1e-100;  ///< A shorter vector has no direction [m].
 
 template <class Number>
@@ -175,7 +172,8 @@ HWY_INLINE void check_limit(const SegmentState<Number>& at, const SegmentTraits<
                             SegmentCheck<Number>& check) {
   const Number zero(0.0);
   const auto limited = above(at.limited, zero);
-  const Number over = choose(limited, zero, one_if_above(length, traits.limit * Number(1 + kLimitTolerance)));
+  const Number over =
+      choose(limited, zero, one_if_above(length, traits.limit * Number(1 + kRopeLimitTolerance)));
   const Number released = choose(
       limited, one_if_above(terms.h * (traits.limit - traits.rest), pull * traits.per_stiffness), zero);
   check.limit_changed = larger(over, released);
@@ -191,7 +189,7 @@ HWY_INLINE SegmentCheck<Number> checked(const SegmentState<Number>& at, const Se
   const Triple<Number> d = sum(at.line, scaled(terms.h, at.relative));
   const Number length = root(dot(d, d));
   const Number tension = terms.per_h * pull;
-  const auto firm = above(traits.resistance, Number(kFirmer) * most_along(traits, terms));
+  const auto firm = above(traits.resistance, Number(kFirmResistance) * most_along(traits, terms));
   const Number by_most = terms.h * terms.compliance * traits.per_lighter * pull;
   Number expected = choose(firm, by_most, (tension - traits.damping * opening) * traits.per_stiffness);
   SegmentCheck<Number> result = {larger(at.tension_bound, tension), zero, zero, zero};

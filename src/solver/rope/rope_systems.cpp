@@ -7,6 +7,7 @@
 #include "solver/joint_rows/hook_rows.h"
 #include "solver/rope/rope_kernels.h"
 #include "solver/rope/rope_rows.h"
+#include "solver/rope/rope_tuning.h"
 #include "solver/simd/lane_arrays.h"
 
 #include <algorithm>
@@ -19,8 +20,6 @@ namespace hooke::solver {
 namespace {
 
 using wide::RopeLanes;
-
-constexpr int kFewestForLanes = 2;  ///< For fewer ropes, one after another is faster.
 
 struct Source {
   std::span<const RopeAnchor> anchors;
@@ -284,7 +283,7 @@ class Group {
     Unconverged unconverged;
     for (RopeContactRow& t : contact_rows_[lane])
       unconverged.add(update_contact_row(h, lets_go(solves), node_at(traits, t.node, lane), t));
-    const bool long_enough = ropes_.error[lane] <= kLengthTolerance && !(ropes_.limits_changed[lane] > 0);
+    const bool long_enough = ropes_.error[lane] <= kRopeLengthTolerance && !(ropes_.limits_changed[lane] > 0);
     if (long_enough && solves >= least_solves(contact_rows_[lane], unconverged)) return true;
     if (!long_enough) ropes_.first[lane] = 0;
     return !solve_again(solves, ropes_.error[lane], unconverged.pulls, contact_rows_[lane]);
@@ -294,7 +293,7 @@ class Group {
 
   void note_error(int lane, RopeSystem& rope_system) const {
     rope_system.unconverged =
-        rope_system.unconverged || !(ropes_.error[lane] <= kReportedError) || !is_finite(lane);
+        rope_system.unconverged || !(ropes_.error[lane] <= kRopeReportedError) || !is_finite(lane);
   }
 
   void store(const Members<kCount>& members, const bool (&chosen)[kCount], const Source& source) {
@@ -369,7 +368,7 @@ void solve_rope_systems(std::span<RopeSystem> rope_systems, std::span<const Rope
   const Source source = {anchors, before, static_cast<double>(h), tables};
   groups.together.used = groups.alone.used = 0;
   const auto finish = [&] {
-    if (next.size() >= kFewestForLanes) {
+    if (next.size() >= kFewestRopesForLanes) {
       groups.together.solve(next, source);
     } else if (!next.empty()) {
       groups.alone.solve(next, source);

@@ -3,6 +3,7 @@
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/joint_rows/joint_rows.h"
+#include "solver/rope/rope_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +15,6 @@ namespace {
 using state::Tables;
 using state::TwistClamp;
 using state::TwistSpan;
-
-/// 1 + cos of the sharpest bend that counts, 172 degrees: a fold would have infinite curvature.
-constexpr double kSharpest = 0.01;
 
 /// A segment as it lies now.
 struct Edge {
@@ -167,7 +165,7 @@ void load_twist(const Tables& t, const TwistSpan& span, TwistRow& row) {
     director = transport(before.tangent, behind.tangent, director);
     row.t_b = behind.tangent;
     const double c = 1 + dot(before.tangent, behind.tangent);
-    const DVec3 half = (1 / std::max(c, kSharpest)) * cross(before.tangent, behind.tangent);
+    const DVec3 half = (1 / std::max(c, kSharpestTwistBend)) * cross(before.tangent, behind.tangent);
     const DVec3 g_before = (1 / before.length) * half;
     const DVec3 g_behind = (1 / behind.length) * half;
     DVec3* at = &row.gradients[before.segment - span.a.segment];

@@ -2,6 +2,7 @@
 
 #include "solver/body/body_motion.h"
 #include "solver/soft/particle_contact_solve.h"
+#include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
 
@@ -18,7 +19,6 @@ Real inverse_mass_of(const ElementContact& contact, const state::Particles& part
   return sum;
 }
 
-constexpr int kSweeps = 2;
 constexpr Real kFar = Real(1e6);  ///< Least separation of a row that does not hold now [m].
 
 void push(const ElementContact& contact, Vec3 impulse, state::Tables& t) {
@@ -79,7 +79,7 @@ void push_out(const ElementContact& contact, Real h, state::Particles& particles
   const Real overlap = -contact.separation;
   const Real w = inverse_mass_of(contact, particles);
   if (!(overlap > Real(0)) || !(w > Real(0))) return;
-  const Vec3 displacement = (std::min(overlap, Real(kPushOutSpeed) * h) / w) * contact.normal;
+  const Vec3 displacement = (std::min(overlap, Real(kParticlePushOutSpeed) * h) / w) * contact.normal;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     const std::uint32_t p = contact.particle[i];
     particles.position[p].x += (contact.weight[i] * particles.velocity[p].inverse_mass) * displacement;
@@ -87,7 +87,7 @@ void push_out(const ElementContact& contact, Real h, state::Particles& particles
 }
 
 void solve_element_contacts(Real h, state::Tables& t) {
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kElementContactSweeps; ++sweep) {
     for (ElementContact& contact : t.element_contacts) {
       if (is_coupled(t, contact)) continue;
       if (sweep == 0) {

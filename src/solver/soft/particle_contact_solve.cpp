@@ -1,5 +1,7 @@
 #include "solver/soft/particle_contact_solve.h"
 
+#include "solver/soft/soft_tuning.h"
+
 #include <algorithm>
 
 namespace hooke::solver {
@@ -56,7 +58,7 @@ void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::P
   const Real overlap = -contacts.separation[row];
   if (!(overlap > Real(0))) return;
   particles.position[contacts.particle[row]].x +=
-      std::min(overlap, Real(kPushOutSpeed) * h) * contacts.normal[row];
+      std::min(overlap, Real(kParticlePushOutSpeed) * h) * contacts.normal[row];
 }
 
 bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "parallel/range.h"
+#include "solver/soft/soft_tuning.h"
 #include "state/bodies.h"
 #include "state/contacts.h"
 #include "state/objects.h"
@@ -10,13 +11,12 @@
 
 namespace hooke::solver {
 
-constexpr double kPushOutSpeed = 1;  ///< Overlap of particles is undone no faster than this [m/s].
-
 /// Solves contacts of cloth, solids and loose particles with bodies; contacts of ropes are solved inside the
 /// rope system. With v the velocity of the particle relative to the surface that it touches:
 ///
 ///   apart (s > 0)   n.v >= -s/h: the particle reaches the surface in this substep and no farther
-///   overlapping     n.v >= 0, and the position is moved out by at most kPushOutSpeed h: overlap never
+///   overlapping     n.v >= 0, and the position is moved out by at most kParticlePushOutSpeed h: overlap
+///   never
 ///                   becomes speed
 ///   friction        the tangential velocity is reduced by at most mu times the normal change
 ///

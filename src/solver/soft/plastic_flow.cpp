@@ -3,6 +3,7 @@
 #include "elements/dihedral.h"
 #include "elements/plasticity.h"
 #include "elements/tetrahedron.h"
+#include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,6 @@
 namespace hooke::solver {
 
 namespace {
-
-constexpr double kFlattest = 0.01;   ///< det F_e below which nothing flows.
-constexpr double kMostPlastic = 25;  ///< Square of the largest plastic stretch.
 
 /// The object that owns `row` in `part`, of those listed in order of their rows; null if none does.
 const state::Deformable* owner_of(const std::vector<const state::Deformable*>& objects,
@@ -66,7 +64,7 @@ bool is_in_reach(const std::array<DVec3, 3>& b, const std::array<Vec3, 3>& edges
   }
   const auto squares = [](const Matrix3<double>& m) { return elements::contract(m, m); };
   // The determinant is 1, so that the inverse is the transposed matrix of cofactors. NaN is not in reach.
-  return squares(p) <= kMostPlastic && squares(elements::cofactors(p)) <= kMostPlastic;
+  return squares(p) <= kMostPlasticSquare && squares(elements::cofactors(p)) <= kMostPlasticSquare;
 }
 
 /// Finds the gradients after the flow for a gradient F_e whose |dev C|^2 is to fall to `limit`; false if
@@ -74,7 +72,7 @@ bool is_in_reach(const std::array<DVec3, 3>& b, const std::array<Vec3, 3>& edges
 bool flow(const Mat3& f, double limit, const std::array<Vec3, 3>& edges, std::array<Vec3, 3>& gradients) {
   const Matrix3<double> exact = {vector_cast<double>(f.x), vector_cast<double>(f.y),
                                  vector_cast<double>(f.z)};
-  if (!(determinant(exact) > kFlattest)) return false;
+  if (!(determinant(exact) > kFlattestThatFlows)) return false;
   const math::Symmetric3<double> c = square_of(exact);
   const double share = std::sqrt(limit / elements::deviator_squared(c));
   if (!(share < 1)) return false;

@@ -1,5 +1,7 @@
 #include "solver/soft/spring_blocks.h"
 
+#include "solver/soft/soft_tuning.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -119,9 +121,7 @@ Softness softness(Real stiffness, Real damping, Real h) {
 }
 
 Real most_damping(Real mass, Real stiffness, Real h) {
-  constexpr Real kMostDamped = Real(0.5);
-  constexpr Real kMostOverdamped = Real(10);
-  return std::max(kMostDamped * mass / h, kMostOverdamped * h * stiffness);
+  return std::max(kMostDampingOfMass * mass / h, kMostDampingOfStiffness * h * stiffness);
 }
 
 void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
@@ -132,7 +132,7 @@ void prepare_springs(std::vector<SpringMaterial>& materials, Real h) {
     material.bias = soft.bias;
     material.gamma = soft.gamma;
     const bool rigid = std::isinf(material.stiffness);
-    material.recovery = rigid ? h * kRecoverySpeed : SpringMaterial::kWhole;
+    material.recovery = rigid ? h * kRigidSpringRecoverySpeed : SpringMaterial::kWhole;
     material.recovery_time = rigid ? h : Real(0);
   }
 }

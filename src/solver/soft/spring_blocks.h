@@ -47,8 +47,6 @@ struct SpringMaterial {
   friend bool operator==(const SpringMaterial&, const SpringMaterial&) = default;
 };
 
-inline constexpr Real kRecoverySpeed = Real(100);  ///< [m/s]; less lets through what flies into a cloth net.
-
 /// The coefficients of an implicit Euler step of h [s] for a stiffness k and a damping c, see
 /// solver/soft/spring_solve.h.
 struct Softness {

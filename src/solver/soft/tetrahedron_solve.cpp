@@ -2,6 +2,7 @@
 
 #include "elements/tetrahedron.h"
 #include "math/symmetric.h"
+#include "solver/soft/soft_tuning.h"
 #include "solver/soft/spring_blocks.h"
 
 #include <algorithm>
@@ -14,8 +15,6 @@ namespace hooke::solver {
 namespace {
 
 using elements::contract;
-
-constexpr Real kLargestStiffness = Real(2);  ///< h^2 w^2 of the fastest mode of shear.
 
 std::array<Vec3, 4> all_gradients(const std::array<Vec3, 3>& b) {
   return {-(b[0] + b[1] + b[2]), b[0], b[1], b[2]};
@@ -55,7 +54,7 @@ Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const std::vector<
     const Real share = particles.mass[ends[i]] * t.volume[row] / volume_at[ends[i]];
     sum += length_squared(b[i]) / share;
   }
-  return kLargestStiffness / (Real(2) * t.volume[row] * sum);
+  return kLargestShearStiffness / (Real(2) * t.volume[row] * sum);
 }
 
 }  // namespace

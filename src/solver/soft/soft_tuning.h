@@ -1,0 +1,50 @@
+#pragma once
+
+#include "hooke/math.h"
+
+/// \file
+/// Constants of springs, solids and contacts of points that decide accuracy, robustness or cost.
+/// docs/tuning.md says how to try another value.
+
+namespace hooke::solver {
+
+// How stiff, and how damped, rows may be.
+
+/// Largest speed at which a rigid spring takes its error back [m/s]. Larger: without a bound a spring that is
+/// 1 m off was closed in one substep, at 480 m/s with 8 substeps and 3.8 km/s with 64. Smaller: at 10 m/s
+/// balls at 250 m/s go through the net of B-28.
+inline constexpr Real kRigidSpringRecoverySpeed = Real(100);
+
+/// Damping of a spring or bend counts up to the larger of these: a share of m / h, and a multiple of h k
+/// [ratio]. Larger: a damper far beyond its spring is a lock on speed, and one pass over a sheet of locks
+/// makes energy; of 10 000 random sheets 110 came beyond 30 to 50 m/s, with the bound 27. Smaller: what is
+/// asked for is damped less. No measurement of the values themselves is recorded.
+inline constexpr Real kMostDampingOfMass = Real(0.5);
+inline constexpr Real kMostDampingOfStiffness = Real(10);
+
+/// Largest h^2 w^2 of the fastest mode of a tetrahedron's shear; a stiffer one gets the mu of that [ratio].
+/// Shear is explicit and unstable above 4. Larger: with 40 a cube of random velocities keeps jittering at E =
+/// 1e9 Pa, with 2 it loses energy there as at 1e5 Pa. Smaller: solids are softer than asked
+/// (docs/decisions/0010).
+inline constexpr Real kLargestShearStiffness = Real(2);
+
+// How far solids flow.
+
+/// det F_e below which nothing flows [ratio]: inside out, or pressed to a hundredth. Chosen by hand; no
+/// measurement is recorded.
+inline constexpr double kFlattestThatFlows = 0.01;
+
+/// Square of the largest plastic stretch [ratio]: plastic stretches stay within [1/5, 5], and tetrahedra well
+/// shaped (docs/decisions/0014). Chosen by hand; no measurement is recorded.
+inline constexpr double kMostPlasticSquare = 25;
+
+// Contacts of points, and between them.
+
+/// Largest speed at which overlaps of particles, and of cloth elements, are undone in position [m/s]; in
+/// ropes it bounds the push of a contact. Chosen by hand; no measurement is recorded.
+inline constexpr double kParticlePushOutSpeed = 1;
+
+/// Sweeps over contacts of cloth elements. Chosen by hand; no measurement is recorded.
+inline constexpr int kElementContactSweeps = 2;
+
+}  // namespace hooke::solver
