@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/take_turns.h"
+#include "collision/broad_phase/broad_phase_tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -17,15 +18,6 @@ namespace {
 
 constexpr int kSearchesPerBlock = 64;
 constexpr int kCandidatesPerBlock = 4096;
-
-// Sizes are in mean sides of the box: how much larger a fat box is on every side, how many steps of the last
-// motion it foresees, and at most how much of it. Fatter boxes are searched for less often, but overlap more
-// in vain.
-constexpr Real kMargin = Real(0.05);
-constexpr Real kForesight = Real(4);
-constexpr Real kMaxForesight = Real(0.75);
-constexpr Real kMaxFatness = Real(2);
-static_assert(Real(1) + Real(2) * kMargin + kMaxForesight < kMaxFatness, "a new fat box fits");
 
 Real mean_side(const Box& box) {
   const Vec3 size = box.upper - box.lower;
@@ -44,16 +36,16 @@ Box grown(const Box& box, Real margin) {
 /// The box with its margin, extended along its `displacement` in one step.
 Box fattened(const Box& box, Vec3 displacement) {
   const Real side = mean_side(box);
-  const Vec3 longest = {kMaxForesight * side, kMaxForesight * side, kMaxForesight * side};
-  const Vec3 drawn = geometry::max_of(-longest, geometry::min_of(longest, kForesight * displacement));
-  const Box fat = grown(box, kMargin * side);
+  const Vec3 longest = {kMostFatForesight * side, kMostFatForesight * side, kMostFatForesight * side};
+  const Vec3 drawn = geometry::max_of(-longest, geometry::min_of(longest, kFatForesight * displacement));
+  const Box fat = grown(box, kFatMargin * side);
   return {fat.lower + geometry::min_of(Vec3{}, drawn), fat.upper + geometry::max_of(Vec3{}, drawn)};
 }
 
 /// Whether a fat box still fits its tight one: it must hold it, and must not be so much larger that a box
 /// that shrank or stopped would keep others searching in vain.
 bool still_fits(const Box& fat, const Box& tight) {
-  return contains(fat, tight) && mean_side(fat) <= kMaxFatness * mean_side(tight);
+  return contains(fat, tight) && mean_side(fat) <= kMostFatness * mean_side(tight);
 }
 
 bool is_bounded(const Box& box) {
@@ -79,9 +71,8 @@ bool overlap_unpredictably(const Box& a, const Box& b) {
 /// Sorts by second, then by first, 11 bits at a time from the lowest. Digits that are all alike cost only the
 /// test.
 void sort_pairs(std::vector<ColliderPair>& pairs, std::vector<ColliderPair>& scratch) {
-  constexpr std::size_t kFew = 512;
   constexpr std::uint32_t kDigits = 1 << 11;
-  if (pairs.size() < kFew) {
+  if (pairs.size() < kFewestSortedByDigits) {
     std::sort(pairs.begin(), pairs.end());
     return;
   }

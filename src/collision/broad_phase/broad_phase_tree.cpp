@@ -1,5 +1,7 @@
 #include "collision/broad_phase/broad_phase_tree.h"
 
+#include "collision/broad_phase/broad_phase_tuning.h"
+
 #include <algorithm>
 
 namespace hooke::collision {
@@ -9,13 +11,6 @@ using geometry::half_surface;
 using geometry::merge;
 
 namespace {
-
-// A fit of all nodes costs about as much as 16 moves of a leaf up its path.
-constexpr std::size_t kLeavesPerChange = 16;
-constexpr std::size_t kLeavesPerInsertion = 4;
-
-// Building costs about ten times as much as fitting. It pays when searches have become longer by this factor.
-constexpr double kPoorness = 1.5;
 
 double surface_of(const Box& box) {
   return static_cast<double>(half_surface(box));
@@ -113,7 +108,7 @@ void BroadPhaseTree::update() {
   }
   if (change_count_ * kLeavesPerChange <= leaf_count_) return;
   fit();
-  if (cost() > kPoorness * built_cost_) rebuild();
+  if (cost() > kTreePoorness * built_cost_) rebuild();
 }
 
 double BroadPhaseTree::cost() const {
