@@ -1,5 +1,6 @@
 #include "collision/distance/distance.h"
 
+#include "collision/distance/distance_tuning.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -9,9 +10,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr int kMaxIterations = 64;
-constexpr double kRounding = 4 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 Vec3 support_of_capsule(const Convex& c, Vec3 d) {
   const Real h = c.shape.half_height;
@@ -178,16 +176,16 @@ Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
   s.count = 1;
   Corner nearest = s.corner[0];
   double scale = 0;
-  for (int i = 0; i < kMaxIterations; ++i) {
+  for (int i = 0; i < kMostDistanceRounds; ++i) {
     const DVec3 v = nearest.w;
     const Corner next = corner_along(a, b, -v);
     scale = std::max({scale, length(next.on_a), length(next.on_b)});
     const double size = length(v);
-    if (!(size > kRounding * scale)) return {.distance = -skins, .cores_overlap = true};
+    if (!(size > kDistanceRounding * scale)) return {.distance = -skins, .cores_overlap = true};
     // The distance is at least v.w / |v| and at most |v|: stop when these have met.
     const double along = dot(v, next.w);
     if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
-    if (size * size - along <= size * kRounding * scale || holds(s, next.w)) break;
+    if (size * size - along <= size * kDistanceRounding * scale || holds(s, next.w)) break;
     s.corner[s.count++] = next;
     if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
     const Corner nearer = s.nearest();
@@ -254,7 +252,7 @@ Distance between_triangle_and_capsule(const Convex& a, const Convex& b) {
   offer_inside({p, q}, axis, nearest);
   offer_inside({q, r}, axis, nearest);
   offer_inside({r, p}, axis, nearest);
-  const double touching = kRounding * std::max(length(nearest.on_a), length(nearest.on_b));
+  const double touching = kDistanceRounding * std::max(length(nearest.on_a), length(nearest.on_b));
   if (!(nearest.squared > touching * touching) || passes_through(axis, corners))
     return {.distance = -skin_of(b), .cores_overlap = true};
   return between_points(a, b, nearest.on_a, nearest.on_b);

@@ -1,5 +1,6 @@
 #include "collision/distance/protrusion_gap.h"
 
+#include "collision/distance/distance_tuning.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -8,12 +9,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr Real kTilt = Real(0.01);   ///< Sine of the angle by which a neighbor may stand out over the plane
-                                     ///< of contact.
-constexpr Real kClose = Real(1e-3);  ///< Points that are nearer than this, over the element's size, define no
-                                     ///< direction.
-constexpr Real kParallel = Real(1e-4);  ///< The square of a sine: points carry what lies along a ridge.
 
 /// The gap between one protrusion and one element.
 class GapSearch {
@@ -45,7 +40,8 @@ class GapSearch {
     return std::all_of(around.begin(), around.end(), [&](std::uint32_t vertex) {
       const Vec3 beside = mesh_.desc.positions[vertex] - start_;
       const Real height = dot(n, beside);
-      return height <= Real(0) || height * height <= kTilt * kTilt * length_squared(beside);
+      return height <= Real(0) ||
+             height * height <= kProtrusionTilt * kProtrusionTilt * length_squared(beside);
     });
   }
 
@@ -55,7 +51,7 @@ class GapSearch {
     const Vec3 apart = on_element - on_mesh;
     const Real distance = length(apart);
     result_.clearance = distance;
-    const bool is_close = distance <= kClose * length(corners_[corners_.size() - 1] - corners_[0]);
+    const bool is_close = distance <= kProtrusionClose * length(corners_[corners_.size() - 1] - corners_[0]);
     const Vec3 n = is_close ? geometry::direction_or(across, apart) : (Real(1) / distance) * apart;
     if (n == Vec3{}) return;
     if (faces(n)) {
@@ -99,7 +95,7 @@ class GapSearch {
     const Real on_ridge = dot(cross(along, offset), across);
     const bool cross_each_other =
         on_element > Real(0) && on_element < whole && on_ridge > Real(0) && on_ridge < whole;
-    if (!cross_each_other || !(whole > kParallel * length_squared(along) * length_squared(ridge))) {
+    if (!cross_each_other || !(whole > kAlongRidge * length_squared(along) * length_squared(ridge))) {
       const Vec3 between = offset + Real(0.5) * (along - ridge);
       result_.clearance = length(between) - Real(0.5) * (length(along) + length(ridge));
       return;
