@@ -1,5 +1,7 @@
 #include "collision/continuous/continuous.h"
 
+#include "collision/continuous/continuous_tuning.h"
+
 #include <algorithm>
 #include <tuple>
 
@@ -11,7 +13,6 @@ using parallel::for_ranges;
 using parallel::Range;
 
 constexpr int kSweepGrain = 64;
-constexpr int kMostClamps = 4;  // per body and step; then it stands
 
 /// An impact of a pair, found when its bodies had been clamped `clamps` times.
 struct Event {

@@ -4,6 +4,7 @@
 
 #include "collision/broad_phase/broad_phase.h"
 #include "collision/continuous/continuous_sweep.h"
+#include "collision/continuous/continuous_tuning.h"
 #include "parallel/thread_pool.h"
 #include "state/colliders.h"
 
@@ -17,9 +18,6 @@
 /// Keeps bodies from passing through each other within a step, whatever the solver did.
 
 namespace hooke::collision {
-
-/// Largest motion of a body that is not swept, in half thicknesses.
-inline constexpr Real kUnseenDisplacement = Real(0.5);
 
 /// The effect that a sweep may have on a body.
 enum class Stoppable : std::uint8_t {

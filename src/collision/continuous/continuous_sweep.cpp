@@ -1,5 +1,6 @@
 #include "collision/continuous/continuous_sweep.h"
 
+#include "collision/continuous/continuous_tuning.h"
 #include "collision/manifold/manifold_axes.h"
 #include "collision/manifold/manifold_mesh.h"
 #include "collision/manifold/shape_placement.h"
@@ -12,9 +13,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr int kMaxRounds = 256;
-constexpr Real kAllowance = Real(5e-3);  // [m]
 
 /// The rotation of a collider.
 struct Spin {
@@ -98,7 +96,7 @@ SeparatingGap separate_from_triangle(const Convex& triangle, const Convex& b) {
 
 /// Distance from the allowed overlap at which an advance ends.
 Real advance_tolerance(Real allowance) {
-  return Real(0.05) * allowance;
+  return kSweepTolerance * allowance;
 }
 
 /// Advances from `begin` to `end`.
@@ -109,7 +107,7 @@ std::optional<Impact> advance(const Closing& closing, Real allowance, Real begin
   Real target = -allowance;
   Real time = begin;
   SeparatingGap separating;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMostSweepRounds; ++round) {
     separating = evaluate(time);
     if (round == 0) target = std::min(target, separating.gap - Real(2) * tolerance);
     const Real slack = separating.gap - target;
@@ -184,9 +182,8 @@ class PairSweep {
   /// displacement. In each stretch it sweeps the triangles within reach, each only up to the earliest impact
   /// so far.
   std::optional<Impact> sweep_mesh(const Closing& closing, Real begin, Real end) {
-    constexpr Real kParts = Real(16);
     const Real displacement = closing.fastest() * (end - begin);
-    const Real reach = std::max(b_.path.radius, displacement / kParts);
+    const Real reach = std::max(b_.path.radius, displacement / kSweepStretches);
     const Real stretch = displacement > reach ? (end - begin) * (reach / displacement) : end - begin;
     for (Real time = begin; time < end; time += stretch) {
       const Real until = std::min(time + stretch, end);
@@ -245,7 +242,6 @@ class PairSweep {
   /// at `begin`, and rotates, may be so thin in between that its middle gets behind the face before the
   /// overlap grows. It then meets the face before that.
   [[nodiscard]] std::optional<Impact> from_front(Impact impact, std::uint32_t index, Real begin) const {
-    constexpr int kHalvings = 20;
     const Vec3 front = front_of_triangle(mesh_at(impact.time).triangle(index));
     if (!(dot(front, impact.normal) > Real(0))) return std::nullopt;
     if (height_of_middle(index, impact.time) > Real(0)) return impact;
@@ -254,7 +250,7 @@ class PairSweep {
     const Real least = Real(0.5) * std::min(height, b_.path.inner);
     Real behind = impact.time;
     impact.time = begin;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < kBehindFaceHalvings; ++i) {
       const Real time = Real(0.5) * (impact.time + behind);
       (height_of_middle(index, time) > least ? impact.time : behind) = time;
     }
@@ -312,7 +308,8 @@ Real overlap_allowance(const SweptCollider& a, const SweptCollider& b) {
   };
   const Real of_a = thinness(a);
   const Real of_b = thinness(b);
-  return std::min(Real(0.25) * (of_a + of_b), std::max(kAllowance, Real(0.1) * std::min(of_a, of_b)));
+  return std::min(kOverlapShareOfBoth * (of_a + of_b),
+                  std::max(kOverlapAllowance, kOverlapShareOfThinner * std::min(of_a, of_b)));
 }
 
 bool are_separated(const SweptCollider& a, const SweptCollider& b, Vec3 n, Real allowance, Real begin) {

@@ -3,6 +3,7 @@
 #include "hooke/world.h"
 
 #include "collision/continuous/continuous_sweep.h"
+#include "collision/continuous/continuous_tuning.h"
 #include "geometry/box.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
@@ -14,9 +15,6 @@ namespace hooke::collision {
 /// The smallest box along the world's axes around a shape whose frame is `pose`, rounded outward to float.
 /// For a mesh it holds the box of its frame. A half-space fills the world.
 [[nodiscard]] geometry::Box bounds_of(const state::ColliderShape& shape, const Pose& pose);
-
-/// Margin around the reach of a shape: half of the distance from which contacts are kept [m].
-inline constexpr Real kReachMargin = Real(0.01);
 
 /// The box that a collider's shape can reach within `dt` [s] at its body's speed, grown by kReachMargin. Two
 /// shapes whose boxes do not overlap are more than twice that margin apart at the end of the step.
