@@ -1,5 +1,7 @@
 #include "collision/manifold/manifold_axes.h"
 
+#include "collision/manifold/manifold_tuning.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,12 +16,11 @@ Real axis_tolerance(const Convex& a, const Convex& b) {
 }
 
 Nearest improve_axis(const Convex& a, const Convex& b, Real tolerance, Axis& axis) {
-  constexpr int kMaxPushes = 8;
   // The shapes are far enough apart that rounding does not change the direction, and near enough that it is
   // that of the surface.
   const Real clearance = Real(0.25) * std::max(thinness_of(a), thinness_of(b)) + Real(16) * tolerance;
   Nearest nearest;
-  for (int i = 0; i < kMaxPushes; ++i) {
+  for (int i = 0; i < kMostAxisPushes; ++i) {
     const Real core_separation = axis.separation + skin_of(a) + skin_of(b);
     // If the cores are apart anyway, the first direction is the right one.
     const bool apart = core_separation > Real(16) * tolerance;

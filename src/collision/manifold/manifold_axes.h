@@ -4,6 +4,7 @@
 
 #include "collision/distance/distance.h"
 #include "collision/manifold/manifold_points.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <cstdint>
 
@@ -20,12 +21,6 @@ struct Axis {
 inline constexpr std::uint32_t kFreeAxis = 1;
 inline constexpr std::uint32_t kAxisOfA = 0x10000;
 inline constexpr std::uint32_t kAxisOfB = 0x20000;
-
-// These values come from evidence: with less, stacks of boxes change between equally good axes from step to
-// step.
-inline constexpr Real kKeepAxis = Real(5e-4);  ///< The last axis stays unless one is better by this [m].
-inline constexpr Real kPreferFaces =
-    Real(2e-3);  ///< Pairs of edges have to be better than faces by this [m].
 
 /// A preference in meters; it is reduced for shapes that are themselves small.
 [[nodiscard]] Real preference(Real full, const Convex& a, const Convex& b);

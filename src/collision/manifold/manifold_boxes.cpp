@@ -2,6 +2,7 @@
 #include "collision/manifold/manifold_clip.h"
 #include "collision/manifold/manifold_features.h"
 #include "collision/manifold/manifold_points.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <cmath>
 
@@ -33,9 +34,6 @@ struct BoxPair {
     half_b[0] = hb.x, half_b[1] = hb.y, half_b[2] = hb.z;
   }
 };
-
-// Edges less than this apart in direction (squared sine) have no axis that a face does not have.
-constexpr Real kParallel = Real(1e-4);
 
 /// The axis with the largest separation so far. Ties and near ties go to the last step's axis and to faces.
 struct Choice {
@@ -76,7 +74,7 @@ void offer_edges(const BoxPair& p, Real bias, Choice& choice) {
     const int i2 = (i + 2) % 3;
     for (int j = 0; j < 3; ++j) {
       const Real squared = p.r[i1][j] * p.r[i1][j] + p.r[i2][j] * p.r[i2][j];
-      if (squared < kParallel) continue;
+      if (squared < kParallelEdges) continue;
       const int j1 = (j + 1) % 3;
       const int j2 = (j + 2) % 3;
       const Real along = std::fabs(p.offset[i2] * p.r[i1][j] - p.offset[i1] * p.r[i2][j]);

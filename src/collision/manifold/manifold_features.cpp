@@ -1,6 +1,7 @@
 #include "collision/manifold/manifold_features.h"
 
 #include "collision/manifold/manifold_clip.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +9,6 @@
 namespace hooke::collision {
 
 namespace {
-
-// Slope of a side, as a sine, up to which it counts as perpendicular to the direction.
-constexpr Real kFlatSide = Real(0.2);
-// The end of a cylinder that is less tilted than this (cosine) is a disc and not a point of its rim.
-constexpr Real kFlatEnd = Real(0.995);
-// Points of the rim are taken at marks fixed to the body, unless its lowest point lies this much of the
-// radius below them. Marks that follow the tilt would jump about on an end that stands flat.
-constexpr Real kTiltedRim = Real(1e-3);
 
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kBoxFaces = {
     {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
@@ -53,7 +46,7 @@ Feature triangle_feature(const Convex& c, Vec3 n) {
   const auto& p = c.corners;
   const Vec3 normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
   Feature f;
-  if (dot(normal, n) >= kFlat) {
+  if (dot(normal, n) >= kFlatFaceCosine) {
     f.kind = Feature::Kind::kPolygon;
     f.normal = normal;
     for (std::uint32_t i = 0; i < 3; ++i) f.add(p[i], i, i);
@@ -259,10 +252,6 @@ void overlap_segments(const Seen& a, const Seen& b, const Collector& out) {
   add_part(b, part, out);
 }
 
-// Distance beside an edge at which a point still counts as inside, in lengths of the edge. So a point on an
-// edge that two faces share is over one of them.
-constexpr Real kSlack = Real(1e-5);
-
 /// A disc that is little tilted against the normal is taken as a circle.
 bool is_inside(const Seen& seen, bool is_a, Flat p) {
   const Feature& f = *seen.feature;
@@ -275,7 +264,7 @@ bool is_inside(const Seen& seen, bool is_a, Flat p) {
     const auto next = static_cast<std::size_t>(i + 1 < f.count ? i + 1 : 0);
     const Flat along = seen.at[next] - seen.at[k];
     const Real left = cross(along, p - seen.at[k]);
-    if ((is_a ? left : -left) < -kSlack * dot(along, along)) return false;
+    if ((is_a ? left : -left) < -kOverFaceSlack * dot(along, along)) return false;
   }
   return true;
 }

@@ -4,6 +4,7 @@
 
 #include "collision/distance/distance.h"
 #include "collision/manifold/manifold_points.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <array>
 #include <cstdint>
@@ -35,13 +36,8 @@ struct Feature {
   }
 };
 
-/// Largest slope of a face against a direction for which it is the feature of a polyhedron there: cosines of
-/// the angle between them.
-inline constexpr Real kFlat = Real(0.98);  ///< Used where the normal may be any direction.
-inline constexpr Real kSteep = Real(0.2);  ///< Used where the normal is that of a face of the other shape.
-
 /// The feature that is farthest along the unit vector `n`.
-[[nodiscard]] Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine = kFlat);
+[[nodiscard]] Feature feature_along(const Convex& convex, Vec3 n, Real least_cosine = kFlatFaceCosine);
 
 /// A corner of a box, 0..7: bits 0, 1, 2 say +x, +y, +z.
 [[nodiscard]] Vec3 corner_of_box(const Convex& box, unsigned corner);

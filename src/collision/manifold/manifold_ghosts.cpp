@@ -1,14 +1,13 @@
 #include "collision/manifold/manifold_ghosts.h"
 
+#include "collision/manifold/manifold_tuning.h"
+
 #include <algorithm>
 #include <limits>
 
 namespace hooke::collision {
 
 namespace {
-
-/// Heights below this are rounding [m].
-constexpr Real kPositionRounding = Real(2e-6);
 
 /// Height by which the piece stands out over a plane [m].
 Real height_over_plane(const Convex& piece, Vec3 place, Vec3 normal) {

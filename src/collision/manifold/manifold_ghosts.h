@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 
 #include "collision/distance/distance.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <cstdint>
 #include <span>
@@ -24,10 +25,6 @@ struct SurfaceContact {
   /// a piece that is covered can be no deeper in the shape than the contact that covers it.
   Real separation = Real(0);
 };
-
-/// By how much a piece may stand out over a plane and still count as behind it: flush pieces are one floor
-/// [m].
-inline constexpr Real kFlush = Real(5e-4);
 
 /// Whether the normals differ by less than 1e-4, which counts as one direction.
 [[nodiscard]] bool is_same_direction(Vec3 a, Vec3 b);

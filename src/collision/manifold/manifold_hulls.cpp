@@ -2,6 +2,7 @@
 #include "collision/manifold/manifold_axes.h"
 #include "collision/manifold/manifold_features.h"
 #include "collision/manifold/manifold_points.h"
+#include "collision/manifold/manifold_tuning.h"
 
 #include <algorithm>
 #include <array>
@@ -19,9 +20,6 @@ using geometry::ConvexHull;
 
 constexpr std::uint32_t kAxisOfEdges = 0x40000000;
 constexpr std::uint32_t kEdgeBits = 12;
-
-// Edges less than this apart in direction (squared sine) have no axis that a face does not have.
-constexpr Real kParallelEdges = Real(1e-4);
 
 /// Two hulls and the best axis so far. Scores are separations with preferences.
 struct HullPair {
@@ -250,8 +248,10 @@ void add_points(const HullPair& pair, ContactResult& result) {
   }
   const std::size_t face = code & 0xFFFF;
   const bool of_a = (code & kAxisOfA) != 0;
-  const Feature a = of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, result.normal, kSteep);
-  const Feature b = of_a ? feature_of_hull(pair.b, -result.normal, kSteep) : face_of_hull(pair.b, face);
+  const Feature a =
+      of_a ? face_of_hull(pair.a, face) : feature_of_hull(pair.a, result.normal, kSteepFaceCosine);
+  const Feature b =
+      of_a ? feature_of_hull(pair.b, -result.normal, kSteepFaceCosine) : face_of_hull(pair.b, face);
   overlap_features(a, b, Real(0), Real(0), result);
 }
 

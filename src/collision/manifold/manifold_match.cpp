@@ -1,5 +1,7 @@
 #include "collision/manifold/manifold_match.h"
 
+#include "collision/manifold/manifold_tuning.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,9 +12,6 @@ namespace {
 
 using state::ContactPoint;
 using state::Manifold;
-
-constexpr Real kSamePosition = Real(0.02);  // [m]
-constexpr Real kSameNormal = Real(0.866);   // cosine of 30 degrees
 
 /// Result of the match by key; points that found no impulse are left to match_by_position. Bit i: point i of
 /// the old manifold has been used, or point i of the new one has its impulse.

@@ -3,6 +3,7 @@
 #include "base/take_turns.h"
 #include "collision/manifold/manifold_axes.h"
 #include "collision/manifold/manifold_features.h"
+#include "collision/manifold/manifold_tuning.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -15,8 +16,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr std::size_t kMaxPatches = 6;
 
 /// The box of the shape and of its reach, in the frame of the mesh.
 geometry::Box bounds_in(const PlacedMesh& mesh, const Convex& b, const MeshReach& reach) {
@@ -39,13 +38,12 @@ void collide_face(const Convex& triangle, const Convex& b, ContactResult& result
   face.kind = Feature::Kind::kPolygon;
   face.normal = result.normal;
   for (std::uint32_t i = 0; i < 3; ++i) face.add(triangle.corners[i], i, i);
-  overlap_features(face, feature_along(b, -result.normal, kSteep), Real(0), skin_of(b), result);
+  overlap_features(face, feature_along(b, -result.normal, kSteepFaceCosine), Real(0), skin_of(b), result);
 }
 
 /// A ball touches a triangle at the point nearest to its center, along the line between the two. Along any
 /// other line its spin would seem to bring them together.
 bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, ContactResult& result) {
-  constexpr Real kFlat = Real(1e-4);  // [rad]
   const auto& [p, q, r] = triangle.corners;
   const Vec3 front = front_of(triangle);
   const Real height = dot(front, ball.center - p);
@@ -53,7 +51,7 @@ bool collide_ball(const Convex& triangle, const Convex& ball, Real margin, Conta
   const Vec3 place = geometry::closest_on_triangle(ball.center, p, q, r).point;
   const Vec3 out = ball.center - place;
   // This holds over an edge within a flat floor, too.
-  const bool over_face = length(out - height * front) <= kFlat * height;
+  const bool over_face = length(out - height * front) <= kOverFaceTilt * height;
   const Real distance = over_face ? height : length(out);
   if (!(distance - skin_of(ball) <= margin)) return false;
   result.count = 0;
@@ -186,12 +184,11 @@ void add_to_patches(const SurfaceContact& contact, std::span<const ContactResult
 /// while it rotates about the points that stay.
 void join_ghost(const SurfaceContact& ghost, std::span<const ContactResultPoint> points,
                 std::vector<PatchResult>& patches) {
-  constexpr Real kLeastCosine = Real(0.5);
   const auto likeness = [&](const PatchResult& p) { return dot(p.result.normal, ghost.normal); };
   const auto nearest = std::max_element(patches.begin(), patches.end(), [&](const auto& p, const auto& q) {
     return likeness(p) < likeness(q);
   });
-  if (nearest == patches.end() || !(likeness(*nearest) > kLeastCosine)) return;
+  if (nearest == patches.end() || !(likeness(*nearest) > kPatchLikeness)) return;
   ContactResult& to = nearest->result;
   const Real deepest = std::min(deepest_of(to), Real(0)) - kFlush;
   for (ContactResultPoint p : points) {
@@ -290,7 +287,7 @@ Real collide_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, 
   for (std::size_t i = 0; i < is_ghost.size(); ++i)
     if (is_ghost[i] != 0) join_ghost(scratch.contacts[i], points_of(i), scratch.patches);
   for (const Real cosine : {Real(0.999), Real(0.99), Real(0.9), Real(0.5), Real(-1)}) {
-    if (scratch.patches.size() > kMaxPatches) join_patches(cosine, scratch);
+    if (scratch.patches.size() > kMostPatches) join_patches(cosine, scratch);
   }
   std::sort(scratch.patches.begin(), scratch.patches.end(),
             [](const PatchResult& p, const PatchResult& q) { return p.patch < q.patch; });

@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_points.h"
 
+#include "collision/manifold/manifold_tuning.h"
 #include "state/manifolds.h"
 
 #include <algorithm>
@@ -9,9 +10,7 @@ namespace hooke::collision {
 
 namespace {
 
-constexpr Real kSameDepth = Real(5e-4);  // [m]
-constexpr Real kKeepArea = Real(1.1);    // of points that span nearly the same area, the one of the last step
-                                         // stays
+// stays
 
 struct Candidates {
   const ContactResult& result;
