@@ -1,5 +1,7 @@
 #include "collision/narrow_phase/cached_manifolds.h"
 
+#include "collision/narrow_phase/narrow_phase_tuning.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,16 +9,6 @@
 namespace hooke::collision {
 
 namespace {
-
-/// Share of a body's radius by which a pair may drift, so that its surfaces tilt by no more than twice this
-/// [rad].
-constexpr Real kDriftShare = Real(5e-4);
-
-// These are the values for slow bodies of large islands; they are less than the margin within which points
-// are kept.
-constexpr Real kSlowDriftShare = Real(0.03);
-constexpr Real kLargestSlowDrift = Real(0.015);  // [m]
-constexpr Real kSlowRate = Real(0.25);           // speed of all its points over its radius [1/s]
 
 constexpr int kBodyGrain = 1024;
 
@@ -77,7 +69,7 @@ void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
       const Real radius = bodies.traits[row].radius;
       const bool slow = is_slow(bodies, row);
       const Real tolerance =
-          slow ? std::min(kSlowDriftShare * radius, kLargestSlowDrift) : kDriftShare * radius;
+          slow ? std::min(kSlowDriftShare * radius, kSlowDriftLimit) : kDriftShare * radius;
       motions_[row] = {.radius = radius, .tolerance = tolerance, .slow = slow};
       add_motion(seen[row], now, motions_[row]);
       seen[row] = now;

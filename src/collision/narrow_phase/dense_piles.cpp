@@ -1,18 +1,13 @@
 #include "collision/narrow_phase/dense_piles.h"
 
 #include "collision/narrow_phase/narrow_phase.h"
+#include "collision/narrow_phase/narrow_phase_tuning.h"
 
 #include <algorithm>
 
 namespace hooke::collision {
 
 namespace {
-
-/// Share of the sum of two bodies' inner radii: with a smaller distance of their centers they are deep in
-/// each other.
-constexpr double kDeepCenters = 0.75;
-/// Share of the smaller inner radius: with a larger overlap they are.
-constexpr Real kDeepOverlap = Real(0.5);
 
 PileNeighborKey key_of(std::uint32_t body, std::uint32_t other, double distance_squared) {
   return {distance_squared, body < other ? other - body : body - other, other};

@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "collision/broad_phase/broad_phase.h"
+#include "collision/narrow_phase/narrow_phase_tuning.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
 #include "state/manifolds.h"
@@ -17,11 +18,6 @@
 /// themselves are never in a dense pile: contacts let no two bodies so deep into each other.
 
 namespace hooke::collision {
-
-/// Number of neighbors with which a body of a dense pile makes contact, and number from which on it is in
-/// one.
-inline constexpr std::uint32_t kMostNeighborsInPile = 8;
-inline constexpr std::uint32_t kLeastNeighborsInPile = 4;
 
 /// Order in which a body of a dense pile chooses its neighbors: the nearest first. Of equally near ones those
 /// with the nearest rows come first, so that not all bodies choose the same.

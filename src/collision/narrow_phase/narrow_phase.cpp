@@ -11,6 +11,7 @@
 #include "collision/manifold/manifold_points.h"
 #include "collision/manifold/shape_placement.h"
 #include "collision/narrow_phase/cached_manifolds.h"
+#include "collision/narrow_phase/narrow_phase_tuning.h"
 #include "state/body_frames.h"
 #include "state/sleeping_pairs.h"
 
@@ -32,9 +33,7 @@ using state::ContactRefresh;
 using state::Manifold;
 using state::Pair;
 
-constexpr Real kMargin = Real(0.02);           // up to which points are kept, at rest [m]
-constexpr Real kForeseenOverlap = Real(1e-4);  // at which fast shapes are tested [m]
-constexpr int kChunk = 128;                    // pairs of one buffer
+constexpr int kChunk = 128;  // pairs of one buffer
 constexpr int kColliderGrain = 512;
 constexpr int kChunkGrain = 1;
 
@@ -81,7 +80,7 @@ Real margin_of(const Scene& scene, std::uint32_t a, std::uint32_t b) {
   const auto turn = [&](std::uint32_t body) {
     return std::min(scene.dt * length(bodies.angular_velocity[body]), Real(2)) * bodies.traits[body].radius;
   };
-  return kMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
+  return kPointMargin + scene.dt * length(bodies.motion[b].v - bodies.motion[a].v) + turn(a) + turn(b);
 }
 
 Vec3 rotated(Quat rotation, Vec3 v) {
@@ -128,14 +127,13 @@ const Manifold* find_old(const Scene& scene, const Pair& pair, std::uint32_t pat
 void bring_to_start(const Scene& scene, Real time, Manifold& m) {
   const Path a = path_ahead(scene.bodies, m.body_a, scene.dt);
   const Path b = path_ahead(scene.bodies, m.body_b, scene.dt);
-  constexpr Real kParting = Real(1e-4);  // [m]
   std::int32_t count = 0;
   for (std::int32_t i = 0; i < m.point_count; ++i) {
     state::ContactPoint p = m.point[static_cast<std::size_t>(i)];
     const Vec3 displacement =
         b.displacement + cross(b.turn, p.anchor_b) - a.displacement - cross(a.turn, p.anchor_a);
     const Real before = p.separation - time * dot(m.normal, displacement);
-    if (before < -kParting && p.separation > Real(0)) continue;
+    if (before < -kPartingOverlap && p.separation > Real(0)) continue;
     p.separation = before < Real(0) ? std::max(before, p.separation) : before;
     m.point[static_cast<std::size_t>(count++)] = p;
   }
@@ -151,9 +149,6 @@ void append(const Scene& scene, const Pair& pair, std::uint32_t patch, const Con
   if (chunk.time > Real(0)) bring_to_start(scene, chunk.time, m);
   if (m.point_count == 0) chunk.manifolds.pop_back();
 }
-
-/// Least number of manifolds of a refreshed pair: one for each patch that it may reach.
-constexpr std::uint32_t kRefreshedPatches = 4;
 
 /// Appends manifolds without points, for those that a refreshed pair will have within the step.
 void append_spares(const Scene& scene, const Pair& pair, std::uint32_t begin, bool mesh, Chunk& chunk) {
@@ -244,18 +239,13 @@ bool is_fast(const SweptCollider& a, const SweptCollider& b, const Convex& shape
   const bool balls = shape_a.shape.kind == ShapeKind::kSphere && shape_b.shape.kind == ShapeKind::kSphere;
   const Real thick = balls ? Real(0) : thinness_of(shape_a) + thinness_of(shape_b);
   const Real displacement = flat ? Real(0) : length(b.path.displacement - a.path.displacement);
-  return displacement + rotation_reach(a) + rotation_reach(b) > kMargin + thick;
+  return displacement + rotation_reach(a) + rotation_reach(b) > kPointMargin + thick;
 }
 
 /// Whether a body rotates farther than `angle` [rad] in the step.
 bool rotates_beyond(const Path& path, Real angle) {
   return length_squared(path.turn) > angle * angle;
 }
-
-/// From this rotation on the levers of the step's start do not fit the whole step.
-constexpr Real kSpinning = Real(0.2);  // [rad]
-/// From this rotation on the support of a round shape that rolls is searched again.
-constexpr Real kRolling = Real(0.02);  // [rad]
 
 /// Whether the pair had contacts whose points hardly come nearer or part: a tip that spins, a wheel that
 /// rolls.
@@ -266,7 +256,7 @@ bool stays_in_contact(const Scene& scene, const Pair& pair) {
       const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
       const Vec3 v =
           velocity_at(scene.bodies, m.body_b, p.anchor_b) - velocity_at(scene.bodies, m.body_a, p.anchor_a);
-      if (std::fabs(dot(m.normal, v)) * scene.dt > kMargin) return false;
+      if (std::fabs(dot(m.normal, v)) * scene.dt > kPointMargin) return false;
     }
   }
   return pair.manifold_count > 0;
@@ -331,8 +321,6 @@ bool is_round(ShapeKind kind) {
 /// which.
 bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCollider& b, Pair& pair,
                        Chunk& chunk) {
-  constexpr Real kTouching = Real(5e-3);  // [m]
-  constexpr Real kStill = Real(1e-3);     // a rotation by which the surface hardly moves [m]
   if (!is_alone(scene, pair)) return false;
   const Convex& shape_a = scene.placed_shapes[a.row];
   const Convex& shape_b = scene.placed_shapes[b.row];
@@ -341,24 +329,26 @@ bool must_be_refreshed(const Scene& scene, const SweptCollider& a, const SweptCo
   const Real turn_a = rotation_reach(a);
   const Real turn_b = rotation_reach(b);
   const Real displacement = length(b.path.displacement - a.path.displacement);
-  if (displacement + turn_a + turn_b > static_cast<Real>(scene.substeps) * std::max(kMargin, thin_a + thin_b))
+  if (displacement + turn_a + turn_b >
+      static_cast<Real>(scene.substeps) * std::max(kPointMargin, thin_a + thin_b))
     return false;
-  const Real far = is_round(shape_a.shape.kind) || is_round(shape_b.shape.kind) ? kRolling : kSpinning;
-  const bool rolls =
-      (rotates_beyond(a.path, far) && turn_a > kStill) || (rotates_beyond(b.path, far) && turn_b > kStill);
+  const Real far =
+      is_round(shape_a.shape.kind) || is_round(shape_b.shape.kind) ? kRollingTurn : kSpinningTurn;
+  const bool rolls = (rotates_beyond(a.path, far) && turn_a > kStillSurface) ||
+                     (rotates_beyond(b.path, far) && turn_b > kStillSurface);
   const bool flat =
       shape_a.shape.kind == ShapeKind::kHalfSpace || shape_b.shape.kind == ShapeKind::kHalfSpace;
-  if (!rolls && (flat || displacement < std::max(kMargin, std::min(thin_a, thin_b)))) return false;
+  if (!rolls && (flat || displacement < std::max(kPointMargin, std::min(thin_a, thin_b)))) return false;
   if (restitution_of(scene, pair) > Real(0)) return false;  // rebounds know only the step's start
   if (rolls) return true;
   const std::size_t before = chunk.manifolds.size();
   test_view(scene, {shape_a, shape_b, a.path.center, b.path.center}, pair, chunk);
-  const bool in_contact =
-      std::any_of(chunk.manifolds.begin() + static_cast<std::ptrdiff_t>(before), chunk.manifolds.end(),
-                  [](const Manifold& m) {
-                    return std::any_of(m.point.begin(), m.point.begin() + m.point_count,
-                                       [](const state::ContactPoint& p) { return p.separation < kTouching; });
-                  });
+  const bool in_contact = std::any_of(
+      chunk.manifolds.begin() + static_cast<std::ptrdiff_t>(before), chunk.manifolds.end(),
+      [](const Manifold& m) {
+        return std::any_of(m.point.begin(), m.point.begin() + m.point_count,
+                           [](const state::ContactPoint& p) { return p.separation < kSlidingGap; });
+      });
   chunk.manifolds.resize(before);
   return in_contact;
 }
@@ -381,13 +371,13 @@ void test_pair(const Scene& scene, Pair& pair, Chunk& chunk) {
         find_impact(a, b, std::min(kForeseenOverlap, overlap_allowance(a, b)), Real(0), chunk.sweep);
     chunk.time = impact ? impact->time : Real(0);
     if (impact) pair.refresh = ContactRefresh::kAtImpact;
-    const Real beyond =
-        std::min((Real(1) - chunk.time) * (chunk.margin - kMargin), thinness_of(now_a) + thinness_of(now_b));
-    chunk.margin = impact ? kMargin + beyond : kMargin;
+    const Real beyond = std::min((Real(1) - chunk.time) * (chunk.margin - kPointMargin),
+                                 thinness_of(now_a) + thinness_of(now_b));
+    chunk.margin = impact ? kPointMargin + beyond : kPointMargin;
   }
   pair.time = chunk.time;
   if (!pair.is_refreshed() && chunk.time < kMiddle &&
-      (rotates_beyond(path_a, kSpinning) || rotates_beyond(path_b, kSpinning)) &&
+      (rotates_beyond(path_a, kSpinningTurn) || rotates_beyond(path_b, kSpinningTurn)) &&
       stays_in_contact(scene, pair)) {
     chunk.time = kMiddle;
     pair.refresh = ContactRefresh::kInTheMiddle;
@@ -414,9 +404,9 @@ bool has_mesh(const Scene& scene, const Pair& pair) {
 /// the last test, and will not reach points that were too far apart to be kept.
 bool can_reuse(const Scene& scene, const Pair& pair, std::uint32_t a, std::uint32_t b, Real margin) {
   if (!pair.tested || pair.manifold_count == 0 || pair.time > Real(0) || pair.is_refreshed()) return false;
-  if (margin > Real(1.5) * kMargin) return false;
+  if (margin > Real(1.5) * kPointMargin) return false;
   const auto tolerance = [&scene](std::uint32_t body) {
-    return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kMargin;
+    return is_dynamic(scene.bodies, body) ? scene.motions[body].tolerance : kPointMargin;
   };
   return largest_drift(scene.motions[a], scene.motions[b], pair.drift) < std::min(tolerance(a), tolerance(b));
 }
