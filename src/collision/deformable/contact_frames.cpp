@@ -1,5 +1,6 @@
 #include "collision/deformable/contact_frames.h"
 
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/distance/shape_gap.h"
 #include "state/body_frames.h"
 
@@ -7,13 +8,6 @@
 #include <cmath>
 
 namespace hooke::collision {
-
-namespace {
-
-constexpr Real kBoxRounding = Real(1e-4);  ///< Largest rounding of a box side near an object, seen from its
-                                           ///< origin [m].
-
-}  // namespace
 
 Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
   const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);

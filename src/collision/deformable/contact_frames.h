@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "collision/deformable/deformable_tuning.h"
 #include "geometry/box.h"
 #include "state/tables.h"
 
@@ -15,8 +16,7 @@
 
 namespace hooke::collision {
 
-inline constexpr Real kParticleMargin = Real(0.02);  ///< Distance by which contacts are searched ahead [m].
-inline constexpr Real kNoContact = Real(1e9);        ///< Distance of a row that does not act now [m].
+inline constexpr Real kNoContact = Real(1e9);  ///< Distance of a row that does not act now [m].
 
 /// A shape's frame as one object sees it: x_shape = R^T (x - offset), x relative to the object's origin.
 struct Frame {

@@ -1,5 +1,6 @@
 #include "collision/deformable/element_contacts.h"
 
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/distance/distance.h"
 #include "collision/distance/protrusion_gap.h"
 #include "collision/distance/shape_gap.h"
@@ -16,25 +17,6 @@ namespace hooke::collision {
 namespace {
 
 using state::ElementContact;
-
-constexpr Real kSearchShare =
-    Real(0.5);  ///< Rows are made if a shape protrudes by this share of an edge's thinning.
-/// The depth of a gentle curve in a chord between two points, over their radius, up to which it is not
-/// tested. On ropes the line from node to node stays outside; on cloths the points hold it off all the same.
-constexpr Real kRopeGentleDepth = Real(0.8);
-constexpr Real kClothGentleDepth = Real(0.4);
-constexpr Real kLeastFreeShare = Real(0.25);  ///< Share of an element's points that must be free: pinned
-                                              ///< points do not give way.
-constexpr int kMostNear = 12;                 ///< Largest number of elements near a narrow body.
-constexpr int kFewContacts = 12;              ///< With bodies; more contacts take too long to be solved as
-                                              ///< one.
-constexpr int kSupportingPoints = 3;          ///< A wide body that lies on so many points is carried by them.
-constexpr Real kLeastApart = Real(0.5);       ///< Largest overlap, over the radius, with which a contact may
-                                              ///< begin.
-constexpr Real kSameSide =
-    Real(0.9);  ///< Cosine of the angle that a normal may turn in a substep without losing its force.
-constexpr Real kNearShare = Real(0.01);  ///< Share of the thickness at which two count as touching.
-constexpr Real kPushedApart = Real(1);   ///< Largest speed at which overlaps are undone in place [m/s].
 
 /// A segment of a rope, or a triangle of a cloth or one of its edges.
 struct Element {
@@ -180,7 +162,7 @@ class PairSearch {
   [[nodiscard]] bool is_supported_by_points() const {
     if (object_.triangles.count == 0 || !is_dynamic(t_.bodies, body_)) return false;
     const bool is_wide = t_.bodies.traits[body_].radius > longest_edge_;
-    return (is_wide && near_points_ >= kSupportingPoints) || (!held_ && near_elements_ > kMostNear);
+    return (is_wide && near_points_ >= kSupportingPoints) || (!held_ && near_elements_ > kMostNearElements);
   }
 
   void search_element(Element e) {
@@ -212,7 +194,7 @@ class PairSearch {
     for (std::uint32_t i = 0; i < e.count; ++i) gaps[i] = &gap_of(e.particle[i]);
     const Real distance = least_distance(gaps, e.count, 0);
     if (distance > reach) return;
-    const Real most = kSearchShare * thinning_of(object_) * radius;
+    const Real most = kElementSearchShare * thinning_of(object_) * radius;
     if (!protrudes(gaps, e.count, 0, most) && !protrudes(gaps, e.count, 1, most)) return;
     if (is_hooked_to(e)) return;
     near_elements_ += distance < radius + kParticleMargin ? 1 : 0;
@@ -241,7 +223,7 @@ class PairSearch {
       displacement =
           std::max(displacement, query_.step * length(t_.particles.velocity[e.particle[i]].v - surface));
     }
-    const bool is_fast = displacement > kSearchShare * thinning_of(object_) * radius;
+    const bool is_fast = displacement > kElementSearchShare * thinning_of(object_) * radius;
     Real nearest = Real(-1);
     for (const std::uint32_t triangle : finder_.triangles) {
       const std::uint32_t end = mesh.protrusions.triangle_begin[triangle + 1];
@@ -252,7 +234,8 @@ class PairSearch {
         if (!is_fast) {
           if (!found.gap) continue;
           if (nearest < Real(0)) nearest = nearest_point(e, corner, reach);
-          const Real most = kSearchShare * thinning_at(object_, found.gap->weight) * radius - displacement;
+          const Real most =
+              kElementSearchShare * thinning_at(object_, found.gap->weight) * radius - displacement;
           if (!(nearest - found.gap->distance > most)) continue;
         }
         if (is_hooked_to(e)) return;
@@ -345,7 +328,7 @@ void mark_few(const state::Tables& t, std::size_t first, std::vector<ElementCont
   const std::span<ElementContact> rows = std::span(contacts).subspan(first);
   const auto pressed = std::count_if(
       rows.begin(), rows.end(), [&](const ElementContact& row) { return is_dynamic(t.bodies, row.body); });
-  for (ElementContact& row : rows) row.few = pressed <= kFewContacts;
+  for (ElementContact& row : rows) row.few = pressed <= kFewElementContacts;
 }
 
 auto key_of(const ElementContact& row) {
@@ -380,7 +363,7 @@ bool stay_apart(const state::Tables& t, Real h, ElementContact& row) {
   if (!(row.clearance > Real(0))) return false;
   const Vec3 center =
       vector_cast<Real>(state::pose_now(t.bodies, row.body).position - t.objects[row.object].origin);
-  const Real displacement = Real(2) * displacements_of(t, row, center, h).longest + kPushedApart * h;
+  const Real displacement = Real(2) * displacements_of(t, row, center, h).longest + kElementApartSpeed * h;
   row.clearance -= displacement;
   return row.clearance > displacement;
 }
@@ -412,13 +395,13 @@ class RowUpdate {
     const bool known = before != Vec3{};
     if (find(Real(0))) {
       advance();
-      if (!known && body_is_dynamic() && row_.separation < -kLeastApart * radius_) reset();
+      if (!known && body_is_dynamic() && row_.separation < -kDeepestNewOverlap * radius_) reset();
     } else if (overlap_ && (known || !body_is_dynamic())) {
       find_deepest(known);
     } else {
       leave(row_);
     }
-    const bool changed_direction = dot(row_.normal, before) < kSameSide;
+    const bool changed_direction = dot(row_.normal, before) < kElementSameSide;
     if (changed_direction) row_.normal_force = Real(0);
     if (changed_direction) row_.friction_force = {};
     if (row_.separation < kNoContact && !gives_way()) leave(row_);
@@ -480,11 +463,11 @@ class RowUpdate {
     if (!gap || gap->distance > radius_ + Real(2) * longest_displacement_) return false;
     Vec3 normal = frame_.to_world(gap->normal);
     const bool acts = row_.separation < kNoContact && row_.normal != Vec3{};
-    const bool flips = acts && dot(normal, row_.normal) < -kSameSide;  // around the end of a surface
+    const bool flips = acts && dot(normal, row_.normal) < -kElementSameSide;  // around the end of a surface
     if (flips) normal = -normal;
     if (flips) gap->distance = -gap->distance;
-    const bool is_deep = gap->distance < -kLeastApart * radius_;
-    if (is_deep && !(acts && dot(normal, row_.normal) > kSameSide)) return false;
+    const bool is_deep = gap->distance < -kDeepestNewOverlap * radius_;
+    if (is_deep && !(acts && dot(normal, row_.normal) > kElementSameSide)) return false;
     if (gap->distance < Real(0) && !flips && !(distance_to_mesh(mesh, gap->place, radius_) < Real(0)))
       return false;
     row_.normal = normal;
@@ -496,13 +479,12 @@ class RowUpdate {
   /// Advances to where they meet, as gap_along_displacement does for particles
   /// (collision/deformable/particle_contacts.cpp).
   void advance() {
-    constexpr int kRounds = 4;
     Real share = Real(0);
-    for (int i = 0; i < kRounds && share < Real(1); ++i) {
+    for (int i = 0; i < kElementAdvanceRounds && share < Real(1); ++i) {
       Real closing_distance = Real(0);
       for (const Vec3 displacement : displacement_)
         closing_distance = std::max(closing_distance, -dot(row_.normal, displacement));
-      const bool in_contact = !(row_.separation > kNearShare * radius_);
+      const bool in_contact = !(row_.separation > kElementTouchingShare * radius_);
       if (in_contact || !(closing_distance * (Real(1) - share) > row_.separation)) break;
       share = std::min(share + row_.separation / closing_distance, Real(1));
       const ElementContact before = row_;
@@ -533,10 +515,9 @@ class RowUpdate {
   /// interval.
   template <class Value>
   static Real least_of(Real end, const Value& value) {
-    constexpr int kRounds = 17;
     Real low = Real(0);
     Real high = end;
-    for (int i = 0; i < kRounds; ++i) {
+    for (int i = 0; i < kDeepestPointRounds; ++i) {
       const Real third = (high - low) / Real(3);
       if (value(low + third) <= value(high - third)) {
         high -= third;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/deformable/contact_frames.h"
+#include "collision/deformable/deformable_tuning.h"
 #include "parallel/range.h"
 #include "state/tables.h"
 
@@ -19,11 +20,6 @@
 /// that could pass between points. docs/decisions/0021-contacts-between-points.md.
 
 namespace hooke::collision {
-
-/// By how much an edge is thinner in its middle than at its ends, over the radius of the ends: for a rope,
-/// whose nodes must not catch on what it slides over, and for a cloth.
-inline constexpr Real kRopeThinning = Real(0.2);
-inline constexpr Real kClothThinning = Real(0.5);
 
 /// Memory of find_element_contacts.
 struct ElementContactFinder {

@@ -3,6 +3,7 @@
 #include "base/sort_unique.h"
 #include "base/take_turns.h"
 #include "collision/deformable/contact_frames.h"
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/deformable/element_contacts.h"
 #include "collision/distance/protrusion_gap.h"
 #include "collision/distance/shape_gap.h"
@@ -137,14 +138,13 @@ void set_row(state::Contacts& contacts, std::size_t row, const Frame& frame, Gap
 /// conservative advancement with a bounded number of rounds; a sphere that has not met the shape by then is
 /// taken where it is.
 Gap gap_along_displacement(const state::ColliderShape& shape, Vec3 x, Vec3 displacement, Real radius) {
-  constexpr int kRounds = 8;
   Gap gap = gap_to_shape(shape, x);
   const Real displacement_length = length(displacement);
   const Real near = Real(0.01) * radius;
   if (!(gap.distance - radius > near) || !(-dot(gap.normal, displacement) > gap.distance - radius))
     return gap;
   Real share = Real(0);
-  for (int i = 0; i < kRounds && gap.distance - radius > near && share < Real(1); ++i) {
+  for (int i = 0; i < kParticleAdvanceRounds && gap.distance - radius > near && share < Real(1); ++i) {
     share = std::min(share + (gap.distance - radius) / displacement_length, Real(1));
     gap = gap_to_shape(shape, x + share * displacement);
   }

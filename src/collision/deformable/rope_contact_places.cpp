@@ -1,6 +1,7 @@
 #include "collision/deformable/rope_contact_places.h"
 
 #include "collision/deformable/contact_frames.h"
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/deformable/rope_pair.h"
 
 #include <algorithm>
@@ -11,14 +12,6 @@ namespace hooke::collision {
 namespace {
 
 using state::RopeContact;
-
-constexpr Real kEnd = Real(1e-5);            ///< A fraction this near to 0 or 1 counts as the end.
-constexpr Real kClearlyNearer = Real(1e-3);  ///< Sine of the slope from which a neighbor counts as nearer.
-constexpr Real kSkin = Real(0.03);           ///< Share by which a row is thinner where a neighbor is nearer.
-constexpr Real kAside = Real(0.25);          ///< Share of the displacement that other forces may turn into
-                                             ///< approach.
-constexpr Real kAhead = Real(0.1);           ///< Gap within which a row acts, over the thickness.
-constexpr Real kApartSpeed = Real(1);        ///< Overlaps are undone more slowly than this [m/s].
 
 void leave(RopeContact& row) {
   row.separation = kNoContact;
@@ -40,8 +33,8 @@ class RopeRowUpdate {
     const Vec3 before = row_.normal;
     at_ = pair_.nearest(Real(0));
     row_.clearance = at_.distance - row_.thickness;
-    if (row_.clearance >
-        pair_.closing_distance(at_.normal) + kAside * longest_displacement_ + kAhead * row_.thickness)
+    if (row_.clearance > pair_.closing_distance(at_.normal) + kRopeAsideShare * longest_displacement_ +
+                             kRopeAheadShare * row_.thickness)
       return leave(row_);
     if (at_.normal == Vec3{}) at_.normal = before == Vec3{} ? Vec3{Real(0), Real(1), Real(0)} : before;
     at_ = pair_.advance(at_, row_.thickness);
@@ -65,9 +58,9 @@ class RopeRowUpdate {
   /// Whether the two cannot have met since their distance was found, and will not within h.
   bool stay_apart() {
     if (!(row_.clearance > Real(0))) return false;
-    const Real displacement = Real(2) * longest_displacement_ + kApartSpeed * h_;
+    const Real displacement = Real(2) * longest_displacement_ + kRopeApartSpeed * h_;
     row_.clearance -= displacement;
-    return row_.clearance > displacement + kAhead * row_.thickness;
+    return row_.clearance > displacement + kRopeAheadShare * row_.thickness;
   }
 
   /// Change of the distance for a step along the next segment, or back along the one before, over the length
@@ -90,16 +83,16 @@ class RopeRowUpdate {
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint32_t behind = row_.neighbor[2 * side + 1];
       const std::uint32_t ahead = row_.neighbor[2 * side];
-      if (at_.fraction[side] >= Real(1) - kEnd && behind != RopeContact::kNone) {
+      if (at_.fraction[side] >= Real(1) - kSegmentEndShare && behind != RopeContact::kNone) {
         if (slope(side, true) < -kClearlyNearer) nearer = behind;
-      } else if (at_.fraction[side] <= kEnd && ahead != RopeContact::kNone) {
+      } else if (at_.fraction[side] <= kSegmentEndShare && ahead != RopeContact::kNone) {
         const Real rise = slope(side, false);
         if (rise > kClearlyNearer) return ahead;
         if (rise < -kClearlyNearer) nearer = ahead;
       }
     }
     if (nearer == RopeContact::kNone) return nearer;
-    const Real thinner = row_.separation + kSkin * row_.thickness;
+    const Real thinner = row_.separation + kRopeSkinShare * row_.thickness;
     if (std::min(thinner, thinner + pair_.gap_growth(at_)) > Real(0)) return nearer;
     row_.separation = thinner;
     return RopeContact::kNone;

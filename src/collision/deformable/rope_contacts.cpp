@@ -2,6 +2,7 @@
 
 #include "base/take_turns.h"
 #include "collision/deformable/contact_frames.h"
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/deformable/rope_contact_places.h"
 #include "geometry/box.h"
 #include "parallel/range.h"
@@ -19,8 +20,6 @@ using state::RopeContact;
 using state::Tables;
 
 constexpr int kRopeContactGrain = 32;
-constexpr Real kLeastShare = Real(0.5);  ///< Share of the thickness, or of the arc between two segments.
-constexpr int kFoundFor = 4;             ///< Number of substeps for which a new search is valid.
 
 auto key_of(const RopeContact& row) {
   return std::tie(row.segment_a, row.segment_b);
@@ -85,13 +84,13 @@ void add_row(const Tables& t, ColliderPair pair, RopeContactFinder& finder) {
   row.particle = {first_a, first_a + 1, first_b, first_b + 1};
   const Real radius = t.particles.position[first_a].radius;
   row.thickness = radius + t.particles.position[first_b].radius;
-  row.least = kLeastShare * row.thickness;
+  row.least = kPassKeptShare * row.thickness;
   if (row.object_a == row.object_b) {
     const Real between =
         finder.arc[row.segment_b] - finder.arc[row.segment_a] - t.segments.rest_length[row.segment_a];
     if (row.segment_b == row.segment_a + 1) return;
     row.adjacent = between < std::numbers::pi_v<Real> * radius;
-    row.least = std::min(row.least, kLeastShare * between);
+    row.least = std::min(row.least, kPassKeptShare * between);
   }
   row.friction = std::sqrt(a.friction * b.friction);
   if (any_free(t, row)) finder.contacts.push_back(row);
@@ -170,8 +169,7 @@ bool left_margin(const Tables& t, Real h, const RopeContactFinder& finder) {
 
 /// The row that acts in place of one that does not, or kNone.
 std::uint32_t successor_of(const std::vector<RopeContact>& rows, std::uint32_t row) {
-  constexpr int kMostSteps = 4;
-  for (int i = 0; i < kMostSteps && row != RopeContact::kNone; ++i) {
+  for (int i = 0; i < kMostSuccessorSteps && row != RopeContact::kNone; ++i) {
     if (rows[row].separation < kNoContact) return row;
     row = rows[row].successor;
   }
@@ -203,7 +201,7 @@ void find_rope_contacts(parallel::ThreadPool& pool, Real dt, RopeContactFinder& 
 
 bool renew_rope_contacts(parallel::ThreadPool& pool, Real h, RopeContactFinder& finder, Tables& t) {
   if (finder.ropes.empty() || !left_margin(t, h, finder)) return false;
-  find(pool, Real(kFoundFor) * h, finder, t);
+  find(pool, Real(kRopeSearchSubsteps) * h, finder, t);
   return true;
 }
 

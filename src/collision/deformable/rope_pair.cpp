@@ -1,5 +1,6 @@
 #include "collision/deformable/rope_pair.h"
 
+#include "collision/deformable/deformable_tuning.h"
 #include "geometry/closest.h"
 
 #include <algorithm>
@@ -7,9 +8,6 @@
 namespace hooke::collision {
 
 namespace {
-
-constexpr int kMostRounds = 24;
-constexpr Real kContactShare = Real(0.01);  ///< Share of the distance at which two count as touching.
 
 Vec3 sum_of(const std::array<Real, 4>& weight, const std::array<Vec3, 4>& of) {
   Vec3 sum;
@@ -60,10 +58,10 @@ Real RopePair::closing_distance(Vec3 normal) const {
 
 RopePair::Nearest RopePair::advance(Nearest from, Real distance) const {
   Nearest at = from;
-  for (int i = 0; i < kMostRounds && at.share < Real(1); ++i) {
+  for (int i = 0; i < kMostRopePairRounds && at.share < Real(1); ++i) {
     const Real gap = at.distance - distance;
     const Real most = closing_distance(at.normal);
-    if (!(gap > kContactShare * distance) || !(most * (Real(1) - at.share) > gap)) break;
+    if (!(gap > kRopeTouchingShare * distance) || !(most * (Real(1) - at.share) > gap)) break;
     at = nearest(std::min(at.share + gap / most, Real(1)));
   }
   return at;

@@ -1,5 +1,6 @@
 #include "collision/deformable/rope_passes.h"
 
+#include "collision/deformable/deformable_tuning.h"
 #include "collision/deformable/rope_pair.h"
 
 #include <algorithm>
@@ -11,12 +12,6 @@ namespace {
 
 using state::RopeContact;
 using state::Tables;
-
-constexpr Real kZoneShare = Real(0.5);  ///< Zones keep this share of the distance that single impulses keep.
-constexpr Real kLookedFor = Real(0.8);  ///< Share of that distance at which the direction is taken.
-constexpr Real kCloser = Real(0.05);    ///< A pass is nearer than the kept distance by this share of it.
-constexpr int kPasses = 8;
-constexpr int kZonePasses = 16;
 
 /// The point at which two center lines would come nearer than they may, and by how much they are too fast
 /// [m/s].
@@ -30,9 +25,9 @@ std::optional<Pass> find_pass(const Tables& t, Real h, const RopeContact& row, R
   const RopePair::Nearest now = pair.nearest(Real(0));
   const Real least = share * std::min(row.least, now.distance);
   if (now.distance - least > pair.longest_displacement()) return std::nullopt;
-  const RopePair::Nearest at = pair.advance(now, kLookedFor * least);
+  const RopePair::Nearest at = pair.advance(now, kPassDirectionShare * least);
   const Real nearer = least - (pair.gap_at_start(at) + pair.gap_growth(at));
-  if (!(nearer > kCloser * least)) return std::nullopt;
+  if (!(nearer > kPassNearerShare * least)) return std::nullopt;
   return Pass{at, nearer / h};
 }
 
@@ -92,13 +87,13 @@ void stop_rope_passes(parallel::ThreadPool& pool, Real h, RopeContactFinder& fin
   if (finder.ropes.empty()) return;
   renew_rope_contacts(pool, h, finder, t);
   int passes = 0;
-  while (passes < kPasses && stop_pairs(h, t)) ++passes;
-  if (passes < kPasses) return;
+  while (passes < kMostPassRounds && stop_pairs(h, t)) ++passes;
+  if (passes < kMostPassRounds) return;
   finder.zones.reset(t.particles.position.size());
-  for (int i = 0; i < kZonePasses; ++i) {
+  for (int i = 0; i < kMostPassZoneRounds; ++i) {
     bool any = false;
     for (const RopeContact& row : t.rope_contacts) {
-      if (!find_pass(t, h, row, kZoneShare)) continue;
+      if (!find_pass(t, h, row, kPassZoneShare)) continue;
       for (const std::uint32_t p : row.particle) finder.zones.merge(row.particle[0], p);
       any = true;
     }
