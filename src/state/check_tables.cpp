@@ -272,9 +272,7 @@ const char* find_disagreement(const Tables& t) {
 }
 
 void check_tables([[maybe_unused]] const Tables& t) {
-#ifdef HOOKE_CHECKS
-  if (const char* what = find_disagreement(t)) base::assert_failed(what, __FILE__, __LINE__);
-#endif
+  HOOKE_VALIDATE(find_disagreement(t));
 }
 
 }  // namespace hooke::state

@@ -13,6 +13,8 @@ namespace hooke {
 struct WorldAccess {
   /// Returns the tables of a World, or empty ones if it was moved from.
   static const state::Tables& tables(const World& world) { return world::Reading(world.data_).tables(); }
+  /// For tests, which look at what a step has left, and damage it.
+  static WorldData& data(World& world) { return *world.data_; }
 };
 
 /// Only this struct fills force views, so that programs cannot make one.

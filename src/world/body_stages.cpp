@@ -1,11 +1,14 @@
 #include "world/body_stages.h"
 
+#include "base/assert.h"
 #include "collision/continuous/shape_bounds.h"
 #include "solver/air/force_fields.h"
 #include "solver/body/body_motion.h"
+#include "solver/check_routes.h"
 #include "solver/contact/dense_pile_limit.h"
 #include "solver/routes.h"
 #include "state/body_frames.h"
+#include "state/check_contacts.h"
 #include "state/sleeping_pairs.h"
 #include "world/events.h"
 #include "world/force_stages.h"
@@ -200,6 +203,7 @@ void find_body_contacts(WorldData& world, Real dt) {
   solver::evaluate_ragdolls(*world.pool, world.tables.hooks, world.tables.bodies, world.derived.joints);
   find_manifolds(world, dt);
   if (wake_touched(world, dt)) list_awake_bodies(world);
+  HOOKE_VALIDATE(state::find_in_body_contacts(world.tables));
 }
 
 void prepare_body_contacts(WorldData& world, Real h) {
@@ -228,6 +232,9 @@ void prepare_body_contacts(WorldData& world, Real h) {
   solver::list_impact_pairs(t.pairs, t.bodies, world.derived.hooked, world.frame.body_contacts,
                             world.frame.impacts);
   note_closing_pairs(world, h * static_cast<Real>(desc.substeps));
+  HOOKE_VALIDATE(solver::find_in_contact_routes(t, world.frame.body_contacts, world.frame.direct_islands,
+                                                world.frame.check_marks));
+  HOOKE_VALIDATE(solver::find_in_joint_routes(t, world.derived.joints, world.frame.check_marks));
 }
 
 void accelerate_bodies(WorldData& world, double time, Real h, bool first) {

@@ -1,7 +1,9 @@
 #include "world/particle_stages.h"
 
+#include "base/assert.h"
 #include "solver/air/force_fields.h"
 #include "solver/air/wind.h"
+#include "solver/check_routes.h"
 #include "solver/rope/rope_repulsion.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/shape_matching.h"
@@ -425,6 +427,8 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.frame.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_coupled_groups(world.tables, world.derived.rope_systems, world.derived.coupled_groups);
+  HOOKE_VALIDATE(solver::find_in_coupled_groups(world.tables, world.derived.rope_systems,
+                                                world.derived.coupled_groups, world.frame.check_marks));
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
   solver::apply_mass_shares(world.derived.coupled_groups, world.tables, world.frame.hooked_points);

@@ -1,5 +1,6 @@
 #include "world/point_contact_stages.h"
 
+#include "base/assert.h"
 #include "collision/deformable/element_contacts.h"
 #include "collision/deformable/particle_contacts.h"
 #include "collision/deformable/rope_contacts.h"
@@ -7,6 +8,7 @@
 #include "parallel/thread_pool.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
+#include "state/check_contacts.h"
 
 namespace hooke::world {
 
@@ -24,6 +26,7 @@ constexpr int kElementContactGrain = 32;
 void find_point_contacts(WorldData& world, double dt) {
   collision::find_contacts(dt, world.frame.particle_contacts, world.tables);
   collision::find_rope_contacts(*world.pool, static_cast<Real>(dt), world.frame.rope_contacts, world.tables);
+  HOOKE_VALIDATE(state::find_in_point_contacts(world.tables));
 }
 
 void update_point_contacts(WorldData& world, Real h) {

@@ -1,5 +1,7 @@
 #include "world/stepping.h"
 
+#include "base/assert.h"
+#include "state/check_contacts.h"
 #include "state/check_tables.h"
 #include "world/events.h"
 
@@ -94,6 +96,7 @@ Stepping::Stepping(WorldData& world) : world_(world) {
 void Stepping::end() {
   ended_ = true;
   state::check_tables(world_.tables);
+  HOOKE_VALIDATE(state::find_in_sleepers(world_.tables));
 }
 
 Stepping::~Stepping() {

@@ -140,6 +140,8 @@ struct Frame {
 
   bool bodies_quarantined = false;  ///< Some body was quarantined in this step.
 
+  std::vector<std::uint32_t> check_marks;  ///< Scratch memory of HOOKE_VALIDATE.
+
   // These members hold the state when the step began, to which quarantine and a step that throws go back.
   std::vector<Quat> start_rotation;  ///< By body row; set for awake bodies.
   std::vector<state::PositionRecord> start_position;
