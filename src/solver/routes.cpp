@@ -1,5 +1,6 @@
 #include "solver/routes.h"
 
+#include "base/assert.h"
 #include "solver/contact/contact_colors.h"
 #include "solver/coupled/coupled_articulations.h"
 #include "solver/soft/element_contact_solve.h"
@@ -86,10 +87,12 @@ void count_points(const state::Tables& tables, std::span<const RopeSystem> rope_
   counts.points_swept = static_cast<std::uint32_t>(tables.contacts.count());
   for (const RopeSystem& rope : rope_systems) {
     const std::uint32_t count = rope.end_contact - rope.first_contact;
+    HOOKE_ASSERT(rope.first_contact <= rope.end_contact && count <= counts.points_swept);
     (rope.in_coupled_group ? counts.points_coupled : counts.points_in_ropes) += count;
     counts.points_swept -= count;
   }
   const std::uint32_t with_bodies = count_points_with_bodies(tables);
+  HOOKE_ASSERT(with_bodies <= counts.points_swept);
   counts.points_swept -= with_bodies;
   counts.points_coupled += with_bodies;
   for (const state::ElementContact& contact : tables.element_contacts)

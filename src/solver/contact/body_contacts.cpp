@@ -1,5 +1,6 @@
 #include "solver/contact/body_contacts.h"
 
+#include "base/assert.h"
 #include "solver/contact/body_contact_kernels.h"
 #include "state/body_frames.h"
 
@@ -31,6 +32,7 @@ void fill_lane(std::uint32_t row, const ContactColors& colors, const Bodies& bod
   const Manifold& m = source.manifolds[row];
   const bool swapped = colors.moves[m.body_a] == 0;
   const std::uint32_t a = swapped ? m.body_b : m.body_a;
+  HOOKE_ASSERT(colors.moves[a] != 0);
   const std::uint32_t b = swapped ? m.body_a : m.body_b;
   source.sign[lane] = swapped ? Real(-1) : Real(1);
   source.points[lane] = static_cast<Real>(m.point_count);
@@ -64,6 +66,7 @@ void fill_rolling(const Manifold& m, const Bodies& bodies, const ContactStep& st
 void add_lane(const ContactColors::Member& member, const Manifold& m, int index, BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[index];
   contacts.manifold_of.push_back(member.manifold);
+  HOOKE_ASSERT(block.count < kContactLanes);
   block.bounces = block.bounces || m.restitution > Real(0);
   if (m.is_refreshed() && !member.direct) {
     block.point_count = Manifold::kMaxPoints;
@@ -78,6 +81,7 @@ void add_lane(const ContactColors::Member& member, const Manifold& m, int index,
 int lay_out_block(std::span<const ContactColors::Member> members, const std::vector<Manifold>& manifolds,
                   int index, BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[index];
+  HOOKE_ASSERT(contacts.manifold_of.size() == static_cast<std::size_t>(index) * kContactLanes);
   const auto [first_manifold, anchored, direct] = members.front();
   block.anchored = anchored;
   block.direct = direct;
@@ -122,6 +126,7 @@ void fill_block(int index, const std::vector<Manifold>& manifolds, const Bodies&
                 const ContactStep& step, BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[index];
   const std::uint32_t* rows = contacts.manifold_of.data() + static_cast<std::size_t>(kContactLanes) * index;
+  HOOKE_ASSERT(block.count > 0);
   wide::ContactSource source;
   source.manifolds = manifolds.data();
   source.scale = bodies.scale.data();
@@ -176,6 +181,7 @@ std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
   const auto direct =
       std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.direct; });
+  HOOKE_ASSERT(std::all_of(direct, all.end(), [](const ContactBlock& block) { return block.direct; }));
   return all.first(static_cast<std::size_t>(direct - all.begin()));
 }
 
@@ -239,12 +245,14 @@ int end_of(const ContactBlock& block, int lane) {
 /// Adds rows for a manifold that has more points now than any of the block's had. Other lanes have no point
 /// there.
 void make_room(int point_count, ContactBlock& block) {
+  HOOKE_ASSERT(point_count <= Manifold::kMaxPoints);
   while (block.point_count < point_count) block.point[block.point_count++] = {};
 }
 
 void refill_lane(const ContactLane& at, const std::vector<Manifold>& manifolds, Real time, Bodies& bodies,
                  BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[at.block];
+  HOOKE_ASSERT(at.lane < block.count && !block.direct);
   move_impulses(block, at.lane, Real(1), bodies);
   make_room(manifolds[at.manifold].point_count, block);
   const Real pushed = block.pushed[at.lane];
@@ -309,6 +317,7 @@ void solve_body_contacts(Range blocks, const ContactStep& step, BodyContacts& co
   const auto middle =
       std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.anchored; });
   const auto pairs = static_cast<std::size_t>(middle - all.begin());
+  HOOKE_ASSERT(std::all_of(middle, all.end(), [](const ContactBlock& block) { return block.anchored; }));
   const auto pass = [&](bool anchored) {
     return wide::ContactPass{.softness = contact_softness(step, anchored),
                              .inverse_h = Real(1) / step.h,
@@ -336,6 +345,7 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
     const ContactBlock& block = contacts.blocks[index];
     Manifold& m = manifolds[row];
     if (block.direct) continue;
+    HOOKE_ASSERT(lane < block.count && contacts.manifold_of[kContactLanes * index + lane] == row);
     const int count = std::min(m.point_count, block.point_count);
     for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
     store_friction(block, lane, m);
@@ -365,6 +375,7 @@ void refill_lanes(std::span<const ContactLane> lanes, const std::vector<Manifold
 }
 
 void store_body_contacts(Range blocks, const BodyContacts& contacts, std::vector<Manifold>& manifolds) {
+  HOOKE_ASSERT(blocks.begin >= 0 && blocks.end <= static_cast<int>(contacts.blocks.size()));
   for (int index = blocks.begin; index < blocks.end; ++index) {
     const ContactBlock& block = contacts.blocks[index];
     const std::size_t first = static_cast<std::size_t>(kContactLanes) * index;

@@ -1,5 +1,7 @@
 #include "solver/contact/contact_colors.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -22,6 +24,7 @@ void find_moving(const state::Bodies& bodies, std::vector<std::uint8_t>& moves) 
 int take_color(const Manifold& m, ContactColors& colors) {
   const bool moves_a = colors.moves[m.body_a] != 0;
   const bool moves_b = colors.moves[m.body_b] != 0;
+  HOOKE_ASSERT((moves_a || moves_b) && m.body_a != m.body_b);
   std::uint64_t& a = colors.used[moves_a ? m.body_a : m.body_b];
   std::uint64_t& b = colors.used[moves_b ? m.body_b : m.body_a];
   const std::uint64_t free = ~(a | b);
@@ -67,6 +70,7 @@ struct MemberOrder {
     return color < kColors ? color + lone : color - kColors + kPairColors;
   }
   [[nodiscard]] int key(const Manifold& m, int color) const {
+    HOOKE_ASSERT(color < kColors + lone && m.point_count <= Manifold::kMaxPoints);
     const int kind = (is_direct(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
     return kKinds * rank(color) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints -
            std::max(m.point_count, 1);
@@ -89,6 +93,7 @@ void sort_members(const std::vector<Manifold>& manifolds, const MemberOrder& ord
   for (int rank_end = kKinds; rank_end < static_cast<int>(colors.next_slot.size()); rank_end += kKinds) {
     if (colors.next_slot[rank_end] > colors.begin.back()) colors.begin.push_back(colors.next_slot[rank_end]);
   }
+  HOOKE_ASSERT(colors.begin.back() == colors.next_slot.back());  // all keys belong to a color
   colors.members.resize(static_cast<std::size_t>(colors.begin.back()));
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
     if (colors.color[i] < 0) continue;

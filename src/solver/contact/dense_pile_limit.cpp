@@ -1,5 +1,6 @@
 #include "solver/contact/dense_pile_limit.h"
 
+#include "base/assert.h"
 #include "solver/contact/contact_tuning.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ Vec3 velocity_of(std::span<const std::uint32_t> pile, const state::Bodies& bodie
 }  // namespace
 
 void limit_dense_pile(std::span<const std::uint32_t> pile, state::Bodies& bodies) {
+  HOOKE_ASSERT(!pile.empty());  // its mass is divided by
   const Vec3 mean = velocity_of(pile, bodies);
   for (const std::uint32_t body : pile) {
     state::MotionRecord& m = bodies.motion[body];

@@ -1,5 +1,6 @@
 #include "solver/contact/direct_contacts.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/contact/contact_tuning.h"
 #include "state/body_frames.h"
@@ -68,6 +69,7 @@ struct DirectRowMaker {
 };
 
 void find_blocks(const BlockPattern& p, DirectContact& c) {
+  HOOKE_ASSERT(c.a < p.order.size() && c.a != c.b);
   c.diagonal_a = p.block[p.column_begin[c.a]].offset;
   if (c.b == DirectContact::kNone) return;
   c.diagonal_b = p.block[p.column_begin[c.b]].offset;
@@ -76,6 +78,8 @@ void find_blocks(const BlockPattern& p, DirectContact& c) {
 }
 
 std::span<DirectRow> rows_of(DirectIsland& island, const DirectContact& c) {
+  HOOKE_ASSERT(static_cast<std::size_t>(c.first) + static_cast<std::size_t>(c.points) + 3 <=
+               island.rows.size());
   return {&island.rows[c.first], static_cast<std::size_t>(c.points) + 3};
 }
 
@@ -351,6 +355,7 @@ bool limit_friction(DirectIsland& island) {
 
 /// The six numbers of a node.
 double* numbers_of(std::uint32_t i, const DirectIsland& island, std::vector<double>& u) {
+  HOOKE_ASSERT(6 * (std::size_t{island.slot[i]} + 1) <= u.size());
   return &u[6 * island.slot[i]];
 }
 
@@ -360,6 +365,7 @@ void read_nodes(const Bodies& bodies, Read&& read, const DirectIsland& island, s
   for (std::uint32_t i = 0; i < island.graph.bodies.size(); ++i) {
     const std::uint32_t body = island.graph.bodies[i];
     const auto [linear, angular] = read(body);
+    HOOKE_ASSERT(is_moved(bodies, body));
     const double scale = 1 / std::sqrt(static_cast<double>(bodies.motion[body].inverse_mass));
     const DirectLever numbers = scaled_lever(scale, linear, 1, angular);
     std::copy(numbers.begin(), numbers.end(), numbers_of(i, island, u));
@@ -534,6 +540,7 @@ void sweep_rows(DirectIsland& island) {
 }  // namespace
 
 std::uint32_t node_of(const std::vector<std::uint32_t>& bodies, std::uint32_t body) {
+  HOOKE_ASSERT(std::binary_search(bodies.begin(), bodies.end(), body));
   return static_cast<std::uint32_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
 }
 
@@ -543,6 +550,7 @@ void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, Dir
   for (DirectContact& c : island.contacts) {
     const ContactBlock& block = contacts.blocks[c.block];
     const std::uint32_t a = block.record_a[c.lane] / 16;
+    HOOKE_ASSERT(block.direct && c.lane < block.count && c.points <= block.point_count);
     const std::uint32_t b = block.record_b[c.lane] / 16;
     const auto root = [](Real w) { return std::sqrt(static_cast<double>(w)); };
     const DirectRowMaker make = {block, c.lane, root(block.w_a[c.lane]),

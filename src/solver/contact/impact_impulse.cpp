@@ -1,5 +1,6 @@
 #include "solver/contact/impact_impulse.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/body/body_motion.h"
 #include "solver/contact/contact_tuning.h"
@@ -206,6 +207,7 @@ void add_friction_row(const Manifold& m, std::size_t lane, Impact& impact) {
   }
   friction_row.mass = mass_across(friction_row.at, friction_row.n, impact);
   friction_row.before = impact.sliding_before(friction_row);
+  HOOKE_ASSERT(impact.friction_row_count < kMostPoints);
   impact.friction_row_memory[impact.friction_row_count++] = friction_row;
 }
 
@@ -278,6 +280,7 @@ void set_after_impact(const ImpactBody& after, std::uint32_t row, Real time, Rea
 bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifolds, Real time,
                   const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<const ContactLane> lanes = pair.lanes;
+  HOOKE_ASSERT(!lanes.empty());
   const Manifold& first = manifolds[lanes.front().manifold];
   Impact impact = {.a = body_at_impact(bodies, first.body_a, time),
                    .b = body_at_impact(bodies, first.body_b, time),
@@ -291,6 +294,7 @@ bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifold
   if (pair.b_is_backed && a_gives_way) impact.b.backed = n;
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     const Manifold& m = manifolds[lanes[i].manifold];
+    HOOKE_ASSERT(m.body_a == first.body_a && m.body_b == first.body_b);
     const Vec3 pull =
         free_acceleration(bodies, m.body_b, step.gravity) - free_acceleration(bodies, m.body_a, step.gravity);
     const Real lag = dot(m.normal, pull) * (time - Real(0.5) * step.h);

@@ -1,5 +1,6 @@
 #include "solver/contact/impacts.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/contact/contact_tuning.h"
 #include "solver/contact/impact_impulse.h"
@@ -66,6 +67,7 @@ bool find_lanes(const BodyContacts& contacts, const std::vector<Manifold>& manif
     for (int lane = 0; lane < block.count; ++lane) {
       const auto lane_index = static_cast<std::int32_t>(i * kContactLanes) + lane;
       const std::uint32_t row = contacts.manifold_of[static_cast<std::size_t>(lane_index)];
+      HOOKE_ASSERT(row < manifolds.size() && lane_of[row] == -1);  // a manifold has one lane
       if (manifolds[row].restitution > Real(0)) lane_of[row] = lane_index;
     }
   }
@@ -73,6 +75,7 @@ bool find_lanes(const BodyContacts& contacts, const std::vector<Manifold>& manif
 }
 
 void list_pairs(const state::Pairs& pairs, const std::vector<std::uint8_t>& hooked, Impacts& impacts) {
+  HOOKE_ASSERT(impacts.lane_of.size() == pairs.manifold.size());
   for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
     const state::Pair& pair = pairs.pair[row];
     const auto first = static_cast<std::uint32_t>(impacts.lanes.size());
@@ -96,6 +99,7 @@ void list_pairs(const state::Pairs& pairs, const std::vector<std::uint8_t>& hook
 
 void find_backed_bodies(const std::vector<Manifold>& manifolds, const Bodies& bodies, Impacts& impacts) {
   for (ImpactPair& pair : impacts.pairs) {
+    HOOKE_ASSERT(pair.lane_count > 0 && pair.first_lane + pair.lane_count <= impacts.lanes.size());
     const Vec3 n = manifolds[impacts.lanes[pair.first_lane].manifold].normal;
     pair.a_is_backed = is_backed(pair.a, -n, kMostBackingBodies, bodies, impacts);
     pair.b_is_backed = is_backed(pair.b, n, kMostBackingBodies, bodies, impacts);
@@ -126,6 +130,7 @@ void index_bodies(std::size_t body_count, Impacts& impacts) {
     ++impacts.pairs_begin[pair.b];
   }
   std::partial_sum(impacts.pairs_begin.begin(), impacts.pairs_begin.end(), impacts.pairs_begin.begin());
+  HOOKE_ASSERT(impacts.pairs_begin.back() == 2 * impacts.pairs.size());
   impacts.pairs_of_body.resize(2 * impacts.pairs.size());
   for (auto i = static_cast<std::uint32_t>(impacts.pairs.size()); i-- > 0;) {
     impacts.pairs_of_body[--impacts.pairs_begin[impacts.pairs[i].a]] = i;
@@ -204,6 +209,7 @@ Real time_of(const ImpactPair& pair, const ContactStep& step, const BodyContacts
 }
 
 void await(std::uint32_t index, Real time, Impacts& impacts) {
+  HOOKE_ASSERT(index < impacts.pairs.size());
   impacts.pairs[index].time = time;
   if (time == Impacts::kNever) return;
   impacts.queue.push_back({index, time});
@@ -213,6 +219,7 @@ void await(std::uint32_t index, Real time, Impacts& impacts) {
 /// Predicts what else the bodies of an impact will meet.
 void predict_next(std::uint32_t body, const ContactStep& step, const BodyContacts& contacts,
                   const Bodies& bodies, Impacts& impacts) {
+  HOOKE_ASSERT(impacts.pairs_begin[body + 1] <= impacts.pairs_of_body.size());
   for (std::uint32_t k = impacts.pairs_begin[body]; k < impacts.pairs_begin[body + 1]; ++k) {
     const std::uint32_t index = impacts.pairs_of_body[k];
     impacts.pairs[index].refreshes = 0;
@@ -291,6 +298,7 @@ void list_impact_pairs(const state::Pairs& pairs, const Bodies& bodies,
 }
 
 bool predict_impacts(const ContactStep& step, BodyContacts& contacts, Bodies& bodies, Impacts& impacts) {
+  HOOKE_ASSERT(impacts.pairs.empty() || impacts.since.size() == bodies.motion.size());
   impacts.queue.clear();
   for (const std::uint32_t body : impacts.impacted) impacts.since[body] = Real(0);
   impacts.impacted.clear();
@@ -377,6 +385,7 @@ void propagate_impacts(Bodies& bodies, Impacts& impacts) {
   for (const HookedImpact& impacted : impacts.hooked_impacts) {
     const MotionRecord& before = impacted.before.record;
     MotionRecord& m = bodies.motion[impacted.body];
+    HOOKE_ASSERT(impacted.count > 0);
     Quat& rotation = bodies.rotation[impacted.body];
     const Real time = impacted.time_sum / static_cast<Real>(impacted.count);
     if (state::is_gyroscopic_now(bodies, impacted.body)) {

@@ -1,5 +1,6 @@
 #include "solver/coupled/coupled_articulations.h"
 
+#include "base/assert.h"
 #include "solver/soft/element_contact_solve.h"
 
 #include <algorithm>
@@ -49,6 +50,7 @@ void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_
     if (std::none_of(art.bodies.begin(), art.bodies.end(), is_marked)) continue;
     for (const Articulation::Joint& joint : art.joints) {
       if (joint.is_weld()) continue;
+      HOOKE_ASSERT(joint.hook < t.hooks.size() && !t.hooks[joint.hook].holds_point());
       Hook& hook = t.hooks[joint.hook];
       // A hook between bodies that are both asleep or driven moves nothing and belongs to no coupled group.
       if (gives_way(t.bodies, hook.a.body) || gives_way(t.bodies, hook.b.body))

@@ -1,6 +1,7 @@
 /// Element contacts, rope contacts and load-bearing contacts, as rows of a coupled group. Which rows exist:
 /// coupled_groups_build.cpp.
 
+#include "base/assert.h"
 #include "geometry/closest.h"
 #include "solver/coupled/coupled_group_solution.h"
 #include "solver/coupled/coupled_tuning.h"
@@ -57,6 +58,7 @@ void CoupledGroupSolution::load_coupled_contacts() {
       if (b_.incidents[i].block < first) continue;
       const std::size_t index = b_.incidents[i].block - first;
       CoupledContact& coupled = b_.contact_rows[index];
+      HOOKE_ASSERT(index < b_.first_load_bearing() && coupled.count < coupled.node.size());
       const Real weight = index < b_.element_contacts.size()
                               ? t_.element_contacts[b_.element_contacts[index]].weight[coupled.count]
                               : rope_contact(index).weight[coupled.count];
@@ -72,6 +74,7 @@ void CoupledGroupSolution::load_coupled_contacts() {
 void CoupledGroupSolution::load_element_contact(std::size_t index) {
   const ElementContact& contact = t_.element_contacts[b_.element_contacts[index]];
   CoupledContact& coupled = b_.contact_rows[index];
+  HOOKE_ASSERT(coupled.count == contact.count);  // each point is a node of the group
   const bool given = b_.ends[b_.hooks.size() + index][0] < 0;
   coupled.firm = t_.objects[contact.object].kind == PointRef::Kind::kRope;
   coupled.push_out = coupled.firm ? kElementPushOutSpeed : 0;
@@ -92,6 +95,7 @@ const state::RopeContact& CoupledGroupSolution::rope_contact(std::size_t index) 
 void CoupledGroupSolution::load_rope_contact(std::size_t index) {
   const state::RopeContact& contact = rope_contact(index);
   CoupledContact& coupled = b_.contact_rows[index];
+  HOOKE_ASSERT(coupled.count == contact.particle.size());
   coupled.firm = true;
   coupled.push_out = kElementPushOutSpeed;
   coupled.near = contact.normal != Vec3{};
@@ -107,6 +111,7 @@ void CoupledGroupSolution::load_body_contact(std::size_t index) {
   const state::LoadBearingContact& contact =
       t_.pairs.load_bearing[b_.load_bearing[index - b_.first_load_bearing()]];
   const state::Manifold& m = t_.pairs.manifold[contact.manifold];
+  HOOKE_ASSERT(m.is_load_bearing() && contact.point < state::Manifold::kMaxPoints && contact.load > Real(0));
   const state::ContactPoint& point = m.point[static_cast<std::size_t>(contact.point)];
   CoupledContact& coupled = b_.contact_rows[index];
   coupled.firm = true;
@@ -218,6 +223,7 @@ void CoupledGroupSolution::note_rope_in_contact(std::uint32_t node) {
   std::size_t rope_system = 0;
   std::uint32_t end = 0;
   while ((end += b_.rope_node_counts[rope_system]) <= node) ++rope_system;
+  HOOKE_ASSERT(rope_system < b_.settings.size());
   b_.settings[rope_system].compliance = kComplianceInContact;
   b_.settings[rope_system].turning = {};
 }
@@ -226,6 +232,7 @@ void CoupledGroupSolution::note_rope_in_contact(std::uint32_t node) {
 void CoupledGroupSolution::set_coupled_rows(std::size_t index) {
   const CoupledContact& coupled = b_.contact_rows[index];
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
+  HOOKE_ASSERT(first + CoupledContact::kRows <= b_.bound.size());
   b_.bound[first] = coupled.active ? 0 : 1;
   b_.lambda[first] = 0;
   const bool held = coupled.active && coupled.friction > 0 && (!coupled.slides || coupled.drag > 0);

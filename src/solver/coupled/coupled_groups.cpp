@@ -3,6 +3,7 @@
 
 #include "solver/coupled/coupled_groups.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/coupled/coupled_group_solution.h"
 #include "solver/coupled/coupled_tuning.h"
@@ -36,9 +37,11 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
     b_.settings.push_back(first_setting(first, first_segment, first_contact_row, b_.ropes));
     b_.rope_node_counts.push_back(rope_systems[c].node_count);
   }
+  HOOKE_ASSERT(b_.moving.size() == b_.bodies.size());
   load_points();
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const JointBody body = joint_body_now(t_.bodies, b_.bodies[i]);
+    HOOKE_ASSERT(body.inverse_mass > 0);
     b_.moving[i] = {.body = body,
                     .stiffness = {},
                     .excess = {},
@@ -95,6 +98,7 @@ void CoupledGroupSolution::load_hooks() {
     const RowEnd b = {end_of(1), b_.ends[i][1] < 0 && !hook.b.is_point()};
     if (hook.kind == HookKind::kRopeSlide) a.body.rotation = slide_rotation(t_, hook);
     const int count = make_rows(hook, a, b, h_, rows);
+    HOOKE_ASSERT(b_.first_row[i] + static_cast<std::uint32_t>(count) == b_.first_row[i + 1]);
     for (int k = 0; k < count; ++k) {
       const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
       b_.rows[row] = rows[k];
@@ -152,6 +156,7 @@ void CoupledGroupSolution::read_solution() {
 
 /// Computes u = v* + W (B^T l + R V); impulses of rows at bounds are in v* already.
 void CoupledGroupSolution::move_nodes() {
+  HOOKE_ASSERT(b_.first_incident.size() == b_.ropes.nodes.size() + 1);
   for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.body < 0) continue;
     const CoupledBody& m = b_.moving[contact_row.body];
@@ -256,6 +261,7 @@ void CoupledGroupSolution::linearize_ropes(std::vector<RopeSystem>& rope_systems
       linearize(b_.settings[k], h_, b_.ropes.nodes, b_.ropes.segments[segment++]);
     ++rope_system.solves;
   }
+  HOOKE_ASSERT(segment == b_.ropes.segments.size() && bend == b_.ropes.bends.size());
 }
 
 double CoupledGroupSolution::check_ropes(bool& limits_changed) {
@@ -268,6 +274,7 @@ double CoupledGroupSolution::check_ropes(bool& limits_changed) {
     worst = std::max(worst, error);
     rest = rest.subspan(count);
   }
+  HOOKE_ASSERT(rest.empty());
   return worst;
 }
 
@@ -328,6 +335,7 @@ bool CoupledGroupSolution::gives_way(int round) {
   if (b_.breakable.empty() || !is_sound()) return false;
   return give_way(h_, b_.breakable, round, t_.hooks, [&](std::uint32_t hook) -> HookLoad {
     const auto i = std::lower_bound(b_.hooks.begin(), b_.hooks.end(), hook) - b_.hooks.begin();
+    HOOKE_ASSERT(i < std::ssize(b_.hooks) && b_.hooks[static_cast<std::size_t>(i)] == hook);
     DVec3 linear;
     DVec3 angular;
     for (std::uint32_t row = b_.first_row[i]; row < b_.first_row[i + 1]; ++row) {
@@ -351,6 +359,7 @@ void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
     if (b_.ropes.nodes[node].w > 0) t_.particles.velocity[p].v = vector_cast<Real>(b_.ropes.nodes[node].u);
     ++node;
   }
+  HOOKE_ASSERT(node == b_.ropes.nodes.size() && segment == b_.ropes.segments.size());
   store_contact_rows(h_, b_.ropes.contact_rows, t_.contacts);
   store_coupled_contacts();
   push_out_points();

@@ -104,6 +104,8 @@ class Membership {
     return sets_.root(end);
   }
   std::uint32_t of_load_bearing(const state::LoadBearingContact& load_bearing) {
+    HOOKE_ASSERT(gives_way(tables_.bodies, load_bearing.body_a) ||
+                 gives_way(tables_.bodies, load_bearing.body_b));
     return sets_.root(gives_way(tables_.bodies, load_bearing.body_a) ? load_bearing.body_a
                                                                      : load_bearing.body_b);
   }
@@ -274,6 +276,7 @@ class MemberSort {
     for (std::uint32_t o = 0; o < tables_.objects.size(); ++o) {
       if (tables_.objects[o].kind != PointRef::Kind::kRope) continue;
       const std::uint32_t set_root = membership_.of_particle(o, tables_.objects[o].particles.first);
+      HOOKE_ASSERT(rope_system < rope_systems.size());  // one for each rope
       const std::uint32_t group = group_of()[set_root];
       rope_systems[rope_system].in_coupled_group = group != kNone;
       if (group != kNone) groups_.groups[group].rope_systems.push_back(rope_system);
@@ -340,6 +343,7 @@ struct Layout {
         return first_node[k] + particle - rope_system.first_particle;
     }
     const auto at = std::lower_bound(group.points.begin(), group.points.end(), particle);
+    HOOKE_ASSERT(at != group.points.end() && *at == particle);
     return first_node.back() + static_cast<std::uint32_t>(at - group.points.begin());
   }
 
@@ -496,6 +500,7 @@ bool try_pattern(const Tables& t, double budget, Layout& layout, CoupledGroupScr
     sizes.push_back(CoupledContact::kRows);
     group.first_row.push_back(group.first_row.back() + CoupledContact::kRows);
   }
+  HOOKE_ASSERT(sizes.size() == layout.vector_count + group.hooks.size() + group.contact_count());
   scratch.signs.assign(sizes.size(), 1);
   sizes.resize(sizes.size() + group.bodies.size(), 6);
   scratch.signs.resize(sizes.size(), -1);
@@ -528,6 +533,7 @@ void make_pattern(const Tables& t, const std::vector<RopeSystem>& rope_systems, 
   group.bound.resize(group.first_row.back());
   group.lambda.resize(group.first_row.back());
   group.moving.resize(group.bodies.size());
+  HOOKE_ASSERT(group.ends.empty());
   for (const std::uint32_t hook : group.hooks)
     group.ends.push_back({group.body_of(t.hooks[hook].a.body), group.body_of(t.hooks[hook].b.body)});
   for (const std::uint32_t row : group.element_contacts)
@@ -541,6 +547,7 @@ void make_pattern(const Tables& t, const std::vector<RopeSystem>& rope_systems, 
 
 /// Lists the tethers of a group's points. `by_particle` has all tethers in order of their particles.
 void list_tethers(const Tables& t, const std::vector<std::uint32_t>& by_particle, CoupledGroup& group) {
+  HOOKE_ASSERT(std::is_sorted(group.points.begin(), group.points.end()));
   auto at = by_particle.begin();
   for (const std::uint32_t p : group.points) {
     group.first_tether.push_back(static_cast<std::uint32_t>(group.tethers.size()));
@@ -573,6 +580,7 @@ void set_slide_weights(const Tables& t, std::vector<int>& seen, CoupledGroup& gr
   seen.assign(group.hooks.size(), 0);
   for (CoupledGroup::Incident& at : group.incidents) {
     if (!slides(at)) continue;
+    HOOKE_ASSERT(seen[at.block - vectors] < 2);  // points of a segment
     const std::uint32_t hook = at.block - vectors;
     at.weight = -static_cast<double>(t.hooks[group.hooks[hook]].a.weight[seen[hook]++]);
   }

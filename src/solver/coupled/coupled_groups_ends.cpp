@@ -1,5 +1,6 @@
 /// Ends of hooks at points: where they are, and where along a rope they slide.
 
+#include "base/assert.h"
 #include "solver/coupled/coupled_groups.h"
 #include "solver/coupled/coupled_tuning.h"
 
@@ -39,6 +40,7 @@ struct Line {
 
 /// The segment whose line has x beside it. The search goes from segment `i` toward x.
 std::uint32_t find_segment(const Line& line, std::uint32_t i, DVec3 x) {
+  HOOKE_ASSERT(i < line.rope.segments.count);
   const std::uint32_t last = line.rope.segments.count - 1;
   const bool onward = line.share(i, x) > 1;
   if (onward) {
@@ -67,6 +69,7 @@ HookLimits limits_along(const Tables& t, const state::Deformable& rope, std::uin
 
 void slide(const Tables& t, Hook& hook) {
   const state::Deformable& rope = t.objects[hook.a.object];
+  HOOKE_ASSERT(rope.kind == PointRef::Kind::kRope && hook.a.particle[0] >= rope.particles.first);
   const Line line = {t, rope};
   const JointBody b = joint_end(t, hook.b);
   const DVec3 x = b.center + rotate(b.rotation, hook.b.anchor) - rope.origin;
@@ -122,6 +125,7 @@ void apply_mass_shares(CoupledGroups& groups, Tables& t, std::vector<HookedPoint
 
 void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles) {
   for (auto point = points.rbegin(); point != points.rend(); ++point) {
+    HOOKE_ASSERT(point->particle < particles.velocity.size());
     state::VelocityRecord& record = particles.velocity[point->particle];
     record.v = point->velocity + (point->inverse_mass / record.inverse_mass) * (record.v - point->velocity);
     record.inverse_mass = point->inverse_mass;
@@ -138,6 +142,7 @@ Quaternion<double> slide_rotation(const Tables& t, const Hook& hook) {
   const state::Deformable& rope = t.objects[hook.a.object];
   const Line line = {t, rope};
   const std::uint32_t node = hook.a.particle[0] - rope.particles.first;
+  HOOKE_ASSERT(node + 1 < rope.particles.count && hook.a.particle_count == 2);
   const DVec3 x = normalize(static_cast<double>(hook.a.weight[0]) * line.tangent(node) +
                             static_cast<double>(hook.a.weight[1]) * line.tangent(node + 1));
   // Halfway between x and the x axis; for opposite directions, half a turn about y.

@@ -1,5 +1,6 @@
 /// The matrix of a coupled group and its right side. Equations: solver/coupled/coupled_groups.h.
 
+#include "base/assert.h"
 #include "solver/coupled/coupled_group_solution.h"
 #include "solver/coupled/coupled_tuning.h"
 #include "solver/joint_rows/geometric_stiffness.h"
@@ -46,6 +47,8 @@ void CoupledGroupSolution::assemble_pair(const Incident& a, const Incident& b, s
                                          const RopeNode& node) {
   const BlockPattern::Block& at = b_.pattern.block[block];
   const bool a_is_row = b_.slot[a.block] == at.row;
+  HOOKE_ASSERT(b_.slot[a_is_row ? b.block : a.block] == at.column &&
+               (a_is_row || b_.slot[b.block] == at.row));
   const Incident& row = a_is_row ? a : b;
   const Incident& column = a_is_row ? b : a;
   double* numbers = b_.numbers.data() + at.offset;
@@ -116,6 +119,7 @@ void CoupledGroupSolution::assemble_bodies() {
 void CoupledGroupSolution::assemble_point(int body, std::span<const RopeContactRow> at_node) {
   Symmetric3<double> stiffness;
   DVec3 lever;  // the same of all: to the particle
+  HOOKE_ASSERT(!at_node.empty() && body >= 0 && body < static_cast<int>(b_.moving.size()));
   for (const RopeContactRow& contact_row : at_node) {
     if (!contact_row.active || contact_row.body != body) continue;
     stiffness = stiffness + contact_stiffness(contact_row);
@@ -138,6 +142,7 @@ void CoupledGroupSolution::assemble_contact_row(const RopeContactRow& contact_ro
                                                 std::span<const RopeContactRow> at_node) {
   const RopeNode& node = b_.ropes.nodes[contact_row.node];
   const Symmetric3<double> stiffness = contact_stiffness(contact_row);
+  HOOKE_ASSERT(contact_row.body >= 0 && contact_row.active);
   const JointBody& body = b_.moving[contact_row.body].body;
   const std::uint32_t block = body_block(contact_row.body);
   for (int m = 0; m < 6; ++m) {

@@ -1,5 +1,6 @@
 #include "solver/coupled/direct_islands.h"
 
+#include "base/assert.h"
 #include "base/sort_unique.h"
 #include "solver/coupled/coupled_tuning.h"
 
@@ -99,6 +100,7 @@ void evaluate_contacts(const ContactStep& step, const BodyContacts& contacts, Is
 /// contacts of a body of mass M sink by (M h g / bearing) g.
 void add_own_weight(Real inverse_mass, const ContactStep& step, IslandDemand& own) {
   if (!(own.support_stiffness > Real(0))) return;
+  HOOKE_ASSERT(inverse_mass > Real(0));
   const Real sag = step.h * length_squared(step.gravity) / (inverse_mass * own.support_stiffness);
   own.sag = std::max(own.sag, sag / own.thinnest);
   own.buckling = std::max(own.buckling, sag / (own.thinnest * own.thinnest * own.thinnest));
@@ -187,6 +189,7 @@ void list_edges(const std::vector<Manifold>& manifolds, IslandMembers members, c
     if (!joins(m, members, bodies)) continue;
     const std::uint32_t island = direct.island_of[m.body_a];
     if (island == kNoIsland) continue;
+    HOOKE_ASSERT(island < direct.found.size() && direct.island_of[m.body_b] == island);
     const std::uint32_t a = node_of(direct.found[island].bodies, m.body_a);
     const std::uint32_t b = node_of(direct.found[island].bodies, m.body_b);
     direct.found[island].edges.push_back({std::min(a, b), std::max(a, b)});
@@ -199,6 +202,7 @@ void list_edges(const std::vector<Manifold>& manifolds, IslandMembers members, c
 
 /// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island.
 bool make_pattern(const DirectGraph& graph, DirectIslands& direct, DirectIsland& island) {
+  HOOKE_ASSERT(std::is_sorted(graph.bodies.begin(), graph.bodies.end()));
   direct.matrix.reset(graph.bodies.size());
   for (const auto& [a, b] : graph.edges) direct.matrix.join(a, b);
   direct.sizes.assign(graph.bodies.size(), 6);
@@ -254,6 +258,7 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
   std::size_t too_large = 0;
   for (std::size_t i = 0; i < found; ++i) {
     const DirectGraph& graph = direct.found[i];
+    HOOKE_ASSERT(!graph.bodies.empty());
     if (graph.bodies.size() > kMaxDirectBodies) ++too_large;
     DirectIsland& island = direct.islands[i];
     const bool fits = graph.bodies.size() <= kMaxDirectBodies &&
@@ -287,6 +292,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
                          DirectIslands& direct) {
   direct.count = 0;
   direct.refused = 0;
+  HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
   const bool any = std::any_of(awake.begin(), awake.end(),
                                [&](std::uint32_t body) { return bodies.direct_state[body] >= kDirect; });
   if (!any) return;
@@ -312,6 +318,7 @@ void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& cont
     const ContactBlock& block = contacts.blocks[i];
     if (!block.direct) continue;
     for (int lane = 0; lane < block.count; ++lane) {
+      HOOKE_ASSERT(direct.island_of[block.record_a[lane] / 16] < static_cast<std::uint32_t>(direct.count));
       DirectIsland& island = direct.islands[direct.island_of[block.record_a[lane] / 16]];
       int points = 0;
       while (points < block.point_count && block.point[points].mass[lane] > Real(0)) ++points;

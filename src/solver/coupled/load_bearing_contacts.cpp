@@ -1,5 +1,6 @@
 #include "solver/coupled/load_bearing_contacts.h"
 
+#include "base/assert.h"
 #include "base/sort_unique.h"
 #include "solver/contact/contact_colors.h"
 #include "solver/coupled/coupled_tuning.h"
@@ -154,6 +155,7 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
                std::vector<GroundLoad>& ground_load) {
   load.assign(bodies.motion.size(), Real(0));
   const auto add = [&](std::uint32_t body, std::uint32_t other) {
+    HOOKE_ASSERT(bodies.motion[other].inverse_mass > Real(0));  // both of a contact that was chosen
     load[body] = std::max(load[body], Real(1) / bodies.motion[other].inverse_mass);
   };
   for (const Manifold& m : pairs.manifold) {
@@ -327,6 +329,8 @@ bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop
 void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const state::Pairs& pairs,
                   LoadBearingScratch& scratch) {
   const ContactStep& step = inputs.step;
+  HOOKE_ASSERT(inputs.hooked.size() == bodies.motion.size());
+  HOOKE_ASSERT(inputs.joints.in_ragdoll.size() == bodies.motion.size());
   find_props(pairs, normalize(step.gravity), scratch.props);
   scratch.carried.resize(bodies.motion.size());
   scratch.weights.assign(bodies.motion.size(), kNeverStands);
@@ -344,6 +348,7 @@ void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const s
 
 /// A body that stands holds others by its contacts, whatever its hooks are.
 void let_stand(std::span<const Footing> footing, std::vector<SupportRole>& support_role) {
+  HOOKE_ASSERT(footing.size() == support_role.size());
   for (std::size_t body = 0; body < support_role.size(); ++body) {
     if (footing[body] == Footing::kStands) support_role[body] = SupportRole::kNone;
   }
@@ -377,6 +382,7 @@ void list_load_bearing_contacts(const Bodies& bodies, const std::vector<GroundLo
     if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].is_load_bearing()) continue;
     const Manifold& m = pairs.manifold[manifold];
     const Real load = lifted_mass(m, bodies, ground_load);
+    HOOKE_ASSERT(load > Real(0));
     for (std::int32_t k = 0; k < Manifold::kMaxPoints; ++k) {
       pairs.load_bearing.push_back({.pair = row,
                                     .manifold = manifold,
@@ -421,6 +427,7 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
 
 void update_load_bearing_contacts(Real impulse_to_force, const Bodies& bodies, state::Pairs& pairs) {
   for (LoadBearingContact& contact : pairs.load_bearing) {
+    HOOKE_ASSERT(contact.manifold < pairs.manifold.size() && contact.point < Manifold::kMaxPoints);
     const Manifold& m = pairs.manifold[contact.manifold];
     contact.separation = std::numeric_limits<Real>::infinity();
     contact.normal_force = Real(0);
@@ -438,6 +445,7 @@ void update_load_bearing_contacts(Real impulse_to_force, const Bodies& bodies, s
 void store_load_bearing_contacts(Real h, state::Pairs& pairs) {
   for (const LoadBearingContact& contact : pairs.load_bearing) {
     Manifold& m = pairs.manifold[contact.manifold];
+    HOOKE_ASSERT(m.is_load_bearing());
     if (contact.point == 0) {
       m.friction_impulse = m.rolling_impulse = {};
       m.twist_impulse = m.largest_impulse = Real(0);

@@ -1,5 +1,7 @@
 #include "solver/joint/approximate_trees.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,6 +50,7 @@ bool held(const Hook& hook, const wide::TreeForm& form, const wide::TreeJoint& j
 template <class Holds>
 bool all_joints(const Articulation& tree, const std::vector<Hook>& hooks, Holds&& holds) {
   const wide::TreeForm& form = tree.tree.form;
+  HOOKE_ASSERT(form.joints.size() == tree.joints.size());
   for (std::size_t i = 0; i < tree.joints.size(); ++i) {
     if (!holds(hooks[tree.joints[i].hook], form, form.joints[i])) return false;
   }
@@ -57,6 +60,7 @@ bool all_joints(const Articulation& tree, const std::vector<Hook>& hooks, Holds&
 }  // namespace
 
 bool is_ragdoll(const Articulation& tree, const std::vector<Hook>& hooks, const state::Bodies& bodies) {
+  HOOKE_ASSERT(!tree.has_loops());
   return tree.tree.form.joints.back().parent_moves && has_like_masses(tree, bodies) &&
          all_joints(tree, hooks, rubs);
 }

@@ -45,6 +45,7 @@ void make_weld(const Articulation::Joint& joint, Articulation& art) {
 }
 
 void load_links(const state::Bodies& bodies, Articulation& art) {
+  HOOKE_ASSERT(art.links.size() == art.bodies.size() && art.parts.size() == art.bodies.size());
   for (std::size_t i = 0; i < art.bodies.size(); ++i) {
     Link& link = art.links[i];
     link.body = joint_body_now(bodies, art.bodies[i]);
@@ -192,6 +193,7 @@ bool lines_turn_farther(double angle, double h, const std::vector<Hook>& hooks, 
 void store_velocities(const Articulation& art, state::Bodies& bodies) {
   for (std::size_t i = 0; i < art.links.size();) {
     const auto parts = static_cast<std::size_t>(art.parts[i]);
+    HOOKE_ASSERT(parts > 0 && art.bodies[i + parts - 1] == art.bodies[i]);
     JointBody before = art.links[i].body;
     if (before.inverse_mass > 0) {
       DVec3 v;
@@ -220,6 +222,7 @@ void reset_velocities(Articulation& art) {
 }
 
 void clamp_impulses(Articulation& art) {
+  HOOKE_ASSERT(art.lambda.size() == art.rows.size());
   for (std::size_t i = 0; i < art.rows.size(); ++i)
     art.lambda[i] = std::clamp(art.lambda[i], art.rows[i].low, art.rows[i].high);
   reset_velocities(art);

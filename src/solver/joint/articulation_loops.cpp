@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "solver/joint/articulation_links.h"
 #include "solver/joint/joint_energy.h"
 #include "solver/joint/joint_tuning.h"
@@ -49,6 +50,7 @@ void list_free_rows(Articulation& art) {
       }
     }
   }
+  HOOKE_ASSERT(art.blocks.columns.size() == 9 * art.blocks.free.size());
   resize_blocks(art.blocks.free_sizes, art.blocks.pattern);
 }
 
@@ -58,6 +60,8 @@ void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
   const Articulation::Joint& left = art.joints[block.row];
   const Articulation::Joint& right = art.joints[block.column];
   const Link& link = art.links[coupling.link];
+  HOOKE_ASSERT(coupling.link == left.a || coupling.link == left.b);
+  HOOKE_ASSERT(coupling.link == right.a || coupling.link == right.b);
   const double sign = sign_at(left, coupling.link) * sign_at(right, coupling.link);
   const int* rows = art.blocks.free.data() + art.blocks.pattern.first[block.row];
   const auto count = static_cast<std::size_t>(art.blocks.free_sizes[block.column]);
@@ -113,6 +117,7 @@ void solve_free_rows(Articulation& art) {
       if (art.bound[i] == 0) art.blocks.right_side.push_back(shortfall(art, joint, art.rows[i]));
     }
   }
+  HOOKE_ASSERT(art.blocks.right_side.size() == art.blocks.free.size());
   factor(art.blocks.pattern, art.blocks.factors, art.blocks.factor_scratch);
   solve(art.blocks.pattern, art.blocks.factors, art.blocks.right_side);
   for (std::size_t k = 0; k < art.blocks.free.size(); ++k)
@@ -187,6 +192,7 @@ JointWork work_of(double h, const Articulation& art, const Articulation::Joint& 
 }  // namespace
 
 void solve_loops(double h, Articulation& art, JointTables tables) {
+  HOOKE_ASSERT(h > 0 && art.has_loops());
   begin_articulation(h, tables, art);
   for (int i = 0; i < kMostArticulationSolves; ++i) {
     solve_with_bounds(art);

@@ -2,6 +2,7 @@
 /// Those that need another one move to lanes of their own, so that they keep no other waiting. Read
 /// Group::solve first.
 
+#include "base/assert.h"
 #include "solver/joint/articulations.h"
 #include "solver/joint/joint_energy.h"
 #include "solver/joint/joint_tuning.h"
@@ -61,6 +62,8 @@ class Group {
   void solve(double h, std::span<Articulation* const> trees, JointTables tables) {
     h_ = h;
     form_ = &trees.front()->tree.form;
+    HOOKE_ASSERT(std::all_of(trees.begin(), trees.end(),
+                             [&](const Articulation* tree) { return tree->tree.form == *form_; }));
     fresh_.resize(*form_);
     late_.resize(*form_);
     late_.slots.fill({});
@@ -168,6 +171,7 @@ class Group {
       solve_block(tables, late_);
       slot = std::find_if(late_.slots.begin(), late_.slots.end(), is_free);
     }
+    HOOKE_ASSERT(fresh_.lanes.rows.size() == late_.lanes.rows.size());
     *slot = fresh_.slots[lane];
     const int to = static_cast<int>(slot - late_.slots.begin());
     for (std::size_t i = 0; i < late_.lanes.links.size(); ++i) {
@@ -290,6 +294,7 @@ class Group {
   }
 
   void store(const Articulation& art, const wide::TreeLanes<Kind>& from, int lane, JointTables tables) const {
+    HOOKE_ASSERT(art.joints.size() == form_->joints.size() && art.tree.rows.size() == form_->rows.size());
     const bool far = !Kind::kApproximate && turns_far(from, lane);
     const BodySums before = far ? sum_bodies(art, tables.bodies) : BodySums{};
     for (std::size_t i = 0; i < art.joints.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "solver/joint/articulations.h"
 
+#include "base/assert.h"
 #include "solver/joint/articulation_links.h"
 #include "solver/joint/joint_tuning.h"
 
@@ -86,7 +87,9 @@ void make_frame(std::span<const std::uint32_t> hook_rows, const std::vector<Hook
   taken.assign(frame.bodies.size(), 0);
   const auto next_link = [&](std::uint32_t body) {
     const std::uint32_t first = link_of(frame.bodies, body);
+    HOOKE_ASSERT(first < frame.bodies.size() && frame.bodies[first] == body);
     if (frame.parts[first] == 1) return first;
+    HOOKE_ASSERT(taken[first] / kHooksOfLink < static_cast<int>(frame.parts[first]));
     return first + static_cast<std::uint32_t>(taken[first]++ / kHooksOfLink);
   };
   for (const std::uint32_t i : hook_rows) {
@@ -208,6 +211,7 @@ void list_branches(const Frame& frame, const JointsOfLinks& joints_of, std::uint
     }
   }
   branches.erase(branches.begin());
+  HOOKE_ASSERT(branches.size() == frame.joints.size());  // each joint once: there are no loops
 }
 
 /// Lists the rows of a joint for the lanes: a spring and the motor beside it are one row.
@@ -255,6 +259,7 @@ bool make_tree(const std::vector<Hook>& hooks, const state::Bodies& bodies, doub
     const auto first_of_form = static_cast<int>(form.rows.size());
     list_tree_rows(hook, art.tree);
     const int count = static_cast<int>(form.rows.size()) - first_of_form;
+    HOOKE_ASSERT(place[parent] > place[branch.child] && count <= wide::kMostTreeRows);
     form.joints.push_back({.parent = static_cast<int>(place[parent]),
                            .parent_moves = is_dynamic(bodies, frame.bodies[parent]),
                            .child_is_b = joint.b == place[branch.child],
@@ -292,6 +297,7 @@ bool make_articulation(std::span<const std::uint32_t> hook_rows, const std::vect
                        Articulation& art) {
   Lists& lists = scratch.lists();
   clear(art);
+  HOOKE_ASSERT(!hook_rows.empty());
   art.breakable = std::any_of(hook_rows.begin(), hook_rows.end(),
                               [&](std::uint32_t row) { return hooks[row].can_break(); });
   make_frame(hook_rows, hooks, bodies, std::numeric_limits<int>::max(), lists.frame);

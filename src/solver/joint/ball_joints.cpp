@@ -1,5 +1,6 @@
 #include "solver/joint/ball_joints.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/body/body_motion.h"
 #include "solver/joint/ball_joint_kernels.h"
@@ -74,6 +75,7 @@ DVec3 arm_of(const HookPlace& end, const Bodies& bodies) {
 
 void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int lane) {
   const BallEnds ends = ends_of(hook, bodies);
+  HOOKE_ASSERT(is_dynamic(bodies, ends.a.body) && ends.b.body != HookPlace::kWorld);
   const DVec3 arm_a = arm_of(ends.a, bodies);
   const DVec3 arm_b = arm_of(ends.b, bodies);
   const DVec3 gap = (bodies.center[ends.b.body] - bodies.center[ends.a.body]) + (arm_b - arm_a);
@@ -99,6 +101,7 @@ void fill_lane(Real h, Hook& hook, const Bodies& bodies, BallBlock& block, int l
 /// Fills the block with the hooks of `rows`, which begin at lane `first` of the plan.
 void fill_block(Real h, std::span<const std::uint32_t> rows, std::size_t first, std::vector<Hook>& hooks,
                 const Bodies& bodies, BallBlock& block) {
+  HOOKE_ASSERT(!rows.empty() && rows.size() <= kLanes);
   block = {};
   block.first = first;
   block.count = static_cast<int>(rows.size());
@@ -181,6 +184,7 @@ void prepare_ball_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& 
   joints.plan.clear();
   for (int color = 0; color + 1 < static_cast<int>(joints.color_begin.size()); ++color)
     plan_color(color, hooks, bodies, joints);
+  HOOKE_ASSERT(joints.hook_of.size() + joints.resting.size() == joints.hooks.size());
   joints.blocks.resize(joints.plan.size());
   parallel::for_ranges(pool, static_cast<int>(joints.plan.size()), kFillGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {

@@ -1,5 +1,6 @@
 #include "solver/joint/hook_breaks.h"
 
+#include "base/assert.h"
 #include "solver/body/body_motion.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@ double need_of(const Hook& hook, const HookLoad& load, double h) {
 }
 
 void let_go(double h, double need, const HookLoad& load, Hook& hook) {
+  HOOKE_ASSERT(need > 1 && hook.can_break());
   hook.giving = Hook::Giving::kNothing;
   hook.compliance = {kNoHold, kNoHold};
   hook.most = {load.impulse / need, load.angular_impulse / need};
@@ -57,10 +59,12 @@ void BreakScratch::note(std::uint32_t index, const Articulation& art, const Join
   }
   group.end_body = bodies_.size();
   group.end_hook = hooks_.size();
+  HOOKE_ASSERT(rows_.size() == hooks_.size() && group.first_hook < group.end_hook);
   groups_.push_back(group);
 }
 
 void BreakScratch::put_back(const Group& group, const JointTables& tables) const {
+  HOOKE_ASSERT(group.end_body <= bodies_.size() && group.end_hook <= hooks_.size());
   for (std::size_t i = group.first_body; i < group.end_body; ++i) {
     const SavedBody& body = bodies_[i];
     tables.bodies.motion[body.row] = body.motion;

@@ -1,5 +1,7 @@
 #include "solver/joint/hook_colors.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -15,6 +17,7 @@ int choose_color(const state::Hook& hook, const state::Bodies& bodies, std::vect
   std::uint64_t mask = 0;
   for (const std::uint32_t body : {hook.a.body, hook.b.body})
     mask |= is_dynamic(bodies, body) ? used[body] : 0;
+  HOOKE_ASSERT(is_dynamic(bodies, hook.a.body) || is_dynamic(bodies, hook.b.body));
   if (~mask == 0) return next_own_color++;
   const int color = std::countr_one(mask);
   for (const std::uint32_t body : {hook.a.body, hook.b.body}) {
@@ -46,6 +49,7 @@ void color_hooks(std::span<const std::uint32_t> hook_rows, const std::vector<sta
     colors.hooks.push_back(colored[i].second);
   }
   if (!colored.empty()) colors.begin.push_back(static_cast<int>(colored.size()));
+  HOOKE_ASSERT(colors.hooks.size() == hook_rows.size());
 }
 
 }  // namespace hooke::solver

@@ -1,5 +1,6 @@
 #include "solver/joint/iterative_joints.h"
 
+#include "base/assert.h"
 #include "solver/joint/hook_breaks.h"
 #include "solver/joint_rows/soft_locks.h"
 #include "solver/linear/sweep_order.h"
@@ -101,6 +102,7 @@ void begin_joint(int i, double h, Hook& hook, state::Bodies& bodies, IterativeJo
   Ends ends = {joint_body(bodies, hook.a.body), joint_body(bodies, hook.b.body)};
   std::array<JointRow, Hook::kMaxRows> rows;
   const int count = make_joint_rows(hook, ends.a, ends.b, h, rows);
+  HOOKE_ASSERT(iterative.first_row[i] + count == iterative.first_row[i + 1]);
   std::copy_n(rows.begin(), count, iterative.rows.begin() + iterative.first_row[i]);
   JointImpulse warm;
   for (int k = 0; k < count; ++k) add(impulse_of(rows[k], static_cast<double>(hook.row_impulse[k])), warm);
@@ -125,6 +127,7 @@ HookLoad load_of(std::span<const JointRow> rows, const Hook& hook) {
 /// Removes from the impulses of a hook what is more than it can take.
 void cap_joint(std::span<const JointRow> rows, double need, Ends& ends, JointImpulse& done, Hook& hook) {
   if (!hook.broken && !(need > 1)) return;
+  HOOKE_ASSERT(rows.size() <= hook.row_impulse.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Real before = hook.row_impulse[k];
     hook.row_impulse[k] = hook.broken ? Real(0) : static_cast<Real>(static_cast<double>(before) / need);
@@ -212,6 +215,8 @@ void build_iterative_joints(std::span<const std::uint32_t> hook_rows, const std:
 }
 
 void prepare_iterative_joints(IterativeJoints& iterative) {
+  HOOKE_ASSERT(iterative.done.size() == iterative.hooks.size());
+  HOOKE_ASSERT(iterative.first_row.size() == iterative.hooks.size() + 1);
   std::fill(iterative.done.begin(), iterative.done.end(), JointImpulse{});
 }
 

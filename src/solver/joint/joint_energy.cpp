@@ -1,5 +1,6 @@
 #include "solver/joint/joint_energy.h"
 
+#include "base/assert.h"
 #include "math/symmetric.h"
 #include "solver/body/body_motion.h"
 #include "solver/joint_rows/joint_rows.h"
@@ -30,6 +31,7 @@ struct Mover {
 };
 
 Mover mover_of(std::uint32_t row, const JointBody& body, const state::Bodies& bodies) {
+  HOOKE_ASSERT(body.inverse_mass > 0);
   Mover mover = {.row = row,
                  .mass = 1 / body.inverse_mass,
                  .center = body.center,

@@ -1,5 +1,6 @@
 #include "solver/joint/joints.h"
 
+#include "base/assert.h"
 #include "solver/joint/approximate_trees.h"
 #include "solver/joint/joint_energy.h"
 
@@ -48,6 +49,7 @@ void find_groups(const std::vector<Hook>& hooks, const state::Bodies& bodies, Bu
   hook_rows.clear();
   begin.clear();
   for (const auto& [group, hook] : scratch.grouped) {
+    HOOKE_ASSERT(group <= begin.size());  // none is left out
     if (group == begin.size()) begin.push_back(hook_rows.size());
     hook_rows.push_back(hook);
   }
@@ -132,6 +134,7 @@ void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bo
   for (std::size_t group = 0; group + 1 < groups.begin.size(); ++group) {
     const auto rows =
         std::span(groups.hooks).subspan(groups.begin[group], groups.begin[group + 1] - groups.begin[group]);
+    HOOKE_ASSERT(!rows.empty());
     const auto next = static_cast<std::uint32_t>(joints.order.size());
     if (next == joints.articulations.size()) joints.articulations.emplace_back();
     if (make_articulation(rows, hooks, bodies, budget, scratch.articulation, joints.articulations[next])) {
@@ -194,6 +197,7 @@ void prepare_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks
 void solve_joints(parallel::ThreadPool& pool, Real h, std::vector<Hook>& hooks, state::Bodies& bodies,
                   Joints& joints) {
   joints.scratch.resize(static_cast<std::size_t>(pool.workers()));
+  HOOKE_ASSERT(joints.order.size() <= joints.articulations.size());
   const auto count = static_cast<int>(joints.order.size());
   parallel::for_ranges(pool, count, kArticulationGrain, [&](Range range, int part) {
     const auto first = static_cast<std::size_t>(range.begin);

@@ -1,5 +1,6 @@
 #include "solver/joint_rows/joint_rows.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/body/body_motion.h"
@@ -195,12 +196,14 @@ bool rows_turn(const Hook& hook) {
 int list_joint_rows(const Hook& hook, std::span<RowKind, Hook::kMaxRows> kinds) {
   int count = 0;
   for_each_row(hook, [&](int freedom, RowRole role) { kinds[count++] = {freedom, role}; });
+  HOOKE_ASSERT(count <= Hook::kMaxRows);
   return count;
 }
 
 int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h,
                     std::span<JointRow, Hook::kMaxRows> rows) {
   Freedoms f = find_freedoms(hook, a, b);
+  HOOKE_ASSERT(h > 0 && count_joint_rows(hook) <= Hook::kMaxRows);
   for (int i = 0; i < 6; ++i) hook.value[i] = f.value[i];
   const double fastest_translation = kJointPushSpeed + length(b.v - a.v);
   const double fastest_rotation =
@@ -294,6 +297,7 @@ void add_up_impulses(Real h, Hook& hook) {
 }
 
 void store_joint_impulses(std::span<const JointRow> rows, std::span<const double> lambda, Hook& hook) {
+  HOOKE_ASSERT(rows.size() == lambda.size() && rows.size() <= hook.row_impulse.size());
   DVec3 linear;
   DVec3 angular;
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "solver/linear/block_matrix.h"
 
+#include "base/assert.h"
 #include "base/reset_lists.h"
 #include "base/sort_unique.h"
 
@@ -178,6 +179,7 @@ void BlockGraph::eliminate_node(std::uint32_t node) {
 }
 
 bool BlockGraph::eliminate(std::span<const int> sizes, double budget, BlockPattern& p) {
+  HOOKE_ASSERT(sizes.size() == count_);
   eliminated_.assign(count_, 0);
   queue_.clear();
   for (std::uint32_t i = 0; i < count_; ++i) queue_.emplace_back(neighbors_[i].size(), i);
@@ -197,6 +199,7 @@ bool BlockGraph::eliminate(std::span<const int> sizes, double budget, BlockPatte
     eliminate_node(node);
     p.order.push_back(node);
   }
+  HOOKE_ASSERT(p.order.size() == count_);
   return true;
 }
 
@@ -227,6 +230,8 @@ bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double bu
 }
 
 void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
+  HOOKE_ASSERT(sizes.size() == p.order.size());
+  HOOKE_ASSERT(std::all_of(sizes.begin(), sizes.end(), [](int size) { return size >= 0; }));
   p.size.assign(sizes.begin(), sizes.end());
   p.first.assign(1, 0);
   for (const int size : sizes) p.first.push_back(p.first.back() + size);
@@ -238,18 +243,22 @@ void resize_blocks(std::span<const int> sizes, BlockPattern& p) {
 }
 
 void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& p) {
+  HOOKE_ASSERT(sign_of_node.size() == p.order.size());
   for (std::size_t i = 0; i < p.order.size(); ++i) p.sign[i] = sign_of_node[p.order[i]];
 }
 
 std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t column) {
+  HOOKE_ASSERT(column <= row && row < p.order.size());
   const auto begin = p.block.begin() + p.column_begin[column];
   const auto end = p.block.begin() + p.column_begin[column + 1];
   const auto found = std::lower_bound(
       begin, end, row, [](const BlockPattern::Block& block, std::uint32_t r) { return block.row < r; });
+  HOOKE_ASSERT(found != end && found->row == row);
   return static_cast<std::uint32_t>(found - p.block.begin());
 }
 
 void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double>& scaled) {
+  HOOKE_ASSERT(numbers.size() >= p.number_count);
   for (int j = 0; j < p.node_count(); ++j) {
     double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
     factor_diagonal(p.sign[j], diagonal, p.size[j]);
@@ -263,6 +272,7 @@ void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double
 }
 
 void solve(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
+  HOOKE_ASSERT(numbers.size() >= p.number_count && x.size() >= static_cast<std::size_t>(p.first.back()));
   substitute_forward(p, numbers, x);
   substitute_back(p, numbers, x);
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/assert.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,6 +51,7 @@ class BlockGraph {
   void reset(std::size_t count);
   /// Makes nodes a and b neighbors. Each pair may be told often; a node and itself never.
   void join(std::uint32_t a, std::uint32_t b) {
+    HOOKE_ASSERT(a != b && a < count_ && b < count_);
     neighbors_[a].push_back(b);
     neighbors_[b].push_back(a);
   }
