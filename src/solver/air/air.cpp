@@ -1,5 +1,6 @@
 #include "solver/air/air.h"
 
+#include "base/assert.h"
 #include "solver/air/air_kernels.h"
 
 namespace hooke::solver {
@@ -10,6 +11,7 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
     for (const std::uint32_t p : {t.a, t.b, t.c}) ++loads.first_of[p + 1];
   }
   for (std::size_t p = 1; p < loads.first_of.size(); ++p) loads.first_of[p] += loads.first_of[p - 1];
+  HOOKE_ASSERT(loads.first_of.back() == 3 * triangles.corners.size());
   std::vector<std::uint32_t> next(loads.first_of.begin(), loads.first_of.end() - 1);
   loads.triangle_of.resize(3 * triangles.corners.size());
   for (std::uint32_t i = 0; i < triangles.corners.size(); ++i) {
@@ -23,6 +25,8 @@ void build_air_loads(const state::Triangles& triangles, int particle_count, AirL
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads) {
   static_assert(sizeof(state::Triangles::Corners) == 3 * sizeof(std::uint32_t));
+  HOOKE_ASSERT(air.wind.size() == particles.position.size());
+  HOOKE_ASSERT(loads.corner_impulse.size() == triangles.corners.size());
   const auto numbers = [](auto& records) { return reinterpret_cast<const Real*>(records.data()); };
   const wide::TriangleAir on_triangles = {
       .corners = reinterpret_cast<const std::uint32_t*>(triangles.corners.data()),
@@ -40,6 +44,7 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
 }
 
 void gather_loads(const state::Particles& particles, Real share, parallel::Range range, AirLoads& loads) {
+  HOOKE_ASSERT(loads.change.size() == particles.velocity.size());
   for (int p = range.begin; p < range.end; ++p) {
     Vec3 sum = {};
     for (std::uint32_t i = loads.first_of[p]; i < loads.first_of[p + 1]; ++i) {

@@ -1,5 +1,6 @@
 #include "solver/air/force_fields.h"
 
+#include "base/assert.h"
 #include "elements/fields.h"
 #include "math/trig.h"
 
@@ -25,6 +26,7 @@ Vec3 turn(Vec3 v, DVec3 b, double charge_per_mass, double h) {
 
 void apply_forces(const state::Deformable& object, const ForceInputs& inputs, Real h, parallel::Range range,
                   state::Particles& particles) {
+  HOOKE_ASSERT(!object.points_drag || inputs.wind.size() == particles.velocity.size());
   for (int i = range.begin; i < range.end; ++i) {
     const std::size_t p = object.particles.first + static_cast<std::size_t>(i);
     const Real w = particles.velocity[p].inverse_mass;
@@ -78,6 +80,7 @@ DVec3 motion_offset(const MotionDesc& motion, double t) {
 void drive_pins(const std::vector<state::Pin>& pins, const std::vector<state::Deformable>& objects,
                 double time, Real h, state::Particles& particles) {
   for (const state::Pin& pin : pins) {
+    HOOKE_ASSERT(pin.object < objects.size() && pin.particle < particles.velocity.size());
     if (pin.motion.kind == MotionDesc::Kind::kStill) {
       particles.velocity[pin.particle].v = {};
       continue;

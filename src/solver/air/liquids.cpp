@@ -1,5 +1,6 @@
 #include "solver/air/liquids.h"
 
+#include "base/assert.h"
 #include "geometry/convex/immersion.h"
 #include "math/root.h"
 
@@ -154,6 +155,7 @@ struct Loads {
       weights[count][i] = 1 - t;
       weights[count++][next] = t;
     }
+    HOOKE_ASSERT(count <= depth.size());
     for (std::size_t k = 2; k < count; ++k) {
       press_part(row, area, {weights[0], weights[k - 1], weights[k]}, {depth[0], depth[k - 1], depth[k]},
                  count == 3 && weights[0][0] == 1 && weights[1][1] == 1 && weights[2][2] == 1);
@@ -259,6 +261,7 @@ void find_liquid_loads(const state::Deformable& object, const LiquidRows& rows, 
 
 void apply_liquid(const FieldDesc& liquid, const LiquidSurface& surface, const state::Deformable& object,
                   const std::vector<LiquidLoad>& loads, Real h, state::Particles& particles) {
+  HOOKE_ASSERT(loads.size() == object.particles.count);
   const auto step = static_cast<double>(h);
   const double weight = liquid.density * surface.gravity;  // [N/m^3]
   for (std::uint32_t k = 0; k < object.particles.count; ++k) {

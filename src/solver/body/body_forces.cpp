@@ -1,5 +1,6 @@
 #include "solver/body/body_forces.h"
 
+#include "base/assert.h"
 #include "elements/fields.h"
 #include "geometry/convex/immersion.h"
 #include "math/rotation.h"
@@ -109,6 +110,7 @@ void add_body_forces(std::span<const std::uint32_t> rows, const Surroundings& ar
   for (const std::uint32_t i : rows) {
     if (!is_dynamic(bodies, i)) continue;
     const BodyNow body = body_now(bodies, i);
+    HOOKE_ASSERT(body.mass > 0);
     Push push;
     for (const state::Field& field : around.fields) {
       push.force += body.mass * elements::acceleration(field.desc, body.center);

@@ -1,5 +1,6 @@
 #include "solver/body/body_motion.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/body/body_tuning.h"
 #include "solver/body/free_turn_kernels.h"
@@ -358,6 +359,7 @@ void accelerate_bodies(std::span<const std::uint32_t> rows, const BodyStep& step
 }
 
 void push_body(std::uint32_t row, Vec3 impulse, Vec3 lever, Bodies& bodies) {
+  HOOKE_ASSERT(gives_way(bodies, row));
   const Vec3 angular = cross(lever, impulse);
   const math::Symmetric3<Real>& scale = bodies.scale[row];
   Vec3 turn = scale * angular;
@@ -409,6 +411,7 @@ void freeze_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> s
   for (const std::uint32_t i : rows) {
     const state::FrozenInertia& frozen = bodies.frozen_inertia[i];
     if (!frozen.touches || frozen.on) continue;
+    HOOKE_ASSERT(i < start_rotation.size());
     const MotionRecord& m = bodies.motion[i];
     const math::Symmetric3<Real>& scale = bodies.scale[i];
     const Vec3 turn = moved ? m.theta_scaled : h * m.omega_scaled;
@@ -425,6 +428,7 @@ void freeze_inertia(std::span<const std::uint32_t> rows, std::span<const Quat> s
 }
 
 void stop_rotation(std::uint32_t row, Quat rotation, Bodies& bodies) {
+  HOOKE_ASSERT(state::is_gyroscopic_now(bodies, row));
   const Quat turned = bodies.rotation[row];
   bodies.rotation[row] = rotation;
   keep_rotational_energy(row, turned, bodies);

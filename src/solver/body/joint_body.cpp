@@ -1,5 +1,6 @@
 #include "solver/body/joint_body.h"
 
+#include "base/assert.h"
 #include "solver/body/body_motion.h"
 #include "state/body_frames.h"
 #include "state/hooks.h"
@@ -10,6 +11,7 @@ using state::HookPlace;
 
 JointBody joint_body(const state::Bodies& bodies, std::uint32_t row) {
   if (row == HookPlace::kWorld) return {};
+  HOOKE_ASSERT(row < bodies.motion.size());
   const state::MotionRecord& m = bodies.motion[row];
   JointBody body;
   body.inverse_mass = static_cast<double>(m.inverse_mass);
@@ -37,6 +39,7 @@ JointBody joint_body_now(const state::Bodies& bodies, std::uint32_t row) {
 void set_joint_velocity(DVec3 v, DVec3 omega_scaled, DVec3 angular_momentum, std::uint32_t row,
                         state::Bodies& bodies) {
   state::MotionRecord& m = bodies.motion[row];
+  HOOKE_ASSERT(m.inverse_mass > Real(0) && bodies.asleep[row] == 0);
   state::FreeMotionRecord& free = bodies.free_motion[row];
   const Vec3 by_contacts = m.v - free.v;
   const Vec3 turn_by_contacts = m.omega_scaled - free.omega_scaled;

@@ -1,5 +1,7 @@
 #include "solver/rope/rope_clamps.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 
 namespace hooke::solver {
@@ -21,6 +23,7 @@ std::vector<Holder> list_holders(const state::Tables& t) {
 }
 
 void note_clamps(const std::vector<Holder>& holders, state::Tables& t) {
+  HOOKE_ASSERT(holders.size() == t.particles.position.size());
   std::fill(t.segments.clamped.begin(), t.segments.clamped.end(), std::uint8_t{0});
   for (const state::Deformable& rope : t.objects) {
     if (rope.kind != PointRef::Kind::kRope) continue;

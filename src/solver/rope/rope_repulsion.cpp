@@ -1,5 +1,6 @@
 #include "solver/rope/rope_repulsion.h"
 
+#include "base/assert.h"
 #include "elements/repulsion.h"
 #include "solver/rope/rope_tuning.h"
 
@@ -80,6 +81,7 @@ void find_others(parallel::Range range, double reach, const Repulsion& memory, R
 template <class Visit>
 void for_each_other(parallel::Range range, const Repulsion& memory, const Repulsion::Part& part,
                     Visit&& visit) {
+  HOOKE_ASSERT(part.end.size() == static_cast<std::size_t>(range.count()));
   std::uint32_t k = 0;
   for (auto i = static_cast<std::uint32_t>(range.begin); i < static_cast<std::uint32_t>(range.end); ++i) {
     const std::uint32_t end = part.end[i - static_cast<std::uint32_t>(range.begin)];

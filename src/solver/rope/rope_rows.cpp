@@ -1,5 +1,6 @@
 #include "solver/rope/rope_rows.h"
 
+#include "base/assert.h"
 #include "solver/rope/rope_segments.h"
 #include "solver/rope/rope_tuning.h"
 #include "solver/soft/particle_contact_solve.h"
@@ -184,6 +185,7 @@ void load_rope(const RopeSystem& rope_system, const std::vector<state::VelocityR
     e.limited = tables.segments.limited[row] != 0;
     s.segments.push_back(e);
   }
+  HOOKE_ASSERT(rope_system.end_contact <= tables.contacts.particle.size());
   load_contact_rows(rope_system, first, h, tables, s.contact_rows);
 }
 
@@ -212,6 +214,7 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
     const std::uint32_t particle = tables.contacts.particle[row];
     if (!(tables.particles.velocity[particle].inverse_mass > Real(0))) continue;
     const std::uint32_t node = first_node + particle - rope_system.first_particle;
+    HOOKE_ASSERT(particle >= rope_system.first_particle && node - first_node < rope_system.node_count);
     contact_rows.push_back(load_contact_row(row, node, h, tables));
   }
 }
@@ -219,6 +222,7 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
 void load_point_contact_rows(const PointInContact& point, double h, const state::Tables& tables,
                              std::vector<RopeContactRow>& contact_rows) {
   const double own = point.node.mass;
+  HOOKE_ASSERT(own > 0 && point.first <= point.end && point.end <= tables.contacts.particle.size());
   double heaviest = std::max(point.heaviest, own);
   for (std::size_t row = point.first; row < point.end; ++row) {
     const auto w = static_cast<double>(tables.bodies.motion[tables.contacts.body[row]].inverse_mass);
@@ -246,6 +250,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
 }
 
 RopeBend load_bend(const RopeSystem& rope_system, std::size_t row, const state::Segments& segments) {
+  HOOKE_ASSERT(row + 2 < std::size_t{rope_system.first_segment} + rope_system.node_count);
   const auto before = static_cast<double>(segments.rest_length[row]);
   const auto behind = static_cast<double>(segments.rest_length[row + 1]);
   const double length =
@@ -272,6 +277,7 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
   const bool whips = !setting.first;
   const double resistance = bend.resistance(h, whips);
   const double back = whips ? 0 : kBendNewmark * h;
+  HOOKE_ASSERT(bend.node > 0 && std::size_t{bend.node} + 1 < nodes.size());
   const RopeNode* node = &nodes[bend.node];
   const auto line = [&](int i) {
     return node[i + 1].x - node[i].x - back * (node[i + 1].v_before - node[i].v_before);
@@ -454,6 +460,7 @@ void store_rope(const RopeSystem& rope_system, std::size_t first_node, std::size
 void store_contact_rows(double h, std::span<const RopeContactRow> contact_rows, state::Contacts& contacts) {
   for (const RopeContactRow& t : contact_rows) {
     if (t.row == RopeContactRow::kTether) continue;
+    HOOKE_ASSERT(t.row < contacts.normal_force.size());
     contacts.normal_force[t.row] = static_cast<Real>(t.normal / h);
     contacts.friction_force[t.row] = vector_cast<Real>((1.0 / h) * t.f);
   }

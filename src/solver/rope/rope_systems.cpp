@@ -4,6 +4,7 @@
 
 #include "solver/rope/rope_systems.h"
 
+#include "base/assert.h"
 #include "solver/joint_rows/hook_rows.h"
 #include "solver/rope/rope_kernels.h"
 #include "solver/rope/rope_rows.h"
@@ -48,6 +49,9 @@ class Members {
     revision_ = revision;
     h_ = source.h;
     const RopeSystem& first = *rope_systems.front();
+    HOOKE_ASSERT(std::all_of(rope_systems.begin(), rope_systems.end(), [&](const RopeSystem* rope_system) {
+      return rope_system->node_count == first.node_count && !rope_system->in_coupled_group;
+    }));
     const std::size_t nodes = first.node_count;
     traits_.rows.resize(nodes);
     traits_.bends.resize(first.bend_stiffness > 0 && nodes > 2 ? nodes - 2 : 0);
@@ -185,6 +189,8 @@ class Group {
 
   void load_contacts_and_anchors(const Members<kCount>& members, int lane, const Source& source) {
     const RopeSystem& rope_system = members.rope_system(lane);
+    HOOKE_ASSERT(rope_system.first_anchor <= rope_system.end_anchor &&
+                 rope_system.end_anchor <= source.anchors.size());
     load_contact_rows(rope_system, 0, source.h, source.tables, contact_rows_[lane]);
     for (std::uint32_t i = rope_system.first_anchor; i < rope_system.end_anchor; ++i)
       load_anchor(source.anchors[i], members.traits().rows[source.anchors[i].node].w[lane], lane, source);
@@ -208,6 +214,7 @@ class Group {
   void load_anchor(const RopeAnchor& anchor, double w, int lane, const Source& source) {
     if (!(w > 0)) return;
     state::Hook& hook = source.tables.hooks[anchor.hook];
+    HOOKE_ASSERT(count_joint_rows(hook) == 3 && anchor.node < ropes_.nodes.size());
     std::array<JointRow, state::Hook::kMaxRows> rows;
     make_rows(hook, {joint_end(source.tables, hook.a), anchor.node_is_b},
               {joint_end(source.tables, hook.b), !anchor.node_is_b}, source.h, rows);

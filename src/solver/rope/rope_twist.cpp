@@ -1,5 +1,6 @@
 #include "solver/rope/rope_twist.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/joint_rows/joint_rows.h"
@@ -24,6 +25,7 @@ struct Edge {
 };
 
 Edge edge_of(const Tables& t, const TwistSpan& span, std::uint32_t segment) {
+  HOOKE_ASSERT(segment < t.objects[span.object].segments.count);
   const std::uint32_t first = t.objects[span.object].particles.first + segment;
   const DVec3 e = vector_cast<double>(t.particles.position[first + 1].x) -
                   vector_cast<double>(t.particles.position[first].x);
@@ -179,6 +181,7 @@ void load_twist(const Tables& t, const TwistSpan& span, TwistRow& row) {
 }
 
 double twist_stiffness(const Tables& t, const TwistSpan& span) {
+  HOOKE_ASSERT(span.length > 0);  // clamps have a segment between them
   return static_cast<double>(t.objects[span.object].twist_stiffness) / span.length;
 }
 
@@ -195,6 +198,7 @@ void twist_bodies(double h, Tables& tables, std::vector<TwistRow>& rows) {
 }
 
 void twist_nodes(const std::vector<TwistRow>& rows, Tables& tables) {
+  HOOKE_ASSERT(rows.size() == tables.twists.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const TwistSpan& span = tables.twists[k];
     if (span.impulse == 0) continue;
@@ -208,6 +212,7 @@ void twist_nodes(const std::vector<TwistRow>& rows, Tables& tables) {
 }
 
 void note_twist_rates(double h, const std::vector<TwistRow>& rows, Tables& tables) {
+  HOOKE_ASSERT(h > 0 && rows.size() == tables.twists.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     TwistSpan& span = tables.twists[i];
     const double rate = rate_of(tables, span, rows[i]);

@@ -1,5 +1,6 @@
 /// Finds which parts of ropes are held against twist.
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "solver/joint_rows/joint_rows.h"
 #include "solver/rope/rope_clamps.h"
@@ -74,6 +75,7 @@ std::vector<double> twist_rates(const Tables& t, std::uint32_t object, const std
 /// The span between two clamps: an earlier one, or a new one.
 TwistSpan span_between(const Tables& t, std::uint32_t object, const TwistClamp& a, const TwistClamp& b,
                        const std::vector<TwistSpan>& before) {
+  HOOKE_ASSERT(a.segment + 1 < b.segment && b.segment < t.objects[object].segments.count);
   const auto was = std::find_if(before.begin(), before.end(), [&](const TwistSpan& span) {
     return span.object == object && same_place(span.a, a) && same_place(span.b, b);
   });

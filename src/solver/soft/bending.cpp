@@ -1,5 +1,6 @@
 #include "solver/soft/bending.h"
 
+#include "base/assert.h"
 #include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
@@ -56,6 +57,7 @@ void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks
 }
 
 void prepare_bends(BendBlocks& bends, Real h) {
+  HOOKE_ASSERT(bends.laws.size() == bends.blocks.size());
   for (std::size_t i = 0; i < bends.blocks.size(); ++i) {
     for (int lane = 0; lane < kLanes; ++lane) {
       const Softness soft = softness(bends.laws[i].stiffness[lane], bends.laws[i].damping[lane], h);
@@ -67,6 +69,7 @@ void prepare_bends(BendBlocks& bends, Real h) {
 
 void solve_bends(const BendBlocks& bends, const BendPass& pass, parallel::Range blocks,
                  state::Particles& particles) {
+  HOOKE_ASSERT(blocks.begin >= pass.first && blocks.end <= pass.end);
   const wide::BendRun run = {
       .blocks = {bends.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())},
       .last_count = blocks.end == pass.end ? pass.last_count : kLanes};

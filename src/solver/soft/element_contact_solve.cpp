@@ -1,5 +1,6 @@
 #include "solver/soft/element_contact_solve.h"
 
+#include "base/assert.h"
 #include "solver/body/body_motion.h"
 #include "solver/soft/particle_contact_solve.h"
 #include "solver/soft/soft_tuning.h"
@@ -22,6 +23,7 @@ Real inverse_mass_of(const ElementContact& contact, const state::Particles& part
 constexpr Real kFar = Real(1e6);  ///< Least separation of a row that does not hold now [m].
 
 void push(const ElementContact& contact, Vec3 impulse, state::Tables& t) {
+  HOOKE_ASSERT(contact.count > 0 && contact.count <= contact.particle.size());
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     state::VelocityRecord& record = t.particles.velocity[contact.particle[i]];
     record.v += (contact.weight[i] * record.inverse_mass) * impulse;

@@ -1,5 +1,7 @@
 #include "solver/soft/gas_pressure.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 
 namespace hooke::solver {
@@ -61,6 +63,7 @@ void measure_gas(const state::Deformable& object, const state::Triangles& triang
   out.gradient.assign(object.particles.count, DVec3{});
   for (std::uint32_t i = object.triangles.first; i < object.triangles.end(); ++i) {
     const auto [a, b, c] = triangles.corners[i];
+    HOOKE_ASSERT(std::min({a, b, c}) >= first && std::max({a, b, c}) < object.particles.end());
     const DVec3 xa = x(a);
     const DVec3 ab = x(b) - xa;
     const DVec3 ac = x(c) - xa;
@@ -76,6 +79,7 @@ double gas_pressure(const state::Deformable& object, double volume) {
 }
 
 void press_gas(const state::Deformable& object, double h, GasVolume& scratch, state::Tables& tables) {
+  HOOKE_ASSERT(object.gas > 0 && object.gas_volume > 0);
   const state::Contacts& contacts = tables.contacts;
   state::Particles& particles = tables.particles;
   measure_gas(object, tables.triangles, particles, scratch);

@@ -1,5 +1,6 @@
 #include "solver/soft/isometric_bending.h"
 
+#include "base/assert.h"
 #include "solver/soft/isometric_bending_kernels.h"
 
 #include <algorithm>
@@ -148,6 +149,7 @@ std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
 }
 
 void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {
+  HOOKE_ASSERT(isometric_bends.stiffness.size() == isometric_bends.blocks.size());
   prepare_springs(isometric_bends.materials, h);
   for (IsometricBendPass& pass : isometric_bends.passes) {
     const Real mass = isometric_bends.materials[pass.edge].damped_mass;  // all of one cloth
@@ -163,6 +165,8 @@ void prepare_isometric_bends(IsometricBendBlocks& isometric_bends, Real h) {
 
 void solve_isometric_bends(const IsometricBendBlocks& isometric_bends, const IsometricBendPass& pass,
                            parallel::Range blocks, state::Particles& particles) {
+  HOOKE_ASSERT(blocks.begin >= pass.first && blocks.end <= pass.end);
+  HOOKE_ASSERT(std::max(pass.edge, pass.wings) < isometric_bends.materials.size());
   const wide::IsometricBendRun run = {
       .blocks = {isometric_bends.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())},
       .last_count = blocks.end == pass.end ? pass.last_count : kLanes};

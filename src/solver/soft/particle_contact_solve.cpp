@@ -1,5 +1,6 @@
 #include "solver/soft/particle_contact_solve.h"
 
+#include "base/assert.h"
 #include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@ namespace hooke::solver {
 namespace {
 
 void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::VelocityRecord& particle) {
+  HOOKE_ASSERT(particle.inverse_mass > Real(0));
   const Vec3 n = contacts.normal[row];
   const Vec3 relative = particle.v - contacts.surface_velocity[row];
   const Real speed = dot(n, relative);
@@ -27,6 +29,7 @@ template <class Solve>
 void for_particles(const std::vector<state::Deformable>& objects, parallel::Range range,
                    const state::Contacts& contacts, const state::Particles& particles, Solve&& solve) {
   const auto& particle = contacts.particle;
+  HOOKE_ASSERT(static_cast<std::size_t>(range.end) <= particle.size());
   auto row = static_cast<std::size_t>(range.begin);
   while (row > 0 && row < particle.size() && particle[row] == particle[row - 1]) ++row;
   while (row < static_cast<std::size_t>(range.end)) {

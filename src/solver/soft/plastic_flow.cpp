@@ -1,5 +1,6 @@
 #include "solver/soft/plastic_flow.h"
 
+#include "base/assert.h"
 #include "elements/dihedral.h"
 #include "elements/plasticity.h"
 #include "elements/tetrahedron.h"
@@ -44,6 +45,7 @@ void find_tetrahedra(const std::vector<const state::Deformable*>& solids, const 
     const std::uint32_t row = tetrahedra.laws[i].row;
     const state::Deformable* solid = owner_of(solids, &state::Deformable::tetrahedra, row);
     if (solid == nullptr) continue;
+    HOOKE_ASSERT(solid->rest_edges->size() == solid->tetrahedra.count);
     yields.push_back({i, solid->yield_stress, (*solid->rest_edges)[row - solid->tetrahedra.first]});
   }
 }
@@ -102,6 +104,8 @@ void flow_bends(const Yields& yields, parallel::Range rows, state::Tables& table
   const auto& position = tables.particles.position;
   for (int i = rows.begin; i < rows.end; ++i) {
     const BendYield& yield = yields.bends[i];
+    HOOKE_ASSERT(yield.block < bends.blocks.size() && yield.lane < yield.end_lane &&
+                 yield.end_lane <= kLanes);
     const state::Bends::Stencil& s = tables.bends.stencil[yield.row];
     const auto d = elements::dihedral(position[s.edge_a].x, position[s.edge_b].x, position[s.wing_a].x,
                                       position[s.wing_b].x);

@@ -1,5 +1,6 @@
 #include "solver/soft/shape_matching.h"
 
+#include "base/assert.h"
 #include "math/polar.h"
 #include "math/symmetric.h"
 
@@ -30,6 +31,7 @@ struct Moments {
 };
 
 DVec3 center_of(const Deformable& object, const Particles& particles, double ahead) {
+  HOOKE_ASSERT(object.rest_shape->mass > 0 && object.rest_shape->place.size() == object.particles.count);
   DVec3 sum;
   for (std::uint32_t p = object.particles.first; p < object.particles.end(); ++p)
     sum += mass_at(particles, p) * position_at(particles, p, ahead);

@@ -1,5 +1,6 @@
 #include "solver/soft/spring_blocks.h"
 
+#include "base/assert.h"
 #include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
@@ -49,6 +50,7 @@ void color_class(const state::Springs& springs, const state::Particles& particle
   for (std::size_t row = 0; row < springs.kind.size(); ++row) {
     if (springs.kind[row] != kind || (!taken.empty() && taken[row] != 0)) continue;
     const std::uint32_t ends[2] = {springs.particle_a[row], springs.particle_b[row]};
+    HOOKE_ASSERT(ends[0] != ends[1]);
     const bool anchored = kind == SpringClass::kTether;
     if (anchored && particles.velocity[ends[1]].inverse_mass > Real(0)) continue;
     int color = take_color(used, ends, anchored ? 1 : 2);
@@ -60,6 +62,7 @@ void color_class(const state::Springs& springs, const state::Particles& particle
 
 /// Copies the last row into the lanes behind it.
 void fill_lanes(SpringBlock& block, int count) {
+  HOOKE_ASSERT(count > 0);
   for (int lane = count; lane < kLanes; ++lane) {
     block.record_a[lane] = block.record_a[count - 1];
     block.record_b[lane] = block.record_b[count - 1];

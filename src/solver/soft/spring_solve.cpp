@@ -1,5 +1,6 @@
 #include "solver/soft/spring_solve.h"
 
+#include "base/assert.h"
 #include "solver/soft/particle_kernels.h"
 
 #include <algorithm>
@@ -53,6 +54,7 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
 
 void solve_springs(const SpringBlocks& springs, const SpringPass& pass, parallel::Range blocks, Real h,
                    state::Particles& particles) {
+  HOOKE_ASSERT(blocks.begin >= pass.first && blocks.end <= pass.end);
   const SpringMaterial& material = springs.materials[pass.material];
   for (int i = blocks.begin; material.form != SpringForm::kExplicit && i < blocks.end; ++i) {
     solve_general(springs.blocks[i], i + 1 == pass.end ? pass.last_count : kLanes, material, h, particles);

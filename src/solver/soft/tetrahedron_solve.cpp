@@ -1,5 +1,6 @@
 #include "solver/soft/tetrahedron_solve.h"
 
+#include "base/assert.h"
 #include "elements/tetrahedron.h"
 #include "math/symmetric.h"
 #include "solver/soft/soft_tuning.h"
@@ -52,6 +53,7 @@ Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const std::vector<
   Real sum = Real(0);
   for (int i = 0; i < 4; ++i) {
     const Real share = particles.mass[ends[i]] * t.volume[row] / volume_at[ends[i]];
+    HOOKE_ASSERT(volume_at[ends[i]] > Real(0));
     sum += length_squared(b[i]) / share;
   }
   return kLargestShearStiffness / (Real(2) * t.volume[row] * sum);
@@ -78,6 +80,7 @@ void build_tetrahedra(const state::Tetrahedra& t, const state::Particles& partic
       out.passes.push_back({row, row});
     out.passes.back().end = row + 1;
     const state::Tetrahedra::Corners& c = t.corners[i];
+    HOOKE_ASSERT(c.a != c.b && c.a != c.c && c.a != c.d && c.b != c.c && c.b != c.d && c.c != c.d);
     out.rows.push_back({.particle = {c.a, c.b, c.c, c.d}});
     out.laws.push_back({.row = static_cast<std::uint32_t>(i),
                         .volume = t.volume[i],
@@ -111,6 +114,7 @@ void prepare_tetrahedron(const TetrahedronLaw& law, Real h, TetrahedronRow& row)
 }
 
 void prepare_tetrahedra(TetrahedronRows& tetrahedra, Real h) {
+  HOOKE_ASSERT(tetrahedra.laws.size() == tetrahedra.rows.size());
   tetrahedra.inverse_h = Real(1) / h;
   tetrahedra.any_damping = false;
   for (std::size_t i = 0; i < tetrahedra.rows.size(); ++i) {
