@@ -3,6 +3,7 @@
 #include "hooke/math.h"
 #include "hooke/world.h"
 
+#include "base/assert.h"
 #include "math/rotation.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
@@ -25,6 +26,7 @@ inline Pose frame_of_body(const Bodies& bodies, std::uint32_t row) {
 /// The frame of a collider's shape, at the start of the step.
 inline Pose frame_of_collider(const Bodies& bodies, const Colliders& colliders, std::uint32_t row) {
   const std::uint32_t body = colliders.body[row];
+  HOOKE_ASSERT(body < bodies.center.size());  // no hole
   const Quat rotation = bodies.rotation[body];
   return {bodies.center[body] + vector_cast<double>(rotate(rotation, colliders.position[row])),
           rotation * colliders.rotation[row]};

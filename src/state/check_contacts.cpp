@@ -26,7 +26,6 @@ const char* find_in_manifold(const Tables& t, const Pair& pair, const Manifold& 
   if (a.sensor || b.sensor) return "a manifold of a sensor";
   if (a.kind != BodyKind::kDynamic && b.kind != BodyKind::kDynamic) return "a manifold that pushes nothing";
   if (!is_unit_or(m.normal, false)) return "normal of a manifold";
-  if (m.point_count == 0 && !m.is_refreshed()) return "a manifold without points";
   if (m.is_refreshed() != pair.is_refreshed()) return "refresh of a manifold";
   return nullptr;
 }

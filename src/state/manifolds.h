@@ -2,6 +2,7 @@
 
 #include "hooke/math.h"
 
+#include "base/assert.h"
 #include "state/route.h"
 
 #include <array>
@@ -61,6 +62,7 @@ struct Manifold {
 
 /// Number of points that pushed in the last substep.
 inline std::uint32_t pushing_points(const Manifold& m) {
+  HOOKE_ASSERT(m.point_count >= 0 && m.point_count <= Manifold::kMaxPoints);
   std::uint32_t count = 0;
   for (std::int32_t i = 0; i < m.point_count; ++i)
     count += m.point[static_cast<std::size_t>(i)].normal_impulse > Real(0) ? 1 : 0;

@@ -1,5 +1,6 @@
 #include "state/sleeping_pairs.h"
 
+#include "base/assert.h"
 #include "base/take_turns.h"
 
 #include <array>
@@ -19,9 +20,12 @@ struct PairTable {
 /// Merges the pairs of two tables, each in order, into a third without gaps.
 void merge(const PairTable& a, const PairTable& b, std::vector<Pair>& pairs,
            std::vector<Manifold>& manifolds) {
+  HOOKE_ASSERT(std::is_sorted(a.pair.begin(), a.pair.end(), comes_before));
+  HOOKE_ASSERT(std::is_sorted(b.pair.begin(), b.pair.end(), comes_before));
   pairs.clear();
   manifolds.clear();
   const auto take = [&](const Pair& pair, const std::vector<Manifold>& from) {
+    HOOKE_ASSERT(std::size_t{pair.first_manifold} + pair.manifold_count <= from.size());
     const auto first = from.begin() + static_cast<std::ptrdiff_t>(pair.first_manifold);
     pairs.push_back(pair);
     pairs.back().first_manifold = static_cast<std::uint32_t>(manifolds.size());
@@ -36,6 +40,7 @@ void merge(const PairTable& a, const PairTable& b, std::vector<Pair>& pairs,
 }
 
 std::array<std::uint32_t, 2> bodies_of(const Colliders& colliders, const Pair& pair) {
+  HOOKE_ASSERT(pair.collider_a < pair.collider_b && pair.collider_b < colliders.body.size());
   return {colliders.body[pair.collider_a], colliders.body[pair.collider_b]};
 }
 
@@ -62,9 +67,12 @@ void count_sleeping(std::span<const Pair> moved, const std::vector<Manifold>& ma
                     const Colliders& colliders, SleepingPairs& sleeping) {
   for (const Pair& pair : moved) {
     const std::uint32_t points = pushing_points(pair, manifolds);
+    HOOKE_ASSERT(enters || sleeping.contacts >= points);
     sleeping.contacts = enters ? sleeping.contacts + points : sleeping.contacts - points;
-    for (const std::uint32_t body : bodies_of(colliders, pair))
+    for (const std::uint32_t body : bodies_of(colliders, pair)) {
+      HOOKE_ASSERT(body < sleeping.of_body.size() && (enters || sleeping.of_body[body] > 0));
       sleeping.of_body[body] = enters ? sleeping.of_body[body] + 1 : sleeping.of_body[body] - 1;
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/assert.h"
 #include "state/bodies.h"
 #include "state/colliders.h"
 #include "state/manifolds.h"
@@ -58,6 +59,7 @@ void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders
 template <class Visit>
 void for_each_manifold(const Pairs& pairs, Visit&& visit) {
   const auto visit_pair = [&visit](const Pair& pair, const std::vector<Manifold>& manifolds) {
+    HOOKE_ASSERT(std::size_t{pair.first_manifold} + pair.manifold_count <= manifolds.size());
     for (std::size_t i = 0; i < pair.manifold_count; ++i) visit(manifolds[pair.first_manifold + i]);
   };
   auto sleeping = pairs.sleeping.pair.begin();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/assert.h"
 #include "base/make_room.h"
 
 #include <cstddef>
@@ -32,6 +33,7 @@ class SlotTable {
 
   /// Returns the id that has this slot.
   [[nodiscard]] IdType id_of(std::uint32_t slot) const {
+    HOOKE_ASSERT(slot > 0 && slot <= entries_.size());
     const Entry& entry = entries_[slot - 1];
     return {.slot = slot, .generation = entry.generation, .world = entry.world};
   }
@@ -40,9 +42,15 @@ class SlotTable {
   /// Makes room for one more slot.
   void make_room() { base::make_room(entries_); }
   /// Removes the slots after the first `size`, as though they had never been.
-  void shorten(std::size_t size) { entries_.resize(size); }
+  void shorten(std::size_t size) {
+    HOOKE_ASSERT(size <= entries_.size());
+    entries_.resize(size);
+  }
 
-  void move(std::uint32_t slot, std::uint32_t row) { entries_[slot - 1].row = row; }
+  void move(std::uint32_t slot, std::uint32_t row) {
+    HOOKE_ASSERT(slot > 0 && slot <= entries_.size());
+    entries_[slot - 1].row = row;
+  }
 
   [[nodiscard]] std::uint32_t generation() const { return generation_; }
   void set_generation(std::uint32_t generation) { generation_ = generation; }
