@@ -114,6 +114,7 @@ void list_awake_bodies(WorldData& world) {
 void limit_dense_piles(WorldData& world) {
   const std::span<const std::uint32_t> begins = world.frame.dense_piles.begins();
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+    HOOKE_ASSERT(begins[i] < begins[i + 1] && begins[i + 1] <= world.frame.dense_piles.members().size());
     const auto pile = world.frame.dense_piles.members().subspan(begins[i], begins[i + 1] - begins[i]);
     solver::limit_dense_pile(pile, world.tables.bodies);
   }
@@ -136,6 +137,7 @@ bool may_collide(const WorldData& world, collision::ColliderPair pair) {
   const Tables& t = world.tables;
   const std::uint32_t a = t.colliders.body[pair.first];
   const std::uint32_t b = t.colliders.body[pair.second];
+  HOOKE_ASSERT(std::max(a, b) < t.bodies.traits.size());  // no holes
   const BodyTraits& ta = t.bodies.traits[a];
   const BodyTraits& tb = t.bodies.traits[b];
   return a != b && may_meet(ta, tb) && ta.collides && tb.collides &&
@@ -210,6 +212,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
   world.frame.narrow_phase.list_refreshed(t.pairs);  // No pair changes its row any more in this step.
   const WorldDesc& desc = t.desc;
+  HOOKE_ASSERT(h > Real(0) && std::is_sorted(world.frame.awake.begin(), world.frame.awake.end()));
   const auto before = static_cast<Real>(t.body_substep);
   world.frame.contact_step = {.gravity = desc.gravity,
                               .h = h,
@@ -332,6 +335,7 @@ void refresh_load_bearing_contacts(WorldData& world, Real h) {
   solver::store_load_bearing_contacts(h, t.pairs);
   for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (contact.point > 0) continue;
+    HOOKE_ASSERT(contact.pair < t.pairs.pair.size());
     const collision::PosedPair posed = {contact.pair, state::pose_now(t.bodies, contact.body_a),
                                         state::pose_now(t.bodies, contact.body_b)};
     world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h, posed, t.pairs);

@@ -1,5 +1,6 @@
 #include "world/events.h"
 
+#include "base/assert.h"
 #include "base/take_turns.h"
 #include "collision/query/queries.h"
 #include "state/body_frames.h"
@@ -47,6 +48,7 @@ void sort_events(std::vector<Event>& events) {
 template <class Event>
 void compare(std::vector<Event>& now, std::vector<Event>& before, std::vector<Event>& begins,
              std::vector<Event>& ends) {
+  HOOKE_ASSERT(std::is_sorted(before.begin(), before.end(), kComesFirst));
   sort_events(now);
   now.erase(std::unique(now.begin(), now.end()), now.end());
   begins.clear();
@@ -79,6 +81,7 @@ void gather_hits(const WorldData& world, Events& events) {
   const Tables& t = world.tables;
   events.hits.clear();
   for (const ClosingPair& closing_pair : world.frame.closing_pairs) {
+    HOOKE_ASSERT(closing_pair.manifold < t.pairs.manifold.size());
     const Manifold& m = t.pairs.manifold[closing_pair.manifold];
     if (!m.touching) continue;
     const auto [a, b] = parts_of(t, m);

@@ -1,5 +1,6 @@
 #include "world/hook_stages.h"
 
+#include "base/assert.h"
 #include "solver/body/body_motion.h"
 #include "solver/contact/impacts.h"
 #include "solver/routes.h"
@@ -46,12 +47,14 @@ void refresh_hooks(WorldData& world) {
   }
   std::partial_sum(world.derived.hooked_begin.begin(), world.derived.hooked_begin.end(),
                    world.derived.hooked_begin.begin());
+  HOOKE_ASSERT(world.derived.hooked_begin.back() <= world.derived.hooked_pairs.size());
 }
 
 bool are_hooked(const WorldData& world, std::uint32_t body_a, std::uint32_t body_b) {
   const auto pair = pair_of(body_a, body_b);
   if (pair.first + 1 >= world.derived.hooked_begin.size()) return false;
   const auto begin = world.derived.hooked_pairs.begin();
+  HOOKE_ASSERT(world.derived.hooked_begin[pair.first] <= world.derived.hooked_begin[pair.first + 1]);
   return std::binary_search(begin + world.derived.hooked_begin[pair.first],
                             begin + world.derived.hooked_begin[pair.first + 1], pair);
 }
@@ -122,6 +125,7 @@ void remove_hooks(state::Tables& t, Holds&& holds) {
 }  // namespace
 
 void remove_hooks_of(const std::vector<std::uint8_t>& goes, state::Tables& t) {
+  HOOKE_ASSERT(goes.size() == t.bodies.traits.size());
   remove_hooks(t, [&](const HookPlace& end) { return end.body != HookPlace::kWorld && goes[end.body] != 0; });
 }
 

@@ -1,5 +1,6 @@
 #include "world/impact_clamp.h"
 
+#include "base/assert.h"
 #include "collision/continuous/continuous.h"
 #include "collision/continuous/shape_bounds.h"
 #include "math/rotation.h"
@@ -34,6 +35,7 @@ Path path_of(const WorldData& world, std::uint32_t body) {
   path.displacement = m.dx;
   path.turn = rotation_of(bodies, body);
   if (m.inverse_mass > Real(0) && state::is_gyroscopic_now(bodies, body)) {
+    HOOKE_ASSERT(body < world.frame.start_rotation.size());
     path.rotation = world.frame.start_rotation[body];
     path.turn = math::turn_between(path.rotation, bodies.rotation[body], path.turn);
   }
@@ -124,6 +126,7 @@ bool goes_astray(const WorldData& world, std::uint32_t body, const Path& path) {
 /// Enters the body of a collider as a swept body if it stands. Standing bodies are entered only when a path
 /// may reach them, because there may be far too many of them.
 void enter_standing(WorldData& world, std::uint32_t collider) {
+  HOOKE_ASSERT(world.frame.swept.path.size() == world.tables.bodies.motion.size());
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.frame.swept;
   const std::uint32_t body = world.tables.colliders.body[collider];
@@ -139,6 +142,7 @@ void find_paths(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
   collision::SweptBodies& swept = world.frame.swept;
   const std::size_t count = bodies.motion.size();
+  HOOKE_ASSERT(world.frame.fast.size() == count && world.derived.hooked.size() == count);
   swept.path.resize(count);
   swept.stoppable.resize(count);
   swept.inverse_mass.resize(count);

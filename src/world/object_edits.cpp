@@ -1,5 +1,6 @@
 #include "world/object_edits.h"
 
+#include "base/assert.h"
 #include "build/checks.h"
 #include "state/sleeping_pairs.h"
 #include "world/hook_stages.h"
@@ -17,6 +18,7 @@ using state::Tables;
 
 template <class Table>
 void erase_rows(Table& table, Rows rows) {
+  HOOKE_ASSERT(rows.end() <= static_cast<std::uint32_t>(table.count()));
   Table::for_each_column(
       table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
 }
@@ -82,6 +84,7 @@ std::optional<ParticleRow> find_particle(const Tables& tables, PointRef point) {
 }
 
 void remove_object(Tables& t, std::uint32_t row) {
+  HOOKE_ASSERT(row < t.objects.size());
   remove_hooks_of_object(row, t);
   renumber_hooked_objects(t, row);
   const Deformable gone = t.objects[row];
@@ -116,6 +119,7 @@ void remove_object(Tables& t, std::uint32_t row) {
 }
 
 void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
+  HOOKE_ASSERT(row.object < t.objects.size() && row.particle < t.particles.position.size());
   const Vec3 x = t.particles.position[row.particle].x;
   const DVec3 place = t.objects[row.object].origin + vector_cast<double>(x);
   const state::Pin pin = {row.object, row.particle, place, t.time, motion};
@@ -135,6 +139,7 @@ void unpin_particle(Tables& t, ParticleRow row) {
   const auto removed =
       std::erase_if(t.pins, [&](const state::Pin& pin) { return pin.particle == row.particle; });
   if (removed == 0) return;
+  HOOKE_ASSERT(removed == 1 && t.particles.mass[row.particle] > Real(0));
   t.particles.velocity[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
   ++t.revision;
 }
@@ -145,6 +150,7 @@ BodyId id_of(const Tables& t, std::uint32_t body) {
 
 BodyPart part_of(const Tables& t, std::uint32_t collider) {
   const std::uint32_t body = t.colliders.body[collider];
+  HOOKE_ASSERT(collider - t.bodies.first_collider[body] < t.bodies.collider_count[body]);
   return {id_of(t, body), collider - t.bodies.first_collider[body]};
 }
 
@@ -179,6 +185,7 @@ void restore_tables(const Tables& from, Tables& to) {
   std::array<std::uint32_t, 9> generations = {};
   std::size_t i = 0;
   for_each_slots(to, [&](const auto& slots) { generations[i++] = slots.generation() + 1; });
+  HOOKE_ASSERT(i == generations.size());
   const auto go_on = [&] {
     to.desc.workers = workers;
     to.revision = revision;

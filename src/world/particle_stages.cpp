@@ -151,6 +151,8 @@ void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::v
   pushed.assign(count, 0);
   for (const solver::ContactBlock& block : contacts.blocks) {
     for (int lane = 0; lane < block.count; ++lane) {
+      HOOKE_ASSERT(block.record_a[lane] / 16 < count);
+      HOOKE_ASSERT(block.anchored || block.record_b[lane] / 16 < count);
       pushed[block.record_a[lane] / 16] = 1;
       if (!block.anchored) pushed[block.record_b[lane] / 16] = 1;
     }
@@ -268,6 +270,7 @@ void begin_step(WorldData& world, double dt) {
     const auto begins = [&](std::uint32_t particle) {
       return row < contacts.particle.size() && contacts.particle[row] < particle;
     };
+    HOOKE_ASSERT(row == 0 || contacts.particle[row - 1] < rope_system.first_particle);  // ropes ascend
     while (begins(rope_system.first_particle)) ++row;
     rope_system.first_contact = static_cast<std::uint32_t>(row);
     while (begins(rope_system.first_particle + rope_system.node_count)) ++row;
@@ -358,6 +361,7 @@ void call_force_laws(WorldData& world, double time, Real h) {
       entry.law(view);
     }
   }
+  HOOKE_ASSERT(world.frame.law_force.size() == tables.particles.velocity.size());
   for (std::size_t p = 0; p < world.frame.law_force.size(); ++p) {
     tables.particles.velocity[p].v +=
         (h * tables.particles.velocity[p].inverse_mass) * world.frame.law_force[p];
@@ -367,6 +371,7 @@ void call_force_laws(WorldData& world, double time, Real h) {
 std::uint32_t quarantine_non_finite(WorldData& world) {
   state::Particles& particles = world.tables.particles;
   if (all_finite(particles) && all_finite(world.tables.segments.tension)) return 0;
+  HOOKE_ASSERT(world.frame.start_position.size() == particles.position.size());
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     if (is_finite(particles.position[i].x) && is_finite(particles.velocity[i].v)) continue;
@@ -381,6 +386,7 @@ std::uint32_t quarantine_non_finite(WorldData& world) {
 void rebase_origins(WorldData& world) {
   state::Particles& particles = world.tables.particles;
   for (state::Deformable& object : world.tables.objects) {
+    HOOKE_ASSERT(object.particles.count > 0);
     const Vec3 first = particles.position[object.particles.first].x;
     const Real size = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
     if (size <= kFarFromOrigin) continue;
@@ -396,6 +402,7 @@ void solve_solids(WorldData& world, Real h) {
   for_tetrahedra(world, solver::solve_tetrahedra);
   state::Tables& tables = world.tables;
   for_matched(world, h, solver::match_shape);
+  HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       solver::press_gas(tables.objects[world.derived.gas_objects[i]], static_cast<double>(h),
@@ -439,6 +446,7 @@ void solve_ropes(WorldData& world, Real h) {
   solver::remove_mass_shares(world.frame.hooked_points, tables.particles);
   solver::twist_nodes(world.frame.twist_rows, tables);
   world.frame.rope_system_scratch.resize(static_cast<std::size_t>(world.pool->workers()));
+  HOOKE_ASSERT(world.frame.velocity_before.size() == tables.particles.velocity.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.rope_systems.size()), 1, [&](Range rows, int part) {
     solver::solve_rope_systems(std::span(world.derived.rope_systems).subspan(rows.begin, rows.count()),
                                world.derived.coupled_groups.anchors, world.frame.velocity_before, h,

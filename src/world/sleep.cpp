@@ -1,5 +1,6 @@
 #include "world/sleep.h"
 
+#include "base/assert.h"
 #include "collision/continuous/shape_bounds.h"
 #include "state/sleeping_pairs.h"
 #include "world/body_stages.h"
@@ -88,6 +89,7 @@ void keep_rising_awake(state::Tables& t) {
   constexpr Real kSunk = Real(1e-3);  // Overlap from which on they stay awake [m].
   for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
     if (!(contact.separation < -kSunk)) continue;
+    HOOKE_ASSERT(std::max(contact.body_a, contact.body_b) < t.bodies.rest_time.size());
     t.bodies.rest_time[contact.body_a] = t.bodies.rest_time[contact.body_b] = Real(0);
   }
 }

@@ -59,6 +59,8 @@ void put_bodies_back(WorldData& world) {
 
 void put_points_back(WorldData& world) {
   state::Tables& t = world.tables;
+  HOOKE_ASSERT(world.frame.start_position.size() == t.particles.position.size());
+  HOOKE_ASSERT(world.frame.start_origin.size() == t.objects.size());
   std::copy(world.frame.start_position.begin(), world.frame.start_position.end(),
             t.particles.position.begin());
   std::copy(world.frame.start_velocity.begin(), world.frame.start_velocity.end(),

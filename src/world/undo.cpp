@@ -1,5 +1,7 @@
 #include "world/undo.h"
 
+#include "base/assert.h"
+
 #include <type_traits>
 #include <vector>
 
@@ -39,7 +41,10 @@ void shorten(state::SlotTable<IdType>& slots, std::size_t size) {
 
 Undo::Undo(state::Tables& tables) : tables_(tables) {
   std::size_t i = 0;
-  for_each_list(tables_, [&](const auto& list) { size_[i++] = list.size(); });
+  for_each_list(tables_, [&](const auto& list) {
+    HOOKE_ASSERT(i < size_.size());
+    size_[i++] = list.size();
+  });
 }
 
 Undo::~Undo() {
