@@ -212,6 +212,7 @@ void BroadPhase::query(const Box& box, std::vector<std::uint32_t>& found) const 
 }
 
 void BroadPhase::query_for(std::uint32_t collider, const Box& box, std::vector<std::uint32_t>& found) const {
+  HOOKE_ASSERT(collider < entries_.size());
   query_without(entries_[collider].group, box, found);
 }
 
@@ -312,9 +313,11 @@ void BroadPhase::merge_candidates() {
   std::erase_if(candidates_, [&](const ColliderPair& pair) {
     return entries_[pair.first].changed || entries_[pair.second].changed;
   });
+  HOOKE_ASSERT(std::is_sorted(fresh_.begin(), fresh_.end()));
   sorted_.resize(candidates_.size() + fresh_.size());
   std::merge(candidates_.begin(), candidates_.end(), fresh_.begin(), fresh_.end(), sorted_.begin());
   base::take_turns(sorted_, candidates_);
+  HOOKE_ASSERT(std::adjacent_find(candidates_.begin(), candidates_.end()) == candidates_.end());
   fresh_.reserve(sorted_.capacity());  // sort_pairs swaps the two
   for (const std::uint32_t collider : changed_) entries_[collider].changed = false;
   changed_.clear();

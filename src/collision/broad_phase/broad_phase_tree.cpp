@@ -1,5 +1,6 @@
 #include "collision/broad_phase/broad_phase_tree.h"
 
+#include "base/assert.h"
 #include "collision/broad_phase/broad_phase_tuning.h"
 
 #include <algorithm>
@@ -136,6 +137,7 @@ void BroadPhaseTree::set_child(std::uint32_t node, int lane, const Child& child)
 }
 
 void BroadPhaseTree::add_lane(std::uint32_t node, const Child& child) {
+  HOOKE_ASSERT(nodes_[node].count < kLanes);
   set_child(node, nodes_[node].count++, child);
 }
 
@@ -145,6 +147,7 @@ BroadPhaseTree::Child BroadPhaseTree::lane_of(std::uint32_t node, int lane) cons
 }
 
 void BroadPhaseTree::remove_lane(std::uint32_t node, int lane) {
+  HOOKE_ASSERT(lane < nodes_[node].count);
   const int last = --nodes_[node].count;
   if (lane != last) set_child(node, lane, lane_of(node, last));
   nodes_[node].set_box(last, {});

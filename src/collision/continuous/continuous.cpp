@@ -1,5 +1,6 @@
 #include "collision/continuous/continuous.h"
 
+#include "base/assert.h"
 #include "collision/continuous/continuous_tuning.h"
 
 #include <algorithm>
@@ -81,6 +82,7 @@ class ImpactQueue {
     const ColliderPair pair = candidate.pair;
     const std::uint32_t body_a = body_of(pair.first);
     const std::uint32_t body_b = body_of(pair.second);
+    HOOKE_ASSERT(body_a != body_b && std::max(body_a, body_b) < bodies_.path.size());
     if (bodies_.stoppable[body_a] == Stoppable::kNever && bodies_.stoppable[body_b] == Stoppable::kNever)
       return;
     const SweptCollider a = {colliders_, pair.first, bodies_.path[body_a]};
@@ -150,6 +152,7 @@ class ImpactQueue {
   bool clamp_path(std::uint32_t body, const Push& push, Real time) {
     Path& path = bodies_.path[body];
     SweptBodies::Clamps& clamps = bodies_.clamps[body];
+    HOOKE_ASSERT(clamps.count <= kMostClamps);
     const Stoppable stoppable = bodies_.stoppable[body];
     if (stoppable == Stoppable::kNever || (stoppable == Stoppable::kSlow && !push.firm)) return false;
     if (clamps.count == kMostClamps) return false;

@@ -1,5 +1,6 @@
 #include "collision/continuous/continuous_sweep.h"
 
+#include "base/assert.h"
 #include "collision/continuous/continuous_tuning.h"
 #include "collision/manifold/manifold_axes.h"
 #include "collision/manifold/manifold_mesh.h"
@@ -326,6 +327,7 @@ std::optional<Impact> find_impact(const SweptCollider& a, const SweptCollider& b
                                   SweepScratch& scratch) {
   if (is_wide(kind_of(a)) && is_wide(kind_of(b))) return std::nullopt;
   const bool swapped = is_wide(kind_of(b));
+  HOOKE_ASSERT(kind_of(a) != ShapeKind::kCompound && kind_of(b) != ShapeKind::kCompound);
   PairSweep sweep = swapped ? PairSweep(b, a, allowance, scratch) : PairSweep(a, b, allowance, scratch);
   auto impact = sweep.run(begin);
   if (impact && swapped) impact->normal = -impact->normal;

@@ -1,5 +1,7 @@
 #include "collision/continuous/shape_bounds.h"
 
+#include "base/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,6 +53,7 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
     }
     case ShapeKind::kHull: {
       Box box;
+      HOOKE_ASSERT(s.hull && !s.hull->vertices.empty());
       for (const Vec3 v : s.hull->vertices) {
         const Vec3 p = rotate(rotation, v);
         box = {geometry::min_of(box.lower, p), geometry::max_of(box.upper, p)};
@@ -58,6 +61,7 @@ Box local_bounds(const state::ColliderShape& s, Quat rotation) {
       return box;
     }
     case ShapeKind::kMesh: {
+      HOOKE_ASSERT(s.mesh && !s.mesh->bvh.nodes.empty());
       const geometry::BvhNode& root = s.mesh->bvh.nodes.front();
       const Vec3 center = rotate(rotation, Real(0.5) * (root.lower + root.upper));
       return around(center, rotated_extents(rotation, Real(0.5) * (root.upper - root.lower)));

@@ -1,5 +1,6 @@
 #include "collision/deformable/contact_frames.h"
 
+#include "base/assert.h"
 #include "collision/deformable/deformable_tuning.h"
 #include "collision/distance/shape_gap.h"
 #include "state/body_frames.h"
@@ -10,6 +11,7 @@
 namespace hooke::collision {
 
 Frame frame_of(const state::Tables& t, std::uint32_t collider, const state::Deformable& object) {
+  HOOKE_ASSERT(t.colliders.body[collider] < t.bodies.center.size());
   const Pose body = state::pose_now(t.bodies, t.colliders.body[collider]);
   const DVec3 arm = vector_cast<double>(rotate(body.rotation, t.colliders.position[collider]));
   const std::uint32_t row = t.colliders.body[collider];

@@ -1,5 +1,6 @@
 #include "collision/deformable/element_contacts.h"
 
+#include "base/assert.h"
 #include "collision/deformable/deformable_tuning.h"
 #include "collision/distance/distance.h"
 #include "collision/distance/protrusion_gap.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -258,6 +260,8 @@ class PairSearch {
   }
 
   void add_row(const Element& e, std::uint32_t feature) {
+    HOOKE_ASSERT(std::adjacent_find(e.particle.begin(), e.particle.begin() + e.count,
+                                    std::greater_equal<>()) == e.particle.begin() + e.count);
     finder_.contacts.push_back(
         {.object = query_.object,
          .collider = collider_,
@@ -290,6 +294,7 @@ class PairSearch {
 
   /// A point that would enter the shape is taken to slide along it.
   const ElementContactFinder::PointGap& gap_of(std::uint32_t particle) {
+    HOOKE_ASSERT(particle - object_.particles.first < finder_.gaps.size());
     ElementContactFinder::PointGap& of = finder_.gaps[particle - object_.particles.first];
     if (of.pass == finder_.pass) return of;
     of.pass = finder_.pass;

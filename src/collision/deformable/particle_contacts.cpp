@@ -1,5 +1,6 @@
 #include "collision/deformable/particle_contacts.h"
 
+#include "base/assert.h"
 #include "base/sort_unique.h"
 #include "base/take_turns.h"
 #include "collision/deformable/contact_frames.h"
@@ -197,6 +198,7 @@ void move_forces(state::Contacts& contacts, std::size_t first, std::size_t end) 
 /// whether it holds the particle says so in `known`.
 void update_mesh_rows(state::Contacts& contacts, std::size_t first, std::span<const TriangleGap> gaps,
                       std::optional<bool> known, const Frame& frame, Real radius) {
+  HOOKE_ASSERT(!gaps.empty() && first + gaps.size() <= contacts.separation.size());
   std::size_t nearest = 0;
   Real least = std::numeric_limits<Real>::infinity();
   bool any_holds = false;
@@ -279,6 +281,7 @@ void find_contacts(double dt, ParticleContactScratch& scratch, state::Tables& t)
 void update_contacts(parallel::Range range, Real h, ParticleContactScratch& scratch, state::Tables& t) {
   state::Contacts& contacts = t.contacts;
   const std::size_t count = contacts.particle.size();
+  HOOKE_ASSERT(scratch.buffers().gaps.size() == count && static_cast<std::size_t>(range.end) <= count);
   const auto same_pair = [&](std::size_t a, std::size_t b) {
     return contacts.particle[a] == contacts.particle[b] && contacts.collider[a] == contacts.collider[b];
   };

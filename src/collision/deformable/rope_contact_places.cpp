@@ -1,5 +1,6 @@
 #include "collision/deformable/rope_contact_places.h"
 
+#include "base/assert.h"
 #include "collision/deformable/contact_frames.h"
 #include "collision/deformable/deformable_tuning.h"
 #include "collision/deformable/rope_pair.h"
@@ -68,6 +69,8 @@ class RopeRowUpdate {
   [[nodiscard]] Real slope(std::size_t side, bool onward) const {
     const std::uint32_t end = row_.particle[2 * side + (onward ? 1 : 0)];
     const std::uint32_t next = onward ? end + 1 : end - 1;
+    HOOKE_ASSERT(next - t_.objects[side == 0 ? row_.object_a : row_.object_b].particles.first <
+                 t_.objects[side == 0 ? row_.object_a : row_.object_b].particles.count);
     const Vec3 moved = h_ * (t_.particles.velocity[next].v - t_.particles.velocity[end].v);
     const Vec3 along = t_.particles.position[next].x - t_.particles.position[end].x + at_.share * moved;
     const Real size = length(along);

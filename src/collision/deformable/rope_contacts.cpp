@@ -1,5 +1,6 @@
 #include "collision/deformable/rope_contacts.h"
 
+#include "base/assert.h"
 #include "base/take_turns.h"
 #include "collision/deformable/contact_frames.h"
 #include "collision/deformable/deformable_tuning.h"
@@ -30,6 +31,7 @@ bool may_touch(const state::Deformable& object) {
 }
 
 Vec3 mean_velocity(const Tables& t, const std::vector<std::uint32_t>& ropes) {
+  HOOKE_ASSERT(!ropes.empty());
   DVec3 sum;
   double count = 0;
   for (const std::uint32_t o : ropes) {
@@ -77,6 +79,7 @@ void add_row(const Tables& t, ColliderPair pair, RopeContactFinder& finder) {
   RopeContact row = {.segment_a = pair.first, .segment_b = pair.second};
   row.object_a = finder.object_of[pair.first];
   row.object_b = finder.object_of[pair.second];
+  HOOKE_ASSERT(pair.first < pair.second && row.object_a <= row.object_b);
   const state::Deformable& a = t.objects[row.object_a];
   const state::Deformable& b = t.objects[row.object_b];
   const std::uint32_t first_a = a.particles.first + row.segment_a - a.segments.first;
@@ -181,6 +184,7 @@ void hand_over(std::vector<RopeContact>& rows) {
   for (RopeContact& row : rows) {
     if (row.separation < kNoContact || row.normal == Vec3{}) continue;
     const std::uint32_t successor = successor_of(rows, row.successor);
+    HOOKE_ASSERT(successor == RopeContact::kNone || &rows[successor] != &row);
     if (successor != RopeContact::kNone && dot(rows[successor].normal, row.normal) > kRopeSameSide) {
       rows[successor].normal_force += row.normal_force;
       rows[successor].friction_force += row.friction_force;

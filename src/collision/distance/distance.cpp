@@ -1,5 +1,6 @@
 #include "collision/distance/distance.h"
 
+#include "base/assert.h"
 #include "collision/distance/distance_tuning.h"
 #include "geometry/closest.h"
 
@@ -186,6 +187,7 @@ Distance distance_by_supports(const Convex& a, const Convex& b, Real enough) {
     const double along = dot(v, next.w);
     if (along > far * size) return {.distance = static_cast<Real>(along / size) - skins};
     if (size * size - along <= size * kDistanceRounding * scale || holds(s, next.w)) break;
+    HOOKE_ASSERT(s.count > 0 && s.count < 4);
     s.corner[s.count++] = next;
     if (!reduce(s, along > 0)) return {.distance = -skins, .cores_overlap = true};
     const Corner nearer = s.nearest();

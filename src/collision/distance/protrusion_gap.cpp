@@ -1,5 +1,6 @@
 #include "collision/distance/protrusion_gap.h"
 
+#include "base/assert.h"
 #include "collision/distance/distance_tuning.h"
 #include "geometry/closest.h"
 
@@ -116,6 +117,7 @@ class GapSearch {
 
 ProtrusionSearch find_protrusion_gap(const state::Mesh& mesh, std::uint32_t protrusion,
                                      std::span<const Vec3> corners) {
+  HOOKE_ASSERT(!corners.empty() && corners.size() <= 3 && protrusion < mesh.protrusions.ends.size());
   return GapSearch(mesh, protrusion, corners).run();
 }
 

@@ -1,5 +1,6 @@
 #include "collision/distance/shape_gap.h"
 
+#include "base/assert.h"
 #include "geometry/closest.h"
 #include "geometry/convex/closest_hull.h"
 
@@ -45,6 +46,7 @@ Gap gap_to_shape(const state::ColliderShape& shape, Vec3 x) {
 }
 
 TriangleGap gap_to_triangle(const state::Mesh& mesh, std::uint32_t triangle, Vec3 x) {
+  HOOKE_ASSERT(triangle < mesh.desc.triangles.size());
   const auto [ia, ib, ic] = mesh.desc.triangles[triangle];
   const Vec3 a = mesh.desc.positions[ia];
   const Vec3 b = mesh.desc.positions[ib];

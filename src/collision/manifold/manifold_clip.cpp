@@ -1,5 +1,7 @@
 #include "collision/manifold/manifold_clip.h"
 
+#include "base/assert.h"
+
 namespace hooke::collision {
 
 namespace {
@@ -16,6 +18,7 @@ std::uint32_t crossing_key(std::uint32_t edge, std::uint32_t clip) {
 void clip_polygon(CutPolygon& polygon, Flat p, Flat q, std::uint32_t edge) {
   const Flat along = q - p;
   const int count = polygon.count;
+  HOOKE_ASSERT(count >= 0 && count <= CutPolygon::kMaxCuts);
   std::array<Real, CutPolygon::kMaxCuts + 1> inside;
   bool all_inside = true;
   for (int i = 0; i < count; ++i) {

@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_features.h"
 
+#include "base/assert.h"
 #include "collision/manifold/manifold_clip.h"
 #include "collision/manifold/manifold_tuning.h"
 
@@ -144,6 +145,7 @@ struct Projection {
   [[nodiscard]] Seen see(const Feature& f) const {
     Seen s;
     s.feature = &f;
+    HOOKE_ASSERT(f.count > (f.kind == Feature::Kind::kSegment ? 1 : 0));
     for (int i = 0; i < f.count; ++i)
       s.at[static_cast<std::size_t>(i)] = flat(f.point[static_cast<std::size_t>(i)]);
     s.height = hooke::dot(n, f.point[0]);
@@ -338,6 +340,7 @@ Feature face_of_box(const Convex& box, int face) {
 
 Feature face_of_hull(const Convex& c, std::size_t face) {
   const geometry::ConvexHull::Face& from = c.hull->faces[face];
+  HOOKE_ASSERT(from.count >= 3 && from.first + from.count <= c.hull->loop.size());
   Feature f;
   f.kind = Feature::Kind::kPolygon;
   f.normal = c.axes * from.normal;

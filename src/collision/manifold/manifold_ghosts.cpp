@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_ghosts.h"
 
+#include "base/assert.h"
 #include "collision/manifold/manifold_tuning.h"
 
 #include <algorithm>
@@ -37,6 +38,7 @@ void open_rings(std::span<const SurfaceContact> all, Pieces pieces, Ghosts& foun
   std::vector<std::uint32_t>& loose = found.loose;
   const auto count = static_cast<std::uint32_t>(all.size());
   held.clear();
+  HOOKE_ASSERT(coverer.size() == all.size() && found.is_ghost.size() == all.size());
   loose.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t end = i;

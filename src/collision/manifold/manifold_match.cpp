@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_match.h"
 
+#include "base/assert.h"
 #include "collision/manifold/manifold_tuning.h"
 
 #include <algorithm>
@@ -74,9 +75,11 @@ void match_by_position(const Manifold& old, Matched matched, Manifold& manifold)
 void make_points(ContactResult& result, Real margin, const ContactFrame& frame, const Manifold* old,
                  Manifold& manifold) {
   std::array<std::uint32_t, Manifold::kMaxPoints> keys = {};
+  HOOKE_ASSERT(old != &manifold && (old == nullptr || old->point_count <= Manifold::kMaxPoints));
   const std::size_t key_count = old != nullptr ? static_cast<std::size_t>(old->point_count) : 0;
   for (std::size_t i = 0; i < key_count; ++i) keys[i] = old->point[i].key;
   reduce_points(result, margin, std::span(keys.data(), key_count));
+  HOOKE_ASSERT(result.count <= Manifold::kMaxPoints);
   manifold.normal = result.normal;
   manifold.point_count = result.count;
   for (std::size_t i = 0; i < static_cast<std::size_t>(result.count); ++i) {

@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_mesh.h"
 
+#include "base/assert.h"
 #include "base/take_turns.h"
 #include "collision/manifold/manifold_axes.h"
 #include "collision/manifold/manifold_features.h"
@@ -130,6 +131,7 @@ void append_contact(const Convex& triangle, std::uint32_t index, const ContactRe
   const auto points = std::span(result.point.data(), static_cast<std::size_t>(result.count));
   const auto deepest = std::min_element(
       points.begin(), points.end(), [](const auto& p, const auto& q) { return p.separation < q.separation; });
+  HOOKE_ASSERT(deepest != points.end());
   scratch.contacts.push_back({triangle, index, result.normal, deepest->on_a, result.separation});
   for (ContactResultPoint p : points) {
     p.key = key_on(index, p.key);
@@ -165,6 +167,7 @@ void add_to_patches(const SurfaceContact& contact, std::span<const ContactResult
                     std::vector<PatchResult>& patches) {
   const auto is_same_plane = [&](const PatchResult& patch) {
     const ContactResultPoint& p = patch.result.point[0];
+    HOOKE_ASSERT(patch.result.count > 0);
     return is_same_direction(patch.result.normal, contact.normal) &&
            std::fabs(dot(contact.normal, contact.place - p.on_a)) <= kFlush;
   };
@@ -253,6 +256,7 @@ Vec3 exit_direction(const PlacedMesh& a, std::uint32_t triangle, const Convex& b
 }
 
 Convex PlacedMesh::triangle(std::uint32_t index) const {
+  HOOKE_ASSERT(index < mesh.desc.triangles.size());
   Convex convex = {.shape = {.kind = ShapeKind::kMesh}};
   for (std::size_t i = 0; i < 3; ++i) {
     convex.corners[i] = axes * (mesh.desc.positions[mesh.desc.triangles[index][i]] - origin);
@@ -279,6 +283,7 @@ Real collide_mesh(const PlacedMesh& a, const Convex& b, const MeshReach& reach, 
   find_ghosts(scratch.contacts, Pieces::kOfOneMesh, scratch.ghosts);
   const auto points_of = [&scratch](std::size_t i) {
     const std::size_t first = scratch.first_point[i];
+    HOOKE_ASSERT(first < scratch.first_point[i + 1] && scratch.first_point[i + 1] <= scratch.points.size());
     return std::span(scratch.points).subspan(first, scratch.first_point[i + 1] - first);
   };
   const std::vector<std::uint8_t>& is_ghost = scratch.ghosts.is_ghost;

@@ -1,5 +1,6 @@
 #include "collision/manifold/manifold_points.h"
 
+#include "base/assert.h"
 #include "collision/manifold/manifold_tuning.h"
 #include "state/manifolds.h"
 
@@ -104,6 +105,7 @@ void reduce_points(ContactResult& result, Real margin, std::span<const std::uint
   });
   std::array<int, 4> chosen = {first, second, third, fourth};
   std::sort(chosen.begin(), chosen.end());
+  HOOKE_ASSERT(chosen.front() >= 0 && chosen.back() < result.count);
   result.count = 0;
   int last = -1;
   for (const int i : chosen) {
@@ -129,6 +131,7 @@ void swap_sides(ContactResult& result) {
 }
 
 void collide(const Convex& a, const Convex& b, const ContactQuery& query, ContactResult& result) {
+  HOOKE_ASSERT(a.shape.kind != ShapeKind::kHalfSpace && b.shape.kind != ShapeKind::kHalfSpace);
   const ShapeKind kind_a = a.shape.kind;
   const ShapeKind kind_b = b.shape.kind;
   if (is_round_pair(kind_a, kind_b)) return collide_round(a, b, query, result);

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/cached_manifolds.h"
 
+#include "base/assert.h"
 #include "collision/narrow_phase/narrow_phase_tuning.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ void SmallMotions::find(parallel::ThreadPool& pool, const state::Bodies& bodies,
   rows_.clear();
   const auto list = [this](std::span<const std::uint32_t> rows) {
     for (const std::uint32_t row : rows) {
+      HOOKE_ASSERT(row < is_listed_.size());
       if (is_listed_[row] == 0) rows_.push_back(row);
       is_listed_[row] = 1;
     }
@@ -95,6 +97,7 @@ Real gap_after(const SmallMotion& a, const SmallMotion& b, Real gap) {
 
 void move_cached_manifold(const SmallMotion& a, const SmallMotion& b, bool fixed_is_a, state::Manifold& m) {
   const bool stays = a.slow && b.slow;
+  HOOKE_ASSERT(m.point_count <= state::Manifold::kMaxPoints);
   const Vec3 apart = b.displacement - a.displacement;
   if (!stays) {
     m.normal = normalize(m.normal + (fixed_is_a ? a.rotation_change : b.rotation_change) * m.normal);

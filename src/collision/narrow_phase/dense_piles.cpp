@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/dense_piles.h"
 
+#include "base/assert.h"
 #include "collision/narrow_phase/narrow_phase.h"
 #include "collision/narrow_phase/narrow_phase_tuning.h"
 
@@ -17,6 +18,7 @@ PileNeighborKey key_of(std::uint32_t body, std::uint32_t other, double distance_
 
 void DensePiles::Nearest::add(const PileNeighborKey& key) {
   const auto end = keys.begin() + size;
+  HOOKE_ASSERT(std::is_heap(keys.begin(), end));
   if (std::find(keys.begin(), end, key) != end) return;  // it is another shape of the same body
   if (size < kMostNeighborsInPile) {
     keys[size++] = key;
@@ -33,6 +35,7 @@ bool DensePiles::Nearest::chooses(const PileNeighborKey& key) const {
 }
 
 void DensePiles::note(const state::Bodies& bodies, const Deep& deep) {
+  HOOKE_ASSERT(deep.a != deep.b);
   if (!gives_way(bodies, deep.a) || !gives_way(bodies, deep.b)) return;
   deep_.push_back(deep);
 }
@@ -140,6 +143,7 @@ void DensePiles::divide() {
     if (i == 0 || sets_.root(members_[i]) != sets_.root(members_[i - 1])) begins_.push_back(i);
   }
   begins_.push_back(static_cast<std::uint32_t>(members_.size()));
+  HOOKE_ASSERT(begins_.front() == 0);
 }
 
 }  // namespace hooke::collision

@@ -1,5 +1,9 @@
+#include "base/assert.h"
 #include "base/take_turns.h"
 #include "collision/narrow_phase/narrow_phase.h"
+
+#include <algorithm>
+#include <functional>
 
 namespace hooke::collision {
 
@@ -7,6 +11,7 @@ void remove_empty(state::Pairs& pairs) {
   std::uint32_t remaining = 0;
   for (state::Pair& pair : pairs.pair) {
     const std::uint32_t end = pair.first_manifold + pair.manifold_count;
+    HOOKE_ASSERT(remaining <= pair.first_manifold && end <= pairs.manifold.size());
     const std::uint32_t first = remaining;
     for (std::uint32_t i = pair.first_manifold; i < end; ++i) {
       if (pairs.manifold[i].point_count == 0 && !pair.is_refreshed()) continue;
@@ -20,6 +25,7 @@ void remove_empty(state::Pairs& pairs) {
 
 void NarrowPhase::merge_pairs(std::span<const ColliderPair> found, std::span<const std::uint8_t> asked,
                               state::Pairs& pairs) {
+  HOOKE_ASSERT(std::adjacent_find(found.begin(), found.end(), std::greater_equal<>()) == found.end());
   merged_.clear();
   auto old = pairs.pair.begin();
   const auto key_of = [](const state::Pair& p) { return ColliderPair{p.collider_a, p.collider_b}; };

@@ -1,5 +1,6 @@
 #include "collision/query/queries.h"
 
+#include "base/assert.h"
 #include "collision/distance/shape_gap.h"
 #include "collision/query/queries_ray.h"
 #include "math/rotation.h"
@@ -75,6 +76,7 @@ std::optional<ClosestHit> closest_on_collider(const QueryScene& scene, std::uint
 
 bool can_be_found(const QueryScene& scene, std::uint32_t collider) {
   const std::uint32_t body = scene.colliders.body[collider];
+  HOOKE_ASSERT(body < scene.bodies.traits.size());
   const state::BodyTraits& traits = scene.bodies.traits[body];
   return body != scene.skip && traits.collides && (scene.sensors || !traits.sensor) &&
          state::filters_agree(traits.filter, scene.filter);

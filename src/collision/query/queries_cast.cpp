@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "collision/continuous/shape_bounds.h"
 #include "collision/distance/distance.h"
 #include "collision/manifold/manifold_mesh.h"
@@ -32,6 +33,7 @@ bool is_convex(const state::ColliderShape& shape) {
 }
 
 PlacedConvex place_convex(const state::ColliderShape& shape, const Pose& pose) {
+  HOOKE_ASSERT(is_convex(shape));
   const geometry::Box box = bounds_of(shape, {{}, pose.rotation});
   const Vec3 farthest = geometry::max_of(-box.lower, box.upper);
   return {{.shape = shape.shape, .axes = matrix_of(normalize(pose.rotation)), .hull = shape.hull.get()},
