@@ -56,6 +56,7 @@ void collect_sides(std::uint32_t vertex, std::span<const Triangle> triangles, co
   for (const std::uint32_t t : topology.triangles_at(vertex)) {
     const Triangle& triangle = triangles[t];
     const std::uint32_t corner = triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+    HOOKE_ASSERT(triangle[corner] == vertex);
     const std::uint32_t after = (corner + 1) % 3;
     const std::uint32_t before = (corner + 2) % 3;
     if (triangle[after] > vertex) sides.push_back({triangle[after], t, corner, true});
@@ -71,6 +72,7 @@ EdgeSides make_edge_sides(std::span<const Side> sides, std::span<const Triangle>
   EdgeSides edge;
   edge.triangle_count = static_cast<std::uint32_t>(sides.size());
   for (std::size_t i = 0; i < std::min<std::size_t>(sides.size(), 2); ++i) {
+    HOOKE_ASSERT(sides[i].number < 3);
     edge.triangles[i] = sides[i].triangle;
     edge.opposite[i] = triangles[sides[i].triangle][(sides[i].number + 2) % 3];
   }

@@ -93,12 +93,16 @@ std::vector<std::uint32_t> compute_cuthill_mckee_order(std::size_t vertex_count,
     if (visited[first] == kPasses) continue;
     append_part(neighbors, first, visited, order);
   }
+  HOOKE_ASSERT(order.size() == vertex_count);
   return order;
 }
 
 std::vector<std::uint32_t> invert_order(std::span<const std::uint32_t> order) {
   std::vector<std::uint32_t> inverse(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) inverse[order[i]] = i;
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    HOOKE_ASSERT(order[i] < inverse.size());
+    inverse[order[i]] = i;
+  }
   return inverse;
 }
 

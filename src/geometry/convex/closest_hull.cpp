@@ -1,5 +1,7 @@
 #include "geometry/convex/closest_hull.h"
 
+#include "base/assert.h"
+
 #include <cstddef>
 
 namespace hooke::geometry {
@@ -12,6 +14,7 @@ Real height_over(const ConvexHull::Face& face, Vec3 p) {
 
 /// Whether `p`, seen along the normal, is over the polygon.
 bool is_over(const ConvexHull& hull, const ConvexHull::Face& face, Vec3 p) {
+  HOOKE_ASSERT(face.count >= 3 && face.first + face.count <= hull.loop.size());
   Vec3 from = hull.vertices[hull.loop[face.first + face.count - std::size_t{1}]];
   for (std::size_t i = 0; i < face.count; ++i) {
     const Vec3 to = hull.vertices[hull.loop[face.first + i]];
@@ -39,6 +42,7 @@ SurfacePoint<Real> closest_on_edges(Vec3 p, const ConvexHull& hull, Vec3 normal_
 }  // namespace
 
 SurfacePoint<Real> closest_on_hull(Vec3 p, const ConvexHull& hull) {
+  HOOKE_ASSERT(!hull.faces.empty());
   std::size_t highest = 0;
   for (std::size_t i = 0; i < hull.faces.size(); ++i) {
     const ConvexHull::Face& face = hull.faces[i];

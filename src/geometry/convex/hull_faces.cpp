@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "geometry/convex/quickhull.h"
 
 #include <algorithm>
@@ -72,6 +73,7 @@ class FaceGrowth {
     std::array<std::size_t, 3> place = {};
     std::transform(vertex.begin(), vertex.end(), place.begin(),
                    [this](std::uint32_t v) { return find_on_rim(v); });
+    HOOKE_ASSERT(std::ranges::count(place, rim_.size()) <= 1);  // they share an edge
     std::vector<std::uint32_t> rim = rim_;
     std::size_t fresh = 0;
     while (fresh < 3 && place[fresh] != rim_.size()) ++fresh;

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hooke::geometry {
@@ -73,6 +74,7 @@ class Quickhull {
       result.push_back(facets_[i]);
     }
     for (HullTriangle& t : result) {
+      HOOKE_ASSERT(std::ranges::all_of(t.neighbor, [&](std::uint32_t n) { return number[n] != kNobody; }));
       for (std::uint32_t& n : t.neighbor) n = number[n];
     }
     return result;
@@ -144,6 +146,7 @@ class Quickhull {
   /// Replaces the facets that the point sees, `seen` among them, by a cone to the point.
   void add_point(std::uint32_t seen, std::uint32_t point) {
     remove_visible(seen, points_[point]);
+    HOOKE_ASSERT(horizon_.size() >= 3);
     const std::size_t first = facets_.size();
     for (const HorizonEdge& edge : horizon_) {
       facet_from_[edge.start] = add_facet({edge.start, edge.end, point});
@@ -152,6 +155,7 @@ class Quickhull {
       const HorizonEdge& edge = horizon_[i];
       const auto facet = static_cast<std::uint32_t>(first + i);
       const std::uint32_t next = facet_from_[edge.end];
+      HOOKE_ASSERT(next >= first && next < facets_.size());  // the rim is a loop
       facets_[facet].neighbor[0] = edge.beyond;
       facets_[facet].neighbor[1] = next;
       facets_[next].neighbor[2] = facet;

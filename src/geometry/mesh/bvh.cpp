@@ -85,6 +85,7 @@ void find_triangles(const Bvh& bvh, const Box& box, std::vector<std::uint32_t>& 
     const BvhNode& node = bvh.nodes[i];
     const bool is_leaf = node.count > 0;
     const bool is_near = overlap(box_of_node(node), box);
+    HOOKE_ASSERT(is_leaf ? node.next + node.count <= bvh.order.size() : node.next > i);
     for (std::uint32_t k = node.next; is_leaf && is_near && k < node.next + node.count; ++k) {
       const auto& [a, b, c] = bvh.corners[k];
       if (overlap(box_of(a, b, c), box)) found.push_back(bvh.order[k]);
@@ -102,6 +103,7 @@ void find_triangles_on_path(const Bvh& bvh, DVec3 origin, DVec3 motion, double r
     const BvhNode& node = bvh.nodes[i];
     const bool is_leaf = node.count > 0;
     const bool is_near = ray.enter(box_of_node(node), radius) <= 1.0;
+    HOOKE_ASSERT(is_leaf ? node.next + node.count <= bvh.order.size() : node.next > i);
     for (std::uint32_t k = node.next; is_leaf && is_near && k < node.next + node.count; ++k) {
       const auto& [a, b, c] = bvh.corners[k];
       const double fraction = ray.enter(box_of(a, b, c), radius);

@@ -153,6 +153,7 @@ Bvh build_bvh(std::span<const Vec3> positions, std::span<const Triangle> triangl
     append_node(task, bvh, tasks);
   }
   link_nodes(bvh.nodes);
+  HOOKE_ASSERT(bvh.order.size() == triangles.size());
   bvh.corners.reserve(triangles.size());
   for (const std::uint32_t t : bvh.order) {
     const auto& [a, b, c] = triangles[t];

@@ -1,5 +1,6 @@
 #include "geometry/mesh/contact_mesh.h"
 
+#include "base/assert.h"
 #include "geometry/closest.h"
 #include "math/trig.h"
 
@@ -39,6 +40,7 @@ void make_normals_and_edges(ContactMesh& solid) {
   }
   for (std::size_t e = 0; e < solid.topology.edges.size(); ++e) {
     const EdgeSides& sides = solid.topology.edge_sides[e];
+    HOOKE_ASSERT(sides.triangle_count == 2);  // it is closed
     const DVec3 across = solid.positions[sides.opposite[1]] - solid.positions[solid.topology.edges[e][0]];
     const double sine = dot(solid.face_normals[sides.triangles[0]], direction_or(across, {}));
     solid.is_convex_edge.push_back(sine < -kFlat ? 1 : 0);
@@ -73,6 +75,7 @@ void visit_near(const ContactMesh& solid, DVec3 p, const Reach& reach, const Vis
     Open near = {top.node + 1, distance(top.node + 1)};
     Open far = {tree.nodes[near.node].next, distance(tree.nodes[near.node].next)};
     if (far.distance < near.distance) std::swap(near, far);
+    HOOKE_ASSERT(count + 2 <= open.size());
     open[count++] = far;
     open[count++] = near;
   }
