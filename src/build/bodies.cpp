@@ -1,5 +1,6 @@
 #include "hooke/geometry.h"
 
+#include "base/assert.h"
 #include "base/make_room.h"
 #include "build/build.h"
 #include "build/checks.h"
@@ -240,6 +241,7 @@ std::uint32_t take_body_row(Tables& t) {
     return static_cast<std::uint32_t>(t.bodies.motion.size()) - 1;
   }
   const std::uint32_t row = t.free_bodies.back();
+  HOOKE_ASSERT(row < t.bodies.traits.size() && !t.bodies.traits[row].alive);
   t.free_bodies.pop_back();
   return row;
 }
@@ -249,6 +251,7 @@ std::uint32_t take_collider_rows(Tables& t, std::uint32_t count) {
   const auto hole = std::find_if(t.free_colliders.begin(), t.free_colliders.end(), fits);
   if (hole != t.free_colliders.end()) {
     const std::uint32_t first = hole->first;
+    HOOKE_ASSERT(hole->end() <= t.colliders.body.size());
     t.free_colliders.erase(hole);
     return first;
   }
@@ -395,12 +398,14 @@ Result<std::uint32_t> add_body(const BodyDesc& desc, Tables& t) {
 }
 
 void remove_bodies(const std::vector<std::uint8_t>& goes, Tables& t) {
+  HOOKE_ASSERT(goes.size() == t.bodies.traits.size());
   state::remove_pairs(goes, t.colliders, t.pairs);
   std::erase_if(t.moving_bodies, [&](std::uint32_t row) { return goes[row] != 0; });
   for (std::uint32_t row = 0; row < goes.size(); ++row) {
     if (goes[row] == 0) continue;
     const state::Rows rows = {t.bodies.first_collider[row], t.bodies.collider_count[row]};
     for (std::uint32_t i = rows.first; i < rows.end(); ++i) {
+      HOOKE_ASSERT(t.colliders.body[i] == row);
       t.colliders.body[i] = state::Colliders::kNoBody;
       t.colliders.shape[i] = {};
     }

@@ -1,6 +1,7 @@
 /// This file makes cloth from a grid or a mesh: points with mass by area, springs of three classes, length
 /// limits, bends, triangles and tethers.
 
+#include "base/assert.h"
 #include "build/build.h"
 #include "build/common.h"
 #include "build/connection_points.h"
@@ -279,6 +280,7 @@ void append_triangles(const Surface& s, double areal_density, state::Tables& tab
   state::Deformable& object = tables.objects.back();
   for (std::uint32_t i = 0; i < s.triangles.size(); ++i) {
     const Triangle& t = s.triangles[i];
+    HOOKE_ASSERT(t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
     std::uint8_t own_edges = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const geometry::EdgeSides& sides = s.topology.edge_sides[s.topology.triangle_edges[i][k]];

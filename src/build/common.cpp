@@ -1,5 +1,6 @@
 #include "build/common.h"
 
+#include "base/assert.h"
 #include "build/build.h"
 
 #include <algorithm>
@@ -57,6 +58,7 @@ void add_loads(const std::vector<LoadDesc>& loads, std::vector<Real>& mass) {
 state::Deformable& append_object(PointRef::Kind kind, const Points& points, const std::vector<PinDesc>& pins,
                                  state::Tables& tables) {
   const auto count = static_cast<std::uint32_t>(points.position.size());
+  HOOKE_ASSERT(count > 0 && points.row_of.size() == count && points.mass.size() == count);
   state::Particles& particles = tables.particles;
   state::Deformable object;
   object.kind = kind;
@@ -71,6 +73,7 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   const std::size_t first = object.particles.first;
   state::Particles::for_each_column(particles, [&](auto& column) { column.resize(first + count); });
   for (std::uint32_t i = 0; i < count; ++i) {
+    HOOKE_ASSERT(points.row_of[i] < count && !(points.mass[i] < Real(0)));
     const std::size_t row = first + points.row_of[i];
     particles.row_of[first + i] = points.row_of[i];
     particles.position[row] = {vector_cast<Real>(points.position[i] - object.origin), points.radius[i]};
@@ -85,6 +88,7 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
 
   const auto object_row = static_cast<std::uint32_t>(tables.objects.size());
   for (const PinDesc& pin : pins) {
+    HOOKE_ASSERT(pin.point < count);
     const auto row = static_cast<std::uint32_t>(first + points.row_of[pin.point]);
     if (particles.velocity[row].inverse_mass == Real(0)) continue;  // Of two pins the first one counts.
     particles.velocity[row] = {};
@@ -100,6 +104,8 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
 void append_spring(const SpringRow& spring, state::Tables& tables) {
   state::Deformable& object = tables.objects.back();
   state::Springs& springs = tables.springs;
+  HOOKE_ASSERT(spring.a != spring.b && std::max(spring.a, spring.b) < object.particles.count);
+  HOOKE_ASSERT(object.springs.end() == springs.particle_a.size());  // no other object has got any since
   springs.particle_a.push_back(row_of(tables, object, spring.a));
   springs.particle_b.push_back(row_of(tables, object, spring.b));
   springs.rest_length.push_back(spring.rest_length);

@@ -1,5 +1,6 @@
 #include "build/hook_ends.h"
 
+#include "base/assert.h"
 #include "build/common.h"
 #include "build/connection_points.h"
 #include "geometry/closest.h"
@@ -91,6 +92,7 @@ HookPlace rows_of(const state::NamedPlace& named, const Deformable& object, cons
   HookPlace place;
   for (std::size_t i = 0; i < named.points.size(); ++i) {
     if (!(named.weights[i] > Real(0))) continue;
+    HOOKE_ASSERT(named.points[i] < object.particles.count);
     place.particle[place.particle_count] = row_of(t, object, named.points[i]);
     place.weight[place.particle_count++] = named.weights[i];
   }
@@ -151,6 +153,7 @@ Result<FoundEnd> find_body(const HookEnd& end, const char* where, const Tables& 
 HookPlace nearest_place(const Tables& t, const Deformable& object, DVec3 wanted) {
   Nearest nearest = {t, wanted - object.origin};
   find_nearest(object, nearest);
+  HOOKE_ASSERT(nearest.place.particle_count > 0);
   return nearest.place;
 }
 

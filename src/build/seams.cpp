@@ -1,5 +1,6 @@
 /// This file makes seams: it finds two edges as lines of points, and the stitches that hold them together.
 
+#include "base/assert.h"
 #include "build/build.h"
 #include "build/checks.h"
 #include "build/common.h"
@@ -59,6 +60,7 @@ std::vector<Edge> open_edges_of(const Deformable& object, const Tables& t) {
     const auto [a, b, c] = t.triangles.corners[i];
     const std::array corners = {a, b, c};
     for (std::size_t k = 0; k < 3; ++k) {
+      HOOKE_ASSERT(corners[k] - object.particles.first < object.particles.count);
       edges.emplace_back(point_of[corners[k] - object.particles.first],
                          point_of[corners[(k + 1) % 3] - object.particles.first]);
     }
@@ -111,6 +113,7 @@ std::vector<NamedLine> edges_of(const Deformable& object, const Tables& t) {
   if (object.columns > 0) {
     const std::uint32_t columns = object.columns;
     const std::uint32_t rows = object.particles.count / columns;
+    HOOKE_ASSERT(rows * columns == object.particles.count);
     edges.push_back({"left", grid_line(0, columns, rows)});
     edges.push_back({"right", grid_line(columns - 1, columns, rows)});
     edges.push_back({"top", grid_line(0, 1, columns)});
@@ -173,6 +176,7 @@ Result<Thread> find_thread(const SeamEdge& edge, const char* where, const Tables
 /// Returns the place at a share of a thread's length: a point, or a place on a segment.
 HookPlace place_at(const Thread& thread, double share) {
   constexpr double kAtPoint = 1e-4;  // Rounding moves no place farther from its point, as share of a segment.
+  HOOKE_ASSERT(thread.rows.size() >= 2 && thread.share.size() == thread.rows.size());
   const auto after = std::upper_bound(thread.share.begin() + 1, thread.share.end() - 1, share);
   const auto last = static_cast<std::size_t>(after - thread.share.begin());
   const double span = thread.share[last] - thread.share[last - 1];
@@ -210,6 +214,7 @@ Thread reversed(Thread thread) {
 Thread begun_at(const Thread& thread, std::size_t first) {
   Thread backward = {.object = thread.object, .length = thread.length};
   const std::size_t count = thread.segments();
+  HOOKE_ASSERT(thread.is_closed() && first < count);
   for (std::size_t i = 0; i <= count; ++i) {
     const std::size_t from = (first + i) % count;
     const double share = thread.share[from] - thread.share[first] + (first + i >= count ? 1 : 0);

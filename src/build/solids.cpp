@@ -1,6 +1,7 @@
 /// This file makes solids from a box of cells, from a closed mesh, from given tetrahedra, or from points
 /// alone.
 
+#include "base/assert.h"
 #include "build/build.h"
 #include "build/common.h"
 #include "build/connection_points.h"
@@ -304,6 +305,7 @@ void append_tetrahedra(const TetrahedralMesh& mesh, const SolidDesc& desc, state
       elements::neo_hookean(static_cast<double>(desc.young_modulus), static_cast<double>(desc.poisson_ratio));
   const auto& x = mesh.points;
   for (const Tetrahedron& t : mesh.tetrahedra) {
+    HOOKE_ASSERT(std::max({t[0], t[1], t[2], t[3]}) < object.particles.count);
     const auto rest = elements::tetrahedron_rest<double>({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
     tables.tetrahedra.corners.push_back({row_of(tables, object, t[0]), row_of(tables, object, t[1]),
                                          row_of(tables, object, t[2]), row_of(tables, object, t[3])});

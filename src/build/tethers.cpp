@@ -1,5 +1,6 @@
 #include "build/tethers.h"
 
+#include "base/assert.h"
 #include "geometry/mesh/geodesic.h"
 
 #include <algorithm>
@@ -44,6 +45,7 @@ std::vector<NearestPin> find_nearest_pins(const TetherSurface& surface, std::spa
     }
     if (points.empty()) continue;  // Distances along a curved surface take long to find.
     const std::vector<double> distance = distances_from(surface, pin);
+    HOOKE_ASSERT(distance.size() == nearest.size());
     for (const std::uint32_t i : points) {
       if (distance[i] < nearest[i].length) nearest[i] = {distance[i], pin};
     }
@@ -65,6 +67,7 @@ std::vector<Tether> find_tethers(const TetherSurface& surface, std::span<const s
   std::vector<bool> is_pin(surface.points.size(), false);
   std::vector<std::uint32_t> distinct;
   for (const std::uint32_t pin : pins) {
+    HOOKE_ASSERT(pin < is_pin.size());
     if (!is_pin[pin]) distinct.push_back(pin);
     is_pin[pin] = true;
   }
