@@ -4,12 +4,14 @@
 #include "base/assert.h"
 #include "solver/check_routes.h"
 #include "state/check_contacts.h"
+#include "state/check_tables.h"
 #include "world/access.h"
 #include "world/make.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <doctest/doctest.h>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -100,6 +102,23 @@ TEST_SUITE("world/validate") {
     base::validate("order of pairs", __FILE__, __LINE__);
     CHECK(said == "order of pairs");
     base::set_assert_handler(before);
+  }
+
+  TEST_CASE("masses below zero are found, and what is not a number passes") {
+    World world = make_hanging_cube();
+    const state::Tables t = tables_after(world, 1);
+    const auto check = state::find_disagreement;
+    using T = state::Tables;
+    const std::uint32_t cube = t.moving_bodies.front();
+    CHECK(text(check(t)).empty());
+    CHECK(after(t, check, [](T& d) { d.particles.mass[1] = Real(-1); }) == "mass of a particle");
+    CHECK(after(t, check, [](T& d) { d.particles.velocity[1].inverse_mass = Real(-1); }) ==
+          "inverse mass of a particle");
+    CHECK(after(t, check, [&](T& d) { d.bodies.mass[cube].mass = Real(-1); }) == "mass of a body");
+    CHECK(after(t, check, [&](T& d) { d.bodies.motion[cube].inverse_mass = Real(-1); }) ==
+          "inverse mass of a body");
+    CHECK(
+        after(t, check, [](T& d) { d.particles.mass[1] = std::numeric_limits<Real>::quiet_NaN(); }).empty());
   }
 
   TEST_CASE("contacts of bodies that are damaged are found") {
