@@ -247,6 +247,8 @@ void append_bends(const Surface& s, const ClothDesc& desc, state::Tables& tables
   for (std::size_t e = 0; e < s.topology.edges.size(); ++e) {
     const EdgeSides& sides = s.topology.edge_sides[e];
     if (sides.triangle_count != 2 || !sides.has_same_winding) continue;
+    if (sides.opposite[0] == sides.opposite[1])
+      continue;  // both sides of one triangle: there is nothing to bend
     // The first triangle must run along the edge from x0 to x1; see elements/dihedral.h.
     auto [a, b] = s.topology.edges[e];
     const Triangle& t = s.triangles[sides.triangles[0]];

@@ -38,8 +38,7 @@ const char* find_in_lane(const Tables& t, const ContactBlock& block, int lane, s
   if ((a != m.body_a || b != m.body_b) && (a != m.body_b || b != m.body_a)) return "bodies of a lane";
   if (!is_moved(t.bodies, a) || is_moved(t.bodies, b) == block.anchored) return "who moves in a lane";
   if (m.route != (block.direct ? ContactRoute::kDirect : ContactRoute::kSoft)) return "way of a lane";
-  // Direct blocks may begin with a refreshed manifold that has no points yet.
-  return !block.direct && m.point_count > block.point_count ? "points of a lane" : nullptr;
+  return m.point_count > block.point_count ? "points of a lane" : nullptr;
 }
 
 const char* find_in_blocks(const Tables& t, const BodyContacts& contacts) {

@@ -52,8 +52,9 @@ struct Manifold {
   Vec3 surface_velocity = {};        ///< Velocity of B's surface relative to A's, in world axes [m/s].
   Real largest_impulse = Real(0);    ///< Largest sum over all points in one substep of the last step [N s].
   bool touching = false;             ///< Some point pushed in the last step; written by the solver.
-  ContactRefresh refresh = ContactRefresh::kAtStart;  ///< As its pair; each substep: may have no points now.
-  ContactRoute route = ContactRoute::kSoft;           ///< How it is solved in this step; see solver/routes.h.
+  ContactRefresh refresh =
+      ContactRefresh::kAtStart;  ///< How often its points are found; with kEachSubstep it may have none now.
+  ContactRoute route = ContactRoute::kSoft;  ///< How it is solved in this step; see solver/routes.h.
 
   [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
   /// Whether its points have slots in Pairs::load_bearing in this step.

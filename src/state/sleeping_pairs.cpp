@@ -152,6 +152,10 @@ void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders
     return goes[a] != 0 || goes[b] != 0;
   };
   std::erase_if(pairs.pair, is_one_gone);
+  // A new body in the row of one that is gone must not inherit what that one carried.
+  std::erase_if(pairs.load_bearing, [&](const LoadBearingContact& contact) {
+    return goes[contact.body_a] != 0 || goes[contact.body_b] != 0;
+  });
   std::vector<Pair> gone;
   split(is_one_gone, pairs.sleeping.pair, gone);
   count_sleeping(gone, pairs.sleeping.manifold, false, colliders, pairs.sleeping);

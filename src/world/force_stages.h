@@ -17,4 +17,14 @@ void begin_body_forces(WorldData& world);
 /// bodies that clamp them by an impulse.
 void force_bodies(WorldData& world, double time, Real h);
 
+/// Reads the wind at each particle that feels air, at `time` [s].
+void read_wind(WorldData& world, double time);
+
+/// Applies the forces of a particle substep of length `h` [s] that ends at `time` [s]: wind on triangles and
+/// segments; fields, drag, liquids and external forces; gravity; the user's force laws. It pushes points of
+/// ropes with repulsion apart, and gives pinned particles the velocity that brings them to where their pins
+/// are at `time`. The wind's load on triangles is computed in the `first` particle substep of a substep, and
+/// the same force acts in all of them.
+void accelerate_particles(WorldData& world, double time, Real h, bool first);
+
 }  // namespace hooke::world

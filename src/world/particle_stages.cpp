@@ -1,15 +1,11 @@
 #include "world/particle_stages.h"
 
 #include "base/assert.h"
-#include "solver/air/force_fields.h"
-#include "solver/air/wind.h"
 #include "solver/check_routes.h"
-#include "solver/rope/rope_repulsion.h"
 #include "solver/soft/particle_kernels.h"
 #include "solver/soft/shape_matching.h"
 #include "solver/soft/spring_solve.h"
 #include "state/check_tables.h"
-#include "world/access.h"
 #include "world/force_stages.h"
 
 #include <algorithm>
@@ -23,7 +19,6 @@ namespace {
 using parallel::for_ranges;
 using parallel::Range;
 
-constexpr int kParticleGrain = 1024;
 constexpr int kMotionGrain = 2048;
 constexpr int kTriangleGrain = 512;
 constexpr int kTetrahedronGrain = 64;
@@ -32,11 +27,6 @@ constexpr int kBlockGrain = 16;
 /// An object gets a new origin when its first particle is farther than this from the old one along an axis
 /// [m].
 constexpr Real kFarFromOrigin = Real(64);
-
-bool air_moves(const state::Tables& tables, const state::Deformable& object) {
-  return tables.desc.wind.air_density > Real(0) &&
-         (object.drag_coefficient > Real(0) || object.lift_coefficient > Real(0));
-}
 
 /// Whether all of the numbers are finite. A finite number times zero is zero, any other is not. There are
 /// eight sums so that compilers use vectors.
@@ -69,32 +59,6 @@ void for_rows(const WorldData& world, int first, int end, int grain, Work work) 
   });
 }
 
-/// Does the same for an object's particles.
-template <class Work>
-void for_particles(const WorldData& world, const state::Deformable& object, Work work) {
-  for_rows(world, static_cast<int>(object.particles.first), static_cast<int>(object.particles.end()),
-           kParticleGrain, work);
-}
-
-void read_wind(WorldData& world, double time) {
-  const state::Tables& tables = world.tables;
-  const bool even = !solver::has_gusts(tables.desc.wind);
-  for (const state::Deformable& object : tables.objects) {
-    if (!object.feels_air()) continue;
-    if (even) {
-      const auto first = world.frame.wind.begin() + object.particles.first;
-      std::fill(first, first + object.particles.count, solver::AirRecord{tables.desc.wind.velocity, Real(0)});
-      continue;
-    }
-    for_particles(world, object, [&](Range rows) {
-      for (int p = rows.begin; p < rows.end; ++p) {
-        const DVec3 place = object.origin + vector_cast<double>(tables.particles.position[p].x);
-        world.frame.wind[p].v = solver::wind_at(tables.desc.wind, place, time, tables.step_count);
-      }
-    });
-  }
-}
-
 /// Calls `kernel` for the tetrahedra, one color after the other. Tetrahedra of one color share no particle.
 template <class Kernel>
 void for_tetrahedra(WorldData& world, Kernel kernel) {
@@ -111,21 +75,6 @@ void for_matched(WorldData& world, Real h, Kernel kernel) {
   for_ranges(*world.pool, static_cast<int>(world.derived.matched_objects.size()), 1, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i)
       kernel(tables.objects[world.derived.matched_objects[i]], static_cast<double>(h), tables.particles);
-  });
-}
-
-/// Computes the loads of the wind once for all particle substeps of a substep; `h` is the length of one of
-/// them [s]. Particle substeps are short because stretched cloth swings fast; the wind changes far more
-/// slowly.
-void compute_air_loads(WorldData& world, const state::Deformable& object, Real h) {
-  state::Tables& tables = world.tables;
-  const auto count = static_cast<Real>(tables.desc.particle_substeps);
-  const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, count * h};
-  for_ranges(*world.pool, static_cast<int>(object.triangles.count), kTriangleGrain, [&](Range range) {
-    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.derived.air_loads);
-  });
-  for_particles(world, object, [&](Range rows) {
-    solver::gather_loads(tables.particles, Real(1) / count, rows, world.derived.air_loads);
   });
 }
 
@@ -187,17 +136,6 @@ void share_out_contacts(WorldData& world, bool first) {
            .omega_scaled = (Real(1) / count) * (m.omega_scaled - free.omega_scaled)});
       give(world.frame.contact_shares.back(), Real(1) - count);
     }
-  }
-}
-
-void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
-  state::Tables& t = world.tables;
-  for (const state::Field& field : t.fields) {
-    if (field.desc.kind != FieldDesc::Kind::kLiquid) continue;
-    const solver::LiquidSurface surface(field.desc, t.desc.gravity);
-    solver::find_liquid_loads(object, {t.segments, t.triangles, t.tetrahedra}, surface, t.particles,
-                              world.frame.liquid_loads);
-    solver::apply_liquid(field.desc, surface, object, world.frame.liquid_loads, h, t.particles);
   }
 }
 
@@ -290,34 +228,6 @@ void begin_particle_substep(WorldData& world, Real h) {
   }
 }
 
-void apply_forces(WorldData& world, Real h) {
-  state::Tables& tables = world.tables;
-  const solver::ForceInputs inputs = {tables.fields, world.frame.wind, tables.desc.wind.air_density,
-                                      tables.any_force};
-  for (const state::Deformable& object : tables.objects) {
-    if (tables.fields.empty() && !tables.any_force && !object.points_drag) continue;
-    for_ranges(*world.pool, static_cast<int>(object.particles.count), kParticleGrain,
-               [&](Range range) { solver::apply_forces(object, inputs, h, range, tables.particles); });
-    apply_liquids(world, object, h);
-  }
-}
-
-void apply_wind(WorldData& world, Real h, bool first) {
-  state::Tables& tables = world.tables;
-  for (const state::Deformable& object : tables.objects) {
-    if (!air_moves(tables, object)) continue;
-    if (object.segments.count > 0) {
-      const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, h};
-      solver::push_segments(object, tables.segments, air, tables.particles);
-    }
-    if (object.triangles.count == 0) continue;
-    if (first) compute_air_loads(world, object, h);
-    for_particles(world, object, [&](Range rows) {
-      solver::push_particles(world.derived.air_loads, rows, tables.particles);
-    });
-  }
-}
-
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
   for (const solver::SpringPass& pass : world.derived.spring_blocks.passes) {
     if (pass.kind < first || pass.kind > last) continue;
@@ -336,36 +246,6 @@ void solve_bends(WorldData& world) {
   };
   solve(world.derived.bend_blocks, solver::solve_bends);
   solve(world.derived.isometric_bend_blocks, solver::solve_isometric_bends);
-}
-
-void apply_gravity(WorldData& world, Real h) {
-  for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain, [&](Range rows) {
-    solver::wide::accelerate(world.tables.desc.gravity, h, rows, world.tables.particles);
-  });
-}
-
-void repel_and_drive(WorldData& world, double time, Real h) {
-  state::Tables& tables = world.tables;
-  solver::repel(*world.pool, h, world.frame.repulsion, tables);
-  solver::drive_pins(tables.pins, tables.objects, time, h, tables.particles);
-}
-
-void call_force_laws(WorldData& world, double time, Real h) {
-  state::Tables& tables = world.tables;
-  if (tables.force_laws.empty()) return;
-  std::fill(world.frame.law_force.begin(), world.frame.law_force.end(), Vec3{});
-  for (const state::ForceLawEntry& entry : tables.force_laws) {
-    if (!entry.law) continue;
-    for (const state::Deformable& object : tables.objects) {
-      ForceView view = ForceViewAccess::make(tables, object, time, world.frame.law_force.data());
-      entry.law(view);
-    }
-  }
-  HOOKE_ASSERT(world.frame.law_force.size() == tables.particles.velocity.size());
-  for (std::size_t p = 0; p < world.frame.law_force.size(); ++p) {
-    tables.particles.velocity[p].v +=
-        (h * tables.particles.velocity[p].inverse_mass) * world.frame.law_force[p];
-  }
 }
 
 std::uint32_t quarantine_non_finite(WorldData& world) {

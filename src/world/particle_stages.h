@@ -21,18 +21,6 @@ void begin_step(WorldData& world, double dt);
 /// because both need the velocities from before.
 void begin_particle_substep(WorldData& world, Real h);
 
-/// These functions apply the forces of a particle substep of length `h` [s]: wind on triangles and segments;
-/// fields, drag, liquids and external forces; gravity; the user's force laws. The wind's load on triangles is
-/// computed in the `first` particle substep of a substep, and the same force acts in all of them.
-void apply_wind(WorldData& world, Real h, bool first);
-void apply_forces(WorldData& world, Real h);
-void apply_gravity(WorldData& world, Real h);
-void call_force_laws(WorldData& world, double time, Real h);
-
-/// Pushes points of ropes with repulsion apart, and gives pinned particles the velocity that brings them to
-/// where their pins are at `time` [s], the end of the particle substep.
-void repel_and_drive(WorldData& world, double time, Real h);
-
 /// The first function solves the springs of the classes from `first` to `last`. The second solves bends and
 /// isometric bending elements, whose springs belong to them. Rows of one pass share no particle, so their
 /// order does not matter; passes follow one another.

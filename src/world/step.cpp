@@ -48,20 +48,12 @@ void prepare(WorldData& w, double dt, Real h) {
   world::begin_step(w, dt);
 }
 
-void accelerate_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
-  world::begin_particle_substep(w, h);
-  world::apply_wind(w, h, first_of_substep);
-  world::apply_forces(w, h);
-  world::apply_gravity(w, h);
-  world::call_force_laws(w, end_time, h);
-  world::repel_and_drive(w, end_time, h);
-}
-
 /// Solves one particle substep. Elastic rows come before tethers and limits, which must hold. Then ropes are
 /// solved exactly, with what they depend on. Contacts change velocities last, so that nothing pushes a
 /// particle into a body afterwards.
 void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
-  accelerate_particles(w, end_time, h, first_of_substep);
+  world::begin_particle_substep(w, h);
+  world::accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
   world::begin_coupled_groups(w, h, first_of_substep);
   world::solve_springs(w, h, SpringClass::kStretch, SpringClass::kBend);

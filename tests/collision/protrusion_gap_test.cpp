@@ -78,6 +78,16 @@ TEST_SUITE("collision/protrusion_gap") {
       CHECK(static_cast<double>(gaps[0].weight[0]) == doctest::Approx(1.0 / 3));
     }
   }
+
+  TEST_CASE("a segment hardly off a corner faces it along a direction of unit length") {
+    const state::Mesh mesh = cube();
+    const Vec3 middle = static_cast<Real>(1 + 1e-4) * Vec3{1, 1, 1};
+    const Vec3 half = {Real(0.5), Real(-0.5), 0};
+    const auto gaps = gaps_of(mesh, {middle - half, middle + half});
+    REQUIRE(gaps.size() == 1);
+    CHECK(static_cast<double>(length(gaps[0].normal)) == doctest::Approx(1).epsilon(1e-5));
+    CHECK(static_cast<double>(gaps[0].distance) == doctest::Approx(1e-4 * std::sqrt(3.0)).epsilon(1e-2));
+  }
 }
 
 }  // namespace hooke

@@ -4,13 +4,9 @@
 - no absolute path of a developer's machine in any text file;
 - every relative link of a Markdown file leads to a file that exists;
 - every suite and every file that docs/paper.md names exists;
-<<<<<<< HEAD
 - docs/step.md names every stage that src/world/step.cpp calls;
-- every C++ block of README.md stands, line by line, in a program that the tests build.
-=======
 - every C++ block of README.md and of docs/manual stands, line by line, in a program that the tests build; a block may
   be indented less than there.
->>>>>>> bea10b1 (docs: Explain a first world and shapes in the manual, with programs)
 """
 import pathlib
 import re

@@ -59,7 +59,7 @@ struct Stacks : PairScene {
 }  // namespace
 
 TEST_SUITE("state/sleeping_pairs") {
-  TEST_CASE("parked or not, all manifolds are visited in the same order") {
+  TEST_CASE("asleep or not, all manifolds are visited in the same order") {
     Stacks scene(4);
     const std::vector<Line> before = scene.lines();
     REQUIRE(before.size() == 8);
@@ -97,14 +97,14 @@ TEST_SUITE("state/sleeping_pairs") {
     CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{4, 2, 1, 1, 0, 2, 1, 2, 1});
     CHECK(scene.lines() == before);
 
-    // Parked again, where there are gaps now.
+    // They sleep again, where there are gaps now.
     scene.bodies.asleep[4] = 1;
     scene.park();  // one waits for the others
     CHECK(scene.pairs.pair.size() == 0);
     CHECK(scene.lines() == before);
   }
 
-  TEST_CASE("few wait a step before they are parked with many") {
+  TEST_CASE("few pairs wait a step before they are put to sleep with many") {
     Stacks scene(40);
     scene.fall_asleep(1, 78);
     scene.park();
@@ -123,13 +123,16 @@ TEST_SUITE("state/sleeping_pairs") {
     scene.fall_asleep(1, 4);
     scene.park();
     CHECK(scene.pairs.sleeping.contacts == 4);
+    scene.pairs.load_bearing = {{.body_a = 0, .body_b = 1}, {.body_a = 1, .body_b = 2}};
     hooke::state::remove_pairs(std::vector<std::uint8_t>{0, 0, 1, 0, 0}, scene.colliders, scene.pairs);
     CHECK(scene.pairs.sleeping.contacts == 3);
+    REQUIRE(scene.pairs.load_bearing.size() == 1);
+    CHECK(scene.pairs.load_bearing[0].body_b == 1);
     CHECK(scene.pairs.sleeping.pair.size() == 3);
     CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 1, 0, 2, 1});
   }
 
-  TEST_CASE("pairs of sensors are not parked") {
+  TEST_CASE("pairs of sensors are not put to sleep") {
     Stacks scene(2);
     scene.bodies.traits[1].sensor = true;
     scene.fall_asleep(1, 4);

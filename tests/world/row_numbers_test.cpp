@@ -1,5 +1,5 @@
-/// Rows that one stage lists and a later one uses: of pairs that are parked meanwhile, of bodies that were
-/// there before a restore, of hooks whose bodies nothing moves. The asserts of the dev build see what is
+/// Rows that one stage lists and a later one uses: of pairs that are put to sleep meanwhile, of bodies that
+/// were there before a restore, of hooks whose bodies nothing moves. The asserts of the dev build see what is
 /// stale.
 
 #include "world/make.h"
@@ -97,7 +97,7 @@ void check_held(World& world, BodyId ball, const Slab& slab, double speed, doubl
 
 }  // namespace
 
-TEST_SUITE("rows") {
+TEST_SUITE("world/rows") {
   TEST_CASE("pairs that are put to sleep leave the row numbers of refreshed pairs right") {
     for (int seed = 0; seed < 24; ++seed) {
       CAPTURE(seed);

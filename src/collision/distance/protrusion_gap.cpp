@@ -53,7 +53,8 @@ class GapSearch {
     const Real distance = length(apart);
     result_.clearance = distance;
     const bool is_close = distance <= kProtrusionClose * length(corners_[corners_.size() - 1] - corners_[0]);
-    const Vec3 n = is_close ? geometry::direction_or(across, apart) : (Real(1) / distance) * apart;
+    const Vec3 n = is_close ? geometry::direction_or(across, geometry::direction_or(apart, {}))
+                            : (Real(1) / distance) * apart;
     if (n == Vec3{}) return;
     if (faces(n)) {
       result_.gap = {dot(n, apart), n, on_element, weight};

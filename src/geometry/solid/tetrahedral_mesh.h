@@ -15,7 +15,7 @@
 
 namespace hooke::geometry {
 
-/// Corners of a tetrahedron; 1, 2, 3 are counter-clockwise seen from 0, so that the volume is positive.
+/// Corners of a tetrahedron; 1, 2, 3 are clockwise seen from 0, so that the volume is positive.
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
 struct TetrahedralMesh {

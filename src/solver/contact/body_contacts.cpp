@@ -68,6 +68,7 @@ void add_lane(const ContactColors::Member& member, const Manifold& m, int index,
   contacts.manifold_of.push_back(member.manifold);
   HOOKE_ASSERT(block.count < kContactLanes);
   block.bounces = block.bounces || m.restitution > Real(0);
+  block.point_count = std::max(block.point_count, m.point_count);
   if (m.is_refreshed() && !member.direct) {
     block.point_count = Manifold::kMaxPoints;
     contacts.refreshed.push_back({index, block.count, member.manifold});
@@ -82,10 +83,11 @@ int lay_out_block(std::span<const ContactColors::Member> members, const std::vec
                   int index, BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[index];
   HOOKE_ASSERT(contacts.manifold_of.size() == static_cast<std::size_t>(index) * kContactLanes);
-  const auto [first_manifold, anchored, direct] = members.front();
+  const bool anchored = members.front().anchored;
+  const bool direct = members.front().direct;
   block.anchored = anchored;
   block.direct = direct;
-  block.point_count = manifolds[first_manifold].point_count;
+  block.point_count = 0;
   block.first_rolling = static_cast<int>(contacts.rolling.size());
   block.count = 0;
   block.bounces = false;

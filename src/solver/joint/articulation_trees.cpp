@@ -424,6 +424,9 @@ TreeScratch& TreeScratch::operator=(TreeScratch&&) noexcept = default;
 
 void solve_trees(double h, std::span<Articulation* const> trees, TreeScratch& scratch, JointTables tables) {
   auto& [exact, approximate] = scratch.groups();
+  // A solution that ran out of memory has left trees here.
+  exact.trees.clear();
+  approximate.trees.clear();
   for (Articulation* tree : trees) (tree->tree.approximate ? approximate.trees : exact.trees).push_back(tree);
   exact.solve(h, tables);
   approximate.solve(h, tables);

@@ -240,7 +240,7 @@ void relax_iterative_joints(parallel::ThreadPool& pool, double h, std::vector<Ho
     std::copy(hook.row_impulse.begin(), hook.row_impulse.end(), lambda.begin());
     const auto first = static_cast<std::size_t>(iterative.first_row[i]);
     const auto count = static_cast<std::size_t>(iterative.first_row[i + 1]) - first;
-    store_joint_impulses({&iterative.rows[first], count}, {lambda.data(), count}, hook);
+    store_joint_impulses({iterative.rows.data() + first, count}, {lambda.data(), count}, hook);
   });
 }
 

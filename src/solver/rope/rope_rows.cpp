@@ -250,7 +250,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
 }
 
 RopeBend load_bend(const RopeSystem& rope_system, std::size_t row, const state::Segments& segments) {
-  HOOKE_ASSERT(row + 2 < std::size_t{rope_system.first_segment} + rope_system.node_count);
+  HOOKE_ASSERT(row + 1 < segments.rest_length.size());
   const auto before = static_cast<double>(segments.rest_length[row]);
   const auto behind = static_cast<double>(segments.rest_length[row + 1]);
   const double length =

@@ -374,6 +374,7 @@ void solve_rope_systems(std::span<RopeSystem> rope_systems, std::span<const Rope
   std::vector<RopeSystem*>& next = groups.next;
   const Source source = {anchors, before, static_cast<double>(h), tables};
   groups.together.used = groups.alone.used = 0;
+  next.clear();  // a solution that ran out of memory has left ropes here
   const auto finish = [&] {
     if (next.size() >= kFewestRopesForLanes) {
       groups.together.solve(next, source);
