@@ -126,9 +126,8 @@ Model read_model(const Arguments& arguments) {
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   importer.SetIOHandler(folder.release());  // The importer owns it from here on.
-  if (!kIsSanitized)
-    // Where there is no seal, only the limits protect the system.
-    static_cast<void>(seal_process());
+  // Where there is no seal, only the limits protect the system.
+  if (!kIsSanitized) static_cast<void>(seal_process());
   if (format.scan != nullptr) format.scan(bytes);
   const aiScene* scene = importer.ReadFile(arguments.path, 0);
   if (scene == nullptr) {

@@ -47,7 +47,7 @@ const char* find_in_blocks(const Tables& t, const BodyContacts& contacts) {
     const ContactBlock& block = contacts.blocks[i];
     if (block.count < 1 || block.count > kContactLanes) return "lanes of a block";
     if (block.first_rolling < 0 || block.rolling_count < 0 ||
-        static_cast<std::size_t>(block.first_rolling + block.rolling_count) > contacts.rolling.size())
+        block.first_rolling + block.rolling_count > static_cast<int>(contacts.rolling.size()))
       return "rolling rows of a block";
     for (int lane = 0; lane < kContactLanes; ++lane) {
       const std::uint32_t row = contacts.manifold_of[kContactLanes * i + static_cast<std::size_t>(lane)];
@@ -145,8 +145,7 @@ const char* find_in_island(const BodyContacts& contacts, const DirectIslands& di
         (!block.anchored && direct.island_of[block.record_b[c.lane] / 16] != number))
       return "island of a direct contact";
     if (c.a >= nodes || (c.b != DirectContact::kNone && c.b >= nodes)) return "nodes of a direct contact";
-    if (static_cast<std::size_t>(c.first + c.points + 3) > island.rows.size())
-      return "rows of a direct contact";
+    if (c.first + c.points + 3 > static_cast<int>(island.rows.size())) return "rows of a direct contact";
     if (i == 0) continue;
     const DirectContact& before = island.contacts[i - 1];
     if (before.block > c.block || (before.block == c.block && before.lane >= c.lane))

@@ -280,7 +280,6 @@ void set_after_impact(const ImpactBody& after, std::uint32_t row, Real time, Rea
 bool apply_impact(const ImpactLanes& pair, const std::vector<Manifold>& manifolds, Real time,
                   const ContactStep& step, BodyContacts& contacts, Bodies& bodies) {
   const std::span<const ContactLane> lanes = pair.lanes;
-  HOOKE_ASSERT(!lanes.empty());
   const Manifold& first = manifolds[lanes.front().manifold];
   Impact impact = {.a = body_at_impact(bodies, first.body_a, time),
                    .b = body_at_impact(bodies, first.body_b, time),

@@ -322,9 +322,9 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
     const bool is_wild = !b_.rope_contacts.empty() && gains_energy();
     for (RopeSetting& setting : b_.settings) setting.first = is_wild || (setting.first && long_enough);
   }
+  const bool is_solved = error <= kRopeReportedError && is_sound();
   for (const std::uint32_t c : b_.rope_systems)
-    rope_systems[c].unconverged =
-        rope_systems[c].unconverged || !(error <= kRopeReportedError) || !is_sound();
+    rope_systems[c].unconverged = rope_systems[c].unconverged || !is_solved;
 }
 
 bool CoupledGroupSolution::gives_way(int round) {

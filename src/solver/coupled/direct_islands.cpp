@@ -272,10 +272,10 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
     const bool fits = direct.fits[i] != 0;
     for (const std::uint32_t body : direct.found[i].bodies) {
       direct.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
+      if (fits) continue;
       // What would be direct for this step only, as new bodies are, is evaluated at its end like others.
-      if (!fits)
-        bodies.direct_state[body] =
-            bodies.direct_state[body] == kDirect ? std::int8_t{0} : kNotEvaluatedSteps;
+      std::int8_t& state = bodies.direct_state[body];
+      state = state == kDirect ? std::int8_t{0} : kNotEvaluatedSteps;
     }
     if (fits && taken != i) std::swap(direct.islands[taken], direct.islands[i]);
     taken += fits ? 1 : 0;
