@@ -417,9 +417,9 @@ struct ClothDesc {
   Real areal_density = Real(0.2);  ///< Mass per area [kg/m^2], positive; points have their share of area.
   std::optional<Real> total_mass = {};  ///< Mass of the cloth [kg]: replaces areal_density.
   Real thickness = Real(0.004);         ///< Points keep half of it from what they touch [m]. Positive.
-  /// Stiffness of each spring along an edge [N/m], or kRigid. A substep of h seconds carries about 1.4 m /
-  /// h^2 of it, m the mass of a point: cloth that is to stretch less needs more substeps, larger cells or
-  /// more mass.
+  /// Stiffness of each spring along an edge [N/m], or kRigid. A substep of h seconds carries about 0.8 m /
+  /// h^2 of it in a sheet that hangs, and 1.4 m / h^2 in one that is pulled at an edge, m being the mass of a
+  /// point: cloth that is to stretch less needs more substeps, larger cells or more mass.
   Real stretch_stiffness = Real(1e4);
   Real shear_stiffness = Real(2e3);  ///< Stiffness of each spring across a cell or a pair of triangles [N/m].
   /// Resistance to bending, in the unit that `bend` says; in N m, the flexural rigidity of a sheet that bends
