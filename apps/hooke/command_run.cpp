@@ -95,10 +95,13 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
   return {};
 }
 
-ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record) {
+/// Prints the results, and writes them to `json`, if it has a file.
+ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record,
+                       std::optional<OutputFile>& json) {
   for (const std::string& warning : record.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  if (!options.json.empty()) {
-    const auto written = write_file(options.json, run_json(simulation, record));
+  if (json) {
+    json->write(run_json(simulation, record));
+    const Result<void> written = json->finish();
     if (!written) return report(written.error());
   }
   if (options.hash) std::printf("%s\n", hash_text(simulation.world().state_hash()).c_str());
@@ -119,6 +122,15 @@ int command_run(Arguments arguments) {
   if (is_standard_output(options.csv) && is_standard_output(options.json)) {
     return report(
         {ErrorCode::kOutOfRange, "hooke run", "--csv and --json cannot both go to the standard output"});
+  }
+
+  // It is opened first, because a file that cannot be written is better said before the simulation than
+  // after.
+  std::optional<OutputFile> json;
+  if (!options.json.empty()) {
+    auto created = OutputFile::create(options.json);
+    if (!created) return report(created.error());
+    json.emplace(std::move(created).value());
   }
 
   RunRecord record = {.scene = options.scene};
@@ -147,7 +159,7 @@ int command_run(Arguments arguments) {
   Simulation& simulation = *built.value;
   const auto done = simulate(simulation, options, steps, record);
   if (!done) return report(done.error());
-  return print_results(simulation, options, record);
+  return print_results(simulation, options, record, json);
 }
 
 }  // namespace hooke::app

@@ -43,9 +43,11 @@ constexpr std::array kRefusedCounts = {
         &StepReport::pairs_left_out, "pairs_left_out",
         "pairs were left out: bodies stand in the middle of many others, and push away the nearest alone",
         "places that are not the same for many bodies"},
-    RefusedCount{&StepReport::islands_refused, "islands_refused",
-                 "stacks were too large or too many to be solved directly, and may sink",
-                 "lower stacks, fewer bodies that lie on much lighter ones, or more substeps"},
+    RefusedCount{
+        &StepReport::islands_refused, "islands_refused",
+        "stacks were too large or too many to be solved directly, and may sink or fall",
+        "lower stacks (110 equal boxes stand), fewer bodies that lie on much lighter ones, or 32 substeps "
+        "with 'bias_sweeps' 8 and 'contact_hz' 200"},
     RefusedCount{&StepReport::contacts_refused, "contacts_refused",
                  "contacts were too many to be solved with hooks and ropes, and may sink",
                  "fewer bodies on what hangs, masses that differ less, or more substeps"},
@@ -456,7 +458,8 @@ void RunWatch::look_at_overlaps(const World& world) {
           .limit = kPressed * size,
           .unit = "m",
           .time = world.time(),
-          .cure = "more substeps, or masses that differ less"});
+          .cure = world.step_count() <= 1 ? "places at which they do not overlap at the start"
+                                          : "more substeps, or masses that differ less"});
   }
 }
 
@@ -482,7 +485,7 @@ void RunWatch::look_at_report(const World& world, const StepReport& report) {
     const std::uint32_t number = report.*count.number;
     if (number == 0) continue;
     const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;
-    std::string what = text_of("in one step %u ", number) + count.what;
+    std::string what = text_of("in one step (number: %u) ", number) + count.what;
     if (rope != nullptr) what += ", '" + rope->object.name + "' the most";
     note(kNobody, kFirstCount + static_cast<int>(i), number,
          {.what = std::move(what),

@@ -77,7 +77,8 @@ Result<Format> format_of(const VideoOptions& options) {
                      std::to_string(options.height + options.height % 2)};
   }
   if (ends_in(options.path, ".png") && parse_numbered(options.path)) return Format::kPictures;
-  return Error{ErrorCode::kOutOfRange, options.path, "the name must end in .mp4, .gif or %04d.png"};
+  return Error{ErrorCode::kOutOfRange, options.path,
+               "the name must end in .mp4, .gif, %04d.png, or .png for one picture"};
 }
 
 /// Returns the words that start ffmpeg. The film goes to standard output by a file name, because the encoder

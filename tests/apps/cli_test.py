@@ -82,6 +82,20 @@ class Version(Program):
 
 
 class Run(Program):
+    def test_the_page_on_reports_names_every_key(self):
+        page = (PROJECT / "docs" / "report.md").read_text()
+        out, _ = self.hooke("run", self.scene(FALLING), "--json", "-")
+        report = json.loads(out)
+        for key in [*report, *report["routes"], *report["refused"]]:
+            self.assertIn(f"`{key}`", page)
+
+    def test_a_report_that_cannot_be_written_is_refused_before_the_run(self):
+        scene = self.scene(FALLING | {"seconds": 1e6})  # minutes
+        start = time.monotonic()
+        _, errors = self.hooke("run", scene, "--json", "nowhere/x.json", code=3)
+        self.assertIn("nowhere/x.json", errors)
+        self.assertLess(time.monotonic() - start, 10)
+
     def test_the_report_has_the_figures_of_the_motion(self):
         name = self.scene(FALLING)
         out, err = self.hooke("run", name, "--json", "/dev/stdout")

@@ -211,7 +211,11 @@ bool TreeBuilder::parse_error(std::size_t position, const std::string& token,
   if (exception.id == kNumberOverflow) {
     return fail(token_start, ErrorCode::kOutOfRange, in_quotes(token) + " is too large for a number");
   }
-  const std::string reason = plain_reason(exception.what());
+  std::string reason = plain_reason(exception.what());
+  const bool closes =
+      token_start < source_.size() && (source_[token_start] == ']' || source_[token_start] == '}');
+  const std::size_t before = source_.find_last_not_of(" \t\r\n", token_start > 0 ? token_start - 1 : 0);
+  if (closes && before != std::string::npos && source_[before] == ',') reason += "; a comma stands before it";
   const bool whole_token = reason.find("unexpected") != std::string::npos;
   const std::size_t stopped = std::min(position > 0 ? position - 1 : 0, source_.size());
   return fail(whole_token ? token_start : stopped, ErrorCode::kBadSyntax, "not JSON: " + reason);
