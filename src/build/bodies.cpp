@@ -412,6 +412,7 @@ void remove_bodies(const std::vector<std::uint8_t>& goes, Tables& t) {
     t.free_colliders.push_back(rows);
     t.free_bodies.push_back(row);
     state::Bodies::for_each_column(t.bodies, [&](auto& column) { column[row] = {}; });
+    if (row < t.pairs.seen.size()) t.pairs.seen[row] = {};  // It is hashed, also of rows that are free.
   }
 }
 

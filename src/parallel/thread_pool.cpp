@@ -103,18 +103,26 @@ struct ThreadPool::Shared {
     }
     if (sleepers.load() > 0) wake.notify_all();
   }
+
+  void stop() {
+    stopping.store(true, std::memory_order_release);
+    publish();
+    for (std::thread& thread : threads) thread.join();
+  }
 };
 
 ThreadPool::ThreadPool(int workers) : workers_(workers), shared_(std::make_unique<Shared>(workers)) {
-  for (int part = 1; part < workers_; ++part) {
-    shared_->threads.emplace_back([shared = shared_.get(), part] { shared->work(part); });
+  try {
+    for (int part = 1; part < workers_; ++part)
+      shared_->threads.emplace_back([shared = shared_.get(), part] { shared->work(part); });
+  } catch (...) {
+    shared_->stop();  // A thread that still runs when it is destroyed ends the program.
+    throw;
   }
 }
 
 ThreadPool::~ThreadPool() {
-  shared_->stopping.store(true, std::memory_order_release);
-  shared_->publish();
-  for (std::thread& thread : shared_->threads) thread.join();
+  shared_->stop();
 }
 
 void ThreadPool::run(void (*job)(void*, int), void* context) {

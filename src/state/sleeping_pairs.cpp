@@ -146,6 +146,7 @@ bool wake_pairs(std::span<const std::uint32_t> moving, const Bodies& bodies, con
   return true;
 }
 
+// It allocates nothing, so that removing a body cannot fail halfway.
 void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders, Pairs& pairs) {
   const auto is_one_gone = [&](const Pair& pair) {
     const auto [a, b] = bodies_of(colliders, pair);
@@ -156,9 +157,11 @@ void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders
   std::erase_if(pairs.load_bearing, [&](const LoadBearingContact& contact) {
     return goes[contact.body_a] != 0 || goes[contact.body_b] != 0;
   });
-  std::vector<Pair> gone;
-  split(is_one_gone, pairs.sleeping.pair, gone);
-  count_sleeping(gone, pairs.sleeping.manifold, false, colliders, pairs.sleeping);
+  for (const Pair& pair : pairs.sleeping.pair) {
+    if (is_one_gone(pair))
+      count_sleeping(std::span(&pair, 1), pairs.sleeping.manifold, false, colliders, pairs.sleeping);
+  }
+  std::erase_if(pairs.sleeping.pair, is_one_gone);
 }
 
 }  // namespace hooke::state

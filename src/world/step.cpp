@@ -86,6 +86,7 @@ void substep(WorldData& w, int i, double begin_time, Real h) {
 }
 
 void finish(WorldData& w, double dt, StepReport& report) {
+  world::count_routes(w, report);
   report.rows_quarantined = world::quarantine_bodies(w);
   world::finish_body_contacts(w);
   world::clamp_to_impact_times(w);

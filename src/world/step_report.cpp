@@ -39,11 +39,14 @@ void count_rows(WorldData& world, StepReport& report) {
   report.bodies_awake = static_cast<std::uint32_t>(
       std::count_if(world.frame.awake.begin(), world.frame.awake.end(),
                     [&](std::uint32_t body) { return tables.bodies.asleep[body] == 0; }));
-  report.routes = solver::count_routes(tables, world.derived.joints, world.derived.rope_systems,
-                                       world.derived.coupled_groups, world.frame.direct_islands);
 }
 
 }  // namespace
+
+void count_routes(const WorldData& world, StepReport& report) {
+  report.routes = solver::count_routes(world.tables, world.derived.joints, world.derived.rope_systems,
+                                       world.derived.coupled_groups, world.frame.direct_islands);
+}
 
 void end_step(WorldData& world, double dt, StepReport& report) {
   state::Tables& tables = world.tables;

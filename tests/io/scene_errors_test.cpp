@@ -12,7 +12,8 @@ struct BadScene {
 const BadScene kBadScenes[] = {
     {R"()", {"1:1: not JSON: unexpected end of input; expected '[', '{', or a literal"}},
     {R"({)", {"1:2: not JSON: unexpected end of input; expected string literal"}},
-    {R"({"version": 1,})", {"1:15: not JSON: unexpected '}'; expected string literal"}},
+    {R"({"version": 1,})",
+     {"1:15: not JSON: unexpected '}'; expected string literal; a comma stands before it"}},
     {R"([])", {"1:1: is a list, must be an object"}},
     {R"(nul)", {"1:4: not JSON: invalid literal"}},
     {R"({"version": NaN})", {"1:13: not JSON: invalid literal"}},

@@ -103,6 +103,24 @@ TEST_SUITE("world/memory") {
     fail_everywhere([](Yard& y) { return y.world.add_field({.vector = {1, 0, 0}}).has_value(); });
   }
 
+  TEST_CASE(
+      "a body that cannot be removed, and threads that cannot be started, for lack of memory change "
+      "nothing") {
+    fail_everywhere([](Yard& y) { return y.world.remove(y.box); });
+    fail_everywhere([](Yard& y) { return y.world.set_workers(3).has_value(); });
+    Yard sleeping = make_yard();
+    run(sleeping.world, 300);
+    bool done = false;
+    for (std::uint64_t allowed = 0; !done; ++allowed) {
+      try {
+        const AllocationCounter counter(allowed);
+        done = sleeping.world.remove(sleeping.box);
+      } catch (const std::bad_alloc&) {
+      }
+      CHECK(sleeping.world.step(kDt).healthy());
+    }
+  }
+
   TEST_CASE("a world whose restore fails for lack of memory is empty, and can be restored later") {
     Yard yard = make_yard();
     const std::uint64_t before = yard.world.state_hash();

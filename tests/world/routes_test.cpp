@@ -102,6 +102,33 @@ TEST_SUITE("world/routes") {
     }
   }
 
+  TEST_CASE("hooks of bodies that sleep are solved by none") {
+    World world = make_world();
+    add_ground(world);
+    const BodyId a = add_cube(world, {0, 0.25, 0});
+    const BodyId b = add_cube(world, {0.6, 0.25, 0});
+    add_ball_hook(world, a, b, {0.3, 0.25, 0});
+    CHECK(routes_of(world).hooks_tree == 1);
+    run(world, 200);
+    REQUIRE(world.asleep(a));
+    const RouteCounts routes = routes_of(world);
+    CHECK(routes.hooks_tree == 0);
+    CHECK(routes.articulations == 0);
+  }
+
+  TEST_CASE("a pinned point on a cube is swept") {
+    World world = make_world();
+    add_ground(world);
+    add_cube(world, {0, 0.25, 0});
+    hooke::ParticlesDesc desc;
+    desc.particles = {{.position = {0, 0.505, 0}, .mass = 1, .radius = Real(0.01)}};
+    desc.pins = {hooke::PinDesc{0}};
+    take(world.add_particles(desc));
+    const RouteCounts routes = routes_of(world);
+    CHECK(routes.points_swept == 1);
+    CHECK(routes.points_coupled == 0);
+  }
+
   TEST_CASE("a net of 30 x 30 hooked balls is beyond the budget, and iterated") {
     World world = make_world();
     constexpr int kSide = 30;

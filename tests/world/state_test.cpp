@@ -120,6 +120,32 @@ TEST_SUITE("world/state") {
     CHECK_FALSE(other.world.restore(Snapshot{}));
   }
 
+  TEST_CASE("a restored world goes on alike, whatever stood beside its bodies and was removed") {
+    World world = make_world();
+    take(world.add_body({.contact = {.restitution = Real(0.5)}}));
+    const auto add = [&](DVec3 position, const Shape& shape) {
+      return take(world.add_body({.kind = BodyKind::kDynamic,
+                                  .shape = shape,
+                                  .position = position,
+                                  .velocity = {0, -3, 0},
+                                  .contact = {.restitution = Real(0.5)}}));
+    };
+    const Shape box = Shape::box({Real(0.1), Real(0.1), Real(0.1)});
+    add({0, 0.15, 0}, Shape::sphere(Real(0.1)));
+    add({1, 0.2, 0}, box);
+    add({1.05, 0.405, 0}, box);
+    const BodyId removed = add({3, 5, 0}, box);
+    run(world, 3);
+    CHECK(world.remove(removed));
+    World other = make_world();
+    REQUIRE(other.restore(world.snapshot()));
+    for (int i = 0; i < 8; ++i) {
+      CHECK(world.state_hash() == other.state_hash());
+      run(world, 1);
+      run(other, 1);
+    }
+  }
+
   TEST_CASE("an id made between a snapshot and its restoration is stale afterwards") {
     Stage stage = make_stage();
     const Snapshot snapshot = stage.world.snapshot();
@@ -147,6 +173,24 @@ TEST_SUITE("world/state") {
     }
     CHECK(without.world.remove(without.ball));
     run(without.world, 10);
+  }
+
+  TEST_CASE("ropes that touch ropes bear one force that is infinite") {
+    World world = make_world();
+    for (const double z : {0.0, 0.03})
+      take(world.add_rope(
+          {.hook_point = {0, 3, z}, .masses = 8, .radius = Real(0.02), .touches_ropes = true}));
+    bool pushes = false;
+    take(world.add_force_law([&](ForceView& view) {
+      if (pushes) view.add_force(view.size() / 2, {std::numeric_limits<Real>::infinity(), 0, 0});
+    }));
+    std::uint32_t quarantined = 0;
+    for (int i = 0; i < 6; ++i) {
+      pushes = i == 2;
+      quarantined += world.step(Real(1) / Real(60)).rows_quarantined;
+    }
+    CHECK(quarantined > 0);
+    CHECK(std::isfinite(world.measure().energy.total()));
   }
 
   TEST_CASE("a force law that returns nonsense freezes its object and no other") {

@@ -118,6 +118,8 @@ void BroadPhase::set(std::uint32_t collider, const Box& box, bool moves, std::in
   HOOKE_ASSERT(is_in_order(box));
   if (collider >= entries_.size()) {
     entries_.resize(collider + std::size_t{1});
+    // Each collider is marked once at most: with this room, to remove one allocates nothing.
+    if (changed_.capacity() < entries_.size()) changed_.reserve(entries_.capacity());
     tight_.resize(entries_.size());
     fat_.resize(entries_.size());
   }

@@ -62,11 +62,13 @@ void set_boxes(const Tables& t, std::uint32_t object, DVec3 origin, Real dt, Rop
     const Vec3 b = offset + t.particles.position[p + 1].x;
     const Real grown = t.particles.position[p].radius + std::max(finder.margin[p], finder.margin[p + 1]);
     const Vec3 all = {grown, grown, grown};
-    const geometry::Box box = geometry::box_of(a, b, b);
-    finder.broad_phase.set(row, {box.lower - all, box.upper + all}, true);
     finder.object_of[row] = object;
     finder.arc[row] = arc;
     arc += t.segments.rest_length[row];
+    // A place that is not finite waits for the step's quarantine; until then its segment keeps its old box.
+    if (!is_finite(a) || !is_finite(b) || !std::isfinite(grown)) continue;
+    const geometry::Box box = geometry::box_of(a, b, b);
+    finder.broad_phase.set(row, {box.lower - all, box.upper + all}, true);
   }
 }
 

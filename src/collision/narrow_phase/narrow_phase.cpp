@@ -219,6 +219,7 @@ void test_view(const Scene& scene, const View& view, Pair& pair, Chunk& chunk) {
   const auto either = [&](ShapeKind kind) { return view.a.shape.kind == kind || view.b.shape.kind == kind; };
   ContactResult& result = chunk.result;
   result.count = 0;
+  result.axis = 0;  // Few kinds of shapes set it; what another pair left here would be hashed.
   if (either(ShapeKind::kMesh)) {
     test_mesh(scene, view, pair, chunk);
   } else if (either(ShapeKind::kHalfSpace)) {

@@ -112,6 +112,7 @@ void add_demand(const IslandDemand& of, IslandDemand& to) {
   to.low = std::min(to.low, of.low);
   to.high = std::max(to.high, of.high);
   to.count += of.count;
+  to.stays_soft = to.stays_soft || of.stays_soft;
   to.least = std::min(to.least, of.least);
   to.most = std::max(to.most, of.most);
 }
@@ -359,7 +360,8 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     own.least = own.most = bodies.direct_state[body];
     // Ragdolls are solved in turn with soft contacts only, and soft islands that are fast fall anyway.
     const bool falls = own.most < kDirect && length(bodies.motion[body].v) > kDirectIslandSpeed;
-    if (members[body] != Footing::kStands || falls) own.least = std::min(own.least, std::int8_t{-1});
+    own.stays_soft = members[body] != Footing::kStands || falls;
+    if (own.stays_soft) own.least = std::min(own.least, std::int8_t{-1});
     own.count = 1;
     const std::uint32_t root = direct.sets.root(body);
     if (root == body) direct.demands[body] = {.sag = own.sag, .buckling = own.buckling};
@@ -369,7 +371,8 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     if (!is_moved(bodies, body)) continue;
     const std::uint32_t root = direct.sets.root(body);
     const IslandDemand& island = direct.demands[root];
-    if (root == body && island.count > kMaxDirectBodies && excess_of(island) > Real(1)) ++direct.too_large;
+    const bool is_too_large = island.count > kMaxDirectBodies && !island.stays_soft;
+    if (root == body && is_too_large && excess_of(island) > Real(1)) ++direct.too_large;
     bodies.direct_state[body] = evaluate(island);
   }
 }

@@ -53,6 +53,7 @@ struct IslandDemand {
   Real low = std::numeric_limits<Real>::infinity();       ///< Lowest coordinate along gravity [m].
   Real high = -std::numeric_limits<Real>::infinity();
   std::uint32_t count = 0;
+  bool stays_soft = false;  ///< Whether it falls, or has bodies that do not stand.
   std::int8_t least = std::numeric_limits<std::int8_t>::max();  ///< Smallest direct_state.
   std::int8_t most = std::numeric_limits<std::int8_t>::min();
 };

@@ -121,12 +121,12 @@ Manifold* only_manifold(const state::Pair& pair, std::vector<Manifold>& manifold
 
 /// Marks manifolds upwards from what hangs, since what lies on it holds others in turn. Returns how many.
 std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vector<SupportRole>& support_role,
-                   std::uint32_t& refused) {
+                   std::vector<std::uint32_t>& refused) {
   std::size_t chosen = 0;
   bool more = true;
   for (int layer = 0; more && layer < kMostLoadLayers; ++layer) {
     more = false;
-    refused = 0;
+    refused.clear();
     for (const state::Pair& pair : pairs.pair) {
       Manifold* m = only_manifold(pair, pairs.manifold);
       if (m == nullptr) continue;
@@ -138,7 +138,7 @@ std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vecto
       const bool a_is_upper = candidates.loads(m->body_a, m->body_b, *m);
       if (!a_is_upper && !candidates.loads(m->body_b, m->body_a, *m)) continue;
       if (chosen == kMostLoadBearingManifolds) {
-        ++refused;
+        refused.push_back(pair.first_manifold);
         continue;
       }
       ++chosen;
@@ -194,7 +194,7 @@ const std::uint32_t* pressed_body(const Candidates& candidates, const Manifold& 
 
 /// Marks manifolds of bodies that are pressed on the ground; `chosen` have been marked before.
 void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pairs& pairs,
-                    std::uint32_t& refused) {
+                    std::vector<std::uint32_t>& refused) {
   for (const state::Pair& pair : pairs.pair) {
     Manifold* m = only_manifold(pair, pairs.manifold);
     const std::uint32_t* body = m == nullptr ? nullptr : pressed_body(candidates, *m);
@@ -202,7 +202,7 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
     const bool may_bounce = m->restitution > Real(0) && !m->touching;
     if (may_bounce || !candidates.is_pressed(*body, *m) || !candidates.may_bear_load(*m)) continue;
     if (chosen == kMostLoadBearingManifolds) {
-      ++refused;
+      refused.push_back(pair.first_manifold);
       continue;
     }
     ++chosen;
@@ -400,6 +400,7 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
                                 const std::vector<Hook>& hooks, state::Pairs& pairs,
                                 LoadBearingScratch& scratch) {
   scratch.footing.assign(bodies.motion.size(), Footing::kStands);
+  scratch.refused_manifolds.clear();
   scratch.refused = 0;
   if (hooks.empty() && pairs.load_bearing.empty()) return;
   take_back_last_choice(pairs, scratch);
@@ -418,9 +419,12 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
                                  .carried = scratch.carried,
                                  .load_bearing_before = scratch.load_bearing_before,
                                  .in_ragdoll = inputs.joints.in_ragdoll};
-  const std::size_t chosen = choose(candidates, pairs, scratch.supports.support_role, scratch.refused);
+  const std::size_t chosen =
+      choose(candidates, pairs, scratch.supports.support_role, scratch.refused_manifolds);
   if (chosen > 0) add_loads(inputs.joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
-  choose_pressed(candidates, chosen, pairs, scratch.refused);
+  choose_pressed(candidates, chosen, pairs, scratch.refused_manifolds);
+  base::sort_unique(scratch.refused_manifolds);  // One that is loaded may be pressed, too.
+  scratch.refused = static_cast<std::uint32_t>(scratch.refused_manifolds.size());
   list_load_bearing_contacts(bodies, scratch.supports.ground_load, pairs);
   update_load_bearing_contacts(inputs.impulse_to_force, bodies, pairs);
 }

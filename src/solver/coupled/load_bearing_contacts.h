@@ -83,8 +83,9 @@ struct Prop {
 /// Memory of find_load_bearing_contacts.
 struct LoadBearingScratch {
   Supports supports;
-  std::vector<Footing> footing;  ///< By body row.
-  std::uint32_t refused = 0;     ///< Number of manifolds over kMostLoadBearingManifolds.
+  std::vector<Footing> footing;                  ///< By body row.
+  std::uint32_t refused = 0;                     ///< Number of manifolds over kMostLoadBearingManifolds.
+  std::vector<std::uint32_t> refused_manifolds;  ///< Their rows.
   std::vector<Prop> props;
   std::vector<CarriedLoad> carried;      ///< By body row.
   std::vector<Real> weights;             ///< By body row, in a substep [N s].
