@@ -95,6 +95,14 @@ Result<void> simulate(Simulation& simulation, const RunOptions& options, std::ui
   return {};
 }
 
+/// Opens the file of the report, if one is asked for.
+Result<std::optional<OutputFile>> open_report(const RunOptions& options) {
+  if (options.json.empty()) return std::optional<OutputFile>();
+  Result<OutputFile> file = OutputFile::create(options.json);
+  if (!file) return file.error();
+  return std::optional<OutputFile>(std::move(file).value());
+}
+
 /// Prints the results, and writes them to `json`, if it has a file.
 ExitCode print_results(const Simulation& simulation, const RunOptions& options, const RunRecord& record,
                        std::optional<OutputFile>& json) {
@@ -124,15 +132,6 @@ int command_run(Arguments arguments) {
         {ErrorCode::kOutOfRange, "hooke run", "--csv and --json cannot both go to the standard output"});
   }
 
-  // It is opened first, because a file that cannot be written is better said before the simulation than
-  // after.
-  std::optional<OutputFile> json;
-  if (!options.json.empty()) {
-    auto created = OutputFile::create(options.json);
-    if (!created) return report(created.error());
-    json.emplace(std::move(created).value());
-  }
-
   RunRecord record = {.scene = options.scene};
   Loaded<Scene> loaded = load_scene(options.scene);
   if (!loaded) return report(loaded.errors, loaded.warnings);
@@ -148,6 +147,9 @@ int command_run(Arguments arguments) {
                                              .csv = options.csv,
                                              .json = options.json});
   }
+  // A file that cannot be written is better said before the simulation than after it.
+  Result<std::optional<OutputFile>> json = open_report(options);
+  if (!json) return report(json.error());
   const std::uint64_t steps = options.seconds ? steps_in(scene, *options.seconds) : scene.step_count();
   const Placement placement =
       options.turned == 0 ? Placement{} : random_placement(options.turned, scene.world.gravity);
@@ -159,7 +161,7 @@ int command_run(Arguments arguments) {
   Simulation& simulation = *built.value;
   const auto done = simulate(simulation, options, steps, record);
   if (!done) return report(done.error());
-  return print_results(simulation, options, record, json);
+  return print_results(simulation, options, record, json.value());
 }
 
 }  // namespace hooke::app
