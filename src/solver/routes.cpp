@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "solver/contact/contact_colors.h"
 #include "solver/coupled/coupled_articulations.h"
+#include "solver/joint/hook_colors.h"
 #include "solver/soft/element_contact_solve.h"
 
 #include <algorithm>
@@ -54,17 +55,9 @@ void count_contacts(const state::Tables& tables, RouteCounts& counts) {
   }
 }
 
-/// Whether nothing solves the hook because its bodies sleep.
-bool sleeps(const Hook& hook, const state::Bodies& bodies) {
-  const auto rests = [&](std::uint32_t body) {
-    return body == state::HookPlace::kWorld || !is_dynamic(bodies, body) || bodies.asleep[body] != 0;
-  };
-  return !hook.holds_point() && rests(hook.a.body) && rests(hook.b.body);
-}
-
 void count_hooks(const state::Tables& tables, RouteCounts& counts) {
   for (const Hook& hook : tables.hooks) {
-    if (sleeps(hook, tables.bodies)) continue;
+    if (!hook.holds_point() && !is_awake(hook, tables.bodies)) continue;  // Nothing solves it.
     counts.hooks_tree += hook.route == JointRoute::kTree ? 1 : 0;
     counts.hooks_approximate_tree += hook.route == JointRoute::kApproximateTree ? 1 : 0;
     counts.hooks_loop += hook.route == JointRoute::kLoop ? 1 : 0;
@@ -84,9 +77,8 @@ std::uint32_t count_points_with_bodies(const state::Tables& tables) {
   while (first < count) {
     std::size_t end = first;
     bool with_body = false;
-    const bool is_free = tables.particles.velocity[contacts.particle[first]].inverse_mass > Real(0);
     for (; end < count && contacts.particle[end] == contacts.particle[first]; ++end)
-      with_body = with_body || (is_free && gives_way(tables.bodies, contacts.body[end]));
+      with_body = with_body || joins_body(tables, end);
     const bool of_rope = tables.objects[contacts.object[first]].kind == PointRef::Kind::kRope;
     if (with_body && !of_rope) sum += static_cast<std::uint32_t>(end - first);
     first = end;
@@ -149,9 +141,8 @@ RouteCounts count_routes(const state::Tables& tables, const Joints& joints,
   counts.articulations = static_cast<std::uint32_t>(
       std::count_if(joints.order.begin(), joints.order.end(), [&](std::uint32_t i) {
         const std::vector<std::uint32_t>& members = joints.articulations[i].bodies;
-        return std::any_of(members.begin(), members.end(), [&](std::uint32_t body) {
-          return is_dynamic(tables.bodies, body) && tables.bodies.asleep[body] == 0;
-        });
+        return std::any_of(members.begin(), members.end(),
+                           [&](std::uint32_t body) { return gives_way(tables.bodies, body); });
       }));
   return counts;
 }

@@ -15,7 +15,7 @@ void count_refused(WorldData& world, StepReport& report) {
     report.ropes_unconverged += rope_system.unconverged ? 1 : 0;
   }
   report.islands_refused = world.frame.direct_islands.refused + world.frame.direct_islands.too_large;
-  report.contacts_refused = world.frame.load_bearing.refused;
+  report.contacts_refused = static_cast<std::uint32_t>(world.frame.load_bearing.refused_manifolds.size());
   for (const solver::CoupledGroup& group : world.derived.coupled_groups.live())
     report.contacts_refused += group.refused;
   for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)

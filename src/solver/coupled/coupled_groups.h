@@ -211,6 +211,9 @@ struct CoupledGroups {
 void build_coupled_groups(const state::Tables& tables, std::vector<RopeSystem>& rope_systems,
                           CoupledGroups& groups);
 
+/// Whether the contact of a point joins its rope, or its particle, to a body that gives way.
+[[nodiscard]] bool joins_body(const state::Tables& tables, std::size_t contact);
+
 /// Moves the ends of hooks that slide along a rope to where the rope is nearest to the other end. The search
 /// begins where they were.
 void slide_hooks(state::Tables& tables);

@@ -28,12 +28,6 @@ bool is_of_rope(const Tables& t, std::size_t contact) {
   return t.objects[t.contacts.object[contact]].kind == PointRef::Kind::kRope;
 }
 
-/// Whether a contact joins its rope, or its particle, to a body.
-bool joins(const Tables& t, std::size_t contact) {
-  if (!gives_way(t.bodies, t.contacts.body[contact])) return false;
-  return is_of_rope(t, contact) || t.particles.velocity[t.contacts.particle[contact]].inverse_mass > Real(0);
-}
-
 void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
   s.clear();
   for (const std::uint64_t revision : {t.revision, t.hook_revision}) {
@@ -48,7 +42,7 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
       s.push_back(gives_way(t.bodies, body) ? 1 : 0);
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-    if (joins(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
+    if (joins_body(t, row)) s.insert(s.end(), {t.contacts.particle[row], t.contacts.body[row]});
   }
   for (std::uint32_t row = 0; row < t.element_contacts.size(); ++row) {
     const state::ElementContact& element_contact = t.element_contacts[row];
@@ -80,7 +74,7 @@ class Membership {
         sets_.merge(load_bearing.body_a, load_bearing.body_b);
     }
     for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-      if (joins(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
+      if (joins_body(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
     }
     for (const state::ElementContact& element_contact : t.element_contacts) {
       if (!is_coupled(t, element_contact)) continue;
@@ -193,7 +187,7 @@ void mark_coupled(const Tables& t, Membership& membership, std::vector<std::uint
       coupled[membership.of_hook(hook)] = 1;
   }
   for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
-    if (joins(t, row)) coupled[membership.of_contact(row)] = 1;
+    if (joins_body(t, row)) coupled[membership.of_contact(row)] = 1;
   }
   for (const state::ElementContact& element_contact : t.element_contacts) {
     if (is_coupled(t, element_contact)) coupled[membership.of_element_contact(element_contact)] = 1;
@@ -234,7 +228,7 @@ class MemberSort {
 
   void add_contacts() {
     for (std::size_t row = 0; row < tables_.contacts.particle.size(); ++row) {
-      if (!joins(tables_, row)) continue;
+      if (!joins_body(tables_, row)) continue;
       CoupledGroup& group = group_at(membership_.of_contact(row));
       group.bodies.push_back(tables_.contacts.body[row]);
       if (!is_of_rope(tables_, row)) group.points.push_back(tables_.contacts.particle[row]);
@@ -435,7 +429,7 @@ struct Layout {
     std::vector<std::vector<std::uint32_t>>& bodies_at = scratch.bodies_at;
     base::reset_lists(node_count, bodies_at);
     for (std::size_t row = 0; row < tables.contacts.particle.size(); ++row) {
-      if (!joins(tables, row)) continue;
+      if (!joins_body(tables, row)) continue;
       const std::uint32_t block = body_block(tables.contacts.body[row]);
       if (block != kNone) bodies_at[node_of(tables.contacts.particle[row])].push_back(block);
     }
@@ -587,6 +581,11 @@ void set_slide_weights(const Tables& t, std::vector<int>& seen, CoupledGroup& gr
 }
 
 }  // namespace
+
+bool joins_body(const Tables& t, std::size_t contact) {
+  if (!gives_way(t.bodies, t.contacts.body[contact])) return false;
+  return is_of_rope(t, contact) || t.particles.velocity[t.contacts.particle[contact]].inverse_mass > Real(0);
+}
 
 int CoupledGroup::body_of(std::uint32_t row) const {
   const auto at = std::lower_bound(bodies.begin(), bodies.end(), row);

@@ -401,7 +401,6 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
                                 LoadBearingScratch& scratch) {
   scratch.footing.assign(bodies.motion.size(), Footing::kStands);
   scratch.refused_manifolds.clear();
-  scratch.refused = 0;
   if (hooks.empty() && pairs.load_bearing.empty()) return;
   take_back_last_choice(pairs, scratch);
   scratch.supports = inputs.supports;
@@ -424,7 +423,6 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
   if (chosen > 0) add_loads(inputs.joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
   choose_pressed(candidates, chosen, pairs, scratch.refused_manifolds);
   base::sort_unique(scratch.refused_manifolds);  // One that is loaded may be pressed, too.
-  scratch.refused = static_cast<std::uint32_t>(scratch.refused_manifolds.size());
   list_load_bearing_contacts(bodies, scratch.supports.ground_load, pairs);
   update_load_bearing_contacts(inputs.impulse_to_force, bodies, pairs);
 }

@@ -84,8 +84,7 @@ struct Prop {
 struct LoadBearingScratch {
   Supports supports;
   std::vector<Footing> footing;                  ///< By body row.
-  std::uint32_t refused = 0;                     ///< Number of manifolds over kMostLoadBearingManifolds.
-  std::vector<std::uint32_t> refused_manifolds;  ///< Their rows.
+  std::vector<std::uint32_t> refused_manifolds;  ///< Rows of those over kMostLoadBearingManifolds.
   std::vector<Prop> props;
   std::vector<CarriedLoad> carried;      ///< By body row.
   std::vector<Real> weights;             ///< By body row, in a substep [N s].
