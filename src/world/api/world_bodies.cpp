@@ -164,8 +164,8 @@ std::size_t World::remove(std::span<const BodyId> ids) {
   Tables& t = claim.tables();
   std::vector<std::uint8_t> goes(t.bodies.traits.size(), 0);
   // All that may fail for lack of memory comes first.
-  t.free_bodies.reserve(t.free_bodies.size() + ids.size());
-  t.free_colliders.reserve(t.free_colliders.size() + ids.size());
+  base::make_room(t.free_bodies, ids.size());
+  base::make_room(t.free_colliders, ids.size());
   std::size_t count = 0;
   for (const BodyId id : ids) {
     const std::uint32_t row = t.body_slots.find(id);
