@@ -38,14 +38,15 @@ ContactRoute route_of(const Manifold& m, const state::Bodies& bodies, const Dire
   return is_direct(m, bodies, direct) ? ContactRoute::kDirect : ContactRoute::kSoft;
 }
 
-void count_contacts(const state::Tables& tables, RouteCounts& counts) {
-  for (const Manifold& m : tables.pairs.manifold) {
-    counts.contacts_soft += m.route == ContactRoute::kSoft ? 1 : 0;
-    counts.contacts_direct += m.route == ContactRoute::kDirect ? 1 : 0;
-    counts.contacts_coupled += m.route == ContactRoute::kCoupled ? 1 : 0;
-    const bool has_rows = m.route != ContactRoute::kNone && m.point_count > 0;
-    counts.contacts_bouncing += has_rows && m.restitution > Real(0) ? 1 : 0;
-  }
+void count_contact(const Manifold& m, RouteCounts& counts) {
+  counts.contacts_soft += m.route == ContactRoute::kSoft ? 1 : 0;
+  counts.contacts_direct += m.route == ContactRoute::kDirect ? 1 : 0;
+  counts.contacts_coupled += m.route == ContactRoute::kCoupled ? 1 : 0;
+  const bool has_rows = m.route != ContactRoute::kNone && m.point_count > 0;
+  counts.contacts_bouncing += has_rows && m.restitution > Real(0) ? 1 : 0;
+}
+
+void count_pairs(const state::Tables& tables, RouteCounts& counts) {
   for (const state::Pair& pair : tables.pairs.pair) {
     if (pair.manifold_count == 0) continue;
     counts.pairs_at_start += pair.refresh == ContactRefresh::kAtStart ? 1 : 0;
@@ -55,16 +56,24 @@ void count_contacts(const state::Tables& tables, RouteCounts& counts) {
   }
 }
 
-void count_hooks(const state::Tables& tables, RouteCounts& counts) {
-  for (const Hook& hook : tables.hooks) {
-    if (!hook.holds_point() && !is_awake(hook, tables.bodies)) continue;  // Nothing solves it.
-    counts.hooks_tree += hook.route == JointRoute::kTree ? 1 : 0;
-    counts.hooks_approximate_tree += hook.route == JointRoute::kApproximateTree ? 1 : 0;
-    counts.hooks_loop += hook.route == JointRoute::kLoop ? 1 : 0;
-    counts.hooks_block += hook.route == JointRoute::kBlock ? 1 : 0;
-    counts.hooks_iterative += hook.route == JointRoute::kIterative ? 1 : 0;
-    counts.hooks_coupled += hook.route == JointRoute::kCoupled ? 1 : 0;
+/// Hooks that nothing solves in this step, because they hold nothing awake, are not counted.
+void count_hooks(const state::Tables& tables, const Joints& joints, RouteCounts& counts) {
+  const auto is_solved = [&](std::uint32_t row) { return is_awake(tables.hooks[row], tables.bodies); };
+  for (const std::uint32_t i : joints.order) {
+    for (const Articulation::Joint& joint : joints.articulations[i].joints) {
+      if (joint.is_weld() || !is_solved(joint.hook)) continue;
+      const JointRoute route = tables.hooks[joint.hook].route;
+      counts.hooks_tree += route == JointRoute::kTree ? 1 : 0;
+      counts.hooks_approximate_tree += route == JointRoute::kApproximateTree ? 1 : 0;
+      counts.hooks_loop += route == JointRoute::kLoop ? 1 : 0;
+      counts.hooks_coupled += route == JointRoute::kCoupled ? 1 : 0;
+    }
   }
+  counts.hooks_block = static_cast<std::uint32_t>(joints.balls.hook_of.size());
+  const std::vector<std::uint32_t>& iterative = joints.iterative.hooks;
+  counts.hooks_iterative =
+      static_cast<std::uint32_t>(std::count_if(iterative.begin(), iterative.end(), is_solved));
+  counts.hooks_coupled += static_cast<std::uint32_t>(joints.at_points.size());
 }
 
 /// Contacts of particles of no rope that touch a body which gives way: all of such a particle's are solved
@@ -106,33 +115,40 @@ void count_points(const state::Tables& tables, std::span<const RopeSystem> rope_
 
 }  // namespace
 
-void choose_joint_routes(const Joints& joints, std::vector<Hook>& hooks) {
+void set_joint_routes(const Joints& joints, std::vector<Hook>& hooks) {
   for (Hook& hook : hooks) hook.route = hook.holds_point() ? JointRoute::kCoupled : JointRoute::kNone;
+  for (const std::uint32_t row : joints.balls.hooks) hooks[row].route = JointRoute::kBlock;
+  for (const std::uint32_t row : joints.iterative.hooks) hooks[row].route = JointRoute::kIterative;
+}
+
+void choose_joint_routes(const Joints& joints, std::vector<Hook>& hooks) {
   for (const std::uint32_t i : joints.order) {
     const JointRoute route = route_of(joints.articulations[i]);
     for (const Articulation::Joint& joint : joints.articulations[i].joints) {
       if (!joint.is_weld()) hooks[joint.hook].route = route;
     }
   }
-  for (const std::uint32_t row : joints.balls.hooks) hooks[row].route = JointRoute::kBlock;
-  for (const std::uint32_t row : joints.iterative.hooks) hooks[row].route = JointRoute::kIterative;
 }
 
-void choose_contact_routes(const LoadBearingInputs& inputs, std::span<const std::uint32_t> awake,
-                           std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
-                           DirectIslands& direct, state::Tables& tables) {
+RouteCounts choose_contact_routes(const LoadBearingInputs& inputs, std::span<const std::uint32_t> awake,
+                                  std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
+                                  DirectIslands& direct, state::Tables& tables) {
   find_load_bearing_contacts(inputs, tables.bodies, tables.hooks, tables.pairs, load_bearing);
   couple_articulations(inputs.joints, body_marks, tables);
   find_direct_islands(awake, inputs.step, tables.pairs.manifold, load_bearing.footing, tables.bodies, direct);
-  for (Manifold& m : tables.pairs.manifold) m.route = route_of(m, tables.bodies, direct);
+  RouteCounts counts;
+  for (Manifold& m : tables.pairs.manifold) {
+    m.route = route_of(m, tables.bodies, direct);
+    count_contact(m, counts);
+  }
+  return counts;
 }
 
 RouteCounts count_routes(const state::Tables& tables, const Joints& joints,
                          std::span<const RopeSystem> rope_systems, const CoupledGroups& groups,
-                         const DirectIslands& direct) {
-  RouteCounts counts;
-  count_contacts(tables, counts);
-  count_hooks(tables, counts);
+                         const DirectIslands& direct, RouteCounts counts) {
+  count_pairs(tables, counts);
+  count_hooks(tables, joints, counts);
   count_points(tables, rope_systems, counts);
   for (const RopeSystem& rope : rope_systems)
     ++(rope.in_coupled_group ? counts.ropes_coupled : counts.ropes_alone);

@@ -17,7 +17,7 @@
 
 /// \file
 /// Which way each contact and each hook is solved: the signpost of the solver. The tables carry the ways
-/// (state/route.h), and StepReport counts them. Ways of contacts and hooks are chosen once a step, by the two
+/// (state/route.h), and StepReport counts them. Ways of contacts and hooks are chosen once a step, by the
 /// functions below; what they choose by is the work of the files named here. When contacts are looked for is
 /// chosen by the narrow phase (collision/narrow_phase/narrow_phase.cpp), which trees are approximate by
 /// evaluate_ragdolls before contacts are looked for, and who belongs to a coupled group by
@@ -88,20 +88,27 @@
 
 namespace hooke::solver {
 
-/// Gives each hook between bodies the way of its group, and the way "coupled" to hooks at points. Groups that
-/// are solved with contacts or points become coupled in choose_contact_routes.
+/// Gives hooks outside articulations their ways, which stay the same as long as no hook comes or goes: call
+/// it after build_joints. Hooks at points get the way "coupled".
+void set_joint_routes(const Joints& joints, std::vector<state::Hook>& hooks);
+
+/// Gives each hook of an articulation the way of its articulation in this step. Those that are solved with
+/// contacts or points become coupled in choose_contact_routes.
 void choose_joint_routes(const Joints& joints, std::vector<state::Hook>& hooks);
 
 /// Gives each manifold its way, and the way "coupled" to the hooks that are solved with contacts or points.
 /// `awake` are rows of bodies that move in
-/// this step, in ascending order; `body_marks` is scratch. Call it after choose_joint_routes.
-void choose_contact_routes(const LoadBearingInputs& inputs, std::span<const std::uint32_t> awake,
-                           std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
-                           DirectIslands& direct, state::Tables& tables);
+/// this step, in ascending order; `body_marks` is scratch. Call it after choose_joint_routes. Returns how
+/// many contacts go which way, counted here because one more walk over all manifolds takes time.
+[[nodiscard]] RouteCounts choose_contact_routes(const LoadBearingInputs& inputs,
+                                                std::span<const std::uint32_t> awake,
+                                                std::vector<std::uint8_t>& body_marks,
+                                                LoadBearingScratch& load_bearing, DirectIslands& direct,
+                                                state::Tables& tables);
 
-/// How many contacts, hooks and ropes go which way in this step.
+/// Adds to the counts of contacts how many pairs, hooks and ropes go which way in this step.
 [[nodiscard]] RouteCounts count_routes(const state::Tables& tables, const Joints& joints,
                                        std::span<const RopeSystem> rope_systems, const CoupledGroups& groups,
-                                       const DirectIslands& direct);
+                                       const DirectIslands& direct, RouteCounts counts);
 
 }  // namespace hooke::solver

@@ -221,13 +221,13 @@ void prepare_body_contacts(WorldData& world, Real h) {
                               .sweeps = desc.bias_sweeps,
                               .impulse_scale = before > Real(0) ? h / before : Real(1)};
   t.body_substep = static_cast<double>(h);
-  solver::choose_contact_routes({.step = world.frame.contact_step,
-                                 .impulse_to_force = before > Real(0) ? Real(1) / before : Real(0),
-                                 .joints = world.derived.joints,
-                                 .hooked = world.derived.hooked,
-                                 .supports = world.derived.supports},
-                                world.frame.awake, world.frame.body_marks, world.frame.load_bearing,
-                                world.frame.direct_islands, t);
+  world.frame.routes = solver::choose_contact_routes(
+      {.step = world.frame.contact_step,
+       .impulse_to_force = before > Real(0) ? Real(1) / before : Real(0),
+       .joints = world.derived.joints,
+       .hooked = world.derived.hooked,
+       .supports = world.derived.supports},
+      world.frame.awake, world.frame.body_marks, world.frame.load_bearing, world.frame.direct_islands, t);
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.frame.contact_step,
                                 world.frame.body_contacts);
   solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.bodies,

@@ -24,13 +24,14 @@ std::pair<std::uint32_t, std::uint32_t> pair_of(std::uint32_t a, std::uint32_t b
 }  // namespace
 
 void refresh_hooks(WorldData& world) {
-  const state::Tables& t = world.tables;
+  state::Tables& t = world.tables;
   world.derived.hooked.resize(t.bodies.motion.size());
   world.derived.supports.support_role.resize(t.bodies.motion.size());
   world.derived.supports.ground_load.resize(t.bodies.motion.size());
   if (world.derived.joints_revision == t.hook_revision) return;
   world.derived.joints_revision = t.hook_revision;
   solver::build_joints(t.hooks, t.bodies, solver::kArticulationBudget, world.derived.joints);
+  solver::set_joint_routes(world.derived.joints, t.hooks);
   solver::find_supporting_bodies(world.derived.joints, t.bodies, t.hooks, world.derived.supports);
   std::fill(world.derived.hooked.begin(), world.derived.hooked.end(), std::uint8_t{0});
   world.derived.hooked_pairs.clear();

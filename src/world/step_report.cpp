@@ -44,8 +44,9 @@ void count_rows(WorldData& world, StepReport& report) {
 }  // namespace
 
 void count_routes(const WorldData& world, StepReport& report) {
-  report.routes = solver::count_routes(world.tables, world.derived.joints, world.derived.rope_systems,
-                                       world.derived.coupled_groups, world.frame.direct_islands);
+  report.routes =
+      solver::count_routes(world.tables, world.derived.joints, world.derived.rope_systems,
+                           world.derived.coupled_groups, world.frame.direct_islands, world.frame.routes);
 }
 
 void end_step(WorldData& world, double dt, StepReport& report) {

@@ -129,6 +129,7 @@ struct Frame {
   solver::Impacts impacts;
   solver::DirectIslands direct_islands;
   solver::LoadBearingScratch load_bearing;
+  RouteCounts routes;  ///< Counts of contacts by their ways.
 
   // These members clamp bodies to their times of impact.
   std::vector<std::uint8_t> fast;    ///< By body row: it may pass through others.

@@ -99,6 +99,8 @@ struct BodyScene {
     settings.h = dt / static_cast<Real>(substeps);
     for (std::size_t i = 0; i < manifolds.size(); ++i) places[i](*this, manifolds[i]);
     prepare_bodies(awake, bodies);
+    for (Manifold& m : manifolds)
+      m.route = has_contact_rows(m, bodies) ? state::ContactRoute::kSoft : state::ContactRoute::kNone;
     prepare_body_contacts(pool, manifolds, bodies, settings, contacts);
     for (int i = 0; i < substeps; ++i) substep(i == 0);
     finish_bodies(awake, bodies);

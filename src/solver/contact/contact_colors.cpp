@@ -42,13 +42,19 @@ int take_color(const Manifold& m, ContactColors& colors) {
   return color;
 }
 
+/// Whether the manifold has rows of its own. Its way says it, which costs less than to ask its bodies again.
+bool is_colored(const Manifold& m) {
+  return m.route == state::ContactRoute::kSoft || m.route == state::ContactRoute::kDirect;
+}
+
 /// Takes the colors of all manifolds. Returns how many of these are alone in their own.
 int take_colors(const std::vector<Manifold>& manifolds, const state::Bodies& bodies, ContactColors& colors) {
   colors.used.assign(bodies.motion.size(), 0);
   colors.color.resize(manifolds.size());
   int lone = 0;
   for (std::size_t i = 0; i < manifolds.size(); ++i) {
-    colors.color[i] = has_contact_rows(manifolds[i], bodies) ? take_color(manifolds[i], colors) : -1;
+    HOOKE_ASSERT(is_colored(manifolds[i]) == has_contact_rows(manifolds[i], bodies));
+    colors.color[i] = is_colored(manifolds[i]) ? take_color(manifolds[i], colors) : -1;
     if (colors.color[i] == kColors) colors.color[i] += lone++;
   }
   return lone;

@@ -32,10 +32,10 @@ struct ContactColors {
 /// Whether the manifold has points that push, or may get some within the step, and a body that they move.
 [[nodiscard]] bool has_contact_rows(const state::Manifold& manifold, const state::Bodies& bodies);
 
-/// Takes the manifolds in order. A manifold with two bodies that move takes the lowest color free in both,
-/// below 56. One with a single such body takes the highest free color: it is solved last and so holds best. A
-/// manifold that finds no free color is alone in its own, between the two. Each call starts from nothing:
-/// colors depend on the manifolds alone.
+/// Takes the manifolds with the ways "soft" and "direct" in order. A manifold with two bodies that move takes
+/// the lowest color free in both, below 56. One with a single such body takes the highest free color: it is
+/// solved last and so holds best. A manifold that finds no free color is alone in its own, between the two.
+/// Each call starts from nothing: colors depend on the manifolds alone.
 void color_contacts(const std::vector<state::Manifold>& manifolds, const state::Bodies& bodies,
                     ContactColors& colors);
 

@@ -14,7 +14,7 @@ using state::Tables;
 
 /// Marks the bodies that a coupled group holds by other rows than those of hooks between bodies. True if
 /// there are any.
-bool mark_held_bodies(const Tables& t, std::vector<std::uint8_t>& body_marks) {
+bool mark_held_bodies(const Tables& t, const Joints& joints, std::vector<std::uint8_t>& body_marks) {
   body_marks.assign(t.bodies.motion.size(), 0);
   bool any = false;
   const auto mark = [&](std::uint32_t body) {
@@ -22,10 +22,9 @@ bool mark_held_bodies(const Tables& t, std::vector<std::uint8_t>& body_marks) {
     body_marks[body] = 1;
     any = true;
   };
-  for (const Hook& hook : t.hooks) {
-    if (!hook.holds_point()) continue;
-    mark(hook.a.body);
-    mark(hook.b.body);
+  for (const std::uint32_t row : joints.at_points) {
+    mark(t.hooks[row].a.body);
+    mark(t.hooks[row].b.body);
   }
   for (const std::uint32_t body : t.contacts.body) mark(body);
   for (const state::ElementContact& element_contact : t.element_contacts) {
@@ -41,7 +40,7 @@ bool mark_held_bodies(const Tables& t, std::vector<std::uint8_t>& body_marks) {
 }  // namespace
 
 void couple_articulations(const Joints& joints, std::vector<std::uint8_t>& body_marks, Tables& t) {
-  if (joints.order.empty() || !mark_held_bodies(t, body_marks)) return;
+  if (joints.order.empty() || !mark_held_bodies(t, joints, body_marks)) return;
   const auto is_marked = [&](std::uint32_t body) {
     return body < body_marks.size() && body_marks[body] != 0;
   };

@@ -151,6 +151,10 @@ void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bo
 void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints) {
   build_articulations(hooks, bodies, budget, joints);
+  joints.at_points.clear();
+  for (std::uint32_t row = 0; row < hooks.size(); ++row) {
+    if (hooks[row].holds_point()) joints.at_points.push_back(row);
+  }
   auto& [sets, group_of, grouped, groups, articulation, rest, balls, others, degree, colors] = joints.build;
   count_hooks(rest, hooks, bodies, degree);
   balls.clear();

@@ -66,7 +66,8 @@ struct Joints {
   /// Plain balls outside articulations, at no body with more than kMostFreeHooks hooks
   /// (solver/joint/iterative_joints.h).
   BallJoints balls;
-  IterativeJoints iterative;  ///< All other hooks outside articulations.
+  IterativeJoints iterative;             ///< All other hooks outside articulations.
+  std::vector<std::uint32_t> at_points;  ///< Rows of hooks at points, which coupled groups and ropes solve.
   /// By body row: 1 for members of ragdolls (solver/joint/approximate_trees.h).
   std::vector<std::uint8_t> in_ragdoll;
   std::vector<SolveScratch> scratch;
