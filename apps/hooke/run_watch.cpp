@@ -485,7 +485,7 @@ void RunWatch::look_at_report(const World& world, const StepReport& report) {
     const std::uint32_t number = report.*count.number;
     if (number == 0) continue;
     const Watched* rope = count.of_rope ? least_rigid_rope(world) : nullptr;
-    std::string what = text_of("in one step %u ", number) + count.what;
+    std::string what = count.what + text_of(" (%u in one step)", number);
     if (rope != nullptr) what += ", '" + rope->object.name + "' the most";
     note(kNobody, kFirstCount + static_cast<int>(i), number,
          {.what = std::move(what),

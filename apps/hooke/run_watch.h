@@ -28,7 +28,7 @@ struct RunWarning {
 struct RefusedCount {
   std::uint32_t StepReport::*number;
   const char* name;  ///< Name in reports.
-  const char* what;  ///< Text after the number, for a reader.
+  const char* what;  ///< Text before the number, for a reader.
   const char* cure;
   bool of_rope = false;  ///< Whether the warning names the worst rope.
 };

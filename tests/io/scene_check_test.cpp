@@ -45,40 +45,43 @@ bool is_large(const hooke::Scene& scene) {
   return count > kMany;
 }
 
+enum class Size { kSmall, kLarge };
+
+/// Calls test(scene) for every scene of that size.
+template <class Test>
+void for_each_scene(Size size, Test&& test) {
+  for (const std::string& file : scene_files()) {
+    CAPTURE(file);
+    hooke::Scene scene = load(file);
+    if (is_large(scene) == (size == Size::kLarge)) test(std::move(scene));
+  }
+}
+
+void check_promises(hooke::Scene scene, const hooke::Placement& placement = {}) {
+  const hooke::Simulation done = run(std::move(scene), placement);
+  INFO(done.report());
+  CHECK(done.passed());
+}
+
 }  // namespace
 
 TEST_SUITE("scenes") {
   TEST_CASE("every scene keeps what it promises") {
-    for (const std::string& file : scene_files()) {
-      CAPTURE(file);
-      hooke::Scene scene = load(file);
-      if (is_large(scene)) continue;
-      const hooke::Simulation good = run(std::move(scene));
-      INFO(good.report());
-      CHECK(good.passed());
-    }
+    for_each_scene(Size::kSmall, [](hooke::Scene scene) { check_promises(std::move(scene)); });
   }
 
   TEST_CASE("every scene notices when gravity is halved" * doctest::skip()) {
-    for (const std::string& file : scene_files()) {
-      CAPTURE(file);
-      hooke::Scene scene = load(file);
-      if (is_large(scene)) continue;
+    for_each_scene(Size::kSmall, [](hooke::Scene scene) {
       scene.world.gravity = hooke::Real(0.5) * scene.world.gravity;
       CHECK_FALSE(run(std::move(scene)).passed());
-    }
+    });
   }
 
   TEST_CASE("turned and moved, small scenes keep what they promise" * doctest::skip()) {
-    for (const std::string& file : scene_files()) {
-      CAPTURE(file);
-      hooke::Scene scene = load(file);
-      if (is_large(scene)) continue;
+    for_each_scene(Size::kSmall, [](hooke::Scene scene) {
       const hooke::Placement placement = hooke::random_placement(2, scene.world.gravity);
-      const hooke::Simulation turned = run(std::move(scene), placement);
-      INFO(turned.report());
-      CHECK(turned.passed());
-    }
+      check_promises(std::move(scene), placement);
+    });
   }
 
   TEST_CASE("the cloth slides off the ball without friction") {
@@ -88,13 +91,6 @@ TEST_SUITE("scenes") {
   }
 
   TEST_CASE("large scenes keep what they promise" * doctest::skip()) {
-    for (const std::string& file : scene_files()) {
-      CAPTURE(file);
-      hooke::Scene scene = load(file);
-      if (!is_large(scene)) continue;
-      const hooke::Simulation done = run(std::move(scene));
-      INFO(done.report());
-      CHECK(done.passed());
-    }
+    for_each_scene(Size::kLarge, [](hooke::Scene scene) { check_promises(std::move(scene)); });
   }
 }
