@@ -37,7 +37,8 @@ const char* find_in_lane(const Tables& t, const ContactBlock& block, int lane, s
   const std::uint32_t b = block.record_b[lane] / 16;
   if ((a != m.body_a || b != m.body_b) && (a != m.body_b || b != m.body_a)) return "bodies of a lane";
   if (!is_moved(t.bodies, a) || is_moved(t.bodies, b) == block.anchored) return "who moves in a lane";
-  if (m.route != (block.direct ? ContactRoute::kDirect : ContactRoute::kSoft)) return "way of a lane";
+  if (m.route == ContactRoute::kNone || block.direct != (m.route != ContactRoute::kSoft))
+    return "way of a lane";
   return m.point_count > block.point_count ? "points of a lane" : nullptr;
 }
 
@@ -81,47 +82,36 @@ const char* find_in_colors(const Tables& t, const BodyContacts& contacts, Marks&
   return nullptr;
 }
 
-/// How many rows of all kinds a manifold of this way has.
-std::uint32_t rows_of(ContactRoute route) {
-  switch (route) {
-    case ContactRoute::kNone:
-      return 0;
-    case ContactRoute::kSoft:
-    case ContactRoute::kDirect:
-      return 1;  // a lane
-    case ContactRoute::kCoupled:
-      return Manifold::kMaxPoints;
-  }
-  return 0;
-}
-
-const char* find_in_load_bearing(const Tables& t, Marks& marks) {
-  for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
-    if (contact.pair >= t.pairs.pair.size() || contact.manifold >= t.pairs.manifold.size())
-      return "pair of a load-bearing contact";
-    const state::Pair& pair = t.pairs.pair[contact.pair];
-    if (pair.manifold_count != 1 || pair.first_manifold != contact.manifold)
-      return "manifold of a load-bearing contact";
-    const Manifold& m = t.pairs.manifold[contact.manifold];
-    if (!m.is_load_bearing()) return "way of a load-bearing contact";
-    if (contact.body_a != m.body_a || contact.body_b != m.body_b) return "bodies of a load-bearing contact";
-    if (static_cast<std::uint32_t>(contact.point) != marks[contact.manifold]++)
-      return "points of a load-bearing contact";
-    if (!(contact.load > Real(0))) return "load of a load-bearing contact";
+const char* find_in_coupled_manifolds(const Tables& t, const BodyContacts& contacts) {
+  std::size_t coupled = 0;
+  for (const Manifold& m : t.pairs.manifold) coupled += m.is_coupled() ? 1 : 0;
+  if (coupled != t.pairs.coupled.size()) return "number of coupled manifolds";
+  for (std::size_t i = 0; i < coupled; ++i) {
+    const state::CoupledManifold& of = t.pairs.coupled[i];
+    if (of.manifold >= t.pairs.manifold.size() || (i > 0 && of.manifold <= t.pairs.coupled[i - 1].manifold))
+      return "order of coupled manifolds";
+    const Manifold& m = t.pairs.manifold[of.manifold];
+    if (!m.is_coupled()) return "way of a coupled manifold";
+    if (of.body_a != m.body_a || of.body_b != m.body_b) return "bodies of a coupled manifold";
+    const std::size_t lane =
+        kContactLanes * static_cast<std::size_t>(of.block) + static_cast<std::size_t>(of.lane);
+    if (of.block < 0 || lane >= contacts.manifold_of.size() || contacts.manifold_of[lane] != of.manifold)
+      return "lane of a coupled manifold";
   }
   return nullptr;
 }
 
-/// Marks manifolds by the number of their rows.
+/// Marks manifolds by the number of their lanes.
 const char* find_in_ways(const Tables& t, const BodyContacts& contacts, Marks& marks) {
   reset(t.pairs.manifold.size(), marks);
   for (const std::uint32_t row : contacts.manifold_of) {
     if (row != BodyContacts::kNoManifold) ++marks[row];
   }
-  if (const char* what = find_in_load_bearing(t, marks)) return what;
   for (std::size_t row = 0; row < marks.size(); ++row) {
-    if (marks[row] != rows_of(t.pairs.manifold[row].route)) return "rows of a manifold";
+    if (marks[row] != (t.pairs.manifold[row].route == ContactRoute::kNone ? 0U : 1U))
+      return "lanes of a manifold";
   }
+  if (const char* what = find_in_coupled_manifolds(t, contacts)) return what;
   for (const ContactLane& at : contacts.refreshed) {
     const std::size_t lane =
         kContactLanes * static_cast<std::size_t>(at.block) + static_cast<std::size_t>(at.lane);
@@ -145,7 +135,7 @@ const char* find_in_island(const BodyContacts& contacts, const DirectIslands& di
         (!block.anchored && direct.island_of[block.record_b[c.lane] / 16] != number))
       return "island of a direct contact";
     if (c.a >= nodes || (c.b != DirectContact::kNone && c.b >= nodes)) return "nodes of a direct contact";
-    if (c.first + c.points + 3 > static_cast<int>(island.rows.size())) return "rows of a direct contact";
+    if (c.end() > static_cast<int>(island.rows.size())) return "rows of a direct contact";
     if (i == 0) continue;
     const DirectContact& before = island.contacts[i - 1];
     if (before.block > c.block || (before.block == c.block && before.lane >= c.lane))
@@ -161,6 +151,7 @@ const char* find_in_islands(const Tables& t, const BodyContacts& contacts, const
   for (const ContactBlock& block : contacts.blocks) {
     lanes += block.direct ? static_cast<std::size_t>(block.count) : 0;
   }
+  lanes -= t.pairs.coupled.size();
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(direct.count); ++i) {
     const DirectIsland& island = direct.islands[i];
     if (!ascends(island.graph.bodies)) return "order of a direct island";
@@ -275,12 +266,12 @@ const char* find_in_contacts_of_groups(const Tables& t, const CoupledGroups& gro
     return group.rope_contacts;
   };
   if (!are_disjoint(groups, t.rope_contacts.size(), marks, ropes)) return "rope contacts of coupled groups";
-  const auto load_bearing = [](const CoupledGroup& group) -> const auto& {
-    return group.load_bearing;
+  const auto manifolds = [](const CoupledGroup& group) -> const auto& {
+    return group.manifolds;
   };
-  if (!are_disjoint(groups, t.pairs.load_bearing.size(), marks, load_bearing))
-    return "load-bearing contacts of coupled groups";
-  if (std::find(marks.begin(), marks.end(), 0U) != marks.end()) return "a load that nothing bears";
+  if (!are_disjoint(groups, t.pairs.coupled.size(), marks, manifolds)) return "manifolds of coupled groups";
+  if (std::find(marks.begin(), marks.end(), 0U) != marks.end())
+    return "a manifold that is coupled to nothing";
   return nullptr;
 }
 

@@ -19,7 +19,7 @@
 namespace hooke::solver {
 
 /// After prepare_body_contacts and prepare_direct_islands: colors share no body that contacts move; each
-/// manifold has as many rows as its way asks for; direct islands are disjoint, and have all direct contacts.
+/// manifold with a way has one lane; direct islands are disjoint, and have all direct contacts.
 [[nodiscard]] const char* find_in_contact_routes(const state::Tables& tables, const BodyContacts& contacts,
                                                  const DirectIslands& direct,
                                                  std::vector<std::uint32_t>& marks);
@@ -29,8 +29,8 @@ namespace hooke::solver {
 [[nodiscard]] const char* find_in_joint_routes(const state::Tables& tables, const Joints& joints,
                                                std::vector<std::uint32_t>& marks);
 
-/// After build_coupled_groups: groups are disjoint, name rows that exist, and have all hooks and load-bearing
-/// contacts that are coupled.
+/// After build_coupled_groups: groups are disjoint, name rows that exist, and have all hooks and manifolds
+/// that are coupled.
 [[nodiscard]] const char* find_in_coupled_groups(const state::Tables& tables,
                                                  std::span<const RopeSystem> rope_systems,
                                                  const CoupledGroups& groups,

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "solver/contact/contact_colors.h"
 #include "solver/coupled/coupled_articulations.h"
+#include "solver/coupled/coupled_manifolds.h"
 #include "solver/joint/hook_colors.h"
 #include "solver/soft/element_contact_solve.h"
 
@@ -134,8 +135,10 @@ RouteCounts choose_contact_routes(const LoadBearingInputs& inputs, std::span<con
                                   std::vector<std::uint8_t>& body_marks, LoadBearingScratch& load_bearing,
                                   DirectIslands& direct, state::Tables& tables) {
   find_load_bearing_contacts(inputs, tables.bodies, tables.hooks, tables.pairs, load_bearing);
+  couple_neighbors(inputs.joints, tables, body_marks);
+  find_direct_islands(awake, inputs.step, {load_bearing.footing, body_marks, inputs.joints}, tables, direct);
+  list_coupled_manifolds(tables.pairs, load_bearing.manifolds);
   couple_articulations(inputs.joints, body_marks, tables);
-  find_direct_islands(awake, inputs.step, tables.pairs.manifold, load_bearing.footing, tables.bodies, direct);
   RouteCounts counts;
   for (Manifold& m : tables.pairs.manifold) {
     m.route = route_of(m, tables.bodies, direct);

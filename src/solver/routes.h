@@ -28,11 +28,13 @@
 ///
 ///   none      A sensor, bodies none of which moves, or no point near enough: there is nothing to solve.
 ///   coupled   One of the bodies hangs on hooks, and the other is at least twice as heavy or presses harder than
-///             the first weighs; or a light hooked body is pressed on the ground by what it is hooked to. Rows
-///             of the contact alone pass on at most what stops the light body, so the contact is solved with
-///             those hooks and ropes, by a factorization in each substep (solver/coupled/load_bearing_contacts.h).
-///             Only pairs with one manifold can be coupled, and 512 at most: StepReport::contacts_refused counts
-///             the others that ask for it. docs/decisions/0022-borne-contacts.md
+///             the first weighs; or a light hooked body is pressed on the ground by what it is hooked to
+///             (solver/coupled/load_bearing_contacts.h). Rows of the contact alone pass on at most what stops the
+///             light body, so the contact is solved with those hooks and ropes, by factorizations in each substep.
+///             512 manifolds at most: StepReport::contacts_refused counts the others that ask for it. So are all
+///             other contacts of these bodies, and direct islands with such a body or a hooked one
+///             (solver/coupled/coupled_manifolds.h). docs/decisions/0022-borne-contacts.md,
+///             docs/decisions/0032-contacts-in-coupled-groups.md
 ///   direct    The contacts of its island sag, or would buckle, as soft rows: a high stack, a heavy body on light
 ///             ones. All contacts of the island are solved by one factorization in each substep
 ///             (solver/coupled/direct_islands.h). 256 bodies and 4e4 multiplications an island at most, 1e6 in
@@ -42,7 +44,7 @@
 ///             once without bias in a substep (solver/contact/body_contacts.h). It is the cheapest way.
 ///             docs/decisions/0004-body-contacts.md
 ///
-/// Soft and direct contacts with restitution collide in the order of time besides: each impact within the substep
+/// Contacts with restitution collide in the order of time besides: each impact within the substep
 /// gives its impulse before the rows are solved (solver/contact/impacts.h). docs/decisions/0018-hits.md
 ///
 /// When contacts of two bodies are looked for (state::ContactRefresh)
@@ -54,7 +56,7 @@
 ///                  no third one, where it would cost most and help least. Soft contacts get new rows then, direct
 ///                  ones keep those of the step's start. docs/decisions/0015-lively-contacts.md
 ///
-/// Coupled contacts are looked for again in each substep, whatever their pair's refresh is.
+/// Contacts that bear load are refreshed in each substep, whatever the narrow phase has chosen.
 ///
 /// Hooks (state::JointRoute). Hooks that share bodies which forces move are one group, an articulation.
 ///

@@ -57,8 +57,8 @@ struct Manifold {
   ContactRoute route = ContactRoute::kSoft;  ///< How it is solved in this step; see solver/routes.h.
 
   [[nodiscard]] bool is_refreshed() const { return refresh == ContactRefresh::kEachSubstep; }
-  /// Whether its points have slots in Pairs::load_bearing in this step.
-  [[nodiscard]] bool is_load_bearing() const { return route == ContactRoute::kCoupled; }
+  /// Whether it is in Pairs::coupled in this step.
+  [[nodiscard]] bool is_coupled() const { return route == ContactRoute::kCoupled; }
 };
 
 /// Number of points that pushed in the last substep.
@@ -77,21 +77,18 @@ inline Real normal_impulse(const Manifold& m) {
   return sum;
 }
 
-/// A record for a point of a manifold that is solved with what one of its bodies hangs on. It replaces the
-/// rows of other contacts (solver/coupled/load_bearing_contacts.h).
-struct LoadBearingContact {
-  std::uint32_t pair = 0;      ///< Row of the pair.
-  std::uint32_t manifold = 0;  ///< Row of the manifold, which is the only one of the pair.
-  std::int32_t point = 0;      ///< Index below Manifold::kMaxPoints; the manifold may have fewer points now.
+/// A manifold that is solved with the hooks and ropes of a coupled group (solver/coupled/coupled_groups.h).
+struct CoupledManifold {
+  std::uint32_t manifold = 0;  ///< Its row.
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
-  Real load = Real(0);          ///< Mass that is lifted when the bodies separate [kg].
-  Real separation = Real(0);    ///< Gap with the bodies where they were at the start of the step, to first
-                                ///< order in their rotations [m].
-  Real normal_force = Real(0);  ///< Force in the last particle substep [N].
-  Vec3 friction_force = {};     ///< Friction on B [N].
-  bool slides = false;
-  Real largest_force = Real(0);  ///< Largest normal force in this step [N].
+  bool bears_load = false;  ///< It was chosen for its load (solver/coupled/load_bearing_contacts.h), not for
+                            ///< what its bodies touch besides.
+  // The fields below live for one step.
+  std::int32_t block = -1;  ///< Its lane of solver::BodyContacts; -1 if it has none.
+  std::int32_t lane = 0;
+  /// Share of a particle substep in the impulses that the substep began with: points, friction, twist [N s].
+  std::array<Real, Manifold::kMaxPoints + 3> share = {};
 };
 
 /// Motion of two bodies since their last exact test.
@@ -139,10 +136,10 @@ struct SleepingPairs {
 
 struct Pairs {
   std::vector<Pair> pair;
-  std::vector<Manifold> manifold;                ///< In order of pair, then patch.
-  std::vector<LoadBearingContact> load_bearing;  ///< In order of manifold and point; valid in this step only.
-  std::vector<SeenPose> seen;                    ///< One for each body.
-  SleepingPairs sleeping;                        ///< These pairs are not among those above.
+  std::vector<Manifold> manifold;        ///< In order of pair, then patch.
+  std::vector<CoupledManifold> coupled;  ///< In order of manifold; valid in this step only.
+  std::vector<SeenPose> seen;            ///< One for each body.
+  SleepingPairs sleeping;                ///< These pairs are not among those above.
 };
 
 }  // namespace hooke::state

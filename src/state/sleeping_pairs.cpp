@@ -154,7 +154,7 @@ void remove_pairs(std::span<const std::uint8_t> goes, const Colliders& colliders
   };
   std::erase_if(pairs.pair, is_one_gone);
   // A new body in the row of one that is gone must not inherit what that one carried.
-  std::erase_if(pairs.load_bearing, [&](const LoadBearingContact& contact) {
+  std::erase_if(pairs.coupled, [&](const CoupledManifold& contact) {
     return goes[contact.body_a] != 0 || goes[contact.body_b] != 0;
   });
   for (const Pair& pair : pairs.sleeping.pair) {

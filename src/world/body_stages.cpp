@@ -6,6 +6,7 @@
 #include "solver/body/body_motion.h"
 #include "solver/check_routes.h"
 #include "solver/contact/dense_pile_limit.h"
+#include "solver/coupled/coupled_manifolds.h"
 #include "solver/routes.h"
 #include "state/body_frames.h"
 #include "state/check_contacts.h"
@@ -210,7 +211,6 @@ void find_body_contacts(WorldData& world, Real dt) {
 
 void prepare_body_contacts(WorldData& world, Real h) {
   Tables& t = world.tables;
-  world.frame.narrow_phase.list_refreshed(t.pairs);  // No pair changes its row any more in this step.
   const WorldDesc& desc = t.desc;
   HOOKE_ASSERT(h > Real(0) && std::is_sorted(world.frame.awake.begin(), world.frame.awake.end()));
   const auto before = static_cast<Real>(t.body_substep);
@@ -228,10 +228,12 @@ void prepare_body_contacts(WorldData& world, Real h) {
        .hooked = world.derived.hooked,
        .supports = world.derived.supports},
       world.frame.awake, world.frame.body_marks, world.frame.load_bearing, world.frame.direct_islands, t);
+  world.frame.narrow_phase.list_refreshed(t.pairs);  // No pair changes its row any more in this step.
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.frame.contact_step,
                                 world.frame.body_contacts);
-  solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.bodies,
+  solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.pairs.manifold, t.bodies,
                                  world.frame.direct_islands);
+  solver::find_coupled_lanes(world.frame.body_contacts, t.pairs);
   solver::list_impact_pairs(t.pairs, t.bodies, world.derived.hooked, world.frame.body_contacts,
                             world.frame.impacts);
   note_closing_pairs(world, h * static_cast<Real>(desc.substeps));
@@ -315,7 +317,9 @@ void finish_bodies(WorldData& world, Real dt) {
 void resolve_impacts(WorldData& world, Real h) {
   Tables& t = world.tables;
   solver::BodyContacts& contacts = world.frame.body_contacts;
-  if (!solver::predict_impacts(world.frame.contact_step, contacts, t.bodies, world.frame.impacts)) return;
+  if (!solver::predict_impacts(world.frame.contact_step, t.pairs.manifold, contacts, t.bodies,
+                               world.frame.impacts))
+    return;
   while (const std::optional<solver::NextImpact> impact = solver::next_impact(world.frame.impacts)) {
     const solver::ImpactPair& pair = world.frame.impacts.pairs[impact->index];
     solver::store_lanes(solver::lanes_of(pair, world.frame.impacts), contacts, t.pairs.manifold);
@@ -328,27 +332,9 @@ void resolve_impacts(WorldData& world, Real h) {
   solver::reset_hooked_bodies(t.hooks, h, t.bodies, world.frame.impacts);
 }
 
-namespace {
-
-void refresh_load_bearing_contacts(WorldData& world, Real h) {
-  Tables& t = world.tables;
-  solver::store_load_bearing_contacts(h, t.pairs);
-  for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
-    if (contact.point > 0) continue;
-    HOOKE_ASSERT(contact.pair < t.pairs.pair.size());
-    const collision::PosedPair posed = {contact.pair, state::pose_now(t.bodies, contact.body_a),
-                                        state::pose_now(t.bodies, contact.body_b)};
-    world.frame.narrow_phase.refresh_at(t.bodies, t.colliders, t.desc.materials, h, posed, t.pairs);
-  }
-  solver::update_load_bearing_contacts(Real(1) / h, t.bodies, t.pairs);
-}
-
-}  // namespace
-
 void refresh_contacts(WorldData& world, Real h) {
   freeze_inertia(world, h, true);
   Tables& t = world.tables;
-  if (!t.pairs.load_bearing.empty()) refresh_load_bearing_contacts(world, h);
   if (world.frame.body_contacts.refreshed.empty()) return;
   solver::BodyContacts& contacts = world.frame.body_contacts;
   solver::store_lanes(contacts.refreshed, contacts, t.pairs.manifold);
@@ -363,7 +349,6 @@ void finish_body_contacts(WorldData& world) {
                        kContactBlockGrain, [&](parallel::Range blocks) {
                          solver::store_body_contacts(blocks, world.frame.body_contacts, t.pairs.manifold);
                        });
-  solver::store_load_bearing_contacts(world.frame.contact_step.h, t.pairs);
   solver::evaluate_direct_islands(world.frame.awake, world.frame.contact_step, world.frame.body_contacts,
                                   world.frame.load_bearing.footing, world.frame.direct_islands, t.bodies);
 }

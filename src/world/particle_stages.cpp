@@ -308,7 +308,7 @@ void flow_cloths(WorldData& world) {
 }
 
 void begin_coupled_groups(WorldData& world, Real h, bool first) {
-  if (world.tables.objects.empty() && world.tables.pairs.load_bearing.empty() &&
+  if (world.tables.objects.empty() && world.tables.pairs.coupled.empty() &&
       world.derived.coupled_groups.count == 0)
     return;
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.frame.twist_rows);
@@ -316,12 +316,16 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
   solver::build_coupled_groups(world.tables, world.derived.rope_systems, world.derived.coupled_groups);
   HOOKE_VALIDATE(solver::find_in_coupled_groups(world.tables, world.derived.rope_systems,
                                                 world.derived.coupled_groups, world.frame.check_marks));
+  if (first) {
+    solver::share_out_impulses(world.tables.desc.particle_substeps, world.frame.body_contacts,
+                               world.tables.pairs.coupled);
+  }
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
   solver::apply_mass_shares(world.derived.coupled_groups, world.tables, world.frame.hooked_points);
 }
 
-void solve_ropes(WorldData& world, Real h) {
+void solve_ropes(WorldData& world, Real h, bool first) {
   state::Tables& tables = world.tables;
   solver::remove_mass_shares(world.frame.hooked_points, tables.particles);
   solver::twist_nodes(world.frame.twist_rows, tables);
@@ -334,8 +338,9 @@ void solve_ropes(WorldData& world, Real h) {
   });
   for_ranges(*world.pool, static_cast<int>(world.derived.coupled_groups.count), 1, [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) {
-      solver::solve_coupled_group(world.frame.velocity_before, h, world.derived.coupled_groups.groups[i],
-                                  world.derived.rope_systems, tables);
+      solver::solve_coupled_group(world.frame.velocity_before, {.h = h, .first = first},
+                                  world.derived.coupled_groups.groups[i], world.derived.rope_systems,
+                                  world.frame.body_contacts, tables);
     }
   });
   solver::note_twist_rates(static_cast<double>(h), world.frame.twist_rows, tables);

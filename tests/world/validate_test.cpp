@@ -222,9 +222,9 @@ TEST_SUITE("world/validate") {
     CHECK(of_tables([&](T& d) { d.pairs.manifold[soft].body_b = d.pairs.manifold[soft].body_a; }) ==
           "bodies of a lane");
     CHECK(of_tables([&](T& d) { d.pairs.manifold.push_back(d.pairs.manifold[soft]); }) ==
-          "rows of a manifold");
-    CHECK(of_tables([](T& d) { d.pairs.load_bearing.push_back({.pair = 1000}); }) ==
-          "pair of a load-bearing contact");
+          "lanes of a manifold");
+    CHECK(of_tables([](T& d) { d.pairs.coupled.push_back({.manifold = 1000}); }) ==
+          "number of coupled manifolds");
 
     const auto of_blocks = [&](auto&& damage) {
       solver::BodyContacts copy = contacts;

@@ -772,7 +772,6 @@ void NarrowPhase::refresh_manifolds(parallel::ThreadPool& pool, const state::Bod
       Pair& pair = pairs.pair[rows[i]];
       HOOKE_ASSERT(pair.is_refreshed() && pair.manifold_count > 0);
       HOOKE_ASSERT(pair.first_manifold + pair.manifold_count <= pairs.manifold.size());
-      if (pairs.manifold[pair.first_manifold].is_load_bearing()) continue;  // rows of the step's start
       const Pose a = state::pose_now(bodies, colliders.body[pair.collider_a]);
       const Pose b = state::pose_now(bodies, colliders.body[pair.collider_b]);
       refresh_pair(scene, a, b, pair, chunks[static_cast<std::size_t>(item)], pairs.manifold);

@@ -69,7 +69,7 @@ void add_lane(const ContactColors::Member& member, const Manifold& m, int index,
   HOOKE_ASSERT(block.count < kContactLanes);
   block.bounces = block.bounces || m.restitution > Real(0);
   block.point_count = std::max(block.point_count, m.point_count);
-  if (m.is_refreshed() && !member.direct) {
+  if (m.is_refreshed() && m.route != state::ContactRoute::kDirect) {
     block.point_count = Manifold::kMaxPoints;
     contacts.refreshed.push_back({index, block.count, member.manifold});
   }
@@ -254,7 +254,7 @@ void make_room(int point_count, ContactBlock& block) {
 void refill_lane(const ContactLane& at, const std::vector<Manifold>& manifolds, Real time, Bodies& bodies,
                  BodyContacts& contacts) {
   ContactBlock& block = contacts.blocks[at.block];
-  HOOKE_ASSERT(at.lane < block.count && !block.direct);
+  HOOKE_ASSERT(at.lane < block.count);
   move_impulses(block, at.lane, Real(1), bodies);
   make_room(manifolds[at.manifold].point_count, block);
   const Real pushed = block.pushed[at.lane];
@@ -346,7 +346,7 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
   for (const auto& [index, lane, row] : lanes) {
     const ContactBlock& block = contacts.blocks[index];
     Manifold& m = manifolds[row];
-    if (block.direct) continue;
+    if (m.route == state::ContactRoute::kDirect) continue;
     HOOKE_ASSERT(lane < block.count && contacts.manifold_of[kContactLanes * index + lane] == row);
     const int count = std::min(m.point_count, block.point_count);
     for (int k = 0; k < count; ++k) m.point[k].normal_impulse = block.point[k].impulse[lane];
@@ -354,9 +354,10 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
   }
 }
 
-void drop_warm_start(const ContactLane& at, BodyContacts& contacts, Bodies& bodies) {
+void drop_warm_start(const ContactLane& at, const std::vector<Manifold>& manifolds, BodyContacts& contacts,
+                     Bodies& bodies) {
   ContactBlock& block = contacts.blocks[at.block];
-  if (block.direct) return;
+  if (manifolds[at.manifold].route == state::ContactRoute::kDirect) return;
   for_impulses(block, at.lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.motion[body].v -= v;
     bodies.motion[body].omega_scaled -= turn;
@@ -372,7 +373,8 @@ void drop_warm_start(const ContactLane& at, BodyContacts& contacts, Bodies& bodi
 void refill_lanes(std::span<const ContactLane> lanes, const std::vector<Manifold>& manifolds, Real time,
                   Bodies& bodies, BodyContacts& contacts) {
   for (const ContactLane& lane : lanes) {
-    if (!contacts.blocks[lane.block].direct) refill_lane(lane, manifolds, time, bodies, contacts);
+    if (manifolds[lane.manifold].route != state::ContactRoute::kDirect)
+      refill_lane(lane, manifolds, time, bodies, contacts);
   }
 }
 

@@ -86,7 +86,8 @@ struct alignas(64) ContactBlock {
   int count = 0;          ///< Lanes with a manifold of their own.
   int point_count = 0;    ///< The largest number of points of its lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
-  bool direct = false;    ///< Its manifolds are of direct islands: only rolling is solved here.
+  bool direct =
+      false;  ///< Direct islands and coupled groups solve its manifolds: only rolling is solved here.
   bool bounces = false;   ///< Some lane has restitution.
   int first_rolling = 0;  ///< Index of its first rolling row.
   int rolling_count = 0;
@@ -121,7 +122,7 @@ struct BodyContacts {
   /// Row of each lane's manifold; kNoManifold where there is none.
   std::vector<std::uint32_t> manifold_of;
   std::vector<RollingRow> rolling;
-  /// Lanes of manifolds that are refreshed each substep and that soft contacts solve.
+  /// Lanes of manifolds that are refreshed each substep: soft and coupled ones.
   std::vector<ContactLane> refreshed;
   ContactColors colors;
 
@@ -167,7 +168,8 @@ void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyCo
 
 /// Takes back what a lane did in the substep before. It follows accelerate_bodies, which repeats that
 /// impulse.
-void drop_warm_start(const ContactLane& lane, BodyContacts& contacts, state::Bodies& bodies);
+void drop_warm_start(const ContactLane& lane, const std::vector<state::Manifold>& manifolds,
+                     BodyContacts& contacts, state::Bodies& bodies);
 
 /// Copies the impulses of some lanes to their manifolds in the middle of a step, except those of direct
 /// contacts.

@@ -44,7 +44,7 @@ int take_color(const Manifold& m, ContactColors& colors) {
 
 /// Whether the manifold has rows of its own. Its way says it, which costs less than to ask its bodies again.
 bool is_colored(const Manifold& m) {
-  return m.route == state::ContactRoute::kSoft || m.route == state::ContactRoute::kDirect;
+  return m.route != state::ContactRoute::kNone;
 }
 
 /// Takes the colors of all manifolds. Returns how many of these are alone in their own.
@@ -70,7 +70,7 @@ struct MemberOrder {
   [[nodiscard]] bool is_anchored(const Manifold& m) const {
     return moves[m.body_a] == 0 || moves[m.body_b] == 0;
   }
-  [[nodiscard]] static bool is_direct(const Manifold& m) { return m.route == state::ContactRoute::kDirect; }
+  [[nodiscard]] static bool is_direct(const Manifold& m) { return m.route != state::ContactRoute::kSoft; }
   [[nodiscard]] int rank(int color) const {
     if (color < kPairColors) return color;
     return color < kColors ? color + lone : color - kColors + kPairColors;
@@ -116,7 +116,6 @@ bool is_moved(const state::Bodies& bodies, std::uint32_t row) {
 }
 
 bool has_contact_rows(const Manifold& m, const state::Bodies& bodies) {
-  if (m.is_load_bearing()) return false;
   if (m.point_count == 0 && !m.is_refreshed()) return false;
   if (bodies.traits[m.body_a].sensor || bodies.traits[m.body_b].sensor) return false;
   return is_moved(bodies, m.body_a) || is_moved(bodies, m.body_b);

@@ -18,56 +18,6 @@ namespace {
 
 using state::Bodies;
 
-DirectLever scaled_lever(double scale, Vec3 linear, double sign, Vec3 angular) {
-  const auto d = [](Real x) { return static_cast<double>(x); };
-  return {scale * d(linear.x), scale * d(linear.y), scale * d(linear.z),
-          sign * d(angular.x), sign * d(angular.y), sign * d(angular.z)};
-}
-
-double product(const DirectLever& j, const double* u) {
-  double sum = 0;
-  for (int i = 0; i < 6; ++i) sum += j[i] * u[i];
-  return sum;
-}
-
-void add_lever(double impulse, const DirectLever& j, double* u) {
-  for (int i = 0; i < 6; ++i) u[i] += impulse * j[i];
-}
-
-/// Makes the rows of one manifold from its lane.
-struct DirectRowMaker {
-  const ContactBlock& block;
-  int lane;
-  double root_a, root_b;  ///< Roots of the inverse masses; 1 for a body that does not move.
-
-  [[nodiscard]] DirectRow row(Vec3 direction, Vec3 j_a, Vec3 j_b) const {
-    DirectRow made = {.a = scaled_lever(-root_a, direction, -1, j_a),
-                      .b = scaled_lever(root_b, direction, 1, j_b)};
-    const double on_b = block.anchored ? 0 : product(made.b, made.b.data());
-    const double inverse = product(made.a, made.a.data()) + on_b;
-    made.mass = inverse > 0 ? 1 / inverse : 0;
-    return made;
-  }
-
-  [[nodiscard]] DirectRow point(int k) const {
-    const ContactBlock::Point& p = block.point[k];
-    DirectRow made = row(vector_of(block.normal, lane), vector_of(p.j_a, lane), vector_of(p.j_b, lane));
-    made.separation = static_cast<double>(p.separation[lane]);
-    made.twist_lever = static_cast<double>(block.twist_lever[k][lane]);
-    return made;
-  }
-
-  [[nodiscard]] DirectRow friction(int i) const {
-    const Vec3 t_1 = vector_of(block.tangent, lane);
-    const Vec3 t = i == 0 ? t_1 : cross(vector_of(block.normal, lane), t_1);
-    return row(t, vector_of(block.friction_j_a[i], lane), vector_of(block.friction_j_b[i], lane));
-  }
-
-  [[nodiscard]] DirectRow twist() const {
-    return row({}, vector_of(block.twist_j_a, lane), vector_of(block.twist_j_b, lane));
-  }
-};
-
 void find_blocks(const BlockPattern& p, DirectContact& c) {
   HOOKE_ASSERT(c.a < p.order.size() && c.a != c.b);
   c.diagonal_a = p.block[p.column_begin[c.a]].offset;
@@ -75,50 +25,6 @@ void find_blocks(const BlockPattern& p, DirectContact& c) {
   c.diagonal_b = p.block[p.column_begin[c.b]].offset;
   c.b_is_row = c.b > c.a;
   c.between = p.block[find_block(p, std::max(c.a, c.b), std::min(c.a, c.b))].offset;
-}
-
-std::span<DirectRow> rows_of(DirectIsland& island, const DirectContact& c) {
-  HOOKE_ASSERT(static_cast<std::size_t>(c.first) + static_cast<std::size_t>(c.points) + 3 <=
-               island.rows.size());
-  return {&island.rows[c.first], static_cast<std::size_t>(c.points) + 3};
-}
-
-/// Adds what the impulses of a contact do.
-void add_impulses(const DirectIsland& island, const DirectContact& c, double DirectRow::*impulse,
-                  std::vector<double>& u) {
-  const int end = c.first + c.points + 3;
-  for (int i = c.first; i < end; ++i) {
-    const DirectRow& row = island.rows[i];
-    add_lever(row.*impulse, row.a, &u[6 * c.a]);
-    if (c.b != DirectContact::kNone) add_lever(row.*impulse, row.b, &u[6 * c.b]);
-  }
-}
-
-double rate_of(const DirectContact& c, const DirectRow& row, const std::vector<double>& u) {
-  const double rate = product(row.a, &u[6 * c.a]);
-  return c.b == DirectContact::kNone ? rate : rate + product(row.b, &u[6 * c.b]);
-}
-
-/// Sets the impulses of a contact at rate + t slope, and which rows are not at their bounds then.
-void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows) {
-  const auto wish = [&](const DirectRow& row) {
-    return row.before - row.stiffness * (row.rate + t * row.slope);
-  };
-  for (int i = c.first; i < c.first + c.points; ++i) {
-    rows[i].impulse = std::max(0.0, wish(rows[i]));
-    rows[i].holds = rows[i].impulse > 0;
-  }
-  DirectRow* friction = &rows[c.first + c.points];
-  const double x = wish(friction[0]);
-  const double y = wish(friction[1]);
-  const double size = std::sqrt(x * x + y * y);
-  const double shrink = size > c.limit ? c.limit / size : 1;
-  friction[0].impulse = shrink * x;
-  friction[1].impulse = shrink * y;
-  friction[0].holds = friction[1].holds = !(size > c.limit);
-  const double twist = wish(friction[2]);
-  friction[2].impulse = std::clamp(twist, -c.twist_limit, c.twist_limit);
-  friction[2].holds = std::abs(twist) < c.twist_limit;
 }
 
 /// How fast the energy grows along the search direction, after a share t of it.
@@ -130,8 +36,7 @@ double climb(double t, DirectIsland& island) {
   }
   for (const DirectContact& c : island.contacts) {
     respond(t, c, island.rows);
-    for (int i = c.first; i < c.first + c.points + 3; ++i)
-      sum -= island.rows[i].impulse * island.rows[i].slope;
+    for (int i = c.first; i < c.end(); ++i) sum -= island.rows[i].impulse * island.rows[i].slope;
   }
   return sum;
 }
@@ -152,21 +57,6 @@ void add_row(double d, const DirectContact& c, const DirectLever& a, const Direc
   add_block(d, c.b_is_row ? b : a, c.b_is_row ? a : b, &h[c.between]);
 }
 
-/// Adds the resistance of sliding friction across its slip.
-void add_sliding(const DirectContact& c, const DirectRow& x, const DirectRow& y, std::vector<double>& h) {
-  const double wish_x = x.before - x.stiffness * x.rate;
-  const double wish_y = y.before - y.stiffness * y.rate;
-  const double size = std::sqrt(wish_x * wish_x + wish_y * wish_y);
-  if (!(size > 0)) return;
-  DirectLever a;
-  DirectLever b;
-  for (int i = 0; i < 6; ++i) {
-    a[i] = (wish_x * y.a[i] - wish_y * x.a[i]) / size;
-    b[i] = (wish_x * y.b[i] - wish_y * x.b[i]) / size;
-  }
-  add_row(x.stiffness * c.limit / size, c, a, b, h);
-}
-
 /// Factors 1 + J^T D J over the rows that hold, and over friction that slides if `slides`.
 void make_factors(bool slides, DirectIsland& island, std::vector<double>& h) {
   const BlockPattern& p = island.pattern;
@@ -176,11 +66,12 @@ void make_factors(bool slides, DirectIsland& island, std::vector<double>& h) {
     for (int i = 0; i < 6; ++i) diagonal[7 * i] = 1;
   }
   for (const DirectContact& c : island.contacts) {
-    for (const DirectRow& row : rows_of(island, c)) {
+    for (const DirectRow& row : island.rows_of(c)) {
       if (row.holds) add_row(row.stiffness, c, row.a, row.b, h);
     }
-    const DirectRow* friction = &island.rows[c.first + c.points];
-    if (slides && !friction->holds) add_sliding(c, friction[0], friction[1], h);
+    if (!slides) continue;
+    const SlidingRow sliding = sliding_row(c, island);
+    if (sliding.stiffness > 0) add_row(sliding.stiffness, c, sliding.a, sliding.b, h);
   }
   factor(p, h, island.factor_scratch);
 }
@@ -191,17 +82,11 @@ double largest(const std::vector<double>& x) {
   return most;
 }
 
-void find_rates(DirectIsland& island) {
-  for (const DirectContact& c : island.contacts) {
-    for (DirectRow& row : rows_of(island, c)) row.rate = rate_of(c, row, island.velocity) + row.drift;
-  }
-}
-
 /// Computes impulses and the downhill direction at the present velocities. True if nothing is left to go.
 bool evaluate(DirectIsland& island) {
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     island.direction[i] = island.free[i] - island.velocity[i];
-  find_rates(island);
+  find_rates(island.velocity, island);
   for (const DirectContact& c : island.contacts) {
     respond(0, c, island.rows);
     add_impulses(island, c, &DirectRow::impulse, island.direction);
@@ -215,7 +100,7 @@ bool evaluate(DirectIsland& island) {
 /// The share of the search direction where the energy is least.
 double search(DirectIsland& island) {
   for (const DirectContact& c : island.contacts) {
-    for (int i = c.first; i < c.first + c.points + 3; ++i)
+    for (int i = c.first; i < c.end(); ++i)
       island.rows[i].slope = rate_of(c, island.rows[i], island.direction);
   }
   const double start = climb(0, island);
@@ -231,7 +116,7 @@ double search(DirectIsland& island) {
 
 /// Makes one pass over the rows of a contact.
 void sweep_contact(const DirectContact& c, DirectIsland& island) {
-  const std::span<DirectRow> rows = rows_of(island, c);
+  const std::span<DirectRow> rows = island.rows_of(c);
   const auto points = static_cast<std::size_t>(c.points);
   const auto push = [&](DirectRow& row, double impulse) {
     const double change = impulse - row.impulse;
@@ -259,29 +144,11 @@ void sweep_contact(const DirectContact& c, DirectIsland& island) {
   push(rows[points + 1], shrink * y);
 }
 
-/// Which rows are assumed to hold before anything is known.
-enum class Guess : std::uint8_t {
-  kSame,  ///< What held in the last substep; in a new contact, all rows.
-  kAll,   ///< Points without a gap, and all friction.
-};
-
-void guess_rows(Guess guess, DirectIsland& island) {
-  for (const DirectContact& c : island.contacts) {
-    const bool all = guess == Guess::kAll || !(c.limit > 0);
-    for (DirectRow& row : rows_of(island, c)) row.holds = row.before > 0 || (all && row.touches);
-    DirectRow* friction = &island.rows[c.first + c.points];
-    const double size =
-        std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
-    friction[0].holds = friction[1].holds = all || size < kDirectSticking * c.limit;
-    friction[2].holds = all || std::abs(friction[2].before) < kDirectSticking * c.twist_limit;
-  }
-}
-
 /// Computes the velocities if just the guessed rows hold, even by pulling. From there on impulses are of the
 /// right size, and few Newton steps are needed. From anywhere else each step ends where one contact of many
 /// changes. Factors are used again as long as the guess is the same.
 void jump(Guess guess, DirectIsland& island) {
-  find_rates(island);
+  find_rates(island.velocity, island);
   for (std::size_t i = 0; i < island.velocity.size(); ++i)
     island.direction[i] = island.free[i] - island.velocity[i];
   guess_rows(guess, island);
@@ -311,46 +178,6 @@ bool descend(int steps, DirectIsland& island) {
     for (std::size_t k = 0; k < island.velocity.size(); ++k) island.velocity[k] += t * island.direction[k];
   }
   return evaluate(island);
-}
-
-/// Friction goes on with the sliding coefficient where it slid in the last substep.
-void choose_friction(const ContactBlock& block, DirectIsland& island, DirectContact& c) {
-  const double slow = static_cast<double>(block.static_friction[c.lane]);
-  const double fast = static_cast<double>(block.friction[c.lane]);
-  double load = 0;
-  for (int i = c.first; i < c.first + c.points; ++i) load += island.rows[i].before;
-  const DirectRow* friction = &island.rows[c.first + c.points];
-  const double size =
-      std::sqrt(friction[0].before * friction[0].before + friction[1].before * friction[1].before);
-  const bool slid = size >= kDirectSticking * slow * load ||
-                    std::abs(size - fast * load) <= (1 - kDirectSticking) * fast * load;
-  c.friction = slid ? fast : slow;
-}
-
-/// Sets limits of friction by the loads that were found. True if something slides whose load has changed.
-bool limit_friction(DirectIsland& island) {
-  bool changed = false;
-  for (DirectContact& c : island.contacts) {
-    double load = 0;
-    double twist_limit = 0;
-    for (int i = c.first; i < c.first + c.points; ++i) {
-      load += island.rows[i].impulse;
-      twist_limit += island.rows[i].impulse * island.rows[i].twist_lever;
-    }
-    const double limit = load * c.friction;
-    const DirectRow* friction = &island.rows[c.first + c.points];
-    const double size =
-        std::sqrt(friction[0].impulse * friction[0].impulse + friction[1].impulse * friction[1].impulse);
-    const auto moved = [](double used, double old, double now) {
-      return used > std::min(kDirectSticking * old, now) &&
-             std::abs(now - old) > kDirectSameLoad * std::max(now, old);
-    };
-    changed = changed || moved(size, c.limit, limit) ||
-              moved(std::abs(friction[2].impulse), c.twist_limit, twist_limit);
-    c.limit = limit;
-    c.twist_limit = twist_limit;
-  }
-  return changed;
 }
 
 /// The six numbers of a node.
@@ -388,48 +215,9 @@ void add_rolling(const DirectContact& c, const BodyContacts& contacts, const Bod
   }
 }
 
-/// Loads the impulses of the last substep, and what conveyors and moving walls do.
-void load_impulses(const ContactBlock& block, const Bodies& bodies, const DirectContact& c, DirectRow* row) {
-  DirectRow* friction = row + c.points;
-  for (int k = 0; k < c.points; ++k) row[k].before = static_cast<double>(block.point[k].impulse[c.lane]);
-  for (int i = 0; i < 2; ++i) friction[i].before = static_cast<double>(block.friction_impulse[i][c.lane]);
-  friction[2].before = static_cast<double>(block.twist_impulse[c.lane]);
-  for (int k = 0; k < c.points + 3; ++k) {
-    row[k].impulse = row[k].before;
-    row[k].drift = 0;
-  }
-  for (int i = 0; i < 2; ++i) friction[i].drift = static_cast<double>(block.surface_speed[i][c.lane]);
-  if (c.b != DirectContact::kNone) return;
-  const state::MotionRecord& still = bodies.motion[block.record_b[c.lane] / 16];
-  const DirectLever velocity = scaled_lever(1, still.v, 1, still.omega_scaled);
-  for (int k = 0; k < c.points + 3; ++k) row[k].drift += product(row[k].b, velocity.data());
-}
-
-/// Points that are apart may close their gap in the substep. `displacement` is that since the start of the
-/// step.
-void open_gaps(double h, const BodyContacts& contacts, const Bodies& bodies,
-               const std::vector<double>& displacement, DirectIsland& island) {
-  for (const DirectContact& c : island.contacts) {
-    DirectLever still = {};
-    if (c.b == DirectContact::kNone) {
-      const state::MotionRecord& m = bodies.motion[contacts.blocks[c.block].record_b[c.lane] / 16];
-      still = scaled_lever(1, m.dx, 1, m.theta_scaled);
-    }
-    for (int i = c.first; i < c.first + c.points; ++i) {
-      DirectRow& row = island.rows[i];
-      double s = row.separation + rate_of(c, row, displacement);
-      if (c.b == DirectContact::kNone) s += product(row.b, still.data());
-      row.touches = !(s > c.slop);
-      if (!row.touches) row.drift += s / h;
-    }
-  }
-}
-
 void load_island(double h, const BodyContacts& contacts, const Bodies& bodies, DirectIsland& island) {
-  for (DirectContact& c : island.contacts) {
-    load_impulses(contacts.blocks[c.block], bodies, c, &island.rows[c.first]);
-    choose_friction(contacts.blocks[c.block], island, c);
-  }
+  load_impulses(contacts, island);
+  load_drifts(contacts, bodies, island);
   const auto displacement = [&](std::uint32_t body) {
     return std::pair{bodies.motion[body].dx, bodies.motion[body].theta_scaled};
   };
@@ -476,7 +264,7 @@ void remove_overlap(DirectIsland& island, Bodies& bodies) {
   bool any = false;
   std::fill(island.direction.begin(), island.direction.end(), 0.0);
   for (const DirectContact& c : island.contacts) {
-    for (int i = c.first; i < c.first + c.points + 3; ++i) {
+    for (int i = c.first; i < c.end(); ++i) {
       DirectRow& row = island.rows[i];
       const bool overlaps = i < c.first + c.points && row.separation < -c.slop;
       any = any || overlaps;
@@ -512,11 +300,7 @@ struct Attempt {
 /// Finds the solution, with friction by its own loads. False if it is not found.
 bool converge(const Attempt& attempt, DirectIsland& island) {
   island.stiffness = attempt.stiffness;
-  for (DirectRow& row : island.rows) {
-    row.stiffness = attempt.stiffness * row.mass;
-    row.impulse = row.before;
-    row.slope = 0;
-  }
+  set_stiffness(attempt.stiffness, island);
   limit_friction(island);
   jump(attempt.guess, island);
   for (int round = 0; round < kDirectFrictionRounds; ++round) {
@@ -545,27 +329,16 @@ std::uint32_t node_of(const std::vector<std::uint32_t>& bodies, std::uint32_t bo
 }
 
 void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, DirectIsland& island) {
+  island.contacts.clear();
   island.rows.clear();
   island.cached_stiffness = 0;
-  for (DirectContact& c : island.contacts) {
-    const ContactBlock& block = contacts.blocks[c.block];
-    const std::uint32_t a = block.record_a[c.lane] / 16;
-    HOOKE_ASSERT(block.direct && c.lane < block.count && c.points <= block.point_count);
-    const std::uint32_t b = block.record_b[c.lane] / 16;
-    const auto root = [](Real w) { return std::sqrt(static_cast<double>(w)); };
-    const DirectRowMaker make = {block, c.lane, root(block.w_a[c.lane]),
-                                 block.anchored ? 1.0 : root(block.w_b[c.lane])};
-    c.a = island.slot[node_of(island.graph.bodies, a)];
-    c.b = block.anchored ? DirectContact::kNone : island.slot[node_of(island.graph.bodies, b)];
-    c.first = static_cast<int>(island.rows.size());
-    for (int k = 0; k < c.points; ++k) island.rows.push_back(make.point(k));
-    island.rows.push_back(make.friction(0));
-    island.rows.push_back(make.friction(1));
-    island.rows.push_back(make.twist());
+  for (const ContactLane& at : island.lanes) {
+    const ContactBlock& block = contacts.blocks[at.block];
+    DirectContact c = {.block = at.block, .lane = at.lane, .points = count_points(block, at.lane)};
+    c.a = island.slot[node_of(island.graph.bodies, block.record_a[at.lane] / 16)];
+    if (!block.anchored) c.b = island.slot[node_of(island.graph.bodies, block.record_b[at.lane] / 16)];
     find_blocks(island.pattern, c);
-    const Real radius_a = bodies.traits[a].radius;
-    const Real radius = block.anchored ? radius_a : std::min(radius_a, bodies.traits[b].radius);
-    c.slop = kDirectSlop * static_cast<double>(radius);
+    add_contact(block, bodies, c, island);
   }
   const std::size_t size = 6 * island.graph.bodies.size();
   for (std::vector<double>* x : {&island.free, &island.velocity, &island.direction}) x->resize(size);

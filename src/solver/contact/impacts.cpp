@@ -297,7 +297,8 @@ void list_impact_pairs(const state::Pairs& pairs, const Bodies& bodies,
   impacts.since.assign(bodies.motion.size(), Real(0));
 }
 
-bool predict_impacts(const ContactStep& step, BodyContacts& contacts, Bodies& bodies, Impacts& impacts) {
+bool predict_impacts(const ContactStep& step, const std::vector<Manifold>& manifolds, BodyContacts& contacts,
+                     Bodies& bodies, Impacts& impacts) {
   HOOKE_ASSERT(impacts.pairs.empty() || impacts.since.size() == bodies.motion.size());
   impacts.queue.clear();
   for (const std::uint32_t body : impacts.impacted) impacts.since[body] = Real(0);
@@ -306,7 +307,8 @@ bool predict_impacts(const ContactStep& step, BodyContacts& contacts, Bodies& bo
   // If an impulse is repeated and its row then removed by an impact, it would act once too often.
   for (const ImpactPair& pair : impacts.pairs) {
     if (is_slow(bodies, pair.a) && is_slow(bodies, pair.b)) continue;
-    for (const ContactLane& lane : lanes_of(pair, impacts)) drop_warm_start(lane, contacts, bodies);
+    for (const ContactLane& lane : lanes_of(pair, impacts))
+      drop_warm_start(lane, manifolds, contacts, bodies);
   }
   for (std::uint32_t i = 0; i < impacts.pairs.size(); ++i) {
     ImpactPair& pair = impacts.pairs[i];

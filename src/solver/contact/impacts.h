@@ -115,8 +115,8 @@ void list_impact_pairs(const state::Pairs& pairs, const state::Bodies& bodies,
 /// Predicts when the rows of each pair meet within the substep. False if none do. It follows
 /// accelerate_bodies. Velocities are those before contacts: repeated impulses of contacts would be taken for
 /// motion. The rows of pairs that are not at rest begin the substep without these impulses.
-[[nodiscard]] bool predict_impacts(const ContactStep& step, BodyContacts& contacts, state::Bodies& bodies,
-                                   Impacts& impacts);
+[[nodiscard]] bool predict_impacts(const ContactStep& step, const std::vector<state::Manifold>& manifolds,
+                                   BodyContacts& contacts, state::Bodies& bodies, Impacts& impacts);
 
 /// Returns the earliest impact; of two at one time, that of the lower row.
 [[nodiscard]] std::optional<NextImpact> next_impact(Impacts& impacts);

@@ -1,4 +1,4 @@
-/// Element contacts, rope contacts and load-bearing contacts, as rows of a coupled group. Which rows exist:
+/// Element contacts and rope contacts, as rows of a coupled group. Which rows exist:
 /// coupled_groups_build.cpp.
 
 #include "base/assert.h"
@@ -58,7 +58,7 @@ void CoupledGroupSolution::load_coupled_contacts() {
       if (b_.incidents[i].block < first) continue;
       const std::size_t index = b_.incidents[i].block - first;
       CoupledContact& coupled = b_.contact_rows[index];
-      HOOKE_ASSERT(index < b_.first_load_bearing() && coupled.count < coupled.node.size());
+      HOOKE_ASSERT(index < b_.contact_count() && coupled.count < coupled.node.size());
       const Real weight = index < b_.element_contacts.size()
                               ? t_.element_contacts[b_.element_contacts[index]].weight[coupled.count]
                               : rope_contact(index).weight[coupled.count];
@@ -67,8 +67,7 @@ void CoupledGroupSolution::load_coupled_contacts() {
     }
   }
   for (std::size_t i = 0; i < b_.element_contacts.size(); ++i) load_element_contact(i);
-  for (std::size_t i = b_.element_contacts.size(); i < b_.first_load_bearing(); ++i) load_rope_contact(i);
-  for (std::size_t i = b_.first_load_bearing(); i < b_.contact_rows.size(); ++i) load_body_contact(i);
+  for (std::size_t i = b_.element_contacts.size(); i < b_.contact_count(); ++i) load_rope_contact(i);
 }
 
 void CoupledGroupSolution::load_element_contact(std::size_t index) {
@@ -106,54 +105,10 @@ void CoupledGroupSolution::load_rope_contact(std::size_t index) {
                             .friction = vector_cast<double>(contact.friction_force)});
 }
 
-/// The separation follows the bodies from the start of the step, as in other rows of bodies.
-void CoupledGroupSolution::load_body_contact(std::size_t index) {
-  const state::LoadBearingContact& contact =
-      t_.pairs.load_bearing[b_.load_bearing[index - b_.first_load_bearing()]];
-  const state::Manifold& m = t_.pairs.manifold[contact.manifold];
-  HOOKE_ASSERT(m.is_load_bearing() && contact.point < state::Manifold::kMaxPoints && contact.load > Real(0));
-  const state::ContactPoint& point = m.point[static_cast<std::size_t>(contact.point)];
-  CoupledContact& coupled = b_.contact_rows[index];
-  coupled.firm = true;
-  coupled.near = contact.point < m.point_count;
-  coupled.friction = static_cast<double>(m.friction);
-  coupled.surface = vector_cast<double>(m.surface_velocity);
-  coupled.lever = vector_cast<double>(point.anchor_a);
-  coupled.lever_b = vector_cast<double>(point.anchor_b);
-  const Vec3 displacement = displacement_between(t_.bodies, m, point);
-  const double separation =
-      coupled.near ? static_cast<double>(contact.separation + dot(m.normal, displacement)) : 0;
-  // If a body stands on several feet, their loads must not depend on how each separation was rounded.
-  const double slop = kLoadBearingSlop * std::min(length(coupled.lever), length(coupled.lever_b));
-  coupled.separation = separation - std::clamp(separation, -slop, slop);
-  // A body that does not give way moves as it is told.
-  const auto [a, b] = b_.ends[b_.hooks.size() + index];
-  if (a < 0) coupled.surface += velocity_of(contact.body_a, coupled.lever);
-  if (b < 0) coupled.surface -= velocity_of(contact.body_b, coupled.lever_b);
-  // The body that hangs is held: it is the heavier one that slides.
-  coupled.resistance = 1 / static_cast<double>(contact.load);
-  // If a body is wedged in, leaving at full speed would do work. It may do no more than lifting the body
-  // does.
-  const auto gravity = static_cast<double>(length(t_.desc.gravity));
-  const double weight = gravity / coupled.resistance;
-  const double force = static_cast<double>(contact.normal_force);
-  coupled.push_out = kElementPushOutSpeed * (force > weight ? weight / force : 1);
-  make_contact_rows(index, {.n = vector_cast<double>(m.normal),
-                            .normal = force,
-                            .friction = vector_cast<double>(contact.friction_force),
-                            .slides = contact.slides,
-                            .fast = kMostStopped * coupled.friction * h_ * gravity});
-}
-
-DVec3 CoupledGroupSolution::velocity_of(std::uint32_t body, DVec3 lever) const {
-  const JointBody now = joint_body_now(t_.bodies, body);
-  return now.v + cross(now.scale * now.omega_scaled, lever);
-}
-
 /// Makes the rows along the normal and across it, and finds the mobility along the normal.
 void CoupledGroupSolution::make_contact_directions(std::size_t index, DVec3 n) {
   CoupledContact& coupled = b_.contact_rows[index];
-  const auto [a, b] = b_.ends[b_.hooks.size() + index];
+  const int body = b_.ends[b_.hooks.size() + index][0];
   const auto axes = axes_of(n);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   for (std::uint32_t i = 0; i < coupled.count; ++i)
@@ -165,14 +120,10 @@ void CoupledGroupSolution::make_contact_directions(std::size_t index, DVec3 n) {
     row.low = -inf;
     row.high = inf;
     row.target = dot(axes[k], coupled.surface);
-    const auto turns = [&](int body, DVec3 lever, DVec3& j) {
-      if (body < 0) return;
-      const JointBody& of = b_.moving[static_cast<std::size_t>(body)].body;
-      j = of.scale * cross(lever, axes[k]);
-      if (k == 0) coupled.mobility += of.inverse_mass + length_squared(j);
-    };
-    turns(a, coupled.lever, row.j_a);
-    turns(b, coupled.lever_b, row.j_b);
+    if (body < 0) continue;
+    const JointBody& of = b_.moving[static_cast<std::size_t>(body)].body;
+    row.j_a = of.scale * cross(coupled.lever, axes[k]);
+    if (k == 0) coupled.mobility += of.inverse_mass + length_squared(row.j_a);
   }
 }
 
@@ -185,7 +136,7 @@ void CoupledGroupSolution::give_last_force(std::size_t index, const ContactForce
     double& gamma = along_normal.gamma;
     gamma = coupled.mobility / kRopeContactStiffness;
     // What presses a light rope with many times its weight would otherwise push through it.
-    const bool of_ropes = index >= b_.element_contacts.size() && index < b_.first_load_bearing();
+    const bool of_ropes = index >= b_.element_contacts.size();
     if (of_ropes && gamma * coupled.normal > kRopeYieldSpeed) gamma = kRopeYieldSpeed / coupled.normal;
     along_normal.target += std::min(gamma * coupled.normal, kElementPushOutSpeed);
   }
@@ -193,10 +144,9 @@ void CoupledGroupSolution::give_last_force(std::size_t index, const ContactForce
   coupled.f = friction - dot(last.n, friction) * last.n;
   coupled.active = coupled.near && (coupled.normal > 0 || coupled.separation <= 0);
   const double size = length(coupled.f);
-  const double speed = length(sliding_of(index, true));
-  const bool at_bound = size > 0 && size >= kRopeSlidingShare * coupled.friction * coupled.normal;
-  coupled.slides = last.slides || at_bound || speed > last.fast;
+  coupled.slides = size > 0 && size >= kRopeSlidingShare * coupled.friction * coupled.normal;
   if (coupled.slides) {
+    const double speed = length(sliding_of(index, true));
     coupled.slides = speed > 0;
     coupled.drag = speed > 0 ? coupled.friction * coupled.normal / speed : 0;
   }
@@ -206,7 +156,6 @@ void CoupledGroupSolution::make_contact_rows(std::size_t index, const ContactFor
   CoupledContact& coupled = b_.contact_rows[index];
   make_contact_directions(index, last.n);
   b_.rows[b_.first_row[b_.hooks.size() + index]].target -= gap_speed(coupled);
-  if (coupled.count > 0) coupled.resistance = coupled.mobility;
   give_last_force(index, last);
   set_coupled_rows(index);
   if (!coupled.active || !coupled.firm || coupled.count == 0) return;
@@ -252,13 +201,10 @@ DVec3 CoupledGroupSolution::velocity_at(std::size_t index, bool before) const {
     const RopeNode& node = b_.ropes.nodes[coupled.node[i]];
     v += coupled.weight[i] * (before ? node.v_free : node.u);
   }
-  const auto velocity = [&](int body, DVec3 lever) {
-    if (body < 0) return DVec3{};
-    const CoupledBody& m = b_.moving[static_cast<std::size_t>(body)];
-    return m.v + cross(m.body.scale * m.omega_scaled, lever);
-  };
-  const auto [a, b] = b_.ends[b_.hooks.size() + index];
-  return v + velocity(b, coupled.lever_b) - velocity(a, coupled.lever);
+  const int body = b_.ends[b_.hooks.size() + index][0];
+  if (body < 0) return v;
+  const CoupledBody& m = b_.moving[static_cast<std::size_t>(body)];
+  return v - (m.v + cross(m.body.scale * m.omega_scaled, coupled.lever));
 }
 
 DVec3 CoupledGroupSolution::sliding_of(std::size_t index, bool before) const {
@@ -282,49 +228,21 @@ bool CoupledGroupSolution::update_coupled_friction(std::size_t index, bool may_s
     const double size = length(coupled.f);
     coupled.slides = size > most;
     if (!coupled.slides) return false;
-    coupled.drag = most / ((size - most) * coupled.resistance);
+    coupled.drag = most / ((size - most) * coupled.mobility);
     coupled.f = (most / size) * coupled.f;
     return true;
   }
   const double drag = coupled.drag;
   coupled.f = -drag * sliding;
-  const double most_drag = index < b_.element_contacts.size() ? kMostDrag : kMostRopeDrag;
-  coupled.slides = speed > 0 && (!may_stick || most * coupled.mobility < most_drag * speed);
+  coupled.slides = speed > 0 && (!may_stick || most * coupled.mobility < kMostDrag * speed);
   coupled.drag = coupled.slides ? most / speed : 0;
   return !coupled.slides || std::abs(coupled.drag - drag) > kRopeConvergedDrag * drag;
-}
-
-/// Rows of load-bearing contacts join and leave until they are right. From some number of solutions on they
-/// only join, and a sliding contact does not stick again. A contact that is left out is passed through, and
-/// one that holds too long adds no energy. But friction that holds a substep too long takes all the speed
-/// there is.
-Unconverged CoupledGroupSolution::update_body_contact(std::size_t index, bool only_join) {
-  CoupledContact& coupled = b_.contact_rows[index];
-  const std::size_t first = b_.first_row[b_.hooks.size() + index];
-  const bool was_active = coupled.active;
-  bool slides_otherwise = false;
-  if (coupled.active) {
-    coupled.normal = std::max(0.0, b_.lambda[first]);
-    coupled.active = coupled.normal > 0 || only_join;
-    const bool stuck = !coupled.slides;
-    slides_otherwise = coupled.active && coupled.friction > 0 && update_coupled_friction(index, !only_join);
-    if (only_join) slides_otherwise = stuck && coupled.slides;
-  } else {
-    coupled.normal = 0;
-    coupled.active = dot(b_.rows[first].n, velocity_at(index, false)) + gap_speed(coupled) < 0;
-    coupled.slides = false;
-  }
-  if (!coupled.active) coupled.f = {};
-  Unconverged unconverged;
-  unconverged.points = coupled.active != was_active || slides_otherwise;
-  return unconverged;
 }
 
 Unconverged CoupledGroupSolution::update_coupled_contact(std::size_t index, bool let_go) {
   CoupledContact& coupled = b_.contact_rows[index];
   Unconverged unconverged;
   if (!coupled.near) return unconverged;
-  if (index >= b_.first_load_bearing()) return update_body_contact(index, let_go);
   const std::size_t first = b_.first_row[b_.hooks.size() + index];
   bool& of = coupled.firm ? unconverged.ropes : unconverged.points;
   if (coupled.active) {
@@ -365,8 +283,7 @@ int CoupledGroupSolution::least_solves_of_contacts() const {
                                [](const CoupledContact& t) { return t.firm && t.active; });
   const bool slide =
       std::any_of(b_.contact_rows.begin() + static_cast<std::ptrdiff_t>(b_.element_contacts.size()),
-                  b_.contact_rows.begin() + static_cast<std::ptrdiff_t>(b_.first_load_bearing()),
-                  [](const CoupledContact& t) { return t.active && t.slides; });
+                  b_.contact_rows.end(), [](const CoupledContact& t) { return t.active && t.slides; });
   if (slide) return kRopeSlidingSolves;
   return any ? kLeastRopeContactSolves : 1;
 }
@@ -398,14 +315,6 @@ void CoupledGroupSolution::store_coupled_contacts() {
     contact.normal_force = static_cast<Real>(coupled.normal / h_);
     contact.friction_force = vector_cast<Real>((1 / h_) * coupled.f);
     if (!coupled.firm) push_out(contact, static_cast<Real>(h_), t_.particles);
-  }
-  for (std::size_t i = 0; i < b_.load_bearing.size(); ++i) {
-    const CoupledContact& coupled = b_.contact_rows[b_.first_load_bearing() + i];
-    state::LoadBearingContact& contact = t_.pairs.load_bearing[b_.load_bearing[i]];
-    contact.normal_force = static_cast<Real>(coupled.normal / h_);
-    contact.friction_force = vector_cast<Real>((1 / h_) * coupled.f);
-    contact.slides = coupled.active && coupled.slides;
-    contact.largest_force = std::max(contact.largest_force, contact.normal_force);
   }
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 /// \file
-/// A coupled group in the middle of its solution. Only coupled_groups.cpp, coupled_groups_matrix.cpp and
-/// coupled_element_contacts.cpp know this class.
+/// A coupled group in the middle of its solution. Only coupled_groups.cpp, coupled_groups_matrix.cpp,
+/// coupled_element_contacts.cpp and coupled_body_contacts.cpp know this class.
 
 namespace hooke::solver {
 
@@ -22,20 +22,19 @@ struct ContactForce {
   DVec3 n;  ///< Direction in which `normal` pushes.
   double normal = 0;
   DVec3 friction;
-  bool slides = false;
-  /// From this speed on the contact slides at first [m/s].
-  double fast = std::numeric_limits<double>::infinity();
 };
 
 class CoupledGroupSolution {
  public:
-  CoupledGroupSolution(double h, CoupledGroup& group, state::Tables& tables) : h_(h), b_(group), t_(tables) {}
+  CoupledGroupSolution(double h, CoupledGroup& group, BodyContacts& contacts, state::Tables& tables)
+      : h_(h), b_(group), contacts_(contacts), t_(tables) {}
 
   void load(const std::vector<state::VelocityRecord>& before, const std::vector<RopeSystem>& rope_systems);
   void run(std::vector<RopeSystem>& rope_systems);
   /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything must be loaded and run again.
   [[nodiscard]] bool gives_way(int round);
   void store(const std::vector<RopeSystem>& rope_systems);
+  void remove_overlaps(const std::vector<RopeSystem>& rope_systems);
 
  private:
   /// Largest relative length error left in any rope.
@@ -47,6 +46,7 @@ class CoupledGroupSolution {
   void load_hooks();
   bool stiffen();
   void solve_with_bounds();
+  void solve_once();
   bool revise_bounds(bool release);
   void read_solution();
   void move_nodes();
@@ -55,13 +55,11 @@ class CoupledGroupSolution {
   bool within_budget();
   void push_out_points();
 
-  // Element contacts, rope contacts and load-bearing contacts: coupled_element_contacts.cpp.
+  // Element contacts and rope contacts: coupled_element_contacts.cpp.
   void load_coupled_contacts();
   void load_element_contact(std::size_t index);
   void load_rope_contact(std::size_t index);
   [[nodiscard]] const state::RopeContact& rope_contact(std::size_t index) const;
-  void load_body_contact(std::size_t index);
-  [[nodiscard]] DVec3 velocity_of(std::uint32_t body, DVec3 lever) const;
   void make_contact_rows(std::size_t index, const ContactForce& last);
   void make_contact_directions(std::size_t index, DVec3 n);
   void give_last_force(std::size_t index, const ContactForce& last);
@@ -69,7 +67,6 @@ class CoupledGroupSolution {
   void set_coupled_rows(std::size_t index);
   void revise_coupled_contacts();
   bool update_coupled_friction(std::size_t index, bool may_stick);
-  [[nodiscard]] Unconverged update_body_contact(std::size_t index, bool only_join);
   [[nodiscard]] Unconverged update_coupled_contact(std::size_t index, bool let_go);
   [[nodiscard]] Unconverged update_coupled_contacts(bool let_go);
   bool let_contacts_slide();
@@ -80,6 +77,32 @@ class CoupledGroupSolution {
   [[nodiscard]] DVec3 velocity_at(std::size_t index, bool before) const;
   [[nodiscard]] DVec3 sliding_of(std::size_t index, bool before) const;
   [[nodiscard]] int least_solves_of_contacts() const;
+
+  // Contacts of two bodies: coupled_body_contacts.cpp.
+  void load_body_contacts();
+  void add_body_contacts();
+  void turn_levers();
+  void solve_body_contacts();
+  [[nodiscard]] bool converge(double stiffness, Guess guess, int steps);
+  void jump(Guess guess);
+  [[nodiscard]] bool descend(int steps);
+  [[nodiscard]] bool evaluate();
+  void note_search();
+  void go(double t);
+  [[nodiscard]] double climb(double t);
+  [[nodiscard]] double search();
+  void read_velocities(std::vector<double>& u) const;
+  void assemble_body_contacts();
+  void assemble_body_contact(const DirectContact& c, double stiffness, const DirectLever& a,
+                             const DirectLever& b);
+  void push_by_body_contacts();
+  void store_bodies();
+  void store_body_contacts();
+  bool find_overlaps();
+  void fill_pushes();
+  [[nodiscard]] bool limit_displacement();
+  void displace_bodies();
+  void displace_nodes(const std::vector<RopeSystem>& rope_systems);
 
   // The matrix and its right side.
   void assemble();
@@ -162,6 +185,7 @@ class CoupledGroupSolution {
 
   double h_;
   CoupledGroup& b_;
+  BodyContacts& contacts_;
   state::Tables& t_;
 };
 

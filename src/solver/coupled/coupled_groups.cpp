@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hooke::solver {
 
@@ -53,6 +54,7 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
     const bool is_tether = contact_row.row == RopeContactRow::kTether;
     contact_row.body = is_tether ? -1 : b_.body_of(t_.contacts.body[contact_row.row]);
   }
+  load_body_contacts();
   load_hooks();
   load_coupled_contacts();
   stiffen();
@@ -88,6 +90,8 @@ void CoupledGroupSolution::load_points() {
 
 void CoupledGroupSolution::load_hooks() {
   std::array<JointRow, Hook::kMaxRows> rows;
+  const double most_push =
+      b_.direct.rows.empty() ? std::numeric_limits<double>::infinity() : kJointPushInContact;
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     Hook& hook = t_.hooks[b_.hooks[i]];
     const auto end_of = [&](int end) {
@@ -97,7 +101,7 @@ void CoupledGroupSolution::load_hooks() {
     RowEnd a = {end_of(0), b_.ends[i][0] < 0 && !hook.a.is_point()};
     const RowEnd b = {end_of(1), b_.ends[i][1] < 0 && !hook.b.is_point()};
     if (hook.kind == HookKind::kRopeSlide) a.body.rotation = slide_rotation(t_, hook);
-    const int count = make_rows(hook, a, b, h_, rows);
+    const int count = make_rows(hook, a, b, h_, rows, most_push);
     HOOKE_ASSERT(b_.first_row[i] + static_cast<std::uint32_t>(count) == b_.first_row[i + 1]);
     for (int k = 0; k < count; ++k) {
       const std::size_t row = b_.first_row[i] + static_cast<std::size_t>(k);
@@ -222,17 +226,21 @@ bool CoupledGroupSolution::revise_bounds(bool release) {
 void CoupledGroupSolution::solve_with_bounds() {
   bool changed = true;
   for (int pass = 0; changed && pass < kMostBoundPasses && (pass == 0 || within_budget()); ++pass) {
-    constrain_nodes(h_, b_.ropes);
-    resize_coupled_contacts();
-    fill_right_side();
-    assemble();
-    factor(b_.pattern, b_.numbers, b_.factor_scratch);
-    ++b_.factored;
-    solve(b_.pattern, b_.numbers, b_.right_side);
-    read_solution();
+    solve_body_contacts();
     if (!is_sound()) return;
     changed = revise_bounds(pass < kFreeBoundPasses);
   }
+}
+
+void CoupledGroupSolution::solve_once() {
+  constrain_nodes(h_, b_.ropes);
+  resize_coupled_contacts();
+  fill_right_side();
+  assemble();
+  factor(b_.pattern, b_.numbers, b_.factor_scratch);
+  ++b_.factored;
+  solve(b_.pattern, b_.numbers, b_.right_side);
+  read_solution();
 }
 
 bool CoupledGroupSolution::within_budget() {
@@ -363,10 +371,8 @@ void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
   store_contact_rows(h_, b_.ropes.contact_rows, t_.contacts);
   store_coupled_contacts();
   push_out_points();
-  for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
-    const CoupledBody& m = b_.moving[i];
-    set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);
-  }
+  store_bodies();
+  store_body_contacts();
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     const std::size_t first = b_.first_row[i];
     const std::size_t count = b_.first_row[i + 1] - first;
@@ -385,10 +391,11 @@ void CoupledGroupSolution::push_out_points() {
   }
 }
 
-void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real h, CoupledGroup& group,
-                         std::vector<RopeSystem>& rope_systems, state::Tables& tables) {
+void solve_coupled_group(const std::vector<state::VelocityRecord>& before, const ParticleSubstep& substep,
+                         CoupledGroup& group, std::vector<RopeSystem>& rope_systems, BodyContacts& contacts,
+                         state::Tables& tables) {
   group.factored = 0;
-  CoupledGroupSolution solution(static_cast<double>(h), group, tables);
+  CoupledGroupSolution solution(static_cast<double>(substep.h), group, contacts, tables);
   solution.load(before, rope_systems);
   solution.run(rope_systems);
   for (int round = 0; solution.gives_way(round); ++round) {
@@ -396,6 +403,7 @@ void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real 
     solution.run(rope_systems);
   }
   solution.store(rope_systems);
+  if (substep.first) solution.remove_overlaps(rope_systems);
 }
 
 }  // namespace hooke::solver

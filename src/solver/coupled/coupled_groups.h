@@ -4,6 +4,7 @@
 
 #include "base/disjoint_sets.h"
 #include "math/symmetric.h"
+#include "solver/contact/direct_rows.h"
 #include "solver/coupled/coupled_tuning.h"
 #include "solver/joint_rows/hook_rows.h"
 #include "solver/joint_rows/joint_rows.h"
@@ -52,29 +53,26 @@ struct CoupledBody {
   DVec3 omega_scaled = {};
 };
 
-/// A contact during the solution: an element contact of a rope or a cloth, a rope contact, or a load-bearing
-/// contact of bodies.
+/// A contact during the solution: an element contact of a rope or a cloth, or a rope contact.
 struct CoupledContact {
   static constexpr int kRows = 3;  ///< One row along the normal and two across it.
 
-  std::array<std::uint32_t, 4> node = {};  ///< As `particle` of the contact; empty for load-bearing contacts.
+  std::array<std::uint32_t, 4> node = {};  ///< As `particle` of the contact.
   std::array<double, 4> weight = {};
   std::uint32_t count = 0;
   double separation = 0, friction = 0;
-  double mobility = 0;    ///< 1 / the mass that resists at the contact, roughly [1/kg].
-  double push_out = 0;    ///< Largest speed at which an overlap is removed [m/s].
-  double resistance = 0;  ///< Mobility of what slides; a first guess [1/kg].
+  double mobility = 0;  ///< 1 / the mass that resists at the contact, roughly [1/kg].
+  double push_out = 0;  ///< Largest speed at which an overlap is removed [m/s].
   /// Velocity of the surface relative to its body; the whole velocity if the body does not give way [m/s].
   DVec3 surface;
   DVec3 lever;        ///< Offset from the body's center [m].
-  DVec3 lever_b;      ///< Offset from the center of body b, in load-bearing contacts [m].
   double normal = 0;  ///< Normal impulse [N s].
   DVec3 f;            ///< Friction impulse [N s].
   double drag = 0;    ///< While the contact slides: mu N over its speed [kg].
   bool near = false;  ///< The contact may act within this substep.
   bool active = false, slides = false;
   bool let_go = false;  ///< Off for the rest of the substep, because it pulled too often.
-  /// Rope contacts and load-bearing contacts: they separate by speed and are solved until they converge.
+  /// Of ropes: it separates by speed and is solved until it converges.
   bool firm = false;
 };
 
@@ -99,6 +97,12 @@ struct CoupledContact {
 /// Particles of cloths, solids and groups that touch a body which gives way are points without rows. Only
 /// their contacts and tethers hold them: docs/decisions/0011-ties.md.
 ///
+/// Contacts of two bodies are the rows of a direct island (solver/contact/direct_rows.h). In the matrix they
+/// are stiffness, - J^T D J in the blocks of their bodies, with the impulses of the last substep on the right
+/// side. Newton steps with exact search find which rows hold, with all else linear. Once a step the same
+/// matrix moves everything to where overlaps are half as deep.
+/// docs/decisions/0032-contacts-in-coupled-groups.md
+///
 /// An element contact (state::ElementContact) has the rows of a hook at its position: one along the normal,
 /// which only pushes, and two across it for friction. A sticking contact is held. A sliding contact is
 /// dragged with mu N over its speed, both from the solution before: however wrong they are, that takes
@@ -114,12 +118,10 @@ struct CoupledGroup {
   std::vector<std::uint32_t> hooks;             ///< Rows of hooks, in order.
   std::vector<std::uint32_t> element_contacts;  ///< Rows of element contacts, in order.
   std::vector<std::uint32_t> rope_contacts;     ///< Rows of rope contacts, in order.
-  std::uint32_t refused = 0;  ///< Number of rope contacts that kCoupledGroupBudget left out.
-  /// Load-bearing contacts: indices into state::Pairs::load_bearing, in order.
-  std::vector<std::uint32_t> load_bearing;
-  std::vector<std::uint32_t> bodies;  ///< Body rows, in order.
-  /// Ends a and b of each hook, element contact, rope contact and load-bearing contact: index into `bodies`,
-  /// or -1.
+  std::uint32_t refused = 0;             ///< Number of rope contacts that kCoupledGroupBudget left out.
+  std::vector<std::uint32_t> manifolds;  ///< Indices into state::Pairs::coupled, in order.
+  std::vector<std::uint32_t> bodies;     ///< Body rows, in order.
+  /// Ends a and b of each hook, element contact and rope contact: index into `bodies`, or -1.
   std::vector<std::array<int, 2>> ends;
   std::vector<std::uint32_t> tethers;       ///< Springs that hold points, in order of points.
   std::vector<std::uint32_t> first_tether;  ///< For each point, where its tethers begin; one more at the end.
@@ -127,17 +129,14 @@ struct CoupledGroup {
   [[nodiscard]] std::uint32_t element_contact_count() const {
     return static_cast<std::uint32_t>(element_contacts.size());
   }
-  /// Index of the first load-bearing contact among all contacts.
-  [[nodiscard]] std::uint32_t first_load_bearing() const {
-    return element_contact_count() + static_cast<std::uint32_t>(rope_contacts.size());
-  }
+  /// Number of contacts with rows of their own in the matrix: all but those of two bodies.
   [[nodiscard]] std::uint32_t contact_count() const {
-    return first_load_bearing() + static_cast<std::uint32_t>(load_bearing.size());
+    return element_contact_count() + static_cast<std::uint32_t>(rope_contacts.size());
   }
   /// Index of a body's row in `bodies`, or -1.
   [[nodiscard]] int body_of(std::uint32_t row) const;
 
-  // The matrix. Blocks are segments, bends, hooks, element, rope and load-bearing contacts, and bodies.
+  // The matrix. Blocks are segments, bends, hooks, element and rope contacts, and bodies.
   BlockPattern pattern;
   std::vector<std::uint32_t> slot;  ///< Position of each block in the order of elimination.
   /// A row block at a node, with the weight of its Jacobian there.
@@ -151,6 +150,7 @@ struct CoupledGroup {
   std::vector<std::uint32_t> first_pair;      ///< Where the pairs of each node begin.
 
   // Lives for one step.
+  bool unsolved = false;   ///< In some substep no solution was found for its contacts of two bodies.
   bool cut_short = false;  ///< kCoupledGroupBudget ended its solution in some substep.
 
   // Lives for one substep.
@@ -159,7 +159,7 @@ struct CoupledGroup {
   std::vector<RopeSetting> settings;            ///< Settings of each rope system.
   std::vector<std::uint32_t> rope_node_counts;  ///< Number of nodes of each rope system.
   std::vector<CoupledBody> moving;              ///< One for each of `bodies`.
-  /// In the order of `element_contacts`, then `rope_contacts`, then `load_bearing`.
+  /// In the order of `element_contacts`, then `rope_contacts`.
   std::vector<CoupledContact> contact_rows;
   std::vector<JointRow> rows;            ///< Rows of hooks, then of contacts.
   std::vector<std::uint32_t> first_row;  ///< Where the rows of each of these begin; one more at the end.
@@ -172,6 +172,18 @@ struct CoupledGroup {
   std::vector<double> right_side;        ///< Right side, then the solution.
   std::vector<BodyRow> start;            ///< (1 + G) V0 of each body.
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
+  // Contacts of two bodies. Velocities are six numbers V for each of `bodies`.
+  DirectRows direct;
+  std::vector<double> carried;    ///< What these contacts did to the velocities that the substep began with.
+  std::vector<double> free;       ///< Velocities without these contacts, hooks and ropes.
+  std::vector<double> velocity;   ///< At which the rows were last evaluated.
+  std::vector<double> direction;  ///< Search direction; gradient before that.
+  std::vector<double> found;      ///< Velocities that the last linear system has given.
+  std::vector<double> last;       ///< Solution of the whole group at `velocity`.
+  std::vector<double> kept;       ///< For each row: its impulse of the last substep [N s].
+  std::vector<double> felt;  ///< Impulse of each row that the rest of the group has felt at `velocity` [N s].
+  std::vector<double> felt_then;    ///< The same at the end of the search direction [N s].
+  std::vector<SlidingRow> sliding;  ///< For each contact, in the last linear system.
 
   /// Removes members and matrix, but keeps memory.
   void clear();
@@ -233,9 +245,21 @@ struct HookedPoint {
 void apply_mass_shares(CoupledGroups& groups, state::Tables& tables, std::vector<HookedPoint>& points);
 void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles);
 
-/// Solves for the velocities of everything in a coupled group in a substep of length h [s]. `before` holds
-/// the velocities of particles before the forces.
-void solve_coupled_group(const std::vector<state::VelocityRecord>& before, Real h, CoupledGroup& group,
-                         std::vector<RopeSystem>& rope_systems, state::Tables& tables);
+/// Gives coupled manifolds equal shares of the impulses that their lanes have from the last substep, one for
+/// each particle substep, and lets the lanes begin with nothing.
+void share_out_impulses(int substeps, BodyContacts& contacts, std::vector<state::CoupledManifold>& coupled);
+
+/// A particle substep.
+struct ParticleSubstep {
+  Real h = Real(0);    ///< Its length [s].
+  bool first = false;  ///< It is the first of its step.
+};
+
+/// Solves for the velocities of everything in a coupled group in a particle substep. `before` holds the
+/// velocities of particles before the forces. The first of a step also removes overlaps of bodies, at most 5
+/// cm.
+void solve_coupled_group(const std::vector<state::VelocityRecord>& before, const ParticleSubstep& substep,
+                         CoupledGroup& group, std::vector<RopeSystem>& rope_systems, BodyContacts& contacts,
+                         state::Tables& tables);
 
 }  // namespace hooke::solver

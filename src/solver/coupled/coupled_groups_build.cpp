@@ -51,8 +51,8 @@ void write_signature(const Tables& t, std::vector<std::uint32_t>& s) {
                          gives_way(t.bodies, element_contact.body)});
     }
   }
-  for (const state::LoadBearingContact& load_bearing : t.pairs.load_bearing) {
-    for (const std::uint32_t body : {load_bearing.body_a, load_bearing.body_b})
+  for (const state::CoupledManifold& coupled : t.pairs.coupled) {
+    for (const std::uint32_t body : {coupled.body_a, coupled.body_b})
       s.insert(s.end(), {body, gives_way(t.bodies, body) ? 1U : 0U});
   }
   for (std::uint32_t row = 0; row < t.rope_contacts.size(); ++row) {
@@ -69,9 +69,9 @@ class Membership {
     for (const Hook& hook : t.hooks) {
       if (hook.is_in_coupled_group()) join(hook);
     }
-    for (const state::LoadBearingContact& load_bearing : t.pairs.load_bearing) {
-      if (gives_way(t.bodies, load_bearing.body_a) && gives_way(t.bodies, load_bearing.body_b))
-        sets_.merge(load_bearing.body_a, load_bearing.body_b);
+    for (const state::CoupledManifold& coupled : t.pairs.coupled) {
+      if (gives_way(t.bodies, coupled.body_a) && gives_way(t.bodies, coupled.body_b))
+        sets_.merge(coupled.body_a, coupled.body_b);
     }
     for (std::size_t row = 0; row < t.contacts.particle.size(); ++row) {
       if (joins_body(t, row)) sets_.merge(of_contact(row), t.contacts.body[row]);
@@ -97,11 +97,10 @@ class Membership {
     HOOKE_ASSERT(end != kNone);
     return sets_.root(end);
   }
-  std::uint32_t of_load_bearing(const state::LoadBearingContact& load_bearing) {
-    HOOKE_ASSERT(gives_way(tables_.bodies, load_bearing.body_a) ||
-                 gives_way(tables_.bodies, load_bearing.body_b));
-    return sets_.root(gives_way(tables_.bodies, load_bearing.body_a) ? load_bearing.body_a
-                                                                     : load_bearing.body_b);
+  std::uint32_t of_manifold(const state::CoupledManifold& coupled) {
+    const bool a_moves = gives_way(tables_.bodies, coupled.body_a);
+    HOOKE_ASSERT(a_moves || gives_way(tables_.bodies, coupled.body_b));
+    return sets_.root(a_moves ? coupled.body_a : coupled.body_b);
   }
   std::uint32_t of_contact(std::size_t row) {
     return sets_.root(of_particle(tables_.contacts.object[row], tables_.contacts.particle[row]));
@@ -192,8 +191,8 @@ void mark_coupled(const Tables& t, Membership& membership, std::vector<std::uint
   for (const state::ElementContact& element_contact : t.element_contacts) {
     if (is_coupled(t, element_contact)) coupled[membership.of_element_contact(element_contact)] = 1;
   }
-  for (const state::LoadBearingContact& load_bearing : t.pairs.load_bearing)
-    coupled[membership.of_load_bearing(load_bearing)] = 1;
+  for (const state::CoupledManifold& manifold : t.pairs.coupled)
+    coupled[membership.of_manifold(manifold)] = 1;
   for (const state::RopeContact& contact : t.rope_contacts) {
     if (contact.joined) coupled[membership.of_rope_contact(contact)] = 1;
   }
@@ -255,12 +254,12 @@ class MemberSort {
     }
   }
 
-  void add_load_bearing_contacts() {
-    for (std::uint32_t row = 0; row < tables_.pairs.load_bearing.size(); ++row) {
-      const state::LoadBearingContact& load_bearing = tables_.pairs.load_bearing[row];
-      CoupledGroup& group = group_at(membership_.of_load_bearing(load_bearing));
-      group.load_bearing.push_back(row);
-      for (const std::uint32_t body : {load_bearing.body_a, load_bearing.body_b}) add_body(body, group);
+  void add_manifolds() {
+    for (std::uint32_t row = 0; row < tables_.pairs.coupled.size(); ++row) {
+      const state::CoupledManifold& coupled = tables_.pairs.coupled[row];
+      CoupledGroup& group = group_at(membership_.of_manifold(coupled));
+      group.manifolds.push_back(row);
+      for (const std::uint32_t body : {coupled.body_a, coupled.body_b}) add_body(body, group);
     }
   }
 
@@ -310,7 +309,7 @@ void sort_members(const Tables& t, std::vector<RopeSystem>& rope_systems, Couple
   members.add_contacts();
   members.add_element_contacts();
   members.add_rope_contacts();
-  members.add_load_bearing_contacts();
+  members.add_manifolds();
   members.add_rope_systems(rope_systems);
   for (CoupledGroup& group : groups.live()) {
     base::sort_unique(group.points);
@@ -454,10 +453,9 @@ struct Layout {
     }
     for (std::uint32_t i = 0; i < group.element_contacts.size(); ++i)
       connect(contact_block(i), body_block(tables.element_contacts[group.element_contacts[i]].body));
-    for (std::uint32_t i = 0; i < group.load_bearing.size(); ++i) {
-      const state::LoadBearingContact& load_bearing = tables.pairs.load_bearing[group.load_bearing[i]];
-      connect(contact_block(group.first_load_bearing() + i), body_block(load_bearing.body_a));
-      connect(contact_block(group.first_load_bearing() + i), body_block(load_bearing.body_b));
+    for (const std::uint32_t row : group.manifolds) {
+      const state::CoupledManifold& coupled = tables.pairs.coupled[row];
+      connect(body_block(coupled.body_a), body_block(coupled.body_b));
     }
   }
 };
@@ -533,10 +531,6 @@ void make_pattern(const Tables& t, const std::vector<RopeSystem>& rope_systems, 
   for (const std::uint32_t row : group.element_contacts)
     group.ends.push_back({group.body_of(t.element_contacts[row].body), -1});
   group.ends.insert(group.ends.end(), group.rope_contacts.size(), {-1, -1});
-  for (const std::uint32_t row : group.load_bearing) {
-    const state::LoadBearingContact& load_bearing = t.pairs.load_bearing[row];
-    group.ends.push_back({group.body_of(load_bearing.body_a), group.body_of(load_bearing.body_b)});
-  }
 }
 
 /// Lists the tethers of a group's points. `by_particle` has all tethers in order of their particles.
@@ -594,7 +588,7 @@ int CoupledGroup::body_of(std::uint32_t row) const {
 
 void CoupledGroup::clear() {
   for (std::vector<std::uint32_t>* list :
-       {&rope_systems, &points, &hooks, &element_contacts, &rope_contacts, &load_bearing, &bodies, &tethers,
+       {&rope_systems, &points, &hooks, &element_contacts, &rope_contacts, &manifolds, &bodies, &tethers,
         &first_tether, &first_incident, &pair_block, &first_pair})
     list->clear();
   ends.clear();

@@ -207,6 +207,7 @@ void CoupledGroupSolution::assemble() {
   assemble_hooks();
   assemble_bodies();
   assemble_contact_rows();
+  assemble_body_contacts();
 }
 
 /// Computes (1 + G) V0 of each body.
@@ -278,6 +279,7 @@ void CoupledGroupSolution::fill_right_side() {
   give_impulses();
   fill_rows();
   push_bodies();
+  push_by_body_contacts();
   for (int i = 0; i < static_cast<int>(b_.start.size()); ++i) {
     for (int m = 0; m < 6; ++m) right_side(body_block(i), m) = -b_.start[i].at(m);
   }

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 /// \file
 /// Constants of what is solved together, direct islands, load-bearing contacts and coupled groups, that
@@ -119,26 +118,21 @@ inline constexpr std::size_t kMostLoadBearingManifolds = 512;
 
 // How contacts in a coupled group hold.
 
-/// A body slides at first if friction needs this many times its weight to stop it in a substep [ratio].
-/// Larger: it is held, and presses so hard where it tips over that the friction there seems to hold it: a
-/// table at 5 m/s stood still after 0.3 s; now it slows down by mu g within 0.5 % (docs/decisions/0022).
-inline constexpr double kMostStopped = 2;
+/// Speed to which the impulse that a contact of two bodies begins with may push it [m/s]: what carried a load
+/// pushes on where that load is gone. Larger: hooks that hold bodies inside each other strain contacts with
+/// 6e5 N s, which then throw all apart at 4e7 m/s. Smaller: contacts give way under loads of 5e4 times the
+/// weight of what carries them.
+inline constexpr double kMostCarriedSpeed = 0.01;
 
 /// Largest drag of sliding friction, times the substep, over the mass at the contact [ratio]. A contact that
-/// is dragged harder sticks. The second is for contacts of ropes and of bodies, where what is light may carry
-/// many times its weight. Chosen by hand; no measurement is recorded.
+/// is dragged harder sticks: what is light may carry many times its weight. Chosen by hand; no measurement is
+/// recorded.
 inline constexpr double kMostDrag = 1e4;
-inline constexpr double kMostRopeDrag = 1e4;
 
-/// Largest speed at which overlaps of ropes and of load-bearing contacts leave [m/s]. Larger: where one end
+/// Largest speed at which overlaps of ropes leave [m/s]. Larger: where one end
 /// of a segment is wedged, the other moves many times as fast as the contact; 0.2 gave a rope of two nodes 10
 /// mJ (docs/decisions/0002). Smaller: overlaps stay for longer.
 inline constexpr double kElementPushOutSpeed = 0.05;
-
-/// Overlap, or gap, of a load-bearing contact that counts as none, over the shorter lever [ratio]. Smaller:
-/// feet that say the same twice strain against roundings; legs of a turned table carried 52 to 253 N for 147,
-/// and with a slop of 1e-5 147.2 N each.
-inline constexpr double kLoadBearingSlop = 100 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 /// The most by which a contact of ropes gives way to its force [m/s]. Larger: a rope of 0.8 g a node with 10
 /// kg on it is pressed through itself (docs/decisions/0024). No measurement of the value itself is recorded.

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/sort_unique.h"
+#include "solver/coupled/coupled_manifolds.h"
 #include "solver/coupled/coupled_tuning.h"
 
 #include <algorithm>
@@ -158,8 +159,9 @@ void evaluate_new_bodies(std::span<const std::uint32_t> awake, const ContactStep
 
 /// Whether the contact joins two bodies to one island.
 bool joins(const Manifold& m, IslandMembers members, const Bodies& bodies) {
-  return has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b) &&
-         members[m.body_a] != Footing::kHangs && members[m.body_b] != Footing::kHangs;
+  return !m.is_coupled() && has_contact_rows(m, bodies) && is_moved(bodies, m.body_a) &&
+         is_moved(bodies, m.body_b) && members[m.body_a] != Footing::kHangs &&
+         members[m.body_b] != Footing::kHangs;
 }
 
 /// Numbers the islands with direct bodies by their lowest body, and lists their bodies.
@@ -248,15 +250,16 @@ void spend_budget(const std::vector<Manifold>& manifolds, IslandMembers members,
   }
 }
 
-/// Keeps the islands that are within the budget and not too large. An island whose bodies and contacts are
-/// those of the step before keeps its matrix.
-void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
-                  DirectIslands& direct) {
+/// Finds which islands are within the budget and not too large. An island whose bodies and contacts are those
+/// of the step before keeps its matrix.
+void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMembers members,
+                                const Bodies& bodies, DirectIslands& direct) {
   const auto found = static_cast<std::size_t>(direct.count);
   if (direct.islands.size() < found) direct.islands.resize(found);
   direct.fits.assign(found, 0);
+  direct.coupled.clear();
   double cost = 0;
-  std::size_t too_large = 0;
+  std::uint32_t too_large = 0;
   for (std::size_t i = 0; i < found; ++i) {
     const DirectGraph& graph = direct.found[i];
     HOOKE_ASSERT(!graph.bodies.empty());
@@ -268,29 +271,56 @@ void take_islands(const std::vector<Manifold>& manifolds, IslandMembers members,
     if (fits) cost += island.pattern.operations;
   }
   if (cost > kDirectBudget) spend_budget(manifolds, members, bodies, direct);
+  // The evaluation at the step's end counts those that are too large, whether they are asked for here or not.
+  const auto fitting = static_cast<std::uint32_t>(std::count(direct.fits.begin(), direct.fits.end(), 1));
+  direct.refused = static_cast<std::uint32_t>(found) - fitting - too_large;
+}
+
+/// Whether the island has a body that is joined to something else.
+bool is_joined(const DirectGraph& island, std::span<const std::uint8_t> joined) {
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [&](std::uint32_t body) { return joined[body] != 0; });
+}
+
+/// Gives the contacts of coupled islands their way.
+void couple_islands(const Joints& joints, const DirectIslands& direct, state::Tables& tables) {
+  if (std::find(direct.coupled.begin(), direct.coupled.end(), 1) == direct.coupled.end()) return;
+  const auto in_coupled = [&](std::uint32_t body) {
+    return is_moved(tables.bodies, body) && direct.holds(body) && direct.coupled[direct.island_of[body]] != 0;
+  };
+  for (Manifold& m : tables.pairs.manifold) {
+    if ((in_coupled(m.body_a) || in_coupled(m.body_b)) && may_be_coupled(m, tables.bodies, joints))
+      m.route = state::ContactRoute::kCoupled;
+  }
+}
+
+/// Keeps the islands that are within the budget and not solved in coupled groups.
+void take_islands(Bodies& bodies, DirectIslands& direct) {
+  const auto found = static_cast<std::size_t>(direct.count);
   std::size_t taken = 0;
   for (std::size_t i = 0; i < found; ++i) {
     const bool fits = direct.fits[i] != 0;
+    const bool taken_here = fits && direct.coupled[i] == 0;
     for (const std::uint32_t body : direct.found[i].bodies) {
-      direct.island_of[body] = fits ? static_cast<std::uint32_t>(taken) : kNoIsland;
+      direct.island_of[body] = taken_here ? static_cast<std::uint32_t>(taken) : kNoIsland;
       if (fits) continue;
       // What would be direct for this step only, as new bodies are, is evaluated at its end like others.
       std::int8_t& state = bodies.direct_state[body];
       state = state == kDirect ? std::int8_t{0} : kNotEvaluatedSteps;
     }
-    if (fits && taken != i) std::swap(direct.islands[taken], direct.islands[i]);
-    taken += fits ? 1 : 0;
+    if (taken_here && taken != i) std::swap(direct.islands[taken], direct.islands[i]);
+    taken += taken_here ? 1 : 0;
   }
   direct.count = static_cast<int>(taken);
-  // The evaluation at the step's end counts those that are too large, whether they are asked for here or not.
-  direct.refused = static_cast<std::uint32_t>(found - taken - too_large);
 }
 
 }  // namespace
 
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
-                         const std::vector<Manifold>& manifolds, IslandMembers members, Bodies& bodies,
-                         DirectIslands& direct) {
+                         const IslandInputs& inputs, state::Tables& tables, DirectIslands& direct) {
+  const std::vector<Manifold>& manifolds = tables.pairs.manifold;
+  const IslandMembers members = inputs.members;
+  Bodies& bodies = tables.bodies;
   direct.count = 0;
   direct.refused = 0;
   HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
@@ -308,22 +338,27 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   }
   number_islands(awake, bodies, direct);
   list_edges(manifolds, members, bodies, direct);
-  take_islands(manifolds, members, bodies, direct);
+  find_islands_within_budget(manifolds, members, bodies, direct);
+  for (std::size_t i = 0; i < direct.fits.size(); ++i)
+    direct.coupled.push_back(direct.fits[i] != 0 && is_joined(direct.found[i], inputs.joined) ? 1 : 0);
+  couple_islands(inputs.joints, direct, tables);
+  take_islands(bodies, direct);
 }
 
-void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts, const Bodies& bodies,
+void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
+                            const std::vector<Manifold>& manifolds, const Bodies& bodies,
                             DirectIslands& direct) {
   if (direct.count == 0) return;
-  for (DirectIsland& island : direct.live()) island.contacts.clear();
+  for (DirectIsland& island : direct.live()) island.lanes.clear();
   for (int i = 0; i < static_cast<int>(contacts.blocks.size()); ++i) {
     const ContactBlock& block = contacts.blocks[i];
     if (!block.direct) continue;
     for (int lane = 0; lane < block.count; ++lane) {
+      const std::size_t at = kContactLanes * static_cast<std::size_t>(i) + static_cast<std::size_t>(lane);
+      if (manifolds[contacts.manifold_of[at]].is_coupled()) continue;
       HOOKE_ASSERT(direct.island_of[block.record_a[lane] / 16] < static_cast<std::uint32_t>(direct.count));
       DirectIsland& island = direct.islands[direct.island_of[block.record_a[lane] / 16]];
-      int points = 0;
-      while (points < block.point_count && block.point[points].mass[lane] > Real(0)) ++points;
-      island.contacts.push_back({.block = i, .lane = lane, .points = points});
+      island.lanes.push_back({.block = i, .lane = lane, .manifold = contacts.manifold_of[at]});
     }
   }
   parallel::for_ranges(pool, direct.count, 1, [&](Range range) {

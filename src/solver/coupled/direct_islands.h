@@ -9,7 +9,7 @@
 #include "solver/coupled/coupled_tuning.h"
 #include "solver/coupled/load_bearing_contacts.h"
 #include "state/bodies.h"
-#include "state/manifolds.h"
+#include "state/tables.h"
 
 #include <cstdint>
 #include <limits>
@@ -44,6 +44,13 @@ namespace hooke::solver {
 /// its contacts stay soft, whatever its neighbors are. Islands with a body of a ragdoll stay soft as a whole.
 using IslandMembers = std::span<const Footing>;
 
+/// What islands are found from.
+struct IslandInputs {
+  IslandMembers members;
+  std::span<const std::uint8_t> joined;  ///< By body row; see solver/coupled/coupled_manifolds.h.
+  const Joints& joints;
+};
+
 /// What an island asks for; first of each body, then of the whole island at its root.
 struct IslandDemand {
   Real sag = Real(0);                ///< Largest sag over the size.
@@ -72,6 +79,7 @@ struct DirectIslands {
   std::vector<std::uint32_t> island_of;  ///< By body row.
   std::vector<DirectGraph> found;
   std::vector<std::uint8_t> fits;     ///< For each of `found`: whether it is within the budget.
+  std::vector<std::uint8_t> coupled;  ///< For each of `found`: whether coupled groups solve it.
   std::vector<Real> loads;            ///< For each of `found` [m/s].
   std::vector<int> order;             ///< Indices of `found`, by load.
   BlockGraph matrix;                  ///< Graph of one island's matrix.
@@ -84,14 +92,15 @@ struct DirectIslands {
 };
 
 /// Finds the islands of direct bodies, with all that touches them. `awake` are rows in ascending order.
-/// Afterwards no body is new.
+/// Afterwards no body is new. Islands with a body that is `joined` are no direct islands: their contacts get
+/// the way "coupled".
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
-                         const std::vector<state::Manifold>& manifolds, IslandMembers members,
-                         state::Bodies& bodies, DirectIslands& direct);
+                         const IslandInputs& inputs, state::Tables& tables, DirectIslands& direct);
 
 /// Makes the rows of their contacts.
 void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
-                            const state::Bodies& bodies, DirectIslands& direct);
+                            const std::vector<state::Manifold>& manifolds, const state::Bodies& bodies,
+                            DirectIslands& direct);
 
 /// Solves one substep.
 void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, DirectIslands& direct,

@@ -14,8 +14,8 @@ namespace hooke::solver {
 namespace {
 
 using state::Bodies;
+using state::CoupledManifold;
 using state::Hook;
-using state::LoadBearingContact;
 using state::Manifold;
 using state::normal_impulse;
 
@@ -61,7 +61,7 @@ struct Candidates {
   std::span<const std::uint8_t> in_ragdoll;
 
   [[nodiscard]] bool may_bear_load(const Manifold& m) const {
-    return !m.is_load_bearing() && m.point_count > 0 && has_contact_rows(m, bodies);
+    return !m.is_coupled() && m.point_count > 0 && has_contact_rows(m, bodies);
   }
 
   [[nodiscard]] bool loads(std::uint32_t upper, std::uint32_t lower, const Manifold& m) const {
@@ -114,11 +114,6 @@ struct Candidates {
   }
 };
 
-/// The only manifold of a pair; null if there are none or more.
-Manifold* only_manifold(const state::Pair& pair, std::vector<Manifold>& manifolds) {
-  return pair.manifold_count == 1 ? &manifolds[pair.first_manifold] : nullptr;
-}
-
 /// Marks manifolds upwards from what hangs, since what lies on it holds others in turn. Returns how many.
 std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vector<SupportRole>& support_role,
                    std::vector<std::uint32_t>& refused) {
@@ -127,24 +122,23 @@ std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vecto
   for (int layer = 0; more && layer < kMostLoadLayers; ++layer) {
     more = false;
     refused.clear();
-    for (const state::Pair& pair : pairs.pair) {
-      Manifold* m = only_manifold(pair, pairs.manifold);
-      if (m == nullptr) continue;
-      if (support_role[m->body_a] == SupportRole::kNone && support_role[m->body_b] == SupportRole::kNone)
+    for (std::uint32_t row = 0; row < pairs.manifold.size(); ++row) {
+      Manifold& m = pairs.manifold[row];
+      if (support_role[m.body_a] == SupportRole::kNone && support_role[m.body_b] == SupportRole::kNone)
         continue;
-      if (!is_moved(candidates.bodies, m->body_a) || !is_moved(candidates.bodies, m->body_b)) continue;
-      const bool may_bounce = m->restitution > Real(0) && !m->touching;
-      if (may_bounce || !candidates.may_bear_load(*m)) continue;
-      const bool a_is_upper = candidates.loads(m->body_a, m->body_b, *m);
-      if (!a_is_upper && !candidates.loads(m->body_b, m->body_a, *m)) continue;
+      if (!is_moved(candidates.bodies, m.body_a) || !is_moved(candidates.bodies, m.body_b)) continue;
+      const bool may_bounce = m.restitution > Real(0) && !m.touching;
+      if (may_bounce || !candidates.may_bear_load(m)) continue;
+      const bool a_is_upper = candidates.loads(m.body_a, m.body_b, m);
+      if (!a_is_upper && !candidates.loads(m.body_b, m.body_a, m)) continue;
       if (chosen == kMostLoadBearingManifolds) {
-        refused.push_back(pair.first_manifold);
+        refused.push_back(row);
         continue;
       }
       ++chosen;
-      m->route = state::ContactRoute::kCoupled;
+      m.route = state::ContactRoute::kCoupled;
       more = true;
-      support_role[a_is_upper ? m->body_a : m->body_b] = SupportRole::kSupported;
+      support_role[a_is_upper ? m.body_a : m.body_b] = SupportRole::kSupported;
     }
   }
   return chosen;
@@ -159,7 +153,7 @@ void add_loads(const Joints& joints, const Bodies& bodies, const state::Pairs& p
     load[body] = std::max(load[body], Real(1) / bodies.motion[other].inverse_mass);
   };
   for (const Manifold& m : pairs.manifold) {
-    if (!m.is_load_bearing()) continue;
+    if (!m.is_coupled()) continue;
     add(m.body_a, m.body_b);
     add(m.body_b, m.body_a);
   }
@@ -195,18 +189,18 @@ const std::uint32_t* pressed_body(const Candidates& candidates, const Manifold& 
 /// Marks manifolds of bodies that are pressed on the ground; `chosen` have been marked before.
 void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pairs& pairs,
                     std::vector<std::uint32_t>& refused) {
-  for (const state::Pair& pair : pairs.pair) {
-    Manifold* m = only_manifold(pair, pairs.manifold);
-    const std::uint32_t* body = m == nullptr ? nullptr : pressed_body(candidates, *m);
+  for (std::uint32_t row = 0; row < pairs.manifold.size(); ++row) {
+    Manifold& m = pairs.manifold[row];
+    const std::uint32_t* body = pressed_body(candidates, m);
     if (body == nullptr) continue;
-    const bool may_bounce = m->restitution > Real(0) && !m->touching;
-    if (may_bounce || !candidates.is_pressed(*body, *m) || !candidates.may_bear_load(*m)) continue;
+    const bool may_bounce = m.restitution > Real(0) && !m.touching;
+    if (may_bounce || !candidates.is_pressed(*body, m) || !candidates.may_bear_load(m)) continue;
     if (chosen == kMostLoadBearingManifolds) {
-      refused.push_back(pair.first_manifold);
+      refused.push_back(row);
       continue;
     }
     ++chosen;
-    m->route = state::ContactRoute::kCoupled;
+    m.route = state::ContactRoute::kCoupled;
   }
 }
 
@@ -233,14 +227,6 @@ void note_neighbors(const Hook& hook, const Bodies& bodies, std::vector<GroundLo
   };
   note(hook.a.body, hook.b.body);
   note(hook.b.body, hook.a.body);
-}
-
-/// Mass that must be lifted to part the two: the heavier one, or what presses on the ground.
-Real lifted_mass(const Manifold& m, const Bodies& bodies, const std::vector<GroundLoad>& ground_load) {
-  const Real w_a = bodies.motion[m.body_a].inverse_mass;
-  const Real w_b = bodies.motion[m.body_b].inverse_mass;
-  if (is_moved(bodies, m.body_a) && is_moved(bodies, m.body_b)) return Real(1) / std::min(w_a, w_b);
-  return ground_load[is_moved(bodies, m.body_a) ? m.body_a : m.body_b].group;
 }
 
 void raise_role(const Bodies& bodies, std::uint32_t body, SupportRole to,
@@ -357,39 +343,37 @@ void let_stand(std::span<const Footing> footing, std::vector<SupportRole>& suppo
 /// Notes which contacts bore load in the last step, and forgets them.
 void take_back_last_choice(state::Pairs& pairs, LoadBearingScratch& scratch) {
   // Where no contact bore load, no flag is set.
-  if (!pairs.load_bearing.empty()) {
+  if (!pairs.coupled.empty()) {
     for (Manifold& m : pairs.manifold) {
-      if (m.is_load_bearing()) m.route = state::ContactRoute::kSoft;
+      if (m.is_coupled()) m.route = state::ContactRoute::kSoft;
     }
   }
   scratch.load_bearing_before.clear();
   scratch.bore_load.clear();
-  for (const LoadBearingContact& contact : pairs.load_bearing) {
+  for (const CoupledManifold& contact : pairs.coupled) {
+    if (!contact.bears_load) continue;
     scratch.load_bearing_before.emplace_back(contact.body_a, contact.body_b);
     scratch.bore_load.push_back(contact.body_a);
     scratch.bore_load.push_back(contact.body_b);
   }
   base::sort_unique(scratch.load_bearing_before);
   base::sort_unique(scratch.bore_load);
-  pairs.load_bearing.clear();
+  pairs.coupled.clear();
 }
 
-/// Lists the points of all manifolds that were chosen.
-void list_load_bearing_contacts(const Bodies& bodies, const std::vector<GroundLoad>& ground_load,
-                                state::Pairs& pairs) {
-  for (std::uint32_t row = 0; row < pairs.pair.size(); ++row) {
-    const std::uint32_t manifold = pairs.pair[row].first_manifold;
-    if (pairs.pair[row].manifold_count != 1 || !pairs.manifold[manifold].is_load_bearing()) continue;
-    const Manifold& m = pairs.manifold[manifold];
-    const Real load = lifted_mass(m, bodies, ground_load);
-    HOOKE_ASSERT(load > Real(0));
-    for (std::int32_t k = 0; k < Manifold::kMaxPoints; ++k) {
-      pairs.load_bearing.push_back({.pair = row,
-                                    .manifold = manifold,
-                                    .point = k,
-                                    .body_a = m.body_a,
-                                    .body_b = m.body_b,
-                                    .load = load});
+/// Lists the manifolds that were chosen. What is light turns far within a step, and a plank would dig a
+/// corner into its load that was no contact at the start: these contacts are found again in each substep.
+void list_chosen(state::Pairs& pairs) {
+  for (state::Pair& pair : pairs.pair) {
+    const auto manifolds = std::span(pairs.manifold).subspan(pair.first_manifold, pair.manifold_count);
+    if (std::none_of(manifolds.begin(), manifolds.end(), [](const Manifold& m) { return m.is_coupled(); }))
+      continue;
+    pair.refresh = state::ContactRefresh::kEachSubstep;
+    for (Manifold& m : manifolds) {
+      m.refresh = pair.refresh;
+      if (!m.is_coupled()) continue;
+      const auto row = static_cast<std::uint32_t>(&m - pairs.manifold.data());
+      pairs.coupled.push_back({.manifold = row, .body_a = m.body_a, .body_b = m.body_b, .bears_load = true});
     }
   }
 }
@@ -401,7 +385,7 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
                                 LoadBearingScratch& scratch) {
   scratch.footing.assign(bodies.motion.size(), Footing::kStands);
   scratch.refused_manifolds.clear();
-  if (hooks.empty() && pairs.load_bearing.empty()) return;
+  if (hooks.empty() && pairs.coupled.empty()) return;
   take_back_last_choice(pairs, scratch);
   scratch.supports = inputs.supports;
   find_footing(inputs, bodies, pairs, scratch);
@@ -423,41 +407,7 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
   if (chosen > 0) add_loads(inputs.joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
   choose_pressed(candidates, chosen, pairs, scratch.refused_manifolds);
   base::sort_unique(scratch.refused_manifolds);  // One that is loaded may be pressed, too.
-  list_load_bearing_contacts(bodies, scratch.supports.ground_load, pairs);
-  update_load_bearing_contacts(inputs.impulse_to_force, bodies, pairs);
-}
-
-void update_load_bearing_contacts(Real impulse_to_force, const Bodies& bodies, state::Pairs& pairs) {
-  for (LoadBearingContact& contact : pairs.load_bearing) {
-    HOOKE_ASSERT(contact.manifold < pairs.manifold.size() && contact.point < Manifold::kMaxPoints);
-    const Manifold& m = pairs.manifold[contact.manifold];
-    contact.separation = std::numeric_limits<Real>::infinity();
-    contact.normal_force = Real(0);
-    contact.friction_force = {};
-    if (contact.point >= m.point_count) continue;
-    const state::ContactPoint& p = m.point[static_cast<std::size_t>(contact.point)];
-    contact.separation = p.separation - dot(m.normal, displacement_between(bodies, m, p));
-    contact.normal_force = impulse_to_force * p.normal_impulse;
-    const Real load = normal_impulse(m);
-    if (load > Real(0))
-      contact.friction_force = (impulse_to_force * p.normal_impulse / load) * m.friction_impulse;
-  }
-}
-
-void store_load_bearing_contacts(Real h, state::Pairs& pairs) {
-  for (const LoadBearingContact& contact : pairs.load_bearing) {
-    Manifold& m = pairs.manifold[contact.manifold];
-    HOOKE_ASSERT(m.is_load_bearing());
-    if (contact.point == 0) {
-      m.friction_impulse = m.rolling_impulse = {};
-      m.twist_impulse = m.largest_impulse = Real(0);
-    }
-    if (contact.point < m.point_count)
-      m.point[static_cast<std::size_t>(contact.point)].normal_impulse = h * contact.normal_force;
-    m.friction_impulse += h * contact.friction_force;
-    m.largest_impulse = std::max(m.largest_impulse, h * contact.largest_force);
-    m.touching = m.largest_impulse > Real(0);
-  }
+  list_chosen(pairs);
 }
 
 }  // namespace hooke::solver

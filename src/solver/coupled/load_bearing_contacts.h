@@ -21,14 +21,9 @@
 /// The same goes for a light body between the ground and what it is hooked to, as the leg of a heavy table.
 /// The joint brings all the weight, and the leg's contact with the ground takes only m v of the leg.
 ///
-/// Light bodies turn far within a step, and are thin: such pairs are refreshed each substep.
-///
 /// The order of calls:
 ///   find_supporting_bodies                                   when hooks or bodies came or went
 ///   find_load_bearing_contacts                               once a step, before rows of contacts are made
-///   store_load_bearing_contacts, then
-///   update_load_bearing_contacts                             each substep, before and after that refresh
-///   store_load_bearing_contacts                              once a step
 
 namespace hooke::solver {
 
@@ -91,6 +86,7 @@ struct LoadBearingScratch {
   std::vector<std::uint32_t> bore_load;  ///< Bodies of the contacts that bore load before, ascending.
   std::vector<Real> load;                ///< By body row: the heaviest body that lies on it [kg].
   std::vector<std::pair<std::uint32_t, std::uint32_t>> load_bearing_before;
+  std::vector<std::uint32_t> manifolds;  ///< Rows of those that bear load.
 };
 
 /// What the choice of load-bearing contacts is made from.
@@ -102,18 +98,13 @@ struct LoadBearingInputs {
   const Supports& supports;              ///< What bodies hold by their hooks alone.
 };
 
-/// Fills `pairs.load_bearing`. A body that hangs bears what is heavier than itself or presses harder than
-/// that. The upper body may have hooks itself, as the wheel of a cart does, but does not hang. A contact that
-/// may bounce bears load once it touches. A body that its contacts carry bears nothing by its hooks, as a
-/// crate with a slack rope. What stands is supported by what it lies on, not by what leans on its side.
+/// Fills `Pairs::coupled` with those that bear load. A body that hangs bears what is heavier than itself or
+/// presses harder than that. The upper body may have hooks itself, as the wheel of a cart does, but does not
+/// hang. A contact that may bounce bears load once it touches. A body that its contacts carry bears nothing
+/// by its hooks, as a crate with a slack rope. What stands is supported by what it lies on, not by what leans
+/// on its side.
 void find_load_bearing_contacts(const LoadBearingInputs& inputs, const state::Bodies& bodies,
                                 const std::vector<state::Hook>& hooks, state::Pairs& pairs,
                                 LoadBearingScratch& scratch);
-
-/// Updates forces and separations to what the manifolds say now.
-void update_load_bearing_contacts(Real impulse_to_force, const state::Bodies& bodies, state::Pairs& pairs);
-
-/// Gives the manifolds the impulses of their last substep, of length h [s].
-void store_load_bearing_contacts(Real h, state::Pairs& pairs);
 
 }  // namespace hooke::solver

@@ -151,6 +151,12 @@ void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bo
 void build_joints(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints) {
   build_articulations(hooks, bodies, budget, joints);
+  joints.articulation_of.assign(bodies.motion.size(), Joints::kNoArticulation);
+  for (const std::uint32_t i : joints.order) {
+    for (const std::uint32_t body : joints.articulations[i].bodies) {
+      if (is_dynamic(bodies, body)) joints.articulation_of[body] = i;
+    }
+  }
   joints.at_points.clear();
   for (std::uint32_t row = 0; row < hooks.size(); ++row) {
     if (hooks[row].holds_point()) joints.at_points.push_back(row);

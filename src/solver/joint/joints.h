@@ -66,7 +66,10 @@ struct Joints {
   /// Plain balls outside articulations, at no body with more than kMostFreeHooks hooks
   /// (solver/joint/iterative_joints.h).
   BallJoints balls;
-  IterativeJoints iterative;             ///< All other hooks outside articulations.
+  IterativeJoints iterative;  ///< All other hooks outside articulations.
+  static constexpr std::uint32_t kNoArticulation = 0xFFFFFFFF;
+  /// The articulation of each body that forces move, by body row; kNoArticulation for bodies of none.
+  std::vector<std::uint32_t> articulation_of;
   std::vector<std::uint32_t> at_points;  ///< Rows of hooks at points, which coupled groups and ropes solve.
   /// By body row: 1 for members of ragdolls (solver/joint/approximate_trees.h).
   std::vector<std::uint8_t> in_ragdoll;

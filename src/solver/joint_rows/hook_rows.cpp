@@ -20,8 +20,8 @@ JointBody joint_end(const state::Tables& t, const state::HookPlace& place) {
 }
 
 int make_rows(state::Hook& hook, const RowEnd& a, const RowEnd& b, double h,
-              std::span<JointRow, state::Hook::kMaxRows> rows) {
-  const int count = make_joint_rows(hook, a.body, b.body, h, rows);
+              std::span<JointRow, state::Hook::kMaxRows> rows, double most_push) {
+  const int count = make_joint_rows(hook, a.body, b.body, h, rows, most_push);
   for (JointRow& row : rows.first(static_cast<std::size_t>(count))) {
     if (a.given) row.target += dot(row.n, a.body.v) + dot(row.j_a, a.body.omega_scaled);
     if (b.given) row.target -= dot(row.n, b.body.v) + dot(row.j_b, b.body.omega_scaled);

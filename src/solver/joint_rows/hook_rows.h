@@ -4,6 +4,7 @@
 #include "solver/joint_rows/joint_rows_tuning.h"
 #include "state/tables.h"
 
+#include <limits>
 #include <span>
 
 /// \file
@@ -22,8 +23,9 @@ struct RowEnd {
 };
 
 /// Makes the rows of a hook (solver/joint_rows/joint_rows.h) between ends of which some have their motion
-/// given.
+/// given, and errors are taken back at `most_push` at most.
 int make_rows(state::Hook& hook, const RowEnd& a, const RowEnd& b, double h,
-              std::span<JointRow, state::Hook::kMaxRows> rows);
+              std::span<JointRow, state::Hook::kMaxRows> rows,
+              double most_push = std::numeric_limits<double>::infinity());
 
 }  // namespace hooke::solver

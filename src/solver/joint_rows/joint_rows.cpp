@@ -201,13 +201,13 @@ int list_joint_rows(const Hook& hook, std::span<RowKind, Hook::kMaxRows> kinds) 
 }
 
 int make_joint_rows(Hook& hook, const JointBody& a, const JointBody& b, double h,
-                    std::span<JointRow, Hook::kMaxRows> rows) {
+                    std::span<JointRow, Hook::kMaxRows> rows, double most_push) {
   Freedoms f = find_freedoms(hook, a, b);
   HOOKE_ASSERT(h > 0 && count_joint_rows(hook) <= Hook::kMaxRows);
   for (int i = 0; i < 6; ++i) hook.value[i] = f.value[i];
-  const double fastest_translation = kJointPushSpeed + length(b.v - a.v);
+  const double fastest_translation = std::min(kJointPushSpeed + length(b.v - a.v), most_push);
   const double fastest_rotation =
-      kJointPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled);
+      std::min(kJointPushSpeed + length(b.scale * b.omega_scaled - a.scale * a.omega_scaled), most_push);
   const double levers = length(f.r_a) + length(f.r_b);
   int count = 0;
   for_each_row(hook, [&](int i, RowRole role) {

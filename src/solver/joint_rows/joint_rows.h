@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 /// \file
@@ -72,9 +73,11 @@ int list_joint_rows(const state::Hook& hook, std::span<RowKind, state::Hook::kMa
 /// taken apart about a's x, then y, then b's z. Their rates are the dual basis of these axes, which ends
 /// where the second angle comes to 87 degrees. A ball's spring and friction act on the rotation vector, its
 /// cone on the angle between the x axes, and its twist on the rest: rate omega.(x_a + x_b) / (1 + x_a.x_b).
-/// Rows of a hook that gives way have its compliance in series (solver/joint/hook_breaks.h).
+/// Rows of a hook that gives way have its compliance in series (solver/joint/hook_breaks.h). Errors of locks
+/// are taken back at `most_push` at most [m/s] or [rad/s].
 int make_joint_rows(state::Hook& hook, const JointBody& a, const JointBody& b, double h,
-                    std::span<JointRow, state::Hook::kMaxRows> rows);
+                    std::span<JointRow, state::Hook::kMaxRows> rows,
+                    double most_push = std::numeric_limits<double>::infinity());
 
 /// Compliance of a hook without hold: a row with it is as one that is not there [1/kg, 1/(kg m^2)].
 inline constexpr double kNoHold = 1e15;

@@ -1,0 +1,78 @@
+#include "solver/coupled/coupled_manifolds.h"
+
+#include "base/assert.h"
+#include "solver/contact/contact_colors.h"
+
+#include <algorithm>
+
+namespace hooke::solver {
+
+using state::ContactRoute;
+using state::CoupledManifold;
+using state::Manifold;
+
+bool may_be_coupled(const Manifold& m, const state::Bodies& bodies, const Joints& joints) {
+  const auto articulation = [&](std::uint32_t body) {
+    return body < joints.articulation_of.size() ? joints.articulation_of[body] : Joints::kNoArticulation;
+  };
+  const std::uint32_t of_a = articulation(m.body_a);
+  const bool same = of_a != Joints::kNoArticulation && of_a == articulation(m.body_b);
+  return !same && has_contact_rows(m, bodies);
+}
+
+void couple_neighbors(const Joints& joints, state::Tables& t, std::vector<std::uint8_t>& joined) {
+  joined.assign(t.bodies.motion.size(), 0);
+  for (const CoupledManifold& of : t.pairs.coupled) {
+    for (const std::uint32_t body : {of.body_a, of.body_b}) joined[body] = is_moved(t.bodies, body) ? 1 : 0;
+  }
+  if (!t.pairs.coupled.empty()) {
+    for (Manifold& m : t.pairs.manifold) {
+      const bool is_joined = joined[m.body_a] != 0 || joined[m.body_b] != 0;
+      if (is_joined && may_be_coupled(m, t.bodies, joints)) m.route = ContactRoute::kCoupled;
+    }
+  }
+  const std::size_t known = std::min(joined.size(), joints.articulation_of.size());
+  for (std::size_t body = 0; body < known; ++body) {
+    if (joints.articulation_of[body] != Joints::kNoArticulation) joined[body] = 1;
+  }
+  for (const std::uint32_t row : joints.at_points) {
+    for (const std::uint32_t body : {t.hooks[row].a.body, t.hooks[row].b.body}) {
+      if (body < joined.size()) joined[body] = 1;
+    }
+  }
+}
+
+void list_coupled_manifolds(state::Pairs& pairs, std::vector<std::uint32_t>& bearing) {
+  bearing.clear();
+  for (const CoupledManifold& of : pairs.coupled) bearing.push_back(of.manifold);
+  HOOKE_ASSERT(std::is_sorted(bearing.begin(), bearing.end()));
+  pairs.coupled.clear();
+  for (std::uint32_t row = 0; row < pairs.manifold.size(); ++row) {
+    const Manifold& m = pairs.manifold[row];
+    if (!m.is_coupled()) continue;
+    pairs.coupled.push_back({.manifold = row,
+                             .body_a = m.body_a,
+                             .body_b = m.body_b,
+                             .bears_load = std::binary_search(bearing.begin(), bearing.end(), row)});
+  }
+}
+
+void find_coupled_lanes(const BodyContacts& contacts, state::Pairs& pairs) {
+  if (pairs.coupled.empty()) return;
+  for (std::size_t i = 0; i < contacts.blocks.size(); ++i) {
+    const ContactBlock& block = contacts.blocks[i];
+    if (!block.direct) continue;
+    for (int lane = 0; lane < block.count; ++lane) {
+      const std::uint32_t row = contacts.manifold_of[i * kContactLanes + static_cast<std::size_t>(lane)];
+      if (!pairs.manifold[row].is_coupled()) continue;
+      const auto at =
+          std::lower_bound(pairs.coupled.begin(), pairs.coupled.end(), row,
+                           [](const CoupledManifold& of, std::uint32_t r) { return of.manifold < r; });
+      HOOKE_ASSERT(at != pairs.coupled.end() && at->manifold == row);
+      at->block = static_cast<std::int32_t>(i);
+      at->lane = lane;
+    }
+  }
+}
+
+}  // namespace hooke::solver
