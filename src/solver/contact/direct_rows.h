@@ -6,7 +6,9 @@
 #include "solver/contact/body_contacts.h"
 #include "state/bodies.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -146,11 +148,36 @@ void set_stiffness(double stiffness, DirectRows& rows);
 void find_rates(const std::vector<double>& u, DirectRows& rows);
 
 /// Adds what the impulses of a contact do.
-void add_impulses(const DirectRows& rows, const DirectContact& c, double DirectRow::*impulse,
-                  std::vector<double>& u);
+inline void add_impulses(const DirectRows& rows, const DirectContact& c, double DirectRow::*impulse,
+                         std::vector<double>& u) {
+  for (int i = c.first; i < c.end(); ++i) {
+    const DirectRow& row = rows.rows[i];
+    add_lever(row.*impulse, row.a, &u[6 * c.a]);
+    if (c.has_b()) add_lever(row.*impulse, row.b, &u[6 * c.b]);
+  }
+}
 
 /// Sets the impulses of a contact at rate + t slope, and which rows are not at their bounds then.
-void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows);
+inline void respond(double t, const DirectContact& c, std::vector<DirectRow>& rows) {
+  const auto wish = [&](const DirectRow& row) {
+    return row.before - row.stiffness * (row.rate + t * row.slope);
+  };
+  for (int i = c.first; i < c.first + c.points; ++i) {
+    rows[i].impulse = std::max(0.0, wish(rows[i]));
+    rows[i].holds = rows[i].impulse > 0;
+  }
+  DirectRow* friction = &rows[c.first + c.points];
+  const double x = wish(friction[0]);
+  const double y = wish(friction[1]);
+  const double size = std::sqrt(x * x + y * y);
+  const double shrink = size > c.limit ? c.limit / size : 1;
+  friction[0].impulse = shrink * x;
+  friction[1].impulse = shrink * y;
+  friction[0].holds = friction[1].holds = !(size > c.limit);
+  const double twist = wish(friction[2]);
+  friction[2].impulse = std::clamp(twist, -c.twist_limit, c.twist_limit);
+  friction[2].holds = std::abs(twist) < c.twist_limit;
+}
 
 /// The row across the slip of a contact, at the present rates.
 [[nodiscard]] SlidingRow sliding_row(const DirectContact& c, const DirectRows& rows);
