@@ -323,6 +323,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   Bodies& bodies = tables.bodies;
   direct.count = 0;
   direct.refused = 0;
+  direct.coupled.clear();
   HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
   const bool any = std::any_of(awake.begin(), awake.end(),
                                [&](std::uint32_t body) { return bodies.direct_state[body] >= kDirect; });
