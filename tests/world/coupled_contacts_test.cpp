@@ -93,6 +93,19 @@ TEST_SUITE("world/coupled_contacts") {
     }
   }
 
+  TEST_CASE("a heavy table stands on thin legs on a board that lies on a tower, and makes no energy") {
+    World world = make_world(awake());
+    take(world.add_body({.shape = Shape::half_space()}));
+    for (int i = 0; i < 4; ++i) add_box(world, {0, 0.5 + i, 0}, {Real(0.5), Real(0.5), Real(0.5)}, 20);
+    const BodyId board = add_box(world, {0, 4.05, 0}, {Real(0.8), Real(0.05), Real(0.8)}, 50);
+    const BodyId top = add_table(world, 4.1, 2000);
+    run(world, 180);
+    CHECK(height_of(world, board) == doctest::Approx(4.05).epsilon(1e-4));
+    CHECK(height_of(world, top) == doctest::Approx(5.15).epsilon(1e-4));
+    CHECK(world.measure().largest_penetration < 1e-4);
+    CHECK(world.measure().energy.kinetic < 1e-3);
+  }
+
   TEST_CASE("a table of any weight stands on thin legs on a ground of triangles") {
     for (const double mass : {100.0, 1e3, 1e4}) {
       CAPTURE(mass);

@@ -30,6 +30,13 @@ void couple_neighbors(const Joints& joints, state::Tables& t, std::vector<std::u
       const bool is_joined = joined[m.body_a] != 0 || joined[m.body_b] != 0;
       if (is_joined && may_be_coupled(m, t.bodies, joints)) m.route = ContactRoute::kCoupled;
     }
+    // The other bodies of these contacts: an island that solved them alone would undo what the group did.
+    for (const Manifold& m : t.pairs.manifold) {
+      if (!m.is_coupled()) continue;
+      for (const std::uint32_t body : {m.body_a, m.body_b}) {
+        if (is_moved(t.bodies, body)) joined[body] = 1;
+      }
+    }
   }
   const std::size_t known = std::min(joined.size(), joints.articulation_of.size());
   for (std::size_t body = 0; body < known; ++body) {
