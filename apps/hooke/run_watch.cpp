@@ -53,7 +53,7 @@ constexpr std::array kRefusedCounts = {
                  "fewer bodies on what hangs, masses that differ less, or more substeps"},
     RefusedCount{&StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
                  "groups of ropes and what they hold took too much work to be solved to the end",
-                 "fewer points, or fewer ropes that touch each other"},
+                 "fewer points, fewer ropes that touch each other, or fewer bodies on what hangs"},
 };
 
 double in_double(Real value) {

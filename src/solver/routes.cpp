@@ -137,8 +137,7 @@ RouteCounts choose_contact_routes(const LoadBearingInputs& inputs, std::span<con
   find_load_bearing_contacts(inputs, tables.bodies, tables.hooks, tables.pairs, load_bearing);
   couple_neighbors(inputs.joints, tables, body_marks);
   find_direct_islands(awake, inputs.step, {load_bearing.footing, body_marks, inputs.joints}, tables, direct);
-  const bool any_coupled = std::find(direct.coupled.begin(), direct.coupled.end(), 1) != direct.coupled.end();
-  if (any_coupled || !tables.pairs.coupled.empty())
+  if (direct.has_coupled() || !tables.pairs.coupled.empty())
     list_coupled_manifolds(tables.pairs, load_bearing.manifolds);
   couple_articulations(inputs.joints, body_marks, tables);
   RouteCounts counts;

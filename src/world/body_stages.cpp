@@ -231,7 +231,7 @@ void prepare_body_contacts(WorldData& world, Real h) {
   world.frame.narrow_phase.list_refreshed(t.pairs);  // No pair changes its row any more in this step.
   solver::prepare_body_contacts(*world.pool, t.pairs.manifold, t.bodies, world.frame.contact_step,
                                 world.frame.body_contacts);
-  solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.pairs.manifold, t.bodies,
+  solver::prepare_direct_islands(*world.pool, world.frame.body_contacts, t.bodies,
                                  world.frame.direct_islands);
   solver::find_coupled_lanes(world.frame.body_contacts, t.pairs);
   solver::list_impact_pairs(t.pairs, t.bodies, world.derived.hooked, world.frame.body_contacts,

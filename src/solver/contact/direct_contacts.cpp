@@ -103,15 +103,7 @@ double search(DirectIsland& island) {
     for (int i = c.first; i < c.end(); ++i)
       island.rows[i].slope = rate_of(c, island.rows[i], island.direction);
   }
-  const double start = climb(0, island);
-  double low = 0;
-  double high = 1;
-  if (climb(1, island) <= kDirectSearchTolerance * std::abs(start)) return 1;
-  for (int i = 0; i < kDirectSearchSteps; ++i) {
-    const double middle = 0.5 * (low + high);
-    (climb(middle, island) > 0 ? high : low) = middle;
-  }
-  return 0.5 * (low + high);
+  return find_least([&](double t) { return climb(t, island); });
 }
 
 /// Makes one pass over the rows of a contact.

@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "solver/contact/body_contacts.h"
+#include "solver/contact/contact_tuning.h"
 #include "state/bodies.h"
 
 #include <algorithm>
@@ -177,6 +178,21 @@ inline void respond(double t, const DirectContact& c, std::vector<DirectRow>& ro
   const double twist = wish(friction[2]);
   friction[2].impulse = std::clamp(twist, -c.twist_limit, c.twist_limit);
   friction[2].holds = std::abs(twist) < c.twist_limit;
+}
+
+/// The share of a search direction where a convex energy is least; climb(t) is how fast it grows after a
+/// share t.
+template <class Climb>
+[[nodiscard]] double find_least(Climb&& climb) {
+  const double start = climb(0.0);
+  if (climb(1.0) <= kDirectSearchTolerance * std::abs(start)) return 1;
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < kDirectSearchSteps; ++i) {
+    const double middle = 0.5 * (low + high);
+    (climb(middle) > 0 ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 /// The row across the slip of a contact, at the present rates.

@@ -30,9 +30,9 @@ bool mark_held_bodies(const Tables& t, const Joints& joints, std::vector<std::ui
   for (const state::ElementContact& element_contact : t.element_contacts) {
     if (is_coupled(t, element_contact)) mark(element_contact.body);
   }
-  for (const state::CoupledManifold& load_bearing : t.pairs.coupled) {
-    mark(load_bearing.body_a);
-    mark(load_bearing.body_b);
+  for (const state::CoupledManifold& manifold : t.pairs.coupled) {
+    mark(manifold.body_a);
+    mark(manifold.body_b);
   }
   return any;
 }

@@ -37,9 +37,9 @@ void put(DVec3 linear, DVec3 angular, std::size_t body, std::vector<double>& u) 
   }
 }
 
-/// Gives the angular half of a lever the inertia `to` in place of `from`.
-void turn_lever(const Symmetric3<double>& from, const Symmetric3<double>& to, DirectLever& j) {
-  const DVec3 turned = to * (math::inverse(from) * DVec3{j[3], j[4], j[5]});
+/// Gives the angular half of a lever another inertia in place of that whose inverse is given.
+void turn_lever(const Symmetric3<double>& inverse, const Symmetric3<double>& to, DirectLever& j) {
+  const DVec3 turned = to * (inverse * DVec3{j[3], j[4], j[5]});
   for (std::size_t k = 0; k < 3; ++k) j[3 + k] = component(turned, static_cast<int>(k));
 }
 
@@ -47,7 +47,7 @@ void turn_lever(const Symmetric3<double>& from, const Symmetric3<double>& to, Di
 
 void share_out_impulses(int substeps, BodyContacts& contacts, std::vector<state::CoupledManifold>& coupled) {
   for (state::CoupledManifold& of : coupled) {
-    if (of.block < 0) continue;
+    HOOKE_ASSERT(of.block >= 0);
     ContactBlock& block = contacts.blocks[of.block];
     std::size_t i = 0;
     const auto share_out = [&](ContactBlock::Lane& impulse) {
@@ -74,7 +74,7 @@ void CoupledGroupSolution::add_body_contacts() {
   b_.direct.rows.clear();
   for (const std::uint32_t index : b_.manifolds) {
     const state::CoupledManifold& of = t_.pairs.coupled[index];
-    if (of.block < 0) continue;
+    HOOKE_ASSERT(of.block >= 0);
     const ContactBlock& block = contacts_.blocks[of.block];
     DirectContact c = {.block = of.block, .lane = of.lane, .points = count_points(block, of.lane)};
     const int a = b_.body_of(block.record_a[of.lane] / 16);
@@ -95,7 +95,7 @@ void CoupledGroupSolution::add_body_contacts() {
 void CoupledGroupSolution::turn_levers() {
   for (std::size_t i = 0; i < b_.moving.size(); ++i) {
     if (!is_gyroscopic_now(t_.bodies, b_.bodies[i])) continue;
-    const Symmetric3<double> from = math::in_double(t_.bodies.scale[b_.bodies[i]]);
+    const Symmetric3<double> from = math::inverse(math::in_double(t_.bodies.scale[b_.bodies[i]]));
     const Symmetric3<double>& to = b_.moving[i].body.scale;
     for (const DirectContact& c : b_.direct.contacts) {
       for (DirectRow& row : b_.direct.rows_of(c)) {
@@ -185,8 +185,8 @@ void CoupledGroupSolution::push_by_body_contacts() {
 /// Finds how rates change on the way to the velocities that the linear system has given, and what the rest of
 /// the group will have felt there: that is linear on the way.
 void CoupledGroupSolution::note_search() {
-  read_velocities(b_.found);
-  for (std::size_t i = 0; i < b_.found.size(); ++i) b_.direction[i] = b_.found[i] - b_.velocity[i];
+  read_velocities(b_.direction);
+  for (std::size_t i = 0; i < b_.direction.size(); ++i) b_.direction[i] -= b_.velocity[i];
   for (std::size_t i = 0; i < b_.direct.contacts.size(); ++i) {
     const DirectContact& c = b_.direct.contacts[i];
     for (int k = c.first; k < c.end(); ++k) {
@@ -214,19 +214,6 @@ double CoupledGroupSolution::climb(double t) {
     }
   }
   return sum;
-}
-
-/// The share of the search direction where the energy is least.
-double CoupledGroupSolution::search() {
-  const double start = climb(0);
-  if (climb(1) <= kDirectSearchTolerance * std::abs(start)) return 1;
-  double low = 0;
-  double high = 1;
-  for (int i = 0; i < kDirectSearchSteps; ++i) {
-    const double middle = 0.5 * (low + high);
-    (climb(middle) > 0 ? high : low) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 /// Computes impulses at the present velocities. True if they are what the rest of the group has felt.
@@ -270,7 +257,7 @@ bool CoupledGroupSolution::descend(int steps) {
     solve_once();
     if (!is_sound()) return false;
     note_search();
-    go(search());
+    go(find_least([&](double t) { return climb(t); }));
   }
   return evaluate();
 }
@@ -286,13 +273,10 @@ void CoupledGroupSolution::jump(Guess guess) {
   if (!is_sound()) return;
   b_.last = b_.right_side;
   read_velocities(b_.velocity);
-  for (std::size_t k = 0; k < b_.felt.size(); ++k) b_.felt[k] = b_.direct.rows[k].impulse;
-  for (const DirectContact& c : b_.direct.contacts) {
-    for (int k = c.first; k < c.end(); ++k) {
-      const DirectRow& row = b_.direct.rows[k];
-      if (row.holds) b_.felt[k] = row.before - row.stiffness * (rate_of(c, row, b_.velocity) + row.drift);
-    }
-  }
+  find_rates(b_.velocity, b_.direct);
+  b_.felt.clear();
+  for (const DirectRow& row : b_.direct.rows)
+    b_.felt.push_back(row.holds ? row.before - row.stiffness * row.rate : row.impulse);
 }
 
 bool CoupledGroupSolution::converge(double stiffness, Guess guess, int steps) {
@@ -301,7 +285,6 @@ bool CoupledGroupSolution::converge(double stiffness, Guess guess, int steps) {
     b_.direct.rows[k].before = std::clamp(b_.kept[k], -most, most);
   }
   set_stiffness(stiffness, b_.direct);
-  b_.felt.assign(b_.direct.rows.size(), 0);
   b_.felt_then.assign(b_.direct.rows.size(), 0);
   limit_friction(b_.direct);
   jump(guess);
@@ -318,10 +301,9 @@ void CoupledGroupSolution::solve_body_contacts() {
     solve_once();
     return;
   }
-  if (converge(kDirectStiffness, Guess::kSame, kDirectQuickSteps) ||
-      converge(kDirectStiffness, Guess::kAll, kDirectNewtonSteps))
-    return;
-  b_.unsolved = !converge(kDirectSofterStiffness, Guess::kAll, kDirectNewtonSteps) || b_.unsolved;
+  is_solved_ = converge(kDirectStiffness, Guess::kSame, kDirectQuickSteps) ||
+               converge(kDirectStiffness, Guess::kAll, kDirectNewtonSteps) ||
+               converge(kDirectSofterStiffness, Guess::kAll, kDirectNewtonSteps);
 }
 
 /// Gives bodies their velocities. What contacts did is kept apart, since accelerate_bodies repeats it
@@ -355,6 +337,7 @@ void CoupledGroupSolution::store_bodies() {
 }
 
 void CoupledGroupSolution::store_body_contacts() {
+  b_.cut_short = b_.cut_short || !is_solved_;
   for (const DirectContact& c : b_.direct.contacts) {
     ContactBlock& block = contacts_.blocks[c.block];
     const DirectRow* row = &b_.direct.rows[c.first];

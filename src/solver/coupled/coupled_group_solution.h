@@ -90,7 +90,6 @@ class CoupledGroupSolution {
   void note_search();
   void go(double t);
   [[nodiscard]] double climb(double t);
-  [[nodiscard]] double search();
   void read_velocities(std::vector<double>& u) const;
   void assemble_body_contacts();
   void assemble_body_contact(const DirectContact& c, double stiffness, const DirectLever& a,
@@ -187,6 +186,7 @@ class CoupledGroupSolution {
   CoupledGroup& b_;
   BodyContacts& contacts_;
   state::Tables& t_;
+  bool is_solved_ = true;  ///< The last search for what contacts of two bodies do has found it.
 };
 
 }  // namespace hooke::solver

@@ -150,8 +150,9 @@ struct CoupledGroup {
   std::vector<std::uint32_t> first_pair;      ///< Where the pairs of each node begin.
 
   // Lives for one step.
-  bool unsolved = false;   ///< In some substep no solution was found for its contacts of two bodies.
-  bool cut_short = false;  ///< kCoupledGroupBudget ended its solution in some substep.
+  /// In some substep kCoupledGroupBudget ended its solution, or none was found for its contacts of two
+  /// bodies.
+  bool cut_short = false;
 
   // Lives for one substep.
   int factored = 0;                             ///< How often its matrix was factored.
@@ -178,7 +179,6 @@ struct CoupledGroup {
   std::vector<double> free;       ///< Velocities without these contacts, hooks and ropes.
   std::vector<double> velocity;   ///< At which the rows were last evaluated.
   std::vector<double> direction;  ///< Search direction; gradient before that.
-  std::vector<double> found;      ///< Velocities that the last linear system has given.
   std::vector<double> last;       ///< Solution of the whole group at `velocity`.
   std::vector<double> kept;       ///< For each row: its impulse of the last substep [N s].
   std::vector<double> felt;  ///< Impulse of each row that the rest of the group has felt at `velocity` [N s].

@@ -284,7 +284,7 @@ bool is_joined(const DirectGraph& island, std::span<const std::uint8_t> joined) 
 
 /// Gives the contacts of coupled islands their way.
 void couple_islands(const Joints& joints, const DirectIslands& direct, state::Tables& tables) {
-  if (std::find(direct.coupled.begin(), direct.coupled.end(), 1) == direct.coupled.end()) return;
+  if (!direct.has_coupled()) return;
   const auto in_coupled = [&](std::uint32_t body) {
     return is_moved(tables.bodies, body) && direct.holds(body) && direct.coupled[direct.island_of[body]] != 0;
   };
@@ -346,8 +346,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   take_islands(bodies, direct);
 }
 
-void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
-                            const std::vector<Manifold>& manifolds, const Bodies& bodies,
+void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts, const Bodies& bodies,
                             DirectIslands& direct) {
   if (direct.count == 0) return;
   for (DirectIsland& island : direct.live()) island.lanes.clear();
@@ -355,10 +354,10 @@ void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& cont
     const ContactBlock& block = contacts.blocks[i];
     if (!block.direct) continue;
     for (int lane = 0; lane < block.count; ++lane) {
+      const std::uint32_t body = block.record_a[lane] / 16;
+      if (!direct.holds(body)) continue;  // coupled
+      DirectIsland& island = direct.islands[direct.island_of[body]];
       const std::size_t at = kContactLanes * static_cast<std::size_t>(i) + static_cast<std::size_t>(lane);
-      if (manifolds[contacts.manifold_of[at]].is_coupled()) continue;
-      HOOKE_ASSERT(direct.island_of[block.record_a[lane] / 16] < static_cast<std::uint32_t>(direct.count));
-      DirectIsland& island = direct.islands[direct.island_of[block.record_a[lane] / 16]];
       island.lanes.push_back({.block = i, .lane = lane, .manifold = contacts.manifold_of[at]});
     }
   }

@@ -11,6 +11,7 @@
 #include "state/bodies.h"
 #include "state/tables.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -88,6 +89,10 @@ struct DirectIslands {
 
   /// Whether the body is in an island of this step.
   [[nodiscard]] bool holds(std::uint32_t body) const { return count > 0 && island_of[body] != kNoIsland; }
+  /// Whether coupled groups solve some of `found`.
+  [[nodiscard]] bool has_coupled() const {
+    return std::find(coupled.begin(), coupled.end(), 1) != coupled.end();
+  }
   [[nodiscard]] std::span<DirectIsland> live() { return {islands.data(), static_cast<std::size_t>(count)}; }
 };
 
@@ -99,8 +104,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
 
 /// Makes the rows of their contacts.
 void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& contacts,
-                            const std::vector<state::Manifold>& manifolds, const state::Bodies& bodies,
-                            DirectIslands& direct);
+                            const state::Bodies& bodies, DirectIslands& direct);
 
 /// Solves one substep.
 void solve_direct_islands(parallel::ThreadPool& pool, const BodyStep& step, DirectIslands& direct,
