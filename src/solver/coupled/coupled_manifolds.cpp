@@ -20,33 +20,46 @@ bool may_be_coupled(const Manifold& m, const state::Bodies& bodies, const Joints
   return !same && has_contact_rows(m, bodies);
 }
 
-void couple_neighbors(const Joints& joints, state::Tables& t, std::vector<std::uint8_t>& joined) {
-  joined.assign(t.bodies.motion.size(), 0);
-  for (const CoupledManifold& of : t.pairs.coupled) {
-    for (const std::uint32_t body : {of.body_a, of.body_b}) joined[body] = is_moved(t.bodies, body) ? 1 : 0;
+namespace {
+
+/// Couples the other contacts of the joined bodies, and joins the bodies on their other side: an island that
+/// solved them alone would undo what the group did.
+void couple_contacts_of(const Joints& joints, state::Tables& t, std::vector<std::uint8_t>& joined) {
+  for (Manifold& m : t.pairs.manifold) {
+    const bool is_joined = joined[m.body_a] != 0 || joined[m.body_b] != 0;
+    if (is_joined && may_be_coupled(m, t.bodies, joints)) m.route = ContactRoute::kCoupled;
   }
-  if (!t.pairs.coupled.empty()) {
-    for (Manifold& m : t.pairs.manifold) {
-      const bool is_joined = joined[m.body_a] != 0 || joined[m.body_b] != 0;
-      if (is_joined && may_be_coupled(m, t.bodies, joints)) m.route = ContactRoute::kCoupled;
-    }
-    // The other bodies of these contacts: an island that solved them alone would undo what the group did.
-    for (const Manifold& m : t.pairs.manifold) {
-      if (!m.is_coupled()) continue;
-      for (const std::uint32_t body : {m.body_a, m.body_b}) {
-        if (is_moved(t.bodies, body)) joined[body] = 1;
-      }
+  for (const Manifold& m : t.pairs.manifold) {
+    if (!m.is_coupled()) continue;
+    for (const std::uint32_t body : {m.body_a, m.body_b}) {
+      if (is_moved(t.bodies, body)) joined[body] = 1;
     }
   }
+}
+
+/// Joins what articulations hold and what hooks at points hold.
+void join_hooked_bodies(const Joints& joints, const std::vector<state::Hook>& hooks,
+                        std::vector<std::uint8_t>& joined) {
   const std::size_t known = std::min(joined.size(), joints.articulation_of.size());
   for (std::size_t body = 0; body < known; ++body) {
     if (joints.articulation_of[body] != Joints::kNoArticulation) joined[body] = 1;
   }
   for (const std::uint32_t row : joints.at_points) {
-    for (const std::uint32_t body : {t.hooks[row].a.body, t.hooks[row].b.body}) {
+    for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
       if (body < joined.size()) joined[body] = 1;
     }
   }
+}
+
+}  // namespace
+
+void couple_neighbors(const Joints& joints, state::Tables& t, std::vector<std::uint8_t>& joined) {
+  joined.assign(t.bodies.motion.size(), 0);
+  for (const CoupledManifold& of : t.pairs.coupled) {
+    for (const std::uint32_t body : {of.body_a, of.body_b}) joined[body] = is_moved(t.bodies, body) ? 1 : 0;
+  }
+  if (!t.pairs.coupled.empty()) couple_contacts_of(joints, t, joined);
+  join_hooked_bodies(joints, t.hooks, joined);
 }
 
 void list_coupled_manifolds(state::Pairs& pairs, std::vector<std::uint32_t>& bearing) {
