@@ -112,6 +112,27 @@ TEST_SUITE("solver/direct_islands") {
     CHECK(column.world.measure().energy.kinetic < 1e-2);  // 1e7 kg at 0.05 mm/s
   }
 
+  TEST_CASE("a pyramid holds a top of a thousand times the mass of a box") {
+    for (const int rows : {10, 12}) {
+      CAPTURE(rows);
+      constexpr double kHalf = 0.25;
+      Column pyramid = {make_world(restless()), {}};
+      add_ground(pyramid.world);
+      for (int row = 0; row + 1 < rows; ++row) {
+        for (int i = 0; i < rows - row; ++i) {
+          const double x = 2.1 * kHalf * (i + 0.5 * row);
+          pyramid.boxes.push_back(take(pyramid.world.add_body(box({x, kHalf * (2 * row + 1), 0}, kHalf))));
+        }
+      }
+      const DVec3 top = {2.1 * kHalf * 0.5 * (rows - 1), kHalf * (2 * rows - 1), 0};
+      pyramid.boxes.push_back(take(pyramid.world.add_body(box(top, kHalf, 1000 * kDensity))));
+      run(pyramid.world, 90);
+      CHECK(place_of(pyramid, pyramid.boxes.size() - 1).y == doctest::Approx(top.y).epsilon(1e-5));
+      CHECK(pyramid.world.measure().largest_penetration < 1e-5);
+      CHECK(pyramid.world.step(Real(1) / Real(60)).islands_refused == 0);
+    }
+  }
+
   TEST_CASE("a flight of stairs falls when the middle of the upper boxes is beyond the edge of the lowest") {
     // The upper 9 of 10 are 5 steps off on average; the edge is half a box, 0.05 m, off. Soft contacts give
     // way in the first steps: that takes a tenth of the room.

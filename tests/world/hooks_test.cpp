@@ -7,6 +7,7 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hooke {
@@ -29,6 +30,12 @@ BodyId add_ball(World& world, DVec3 position, Real radius = Real(0.2)) {
                  .position = position,
                  .mass = Real(2)})
       .value();
+}
+
+template <class T>
+T value_of(Result<T> result) {
+  REQUIRE(result.has_value());
+  return std::move(result).value();
 }
 
 void add_ground(World& world) {
@@ -84,6 +91,54 @@ TEST_SUITE("world/hooks") {
       const DVec3 force = at.own_direction(vector_cast<double>(world.hook_force(first).force));
       CHECK(std::abs(force.y) == doctest::Approx(kCount / 2.0 * 15 * kGravity).epsilon(0.01));
       CHECK(std::abs(force.z) < 0.05 * std::abs(force.y));
+    }
+  }
+
+  TEST_CASE("two hinges share the weight of a door, however they are turned") {
+    // The second hinge says again what the first has said, but for rounding, which made forces of 18 kN.
+    for (const bool with_rope : {false, true}) {
+      for (const std::uint32_t seed : {1U, 2U, 5U, 7U}) {
+        CAPTURE(with_rope);
+        CAPTURE(seed);
+        WorldDesc desc;
+        desc.wind.air_density = Real(0);
+        const Placement at = random_placement(seed, desc.gravity);
+        World world = World::create(placed(desc, at)).value();
+        const BodyId door =
+            value_of(world.add_body(placed(BodyDesc{.kind = BodyKind::kDynamic,
+                                                    .shape = Shape::box({Real(0.4), Real(0.95), Real(0.02)}),
+                                                    .position = {0.4, 0, 0},
+                                                    .velocity = {0, 0, Real(-1.2)},
+                                                    .angular_velocity = {0, 3, 0},
+                                                    .mass = 20},
+                                           at)));
+        std::array<HookId, 2> hinges;
+        for (std::size_t i = 0; i < hinges.size(); ++i) {
+          hinges[i] = value_of(world.add_hook(placed(HookDesc{.kind = HookKind::kHinge,
+                                                              .b = {.body = door},
+                                                              .anchor = {0, i == 0 ? 0.8 : -0.8, 0},
+                                                              .axis = {0, 1, 0}},
+                                                     at)));
+        }
+        if (with_rope) {
+          RopeDesc rope{
+              .hook_point = {0.8, 0, 0}, .direction = {0, -1, 0}, .total_mass = Real(0.05), .masses = 6};
+          rope.pins.clear();
+          const RopeId id = value_of(world.add_rope(placed(rope, at)));
+          value_of(world.add_hook(placed(
+              HookDesc{.a = {.point = point(id, 0)}, .b = {.body = door}, .anchor = {0.8, 0, 0}}, at)));
+        }
+        for (int i = 0; i < 60; ++i) {
+          world.step(Real(1) / Real(60));
+          double up = 0;
+          for (const HookId hinge : hinges) {
+            const DVec3 force = at.own_direction(vector_cast<double>(world.hook_force(hinge).force));
+            up += force.y;
+            CHECK(length(force) < 2 * 20 * kGravity);
+          }
+          CHECK(up == doctest::Approx(20 * kGravity).epsilon(0.02));
+        }
+      }
     }
   }
 

@@ -343,9 +343,9 @@ TEST_SUITE("world/load_bearing_contacts") {
       }
       run(world, 60);
       // Loads of 76 to 126 N for 98 came of errors of 1e-8 m in where each foot is. Roundings of velocities
-      // still decide by some tenths of a percent.
+      // still decide by one percent.
       for (const HookId hook : glue)
-        CHECK(d(length(world.hook_force(hook).force)) == doctest::Approx(20 * kGravity).epsilon(0.01));
+        CHECK(d(length(world.hook_force(hook).force)) == doctest::Approx(20 * kGravity).epsilon(0.02));
     }
   }
 

@@ -286,7 +286,7 @@ void remove_overlap(DirectIsland& island, Bodies& bodies) {
 struct Attempt {
   double stiffness = kDirectStiffness;  ///< D over effective masses.
   Guess guess = Guess::kSame;
-  int steps = kDirectNewtonSteps;
+  int steps = 0;
 };
 
 /// Finds the solution, with friction by its own loads. False if it is not found.
@@ -338,10 +338,11 @@ void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, Dir
 
 void solve_direct_island(const BodyStep& step, DirectIsland& island, BodyContacts& contacts, Bodies& bodies) {
   load_island(static_cast<double>(step.h), contacts, bodies, island);
-  constexpr Attempt kAttempts[] = {{.steps = kDirectQuickSteps},
-                                   {.guess = Guess::kAll},
-                                   {.stiffness = kDirectSofterStiffness, .guess = Guess::kAll}};
-  const bool solved = std::any_of(std::begin(kAttempts), std::end(kAttempts),
+  const int steps = island.newton_steps;
+  const Attempt attempts[] = {{.steps = kDirectQuickSteps},
+                              {.guess = Guess::kAll, .steps = steps},
+                              {.stiffness = kDirectSofterStiffness, .guess = Guess::kAll, .steps = steps}};
+  const bool solved = std::any_of(std::begin(attempts), std::end(attempts),
                                   [&](const Attempt& attempt) { return converge(attempt, island); });
   if (!solved) sweep_rows(island);
   store_island(island, contacts, bodies);

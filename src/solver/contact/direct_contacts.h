@@ -43,6 +43,7 @@ struct DirectIsland : DirectRows {
   DirectGraph graph;
   BlockPattern pattern;
   std::vector<std::uint32_t> slot;  ///< Position of each node in the order of elimination.
+  int newton_steps = 0;             ///< Most in a round of friction.
 
   std::vector<ContactLane> lanes;  ///< Its contacts in this step.
 

@@ -47,6 +47,7 @@ class CoupledGroupSolution {
   bool stiffen();
   void solve_with_bounds();
   void solve_once();
+  void remove_unfelt_impulses();
   bool revise_bounds(bool release);
   void read_solution();
   void move_nodes();
@@ -109,6 +110,7 @@ class CoupledGroupSolution {
   void assemble_pair(const CoupledGroup::Incident& a, const CoupledGroup::Incident& b, std::uint32_t block,
                      const RopeNode& node);
   void assemble_pairs();
+  [[nodiscard]] double compliance_of(std::uint32_t hook, const JointRow& row) const;
   void assemble_hooks();
   void assemble_bodies();
   void assemble_contact_rows();

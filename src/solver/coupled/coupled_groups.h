@@ -109,9 +109,10 @@ struct CoupledContact {
 /// energy. Along the normal, element contacts of ropes are as soft as contacts of nodes, and carry their
 /// force over like these.
 ///
-/// A share of 1e-6 of each hook row's diagonal, 1e-10 of a motor's, is added as compliance. It decides what
-/// loops of rigid ropes leave undetermined. A hook that slides along a rope (HookKind::kRopeSlide) holds b
-/// across the rope. The direction of the rope at b is that of its points, blended along the segment.
+/// A share of 1e-6 of each hook row's diagonal, 1e-7 of a joint's and 1e-10 of a motor's, is added as
+/// compliance. It decides what loops of rigid ropes leave undetermined. A hook that slides along a rope
+/// (HookKind::kRopeSlide) holds b across the rope. The direction of the rope at b is that of its points,
+/// blended along the segment.
 struct CoupledGroup {
   std::vector<std::uint32_t> rope_systems;      ///< Rope systems, in order.
   std::vector<std::uint32_t> points;            ///< Particles of no rope, in order of rows.
@@ -167,10 +168,12 @@ struct CoupledGroup {
   std::vector<std::int8_t> bound;        ///< Bound of each row, as Articulation::bound.
   std::vector<double> lambda;            ///< Impulse of each row.
   std::vector<double> speed;             ///< Speed at which each row opens.
+  std::vector<double> compliance;        ///< Compliance of each row that is a share of its diagonal.
   std::vector<int> sizes;                ///< Sizes of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
   std::vector<double> right_side;        ///< Right side, then the solution.
+  std::vector<double> with_unfelt;       ///< Solution with impulses that no body feels.
   std::vector<BodyRow> start;            ///< (1 + G) V0 of each body.
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
   // Contacts of two bodies. Velocities are six numbers V for each of `bodies`.

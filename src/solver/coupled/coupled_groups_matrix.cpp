@@ -79,7 +79,15 @@ void CoupledGroupSolution::assemble_pairs() {
   }
 }
 
+/// Compliance of a row, as a share of its diagonal.
+double CoupledGroupSolution::compliance_of(std::uint32_t hook, const JointRow& row) const {
+  if (row.role == RowRole::kMotor) return kMotorCompliance;
+  const bool is_joint = hook < b_.hooks.size() && !t_.hooks[b_.hooks[hook]].holds_point();
+  return is_joint ? kCoupledJointCompliance : kHookCompliance;
+}
+
 void CoupledGroupSolution::assemble_hooks() {
+  b_.compliance.assign(b_.rows.size(), 0);
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     const std::uint32_t block = hook_block(hook);
     if (k >= size_of(block)) return;
@@ -97,8 +105,8 @@ void CoupledGroupSolution::assemble_hooks() {
       const Numbers coupled = numbers(block, body_block(body));
       for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
     }
-    const bool drives = b_.rows[row].role == RowRole::kMotor;
-    diagonal += b_.rows[row].gamma + (drives ? kMotorCompliance : kHookCompliance) * mobility;
+    b_.compliance[row] = compliance_of(hook, b_.rows[row]) * mobility;
+    diagonal += b_.rows[row].gamma + b_.compliance[row];
   });
 }
 

@@ -203,13 +203,33 @@ void list_edges(const std::vector<Manifold>& manifolds, IslandMembers members, c
   }
 }
 
-/// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island.
-bool make_pattern(const DirectGraph& graph, DirectIslands& direct, DirectIsland& island) {
+/// Largest ratio of masses of a body and one below it that it touches.
+Real heaviest_on_light(const DirectGraph& graph, Vec3 gravity, const Bodies& bodies) {
+  Real most = Real(0);
+  for (const auto& [a, b] : graph.edges) {
+    const std::uint32_t body_a = graph.bodies[a];
+    const std::uint32_t body_b = graph.bodies[b];
+    const bool a_is_lower =
+        dot(bodies.center[body_a] - bodies.center[body_b], vector_cast<double>(gravity)) > 0;
+    const Real ratio = bodies.motion[body_a].inverse_mass / bodies.motion[body_b].inverse_mass;
+    most = std::max(most, a_is_lower ? ratio : Real(1) / ratio);
+  }
+  return most;
+}
+
+/// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island. It may
+/// cost more where something lies on what is much lighter: soft contacts would not hold that even roughly.
+bool make_pattern(const DirectGraph& graph, Vec3 gravity, const Bodies& bodies, DirectIslands& direct,
+                  DirectIsland& island) {
+  const Real ratio = heaviest_on_light(graph, gravity, bodies) / kHeavyOnLightRatio;
+  const double budget =
+      std::clamp(static_cast<double>(ratio) * kDirectIslandBudget, kDirectIslandBudget, kDirectBudget);
+  island.newton_steps = ratio > Real(1) ? kDirectHeavyNewtonSteps : kDirectNewtonSteps;
   HOOKE_ASSERT(std::is_sorted(graph.bodies.begin(), graph.bodies.end()));
   direct.matrix.reset(graph.bodies.size());
   for (const auto& [a, b] : graph.edges) direct.matrix.join(a, b);
   direct.sizes.assign(graph.bodies.size(), 6);
-  if (!make_block_pattern(direct.matrix, direct.sizes, kDirectIslandBudget, island.pattern)) {
+  if (!make_block_pattern(direct.matrix, direct.sizes, budget, island.pattern)) {
     island.graph.bodies.clear();
     return false;
   }
@@ -252,7 +272,7 @@ void spend_budget(const std::vector<Manifold>& manifolds, IslandMembers members,
 
 /// Finds which islands are within the budget and not too large. An island whose bodies and contacts are those
 /// of the step before keeps its matrix.
-void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMembers members,
+void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMembers members, Vec3 gravity,
                                 const Bodies& bodies, DirectIslands& direct) {
   const auto found = static_cast<std::size_t>(direct.count);
   if (direct.islands.size() < found) direct.islands.resize(found);
@@ -266,7 +286,7 @@ void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMe
     if (graph.bodies.size() > kMaxDirectBodies) ++too_large;
     DirectIsland& island = direct.islands[i];
     const bool fits = graph.bodies.size() <= kMaxDirectBodies &&
-                      (island.graph == graph || make_pattern(graph, direct, island));
+                      (island.graph == graph || make_pattern(graph, gravity, bodies, direct, island));
     direct.fits[i] = fits ? 1 : 0;
     if (fits) cost += island.pattern.operations;
   }
@@ -339,7 +359,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   }
   number_islands(awake, bodies, direct);
   list_edges(manifolds, members, bodies, direct);
-  find_islands_within_budget(manifolds, members, bodies, direct);
+  find_islands_within_budget(manifolds, members, step.gravity, bodies, direct);
   for (std::size_t i = 0; i < direct.fits.size(); ++i)
     direct.coupled.push_back(direct.fits[i] != 0 && is_joined(direct.found[i], inputs.joined) ? 1 : 0);
   couple_islands(inputs.joints, direct, tables);

@@ -84,13 +84,16 @@ void add_coupling(const Articulation::Coupling& coupling, Articulation& art) {
 /// Assembles J M^-1 J^T + gamma of the free rows: impulses at bounds are in the velocities already.
 void assemble(Articulation& art) {
   art.blocks.factors.assign(art.blocks.pattern.number_count, 0.0);
+  art.blocks.compliance.clear();
   for (const Articulation::Coupling& coupling : art.blocks.couplings) add_coupling(coupling, art);
   for (int i = 0; i < art.blocks.pattern.node_count(); ++i) {
     const BlockPattern::Block& block = art.blocks.pattern.block[art.blocks.pattern.column_begin[i]];
     const int n = art.blocks.free_sizes[i];
     for (int r = 0; r < n; ++r) {
       double& number = art.blocks.factors[block.offset + static_cast<std::size_t>(r * (n + 1))];
-      number += art.rows[art.blocks.free[art.blocks.pattern.first[i] + r]].gamma + kLoopCompliance * number;
+      const double compliance = kLoopCompliance * number;
+      art.blocks.compliance.push_back(compliance);
+      number += art.rows[art.blocks.free[art.blocks.pattern.first[i] + r]].gamma + compliance;
     }
   }
 }
@@ -100,6 +103,20 @@ double shortfall(const Articulation& art, const Articulation::Joint& joint, cons
   const Link& a = art.links[joint.a];
   const Link& b = art.links[joint.b];
   return row.target - dot(row.n, b.v - a.v) - dot(row.j_b, b.omega_scaled) + dot(row.j_a, a.omega_scaled);
+}
+
+/// Takes out impulses that bodies do not feel (docs/decisions/0033). Rows that say the same twice, as two
+/// hinges of a door, never say quite the same: the difference over the compliance is a force without a cause,
+/// kilonewtons from roundings. With lambda = (A + C)^-1 b, lambda - (A + C)^-1 C lambda has no part in what A
+/// takes to zero, and the twofold compliance elsewhere.
+void remove_unfelt_impulses(Articulation& art) {
+  std::vector<double>& unfelt = art.blocks.unfelt;
+  HOOKE_ASSERT(art.blocks.compliance.size() == art.blocks.right_side.size());
+  unfelt.clear();
+  for (std::size_t k = 0; k < art.blocks.right_side.size(); ++k)
+    unfelt.push_back(art.blocks.compliance[k] * art.blocks.right_side[k]);
+  solve(art.blocks.pattern, art.blocks.factors, unfelt);
+  for (std::size_t k = 0; k < unfelt.size(); ++k) art.blocks.right_side[k] -= unfelt[k];
 }
 
 void solve_free_rows(Articulation& art) {
@@ -120,6 +137,7 @@ void solve_free_rows(Articulation& art) {
   HOOKE_ASSERT(art.blocks.right_side.size() == art.blocks.free.size());
   factor(art.blocks.pattern, art.blocks.factors, art.blocks.factor_scratch);
   solve(art.blocks.pattern, art.blocks.factors, art.blocks.right_side);
+  remove_unfelt_impulses(art);
   for (std::size_t k = 0; k < art.blocks.free.size(); ++k)
     art.lambda[art.blocks.free[k]] = art.blocks.right_side[k];
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);

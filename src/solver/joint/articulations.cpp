@@ -180,6 +180,8 @@ bool make_blocks(const std::vector<Hook>& hooks, const state::Bodies& bodies, do
   blocks.free.reserve(row_count);
   blocks.columns.reserve(9 * row_count);
   blocks.right_side.reserve(row_count);
+  blocks.compliance.reserve(row_count);
+  blocks.unfelt.reserve(row_count);
   blocks.factors.reserve(blocks.pattern.number_count);
   blocks.factor_scratch.reserve(blocks.pattern.number_count);
   return true;

@@ -37,7 +37,7 @@ struct Link {
 /// In the first four solutions, rows at a bound drop out, and those that pull away from it come back, in
 /// trees each row once. Then rows only drop out, until none is beyond its bounds. A spring drops out while
 /// the motor beside it holds its velocity, and with it the spring's impulse. A compliance of 1e-9 of each
-/// diagonal, 1e-5 in loops, decides what rows along one another leave undetermined.
+/// diagonal, 1e-8 in loops, decides what rows along one another leave undetermined.
 ///
 /// A joint's force F on a body at lever r turns the body back by K theta when it has turned by theta, with
 /// the geometric stiffness K = F.r - (r F^T + F r^T) / 2. Where h^2 K exceeds the inertia, that is a spring
@@ -115,6 +115,8 @@ struct Articulation {
     std::vector<double> factors;
     std::vector<double> factor_scratch;
     std::vector<double> right_side;
+    std::vector<double> compliance;  ///< Of each free row, added to its diagonal.
+    std::vector<double> unfelt;      ///< Impulses of free rows that no body feels.
   } blocks;
 };
 

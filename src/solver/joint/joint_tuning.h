@@ -33,9 +33,10 @@ inline constexpr int kMostFreeHooks = 5;
 
 // How exactly trees and loops are solved.
 
-/// Compliance of a loop's rows, as a share of each diagonal [ratio]. Smaller: errors of redundant locks are
-/// forces. Larger: joints yield. Chosen by hand; no measurement is recorded.
-inline constexpr double kLoopCompliance = 1e-5;
+/// Compliance of a loop's rows, as a share of each diagonal [ratio]. Smaller: what redundant rows ask for by
+/// roundings drowns what bodies feel. Larger: a nearly straight row of planks sinks under its load, since its
+/// tension is nearly unfelt (docs/decisions/0033).
+inline constexpr double kLoopCompliance = 1e-8;
 
 /// The same for what a child gives to a row of a tree, exact in double and approximate in float [ratio].
 /// Smaller: it drowns in rounding. Larger: joints yield; with the second scenes/rain.json has a largest gap

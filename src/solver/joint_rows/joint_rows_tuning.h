@@ -46,6 +46,11 @@ inline constexpr double kLockSubstepShare = 0.25;
 /// does (docs/decisions/0011). Larger: hooks stretch.
 inline constexpr double kHookCompliance = 1e-6;
 
+/// The same of joints between bodies in a coupled group. Larger: what redundant joints of a nearly straight
+/// row of planks hold by tension alone gives way, since that is nearly unfelt; with 1e-6 a ton on planks of 4
+/// kg sank by 1.5 mm. Smaller: sums of momentum drown in rounding (docs/decisions/0033).
+inline constexpr double kCoupledJointCompliance = 1e-7;
+
 // When a force on a lever turns a light body back so fast that it must be implicit.
 
 /// Trace of h^2 S K S that is left explicit [ratio]. Larger: a chain of 16 x 1 kg under a ton explodes when
