@@ -26,10 +26,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr Target kTargets[] = {
     {"api", try_api}, {"scenes", try_scene},  {"json", try_json},     {"flat", try_flat},
-    {"bsp", try_bsp}, {"meshes", try_meshes}, {"import", try_import},
+    {"bsp", try_bsp}, {"meshes", try_meshes}, {"import", try_import}, {"rooms", try_room},
 };
 
 constexpr int kFailed = 3;  // how a child ends that found something
+constexpr std::size_t kMostFigures = 16;
 
 /// What the child tells its parent.
 struct Shared {
@@ -37,6 +38,7 @@ struct Shared {
   volatile std::uint64_t done = 0;
   volatile std::uint64_t parts = 0;
   char why[4000] = {};
+  WorstFigure worst[kMostFigures] = {};  ///< The first without a name ends the list.
 };
 
 struct Options {
@@ -61,10 +63,24 @@ void keep_why(Shared& shared, const std::string& why) {
   std::memcpy(shared.why, text.c_str(), text.size() + 1);
 }
 
+/// Keeps the figures of a trial that are worse than those of all before.
+void keep_worst(Shared& shared, std::uint64_t seed) {
+  for (const WorstFigure& figure : figures()) {
+    for (WorstFigure& worst : shared.worst) {
+      const bool is_free = worst.name[0] == '\0';
+      if (!is_free && std::strcmp(worst.name, figure.name) != 0) continue;
+      if (is_free || figure.value > worst.value) worst = figure;
+      if (worst.value == figure.value && worst.seed == 0) worst.seed = seed;
+      break;
+    }
+  }
+}
+
 /// Tries one seed. Whether it was well.
 bool try_seed(const Target& target, std::uint64_t seed, Shared& shared) {
   shared.seed = seed;
   notes().clear();
+  figures().clear();
   part_count() = 0;
   Random random(seed);
   bool is_well = true;
@@ -75,6 +91,7 @@ bool try_seed(const Target& target, std::uint64_t seed, Shared& shared) {
     is_well = false;
   }
   shared.parts = part_count();
+  keep_worst(shared, seed);
   return is_well;
 }
 
@@ -136,6 +153,11 @@ int run(const Options& options, Shared& shared) {
               static_cast<unsigned long long>(shared.done + failures),
               static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(failures),
               seconds_since(start));
+  for (const WorstFigure& worst : shared.worst) {
+    if (worst.name[0] != '\0')
+      std::printf("%-20s %12.6g in seed %llu\n", worst.name, worst.value,
+                  static_cast<unsigned long long>(worst.seed));
+  }
   return failures == 0 ? 0 : 1;
 }
 
@@ -150,7 +172,12 @@ std::string try_once(const Options& options, Shared& shared) {
   return wait_for(child, once, shared);
 }
 
-/// Leaves out parts of a trial, many at once and then fewer, as long as it still fails.
+/// What failed, without figures: a smaller trial that fails in another way is another failure.
+std::string_view kind_of(std::string_view why) {
+  return why.substr(0, why.find_first_of("0123456789"));
+}
+
+/// Leaves out parts of a trial, many at once and then fewer, as long as it still fails in the same way.
 int minimize(const Options& options, Shared& shared) {
   std::string why = try_once(options, shared);
   if (why.empty()) return std::puts("well") >= 0 ? 0 : 2;
@@ -163,7 +190,7 @@ int minimize(const Options& options, Shared& shared) {
       for (std::size_t i = first; i < std::min(first + size, left_out.size()); ++i) left_out[i] = true;
       if (before == left_out) continue;
       const std::string now = try_once(options, shared);
-      if (now.empty())
+      if (kind_of(now) != kind_of(why))
         left_out = before;
       else
         why = now;
@@ -192,15 +219,37 @@ void keep_only(const char* list) {
 int usage() {
   std::fputs(
       "hooke_fuzz TARGET [--seed A] [--count N] [--seconds S] [--patience S] [--memory GIB] [--failures N]\n"
-      "                  [--scenes DIR] [--corpus DIR] [--importer FILE] [--save FILE] [--only PARTS] "
-      "[--verbose | "
-      "--minimize]\n"
-      "Targets: api scenes json flat bsp meshes import\n"
+      "                  [--scenes DIR] [--corpus DIR] [--importer FILE] [--save FILE] [--only PARTS]\n"
+      "                  [--figure NAME] [--above X] [--verbose | --minimize]\n"
+      "Targets: api scenes json flat bsp meshes import rooms\n"
       "--verbose tries one seed in this process and says each step: for a debugger. --minimize finds the "
       "parts of a\n"
-      "trial that fail together, --only keeps those.\n",
+      "trial that fail together, --only keeps those. --figure asks for one figure of a room alone, as "
+      "overlap,\n"
+      "--above for more than its limit.\n",
       stderr);
   return 2;
+}
+
+/// Whether the option was one of those that every trial may ask for.
+bool take_setting(std::string_view name, const char* value) {
+  if (name == "--scenes")
+    setting().scenes = value;
+  else if (name == "--corpus")
+    setting().corpus = value;
+  else if (name == "--importer")
+    setting().importer = value;
+  else if (name == "--save")
+    setting().save = value;
+  else if (name == "--figure")
+    setting().figure = value;
+  else if (name == "--above")
+    setting().above = std::strtod(value, nullptr);
+  else if (name == "--only")
+    keep_only(value);
+  else
+    return false;
+  return true;
 }
 
 /// Whether the option was one.
@@ -217,18 +266,8 @@ bool take_option(std::string_view name, const char* value, Options& options) {
     options.memory_gib = std::strtod(value, nullptr);
   else if (name == "--failures")
     options.failures = std::strtoull(value, nullptr, 10);
-  else if (name == "--scenes")
-    setting().scenes = value;
-  else if (name == "--corpus")
-    setting().corpus = value;
-  else if (name == "--importer")
-    setting().importer = value;
-  else if (name == "--save")
-    setting().save = value;
-  else if (name == "--only")
-    keep_only(value);
   else
-    return false;
+    return take_setting(name, value);
   return true;
 }
 

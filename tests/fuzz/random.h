@@ -13,7 +13,9 @@ namespace hooke::fuzz {
 /// splitmix64: the same numbers on every machine, whatever the standard library.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
+  explicit Random(std::uint64_t seed) : seed_(seed), state_(seed) {}
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
 
   std::uint64_t bits() {
     state_ += 0x9E3779B97F4A7C15ULL;
@@ -49,6 +51,7 @@ class Random {
   }
 
  private:
+  std::uint64_t seed_;
   std::uint64_t state_;
 };
 

@@ -30,6 +30,17 @@ void save_tried(std::span<const std::byte> bytes) {
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
+std::vector<WorstFigure>& figures() {
+  static std::vector<WorstFigure> all;
+  return all;
+}
+
+void keep_figure(const char* name, double value) {
+  WorstFigure figure = {.value = value};
+  std::snprintf(figure.name, sizeof(figure.name), "%s", name);
+  figures().push_back(figure);
+}
+
 std::size_t& part_count() {
   static std::size_t count = 0;
   return count;

@@ -28,6 +28,8 @@ struct Setting {
   std::string corpus = {};          ///< The folder of files that failed once.
   std::string importer = {};        ///< hooke-import
   std::string save = {};            ///< Where to write the file that is tried; empty for nowhere.
+  std::string figure = {};          ///< The only one that counts, of `rooms`; empty for all.
+  double above = 0;                 ///< Figures below it do not count.
   bool verbose = false;             ///< Say each step of a trial.
   std::vector<bool> left_out = {};  ///< Parts of the trial, by number; for finding the few that matter.
 };
@@ -45,6 +47,16 @@ void save_tried(std::span<const std::byte> bytes);
 [[nodiscard]] bool has_next_part();
 [[nodiscard]] std::size_t& part_count();  ///< Of the trial that runs, so far.
 
+/// The worst of a figure in many trials, and whose it is.
+struct WorstFigure {
+  char name[32] = {};
+  double value = 0;
+  std::uint64_t seed = 0;
+};
+/// Says what a trial measured, sound or not. The largest of each name is listed when all are done.
+void keep_figure(const char* name, double value);
+[[nodiscard]] std::vector<WorstFigure>& figures();  ///< Of the trial that runs, without seeds.
+
 struct Target {
   const char* name = nullptr;
   void (*run)(Random& random) = nullptr;
@@ -57,6 +69,7 @@ void try_flat(Random& random);
 void try_bsp(Random& random);
 void try_meshes(Random& random);
 void try_import(Random& random);
+void try_room(Random& random);
 
 // What the loaders must do with any bytes; shared with libFuzzer.
 void check_json(std::string text);
