@@ -1,10 +1,13 @@
 #include "solver/linear/block_matrix.h"
 
+#include "solver/simd/dispatch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <doctest/doctest.h>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace hooke::solver {
@@ -73,7 +76,57 @@ Neighbors chain(std::uint32_t count) {
   return neighbors;
 }
 
+/// Nodes on a square grid, each beside the ones that are next to it.
+Neighbors grid(std::uint32_t side) {
+  Neighbors neighbors(side * side);
+  for (std::uint32_t i = 0; i < side * side; ++i) {
+    if (i >= side) neighbors[i].push_back(i - side);
+    if (i % side > 0) neighbors[i].push_back(i - 1);
+    if (i % side + 1 < side) neighbors[i].push_back(i + 1);
+    if (i + side < side * side) neighbors[i].push_back(i + side);
+  }
+  return neighbors;
+}
+
+/// The solution of a system whose blocks all have numbers.
+std::vector<double> solution_of(const BlockPattern& p) {
+  std::vector<double> numbers(p.number_count);
+  for (const BlockPattern::Block& block : p.block) {
+    for (int r = 0; r < p.size[block.row]; ++r) {
+      for (int c = 0; c < p.size[block.column]; ++c) {
+        const double number = element(p.first[block.row] + r, p.first[block.column] + c);
+        numbers[block.offset + r * p.size[block.column] + c] = number;
+      }
+    }
+  }
+  std::vector<double> scratch;
+  factor(p, numbers, scratch);
+  std::vector<double> x(p.first.back(), 1.0);
+  solve(p, numbers, x);
+  return x;
+}
+
 TEST_SUITE("solver/block_matrix") {
+  TEST_CASE("a grid, whose last columns are a dense panel, is solved") {
+    std::vector<int> sizes(144, 3);
+    CHECK(residual(grid(12), sizes) < 1e-12);
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = static_cast<int>(i % 4);
+    CHECK(residual(grid(12), sizes) < 1e-12);
+  }
+
+  TEST_CASE("solutions have the same bits with every instruction set") {
+    std::vector<int> sizes(100);
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = static_cast<int>(i % 7);
+    const BlockPattern pattern = *pattern_of(grid(10), sizes);
+    REQUIRE(wide::use_target("scalar"));
+    const std::vector<double> scalar = solution_of(pattern);
+    for (const std::string& target : wide::targets()) {
+      REQUIRE(wide::use_target(target));
+      CHECK_MESSAGE(solution_of(pattern) == scalar, target);
+    }
+    wide::use_target("");
+  }
+
   TEST_CASE("a chain, a ring, a star and a dense block are solved") {
     Neighbors ring = chain(7);
     ring[0].push_back(6);

@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "base/reset_lists.h"
 #include "base/sort_unique.h"
+#include "solver/linear/dense_panel.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -29,6 +30,21 @@ void list_updates(BlockPattern& p) {
     }
     p.update_begin.push_back(static_cast<std::uint32_t>(p.update.size()));
   }
+}
+
+/// Finds runs: the rows below a column are the next column and the rows below that.
+void list_runs(BlockPattern& p) {
+  p.run_begin.assign(1, 0);
+  for (std::uint32_t j = 1; j < p.order.size(); ++j) {
+    const auto before = p.block.begin() + p.column_begin[j - 1];
+    const auto begin = p.block.begin() + p.column_begin[j];
+    const auto end = p.block.begin() + p.column_begin[j + 1];
+    const bool continues =
+        end - begin == begin - before - 1 &&
+        std::equal(begin, end, before + 1, [](const auto& a, const auto& b) { return a.row == b.row; });
+    if (!continues) p.run_begin.push_back(j);
+  }
+  p.run_begin.push_back(static_cast<std::uint32_t>(p.order.size()));
 }
 
 /// Factors one dense block in place: L D L^T.
@@ -75,7 +91,7 @@ ColumnBelow below_diagonal(const BlockPattern& p, int column, std::span<const do
 /// Computes D L^T of a column below its diagonal, by rows.
 void scale_transposed(const double* diagonal, std::size_t n, const ColumnBelow& below,
                       std::vector<double>& scaled) {
-  scaled.resize(n * below.rows);
+  if (scaled.size() < n * below.rows) scaled.resize(n * below.rows);
   for (std::size_t k = 0; k < n; ++k) {
     const double d = diagonal[k * n + k];
     for (std::size_t r = 0; r < below.rows; ++r) scaled[k * below.rows + r] = d * below.numbers[r * n + k];
@@ -113,6 +129,141 @@ void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, cons
     for (; c < columns; ++c) subtract_row<1>(x, n, y + c, below.rows, target + c);
   }
 }
+
+/// Factors one column, and subtracts its products from later ones.
+void factor_column(const BlockPattern& p, std::uint32_t j, std::span<double> numbers,
+                   std::vector<double>& scaled) {
+  double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
+  factor_diagonal(p.sign[j], diagonal, p.size[j]);
+  for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b)
+    factor_below(diagonal, p.size[j], numbers.data() + p.block[b].offset, p.size[p.block[b].row]);
+  const ColumnBelow below = below_diagonal(p, static_cast<int>(j), numbers);
+  scale_transposed(diagonal, static_cast<std::size_t>(p.size[j]), below, scaled);
+  for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u)
+    subtract_product(p, p.update[u], below, scaled, numbers);
+}
+
+/// Copies a few numbers, mostly three or six: faster than a call.
+void copy_few(const double* from, std::size_t n, double* to) {
+  for (; n >= 3; n -= 3, from += 3, to += 3) {
+    to[0] = from[0];
+    to[1] = from[1];
+    to[2] = from[2];
+  }
+  for (std::size_t i = 0; i < n; ++i) to[i] = from[i];
+}
+
+/// A run of columns, factored as a dense panel: the same operations on each number in the same order.
+class DenseRun {
+ public:
+  DenseRun(const BlockPattern& pattern, std::uint32_t begin, std::uint32_t end)
+      : p_(pattern), begin_(begin), end_(end) {
+    for (std::uint32_t j = begin; j < end; ++j) panel_.columns += size_of(j);
+    panel_.rows = panel_.columns;
+    for (std::uint32_t b = first_below(); b < p_.column_begin[end_]; ++b)
+      panel_.rows += size_of(p_.block[b].row);
+    panel_.stride = panel_.rows + wide::kPanelPadding;
+    triangle_.stride = panel_.rows_below() + wide::kPanelPadding;
+  }
+
+  /// Whether it is large enough for copies to pay.
+  [[nodiscard]] bool pays() const {
+    return panel_.columns >= kLeastDenseColumns && panel_.rows >= kLeastDenseRows;
+  }
+
+  void factor(std::span<double> numbers, std::vector<double>& scratch) {
+    const std::size_t panel = panel_.columns * panel_.stride;
+    const std::size_t needed = 2 * panel + (panel_.rows_below() + wide::kTriangleRows) * triangle_.stride;
+    if (scratch.size() < needed) scratch.resize(needed);
+    panel_.numbers = scratch.data();
+    triangle_.numbers = scratch.data() + 2 * panel;
+    load_panel(numbers);
+    eliminate(numbers);
+    if (panel_.rows_below() > 0) {
+      for_updates(numbers, [](double* row, double* own, std::size_t n) { copy_few(row, n, own); });
+      wide::subtract_products(panel_, scratch.data() + panel, triangle_);
+      for_updates(numbers, [](double* row, double* own, std::size_t n) { copy_few(own, n, row); });
+    }
+    store_panel(numbers);
+  }
+
+ private:
+  static constexpr std::size_t kLeastDenseColumns = 6;
+  static constexpr std::size_t kLeastDenseRows = 18;
+
+  [[nodiscard]] std::size_t size_of(std::uint32_t row) const {
+    return static_cast<std::size_t>(p_.size[row]);
+  }
+  [[nodiscard]] std::uint32_t first_below() const { return p_.column_begin[end_ - 1] + 1; }
+  [[nodiscard]] std::uint32_t diagonal_of(std::uint32_t j) const {
+    return p_.block[p_.column_begin[j]].offset;
+  }
+
+  /// Calls visit(in the panel, in the matrix) for each number of the panel.
+  template <class Visit>
+  void for_panel(std::span<double> numbers, Visit&& visit) const {
+    std::size_t first = 0;
+    for (std::uint32_t j = begin_; j < end_; ++j) {
+      double* own = numbers.data() + diagonal_of(j);
+      for (std::size_t r = first; r < panel_.rows; ++r) {
+        for (std::size_t k = 0; k < size_of(j); ++k) visit(panel_.column(first + k)[r], *own++);
+      }
+      first += size_of(j);
+    }
+  }
+
+  void load_panel(std::span<double> numbers) const {
+    for_panel(numbers, [](double& to, const double& from) { to = from; });
+    for (std::size_t k = 0; k < panel_.columns; ++k)
+      std::fill(panel_.column(k) + panel_.rows, panel_.column(k) + panel_.stride, 0.0);
+  }
+
+  void store_panel(std::span<double> numbers) const {
+    for_panel(numbers, [](const double& from, double& to) { to = from; });
+  }
+
+  void eliminate(std::span<double> numbers) const {
+    std::size_t first = 0;
+    for (std::uint32_t j = begin_; j < end_; ++j) {
+      const std::size_t n = size_of(j);
+      double* block = numbers.data() + diagonal_of(j);
+      for (std::size_t r = 0; r < n; ++r) {
+        for (std::size_t k = 0; k <= r; ++k) block[r * n + k] = panel_.column(first + k)[first + r];
+      }
+      factor_diagonal(p_.sign[j], block, p_.size[j]);
+      for (std::size_t r = 0; r < n; ++r) {
+        for (std::size_t k = 0; k <= r; ++k) panel_.column(first + k)[first + r] = block[r * n + k];
+      }
+      wide::eliminate_columns({block, first, n}, panel_);
+      first += n;
+    }
+  }
+
+  /// Calls visit(row of a target block, its place in the triangle, width) for each block below the columns.
+  template <class Visit>
+  void for_updates(std::span<double> numbers, Visit&& visit) const {
+    std::uint32_t update = p_.update_begin[end_ - 1];
+    std::size_t row = 0;
+    for (std::uint32_t left = first_below(); left < p_.column_begin[end_]; ++left) {
+      const std::size_t height = size_of(p_.block[left].row);
+      std::size_t column = 0;
+      for (std::uint32_t right = first_below(); right <= left; ++right) {
+        const std::size_t width = size_of(p_.block[right].row);
+        double* target = numbers.data() + p_.block[p_.update[update++].target].offset;
+        for (std::size_t r = 0; r < height; ++r)
+          visit(target + r * width, triangle_.row(row + r) + column, width);
+        column += width;
+      }
+      row += height;
+    }
+  }
+
+  const BlockPattern& p_;
+  std::uint32_t begin_;
+  std::uint32_t end_;
+  wide::DensePanel panel_;
+  wide::DenseTriangle triangle_;
+};
 
 /// Computes x := L^-1 x.
 void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
@@ -226,6 +377,7 @@ bool make_block_pattern(BlockGraph& graph, std::span<const int> sizes, double bu
   resize_blocks(graph.sizes_in_order_, p);
   p.sign.assign(p.order.size(), 1);
   list_updates(p);
+  list_runs(p);
   return true;
 }
 
@@ -257,17 +409,16 @@ std::uint32_t find_block(const BlockPattern& p, std::uint32_t row, std::uint32_t
   return static_cast<std::uint32_t>(found - p.block.begin());
 }
 
-void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double>& scaled) {
+void factor(const BlockPattern& p, std::span<double> numbers, std::vector<double>& scratch) {
   HOOKE_ASSERT(numbers.size() >= p.number_count);
-  for (int j = 0; j < p.node_count(); ++j) {
-    double* diagonal = numbers.data() + p.block[p.column_begin[j]].offset;
-    factor_diagonal(p.sign[j], diagonal, p.size[j]);
-    for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b)
-      factor_below(diagonal, p.size[j], numbers.data() + p.block[b].offset, p.size[p.block[b].row]);
-    const ColumnBelow below = below_diagonal(p, j, numbers);
-    scale_transposed(diagonal, static_cast<std::size_t>(p.size[j]), below, scaled);
-    for (std::uint32_t u = p.update_begin[j]; u < p.update_begin[j + 1]; ++u)
-      subtract_product(p, p.update[u], below, scaled, numbers);
+  for (std::size_t run = 0; run + 1 < p.run_begin.size(); ++run) {
+    DenseRun dense(p, p.run_begin[run], p.run_begin[run + 1]);
+    if (dense.pays()) {
+      dense.factor(numbers, scratch);
+      continue;
+    }
+    for (std::uint32_t j = p.run_begin[run]; j < p.run_begin[run + 1]; ++j)
+      factor_column(p, j, numbers, scratch);
   }
 }
 

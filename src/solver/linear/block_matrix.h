@@ -11,9 +11,9 @@
 /// \file
 /// Symmetric matrices of small dense blocks, positive definite or quasi-definite, in double. An order of
 /// elimination with little fill is found once. The factors L D L^T and their solution then are a fixed list
-/// of operations. Neither depends on anything but the matrix. Quasi-definite matrices (a positive and a
-/// negative definite diagonal part) have these factors in any order (Vanderbei 1995, "Symmetric
-/// quasi-definite matrices").
+/// of operations; columns with the same rows below them are factored together, as a dense panel. Neither
+/// depends on anything but the matrix. Quasi-definite matrices (a positive and a negative definite diagonal
+/// part) have these factors in any order (Vanderbei 1995, "Symmetric quasi-definite matrices").
 
 namespace hooke::solver {
 
@@ -38,8 +38,10 @@ struct BlockPattern {
   std::vector<std::uint32_t> column_begin;  ///< First block of each column; one more at the end.
   std::vector<Update> update;               ///< Updates by column.
   std::vector<std::uint32_t> update_begin;  ///< First update of each column; one more at the end.
-  std::uint32_t number_count = 0;           ///< Numbers in all blocks.
-  double operations = 0;                    ///< Multiplications of one factorization.
+  /// First column of each run of columns that have the same rows below the run; one more at the end.
+  std::vector<std::uint32_t> run_begin;
+  std::uint32_t number_count = 0;  ///< Numbers in all blocks.
+  double operations = 0;           ///< Multiplications of one factorization.
 
   [[nodiscard]] int node_count() const { return static_cast<int>(size.size()); }
 };
@@ -95,8 +97,8 @@ void set_signs(std::span<const std::int8_t> sign_of_node, BlockPattern& pattern)
 [[nodiscard]] std::uint32_t find_block(const BlockPattern& pattern, std::uint32_t row, std::uint32_t column);
 
 /// Factors A = L D L^T in place: L below the diagonals (unit lower triangles), D on them. A pivot without
-/// the sign of its row counts as infinite, so that its row gets zero. `scaled` is scratch.
-void factor(const BlockPattern& pattern, std::span<double> numbers, std::vector<double>& scaled);
+/// the sign of its row counts as infinite, so that its row gets zero.
+void factor(const BlockPattern& pattern, std::span<double> numbers, std::vector<double>& scratch);
 
 /// Computes x := A^-1 x by the factors.
 void solve(const BlockPattern& pattern, std::span<const double> numbers, std::span<double> x);
