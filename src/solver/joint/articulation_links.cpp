@@ -119,9 +119,29 @@ double make_rows_ahead(double h, std::vector<Hook>& hooks, Articulation& art) {
   return worst;
 }
 
+/// Whether any stiffness may be more than what is left explicit, even where a solution is repeated for it.
+/// Its trace is at most h^2 tr S^2 times the sum of |r| |F|.
+bool stiffness_matters(double h, const std::vector<Hook>& hooks, Articulation& art) {
+  for (Link& link : art.links) link.most_stiffness = 0;
+  for (const Articulation::Joint& joint : art.joints) {
+    if (joint.is_weld()) continue;
+    const Hook& hook = hooks[joint.hook];
+    const double impulse = length(vector_cast<double>(hook.impulse));
+    art.links[joint.a].most_stiffness += impulse * length(hook.a.anchor);
+    art.links[joint.b].most_stiffness += impulse * length(hook.b.anchor);
+  }
+  return std::any_of(art.links.begin(), art.links.end(), [h](const Link& link) {
+    const Symmetric3<double>& s = link.body.scale;
+    const double square =
+        s.xx * s.xx + s.yy * s.yy + s.zz * s.zz + 2 * (s.xy * s.xy + s.xz * s.xz + s.yz * s.yz);
+    return link.body.inverse_mass > 0 && h * link.most_stiffness * square * kStiffnessGrowth > kStiffnessLeft;
+  });
+}
+
 /// Writes the stiffness of all links under the impulses of their hooks, where it grows. True if it grew so
 /// much that a solution found without it is not to be trusted.
 bool stiffen(double h, const std::vector<Hook>& hooks, Articulation& art) {
+  if (!stiffness_matters(h, hooks, art)) return false;
   std::vector<Symmetric3<double>>& found = art.stiffness_found;
   found.assign(art.links.size(), {});
   for (const Articulation::Joint& joint : art.joints) {

@@ -25,6 +25,7 @@ struct Link {
   math::Symmetric3<double> response;   ///< Change of omega~ per scaled angular impulse.
   DVec3 v = {};                        ///< Velocity with the impulses found so far.
   DVec3 omega_scaled = {};
+  double most_stiffness = 0;  ///< Sum of |r| |h F| of its joints [kg m^2/s].
 };
 
 /// Bodies that hooks join to each other, solved as a whole in each substep: the velocities are such that

@@ -109,6 +109,18 @@ void subtract_row(const double* x, std::size_t n, const double* y, std::size_t s
   for (int c = 0; c < kWidth; ++c) target[c] = sum[c];
 }
 
+/// Does that for three rows of three numbers, as two joints of points have them.
+void subtract_three(const double* x, const double* y, std::size_t stride, double* target) {
+  for (int r = 0; r < 3; ++r, x += 3, target += 3) {
+    double sum[3] = {target[0], target[1], target[2]};
+    for (int k = 0; k < 3; ++k) {
+      const double* factor = y + static_cast<std::size_t>(k) * stride;
+      for (int c = 0; c < 3; ++c) sum[c] -= x[k] * factor[c];
+    }
+    for (int c = 0; c < 3; ++c) target[c] = sum[c];
+  }
+}
+
 /// Subtracts left D right^T from the target; `scaled` comes from scale_transposed. Several numbers are
 /// summed side by side, which compilers may not do with a single sum.
 void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, const ColumnBelow& below,
@@ -120,6 +132,10 @@ void subtract_product(const BlockPattern& p, const BlockPattern::Update& u, cons
   const auto columns = static_cast<std::size_t>(p.size[right.row]);
   if (n == 0) return;
   const double* x = numbers.data() + left.offset;
+  if (n == 3 && rows == 3 && columns == 3) {
+    const double* three = scaled.data() + (numbers.data() + right.offset - below.numbers) / 3;
+    return subtract_three(x, three, below.rows, numbers.data() + p.block[u.target].offset);
+  }
   const double* y = scaled.data() + (numbers.data() + right.offset - below.numbers) / static_cast<int>(n);
   double* target = numbers.data() + p.block[u.target].offset;
   for (std::size_t r = 0; r < rows; ++r, x += n, target += columns) {
@@ -265,6 +281,46 @@ class DenseRun {
   wide::DenseTriangle triangle_;
 };
 
+/// below -= L own, for the rows of a column below its diagonal that belong to one block. The numbers of
+/// `own`, mostly three, five or six, are kept in registers where their count is known in advance.
+template <int kSize>
+void subtract_forward(const double* l, const double* own, int rows, double* below) {
+  double x[kSize];
+  for (int k = 0; k < kSize; ++k) x[k] = own[k];
+  for (int r = 0; r < rows; ++r, l += kSize) {
+    double sum = below[r];
+    for (int k = 0; k < kSize; ++k) sum -= l[k] * x[k];
+    below[r] = sum;
+  }
+}
+void subtract_forward(const double* l, const double* own, int size, int rows, double* below) {
+  if (size == 3) return subtract_forward<3>(l, own, rows, below);
+  if (size == 5) return subtract_forward<5>(l, own, rows, below);
+  if (size == 6) return subtract_forward<6>(l, own, rows, below);
+  for (int r = 0; r < rows; ++r, l += size) {
+    for (int k = 0; k < size; ++k) below[r] -= l[k] * own[k];
+  }
+}
+
+/// own -= L^T below, for the same rows.
+template <int kSize>
+void subtract_back(const double* l, const double* below, int rows, double* own) {
+  double sum[kSize];
+  for (int k = 0; k < kSize; ++k) sum[k] = own[k];
+  for (int r = 0; r < rows; ++r, l += kSize) {
+    for (int k = 0; k < kSize; ++k) sum[k] -= l[k] * below[r];
+  }
+  for (int k = 0; k < kSize; ++k) own[k] = sum[k];
+}
+void subtract_back(const double* l, const double* below, int size, int rows, double* own) {
+  if (size == 3) return subtract_back<3>(l, below, rows, own);
+  if (size == 5) return subtract_back<5>(l, below, rows, own);
+  if (size == 6) return subtract_back<6>(l, below, rows, own);
+  for (int r = 0; r < rows; ++r, l += size) {
+    for (int k = 0; k < size; ++k) own[k] -= l[k] * below[r];
+  }
+}
+
 /// Computes x := L^-1 x.
 void substitute_forward(const BlockPattern& p, std::span<const double> numbers, std::span<double> x) {
   for (int j = 0; j < p.node_count(); ++j) {
@@ -277,9 +333,7 @@ void substitute_forward(const BlockPattern& p, std::span<const double> numbers, 
     for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
       double* below = x.data() + p.first[p.block[b].row];
       const double* l = numbers.data() + p.block[b].offset;
-      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
-        for (int k = 0; k < n; ++k) below[r] -= l[r * n + k] * own[k];
-      }
+      subtract_forward(l, own, n, p.size[p.block[b].row], below);
     }
   }
 }
@@ -294,9 +348,7 @@ void substitute_back(const BlockPattern& p, std::span<const double> numbers, std
     for (std::uint32_t b = p.column_begin[j] + 1; b < p.column_begin[j + 1]; ++b) {
       const double* below = x.data() + p.first[p.block[b].row];
       const double* l = numbers.data() + p.block[b].offset;
-      for (int r = 0; r < p.size[p.block[b].row]; ++r) {
-        for (int k = 0; k < n; ++k) own[k] -= l[r * n + k] * below[r];
-      }
+      subtract_back(l, below, n, p.size[p.block[b].row], own);
     }
     for (int i = n - 1; i >= 0; --i) {
       for (int k = i + 1; k < n; ++k) own[i] -= diagonal[k * n + i] * own[k];

@@ -42,15 +42,9 @@ class PanelSweep {
 
   /// Subtracts the products of the block's columns from one later column, from its diagonal on.
   HWY_INLINE void subtract_from(std::size_t column, const FactoredBlock& block) const {
-    double* to = panel_.column(column);
-    for (std::size_t r = column; r < panel_.rows; r += kWidth) {
-      Number sum = get<Number>(to + r);
-      for (std::size_t k = 0; k < block.size; ++k) {
-        const double* x = at(block, k);
-        sum = sum - get<Number>(x + r) * Number(block.numbers[k * block.size + k] * x[column]);
-      }
-      write(sum, to + r);
-    }
+    std::size_t k = 0;
+    for (; k + 3 <= block.size; k += 3) subtract_columns<3>(column, k, block);
+    for (; k < block.size; ++k) subtract_columns<1>(column, k, block);
   }
 
   /// Computes D L^T of the rows below the columns.
@@ -97,6 +91,24 @@ class PanelSweep {
   }
 
  private:
+  /// Subtracts the products of kColumns columns of the block from one later column.
+  template <int kColumns>
+  HWY_INLINE void subtract_columns(std::size_t column, std::size_t first, const FactoredBlock& block) const {
+    const double* x[kColumns];
+    Number factor[kColumns];
+    for (int i = 0; i < kColumns; ++i) {
+      const std::size_t k = first + static_cast<std::size_t>(i);
+      x[i] = at(block, k);
+      factor[i] = Number(block.numbers[k * block.size + k] * x[i][column]);
+    }
+    double* to = panel_.column(column);
+    for (std::size_t r = column; r < panel_.rows; r += kWidth) {
+      Number sum = get<Number>(to + r);
+      for (int i = 0; i < kColumns; ++i) sum = sum - get<Number>(x[i] + r) * factor[i];
+      write(sum, to + r);
+    }
+  }
+
   [[nodiscard]] HWY_INLINE double* at(const FactoredBlock& block, std::size_t k) const {
     return panel_.column(block.first + k);
   }
