@@ -67,8 +67,9 @@
 ///   approximate tree  A ragdoll: a tree of like masses that moves freely, with friction at each joint and no
 ///                     drive, whose errors are small. It is solved once a substep, in float
 ///                     (solver/joint/approximate_trees.h). docs/decisions/0023-loose-trees.md
-///   loop              The group has loops: a sparse factorization, within kArticulationBudget of work
-///                     (solver/joint/articulation_loops.cpp). docs/decisions/0017-articulations.md
+///   loop              The group has loops: a sparse factorization, within kArticulationBudget of work, ten times
+///                     that where masses are unlike (solver/joint/articulation_loops.cpp).
+///                     docs/decisions/0017-articulations.md
 ///   block             The group is beyond its budget: plain ball hooks of bodies with few hooks are iterated, 16
 ///                     side by side (solver/joint/ball_joints.h). docs/decisions/0008-hooks-that-do-not-diverge.md
 ///   iterative         The same for all other hooks of such groups (solver/joint/iterative_joints.h).

@@ -5,6 +5,7 @@
 #include "solver/joint/joint_energy.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 namespace hooke::solver {
@@ -123,6 +124,21 @@ void sort_articulations(std::vector<Articulation>& articulations, std::vector<st
   }
 }
 
+/// What a group may cost [multiplications]. Iterative joints do worst on bodies of unlike masses.
+double budget_of(std::span<const std::uint32_t> rows, const std::vector<Hook>& hooks,
+                 const state::Bodies& bodies, double budget) {
+  Real least = std::numeric_limits<Real>::infinity();
+  Real most = Real(0);
+  for (const std::uint32_t row : rows) {
+    for (const std::uint32_t body : {hooks[row].a.body, hooks[row].b.body}) {
+      if (!is_dynamic(bodies, body)) continue;
+      least = std::min(least, bodies.motion[body].inverse_mass);
+      most = std::max(most, bodies.motion[body].inverse_mass);
+    }
+  }
+  return most > static_cast<Real>(kUnlikeMasses) * least ? kUnlikeBudgetRatio * budget : budget;
+}
+
 /// Makes an articulation of each group that is cheap enough; the hooks of the others are the rest.
 void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bodies, double budget,
                          Joints& joints) {
@@ -137,7 +153,8 @@ void build_articulations(const std::vector<Hook>& hooks, const state::Bodies& bo
     HOOKE_ASSERT(!rows.empty());
     const auto next = static_cast<std::uint32_t>(joints.order.size());
     if (next == joints.articulations.size()) joints.articulations.emplace_back();
-    if (make_articulation(rows, hooks, bodies, budget, scratch.articulation, joints.articulations[next])) {
+    if (make_articulation(rows, hooks, bodies, budget_of(rows, hooks, bodies, budget), scratch.articulation,
+                          joints.articulations[next])) {
       joints.order.push_back(next);
     } else {
       scratch.rest.insert(scratch.rest.end(), rows.begin(), rows.end());

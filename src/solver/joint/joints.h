@@ -78,7 +78,8 @@ struct Joints {
 };
 
 /// Sorts hooks into groups that share bodies which forces move: static bodies and the world do not connect.
-/// Groups that cost more than `budget` multiplications become iterative joints.
+/// Groups that cost more than `budget` multiplications, or kUnlikeBudgetRatio times as many if masses are
+/// unlike, become iterative joints.
 void build_joints(const std::vector<state::Hook>& hooks, const state::Bodies& bodies, double budget,
                   Joints& joints);
 
