@@ -602,8 +602,10 @@ void build_coupled_groups(const Tables& tables, std::vector<RopeSystem>& rope_sy
     base::take_turns(groups.signature, groups.scratch.signature);
     sort_members(tables, rope_systems, groups);
     list_anchors(tables, groups.scratch.anchors, rope_systems, groups.anchors);
-    if (groups.tethers_revision != tables.revision) groups.tethers = tethers_by_particle(tables);
-    groups.tethers_revision = tables.revision;
+    if (groups.count > 0 && groups.tethers_revision != tables.revision) {
+      groups.tethers = tethers_by_particle(tables);
+      groups.tethers_revision = tables.revision;
+    }
     for (CoupledGroup& group : groups.live()) {
       make_pattern(tables, rope_systems, groups.scratch, group);
       list_tethers(tables, groups.tethers, group);
