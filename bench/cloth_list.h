@@ -1,10 +1,13 @@
 #pragma once
 
 #include "elements/isometric_bend.h"
+#include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 /// \file
 /// Makes scene "cloth" as a list of particles and springs, the same for Hooke and its peers: 100 x 100
@@ -17,6 +20,14 @@ struct ClothList {
   state::Particles particles;
   state::Springs springs;
 };
+
+/// One object that owns all rows of the list, and these bends.
+inline std::vector<state::Deformable> owner_of_all(const ClothList& list, const state::Bends& bends = {}) {
+  const auto all = [](int count) { return state::Rows{0, static_cast<std::uint32_t>(count)}; };
+  return {{.particles = {0, static_cast<std::uint32_t>(list.particles.position.size())},
+           .springs = all(list.springs.count()),
+           .bends = all(bends.count())}};
+}
 
 inline ClothList cloth_100(int side = 100) {
   constexpr Real kSpacing = Real(0.02);

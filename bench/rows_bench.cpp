@@ -32,7 +32,7 @@ void count_rows(benchmark::State& state, const Blocks& blocks, int rows) {
 void springs(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   solver::SpringBlocks blocks;
-  solver::build_spring_blocks(cloth.springs, cloth.particles, {}, blocks);
+  solver::build_spring_blocks(bench::owner_of_all(cloth), cloth.springs, cloth.particles, {}, blocks);
   solver::prepare_springs(blocks.materials, kSubstep);
   for (auto _ : state) {
     for (const solver::SpringPass& pass : blocks.passes) {
@@ -47,7 +47,7 @@ void bends(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   const state::Bends list = bench::wave_cloth(cloth, false);
   solver::BendBlocks blocks;
-  solver::build_bend_blocks(list, cloth.particles.count(), blocks);
+  solver::build_bend_blocks(bench::owner_of_all(cloth, list), list, blocks);
   solver::prepare_bends(blocks, kSubstep);
   for (auto _ : state) {
     for (const solver::BendPass& pass : blocks.passes) {
@@ -62,7 +62,7 @@ void isometric_bends(benchmark::State& state) {
   bench::ClothList cloth = bench::cloth_100();
   const state::Bends list = bench::wave_cloth(cloth, true);
   solver::IsometricBendBlocks blocks;
-  solver::build_isometric_bend_blocks(list, cloth.springs, cloth.particles.count(), blocks);
+  solver::build_isometric_bend_blocks(bench::owner_of_all(cloth, list), list, cloth.springs, blocks);
   solver::prepare_isometric_bends(blocks, kSubstep);
   for (auto _ : state) {
     for (const solver::IsometricBendPass& pass : blocks.passes) {

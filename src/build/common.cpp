@@ -96,7 +96,7 @@ state::Deformable& append_object(PointRef::Kind kind, const Points& points, cons
   }
   std::sort(tables.pins.begin(), tables.pins.end(),
             [](const state::Pin& a, const state::Pin& b) { return a.particle < b.particle; });
-  ++tables.revision;
+  state::note_change(tables, object);
   tables.objects.push_back(object);
   return tables.objects.back();
 }

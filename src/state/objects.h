@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,8 +65,10 @@ struct RestShape {
 /// One rope, cloth, solid or group of particles: its origin and its rows. Objects stand in order of creation.
 struct Deformable {
   PointRef::Kind kind = PointRef::Kind::kNone;
-  std::uint32_t slot = 0;  ///< Slot of the object's id.
-  DVec3 origin = {};       ///< Positions of its particles are offsets from here [m].
+  std::uint32_t slot = 0;      ///< Slot of the object's id.
+  std::uint64_t revision = 0;  ///< Tables::revision when the object's rows or what they join last changed; no
+                               ///< two objects of a World have the same.
+  DVec3 origin = {};           ///< Positions of its particles are offsets from here [m].
   Rows particles = {};
   Rows springs = {};
   Rows bends = {};
@@ -99,6 +102,13 @@ struct Deformable {
     return points_drag || drag_coefficient > Real(0) || lift_coefficient > Real(0);
   }
 };
+
+/// The rows of objects that stand next to each other, in one of the tables.
+[[nodiscard]] inline Rows rows_of(std::span<const Deformable> objects, Rows Deformable::*table) {
+  if (objects.empty()) return {};
+  const std::uint32_t first = (objects.front().*table).first;
+  return {first, (objects.back().*table).end() - first};
+}
 
 /// A point that is held, and the motion it is given.
 struct Pin {

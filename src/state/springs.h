@@ -8,7 +8,7 @@
 
 /// \file
 /// Rows between particles of one object, in the order they were made. The solver keeps its own colored copy
-/// (solver/soft/spring_blocks.h), which is rebuilt when rows are added or removed.
+/// (solver/soft/spring_blocks.h), which is built anew for objects whose rows change (Deformable::revision).
 
 namespace hooke::state {
 

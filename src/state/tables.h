@@ -33,7 +33,7 @@ struct Tables {
   double substep = 0.0;       ///< Length of the last substep of particles [s]; 0 before the first step.
   std::uint64_t step_count = 0;
   std::uint64_t revision = 0;  ///< Grows when rows are added or removed or change what they join; derived
-                               ///< tables follow.
+                               ///< tables follow. Deformable::revision says which objects changed.
 
   std::vector<Deformable> objects;  ///< In order of creation.
   Particles particles;
@@ -78,6 +78,17 @@ struct Tables {
   SlotTable<FieldId> field_slots;
   SlotTable<ForceLawId> force_law_slots;
 };
+
+/// Notes that the rows of an object, or what they join, have changed: what is derived from them is made anew.
+inline void note_change(Tables& t, Deformable& object) {
+  object.revision = ++t.revision;
+}
+
+/// Notes the same of every object.
+inline void note_change_of_all(Tables& t) {
+  ++t.revision;
+  for (Deformable& object : t.objects) note_change(t, object);
+}
 
 /// The row of the object that has this point; Tables::kNoRow for a stale or null reference.
 inline std::uint32_t object_row(const Tables& t, PointRef point) {

@@ -80,16 +80,15 @@ void for_particles(const WorldData& world, const state::Deformable& object, Work
 /// Computes the loads of the wind once for all particle substeps of a substep; `h` is the length of one of
 /// them [s]. Particle substeps are short because stretched cloth swings fast; the wind changes far more
 /// slowly.
-void compute_air_loads(WorldData& world, const state::Deformable& object, Real h) {
+void compute_air_loads(WorldData& world, const state::Deformable& object, Real h, solver::AirLoads& loads) {
   state::Tables& tables = world.tables;
   const auto count = static_cast<Real>(tables.desc.particle_substeps);
   const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, count * h};
   for_ranges(*world.pool, static_cast<int>(object.triangles.count), kAirGrain, [&](Range range) {
-    solver::load_triangles(object, tables.triangles, air, tables.particles, range, world.derived.air_loads);
+    solver::load_triangles(object, tables.triangles, air, tables.particles, range, loads);
   });
-  for_particles(world, object, [&](Range rows) {
-    solver::gather_loads(tables.particles, Real(1) / count, rows, world.derived.air_loads);
-  });
+  for_particles(world, object,
+                [&](Range rows) { solver::gather_loads(tables.particles, Real(1) / count, rows, loads); });
 }
 
 void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
@@ -105,17 +104,17 @@ void apply_liquids(WorldData& world, const state::Deformable& object, Real h) {
 
 void apply_wind(WorldData& world, Real h, bool first) {
   state::Tables& tables = world.tables;
-  for (const state::Deformable& object : tables.objects) {
+  for (std::size_t row = 0; row < tables.objects.size(); ++row) {
+    const state::Deformable& object = tables.objects[row];
     if (!air_moves(tables, object)) continue;
     if (object.segments.count > 0) {
       const solver::Air air = {world.frame.wind, tables.desc.wind.air_density, h};
       solver::push_segments(object, tables.segments, air, tables.particles);
     }
     if (object.triangles.count == 0) continue;
-    if (first) compute_air_loads(world, object, h);
-    for_particles(world, object, [&](Range rows) {
-      solver::push_particles(world.derived.air_loads, rows, tables.particles);
-    });
+    solver::AirLoads& loads = world.derived.soft.groups[world.derived.soft.group_of[row]].air_loads;
+    if (first) compute_air_loads(world, object, h, loads);
+    for_particles(world, object, [&](Range rows) { solver::push_particles(loads, rows, tables.particles); });
   }
 }
 

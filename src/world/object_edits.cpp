@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace hooke::world {
 
@@ -23,22 +24,30 @@ void erase_rows(Table& table, Rows rows) {
       table, [&](auto& column) { column.erase(column.begin() + rows.first, column.begin() + rows.end()); });
 }
 
-/// Lowers the row numbers of particles behind the removed ones, wherever they are stored.
-void renumber_particles(Tables& t, Rows removed) {
+/// Calls `visit` with each number of a particle in the tables' rows from those of `object` on.
+template <class Visit>
+void for_each_particle_number(Tables& t, const Deformable& object, Visit visit) {
+  const auto behind = [](auto& column, Rows rows) { return std::span(column).subspan(rows.first); };
+  for (std::uint32_t& p : behind(t.springs.particle_a, object.springs)) visit(p);
+  for (std::uint32_t& p : behind(t.springs.particle_b, object.springs)) visit(p);
+  for (state::Bends::Stencil& s : behind(t.bends.stencil, object.bends)) {
+    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) visit(*p);
+  }
+  for (state::Triangles::Corners& c : behind(t.triangles.corners, object.triangles)) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) visit(*p);
+  }
+  for (state::Tetrahedra::Corners& c : behind(t.tetrahedra.corners, object.tetrahedra)) {
+    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) visit(*p);
+  }
+}
+
+/// Lowers the row numbers of particles behind those of a removed object, wherever they are stored. In the
+/// tables only rows of later objects have such numbers; these rows now begin where those of `gone` did.
+void renumber_particles(Tables& t, const Deformable& gone) {
   const auto moved = [&](std::uint32_t& p) {
-    if (p >= removed.end()) p -= removed.count;
+    if (p >= gone.particles.end()) p -= gone.particles.count;
   };
-  std::for_each(t.springs.particle_a.begin(), t.springs.particle_a.end(), moved);
-  std::for_each(t.springs.particle_b.begin(), t.springs.particle_b.end(), moved);
-  for (state::Bends::Stencil& s : t.bends.stencil) {
-    for (std::uint32_t* p : {&s.edge_a, &s.edge_b, &s.wing_a, &s.wing_b}) moved(*p);
-  }
-  for (state::Triangles::Corners& c : t.triangles.corners) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c}) moved(*p);
-  }
-  for (state::Tetrahedra::Corners& c : t.tetrahedra.corners) {
-    for (std::uint32_t* p : {&c.a, &c.b, &c.c, &c.d}) moved(*p);
-  }
+  for_each_particle_number(t, gone, moved);
   for (state::Pin& pin : t.pins) moved(pin.particle);
   for (state::Hook& hook : t.hooks) {
     for (state::HookPlace* end : {&hook.a, &hook.b}) {
@@ -51,6 +60,18 @@ void renumber_particles(Tables& t, Rows removed) {
 void renumber_hooked_objects(Tables& t, std::uint32_t removed) {
   for (state::Hook& hook : t.hooks) {
     for (state::HookPlace* end : {&hook.a, &hook.b}) end->object -= end->is_point() && end->object > removed;
+  }
+}
+
+/// Notes that a particle was pinned or let go. Of its object that changes tethers alone: those count only
+/// while their ends are pinned.
+void note_pin(Tables& t, ParticleRow row) {
+  ++t.revision;
+  Deformable& object = t.objects[row.object];
+  const state::Springs& springs = t.springs;
+  for (std::uint32_t i = object.springs.first; i < object.springs.end(); ++i) {
+    if (springs.particle_b[i] != row.particle || springs.kind[i] != state::SpringClass::kTether) continue;
+    return note_change(t, object);
   }
 }
 
@@ -98,7 +119,7 @@ void remove_object(Tables& t, std::uint32_t row) {
   for (state::Pin& pin : t.pins) pin.object -= pin.object > row ? 1 : 0;
   std::erase_if(t.twists, [&](const state::TwistSpan& span) { return span.object == row; });
   for (state::TwistSpan& span : t.twists) span.object -= span.object > row ? 1 : 0;
-  renumber_particles(t, gone.particles);
+  renumber_particles(t, gone);
   t.contacts = {};  // Detect finds contacts again in the next step.
   t.element_contacts.clear();
   t.rope_contacts.clear();
@@ -132,7 +153,7 @@ void pin_particle(Tables& t, ParticleRow row, const MotionDesc& motion) {
     t.pins.insert(at, pin);
   }
   t.particles.velocity[row.particle] = {};
-  ++t.revision;
+  note_pin(t, row);
 }
 
 void unpin_particle(Tables& t, ParticleRow row) {
@@ -141,7 +162,7 @@ void unpin_particle(Tables& t, ParticleRow row) {
   if (removed == 0) return;
   HOOKE_ASSERT(removed == 1 && t.particles.mass[row.particle] > Real(0));
   t.particles.velocity[row.particle].inverse_mass = Real(1) / t.particles.mass[row.particle];
-  ++t.revision;
+  note_pin(t, row);
 }
 
 BodyId id_of(const Tables& t, std::uint32_t body) {
@@ -190,6 +211,7 @@ void restore_tables(const Tables& from, Tables& to) {
     to.desc.workers = workers;
     to.revision = revision;
     to.hook_revision = hook_revision;
+    state::note_change_of_all(to);
     i = 0;
     for_each_slots(to, [&](auto& slots) { slots.set_generation(generations[i++]); });
     mark_ids(mark, to);

@@ -23,6 +23,7 @@ constexpr int kMotionGrain = 2048;
 constexpr int kTriangleGrain = 512;
 constexpr int kTetrahedronGrain = 64;
 constexpr int kBlockGrain = 16;
+constexpr std::size_t kFewRows = 4096;
 
 /// An object gets a new origin when its first particle is farther than this from the old one along an axis
 /// [m].
@@ -51,20 +52,51 @@ bool all_finite(const std::vector<Real>& numbers) {
   return all_finite(numbers.data(), numbers.size());
 }
 
-/// Calls `work` with ranges that cover the rows [first, end) of a table, on several threads.
+/// Divides rows among the threads, or leaves them to the one that asks.
+struct Division {
+  parallel::ThreadPool* pool = nullptr;  ///< Null to leave them.
+
+  /// Calls `work` with ranges that cover the rows [first, end) of a table.
+  template <class Work>
+  void for_rows(int first, int end, int grain, Work work) const {
+    if (pool == nullptr) return work(Range{first, end});
+    for_ranges(*pool, end - first, grain, [&](Range range) {
+      work(Range{first + range.begin, first + range.end});
+    });
+  }
+};
+
+/// Calls `work` with each group of soft objects and how to divide its rows. Groups share no particle.
 template <class Work>
-void for_rows(const WorldData& world, int first, int end, int grain, Work work) {
-  for_ranges(*world.pool, end - first, grain, [&](Range range) {
-    work(Range{first + range.begin, first + range.end});
-  });
+void for_soft_groups(WorldData& world, Work work) {
+  solver::SoftGroups& soft = world.derived.soft;
+  const auto call_whole = [&](int i) { work(soft.groups[soft.whole[i]], Division{}); };
+  const auto count = static_cast<int>(soft.whole.size());
+  if (soft.whole_size < kFewRows) {
+    for (int i = 0; i < count; ++i) call_whole(i);
+  } else {
+    parallel::for_items(*world.pool, count, call_whole);
+  }
+  for (const std::uint32_t i : soft.divided) work(soft.groups[i], Division{world.pool.get()});
 }
 
-/// Calls `kernel` for the tetrahedra, one color after the other. Tetrahedra of one color share no particle.
+/// Calls `kernel` for the tetrahedra of a group, one color after the other. Tetrahedra of one color share no
+/// particle.
 template <class Kernel>
-void for_tetrahedra(WorldData& world, Kernel kernel) {
-  for (const solver::TetrahedronPass& pass : world.derived.tetrahedra.passes) {
-    for_rows(world, pass.first, pass.end, kTetrahedronGrain,
-             [&](Range rows) { kernel(world.derived.tetrahedra, rows, world.tables.particles); });
+void for_tetrahedra(const solver::TetrahedronRows& tetrahedra, Division division, state::Particles& particles,
+                    Kernel kernel) {
+  for (const solver::TetrahedronPass& pass : tetrahedra.passes) {
+    division.for_rows(pass.first, pass.end, kTetrahedronGrain,
+                      [&](Range rows) { kernel(tetrahedra, rows, particles); });
+  }
+}
+
+/// Solves the passes of a group's bends one after the other.
+template <class Rows, class Solve>
+void solve_passes(const Rows& rows, Division division, state::Particles& particles, Solve solve) {
+  for (const auto& pass : rows.passes) {
+    division.for_rows(pass.first, pass.end, kBlockGrain,
+                      [&](Range blocks) { solve(rows, pass, blocks, particles); });
   }
 }
 
@@ -156,15 +188,7 @@ void refresh_derived(WorldData& world) {
   refresh_clamps(world);
   if (world.derived.revision == tables.revision) return;
   world.derived.revision = tables.revision;
-  const std::vector<std::uint8_t> in_isometric_bends = solver::build_isometric_bend_blocks(
-      tables.bends, tables.springs, tables.particles.count(), world.derived.isometric_bend_blocks);
-  solver::build_spring_blocks(tables.springs, tables.particles, in_isometric_bends,
-                              world.derived.spring_blocks);
-  solver::build_bend_blocks(tables.bends, tables.particles.count(), world.derived.bend_blocks);
-  solver::build_tetrahedra(tables.tetrahedra, tables.particles, world.derived.tetrahedra);
-  solver::find_yields(tables.objects, world.derived.bend_blocks, world.derived.tetrahedra,
-                      world.derived.yields);
-  solver::build_air_loads(tables.triangles, tables.particles.count(), world.derived.air_loads);
+  solver::refresh_soft_groups(tables, world.pool->workers(), world.derived.soft);
   world.derived.gas_objects.clear();
   world.derived.matched_objects.clear();
   for (std::uint32_t i = 0; i < tables.objects.size(); ++i) {
@@ -189,10 +213,7 @@ void refresh_derived(WorldData& world) {
 
 void prepare_particle_rows(WorldData& world, Real h) {
   state::check_tables(world.tables);  // By now all contacts have been found.
-  solver::prepare_springs(world.derived.spring_blocks.materials, h);
-  solver::prepare_isometric_bends(world.derived.isometric_bend_blocks, h);
-  solver::prepare_bends(world.derived.bend_blocks, h);
-  solver::prepare_tetrahedra(world.derived.tetrahedra, h);
+  for_soft_groups(world, [h](solver::SoftGroup& group, Division) { solver::prepare_soft_group(group, h); });
 }
 
 void begin_step(WorldData& world, double dt) {
@@ -219,7 +240,10 @@ void begin_step(WorldData& world, double dt) {
 }
 
 void begin_particle_substep(WorldData& world, Real h) {
-  if (world.derived.tetrahedra.any_damping) for_tetrahedra(world, solver::damp_tetrahedra);
+  for_soft_groups(world, [&world](const solver::SoftGroup& group, Division division) {
+    if (!group.tetrahedra.any_damping) return;
+    for_tetrahedra(group.tetrahedra, division, world.tables.particles, solver::damp_tetrahedra);
+  });
   for_matched(world, h, solver::damp_shape);
   for (const solver::RopeSystem& rope_system : world.derived.rope_systems) {
     const auto first = world.tables.particles.velocity.begin() + rope_system.first_particle;
@@ -229,23 +253,22 @@ void begin_particle_substep(WorldData& world, Real h) {
 }
 
 void solve_springs(WorldData& world, Real h, state::SpringClass first, state::SpringClass last) {
-  for (const solver::SpringPass& pass : world.derived.spring_blocks.passes) {
-    if (pass.kind < first || pass.kind > last) continue;
-    for_rows(world, pass.first, pass.end, kBlockGrain, [&](Range blocks) {
-      solver::solve_springs(world.derived.spring_blocks, pass, blocks, h, world.tables.particles);
-    });
-  }
+  for_soft_groups(world, [&](const solver::SoftGroup& group, Division division) {
+    for (const solver::SpringPass& pass : group.springs.passes) {
+      if (pass.kind < first || pass.kind > last) continue;
+      division.for_rows(pass.first, pass.end, kBlockGrain, [&](Range blocks) {
+        solver::solve_springs(group.springs, pass, blocks, h, world.tables.particles);
+      });
+    }
+  });
 }
 
 void solve_bends(WorldData& world) {
-  const auto solve = [&world](const auto& rows, auto solve_pass) {
-    for (const auto& pass : rows.passes) {
-      for_rows(world, pass.first, pass.end, kBlockGrain,
-               [&](Range blocks) { solve_pass(rows, pass, blocks, world.tables.particles); });
-    }
-  };
-  solve(world.derived.bend_blocks, solver::solve_bends);
-  solve(world.derived.isometric_bend_blocks, solver::solve_isometric_bends);
+  state::Particles& particles = world.tables.particles;
+  for_soft_groups(world, [&particles](const solver::SoftGroup& group, Division division) {
+    solve_passes(group.bends, division, particles, solver::solve_bends);
+    solve_passes(group.isometric_bends, division, particles, solver::solve_isometric_bends);
+  });
 }
 
 std::uint32_t quarantine_non_finite(WorldData& world) {
@@ -279,8 +302,10 @@ void rebase_origins(WorldData& world) {
 }
 
 void solve_solids(WorldData& world, Real h) {
-  for_tetrahedra(world, solver::solve_tetrahedra);
   state::Tables& tables = world.tables;
+  for_soft_groups(world, [&tables](const solver::SoftGroup& group, Division division) {
+    for_tetrahedra(group.tetrahedra, division, tables.particles, solver::solve_tetrahedra);
+  });
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {
@@ -294,17 +319,18 @@ void solve_solids(WorldData& world, Real h) {
 void move_particles(WorldData& world, Real h) {
   for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain,
              [&](Range rows) { solver::wide::move(h, rows, world.tables.particles); });
-  for_ranges(*world.pool, static_cast<int>(world.derived.yields.tetrahedra.size()), kTetrahedronGrain,
-             [&](Range rows) {
-               solver::flow_tetrahedra(world.derived.yields, rows, h, world.tables, world.derived.tetrahedra);
-             });
+  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
+    division.for_rows(
+        0, static_cast<int>(group.yields.tetrahedra.size()), kTetrahedronGrain,
+        [&](Range rows) { solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra); });
+  });
 }
 
 void flow_cloths(WorldData& world) {
-  for_ranges(*world.pool, static_cast<int>(world.derived.yields.bends.size()), kTriangleGrain,
-             [&](Range rows) {
-               solver::flow_bends(world.derived.yields, rows, world.tables, world.derived.bend_blocks);
-             });
+  for_soft_groups(world, [&world](solver::SoftGroup& group, Division division) {
+    division.for_rows(0, static_cast<int>(group.yields.bends.size()), kTriangleGrain,
+                      [&](Range rows) { solver::flow_bends(group.yields, rows, world.tables, group.bends); });
+  });
 }
 
 void begin_coupled_groups(WorldData& world, Real h, bool first) {

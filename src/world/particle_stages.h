@@ -7,7 +7,7 @@
 
 namespace hooke::world {
 
-/// Makes the solver's copies of rows again if rows were added or removed since they were made.
+/// Makes the solver's copies of rows again for the objects whose rows were added, removed or changed since.
 void refresh_derived(WorldData& world);
 
 /// Computes the coefficients of springs, bends and tetrahedra for particle substeps of length `h` [s].

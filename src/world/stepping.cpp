@@ -79,7 +79,7 @@ void reset_contacts(WorldData& world) {
     hook.broken = false;
     hook.giving = state::Hook::Giving::kHolds;
   }
-  ++t.revision;
+  state::note_change_of_all(t);  // Copies of rows that yield may be half changed.
   ++t.hook_revision;
   world.derived.broad_phase_stale = true;
   world.derived.placed_bodies.clear();

@@ -22,12 +22,8 @@
 #include "solver/rope/rope_repulsion.h"
 #include "solver/rope/rope_systems.h"
 #include "solver/rope/rope_twist.h"
-#include "solver/soft/bending.h"
 #include "solver/soft/gas_pressure.h"
-#include "solver/soft/isometric_bending.h"
-#include "solver/soft/plastic_flow.h"
-#include "solver/soft/spring_blocks.h"
-#include "solver/soft/tetrahedron_solve.h"
+#include "solver/soft/soft_groups.h"
 #include "state/sleeping_pairs.h"
 #include "state/tables.h"
 
@@ -69,19 +65,14 @@ struct ContactShare {
 
 namespace world {
 
-/// What is derived from the tables and made again when their revision changes. It has no influence on
-/// results: a World that was restored derives the same again.
+/// What is derived from the tables and made again when their revision changes: copies of rows only for the
+/// objects that changed. It has no influence on results: a World that was restored derives all of it again.
 struct Derived {
   // These members belong to deformables; see world::refresh_derived.
   std::uint64_t revision = ~std::uint64_t{0};  ///< Revision of the tables that these members were made from.
-  solver::SpringBlocks spring_blocks;
-  solver::BendBlocks bend_blocks;
-  solver::IsometricBendBlocks isometric_bend_blocks;
-  solver::TetrahedronRows tetrahedra;
-  solver::Yields yields;                       ///< Bends and tetrahedra that may yield.
+  solver::SoftGroups soft;                     ///< Copies of springs, bends, tetrahedra and triangles.
   std::vector<std::uint32_t> matched_objects;  ///< Rows of solids that are solved by shape matching.
   std::vector<std::uint32_t> gas_objects;      ///< Rows of closed cloths with gas, in order of creation.
-  solver::AirLoads air_loads;
   std::vector<solver::RopeSystem> rope_systems;  ///< One per rope, in order of creation.
   solver::CoupledGroups coupled_groups;  ///< Ropes with the hooks, points and bodies that they depend on.
   std::uint64_t clamps_revision = 0;     ///< Sum of `revision` and `hook_revision`, both of which only grow.

@@ -46,7 +46,7 @@ Net hinge(double angle, Real rest_angle, Real stiffness, Real damping = Real(0))
 
 void solve(Net& net) {
   BendBlocks blocks;
-  build_bend_blocks(net.bends, net.particles.count(), blocks);
+  build_bend_blocks(owner_of_all(net.particles, {}, net.bends), net.bends, blocks);
   prepare_bends(blocks, kSubstep);
   for (const BendPass& pass : blocks.passes) {
     solve_bends(blocks, pass, {pass.first, pass.end}, net.particles);
@@ -162,7 +162,7 @@ TEST_SUITE("solver/bending") {
   TEST_CASE("rows of one pass share no particle, and every row is there once") {
     const Net net = random_net(200, 777);
     BendBlocks blocks;
-    build_bend_blocks(net.bends, 200, blocks);
+    build_bend_blocks(owner_of_all(net.particles, {}, net.bends), net.bends, blocks);
     CHECK(count_rows_apart(blocks, 200) == net.bends.stencil.size());
   }
 

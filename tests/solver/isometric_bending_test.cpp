@@ -80,7 +80,8 @@ Net hinge(double angle, Real stiffness) {
 
 void solve(Net& net) {
   IsometricBendBlocks blocks;
-  build_isometric_bend_blocks(net.bends, net.springs, net.particles.count(), blocks);
+  build_isometric_bend_blocks(owner_of_all(net.particles, net.springs, net.bends), net.bends, net.springs,
+                              blocks);
   prepare_isometric_bends(blocks, kSubstep);
   for (const IsometricBendPass& pass : blocks.passes)
     solve_isometric_bends(blocks, pass, {pass.first, pass.end}, net.particles);
@@ -188,9 +189,10 @@ TEST_SUITE("solver/isometric_bending") {
 
   TEST_CASE("every hinge and every spring is in one place, and hinges of a pass share no particle") {
     const Net net = random_net(400, 777);
+    const auto objects = owner_of_all(net.particles, net.springs, net.bends);
     IsometricBendBlocks isometric_bends;
     const std::vector<std::uint8_t> taken =
-        build_isometric_bend_blocks(net.bends, net.springs, 400, isometric_bends);
+        build_isometric_bend_blocks(objects, net.bends, net.springs, isometric_bends);
     CHECK(count_rows_apart(isometric_bends, 400) == 777);
     int springs = 0;
     for (const IsometricBendPass& pass : isometric_bends.passes) {
@@ -205,7 +207,7 @@ TEST_SUITE("solver/isometric_bending") {
     CHECK(springs == rows);
     CHECK(springs > 600);
     SpringBlocks others;
-    build_spring_blocks(net.springs, net.particles, taken, others);
+    build_spring_blocks(objects, net.springs, net.particles, taken, others);
     for (const SpringPass& pass : others.passes)
       rows += kLanes * (pass.end - pass.first - 1) + pass.last_count;
     CHECK(rows == net.springs.count());

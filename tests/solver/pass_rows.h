@@ -1,12 +1,25 @@
 #pragma once
 
 #include "solver/soft/spring_blocks.h"
+#include "state/objects.h"
+#include "state/tetrahedra.h"
 
 #include <cstddef>
 #include <doctest/doctest.h>
 #include <vector>
 
 namespace hooke::solver {
+
+/// One object that owns all rows of the tables.
+inline std::vector<state::Deformable> owner_of_all(const state::Particles& particles,
+                                                   const state::Springs& springs, const state::Bends& bends,
+                                                   const state::Tetrahedra& tetrahedra = {}) {
+  const auto all = [](int count) { return state::Rows{0, static_cast<std::uint32_t>(count)}; };
+  return {{.particles = {0, static_cast<std::uint32_t>(particles.position.size())},
+           .springs = all(springs.count()),
+           .bends = all(bends.count()),
+           .tetrahedra = all(tetrahedra.count())}};
+}
 
 /// Checks that no two rows of one pass share a particle. Returns the number of rows in `blocks` over four
 /// particles each.

@@ -1,5 +1,6 @@
 #include "solver/soft/spring_solve.h"
 
+#include "solver/pass_rows.h"
 #include "solver/target_bits.h"
 
 #include <doctest/doctest.h>
@@ -39,7 +40,8 @@ Pair make_pair(const PairDesc& d) {
 
 void solve(Pair& pair) {
   SpringBlocks blocks;
-  build_spring_blocks(pair.springs, pair.particles, {}, blocks);
+  build_spring_blocks(owner_of_all(pair.particles, pair.springs, {}), pair.springs, pair.particles, {},
+                      blocks);
   prepare_springs(blocks.materials, kSubstep);
   for (const SpringPass& pass : blocks.passes) {
     solve_springs(blocks, pass, {pass.first, pass.end}, kSubstep, pair.particles);
@@ -155,7 +157,7 @@ TEST_SUITE("solver/spring_solve") {
   TEST_CASE("rows of one pass share no particle that is written") {
     const Pair net = random_net(300, 1500, state::SpringClass::kStretch);
     SpringBlocks blocks;
-    build_spring_blocks(net.springs, net.particles, {}, blocks);
+    build_spring_blocks(owner_of_all(net.particles, net.springs, {}), net.springs, net.particles, {}, blocks);
     std::size_t rows = 0;
     for (const SpringPass& pass : blocks.passes) {
       std::vector<int> uses(300, 0);

@@ -3,6 +3,7 @@
 #include "elements/tetrahedron.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 #include "math/random.h"
+#include "solver/pass_rows.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -90,7 +91,7 @@ Jelly make_cube(int cells, const Stuff& stuff) {
     j.particles.position[i].x = vector_cast<Real>(mesh.points[i]);
     j.particles.velocity[i].inverse_mass = Real(1) / j.particles.mass[i];
   }
-  build_tetrahedra(j.tetrahedra, j.particles, j.rows);
+  build_tetrahedra(owner_of_all(j.particles, {}, {}, j.tetrahedra), j.tetrahedra, j.particles, j.rows);
   return j;
 }
 

@@ -5,32 +5,39 @@
 
 namespace hooke::solver {
 
-void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads) {
-  loads.first_of.assign(static_cast<std::size_t>(particle_count) + 1, 0);
-  for (const auto& t : triangles.corners) {
-    for (const std::uint32_t p : {t.a, t.b, t.c}) ++loads.first_of[p + 1];
+void build_air_loads(std::span<const state::Deformable> objects, const state::Triangles& triangles,
+                     AirLoads& loads) {
+  const state::Rows source = rows_of(objects, &state::Deformable::triangles);
+  const state::Rows particles = rows_of(objects, &state::Deformable::particles);
+  const std::span corners = std::span(triangles.corners).subspan(source.first, source.count);
+  loads.first_particle = particles.first;
+  loads.first_triangle = source.first;
+  loads.first_of.assign(std::size_t{particles.count} + 1, 0);
+  for (const auto& t : corners) {
+    for (const std::uint32_t p : {t.a, t.b, t.c}) ++loads.first_of[p - particles.first + 1];
   }
   for (std::size_t p = 1; p < loads.first_of.size(); ++p) loads.first_of[p] += loads.first_of[p - 1];
-  HOOKE_ASSERT(loads.first_of.back() == 3 * triangles.corners.size());
+  HOOKE_ASSERT(loads.first_of.back() == 3 * corners.size());
   std::vector<std::uint32_t> next(loads.first_of.begin(), loads.first_of.end() - 1);
-  loads.triangle_of.resize(3 * triangles.corners.size());
-  for (std::uint32_t i = 0; i < triangles.corners.size(); ++i) {
-    const auto& t = triangles.corners[i];
-    for (const std::uint32_t p : {t.a, t.b, t.c}) loads.triangle_of[next[p]++] = i;
+  loads.triangle_of.resize(3 * corners.size());
+  for (std::uint32_t i = 0; i < corners.size(); ++i) {
+    const auto& t = corners[i];
+    for (const std::uint32_t p : {t.a, t.b, t.c}) loads.triangle_of[next[p - particles.first]++] = i;
   }
-  loads.corner_impulse.assign(triangles.corners.size(), AirRecord{});
-  loads.change.assign(static_cast<std::size_t>(particle_count), AirRecord{});
+  loads.corner_impulse.assign(corners.size(), AirRecord{});
+  loads.change.assign(particles.count, AirRecord{});
 }
 
 void load_triangles(const state::Deformable& object, const state::Triangles& triangles, const Air& air,
                     const state::Particles& particles, parallel::Range range, AirLoads& loads) {
   static_assert(sizeof(state::Triangles::Corners) == 3 * sizeof(std::uint32_t));
   HOOKE_ASSERT(air.wind.size() == particles.position.size());
-  HOOKE_ASSERT(loads.corner_impulse.size() == triangles.corners.size());
+  HOOKE_ASSERT(object.triangles.first >= loads.first_triangle);
+  HOOKE_ASSERT(object.triangles.end() - loads.first_triangle <= loads.corner_impulse.size());
   const auto numbers = [](auto& records) { return reinterpret_cast<const Real*>(records.data()); };
   const wide::TriangleAir on_triangles = {
-      .corners = reinterpret_cast<const std::uint32_t*>(triangles.corners.data()),
-      .mass = triangles.mass.data(),
+      .corners = reinterpret_cast<const std::uint32_t*>(triangles.corners.data() + loads.first_triangle),
+      .mass = triangles.mass.data() + loads.first_triangle,
       .position = numbers(particles.position),
       .velocity = numbers(particles.velocity),
       .wind = numbers(air.wind),
@@ -39,18 +46,19 @@ void load_triangles(const state::Deformable& object, const state::Triangles& tri
       .lift = object.lift_coefficient,
       .density = air.density,
       .h = air.h};
-  const auto first = static_cast<int>(object.triangles.first);
+  const auto first = static_cast<int>(object.triangles.first - loads.first_triangle);
   wide::load_triangles(on_triangles, {first + range.begin, first + range.end});
 }
 
 void gather_loads(const state::Particles& particles, Real share, parallel::Range range, AirLoads& loads) {
-  HOOKE_ASSERT(loads.change.size() == particles.velocity.size());
-  for (int p = range.begin; p < range.end; ++p) {
+  for (int row = range.begin; row < range.end; ++row) {
+    const std::size_t p = static_cast<std::size_t>(row) - loads.first_particle;
+    HOOKE_ASSERT(p < loads.change.size());
     Vec3 sum = {};
     for (std::uint32_t i = loads.first_of[p]; i < loads.first_of[p + 1]; ++i) {
       sum += loads.corner_impulse[loads.triangle_of[i]].v;
     }
-    loads.change[p].v = (share * particles.velocity[p].inverse_mass) * sum;
+    loads.change[p].v = (share * particles.velocity[row].inverse_mass) * sum;
   }
 }
 
@@ -58,7 +66,7 @@ void push_particles(const AirLoads& loads, parallel::Range range, state::Particl
   // Written as plain numbers, which compilers handle by the vector: the inverse masses beside the velocities
   // get zero.
   static_assert(sizeof(AirRecord) == sizeof(state::VelocityRecord));
-  const Real* change = &loads.change[range.begin].v.x;
+  const Real* change = &loads.change[static_cast<std::size_t>(range.begin) - loads.first_particle].v.x;
   Real* velocity = &particles.velocity[range.begin].v.x;
   for (int i = 0; i < 4 * range.count(); ++i) velocity[i] += change[i];
 }

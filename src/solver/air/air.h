@@ -5,6 +5,8 @@
 #include "state/particles.h"
 #include "state/springs.h"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
@@ -15,8 +17,11 @@ struct alignas(4 * sizeof(Real)) AirRecord {
   Real unused = Real(0);
 };
 
-/// The triangles of each particle, and what the air does to each triangle.
+/// The triangles of each particle of some objects, and what the air does to each triangle. All lists count
+/// from the objects' first particle and first triangle.
 struct AirLoads {
+  std::uint32_t first_particle = 0;     ///< Row of that particle.
+  std::uint32_t first_triangle = 0;     ///< Row of that triangle.
   std::vector<std::uint32_t> first_of;  ///< By particle, its start in `triangle_of`; one end marker.
   std::vector<std::uint32_t> triangle_of;
   std::vector<AirRecord>
@@ -31,7 +36,9 @@ struct Air {
   Real h = Real(0);                    ///< Length of the substep [s].
 };
 
-void build_air_loads(const state::Triangles& triangles, int particle_count, AirLoads& loads);
+/// Lists the triangles of each particle of these objects.
+void build_air_loads(std::span<const state::Deformable> objects, const state::Triangles& triangles,
+                     AirLoads& loads);
 
 /// Applies drag and lift to the triangles of one cloth, in air of density rho with the velocity u relative
 /// to them:

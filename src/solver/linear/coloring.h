@@ -1,8 +1,13 @@
 #pragma once
 
+#include "state/objects.h"
+
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -15,14 +20,21 @@ namespace hooke::solver {
 /// row alone in its color (a hub of more than 64 rows). `used[particle]` is a bit mask.
 int take_color(std::vector<std::uint64_t>& used, const std::uint32_t* particles, int count);
 
-/// The color of each row of four particles, greedily in the order of the table.
+/// One more than the largest color.
+inline std::size_t count_colors(const std::vector<int>& colors) {
+  return colors.empty() ? 0 : static_cast<std::size_t>(*std::max_element(colors.begin(), colors.end())) + 1;
+}
+
+/// The color of each row of four of the particles, greedily in the order of the rows.
 template <class Row>
-std::vector<int> color_fours(const std::vector<Row>& rows, int particle_count) {
-  std::vector<std::uint64_t> used(static_cast<std::size_t>(particle_count), 0);
+std::vector<int> color_fours(std::span<const Row> rows, state::Rows particles_of) {
+  std::vector<std::uint64_t> used(particles_of.count, 0);
   std::vector<int> color;
+  color.reserve(rows.size());
   int lone_color = 64;
   for (const Row& row : rows) {
-    const auto particles = std::bit_cast<std::array<std::uint32_t, 4>>(row);
+    auto particles = std::bit_cast<std::array<std::uint32_t, 4>>(row);
+    for (std::uint32_t& particle : particles) particle -= particles_of.first;
     const int taken = take_color(used, particles.data(), 4);
     color.push_back(taken < 64 ? taken : lone_color++);
   }

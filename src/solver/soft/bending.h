@@ -2,10 +2,12 @@
 
 #include "parallel/range.h"
 #include "solver/soft/spring_blocks.h"
+#include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
@@ -23,7 +25,8 @@ struct BendBlock {
 /// The laws from which prepare_bends makes the coefficients of a block. Unlike springs, bends of one cloth
 /// differ.
 struct BendLaws {
-  std::uint32_t row[kLanes];  ///< Row of the table; lanes that fill a block have that of the row they copy.
+  std::uint32_t row[kLanes];  ///< Row of the table, counted from BendBlocks::first_row; lanes that fill a
+                              ///< block have that of the row they copy.
   Real stiffness[kLanes];
   Real damping[kLanes];
 };
@@ -36,14 +39,17 @@ struct BendPass {
 };
 
 struct BendBlocks {
+  std::uint32_t first_particle = 0;  ///< Row of the particle that records count from.
+  std::uint32_t first_row = 0;       ///< Row of the table that laws count from.
   std::vector<BendBlock> blocks;
   std::vector<BendLaws> laws;  ///< One per block.
   std::vector<BendPass> passes;
 };
 
-/// Colors the bends by angle greedily in the order of the table, 16 to a block. Isometric bends are solved
-/// elsewhere, see solver/soft/isometric_bending.h.
-void build_bend_blocks(const state::Bends& bends, int particle_count, BendBlocks& blocks);
+/// Colors the bends by angle of these objects greedily in the order of the table, 16 to a block. Isometric
+/// bends are solved elsewhere, see solver/soft/isometric_bending.h.
+void build_bend_blocks(std::span<const state::Deformable> objects, const state::Bends& bends,
+                       BendBlocks& blocks);
 
 /// Sets b and gamma of every row for a substep of `h` [s].
 void prepare_bends(BendBlocks& bends, Real h);

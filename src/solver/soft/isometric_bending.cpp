@@ -1,10 +1,12 @@
 #include "solver/soft/isometric_bending.h"
 
 #include "base/assert.h"
+#include "base/counting_sort.h"
 #include "solver/soft/isometric_bending_kernels.h"
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -23,30 +25,45 @@ Pair ordered(std::uint32_t a, std::uint32_t b) {
 /// Springs that an element can hold, by their two particles.
 class SpringsByEnds {
  public:
-  explicit SpringsByEnds(const state::Springs& springs) {
-    for (std::uint32_t row = 0; row < springs.kind.size(); ++row) {
-      const bool plain =
-          springs.kind[row] <= state::SpringClass::kBend && springs.form[row] == state::SpringForm::kExplicit;
-      if (plain) rows_.push_back({ordered(springs.particle_a[row], springs.particle_b[row]), row});
+  SpringsByEnds(const state::Springs& springs, state::Rows rows, state::Rows particles)
+      : first_(rows.first), first_particle_(particles.first), begin_(std::size_t{particles.count} + 1, 0) {
+    for (std::uint32_t row = rows.first; row < rows.end(); ++row) {
+      if (springs.kind[row] > state::SpringClass::kBend || springs.form[row] != state::SpringForm::kExplicit)
+        continue;
+      rows_.push_back({ordered(springs.particle_a[row], springs.particle_b[row]), row});
+      ++begin_[rows_.back().first.first - first_particle_ + 1];
     }
-    std::sort(rows_.begin(), rows_.end());
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    base::counting_sort(rows_, particles.count,
+                        [this](const Row& row) { return row.first.first - first_particle_; });
+    for (std::size_t i = 0; i + 1 < begin_.size(); ++i)
+      std::sort(rows_.begin() + begin_[i], rows_.begin() + begin_[i + 1]);
   }
 
-  /// Takes the first spring that is in no element yet.
+  /// Takes the first spring that is in no element yet, and marks it in `taken`.
   std::optional<std::uint32_t> take(std::uint32_t a, std::uint32_t b,
                                     std::vector<std::uint8_t>& taken) const {
     const Pair ends = ordered(a, b);
-    for (auto at = std::lower_bound(rows_.begin(), rows_.end(), std::pair{ends, 0U});
-         at != rows_.end() && at->first == ends; ++at) {
-      if (taken[at->second] != 0) continue;
-      taken[at->second] = 1;
-      return at->second;
+    const std::size_t bucket = ends.first - first_particle_;
+    const auto end = rows_.begin() + begin_[bucket + 1];
+    for (auto row = std::lower_bound(rows_.begin() + begin_[bucket], end, Row{ends, 0U});
+         row != end && row->first == ends; ++row) {
+      std::uint8_t& mark = taken[row->second - first_];
+      if (mark != 0) continue;
+      mark = 1;
+      return row->second;
     }
     return std::nullopt;
   }
 
  private:
-  std::vector<std::pair<Pair, std::uint32_t>> rows_;
+  using Row = std::pair<Pair, std::uint32_t>;
+
+  std::uint32_t first_;           ///< Row of the first spring.
+  std::uint32_t first_particle_;  ///< Row of the first particle.
+  std::vector<Row> rows_;         ///< In order.
+  std::vector<std::uint32_t>
+      begin_;  ///< By the lower particle of a row, where its rows begin; one end marker.
 };
 
 struct Spring {
@@ -56,11 +73,17 @@ struct Spring {
 
 struct IsometricBend {
   std::uint32_t bend = 0;
+  std::uint32_t object = 0;  ///< Its place among the objects.
   Spring edge, wings;
   int color = 0;
   Real damping = Real(0);
+  Real stiffest = Real(0);  ///< Of the elements of its object with the same key.
 
+  /// What elements of one object that share a pass have in common.
   [[nodiscard]] auto key() const { return std::tie(color, edge.material, wings.material, damping); }
+  [[nodiscard]] bool shares_pass(const IsometricBend& other) const {
+    return key() == other.key() && stiffest == other.stiffest;
+  }
 };
 
 Spring load_spring(std::optional<std::uint32_t> row, const state::Springs& springs,
@@ -70,14 +93,15 @@ Spring load_spring(std::optional<std::uint32_t> row, const state::Springs& sprin
 }
 
 void set_lane(const IsometricBend& isometric, const state::Bends& bends, std::size_t lane,
-              IsometricBendBlock& block, std::array<Real, kLanes>& stiffness) {
+              IsometricBendBlocks& of) {
+  IsometricBendBlock& block = of.blocks.back();
   const Stencil& s = bends.stencil[isometric.bend];
   const std::uint32_t ends[4] = {s.edge_a, s.edge_b, s.wing_a, s.wing_b};
-  for (int k = 0; k < 4; ++k) block.record[k][lane] = 4 * ends[k];
+  for (int k = 0; k < 4; ++k) block.record[k][lane] = 4 * (ends[k] - of.first_particle);
   for (int k = 0; k < 3; ++k) block.weight[k][lane] = bends.weights[isometric.bend][k + 1];
   block.edge_length[lane] = isometric.edge.rest_length;
   block.wing_length[lane] = isometric.wings.rest_length;
-  stiffness[lane] = bends.stiffness[isometric.bend];
+  of.stiffness.back()[lane] = bends.stiffness[isometric.bend];
 }
 
 /// k sum |weight|^2 of a bend [N/m]: over the mass of a point it is the square of the bend's frequency.
@@ -87,41 +111,72 @@ Real resistance(const state::Bends& bends, std::uint32_t row) {
   return bends.stiffness[row] * sum;
 }
 
-/// Isometric bends with their springs, sorted by color and materials.
-std::vector<IsometricBend> list_isometric_bends(const state::Bends& bends, const state::Springs& springs,
-                                                int particle_count, std::vector<std::uint8_t>& taken,
+/// Isometric bends with their springs, in the order of the table.
+std::vector<IsometricBend> list_isometric_bends(std::span<const state::Deformable> objects,
+                                                const state::Bends& bends, const state::Springs& springs,
+                                                std::vector<std::uint8_t>& taken,
                                                 IsometricBendBlocks& isometric_bends) {
-  const SpringsByEnds by_ends(springs);
+  const SpringsByEnds by_ends(springs, rows_of(objects, &state::Deformable::springs),
+                              rows_of(objects, &state::Deformable::particles));
   std::vector<IsometricBend> list;
   std::vector<Stencil> stencils;
-  for (std::uint32_t row = 0; row < bends.stencil.size(); ++row) {
-    if (!bends.is_isometric(row)) continue;
-    const Stencil& s = bends.stencil[row];
-    const auto edge = by_ends.take(s.edge_a, s.edge_b, taken);
-    const auto wings = by_ends.take(s.wing_a, s.wing_b, taken);
-    list.push_back({.bend = row,
-                    .edge = load_spring(edge, springs, isometric_bends),
-                    .wings = load_spring(wings, springs, isometric_bends),
-                    .damping = bends.damping[row]});
-    stencils.push_back(s);
+  for (std::uint32_t object = 0; object < objects.size(); ++object) {
+    const state::Rows rows = objects[object].bends;
+    for (std::uint32_t row = rows.first; row < rows.end(); ++row) {
+      if (!bends.is_isometric(row)) continue;
+      const Stencil& s = bends.stencil[row];
+      const auto edge = by_ends.take(s.edge_a, s.edge_b, taken);
+      const auto wings = by_ends.take(s.wing_a, s.wing_b, taken);
+      list.push_back({.bend = row,
+                      .object = object,
+                      .edge = load_spring(edge, springs, isometric_bends),
+                      .wings = load_spring(wings, springs, isometric_bends),
+                      .damping = bends.damping[row]});
+      stencils.push_back(s);
+    }
   }
-  const std::vector<int> color = color_fours(stencils, particle_count);
+  const std::vector<int> color =
+      color_fours<Stencil>(stencils, rows_of(objects, &state::Deformable::particles));
   for (std::size_t i = 0; i < list.size(); ++i) list[i].color = color[i];
-  std::stable_sort(list.begin(), list.end(),
-                   [](const IsometricBend& a, const IsometricBend& b) { return a.key() < b.key(); });
   return list;
+}
+
+/// Sorts elements by color and materials, those of one object one after another, and finds the stiffest of
+/// each object. How far a bend is damped depends on it, and must not depend on which other objects there are.
+void sort_isometric_bends(const state::Bends& bends, std::size_t materials,
+                          std::vector<IsometricBend>& list) {
+  const auto same = [&](const IsometricBend& bend) { return bend.damping == list.front().damping; };
+  if (!std::all_of(list.begin(), list.end(), same)) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const IsometricBend& a, const IsometricBend& b) { return a.damping < b.damping; });
+  }
+  int colors = 0;
+  for (const IsometricBend& bend : list) colors = std::max(colors, bend.color + 1);
+  base::counting_sort(list, materials, [](const IsometricBend& bend) { return bend.wings.material; });
+  base::counting_sort(list, materials, [](const IsometricBend& bend) { return bend.edge.material; });
+  base::counting_sort(list, static_cast<std::size_t>(colors),
+                      [](const IsometricBend& bend) { return bend.color; });
+  for (std::size_t first = 0, end = 0; first < list.size(); first = end) {
+    const IsometricBend& head = list[first];
+    Real stiffest = Real(0);
+    for (; end < list.size() && list[end].object == head.object && list[end].key() == head.key(); ++end)
+      stiffest = std::max(stiffest, resistance(bends, list[end].bend));
+    for (std::size_t i = first; i < end; ++i) list[i].stiffest = stiffest;
+  }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
-                                                      const state::Springs& springs, int particle_count,
+std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
+                                                      const state::Bends& bends,
+                                                      const state::Springs& springs,
                                                       IsometricBendBlocks& isometric_bends) {
   isometric_bends = {};
+  isometric_bends.first_particle = rows_of(objects, &state::Deformable::particles).first;
   isometric_bends.materials.push_back({});  // kNoSpring
-  std::vector<std::uint8_t> taken(springs.kind.size(), 0);
-  const std::vector<IsometricBend> list =
-      list_isometric_bends(bends, springs, particle_count, taken, isometric_bends);
+  std::vector<std::uint8_t> taken(rows_of(objects, &state::Deformable::springs).count, 0);
+  std::vector<IsometricBend> list = list_isometric_bends(objects, bends, springs, taken, isometric_bends);
+  sort_isometric_bends(bends, isometric_bends.materials.size(), list);
 
   std::size_t i = 0;
   while (i < list.size()) {
@@ -129,16 +184,16 @@ std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
     IsometricBendPass pass{.edge = head.edge.material,
                            .wings = head.wings.material,
                            .damping = head.damping,
+                           .stiffest = head.stiffest,
                            .first = static_cast<int>(isometric_bends.blocks.size())};
-    const auto more = [&] { return i < list.size() && list[i].key() == head.key(); };
+    const auto more = [&] { return i < list.size() && list[i].shares_pass(head); };
     while (more()) {
-      IsometricBendBlock& block = isometric_bends.blocks.emplace_back();
-      std::array<Real, kLanes>& stiffness = isometric_bends.stiffness.emplace_back();
+      isometric_bends.blocks.emplace_back();
+      isometric_bends.stiffness.emplace_back();
       pass.last_count = 0;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const bool own = more();
-        if (own) pass.stiffest = std::max(pass.stiffest, resistance(bends, list[i].bend));
-        set_lane(list[own ? i++ : i - 1], bends, lane, block, stiffness);
+        set_lane(list[own ? i++ : i - 1], bends, lane, isometric_bends);
         if (own) ++pass.last_count;
       }
     }
@@ -174,7 +229,9 @@ void solve_isometric_bends(const IsometricBendBlocks& isometric_bends, const Iso
       .bend = pass.softness,
       .edge = isometric_bends.materials[pass.edge],
       .wings = pass.wings == kNoSpring ? nullptr : &isometric_bends.materials[pass.wings]};
-  wide::solve_isometric_bends(run, materials, particles);
+  HOOKE_ASSERT(isometric_bends.first_particle < particles.position.size());
+  wide::solve_isometric_bends(run, materials, particles.position.data() + isometric_bends.first_particle,
+                              particles.velocity.data() + isometric_bends.first_particle);
 }
 
 }  // namespace hooke::solver

@@ -2,11 +2,13 @@
 
 #include "parallel/range.h"
 #include "solver/soft/spring_blocks.h"
+#include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -35,7 +37,8 @@ struct IsometricBendSoftness {
   [[nodiscard]] bool is_damped() const { return damped_bias != bias; }
 };
 
-/// Blocks [first, end) hold elements of one color: no two share a particle.
+/// Blocks [first, end) hold elements of one color: no two share a particle. Elements of several objects share
+/// a pass only if the pass would have the same figures for each of the objects alone.
 struct IsometricBendPass {
   std::uint32_t edge = 0;   ///< Material of the springs along edges, or kNoSpring.
   std::uint32_t wings = 0;  ///< Material of the springs between wings, or kNoSpring.
@@ -51,16 +54,19 @@ struct IsometricBendPass {
 inline constexpr std::uint32_t kNoSpring = 0;
 
 struct IsometricBendBlocks {
+  std::uint32_t first_particle = 0;  ///< Row of the particle that records count from.
   std::vector<IsometricBendBlock> blocks;
   std::vector<std::array<Real, kLanes>> stiffness;  ///< k of the bends [N/m], by block.
   std::vector<SpringMaterial> materials;
   std::vector<IsometricBendPass> passes;
 };
 
-/// Makes elements of the isometric bends and of the springs that lie along their edges or between their
-/// wings. Returns, by row of `springs`, whether the spring is in an element.
-std::vector<std::uint8_t> build_isometric_bend_blocks(const state::Bends& bends,
-                                                      const state::Springs& springs, int particle_count,
+/// Makes elements of the isometric bends of these objects and of the springs that lie along their edges or
+/// between their wings. Returns, by row of the objects' springs from their first one on, whether the spring
+/// is in an element.
+std::vector<std::uint8_t> build_isometric_bend_blocks(std::span<const state::Deformable> objects,
+                                                      const state::Bends& bends,
+                                                      const state::Springs& springs,
                                                       IsometricBendBlocks& isometric_bends);
 
 /// Sets the coefficients of every row for a substep of `h` [s].

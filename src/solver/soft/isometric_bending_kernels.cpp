@@ -20,11 +20,11 @@ HWY_BEFORE_NAMESPACE();
 namespace hooke::solver::wide::HWY_NAMESPACE {
 
 void solve_isometric_bends_here(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                                state::Particles& particles) {
+                                const state::PositionRecord* position, state::VelocityRecord* velocity) {
 #if HWY_TARGET == HWY_SCALAR
-  solve_isometric_bends_scalar(run, materials, particles);
+  solve_isometric_bends_scalar(run, materials, position, velocity);
 #else
-  solve_isometric_bend_run<Wide>(run, materials, particles);
+  solve_isometric_bend_run<Wide>(run, materials, position, velocity);
 #endif
 }
 
@@ -37,10 +37,10 @@ namespace hooke::solver::wide {
 HWY_EXPORT(solve_isometric_bends_here);
 
 void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                           state::Particles& particles) {
+                           const state::PositionRecord* position, state::VelocityRecord* velocity) {
   if (run.blocks.empty()) return;
-  if (is_scalar()) return solve_isometric_bends_scalar(run, materials, particles);
-  HWY_DYNAMIC_DISPATCH(solve_isometric_bends_here)(run, materials, particles);
+  if (is_scalar()) return solve_isometric_bends_scalar(run, materials, position, velocity);
+  HWY_DYNAMIC_DISPATCH(solve_isometric_bends_here)(run, materials, position, velocity);
 }
 
 }  // namespace hooke::solver::wide
@@ -51,8 +51,8 @@ void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMater
 namespace hooke::solver::wide {
 
 void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                           state::Particles& particles) {
-  if (!run.blocks.empty()) solve_isometric_bends_scalar(run, materials, particles);
+                           const state::PositionRecord* position, state::VelocityRecord* velocity) {
+  if (!run.blocks.empty()) solve_isometric_bends_scalar(run, materials, position, velocity);
 }
 
 }  // namespace hooke::solver::wide

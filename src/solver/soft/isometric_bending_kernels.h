@@ -16,8 +16,8 @@ struct IsometricBendMaterials {
 
 /// Solves one pass over a run; the formulas stand in solver/soft/isometric_bending.h.
 void solve_isometric_bends(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                           state::Particles& particles);
+                           const state::PositionRecord* position, state::VelocityRecord* velocity);
 void solve_isometric_bends_scalar(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                                  state::Particles& particles);
+                                  const state::PositionRecord* position, state::VelocityRecord* velocity);
 
 }  // namespace hooke::solver::wide

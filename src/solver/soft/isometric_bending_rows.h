@@ -112,9 +112,10 @@ HWY_INLINE void solve_isometric_bend_lanes(const IsometricBendBlock& block, int 
 template <class Number, bool kWings, bool kDamped>
 HWY_INLINE void solve_isometric_bend_blocks(const IsometricBendRun& run,
                                             const IsometricBendMaterials& materials,
-                                            state::Particles& particles) {
-  const auto* position = reinterpret_cast<const Real*>(particles.position.data());
-  auto* velocity = reinterpret_cast<Real*>(particles.velocity.data());
+                                            const state::PositionRecord* positions,
+                                            state::VelocityRecord* velocities) {
+  const auto* position = reinterpret_cast<const Real*>(positions);
+  auto* velocity = reinterpret_cast<Real*>(velocities);
   for (const IsometricBendBlock& block : run.blocks) {
     const int count = &block == &run.blocks.back() ? run.last_count : kLanes;
     for (int lane = 0; lane < count; lane += kLanesOf<Number>)
@@ -124,14 +125,15 @@ HWY_INLINE void solve_isometric_bend_blocks(const IsometricBendRun& run,
 
 template <class Number>
 HWY_INLINE void solve_isometric_bend_run(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                                         state::Particles& particles) {
+                                         const state::PositionRecord* position,
+                                         state::VelocityRecord* velocity) {
   const bool damped = materials.bend.is_damped();
   if (materials.wings != nullptr) {
-    damped ? solve_isometric_bend_blocks<Number, true, true>(run, materials, particles)
-           : solve_isometric_bend_blocks<Number, true, false>(run, materials, particles);
+    damped ? solve_isometric_bend_blocks<Number, true, true>(run, materials, position, velocity)
+           : solve_isometric_bend_blocks<Number, true, false>(run, materials, position, velocity);
   } else {
-    damped ? solve_isometric_bend_blocks<Number, false, true>(run, materials, particles)
-           : solve_isometric_bend_blocks<Number, false, false>(run, materials, particles);
+    damped ? solve_isometric_bend_blocks<Number, false, true>(run, materials, position, velocity)
+           : solve_isometric_bend_blocks<Number, false, false>(run, materials, position, velocity);
   }
 }
 

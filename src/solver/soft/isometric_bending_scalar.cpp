@@ -5,8 +5,8 @@
 namespace hooke::solver::wide {
 
 void solve_isometric_bends_scalar(const IsometricBendRun& run, const IsometricBendMaterials& materials,
-                                  state::Particles& particles) {
-  HWY_NAMESPACE::solve_isometric_bend_run<Real>(run, materials, particles);
+                                  const state::PositionRecord* position, state::VelocityRecord* velocity) {
+  HWY_NAMESPACE::solve_isometric_bend_run<Real>(run, materials, position, velocity);
 }
 
 }  // namespace hooke::solver::wide

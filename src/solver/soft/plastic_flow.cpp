@@ -32,7 +32,8 @@ void find_bends(const std::vector<const state::Deformable*>& cloths, const BendB
     std::uint32_t end = 0;
     for (std::uint32_t lane = 0; lane < kLanes; lane = end) {
       for (end = lane + 1; end < kLanes && rows[end] == rows[lane]; ++end) continue;
-      const state::Deformable* cloth = owner_of(cloths, &state::Deformable::bends, rows[lane]);
+      const state::Deformable* cloth =
+          owner_of(cloths, &state::Deformable::bends, bends.first_row + rows[lane]);
       if (cloth != nullptr) yields.push_back({rows[lane], block, lane, end, cloth->yield_angle});
     }
   }
@@ -42,7 +43,7 @@ void find_tetrahedra(const std::vector<const state::Deformable*>& solids, const 
                      std::vector<TetrahedronYield>& yields) {
   if (solids.empty()) return;
   for (std::uint32_t i = 0; i < tetrahedra.laws.size(); ++i) {
-    const std::uint32_t row = tetrahedra.laws[i].row;
+    const std::uint32_t row = tetrahedra.first_row + tetrahedra.laws[i].row;
     const state::Deformable* solid = owner_of(solids, &state::Deformable::tetrahedra, row);
     if (solid == nullptr) continue;
     HOOKE_ASSERT(solid->rest_edges->size() == solid->tetrahedra.count);
@@ -88,7 +89,7 @@ bool flow(const Mat3& f, double limit, const std::array<Vec3, 3>& edges, std::ar
 
 }  // namespace
 
-void find_yields(const std::vector<state::Deformable>& objects, const BendBlocks& bends,
+void find_yields(std::span<const state::Deformable> objects, const BendBlocks& bends,
                  const TetrahedronRows& tetrahedra, Yields& yields) {
   yields = {};
   std::vector<const state::Deformable*> cloths, solids;
@@ -106,10 +107,11 @@ void flow_bends(const Yields& yields, parallel::Range rows, state::Tables& table
     const BendYield& yield = yields.bends[i];
     HOOKE_ASSERT(yield.block < bends.blocks.size() && yield.lane < yield.end_lane &&
                  yield.end_lane <= kLanes);
-    const state::Bends::Stencil& s = tables.bends.stencil[yield.row];
+    const std::size_t row = bends.first_row + yield.row;
+    const state::Bends::Stencil& s = tables.bends.stencil[row];
     const auto d = elements::dihedral(position[s.edge_a].x, position[s.edge_b].x, position[s.wing_a].x,
                                       position[s.wing_b].x);
-    Real& rest = tables.bends.rest_angle[yield.row];
+    Real& rest = tables.bends.rest_angle[row];
     const Real error = elements::wrapped(d.angle - rest);
     if (!d.valid || !(std::abs(error) > yield.angle)) continue;
     rest = elements::wrapped(rest + (error > Real(0) ? error - yield.angle : error + yield.angle));
@@ -125,12 +127,13 @@ void flow_tetrahedra(const Yields& yields, parallel::Range rows, Real h, state::
     const TetrahedronLaw& law = tetrahedra.laws[yield.row];
     TetrahedronRow& row = tetrahedra.rows[yield.row];
     std::array<Vec3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = tables.particles.position[row.particle[k]].x;
+    for (std::size_t k = 0; k < 4; ++k)
+      x[k] = tables.particles.position[tetrahedra.first_particle + row.particle[k]].x;
     const Mat3 f = elements::gradient_of(x, {Vec3{}, row.b[0], row.b[1], row.b[2]});
     const Real limit = elements::yield_limit(yield.stress, shear_modulus_of(law, h));
     if (!(elements::deviator_squared(square_of(f)) > limit)) continue;
-    if (!flow(f, static_cast<double>(limit), yield.edges, tables.tetrahedra.shape_gradient[law.row]))
-      continue;
+    std::array<Vec3, 3>& gradients = tables.tetrahedra.shape_gradient[tetrahedra.first_row + law.row];
+    if (!flow(f, static_cast<double>(limit), yield.edges, gradients)) continue;
     take_shape(tables.tetrahedra, tables.particles, yield.row, tetrahedra);
     prepare_tetrahedron(law, h, row);
   }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// \file
@@ -17,7 +18,7 @@ namespace hooke::solver {
 
 /// A bend that yields: its row in the table and its position in the solver's copy.
 struct BendYield {
-  std::uint32_t row = 0;
+  std::uint32_t row = 0;  ///< Counted from BendBlocks::first_row.
   std::uint32_t block = 0;
   std::uint32_t lane = 0;
   std::uint32_t end_lane = 0;  ///< End of its lane and of the copies that fill the block behind it.
@@ -36,8 +37,9 @@ struct Yields {
   std::vector<TetrahedronYield> tetrahedra;
 };
 
-/// Lists all rows of objects that can yield, with their positions in the solver's copies.
-void find_yields(const std::vector<state::Deformable>& objects, const BendBlocks& bends,
+/// Lists all rows of objects that can yield, with their positions in the solver's copies, which are of these
+/// objects.
+void find_yields(std::span<const state::Deformable> objects, const BendBlocks& bends,
                  const TetrahedronRows& tetrahedra, Yields& yields);
 
 /// Applies perfect plasticity: where |theta - theta_0| is above the limit, theta_0 follows until the

@@ -1,12 +1,12 @@
 #include "solver/soft/spring_blocks.h"
 
 #include "base/assert.h"
+#include "base/counting_sort.h"
 #include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace hooke::solver {
 
@@ -16,14 +16,11 @@ using state::SpringClass;
 
 /// The position of a row: passes are sorted by class, then color, then material.
 struct Place {
-  SpringClass kind;
-  int color;
-  std::uint32_t material;
-  std::uint32_t row;
+  SpringClass kind = SpringClass::kStretch;
+  int color = 0;
+  std::uint32_t material = 0;
+  std::uint32_t row = 0;
 
-  friend bool operator<(const Place& a, const Place& b) {
-    return std::tie(a.kind, a.color, a.material, a.row) < std::tie(b.kind, b.color, b.material, b.row);
-  }
   [[nodiscard]] bool same_pass(const Place& other) const {
     return kind == other.kind && color == other.color && material == other.material;
   }
@@ -41,23 +38,40 @@ SpringMaterial material_of(const state::Springs& springs, std::size_t row) {
           .gamma = Real(0)};
 }
 
-/// Colors one class: rows of a color share no particle.
-void color_class(const state::Springs& springs, const state::Particles& particles,
-                 std::span<const std::uint8_t> taken, SpringClass kind,
-                 std::vector<SpringMaterial>& materials, std::vector<Place>& places) {
-  std::vector<std::uint64_t> used(static_cast<std::size_t>(particles.count()), 0);
+/// What the blocks are made of.
+struct Source {
+  const state::Springs& springs;
+  const state::Particles& particles;
+  std::span<const std::uint8_t> taken;
+  state::Rows rows;    ///< Rows of the springs.
+  state::Rows points;  ///< Rows of their particles.
+};
+
+/// Colors one class: rows of a color share no particle. Returns them in the order of passes.
+std::vector<Place> color_class(const Source& source, SpringClass kind,
+                               std::vector<SpringMaterial>& materials) {
+  const state::Springs& springs = source.springs;
+  std::vector<Place> places;
+  std::vector<std::uint64_t> used(source.points.count, 0);
   int lone_color = 64;
-  for (std::size_t row = 0; row < springs.kind.size(); ++row) {
-    if (springs.kind[row] != kind || (!taken.empty() && taken[row] != 0)) continue;
-    const std::uint32_t ends[2] = {springs.particle_a[row], springs.particle_b[row]};
+  for (std::uint32_t row = source.rows.first; row < source.rows.end(); ++row) {
+    if (springs.kind[row] != kind || (!source.taken.empty() && source.taken[row - source.rows.first] != 0))
+      continue;
+    const std::uint32_t anchor = springs.particle_b[row];
+    const std::uint32_t ends[2] = {springs.particle_a[row] - source.points.first,
+                                   anchor - source.points.first};
     HOOKE_ASSERT(ends[0] != ends[1]);
     const bool anchored = kind == SpringClass::kTether;
-    if (anchored && particles.velocity[ends[1]].inverse_mass > Real(0)) continue;
+    if (anchored && source.particles.velocity[anchor].inverse_mass > Real(0)) continue;
     int color = take_color(used, ends, anchored ? 1 : 2);
     if (color >= 64) color = lone_color++;
     const std::uint32_t material = find_or_add_material(springs, row, materials);
-    places.push_back({kind, color, material, static_cast<std::uint32_t>(row)});
+    places.push_back({kind, color, material, row});
   }
+  base::counting_sort(places, materials.size(), [](const Place& place) { return place.material; });
+  base::counting_sort(places, static_cast<std::size_t>(lone_color),
+                      [](const Place& place) { return place.color; });
+  return places;
 }
 
 /// Copies the last row into the lanes behind it.
@@ -82,16 +96,21 @@ std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t ro
   return static_cast<std::uint32_t>(materials.size() - 1);
 }
 
-void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
-                         std::span<const std::uint8_t> taken, SpringBlocks& blocks) {
+void build_spring_blocks(std::span<const state::Deformable> objects, const state::Springs& springs,
+                         const state::Particles& particles, std::span<const std::uint8_t> taken,
+                         SpringBlocks& blocks) {
+  const Source source = {springs, particles, taken, rows_of(objects, &state::Deformable::springs),
+                         rows_of(objects, &state::Deformable::particles)};
+  HOOKE_ASSERT(taken.empty() || taken.size() == source.rows.count);
   blocks = {};
+  blocks.first_particle = source.points.first;
   std::vector<Place> places;
-  places.reserve(springs.kind.size());
+  places.reserve(source.rows.count);
   for (const SpringClass kind : {SpringClass::kStretch, SpringClass::kShear, SpringClass::kBend,
                                  SpringClass::kTether, SpringClass::kLimit}) {
-    color_class(springs, particles, taken, kind, blocks.materials, places);
+    const std::vector<Place> of_class = color_class(source, kind, blocks.materials);
+    places.insert(places.end(), of_class.begin(), of_class.end());
   }
-  std::sort(places.begin(), places.end());
 
   std::size_t i = 0;
   while (i < places.size()) {
@@ -103,8 +122,8 @@ void build_spring_blocks(const state::Springs& springs, const state::Particles& 
       int lane = 0;
       for (; lane < kLanes && i < places.size() && places[i].same_pass(head); ++lane, ++i) {
         const std::uint32_t row = places[i].row;
-        block.record_a[lane] = 4 * springs.particle_a[row];
-        block.record_b[lane] = 4 * springs.particle_b[row];
+        block.record_a[lane] = 4 * (springs.particle_a[row] - source.points.first);
+        block.record_b[lane] = 4 * (springs.particle_b[row] - source.points.first);
         block.rest_length[lane] = springs.rest_length[row];
       }
       fill_lanes(block, lane);

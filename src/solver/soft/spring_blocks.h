@@ -3,6 +3,7 @@
 #include "parallel/range.h"
 #include "solver/linear/coloring.h"
 #include "solver/simd/lanes.h"
+#include "state/objects.h"
 #include "state/particles.h"
 #include "state/springs.h"
 
@@ -20,7 +21,8 @@ namespace hooke::solver {
 /// 16 rows of one color and one material. The last block of a pass may hold fewer: copies of its last row
 /// fill it.
 struct SpringBlock {
-  std::uint32_t record_a[kLanes];  ///< 4 times the row of particle a: where its record begins, in numbers.
+  std::uint32_t record_a[kLanes];  ///< 4 times the row of particle a, counted from
+                                   ///< SpringBlocks::first_particle: where its record begins, in numbers.
   std::uint32_t record_b[kLanes];
   Real rest_length[kLanes];
 };
@@ -67,15 +69,18 @@ struct SpringPass {
 };
 
 struct SpringBlocks {
+  std::uint32_t first_particle = 0;  ///< Row of the particle that records count from.
   std::vector<SpringBlock> blocks;
   std::vector<SpringMaterial> materials;
   std::vector<SpringPass> passes;  ///< In the order of the solution; passes of one color follow each other.
 };
 
-/// Colors the rows of each class greedily in the order of the table, 16 to a block. It leaves out rows that
-/// `taken` marks, if there are marks, and tethers whose anchor is not pinned.
-void build_spring_blocks(const state::Springs& springs, const state::Particles& particles,
-                         std::span<const std::uint8_t> taken, SpringBlocks& blocks);
+/// Colors the springs of these objects, class by class, greedily in the order of the table, 16 to a block. It
+/// leaves out rows that `taken` marks, from the objects' first one on, if there are marks, and tethers whose
+/// anchor is not pinned.
+void build_spring_blocks(std::span<const state::Deformable> objects, const state::Springs& springs,
+                         const state::Particles& particles, std::span<const std::uint8_t> taken,
+                         SpringBlocks& blocks);
 
 /// The material of a row, as its index in the list.
 std::uint32_t find_or_add_material(const state::Springs& springs, std::size_t row,

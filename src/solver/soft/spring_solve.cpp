@@ -19,7 +19,7 @@ using state::SpringForm;
 /// Isotropic    the transverse relative velocity is damped too:
 ///   p_t = -dv_t / (w + 1 / (h c))
 void solve_general(const SpringBlock& block, int count, const SpringMaterial& material, Real h,
-                   state::Particles& particles) {
+                   const state::PositionRecord* position, state::VelocityRecord* velocity) {
   const bool predicted =
       material.form == SpringForm::kPredicted || material.form == SpringForm::kPredictedIsotropic;
   const bool isotropic =
@@ -27,10 +27,10 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
   for (int lane = 0; lane < count; ++lane) {
     const std::uint32_t a = block.record_a[lane] / 4;
     const std::uint32_t b = block.record_b[lane] / 4;
-    state::VelocityRecord& record_a = particles.velocity[a];
-    state::VelocityRecord& record_b = particles.velocity[b];
+    state::VelocityRecord& record_a = velocity[a];
+    state::VelocityRecord& record_b = velocity[b];
     const Vec3 dv = record_a.v - record_b.v;
-    const Vec3 d = (particles.position[a].x - particles.position[b].x) + (predicted ? h * dv : Vec3{});
+    const Vec3 d = (position[a].x - position[b].x) + (predicted ? h * dv : Vec3{});
     const Real l = length(d);
     const Real w = record_a.inverse_mass + record_b.inverse_mass;
     if (!(l > Real(0)) || !(w > Real(0))) continue;
@@ -55,16 +55,20 @@ void solve_general(const SpringBlock& block, int count, const SpringMaterial& ma
 void solve_springs(const SpringBlocks& springs, const SpringPass& pass, parallel::Range blocks, Real h,
                    state::Particles& particles) {
   HOOKE_ASSERT(blocks.begin >= pass.first && blocks.end <= pass.end);
+  HOOKE_ASSERT(springs.first_particle < particles.position.size());
   const SpringMaterial& material = springs.materials[pass.material];
+  const state::PositionRecord* position = particles.position.data() + springs.first_particle;
+  state::VelocityRecord* velocity = particles.velocity.data() + springs.first_particle;
   for (int i = blocks.begin; material.form != SpringForm::kExplicit && i < blocks.end; ++i) {
-    solve_general(springs.blocks[i], i + 1 == pass.end ? pass.last_count : kLanes, material, h, particles);
+    const int count = i + 1 == pass.end ? pass.last_count : kLanes;
+    solve_general(springs.blocks[i], count, material, h, position, velocity);
   }
   if (material.form != SpringForm::kExplicit) return;
 
   const wide::SpringRun run = {
       .blocks = {springs.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())},
       .last_count = blocks.end == pass.end ? pass.last_count : kLanes};
-  wide::solve_springs(run, material, particles.position.data(), particles.velocity.data());
+  wide::solve_springs(run, material, position, velocity);
 }
 
 }  // namespace hooke::solver

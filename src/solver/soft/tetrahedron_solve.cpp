@@ -1,6 +1,7 @@
 #include "solver/soft/tetrahedron_solve.h"
 
 #include "base/assert.h"
+#include "base/counting_sort.h"
 #include "elements/tetrahedron.h"
 #include "math/symmetric.h"
 #include "solver/soft/soft_tuning.h"
@@ -45,15 +46,16 @@ Real inverse_or_infinite(Real x) {
 
 /// The largest mu with which all modes of a tetrahedron's shear are stable, with its own share of its
 /// corners' masses: w^2 <= 2 mu V lambda_max(sum b b^T / m). The trace bounds lambda_max.
-Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const std::vector<Real>& volume_at,
+Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const TetrahedronRows& of,
                  const state::Particles& particles) {
   const state::Tetrahedra::Corners& c = t.corners[row];
   const std::uint32_t ends[4] = {c.a, c.b, c.c, c.d};
   const std::array<Vec3, 4> b = all_gradients(t.shape_gradient[row]);
   Real sum = Real(0);
   for (int i = 0; i < 4; ++i) {
-    const Real share = particles.mass[ends[i]] * t.volume[row] / volume_at[ends[i]];
-    HOOKE_ASSERT(volume_at[ends[i]] > Real(0));
+    const Real volume_at = of.volume_at[ends[i] - of.first_particle];
+    HOOKE_ASSERT(volume_at > Real(0));
+    const Real share = particles.mass[ends[i]] * t.volume[row] / volume_at;
     sum += length_squared(b[i]) / share;
   }
   return kLargestShearStiffness / (Real(2) * t.volume[row] * sum);
@@ -61,32 +63,39 @@ Real stiffest_of(const state::Tetrahedra& t, std::size_t row, const std::vector<
 
 }  // namespace
 
-void build_tetrahedra(const state::Tetrahedra& t, const state::Particles& particles, TetrahedronRows& out) {
+void build_tetrahedra(std::span<const state::Deformable> objects, const state::Tetrahedra& t,
+                      const state::Particles& particles, TetrahedronRows& out) {
+  const state::Rows source = rows_of(objects, &state::Deformable::tetrahedra);
+  const state::Rows points = rows_of(objects, &state::Deformable::particles);
   out = {};
-  const std::vector<int> color = color_fours(t.corners, particles.count());
+  out.first_particle = points.first;
+  out.first_row = source.first;
+  const std::span corners = std::span(t.corners).subspan(source.first, source.count);
+  const std::vector<int> color = color_fours(corners, points);
   std::vector<std::size_t> order(color.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return color[a] < color[b]; });
+  base::counting_sort(order, count_colors(color), [&](std::size_t i) { return color[i]; });
 
-  out.volume_at.assign(static_cast<std::size_t>(particles.count()), Real(0));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (const std::uint32_t p : {t.corners[i].a, t.corners[i].b, t.corners[i].c, t.corners[i].d})
-      out.volume_at[p] += t.volume[i];
+  out.volume_at.assign(points.count, Real(0));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (const std::uint32_t p : {corners[i].a, corners[i].b, corners[i].c, corners[i].d})
+      out.volume_at[p - points.first] += t.volume[source.first + i];
   }
   for (const std::size_t i : order) {
     const int row = static_cast<int>(out.rows.size());
     if (out.passes.empty() || color[order[out.passes.back().first]] != color[i])
       out.passes.push_back({row, row});
     out.passes.back().end = row + 1;
-    const state::Tetrahedra::Corners& c = t.corners[i];
+    const state::Tetrahedra::Corners& c = corners[i];
     HOOKE_ASSERT(c.a != c.b && c.a != c.c && c.a != c.d && c.b != c.c && c.b != c.d && c.c != c.d);
-    out.rows.push_back({.particle = {c.a, c.b, c.c, c.d}});
+    const std::uint32_t first = points.first;
+    out.rows.push_back({.particle = {c.a - first, c.b - first, c.c - first, c.d - first}});
+    const std::size_t at = source.first + i;
     out.laws.push_back({.row = static_cast<std::uint32_t>(i),
-                        .volume = t.volume[i],
-                        .shear_modulus = t.shear_modulus[i],
-                        .volume_modulus = t.volume_modulus[i],
-                        .damping_time = t.damping_time[i]});
+                        .volume = t.volume[at],
+                        .shear_modulus = t.shear_modulus[at],
+                        .volume_modulus = t.volume_modulus[at],
+                        .damping_time = t.damping_time[at]});
     take_shape(t, particles, out.rows.size() - 1, out);
   }
 }
@@ -94,8 +103,9 @@ void build_tetrahedra(const state::Tetrahedra& t, const state::Particles& partic
 void take_shape(const state::Tetrahedra& t, const state::Particles& particles, std::size_t row,
                 TetrahedronRows& out) {
   TetrahedronLaw& law = out.laws[row];
-  out.rows[row].b = t.shape_gradient[law.row];
-  law.stiffest = stiffest_of(t, law.row, out.volume_at, particles);
+  const std::size_t of_table = out.first_row + law.row;
+  out.rows[row].b = t.shape_gradient[of_table];
+  law.stiffest = stiffest_of(t, of_table, out, particles);
 }
 
 Real shear_modulus_of(const TetrahedronLaw& law, Real h) {
@@ -182,10 +192,11 @@ struct Corners {
   std::array<Real, 4> w = {};
   Symmetric squares;  ///< B
 
-  Corners(const TetrahedronRow& row, const state::Particles& particles) : b(all_gradients(row.b)) {
+  Corners(const TetrahedronRow& row, std::uint32_t first, const state::Particles& particles)
+      : b(all_gradients(row.b)) {
     for (int i = 0; i < 4; ++i) {
-      const state::VelocityRecord& record = particles.velocity[row.particle[i]];
-      x[i] = particles.position[row.particle[i]].x;
+      const state::VelocityRecord& record = particles.velocity[first + row.particle[i]];
+      x[i] = particles.position[first + row.particle[i]].x;
       v[i] = record.v;
       w[i] = record.inverse_mass;
     }
@@ -194,8 +205,10 @@ struct Corners {
 
   [[nodiscard]] bool is_held() const { return !(squares.xx + squares.yy + squares.zz > Real(0)); }
 
-  void push(const TetrahedronRow& row, const Mat3& impulse, state::Particles& particles) const {
-    for (int i = 0; i < 4; ++i) particles.velocity[row.particle[i]].v = v[i] + w[i] * (impulse * b[i]);
+  void push(const TetrahedronRow& row, std::uint32_t first, const Mat3& impulse,
+            state::Particles& particles) const {
+    for (int i = 0; i < 4; ++i)
+      particles.velocity[first + row.particle[i]].v = v[i] + w[i] * (impulse * b[i]);
   }
 };
 
@@ -204,11 +217,12 @@ struct Corners {
 void solve_tetrahedra(const TetrahedronRows& tetrahedra, parallel::Range rows, state::Particles& particles) {
   for (int i = rows.begin; i < rows.end; ++i) {
     const TetrahedronRow& row = tetrahedra.rows[i];
-    const Corners c(row, particles);
+    const Corners c(row, tetrahedra.first_particle, particles);
     if (c.is_held()) continue;
     const Mat3 f = elements::gradient_of(c.x, c.b);
     const Mat3 rate = elements::gradient_of(c.v, c.b);
-    c.push(row, elastic_impulse(row, tetrahedra.inverse_h, f, rate, c.squares), particles);
+    c.push(row, tetrahedra.first_particle, elastic_impulse(row, tetrahedra.inverse_h, f, rate, c.squares),
+           particles);
   }
 }
 
@@ -216,10 +230,11 @@ void damp_tetrahedra(const TetrahedronRows& tetrahedra, parallel::Range rows, st
   for (int i = rows.begin; i < rows.end; ++i) {
     const TetrahedronRow& row = tetrahedra.rows[i];
     if (row.gamma_rate == std::numeric_limits<Real>::infinity()) continue;
-    const Corners c(row, particles);
+    const Corners c(row, tetrahedra.first_particle, particles);
     if (c.is_held()) continue;
     const Mat3 f = elements::gradient_of(c.x, c.b);
-    c.push(row, viscous_impulse(row, f, elements::gradient_of(c.v, c.b), c.squares), particles);
+    c.push(row, tetrahedra.first_particle,
+           viscous_impulse(row, f, elements::gradient_of(c.v, c.b), c.squares), particles);
   }
 }
 

@@ -1,19 +1,21 @@
 #pragma once
 
 #include "parallel/range.h"
+#include "state/objects.h"
 #include "state/particles.h"
 #include "state/tetrahedra.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hooke::solver {
 
 /// A tetrahedron in the form that the kernel takes. The coefficients are those of one substep.
 struct TetrahedronRow {
-  std::array<std::uint32_t, 4> particle = {};
-  std::array<Vec3, 3> b = {};   ///< Gradients of the shape functions of corners 1 to 3 [1/m].
+  std::array<std::uint32_t, 4> particle = {};  ///< Counted from TetrahedronRows::first_particle.
+  std::array<Vec3, 3> b = {};                  ///< Gradients of the shape functions of corners 1 to 3 [1/m].
   Real shift = Real(0);         ///< 1 + mu / lambda; this and all below are written by prepare_tetrahedra.
   Real gamma_volume = Real(0);  ///< 1 / (h^2 lambda V).
   Real gamma_shape = Real(0);   ///< 1 / (h^2 mu V).
@@ -24,7 +26,7 @@ struct TetrahedronRow {
 
 /// The law from which prepare_tetrahedra makes the coefficients of a row.
 struct TetrahedronLaw {
-  std::uint32_t row = 0;  ///< Row of the table.
+  std::uint32_t row = 0;  ///< Row of the table, counted from TetrahedronRows::first_row.
   Real volume = Real(0);
   Real shear_modulus = Real(0);
   Real volume_modulus = Real(0);
@@ -39,17 +41,20 @@ struct TetrahedronPass {
 };
 
 struct TetrahedronRows {
+  std::uint32_t first_particle = 0;  ///< Row of the particle that corners count from.
+  std::uint32_t first_row = 0;       ///< Row of the table that laws count from.
   std::vector<TetrahedronRow> rows;
   std::vector<TetrahedronLaw> laws;  ///< One per row.
   std::vector<TetrahedronPass> passes;
-  std::vector<Real> volume_at;  ///< Volume of the tetrahedra about each particle [m^3].
-  Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
-  bool any_damping = false;     ///< Whether any row is damped.
+  std::vector<Real>
+      volume_at;             ///< Volume of the tetrahedra about each particle, from the first one on [m^3].
+  Real inverse_h = Real(0);  ///< 1 / h [1/s]; written by prepare_tetrahedra.
+  bool any_damping = false;  ///< Whether any row is damped.
 };
 
-/// Colors the rows greedily in the order of the table.
-void build_tetrahedra(const state::Tetrahedra& tetrahedra, const state::Particles& particles,
-                      TetrahedronRows& rows);
+/// Colors the tetrahedra of these objects greedily in the order of the table.
+void build_tetrahedra(std::span<const state::Deformable> objects, const state::Tetrahedra& tetrahedra,
+                      const state::Particles& particles, TetrahedronRows& rows);
 
 /// Takes the shape at rest of `row` from the table, and finds how stiff it may be.
 void take_shape(const state::Tetrahedra& tetrahedra, const state::Particles& particles, std::size_t row,

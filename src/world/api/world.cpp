@@ -569,7 +569,8 @@ World::Memory World::memory() const {
                                   [&](const auto& column) { memory.spring_bytes += bytes(column); });
   memory.particle_bytes += bytes(reading->frame.start_position) + bytes(reading->frame.velocity_before) +
                            bytes(reading->frame.wind) + bytes(reading->frame.law_force);
-  memory.spring_bytes += bytes(reading->derived.spring_blocks.blocks);
+  for (const solver::SoftGroup& group : reading->derived.soft.groups)
+    memory.spring_bytes += bytes(group.springs.blocks);
   return memory;
 }
 
