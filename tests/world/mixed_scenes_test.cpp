@@ -327,8 +327,7 @@ TEST_SUITE("world/mixed scenes") {
 
   TEST_CASE("a pyramid of ten rows stands under a thousand times the mass of a cube") {
     const Scene scene = make_pyramid(10, 1e3, 1e6);
-    check_each_way(scene, {scene.objects.bodies.back().tag.name, 0.59},  // goal: kGoal, in all three
-                   {{Figure::kEnergy, 0.026}, {Figure::kRestOverlap, 0.28}});
+    check_each_way(scene, {scene.objects.bodies.back().tag.name});
   }
 
   TEST_CASE("the axle of a light pulley holds a ton on each side") {
@@ -372,8 +371,8 @@ TEST_SUITE("world/mixed scenes") {
   }
 
   TEST_CASE("a large net of balls carries a thousand times the mass of one") {
-    check_each_way(make_ball_net(25, 25, 100), {},  // goal: kGoal, in both
-                   {{Figure::kEnergy, 1.02}, {Figure::kRestGap, 9.9}});
+    check_each_way(make_ball_net(25, 25, 100), {},  // goal: kGoal
+                   {{Figure::kEnergy, 0.01}});
   }
 
   TEST_CASE("a net of ropes carries a ball") {
@@ -416,14 +415,14 @@ TEST_SUITE("world/mixed scenes") {
 
   // The planks hang at one point of each rope and may tip. The load slides and rolls on them.
   TEST_CASE("a bridge of ropes and planks gains no energy from a load, with or without restitution") {
-    check_each_way(make_bridge(30, 0.01), {}, {{Figure::kEnergy, 0.043}, {Figure::kRestOverlap, 0.0013}});
+    check_each_way(make_bridge(30, 0.01), {}, {{Figure::kEnergy, 0.118}, {Figure::kRestOverlap, 0.0018}});
     check_each_way(make_bridge(100, 0), {},  // goal: kGoal, in both
                    {{Figure::kEnergy, 0.107}, {Figure::kRopeStretch, 0.0012}});
   }
 
   TEST_CASE("long: a bridge of ropes and planks gains no energy from a heavy load" * doctest::skip()) {
     check_each_way(make_bridge(300, 0.01), {},
-                   {{Figure::kEnergy, 1.41}, {Figure::kRestOverlap, 0.0015}, {Figure::kRopeStretch, 0.0039}});
+                   {{Figure::kEnergy, 2.36}, {Figure::kRestOverlap, 0.0015}, {Figure::kRopeStretch, 0.0039}});
     check_each_way(make_bridge(1000, 0), {},  // goal: kGoal, in both
                    {{Figure::kEnergy, 193}, {Figure::kRestGap, 0.0043}, {Figure::kRopeStretch, 0.04}});
   }
