@@ -57,6 +57,23 @@ Column make_column(int count, double half, double shift = 0, const WorldDesc& de
   return column;
 }
 
+constexpr double kPyramidHalf = 0.25;
+
+/// A pyramid of cubes that have the density of their row.
+template <class DensityOf>
+Column make_pyramid(int rows, DensityOf&& density_of) {
+  Column pyramid = {make_world(restless()), {}};
+  add_ground(pyramid.world);
+  for (int row = 0; row < rows; ++row) {
+    for (int i = 0; i < rows - row; ++i) {
+      const double x = 2.1 * kPyramidHalf * (i + 0.5 * row);
+      pyramid.boxes.push_back(take(
+          pyramid.world.add_body(box({x, kPyramidHalf * (2 * row + 1), 0}, kPyramidHalf, density_of(row)))));
+    }
+  }
+  return pyramid;
+}
+
 bool is_direct(const World& world) {
   const std::vector<std::int8_t>& direct_state = WorldAccess::tables(world).bodies.direct_state;
   return std::any_of(direct_state.begin(), direct_state.end(), [](int h) { return h >= solver::kDirect; });
@@ -115,19 +132,11 @@ TEST_SUITE("solver/direct_islands") {
   TEST_CASE("a pyramid holds a top of a thousand times the mass of a box") {
     for (const int rows : {10, 12}) {
       CAPTURE(rows);
-      constexpr double kHalf = 0.25;
-      Column pyramid = {make_world(restless()), {}};
-      add_ground(pyramid.world);
-      for (int row = 0; row + 1 < rows; ++row) {
-        for (int i = 0; i < rows - row; ++i) {
-          const double x = 2.1 * kHalf * (i + 0.5 * row);
-          pyramid.boxes.push_back(take(pyramid.world.add_body(box({x, kHalf * (2 * row + 1), 0}, kHalf))));
-        }
-      }
-      const DVec3 top = {2.1 * kHalf * 0.5 * (rows - 1), kHalf * (2 * rows - 1), 0};
-      pyramid.boxes.push_back(take(pyramid.world.add_body(box(top, kHalf, 1000 * kDensity))));
+      Column pyramid =
+          make_pyramid(rows, [&](int row) { return row + 1 < rows ? kDensity : 1000 * kDensity; });
+      const double top = kPyramidHalf * (2 * rows - 1);
       run(pyramid.world, 90);
-      CHECK(place_of(pyramid, pyramid.boxes.size() - 1).y == doctest::Approx(top.y).epsilon(1e-5));
+      CHECK(place_of(pyramid, pyramid.boxes.size() - 1).y == doctest::Approx(top).epsilon(1e-5));
       CHECK(pyramid.world.measure().largest_penetration < 1e-5);
       CHECK(pyramid.world.step(Real(1) / Real(60)).islands_refused == 0);
     }
@@ -201,6 +210,29 @@ TEST_SUITE("solver/direct_islands") {
     take(thrown.world.add_body(fast));
     run(thrown.world, 1);
     CHECK(!is_direct(thrown.world));
+  }
+
+  TEST_CASE("what an island may cost is the same after a restoration, however its bodies lie to gravity") {
+    // A pyramid of 10 rows, each three times as heavy as the one below, is within the budget only while the
+    // heavy box beside it is uphill.
+    Column pyramid = make_pyramid(10, [](int row) { return kDensity * std::pow(3.0, row); });
+    World& world = pyramid.world;
+    BodyDesc heavy = box({-2 * kPyramidHalf, kPyramidHalf, 0}, kPyramidHalf, 1000 * kDensity);
+    take(world.add_body(heavy));
+    const auto gravity = [](double lean) {
+      const auto g = static_cast<Real>(kGravity);
+      return Vec3{g * static_cast<Real>(lean), -g, Real(0)};
+    };
+    REQUIRE(world.set_gravity(gravity(0.02)));
+    run(world, 3);
+    CHECK(is_direct(world));
+    REQUIRE(world.set_gravity(gravity(-0.02)));
+    const Snapshot snapshot = world.snapshot();
+    run(world, 5);
+    World other = make_world(restless());
+    REQUIRE(other.restore(snapshot));
+    run(other, 5);
+    CHECK(other.state_hash() == world.state_hash());
   }
 
   TEST_CASE("hard islands give the same bits with any number of workers, and after a restoration") {

@@ -2,12 +2,11 @@
 #include "hooke/placement.h"
 
 #include "constants.h"
+#include "world/make.h"
 
 #include <array>
 #include <cmath>
-#include <doctest/doctest.h>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hooke {
@@ -15,11 +14,7 @@ using namespace test;
 
 namespace {
 
-double d(Real x) {
-  return static_cast<double>(x);
-}
-
-void run(World& world, double seconds) {
+void run_for(World& world, double seconds) {
   for (int i = 0; i < static_cast<int>(std::lround(60 * seconds)); ++i) world.step(Real(1) / Real(60));
 }
 
@@ -32,12 +27,6 @@ BodyId add_ball(World& world, DVec3 position, Real radius = Real(0.2)) {
       .value();
 }
 
-template <class T>
-T value_of(Result<T> result) {
-  REQUIRE(result.has_value());
-  return std::move(result).value();
-}
-
 void add_ground(World& world) {
   (void)world.add_body({.shape = {.kind = ShapeKind::kHalfSpace}}).value();
 }
@@ -47,7 +36,7 @@ TEST_SUITE("world/hooks") {
     World world = World::create().value();
     const BodyId ball = add_ball(world, {0, 1, 0});
     const HookId hook = world.add_hook({.b = {ball}, .anchor = {0, 2, 0}}).value();
-    run(world, 1);
+    run_for(world, 1);
     CHECK(world.center_of_mass(ball).y == doctest::Approx(1).epsilon(1e-5));
     CHECK(d(world.hook_force(hook).force.y) == doctest::Approx(2 * kGravity).epsilon(1e-4));
   }
@@ -100,32 +89,31 @@ TEST_SUITE("world/hooks") {
       for (const std::uint32_t seed : {1U, 2U, 5U, 7U}) {
         CAPTURE(with_rope);
         CAPTURE(seed);
-        WorldDesc desc;
-        desc.wind.air_density = Real(0);
+        WorldDesc desc = without_air();
         const Placement at = random_placement(seed, desc.gravity);
         World world = World::create(placed(desc, at)).value();
         const BodyId door =
-            value_of(world.add_body(placed(BodyDesc{.kind = BodyKind::kDynamic,
-                                                    .shape = Shape::box({Real(0.4), Real(0.95), Real(0.02)}),
-                                                    .position = {0.4, 0, 0},
-                                                    .velocity = {0, 0, Real(-1.2)},
-                                                    .angular_velocity = {0, 3, 0},
-                                                    .mass = 20},
-                                           at)));
+            take(world.add_body(placed(BodyDesc{.kind = BodyKind::kDynamic,
+                                                .shape = Shape::box({Real(0.4), Real(0.95), Real(0.02)}),
+                                                .position = {0.4, 0, 0},
+                                                .velocity = {0, 0, Real(-1.2)},
+                                                .angular_velocity = {0, 3, 0},
+                                                .mass = 20},
+                                       at)));
         std::array<HookId, 2> hinges;
         for (std::size_t i = 0; i < hinges.size(); ++i) {
-          hinges[i] = value_of(world.add_hook(placed(HookDesc{.kind = HookKind::kHinge,
-                                                              .b = {.body = door},
-                                                              .anchor = {0, i == 0 ? 0.8 : -0.8, 0},
-                                                              .axis = {0, 1, 0}},
-                                                     at)));
+          hinges[i] = take(world.add_hook(placed(HookDesc{.kind = HookKind::kHinge,
+                                                          .b = {.body = door},
+                                                          .anchor = {0, i == 0 ? 0.8 : -0.8, 0},
+                                                          .axis = {0, 1, 0}},
+                                                 at)));
         }
         if (with_rope) {
           RopeDesc rope{
               .hook_point = {0.8, 0, 0}, .direction = {0, -1, 0}, .total_mass = Real(0.05), .masses = 6};
           rope.pins.clear();
-          const RopeId id = value_of(world.add_rope(placed(rope, at)));
-          value_of(world.add_hook(placed(
+          const RopeId id = take(world.add_rope(placed(rope, at)));
+          take(world.add_hook(placed(
               HookDesc{.a = {.point = point(id, 0)}, .b = {.body = door}, .anchor = {0.8, 0, 0}}, at)));
         }
         for (int i = 0; i < 60; ++i) {
@@ -167,7 +155,7 @@ TEST_SUITE("world/hooks") {
                            .axis = {Real(0), Real(1), Real(0)},
                            .motor = {.speed = static_cast<Real>(speed), .max_force = Real(50)}})
                 .value();
-        run(world, 10);
+        run_for(world, 10);
         INFO(substeps << " substeps, " << speed << " rad/s");
         const Vec3 of_blade = world.angular_velocity(blade);
         const Vec3 of_motor = world.angular_velocity(motor);
@@ -191,7 +179,7 @@ TEST_SUITE("world/hooks") {
     REQUIRE(world.broken_hooks() == std::vector<HookId>{hook});
     CHECK_FALSE(world.remove(hook));
     CHECK(world.set_motor(hook, {}).error().code == ErrorCode::kStaleId);
-    run(world, 0.5);
+    run_for(world, 0.5);
     CHECK(world.broken_hooks().empty());
     CHECK(world.center_of_mass(ball).y < 0);
     CHECK(world.remove(kept));
@@ -208,7 +196,7 @@ TEST_SUITE("world/hooks") {
                   {.kind = HookKind::kDistance, .b = {ball}, .anchor_b = DVec3{0, -1, 0}, .limits = limits})
               .value();
       REQUIRE(world.set_spring(hook, spring));
-      run(world, 5);
+      run_for(world, 5);
       CHECK(d(world.hook_value(hook)) == doctest::Approx(-world.center_of_mass(ball).y).epsilon(1e-5));
       CHECK(d(world.hook_gap(hook)) < 1e-5);
       return world.center_of_mass(ball).y;
@@ -268,7 +256,7 @@ TEST_SUITE("world/hooks") {
             .value();
       }
     }
-    run(world, 5);
+    run_for(world, 5);
     CHECK(d(world.velocity(car).x) == doctest::Approx(10 * 0.3).epsilon(0.02));
     CHECK(std::abs(world.center_of_mass(car).z) < 0.01);
     CHECK(world.center_of_mass(car).y ==
@@ -287,7 +275,7 @@ TEST_SUITE("world/hooks") {
                      .axis = {Real(1), Real(0), Real(0)},
                      .collide = collide})
           .value();
-      run(world, 1);
+      run_for(world, 1);
       CHECK((length(world.center_of_mass(b) - world.center_of_mass(a)) > 0.35) == collide);
     }
   }
@@ -301,10 +289,10 @@ TEST_SUITE("world/hooks") {
           .add_hook({.a = {i == 0 ? BodyId{} : ball[i - 1]}, .b = {ball[i]}, .anchor = {0, 0.5 - i, 0}})
           .value();
     }
-    run(world, 2);
+    run_for(world, 2);
     for (const BodyId id : ball) CHECK(world.asleep(id));
     REQUIRE(world.apply_impulse(ball[3], {Real(1), Real(0), Real(0)}));
-    run(world, 0.05);
+    run_for(world, 0.05);
     for (const BodyId id : ball) CHECK_FALSE(world.asleep(id));
   }
 
@@ -318,7 +306,7 @@ TEST_SUITE("world/hooks") {
     CHECK_FALSE(world.remove(first));
     CHECK(world.set_motor(second, {.speed = Real(1), .max_force = Real(1)}));
     CHECK(world.set_steering(second, Real(0.1)).error().code == ErrorCode::kUnsupported);
-    run(world, 0.2);
+    run_for(world, 0.2);
     CHECK(world.remove(second));
   }
 
@@ -333,11 +321,11 @@ TEST_SUITE("world/hooks") {
               .add_hook({.a = {i == 0 ? BodyId{} : balls[i - 1]}, .b = {balls[i]}, .anchor = {i - 0.5, 0, 0}})
               .value());
     }
-    run(world, 0.1);
+    run_for(world, 0.1);
     const std::array<BodyId, 5> gone = {balls[2], balls[5], BodyId{}, balls[2], balls[6]};
     CHECK(world.remove(gone) == 3);
     CHECK(world.remove(gone) == 0);
-    run(world, 0.5);
+    run_for(world, 0.5);
     // What was cut off falls freely; what still hangs on the world does not.
     CHECK(d(world.velocity(balls[7]).y) == doctest::Approx(-9.81 * 0.6).epsilon(0.02));
     CHECK(world.pose(balls[7]).position.y < world.pose(balls[0]).position.y - 0.1);
@@ -352,13 +340,13 @@ TEST_SUITE("world/hooks") {
     const BodyId ball = add_ball(world, {1, 0, 0});
     const HookId hook =
         world.add_hook({.kind = HookKind::kHinge, .b = {ball}, .axis = {Real(0), Real(0), Real(1)}}).value();
-    run(world, 0.5);
+    run_for(world, 0.5);
     const Snapshot snapshot = world.snapshot();
-    run(world, 0.5);
+    run_for(world, 0.5);
     const std::uint64_t hash = world.state_hash();
     CHECK(world.remove(hook));
     REQUIRE(world.restore(snapshot));
-    run(world, 0.5);
+    run_for(world, 0.5);
     CHECK(world.state_hash() == hash);
   }
 }

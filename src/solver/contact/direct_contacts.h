@@ -43,9 +43,10 @@ struct DirectIsland : DirectRows {
   DirectGraph graph;
   BlockPattern pattern;
   std::vector<std::uint32_t> slot;  ///< Position of each node in the order of elimination.
-  int newton_steps = 0;             ///< Most in a round of friction.
 
-  std::vector<ContactLane> lanes;  ///< Its contacts in this step.
+  // Lives for one step.
+  std::vector<ContactLane> lanes;  ///< Its contacts.
+  int newton_steps = 0;            ///< Most Newton steps in a round of friction.
 
   // Lives for one substep. Six numbers a node, in the order of elimination.
   std::vector<double> free;       ///< u_0

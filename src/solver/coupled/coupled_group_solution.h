@@ -47,7 +47,6 @@ class CoupledGroupSolution {
   bool stiffen();
   void solve_with_bounds();
   void solve_once();
-  void remove_unfelt_impulses();
   bool revise_bounds(bool release);
   void read_solution();
   void move_nodes();

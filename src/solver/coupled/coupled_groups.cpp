@@ -232,25 +232,6 @@ void CoupledGroupSolution::solve_with_bounds() {
   }
 }
 
-/// As in loops of articulations (solver/joint/articulation_loops.cpp), rows of hooks that say the same twice
-/// would ask for impulses that no body feels.
-void CoupledGroupSolution::remove_unfelt_impulses() {
-  if (b_.hooks.size() < 2) return;
-  b_.with_unfelt = b_.right_side;
-  std::fill(b_.right_side.begin(), b_.right_side.end(), 0.0);
-  for (std::uint32_t hook = 0; hook < b_.hooks.size(); ++hook) {
-    const std::uint32_t block = hook_block(hook);
-    for (int k = 0; k < size_of(block); ++k) {
-      const std::uint32_t row = b_.first_row[hook] + static_cast<std::uint32_t>(k);
-      const int at = b_.pattern.first[b_.slot[block]] + k;
-      if (b_.bound[row] == 0) b_.right_side[at] = b_.compliance[row] * b_.with_unfelt[at];
-    }
-  }
-  solve(b_.pattern, b_.numbers, b_.right_side);
-  for (std::size_t i = 0; i < b_.right_side.size(); ++i)
-    b_.right_side[i] = b_.with_unfelt[i] - b_.right_side[i];
-}
-
 void CoupledGroupSolution::solve_once() {
   constrain_nodes(h_, b_.ropes);
   resize_coupled_contacts();
@@ -259,7 +240,8 @@ void CoupledGroupSolution::solve_once() {
   factor(b_.pattern, b_.numbers, b_.factor_scratch);
   ++b_.factored;
   solve(b_.pattern, b_.numbers, b_.right_side);
-  remove_unfelt_impulses();
+  // A single hook says nothing twice.
+  if (b_.hooks.size() > 1) remove_unfelt(b_.pattern, b_.numbers, b_.compliance, b_.right_side, b_.unfelt);
   read_solution();
 }
 

@@ -168,12 +168,12 @@ struct CoupledGroup {
   std::vector<std::int8_t> bound;        ///< Bound of each row, as Articulation::bound.
   std::vector<double> lambda;            ///< Impulse of each row.
   std::vector<double> speed;             ///< Speed at which each row opens.
-  std::vector<double> compliance;        ///< Compliance of each row that is a share of its diagonal.
   std::vector<int> sizes;                ///< Sizes of blocks, in the order of elimination.
   std::vector<double> numbers;
   std::vector<double> factor_scratch;
   std::vector<double> right_side;        ///< Right side, then the solution.
-  std::vector<double> with_unfelt;       ///< Solution with impulses that no body feels.
+  std::vector<double> compliance;        ///< Of hooks' rows, at their places in it; 0 elsewhere.
+  std::vector<double> unfelt;            ///< What was taken out of it because no body feels it.
   std::vector<BodyRow> start;            ///< (1 + G) V0 of each body.
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
   // Contacts of two bodies. Velocities are six numbers V for each of `bodies`.

@@ -87,7 +87,7 @@ double CoupledGroupSolution::compliance_of(std::uint32_t hook, const JointRow& r
 }
 
 void CoupledGroupSolution::assemble_hooks() {
-  b_.compliance.assign(b_.rows.size(), 0);
+  b_.compliance.assign(b_.right_side.size(), 0);
   for_each_row([&](std::uint32_t hook, std::uint32_t row, int k) {
     const std::uint32_t block = hook_block(hook);
     if (k >= size_of(block)) return;
@@ -105,8 +105,9 @@ void CoupledGroupSolution::assemble_hooks() {
       const Numbers coupled = numbers(block, body_block(body));
       for (int m = 0; m < 6; ++m) coupled(k, m) += c.at(m);
     }
-    b_.compliance[row] = compliance_of(hook, b_.rows[row]) * mobility;
-    diagonal += b_.rows[row].gamma + b_.compliance[row];
+    const double compliance = compliance_of(hook, b_.rows[row]) * mobility;
+    if (hook < b_.hooks.size()) b_.compliance[b_.pattern.first[b_.slot[block]] + k] = compliance;
+    diagonal += b_.rows[row].gamma + compliance;
   });
 }
 

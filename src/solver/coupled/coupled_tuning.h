@@ -59,8 +59,8 @@ inline constexpr std::int8_t kNotEvaluatedSteps = -60;
 /// 101 ms a step instead of 4.5, with this value 6.4 (docs/decisions/0007).
 inline constexpr double kDirectIslandBudget = 4e4;
 
-/// Ratio of the masses of a body and one that lies on it, with which the island's own budget is that; beyond,
-/// it grows in proportion, up to that of all islands [ratio]. Larger: a pyramid of 10 rows under 1000 times
+/// Ratio of the mass of what lies on a body to that body's, beyond which the budget of their island grows in
+/// proportion, up to that of all islands [ratio]. Larger: a pyramid of 10 rows under 1000 times
 /// the mass of a box was refused and fell by 0.6 m. Smaller: heaps of like bodies are dear. No measurement of
 /// the value itself is recorded.
 inline constexpr Real kHeavyOnLightRatio = Real(20);

@@ -217,14 +217,8 @@ Real heaviest_on_light(const DirectGraph& graph, Vec3 gravity, const Bodies& bod
   return most;
 }
 
-/// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island. It may
-/// cost more where something lies on what is much lighter: soft contacts would not hold that even roughly.
-bool make_pattern(const DirectGraph& graph, Vec3 gravity, const Bodies& bodies, DirectIslands& direct,
-                  DirectIsland& island) {
-  const Real ratio = heaviest_on_light(graph, gravity, bodies) / kHeavyOnLightRatio;
-  const double budget =
-      std::clamp(static_cast<double>(ratio) * kDirectIslandBudget, kDirectIslandBudget, kDirectBudget);
-  island.newton_steps = ratio > Real(1) ? kDirectHeavyNewtonSteps : kDirectNewtonSteps;
+/// Makes the pattern of an island's matrix. False if it costs too much; then no bodies own the island.
+bool make_pattern(const DirectGraph& graph, double budget, DirectIslands& direct, DirectIsland& island) {
   HOOKE_ASSERT(std::is_sorted(graph.bodies.begin(), graph.bodies.end()));
   direct.matrix.reset(graph.bodies.size());
   for (const auto& [a, b] : graph.edges) direct.matrix.join(a, b);
@@ -237,6 +231,19 @@ bool make_pattern(const DirectGraph& graph, Vec3 gravity, const Bodies& bodies, 
   island.slot.resize(graph.bodies.size());
   for (std::uint32_t i = 0; i < island.slot.size(); ++i) island.slot[island.pattern.order[i]] = i;
   return true;
+}
+
+/// Finds whether an island is within its budget, which is larger where something lies on what is much
+/// lighter: soft contacts would not hold that even roughly. Bodies may have moved since the matrix was made.
+bool is_within_budget(const DirectGraph& graph, Vec3 gravity, const Bodies& bodies, DirectIslands& direct,
+                      DirectIsland& island) {
+  if (graph.bodies.size() > kMaxDirectBodies) return false;
+  const Real ratio = heaviest_on_light(graph, gravity, bodies) / kHeavyOnLightRatio;
+  const double budget =
+      std::clamp(static_cast<double>(ratio) * kDirectIslandBudget, kDirectIslandBudget, kDirectBudget);
+  island.newton_steps = ratio > Real(1) ? kDirectHeavyNewtonSteps : kDirectNewtonSteps;
+  return island.graph == graph ? island.pattern.operations <= budget
+                               : make_pattern(graph, budget, direct, island);
 }
 
 /// For each island that was found: the largest speed at which its lighter bodies would leave their contacts
@@ -285,8 +292,7 @@ void find_islands_within_budget(const std::vector<Manifold>& manifolds, IslandMe
     HOOKE_ASSERT(!graph.bodies.empty());
     if (graph.bodies.size() > kMaxDirectBodies) ++too_large;
     DirectIsland& island = direct.islands[i];
-    const bool fits = graph.bodies.size() <= kMaxDirectBodies &&
-                      (island.graph == graph || make_pattern(graph, gravity, bodies, direct, island));
+    const bool fits = is_within_budget(graph, gravity, bodies, direct, island);
     direct.fits[i] = fits ? 1 : 0;
     if (fits) cost += island.pattern.operations;
   }

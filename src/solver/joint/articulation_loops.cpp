@@ -105,20 +105,6 @@ double shortfall(const Articulation& art, const Articulation::Joint& joint, cons
   return row.target - dot(row.n, b.v - a.v) - dot(row.j_b, b.omega_scaled) + dot(row.j_a, a.omega_scaled);
 }
 
-/// Takes out impulses that bodies do not feel (docs/decisions/0033). Rows that say the same twice, as two
-/// hinges of a door, never say quite the same: the difference over the compliance is a force without a cause,
-/// kilonewtons from roundings. With lambda = (A + C)^-1 b, lambda - (A + C)^-1 C lambda has no part in what A
-/// takes to zero, and the twofold compliance elsewhere.
-void remove_unfelt_impulses(Articulation& art) {
-  std::vector<double>& unfelt = art.blocks.unfelt;
-  HOOKE_ASSERT(art.blocks.compliance.size() == art.blocks.right_side.size());
-  unfelt.clear();
-  for (std::size_t k = 0; k < art.blocks.right_side.size(); ++k)
-    unfelt.push_back(art.blocks.compliance[k] * art.blocks.right_side[k]);
-  solve(art.blocks.pattern, art.blocks.factors, unfelt);
-  for (std::size_t k = 0; k < unfelt.size(); ++k) art.blocks.right_side[k] -= unfelt[k];
-}
-
 void solve_free_rows(Articulation& art) {
   for (std::size_t i = 0; i < art.rows.size(); ++i) {
     art.lambda[i] = art.bound[i] < 0 ? art.rows[i].low : art.bound[i] > 0 ? art.rows[i].high : 0;
@@ -137,7 +123,10 @@ void solve_free_rows(Articulation& art) {
   HOOKE_ASSERT(art.blocks.right_side.size() == art.blocks.free.size());
   factor(art.blocks.pattern, art.blocks.factors, art.blocks.factor_scratch);
   solve(art.blocks.pattern, art.blocks.factors, art.blocks.right_side);
-  remove_unfelt_impulses(art);
+  // Rows that say the same twice, as two hinges of a door, never say quite the same: the difference over the
+  // compliance is a force without a cause, kilonewtons from roundings.
+  remove_unfelt(art.blocks.pattern, art.blocks.factors, art.blocks.compliance, art.blocks.right_side,
+                art.blocks.unfelt);
   for (std::size_t k = 0; k < art.blocks.free.size(); ++k)
     art.lambda[art.blocks.free[k]] = art.blocks.right_side[k];
   apply_rows([&](int i) { return art.bound[i] == 0; }, art);

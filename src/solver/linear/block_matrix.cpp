@@ -480,4 +480,13 @@ void solve(const BlockPattern& p, std::span<const double> numbers, std::span<dou
   substitute_back(p, numbers, x);
 }
 
+void remove_unfelt(const BlockPattern& p, std::span<const double> numbers, std::span<const double> compliance,
+                   std::span<double> x, std::vector<double>& scratch) {
+  HOOKE_ASSERT(compliance.size() == x.size());
+  scratch.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) scratch[i] = compliance[i] * x[i];
+  solve(p, numbers, scratch);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= scratch[i];
+}
+
 }  // namespace hooke::solver

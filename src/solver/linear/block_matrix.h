@@ -103,4 +103,10 @@ void factor(const BlockPattern& pattern, std::span<double> numbers, std::vector<
 /// Computes x := A^-1 x by the factors.
 void solve(const BlockPattern& pattern, std::span<const double> numbers, std::span<double> x);
 
+/// Computes x := x - A^-1 C x, with a diagonal C that A contains: of a solution x, that takes out what A - C
+/// takes to zero, and twofold C elsewhere. `scratch` gets the part that is taken out
+/// (docs/decisions/0033-impulses-that-no-body-feels.md).
+void remove_unfelt(const BlockPattern& pattern, std::span<const double> numbers,
+                   std::span<const double> compliance, std::span<double> x, std::vector<double>& scratch);
+
 }  // namespace hooke::solver
