@@ -37,8 +37,7 @@ const char* find_in_lane(const Tables& t, const ContactBlock& block, int lane, s
   const std::uint32_t b = block.record_b[lane] / 16;
   if ((a != m.body_a || b != m.body_b) && (a != m.body_b || b != m.body_a)) return "bodies of a lane";
   if (!is_moved(t.bodies, a) || is_moved(t.bodies, b) == block.anchored) return "who moves in a lane";
-  if (m.route == ContactRoute::kNone || block.direct != (m.route != ContactRoute::kSoft))
-    return "way of a lane";
+  if (m.route == ContactRoute::kNone || block.route != m.route) return "way of a lane";
   return m.point_count > block.point_count ? "points of a lane" : nullptr;
 }
 
@@ -130,7 +129,7 @@ const char* find_in_island(const BodyContacts& contacts, const DirectIslands& di
     const DirectContact& c = island.contacts[i];
     if (static_cast<std::size_t>(c.block) >= contacts.blocks.size()) return "block of a direct contact";
     const ContactBlock& block = contacts.blocks[static_cast<std::size_t>(c.block)];
-    if (!block.direct || c.lane >= block.count) return "lane of a direct contact";
+    if (block.route != ContactRoute::kDirect || c.lane >= block.count) return "lane of a direct contact";
     if (direct.island_of[block.record_a[c.lane] / 16] != number ||
         (!block.anchored && direct.island_of[block.record_b[c.lane] / 16] != number))
       return "island of a direct contact";
@@ -149,9 +148,8 @@ const char* find_in_islands(const Tables& t, const BodyContacts& contacts, const
   reset(t.bodies.motion.size(), marks);
   std::size_t lanes = 0;
   for (const ContactBlock& block : contacts.blocks) {
-    lanes += block.direct ? static_cast<std::size_t>(block.count) : 0;
+    lanes += block.route == ContactRoute::kDirect ? static_cast<std::size_t>(block.count) : 0;
   }
-  lanes -= t.pairs.coupled.size();
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(direct.count); ++i) {
     const DirectIsland& island = direct.islands[i];
     if (!ascends(island.graph.bodies)) return "order of a direct island";

@@ -87,8 +87,6 @@ struct CoupledManifold {
   // The fields below live for one step.
   std::int32_t block = -1;  ///< Its lane of solver::BodyContacts; -1 if it has none.
   std::int32_t lane = 0;
-  /// Share of a particle substep in the impulses that the substep began with: points, friction, twist [N s].
-  std::array<Real, Manifold::kMaxPoints + 3> share = {};
 };
 
 /// Motion of two bodies since their last exact test.

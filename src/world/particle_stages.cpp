@@ -127,10 +127,11 @@ void share_out_gravity(WorldData& world, Real h, bool first) {
   }
 }
 
-/// Marks the bodies that contacts between bodies push in this step.
+/// Marks the bodies that contacts between bodies push in this step, other than those of coupled groups.
 void find_pushed(const solver::BodyContacts& contacts, std::size_t count, std::vector<std::uint8_t>& pushed) {
   pushed.assign(count, 0);
   for (const solver::ContactBlock& block : contacts.blocks) {
+    if (block.is_coupled()) continue;
     for (int lane = 0; lane < block.count; ++lane) {
       HOOKE_ASSERT(block.record_a[lane] / 16 < count);
       HOOKE_ASSERT(block.anchored || block.record_b[lane] / 16 < count);
@@ -342,10 +343,6 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
   solver::build_coupled_groups(world.tables, world.derived.rope_systems, world.derived.coupled_groups);
   HOOKE_VALIDATE(solver::find_in_coupled_groups(world.tables, world.derived.rope_systems,
                                                 world.derived.coupled_groups, world.frame.check_marks));
-  if (first) {
-    solver::share_out_impulses(world.tables.desc.particle_substeps, world.frame.body_contacts,
-                               world.tables.pairs.coupled);
-  }
   share_out_contacts(world, first);
   share_out_gravity(world, h, first);
   solver::apply_mass_shares(world.derived.coupled_groups, world.tables, world.frame.hooked_points);

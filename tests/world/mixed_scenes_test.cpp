@@ -415,16 +415,14 @@ TEST_SUITE("world/mixed scenes") {
 
   // The planks hang at one point of each rope and may tip. The load slides and rolls on them.
   TEST_CASE("a bridge of ropes and planks gains no energy from a load, with or without restitution") {
-    check_each_way(make_bridge(30, 0.01), {}, {{Figure::kEnergy, 0.118}, {Figure::kRestOverlap, 0.0018}});
-    check_each_way(make_bridge(100, 0), {},  // goal: kGoal, in both
-                   {{Figure::kEnergy, 0.107}, {Figure::kRopeStretch, 0.0012}});
+    check_each_way(make_bridge(30, 0.01));
+    check_each_way(make_bridge(100, 0));
   }
 
   TEST_CASE("long: a bridge of ropes and planks gains no energy from a heavy load" * doctest::skip()) {
-    check_each_way(make_bridge(300, 0.01), {},
-                   {{Figure::kEnergy, 2.36}, {Figure::kRestOverlap, 0.0015}, {Figure::kRopeStretch, 0.0039}});
-    check_each_way(make_bridge(1000, 0), {},  // goal: kGoal, in both
-                   {{Figure::kEnergy, 193}, {Figure::kRestGap, 0.0043}, {Figure::kRopeStretch, 0.04}});
+    check_each_way(make_bridge(300, 0.01), {},  // goal: kGoal
+                   {{Figure::kEnergy, 0.01}, {Figure::kRestOverlap, 0.05}});
+    check_each_way(make_bridge(1000, 0), {}, {{Figure::kEnergy, 0.0016}});  // goal: kGoal
   }
 
   TEST_CASE("a crate that falls on a rope on the ground gets no energy from it") {

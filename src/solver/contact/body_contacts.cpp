@@ -84,16 +84,16 @@ int lay_out_block(std::span<const ContactColors::Member> members, const std::vec
   ContactBlock& block = contacts.blocks[index];
   HOOKE_ASSERT(contacts.manifold_of.size() == static_cast<std::size_t>(index) * kContactLanes);
   const bool anchored = members.front().anchored;
-  const bool direct = members.front().direct;
+  const state::ContactRoute route = members.front().route;
   block.anchored = anchored;
-  block.direct = direct;
+  block.route = route;
   block.point_count = 0;
   block.first_rolling = static_cast<int>(contacts.rolling.size());
   block.count = 0;
   block.bounces = false;
   for (const ContactColors::Member& member :
        members.first(std::min<std::size_t>(members.size(), kContactLanes))) {
-    if (member.anchored != anchored || member.direct != direct) break;
+    if (member.anchored != anchored || member.route != route) break;
     add_lane(member, manifolds[member.manifold], index, contacts);
   }
   contacts.manifold_of.resize((static_cast<std::size_t>(index) + 1) * kContactLanes,
@@ -178,13 +178,22 @@ std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
   return {contacts.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())};
 }
 
-/// The soft blocks of a range: blocks of direct islands are the last of their color.
+/// The soft blocks of a range: they are the first of their color.
 std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
-  const auto direct =
-      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.direct; });
-  HOOKE_ASSERT(std::all_of(direct, all.end(), [](const ContactBlock& block) { return block.direct; }));
-  return all.first(static_cast<std::size_t>(direct - all.begin()));
+  const auto end =
+      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return !block.is_soft(); });
+  HOOKE_ASSERT(std::none_of(end, all.end(), [](const ContactBlock& block) { return block.is_soft(); }));
+  return all.first(static_cast<std::size_t>(end - all.begin()));
+}
+
+/// The blocks of a range whose impulses accelerate_bodies repeats in each substep: coupled groups keep those
+/// of their contacts themselves, and their blocks are the last of their color.
+std::span<ContactBlock> repeated_blocks_of(BodyContacts& contacts, Range blocks) {
+  const std::span<ContactBlock> all = blocks_of(contacts, blocks);
+  const auto end =
+      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.is_coupled(); });
+  return all.first(static_cast<std::size_t>(end - all.begin()));
 }
 
 /// Calls `change(body, v, omega_scaled)` with what a lane's impulses do to each body that they move.
@@ -212,6 +221,7 @@ void for_impulses(const ContactBlock& block, int lane, Change&& change) {
 
 /// Adds what a lane's impulses have done to the free motion of the bodies (`sign` 1), or removes it (-1).
 void move_impulses(const ContactBlock& block, int lane, Real sign, Bodies& bodies) {
+  if (block.is_coupled()) return;
   for_impulses(block, lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.free_motion[body].v += sign * v;
     bodies.free_motion[body].omega_scaled += sign * turn;
@@ -307,9 +317,10 @@ void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<Manifol
   for (int color = 0; color < contacts.color_count(); ++color) {
     const int first = contacts.color_begin[color];
     for_ranges(pool, contacts.color_begin[color + 1] - first, kWarmGrain, [&](Range range) {
-      const auto blocks = blocks_of(contacts, {first + range.begin, first + range.end});
-      wide::warm_start_contacts(blocks, bodies.free_motion.data());
-      for (const ContactBlock& block : blocks) warm_start_rolling(contacts, block, bodies);
+      const Range blocks = {first + range.begin, first + range.end};
+      wide::warm_start_contacts(repeated_blocks_of(contacts, blocks), bodies.free_motion.data());
+      for (const ContactBlock& block : blocks_of(contacts, blocks))
+        warm_start_rolling(contacts, block, bodies);
     });
   }
 }
@@ -357,7 +368,7 @@ void store_lanes(std::span<const ContactLane> lanes, const BodyContacts& contact
 void drop_warm_start(const ContactLane& at, const std::vector<Manifold>& manifolds, BodyContacts& contacts,
                      Bodies& bodies) {
   ContactBlock& block = contacts.blocks[at.block];
-  if (manifolds[at.manifold].route == state::ContactRoute::kDirect) return;
+  if (manifolds[at.manifold].route != state::ContactRoute::kSoft) return;
   for_impulses(block, at.lane, [&](std::uint32_t body, Vec3 v, Vec3 turn) {
     bodies.motion[body].v -= v;
     bodies.motion[body].omega_scaled -= turn;

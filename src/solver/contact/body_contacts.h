@@ -86,11 +86,14 @@ struct alignas(64) ContactBlock {
   int count = 0;          ///< Lanes with a manifold of their own.
   int point_count = 0;    ///< The largest number of points of its lanes.
   bool anchored = false;  ///< B is not written: it stands, sleeps or is moved by hand.
-  bool direct =
-      false;  ///< Direct islands and coupled groups solve its manifolds: only rolling is solved here.
+  /// How its manifolds are solved. Of those that are not soft only rolling is solved here.
+  state::ContactRoute route = state::ContactRoute::kSoft;
   bool bounces = false;   ///< Some lane has restitution.
   int first_rolling = 0;  ///< Index of its first rolling row.
   int rolling_count = 0;
+
+  [[nodiscard]] bool is_soft() const { return route == state::ContactRoute::kSoft; }
+  [[nodiscard]] bool is_coupled() const { return route == state::ContactRoute::kCoupled; }
 };
 
 /// A vector quantity of one lane.
@@ -166,7 +169,7 @@ void solve_body_contacts(parallel::Range blocks, const ContactStep& step, BodyCo
 void relax_body_contacts(parallel::Range blocks, const ContactStep& step, BodyContacts& contacts,
                          state::Bodies& bodies);
 
-/// Takes back what a lane did in the substep before. It follows accelerate_bodies, which repeats that
+/// Takes back what a soft lane did in the substep before. It follows accelerate_bodies, which repeats that
 /// impulse.
 void drop_warm_start(const ContactLane& lane, const std::vector<state::Manifold>& manifolds,
                      BodyContacts& contacts, state::Bodies& bodies);

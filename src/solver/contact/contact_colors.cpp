@@ -62,7 +62,7 @@ int take_colors(const std::vector<Manifold>& manifolds, const state::Bodies& bod
 
 /// The order of the members: by color, with lone manifolds between the two kinds of colors, then by kind.
 struct MemberOrder {
-  static constexpr int kKinds = 4 * Manifold::kMaxPoints;  ///< Number of kinds of members in a color.
+  static constexpr int kKinds = 6 * Manifold::kMaxPoints;  ///< Number of kinds of members in a color.
 
   const std::vector<std::uint8_t>& moves;  ///< As ContactColors::moves.
   int lone = 0;                            ///< Number of manifolds that are alone in their color.
@@ -70,14 +70,16 @@ struct MemberOrder {
   [[nodiscard]] bool is_anchored(const Manifold& m) const {
     return moves[m.body_a] == 0 || moves[m.body_b] == 0;
   }
-  [[nodiscard]] static bool is_direct(const Manifold& m) { return m.route != state::ContactRoute::kSoft; }
+  [[nodiscard]] static int rank(state::ContactRoute route) {
+    return static_cast<int>(route) - static_cast<int>(state::ContactRoute::kSoft);
+  }
   [[nodiscard]] int rank(int color) const {
     if (color < kPairColors) return color;
     return color < kColors ? color + lone : color - kColors + kPairColors;
   }
   [[nodiscard]] int key(const Manifold& m, int color) const {
     HOOKE_ASSERT(color < kColors + lone && m.point_count <= Manifold::kMaxPoints);
-    const int kind = (is_direct(m) ? 2 : 0) + (is_anchored(m) ? 1 : 0);
+    const int kind = 2 * rank(m.route) + (is_anchored(m) ? 1 : 0);
     return kKinds * rank(color) + kind * Manifold::kMaxPoints + Manifold::kMaxPoints -
            std::max(m.point_count, 1);
   }
@@ -105,7 +107,7 @@ void sort_members(const std::vector<Manifold>& manifolds, const MemberOrder& ord
     if (colors.color[i] < 0) continue;
     const Manifold& m = manifolds[i];
     colors.members[colors.next_slot[key(i)]++] = {static_cast<std::uint32_t>(i), order.is_anchored(m),
-                                                  MemberOrder::is_direct(m)};
+                                                  m.route};
   }
 }
 

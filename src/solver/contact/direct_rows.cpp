@@ -88,7 +88,7 @@ int count_points(const ContactBlock& block, int lane) {
 void add_contact(const ContactBlock& block, const Bodies& bodies, DirectContact contact, DirectRows& rows) {
   const auto root = [](Real w) { return std::sqrt(static_cast<double>(w)); };
   const int lane = contact.lane;
-  HOOKE_ASSERT(block.direct && lane < block.count && contact.points <= block.point_count);
+  HOOKE_ASSERT(!block.is_soft() && lane < block.count && contact.points <= block.point_count);
   const DirectRowMaker make = {block, lane, root(block.w_a[lane]),
                                block.anchored ? 1.0 : root(block.w_b[lane])};
   contact.first = static_cast<int>(rows.rows.size());

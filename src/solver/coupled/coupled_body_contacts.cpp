@@ -16,18 +16,8 @@ namespace {
 
 using math::Symmetric3;
 
-constexpr std::size_t kShareOfPoints = 3;  ///< In CoupledManifold::share: where those of the points begin.
-
 BodyRow row_of(const DirectLever& j) {
   return {{j[0], j[1], j[2]}, {j[3], j[4], j[5]}};
-}
-
-/// The linear and angular half of a body's six numbers.
-DVec3 linear_of(const std::vector<double>& u, std::size_t body) {
-  return {u[6 * body], u[6 * body + 1], u[6 * body + 2]};
-}
-DVec3 angular_of(const std::vector<double>& u, std::size_t body) {
-  return {u[6 * body + 3], u[6 * body + 4], u[6 * body + 5]};
 }
 
 void put(DVec3 linear, DVec3 angular, std::size_t body, std::vector<double>& u) {
@@ -44,21 +34,6 @@ void turn_lever(const Symmetric3<double>& inverse, const Symmetric3<double>& to,
 }
 
 }  // namespace
-
-void share_out_impulses(int substeps, BodyContacts& contacts, std::vector<state::CoupledManifold>& coupled) {
-  for (state::CoupledManifold& of : coupled) {
-    HOOKE_ASSERT(of.block >= 0);
-    ContactBlock& block = contacts.blocks[of.block];
-    std::size_t i = 0;
-    const auto share_out = [&](ContactBlock::Lane& impulse) {
-      of.share[i++] = impulse[of.lane] / static_cast<Real>(substeps);
-      impulse[of.lane] = Real(0);
-    };
-    for (ContactBlock::Lane& friction : block.friction_impulse) share_out(friction);
-    share_out(block.twist_impulse);
-    for (int k = 0; k < block.point_count; ++k) share_out(block.point[k].impulse);
-  }
-}
 
 void CoupledGroupSolution::read_velocities(std::vector<double>& u) const {
   u.resize(6 * b_.moving.size());
@@ -83,11 +58,16 @@ void CoupledGroupSolution::add_body_contacts() {
     c.a = static_cast<std::uint32_t>(a);
     if (!block.anchored) c.b = static_cast<std::uint32_t>(b);
     add_contact(block, t_.bodies, c, b_.direct);
-    const std::span<DirectRow> rows = b_.direct.rows_of(b_.direct.contacts.back());
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const std::size_t at = k < static_cast<std::size_t>(c.points) ? kShareOfPoints + k : k - c.points;
-      rows[k].before = static_cast<double>(of.share[at]);
-    }
+  }
+}
+
+/// Lets rows begin with their part of the impulses that their lanes have, those of a whole substep.
+void CoupledGroupSolution::load_carried_impulses() {
+  load_impulses(contacts_, b_.direct);
+  b_.kept.clear();
+  for (DirectRow& row : b_.direct.rows) {
+    row.before /= t_.desc.particle_substeps;
+    b_.kept.push_back(row.before);
   }
 }
 
@@ -106,7 +86,6 @@ void CoupledGroupSolution::turn_levers() {
   }
 }
 
-/// Velocities that bodies have now contain the impulses that their contacts began with. They are taken out.
 void CoupledGroupSolution::load_body_contacts() {
   add_body_contacts();
   if (b_.direct.rows.empty()) return;
@@ -119,19 +98,9 @@ void CoupledGroupSolution::load_body_contacts() {
   load_drifts(contacts_, t_.bodies, b_.direct);
   open_gaps(h_, contacts_, t_.bodies, b_.direction, b_.direct);
   turn_levers();
+  load_carried_impulses();
   read_velocities(b_.velocity);
   b_.free = b_.velocity;
-  b_.carried.assign(b_.free.size(), 0);
-  for (const DirectContact& c : b_.direct.contacts)
-    add_impulses(b_.direct, c, &DirectRow::before, b_.carried);
-  for (std::size_t i = 0; i < b_.free.size(); ++i) b_.free[i] -= b_.carried[i];
-  b_.kept.clear();
-  for (const DirectRow& row : b_.direct.rows) b_.kept.push_back(row.before);
-  for (std::size_t i = 0; i < b_.moving.size(); ++i) {
-    JointBody& body = b_.moving[i].body;
-    body.v = std::sqrt(body.inverse_mass) * linear_of(b_.free, i);
-    body.omega_scaled = angular_of(b_.free, i);
-  }
 }
 
 /// Adds -D j j^T to the blocks of the bodies.
@@ -306,49 +275,27 @@ void CoupledGroupSolution::solve_body_contacts() {
                converge(kDirectSofterStiffness, Guess::kAll, kDirectNewtonSteps);
 }
 
-/// Gives bodies their velocities. What contacts did is kept apart, since accelerate_bodies repeats it
-/// (solver/body/body_motion.h).
 void CoupledGroupSolution::store_bodies() {
-  const bool any = !b_.direct.rows.empty();
-  std::vector<double>& after = b_.direction;
-  if (any) {
-    after.assign(6 * b_.moving.size(), 0);
-    for (const DirectContact& c : b_.direct.contacts) add_impulses(b_.direct, c, &DirectRow::impulse, after);
-  }
   for (std::size_t i = 0; i < b_.bodies.size(); ++i) {
     const CoupledBody& m = b_.moving[i];
-    const std::uint32_t body = b_.bodies[i];
-    if (!any) {
-      set_joint_velocity(m.body, m.v, m.omega_scaled, body, t_.bodies);
-      continue;
-    }
-    const double root = std::sqrt(m.body.inverse_mass);
-    const Symmetric3<double> back = math::inverse(math::in_double(t_.bodies.scale[body]));
-    const auto add = [&](double sign, const std::vector<double>& u) {
-      state::MotionRecord& motion = t_.bodies.motion[body];
-      motion.v += vector_cast<Real>((sign * root) * linear_of(u, i));
-      motion.omega_scaled += vector_cast<Real>(sign * (back * (m.body.scale * angular_of(u, i))));
-    };
-    add(-1, b_.carried);
-    set_joint_velocity(m.body, m.v - root * linear_of(after, i), m.omega_scaled - angular_of(after, i), body,
-                       t_.bodies);
-    add(1, after);
+    set_joint_velocity(m.body, m.v, m.omega_scaled, b_.bodies[i], t_.bodies);
   }
 }
 
+/// Lanes have the impulses of a whole substep at the force of this particle substep.
 void CoupledGroupSolution::store_body_contacts() {
   b_.cut_short = b_.cut_short || !is_solved_;
   for (const DirectContact& c : b_.direct.contacts) {
     ContactBlock& block = contacts_.blocks[c.block];
     const DirectRow* row = &b_.direct.rows[c.first];
+    const auto whole = [&](const DirectRow& of) {
+      return static_cast<Real>(t_.desc.particle_substeps * of.impulse);
+    };
     Real load = Real(0);
-    for (int k = 0; k < c.points; ++k) {
-      block.point[k].impulse[c.lane] += static_cast<Real>(row[k].impulse);
-      load += block.point[k].impulse[c.lane];
-    }
+    for (int k = 0; k < c.points; ++k) load += block.point[k].impulse[c.lane] = whole(row[k]);
     const DirectRow* friction = row + c.points;
-    for (int i = 0; i < 2; ++i) block.friction_impulse[i][c.lane] += static_cast<Real>(friction[i].impulse);
-    block.twist_impulse[c.lane] += static_cast<Real>(friction[2].impulse);
+    for (int i = 0; i < 2; ++i) block.friction_impulse[i][c.lane] = whole(friction[i]);
+    block.twist_impulse[c.lane] = whole(friction[2]);
     block.pushed[c.lane] = std::max(block.pushed[c.lane], load);
   }
 }

@@ -81,6 +81,7 @@ class CoupledGroupSolution {
   // Contacts of two bodies: coupled_body_contacts.cpp.
   void load_body_contacts();
   void add_body_contacts();
+  void load_carried_impulses();
   void turn_levers();
   void solve_body_contacts();
   [[nodiscard]] bool converge(double stiffness, Guess guess, int steps);

@@ -178,7 +178,6 @@ struct CoupledGroup {
   std::vector<std::uint32_t> breakable;  ///< Rows of hooks that can break.
   // Contacts of two bodies. Velocities are six numbers V for each of `bodies`.
   DirectRows direct;
-  std::vector<double> carried;    ///< What these contacts did to the velocities that the substep began with.
   std::vector<double> free;       ///< Velocities without these contacts, hooks and ropes.
   std::vector<double> velocity;   ///< At which the rows were last evaluated.
   std::vector<double> direction;  ///< Search direction; gradient before that.
@@ -247,10 +246,6 @@ struct HookedPoint {
 };
 void apply_mass_shares(CoupledGroups& groups, state::Tables& tables, std::vector<HookedPoint>& points);
 void remove_mass_shares(const std::vector<HookedPoint>& points, state::Particles& particles);
-
-/// Gives coupled manifolds equal shares of the impulses that their lanes have from the last substep, one for
-/// each particle substep, and lets the lanes begin with nothing.
-void share_out_impulses(int substeps, BodyContacts& contacts, std::vector<state::CoupledManifold>& coupled);
 
 /// A particle substep.
 struct ParticleSubstep {

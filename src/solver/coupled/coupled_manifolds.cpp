@@ -81,10 +81,9 @@ void find_coupled_lanes(const BodyContacts& contacts, state::Pairs& pairs) {
   if (pairs.coupled.empty()) return;
   for (std::size_t i = 0; i < contacts.blocks.size(); ++i) {
     const ContactBlock& block = contacts.blocks[i];
-    if (!block.direct) continue;
+    if (!block.is_coupled()) continue;
     for (int lane = 0; lane < block.count; ++lane) {
       const std::uint32_t row = contacts.manifold_of[i * kContactLanes + static_cast<std::size_t>(lane)];
-      if (!pairs.manifold[row].is_coupled()) continue;
       const auto at =
           std::lower_bound(pairs.coupled.begin(), pairs.coupled.end(), row,
                            [](const CoupledManifold& of, std::uint32_t r) { return of.manifold < r; });

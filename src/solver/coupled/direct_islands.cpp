@@ -378,10 +378,10 @@ void prepare_direct_islands(parallel::ThreadPool& pool, const BodyContacts& cont
   for (DirectIsland& island : direct.live()) island.lanes.clear();
   for (int i = 0; i < static_cast<int>(contacts.blocks.size()); ++i) {
     const ContactBlock& block = contacts.blocks[i];
-    if (!block.direct) continue;
+    if (block.route != state::ContactRoute::kDirect) continue;
     for (int lane = 0; lane < block.count; ++lane) {
       const std::uint32_t body = block.record_a[lane] / 16;
-      if (!direct.holds(body)) continue;  // coupled
+      HOOKE_ASSERT(direct.holds(body));
       DirectIsland& island = direct.islands[direct.island_of[body]];
       const std::size_t at = kContactLanes * static_cast<std::size_t>(i) + static_cast<std::size_t>(lane);
       island.lanes.push_back({.block = i, .lane = lane, .manifold = contacts.manifold_of[at]});
