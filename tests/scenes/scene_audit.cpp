@@ -216,14 +216,9 @@ class Auditor {
     return vector_cast<double>(b - a);
   }
 
-  /// Kinetic, potential and elastic energy, with that of the springs of hooks [J]. World::measure takes
-  /// bodies where they are at the end of a substep; half a substep before fits their velocities, or each
-  /// bounce would seem to gain m g h v.
+  /// Kinetic, potential and elastic energy, with that of the springs of hooks [J].
   [[nodiscard]] double energy() const {
     double sum = world().measure().energy.total();
-    const double half = world().step_count() > 0 ? 0.5 * in_double(scene().dt) / scene().world.substeps : 0;
-    for (const BodyId body : bodies_)
-      sum += half * in_double(world().mass(body) * dot(world().desc().gravity, world().velocity(body)));
     for (const AuditedHook& hook : hooks_) {
       const HookSpring& spring = hook.desc->desc.spring;
       if (!(spring.stiffness > Real(0))) continue;

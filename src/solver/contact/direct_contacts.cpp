@@ -74,6 +74,7 @@ void make_factors(bool slides, DirectIsland& island, std::vector<double>& h) {
     if (sliding.stiffness > 0) add_row(sliding.stiffness, c, sliding.a, sliding.b, h);
   }
   factor(p, h, island.factor_scratch);
+  island.work += p.operations;
 }
 
 double largest(const std::vector<double>& x) {
@@ -164,6 +165,7 @@ void jump(Guess guess, DirectIsland& island) {
 bool descend(int steps, DirectIsland& island) {
   for (int i = 0; i < steps; ++i) {
     if (evaluate(island)) return true;
+    if (island.work > island.most_work) return false;
     make_factors(true, island, island.factors);
     solve(island.pattern, island.factors, island.direction);
     const double t = search(island);
@@ -324,6 +326,7 @@ void prepare_direct_rows(const BodyContacts& contacts, const Bodies& bodies, Dir
   island.contacts.clear();
   island.rows.clear();
   island.cached_stiffness = 0;
+  island.work = 0;
   for (const ContactLane& at : island.lanes) {
     const ContactBlock& block = contacts.blocks[at.block];
     DirectContact c = {.block = at.block, .lane = at.lane, .points = count_points(block, at.lane)};

@@ -47,6 +47,8 @@ struct DirectIsland : DirectRows {
   // Lives for one step.
   std::vector<ContactLane> lanes;  ///< Its contacts.
   int newton_steps = 0;            ///< Most Newton steps in a round of friction.
+  double most_work = 0;            ///< Multiplications of all factorizations that it may take.
+  double work = 0;                 ///< Those that it has taken.
 
   // Lives for one substep. Six numbers a node, in the order of elimination.
   std::vector<double> free;       ///< u_0

@@ -332,54 +332,14 @@ void CoupledGroupSolution::fill_pushes() {
   }
 }
 
-/// Makes the displacement smaller if it moves a body by more than an overlap may be removed: what is wedged
-/// in would go far for little. False if it is no number.
-bool CoupledGroupSolution::limit_displacement() {
-  double farthest = 0;
-  for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
-    const double root = std::sqrt(b_.moving[i].body.inverse_mass);
-    for (int k = 0; k < 3; ++k) farthest = std::max(farthest, root * std::abs(right_side(body_block(i), k)));
-  }
-  if (farthest > kDirectLargestPush) {
-    for (double& x : b_.right_side) x *= kDirectLargestPush / farthest;
-  }
-  return std::all_of(b_.right_side.begin(), b_.right_side.end(), [](double x) { return std::isfinite(x); });
-}
-
-/// Moves everything to where overlaps are half as deep, without adding velocity. Hooks and ropes keep what
-/// gaps and lengths they have.
-void CoupledGroupSolution::remove_overlaps(const std::vector<RopeSystem>& rope_systems) {
-  if (!is_sound() || !find_overlaps()) return;
-  std::fill(b_.sliding.begin(), b_.sliding.end(), SlidingRow{});
-  assemble();
-  factor(b_.pattern, b_.numbers, b_.factor_scratch);
-  fill_pushes();
-  solve(b_.pattern, b_.numbers, b_.right_side);
-  if (!limit_displacement()) return;
-  displace_bodies();
-  displace_nodes(rope_systems);
-}
-
-void CoupledGroupSolution::displace_bodies() {
+/// Displacements of bodies and nodes that the linear system has given, as velocities.
+void CoupledGroupSolution::read_displacement() {
   for (int i = 0; i < static_cast<int>(b_.moving.size()); ++i) {
     const auto at = [&](int k) { return right_side(body_block(i), k); };
     CoupledBody& of = b_.moving[i];
     of.v = std::sqrt(of.body.inverse_mass) * DVec3{at(0), at(1), at(2)};
     of.omega_scaled = {at(3), at(4), at(5)};
-    const std::uint32_t body = b_.bodies[i];
-    state::MotionRecord& m = t_.bodies.motion[body];
-    const DVec3 turn = of.body.scale * of.omega_scaled;
-    m.dx += vector_cast<Real>(of.v);
-    m.theta_scaled += vector_cast<Real>(math::inverse(math::in_double(t_.bodies.scale[body])) * turn);
-    if (is_gyroscopic_now(t_.bodies, body)) {
-      t_.bodies.rotation[body] =
-          normalize(math::quaternion_of(vector_cast<Real>(turn)) * t_.bodies.rotation[body]);
-    }
   }
-}
-
-/// Ropes and points follow what they hang on and touch.
-void CoupledGroupSolution::displace_nodes(const std::vector<RopeSystem>& rope_systems) {
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     DVec3 impulse;
     for (const CoupledGroup::Incident& at : incidents_of(n)) {
@@ -395,10 +355,60 @@ void CoupledGroupSolution::displace_nodes(const std::vector<RopeSystem>& rope_sy
     const DVec3 surface = m.v + cross(m.body.scale * m.omega_scaled, contact_row.lever);
     node.u += node.inverse * (contact_stiffness(contact_row) * surface);
   }
+}
+
+/// Share of the displacement that moves no body by more than an overlap may be removed, and turns no segment
+/// so far that its length changes: what is wedged in would go far for little. 0 if it is no number.
+double CoupledGroupSolution::displaced_share() const {
+  double most = 1;
+  const auto allow = [&](DVec3 displacement, double length_allowed) {
+    const double over = length(displacement) / length_allowed;
+    if (!(over <= most)) most = over;  // also if it is no number
+  };
+  for (const CoupledBody& m : b_.moving) allow(m.v, kDirectLargestPush);
+  for (const RopeNode& node : b_.ropes.nodes) allow(node.u, kDirectLargestPush);
+  for (const RopeSegment& segment : b_.ropes.segments)
+    allow(b_.ropes.nodes[segment.a + 1].u - b_.ropes.nodes[segment.a].u,
+          kMostSegmentPush * segment.traits.rest);
+  return std::isfinite(most) ? 1 / most : 0;
+}
+
+/// Moves everything to where overlaps are half as deep, without adding velocity. Hooks and ropes keep what
+/// gaps and lengths they have.
+void CoupledGroupSolution::remove_overlaps(const std::vector<RopeSystem>& rope_systems) {
+  if (!is_sound() || !find_overlaps()) return;
+  std::fill(b_.sliding.begin(), b_.sliding.end(), SlidingRow{});
+  assemble();
+  factor(b_.pattern, b_.numbers, b_.factor_scratch);
+  fill_pushes();
+  solve(b_.pattern, b_.numbers, b_.right_side);
+  read_displacement();
+  const double share = displaced_share();
+  displace_bodies(share);
+  displace_nodes(share, rope_systems);
+}
+
+void CoupledGroupSolution::displace_bodies(double share) {
+  for (std::size_t i = 0; i < b_.moving.size(); ++i) {
+    const CoupledBody& of = b_.moving[i];
+    const std::uint32_t body = b_.bodies[i];
+    state::MotionRecord& m = t_.bodies.motion[body];
+    const DVec3 turn = share * (of.body.scale * of.omega_scaled);
+    m.dx += vector_cast<Real>(share * of.v);
+    m.theta_scaled += vector_cast<Real>(math::inverse(math::in_double(t_.bodies.scale[body])) * turn);
+    if (is_gyroscopic_now(t_.bodies, body)) {
+      t_.bodies.rotation[body] =
+          normalize(math::quaternion_of(vector_cast<Real>(turn)) * t_.bodies.rotation[body]);
+    }
+  }
+}
+
+/// Ropes and points follow what they hang on and touch.
+void CoupledGroupSolution::displace_nodes(double share, const std::vector<RopeSystem>& rope_systems) {
   std::size_t node = 0;
   const auto displace = [&](std::uint32_t particle) {
     const RopeNode& of = b_.ropes.nodes[node++];
-    if (of.w > 0) t_.particles.position[particle].x += vector_cast<Real>(of.u);
+    if (of.w > 0) t_.particles.position[particle].x += vector_cast<Real>(share * of.u);
   };
   for (const std::uint32_t c : b_.rope_systems) {
     for (std::uint32_t i = 0; i < rope_systems[c].node_count; ++i)

@@ -288,6 +288,23 @@ int CoupledGroupSolution::least_solves_of_contacts() const {
   return any ? kLeastRopeContactSolves : 1;
 }
 
+/// The same as calm_contacts, of element contacts and rope contacts.
+void CoupledGroupSolution::calm_coupled_contacts() {
+  for (std::size_t i = 0; i < b_.contact_rows.size(); ++i) {
+    CoupledContact& coupled = b_.contact_rows[i];
+    JointRow& along_normal = b_.rows[b_.first_row[b_.hooks.size() + i]];
+    const double opening = dot(along_normal.n, velocity_at(i, true)) + coupled.separation / h_;
+    coupled.active = coupled.near && (coupled.separation <= 0 || opening < 0);
+    coupled.separation = std::max(coupled.separation, 0.0);
+    coupled.normal = coupled.friction = 0;
+    coupled.slides = false;
+    coupled.f = {};
+    along_normal.gamma = 0;
+    along_normal.target = dot(along_normal.n, coupled.surface) - coupled.separation / h_;
+    set_coupled_rows(i);
+  }
+}
+
 /// Contacts of a jammed rope get no friction for the rest of the substep (solve_again in
 /// solver/rope/rope_rows.h).
 bool CoupledGroupSolution::let_contacts_slide() {

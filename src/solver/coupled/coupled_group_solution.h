@@ -29,18 +29,27 @@ class CoupledGroupSolution {
   CoupledGroupSolution(double h, CoupledGroup& group, BodyContacts& contacts, state::Tables& tables)
       : h_(h), b_(group), contacts_(contacts), t_(tables) {}
 
-  void load(const std::vector<state::VelocityRecord>& before, const std::vector<RopeSystem>& rope_systems);
-  void run(std::vector<RopeSystem>& rope_systems);
+  void load_and_solve(const std::vector<state::VelocityRecord>& before,
+                      std::vector<RopeSystem>& rope_systems);
   /// Whether hooks give way (solver/joint/hook_breaks.h), so that everything must be loaded and run again.
   [[nodiscard]] bool gives_way(int round);
   void store(const std::vector<RopeSystem>& rope_systems);
   void remove_overlaps(const std::vector<RopeSystem>& rope_systems);
 
  private:
+  void load(const std::vector<state::VelocityRecord>& before, const std::vector<RopeSystem>& rope_systems);
+  /// False if the solution did not converge and has energy from nothing, or lets something pass.
+  [[nodiscard]] bool run(std::vector<RopeSystem>& rope_systems);
+  /// Solves with what holds, touches or would meet at the start, without friction, and takes no gap or
+  /// overlap back. If ropes still gain energy, they take no stretch back either: that is a projection of
+  /// velocities, which can only take energy.
+  void run_calmly(std::vector<RopeSystem>& rope_systems);
   /// Largest relative length error left in any rope.
   double check_ropes(bool& limits_changed);
   void linearize_ropes(std::vector<RopeSystem>& rope_systems);
   [[nodiscard]] bool gains_energy() const;
+  void calm_contacts();
+  void calm_coupled_contacts();
   // Loading and checking.
   void load_points();
   void load_hooks();
@@ -100,9 +109,10 @@ class CoupledGroupSolution {
   void store_body_contacts();
   bool find_overlaps();
   void fill_pushes();
-  [[nodiscard]] bool limit_displacement();
-  void displace_bodies();
-  void displace_nodes(const std::vector<RopeSystem>& rope_systems);
+  void read_displacement();
+  [[nodiscard]] double displaced_share() const;
+  void displace_bodies(double share);
+  void displace_nodes(double share, const std::vector<RopeSystem>& rope_systems);
 
   // The matrix and its right side.
   void assemble();
@@ -188,6 +198,7 @@ class CoupledGroupSolution {
   CoupledGroup& b_;
   BodyContacts& contacts_;
   state::Tables& t_;
+  bool is_calm_ = false;   ///< It takes no error back: run_calmly.
   bool is_solved_ = true;  ///< The last search for what contacts of two bodies do has found it.
 };
 

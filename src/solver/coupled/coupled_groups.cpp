@@ -90,8 +90,9 @@ void CoupledGroupSolution::load_points() {
 
 void CoupledGroupSolution::load_hooks() {
   std::array<JointRow, Hook::kMaxRows> rows;
-  const double most_push =
+  const double bounded =
       b_.direct.rows.empty() ? std::numeric_limits<double>::infinity() : kJointPushInContact;
+  const double most_push = is_calm_ ? 0 : bounded;
   for (std::size_t i = 0; i < b_.hooks.size(); ++i) {
     Hook& hook = t_.hooks[b_.hooks[i]];
     const auto end_of = [&](int end) {
@@ -294,20 +295,34 @@ double CoupledGroupSolution::check_ropes(bool& limits_changed) {
 bool CoupledGroupSolution::gains_energy() const {
   double before = 0;
   double behind = 0;
+  double mass = 0;
   for (const RopeNode& node : b_.ropes.nodes) {
     if (!(node.w > 0)) continue;
     before += node.mass * length_squared(node.v_free);
     behind += node.mass * length_squared(node.u);
+    mass += node.mass;
   }
   for (const CoupledBody& m : b_.moving) {
-    before += length_squared(m.body.v) / m.body.inverse_mass;
-    behind += length_squared(m.v) / m.body.inverse_mass;
+    before += length_squared(m.body.v) / m.body.inverse_mass + length_squared(m.body.omega_scaled);
+    behind += length_squared(m.v) / m.body.inverse_mass + length_squared(m.omega_scaled);
+    mass += 1 / m.body.inverse_mass;
   }
-  return behind > kMostEnergyGain * before;
+  return behind > kMostEnergyGain * before && is_work(0.5 * (behind - before), mass);
 }
 
-void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
+void CoupledGroupSolution::load_and_solve(const std::vector<state::VelocityRecord>& before,
+                                          std::vector<RopeSystem>& rope_systems) {
+  is_calm_ = false;
+  load(before, rope_systems);
+  if (run(rope_systems)) return;
+  is_calm_ = true;
+  load(before, rope_systems);
+  run_calmly(rope_systems);
+}
+
+bool CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
   double error = 0;
+  bool done = false;
   Unconverged unconverged;
   const auto again = [&](int solves) {
     if (unconverged.points && solves < 2 * kMostRopeSolves) return true;
@@ -328,13 +343,60 @@ void CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
     const bool grew = stiffen();
     const int least = std::max(least_solves(b_.ropes.contact_rows, unconverged), least_solves_of_contacts());
     const bool converged = !unconverged.points && solves >= least;
-    if (long_enough && !grew && converged) break;
+    done = long_enough && !grew && converged;
+    if (done) break;
     const bool is_wild = !b_.rope_contacts.empty() && gains_energy();
     for (RopeSetting& setting : b_.settings) setting.first = is_wild || (setting.first && long_enough);
   }
   const bool is_solved = error <= kRopeReportedError && is_sound();
   for (const std::uint32_t c : b_.rope_systems)
     rope_systems[c].unconverged = rope_systems[c].unconverged || !is_solved;
+  // Where ropes touch ropes, all solutions go on from wild ones, and a calm one lets knots through.
+  if (!b_.rope_contacts.empty()) return true;
+  return !unconverged.impacts && (done || !gains_energy());
+}
+
+/// Lets contacts hold what they hold or would meet in this substep, without friction, and lets them take no
+/// overlap back.
+void CoupledGroupSolution::calm_contacts() {
+  for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
+    DVec3 surface = contact_row.surface;
+    if (contact_row.body >= 0) {
+      const JointBody& body = b_.moving[contact_row.body].body;
+      surface = contact_row.belt + body.v + cross(body.scale * body.omega_scaled, contact_row.lever);
+    }
+    const double opening = dot(contact_row.n, b_.ropes.nodes[contact_row.node].v_free - surface);
+    contact_row.active = contact_row.separation <= 0 || h_ * opening + contact_row.separation < 0;
+    contact_row.separation = std::max(contact_row.separation, 0.0);
+    contact_row.n0 = contact_row.normal = contact_row.friction = contact_row.drag = 0;
+    contact_row.f0 = contact_row.f = {};
+    contact_row.slides = true;
+  }
+  calm_coupled_contacts();
+  std::fill(b_.kept.begin(), b_.kept.end(), 0.0);
+}
+
+void CoupledGroupSolution::run_calmly(std::vector<RopeSystem>& rope_systems) {
+  b_.cut_short = true;
+  calm_contacts();
+  double error = 1;
+  for (int solves = 0; error > kRopeLengthTolerance && solves < kMostRopeSolves; ++solves) {
+    linearize_ropes(rope_systems);
+    solve_with_bounds();
+    bool limits_changed = false;
+    error = check_ropes(limits_changed);
+    for (RopeSetting& setting : b_.settings) setting.first = false;
+  }
+  if (!is_sound() || gains_energy()) {
+    for (RopeSetting& setting : b_.settings) setting.first = true;
+    linearize_ropes(rope_systems);
+    for (RopeSegment& segment : b_.ropes.segments) segment.offset = {};
+    for (RopeBend& bend : b_.ropes.bends) bend.target = {};
+    solve_with_bounds();
+  }
+  if (!is_sound()) return;
+  (void)update_contact_rows(h_, true, b_.ropes);
+  (void)update_coupled_contacts(true);
 }
 
 bool CoupledGroupSolution::gives_way(int round) {
@@ -398,12 +460,8 @@ void solve_coupled_group(const std::vector<state::VelocityRecord>& before, const
                          state::Tables& tables) {
   group.factored = 0;
   CoupledGroupSolution solution(static_cast<double>(substep.h), group, contacts, tables);
-  solution.load(before, rope_systems);
-  solution.run(rope_systems);
-  for (int round = 0; solution.gives_way(round); ++round) {
-    solution.load(before, rope_systems);
-    solution.run(rope_systems);
-  }
+  solution.load_and_solve(before, rope_systems);
+  for (int round = 0; solution.gives_way(round); ++round) solution.load_and_solve(before, rope_systems);
   solution.store(rope_systems);
   if (substep.first) solution.remove_overlaps(rope_systems);
 }

@@ -31,6 +31,12 @@ inline constexpr Real kReleasedShare = Real(0.6);
 /// is recorded.
 inline constexpr Real kGrossExcess = Real(5);
 
+/// Ratio of the masses of two bodies that meet, from which on their island becomes direct at once if a soft
+/// contact would let them sink into each other too far [ratio]. Larger: with 1000 times the mass of a cube, a
+/// body that fell on three of them sank in by 82 % of one; with 10 times, by 5 %. Smaller: like bodies that
+/// fall in a heap are dear. No measurement of the value itself is recorded.
+inline constexpr Real kArrivingMassRatio = Real(5);
+
 /// An island with a faster body does not become direct [m/s]. Larger: a wave of falling dominoes becomes
 /// direct, 9.5 ms a step instead of 0.05 (docs/decisions/0007). Smaller: what is only being placed stays soft
 /// and sinks meanwhile.
@@ -46,6 +52,10 @@ inline constexpr std::int8_t kDirect = 2;
 /// Steps that an island stays direct after it last asked for it. Larger: islands in free flight that hit each
 /// other are direct without need. Chosen by hand; no measurement is recorded.
 inline constexpr std::int8_t kStaysDirectSteps = 30;
+
+/// Steps on end in which an island may cost more than kDirectStepBudget. Larger: what never comes to a
+/// solution costs as much in more of them. Chosen by hand; no measurement is recorded.
+inline constexpr std::int8_t kMostCostlySteps = 3;
 
 /// Minus the number of steps for which an island is not evaluated that was refused or is too large. Nearer to
 /// zero: sorting contacts into islands costs 20 ns a contact and step; a pyramid of 30 rows took 0.611 ms in
@@ -94,6 +104,11 @@ inline constexpr Real kPressedGroup = Real(25);
 inline constexpr Real kPressedLoad = Real(20);
 inline constexpr Real kPressedAgainShare = Real(0.25);
 
+/// Overlap of a body with one of an articulation that hangs on nothing, over the size of the smaller, from
+/// which on their contact bears load [ratio]. Larger: the load on a light table is seen to sink into it.
+/// Smaller: what only falls on such a body is coupled. Chosen by hand; no measurement is recorded.
+inline constexpr Real kSunkShare = Real(0.025);
+
 /// Gap at which surfaces may press on each other [m]. Larger: what only hangs near is solved with the hooks;
 /// at 2 cm a lamp of 1 kg that hung 5 mm beside a tower brought it down. No measurement of the value itself
 /// is recorded.
@@ -129,6 +144,12 @@ inline constexpr std::size_t kMostLoadBearingManifolds = 512;
 /// 6e5 N s, which then throw all apart at 4e7 m/s. Smaller: contacts give way under loads of 5e4 times the
 /// weight of what carries them.
 inline constexpr double kMostCarriedSpeed = 0.01;
+
+/// Most by which the removal of overlaps moves the ends of a rope's segment apart or aside, over its length
+/// [ratio]: its square is how much longer the segment becomes. Larger: a rope on which wedged boxes lay was
+/// pulled from 7 to 147 cm in one step, and threw them off with 250 times their energy. Smaller: what lies on
+/// ropes comes apart later. No measurement of the value itself is recorded.
+inline constexpr double kMostSegmentPush = 0.05;
 
 /// Largest drag of sliding friction, times the substep, over the mass at the contact [ratio]. A contact that
 /// is dragged harder sticks: what is light may carry many times its weight. Chosen by hand; no measurement is

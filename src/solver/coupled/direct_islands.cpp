@@ -39,8 +39,8 @@ Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
 }
 
 /// Impulse in a substep that would let a soft contact sink by 1 m, over its effective mass [1/m].
-Real stiffness_of(const ContactBlock& block, const ContactStep& step) {
-  const ContactSoftness soft = contact_softness(step, block.anchored);
+Real stiffness_of(const ContactStep& step, bool anchored) {
+  const ContactSoftness soft = contact_softness(step, anchored);
   return soft.rate / soft.impulse_scale;
 }
 
@@ -73,7 +73,7 @@ void evaluate_contacts(const ContactStep& step, const BodyContacts& contacts, Is
                        const Bodies& bodies, base::DisjointSets& sets, std::vector<IslandDemand>& demands) {
   for (const ContactBlock& block : contacts.blocks) {
     if (!is_evaluated(block, bodies)) continue;
-    const Real stiffness = stiffness_of(block, step);
+    const Real stiffness = stiffness_of(step, block.anchored);
     ContactBlock::Lane sag;
     ContactBlock::Lane support_stiffness;
     find_sags(block, stiffness, sag, support_stiffness);
@@ -164,6 +164,39 @@ bool joins(const Manifold& m, IslandMembers members, const Bodies& bodies) {
          members[m.body_b] != Footing::kHangs;
 }
 
+/// How deep a soft contact lets a body sink that arrives on a lighter one which something holds [m]: it gives
+/// way like a spring of the lighter mass, since rows know no more. 0 where the masses are alike.
+Real sinking_of(const Manifold& m, Real omega, const Bodies& bodies) {
+  const Real w_a = bodies.motion[m.body_a].inverse_mass;
+  const Real w_b = bodies.motion[m.body_b].inverse_mass;
+  const Real ratio = std::max(w_a, w_b) / std::min(w_a, w_b);
+  if (!(ratio >= kArrivingMassRatio)) return Real(0);
+  Real closing = Real(0);
+  for (std::int32_t k = 0; k < m.point_count; ++k) {
+    const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
+    closing = std::max(closing, dot(m.normal, state::velocity_at(bodies, m.body_a, p.anchor_a) -
+                                                  state::velocity_at(bodies, m.body_b, p.anchor_b)));
+  }
+  return closing * std::sqrt(ratio) / omega;
+}
+
+/// An island in which something heavy arrives on something light becomes direct before it has sunk in.
+void expect_arrivals(const std::vector<Manifold>& manifolds, const ContactStep& step, IslandMembers members,
+                     Bodies& bodies) {
+  const Real omega = std::sqrt(stiffness_of(step, false) / step.h);
+  for (const Manifold& m : manifolds) {
+    if (!joins(m, members, bodies)) continue;
+    if (bodies.direct_state[m.body_a] < 0 || bodies.direct_state[m.body_b] < 0) continue;  // refused
+    const Real size =
+        Real(2) * std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
+    if (!(sinking_of(m, omega, bodies) > kGrossExcess * kLargestSag * size)) continue;
+    for (const std::uint32_t body : {m.body_a, m.body_b}) {
+      std::int8_t& state = bodies.direct_state[body];
+      if (state < kDirect) state = kDirect + kStaysDirectSteps;
+    }
+  }
+}
+
 /// Numbers the islands with direct bodies by their lowest body, and lists their bodies.
 void number_islands(std::span<const std::uint32_t> awake, const Bodies& bodies, DirectIslands& direct) {
   std::vector<std::uint32_t>& island_of = direct.island_of;
@@ -241,7 +274,12 @@ bool is_within_budget(const DirectGraph& graph, Vec3 gravity, const Bodies& bodi
   const Real ratio = heaviest_on_light(graph, gravity, bodies) / kHeavyOnLightRatio;
   const double budget =
       std::clamp(static_cast<double>(ratio) * kDirectIslandBudget, kDirectIslandBudget, kDirectBudget);
-  island.newton_steps = ratio > Real(1) ? kDirectHeavyNewtonSteps : kDirectNewtonSteps;
+  // What moves fast changes its contacts before a long search for them ends.
+  const bool rests = std::none_of(graph.bodies.begin(), graph.bodies.end(), [&](std::uint32_t body) {
+    return length(bodies.motion[body].v) > kDirectIslandSpeed;
+  });
+  island.newton_steps = ratio > Real(1) && rests ? kDirectHeavyNewtonSteps : kDirectNewtonSteps;
+  island.most_work = (rests ? kDirectRestingBudget : 1) * kDirectStepBudget;
   return island.graph == graph ? island.pattern.operations <= budget
                                : make_pattern(graph, budget, direct, island);
 }
@@ -340,6 +378,21 @@ void take_islands(Bodies& bodies, DirectIslands& direct) {
   direct.count = static_cast<int>(taken);
 }
 
+/// Refuses islands that cost too much in several steps on end.
+void refuse_costly_islands(DirectIslands& direct, Bodies& bodies) {
+  for (const DirectIsland& island : direct.live()) {
+    if (island.work <= kDirectStepBudget) continue;
+    // The steps that are left count down above kDirect, as in an island that asks for less.
+    constexpr std::int8_t kFresh = kDirect + kMostCostlySteps;
+    const std::int8_t before = direct.demands[direct.sets.root(island.graph.bodies.front())].most;
+    const bool was_costly = before > kDirect && before <= kFresh;
+    const std::int8_t left = was_costly ? static_cast<std::int8_t>(before - 1) : kFresh;
+    if (left == kDirect) ++direct.refused;
+    for (const std::uint32_t body : island.graph.bodies)
+      bodies.direct_state[body] = left == kDirect ? kNotEvaluatedSteps : left;
+  }
+}
+
 }  // namespace
 
 void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep& step,
@@ -351,6 +404,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   direct.refused = 0;
   direct.coupled.clear();
   HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
+  expect_arrivals(manifolds, step, members, bodies);
   const bool any = std::any_of(awake.begin(), awake.end(),
                                [&](std::uint32_t body) { return bodies.direct_state[body] >= kDirect; });
   if (!any) return;
@@ -436,6 +490,7 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     if (root == body && is_too_large && excess_of(island) > Real(1)) ++direct.too_large;
     bodies.direct_state[body] = evaluate(island);
   }
+  refuse_costly_islands(direct, bodies);
 }
 
 }  // namespace hooke::solver

@@ -33,11 +33,12 @@
 ///   sag H^2 / a^3    1.9 where a column of cubes buckles (docs/decisions/0004)  at most 0.3
 ///
 /// An island that exceeds one of them in two consecutive steps, or five times in one step, is solved directly
-/// until it has stayed below 0.6 of both for 30 steps. An island whose bodies are all new
-/// (state::Bodies::kNew) is direct in its first step: soft contacts need some steps to learn what they carry,
-/// and meanwhile a balanced structure sinks and sways. The sag follows from the impulse, which the direct
-/// solution knows too, so both are evaluated alike. The sag is at least what a body's own weight needs,
-/// shared by what the body rests on.
+/// until it has stayed below 0.6 of both for 30 steps. A body that arrives on a lighter one would sink by
+/// v sqrt(ratio of masses) / omega, as on a spring of the lighter mass: if that is beyond five times the
+/// first ratio, the island is direct at once. An island whose bodies are all new (state::Bodies::kNew) is
+/// direct in its first step: soft contacts need some steps to learn what they carry, and meanwhile a balanced
+/// structure sinks and sways. The sag follows from the impulse, which the direct solution knows too, so both
+/// are evaluated alike. The sag is at least what a body's own weight needs, shared by what the body rests on.
 
 namespace hooke::solver {
 

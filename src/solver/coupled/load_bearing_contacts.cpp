@@ -29,6 +29,13 @@ bool is_touching(const Manifold& m) {
   return false;
 }
 
+Real deepest_overlap(const Manifold& m) {
+  Real deepest = Real(0);
+  for (std::int32_t k = 0; k < m.point_count; ++k)
+    deepest = std::max(deepest, -m.point[static_cast<std::size_t>(k)].separation);
+  return deepest;
+}
+
 /// Lists which body lies on which.
 void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) {
   props.clear();
@@ -81,7 +88,7 @@ struct Candidates {
     // Rows of one body that are exact leave nothing to the others.
     if (support_role[upper] == SupportRole::kSupported || w_lower >= kLoadBearingMassRatio * w_upper)
       return true;
-    if (support_role[lower] == SupportRole::kHooked) return false;
+    if (support_role[lower] == SupportRole::kHooked) return sinks(m);
     return w_lower * load_on(m) > (was_load_bearing(m) ? Real(0) : kLoadBearingLoadRatio * gravity);
   }
 
@@ -93,6 +100,16 @@ struct Candidates {
     if (w * ground_load.neighbor >= kPressedMass) return true;
     if (!(w * ground_load.group >= kPressedGroup)) return false;
     return w * load_on(m) > (was_load_bearing(m) ? kPressedAgainShare : Real(1)) * kPressedLoad * gravity;
+  }
+
+  /// Whether soft rows do not hold the contact: it is far inside, or has been coupled for that and still
+  /// pushes.
+  [[nodiscard]] bool sinks(const Manifold& m) const {
+    if (in_ragdoll[m.body_a] != 0 || in_ragdoll[m.body_b] != 0) return false;
+    if (was_load_bearing(m)) return load_on(m) > Real(0);
+    const Real size =
+        Real(2) * std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
+    return deepest_overlap(m) > kSunkShare * size;
   }
 
   /// Load on the upper body in the last step [N].
@@ -127,8 +144,7 @@ std::size_t choose(const Candidates& candidates, state::Pairs& pairs, std::vecto
       if (support_role[m.body_a] == SupportRole::kNone && support_role[m.body_b] == SupportRole::kNone)
         continue;
       if (!is_moved(candidates.bodies, m.body_a) || !is_moved(candidates.bodies, m.body_b)) continue;
-      const bool may_bounce = m.restitution > Real(0) && !m.touching;
-      if (may_bounce || !candidates.may_bear_load(m)) continue;
+      if (!candidates.may_bear_load(m)) continue;
       const bool a_is_upper = candidates.loads(m.body_a, m.body_b, m);
       if (!a_is_upper && !candidates.loads(m.body_b, m.body_a, m)) continue;
       if (chosen == kMostLoadBearingManifolds) {
@@ -193,8 +209,7 @@ void choose_pressed(const Candidates& candidates, std::size_t chosen, state::Pai
     Manifold& m = pairs.manifold[row];
     const std::uint32_t* body = pressed_body(candidates, m);
     if (body == nullptr) continue;
-    const bool may_bounce = m.restitution > Real(0) && !m.touching;
-    if (may_bounce || !candidates.is_pressed(*body, m) || !candidates.may_bear_load(m)) continue;
+    if (!candidates.is_pressed(*body, m) || !candidates.may_bear_load(m)) continue;
     if (chosen == kMostLoadBearingManifolds) {
       refused.push_back(row);
       continue;

@@ -100,7 +100,7 @@ struct LoadBearingInputs {
 
 /// Fills `Pairs::coupled` with those that bear load. A body that hangs bears what is heavier than itself or
 /// presses harder than that. The upper body may have hooks itself, as the wheel of a cart does, but does not
-/// hang. A contact that may bounce bears load once it touches. A body that its contacts carry bears nothing
+/// hang. What bounces does so before (solver/contact/impacts.h). A body that its contacts carry bears nothing
 /// by its hooks, as a crate with a slack rope. What stands is supported by what it lies on, not by what leans
 /// on its side.
 void find_load_bearing_contacts(const LoadBearingInputs& inputs, const state::Bodies& bodies,

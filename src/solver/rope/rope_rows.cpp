@@ -44,7 +44,7 @@ double opening_speed_of(const RopeContactRow& t, V u, double h) {
 /// Whether friction that slides drives its node: it does where N was not right yet, or the sliding has
 /// turned.
 bool drives_by_friction(const RopeContactRow& t, V sliding) {
-  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho / kRopeContactStiffness);
+  return t.slides && !t.dragged && is_work(dot(t.f, sliding), t.rho_across / kRopeContactStiffness);
 }
 
 /// Friction that a contact starts from: that of the last substep, as far as N allows it now.
@@ -73,10 +73,10 @@ void update_friction(RopeContactRow& t, V sliding) {
   if (t.dragged) {
     const double speed = length(sliding);
     t.f = -t.drag * sliding;
-    t.drag = most < t.rho * speed ? most / speed : t.rho;
+    t.drag = most < t.rho_across * speed ? most / speed : t.rho_across;
     return;
   }
-  t.f = carried_friction(t) - t.rho * sliding;
+  t.f = carried_friction(t) - t.rho_across * sliding;
   const double size = length(t.f);
   t.slides = size > most;
   if (!t.slides) return;
@@ -88,7 +88,7 @@ void update_friction(RopeContactRow& t, V sliding) {
 double drag_of(const RopeContactRow& t, V u) {
   if (!(t.normal > 0)) return 0;
   const double speed = length(across(t.n, u - t.surface));
-  return speed * t.rho > t.friction * t.normal ? t.friction * t.normal / speed : t.rho;
+  return speed * t.rho_across > t.friction * t.normal ? t.friction * t.normal / speed : t.rho_across;
 }
 
 /// Returns whether the contact switched on or off, or its friction is not yet what its force allows.
@@ -122,12 +122,20 @@ V friction_across(V n, V force) {
   return size > kSameFrictionPlace * before ? (before / size) * now : now;
 }
 
+/// Stiffness along the normal that a node needs to hold a body which gives way; 0 for one that does not.
+double stiffness_against(const state::Tables& tables, std::uint32_t body, std::uint32_t particle) {
+  const auto w = static_cast<double>(tables.bodies.motion[body].inverse_mass);
+  const auto own = static_cast<double>(tables.particles.mass[particle]);
+  return w > 0 ? std::min(kPointStiffnessOnBody / w, kMostPointStiffness * own) : 0;
+}
+
 RopeContactRow load_contact_row(std::size_t row, std::uint32_t node, double h, const state::Tables& tables) {
   const state::Contacts& contacts = tables.contacts;
   RopeContactRow t;
   t.row = static_cast<std::uint32_t>(row);
   t.node = node;
-  t.rho = kRopeContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
+  t.rho_across = kRopeContactStiffness * static_cast<double>(tables.particles.mass[contacts.particle[row]]);
+  t.rho = std::max(t.rho_across, stiffness_against(tables, contacts.body[row], contacts.particle[row]));
   t.n = vector_cast<double>(contacts.normal[row]);
   t.surface = vector_cast<double>(contacts.surface_velocity[row]);
   t.lever = vector_cast<double>(contacts.lever[row]);
@@ -244,7 +252,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
   }
   for (RopeContactRow& t : std::span(contact_rows).subspan(first_contact_row)) {
     t.of_point = true;
-    t.rho = std::min(kPointStiffnessOnBody * heaviest, kMostPointStiffness * own);
+    t.rho = t.rho_across = std::min(kPointStiffnessOnBody * heaviest, kMostPointStiffness * own);
     t.drag = drag_of(t, point.node.v_free);
   }
 }
@@ -320,8 +328,9 @@ void linearize(const RopeSetting& setting, double h, const std::vector<RopeNode>
 /// over the trial force.
 M contact_stiffness(const RopeContactRow& t) {
   if (!t.slides || t.of_point || t.dragged)
-    return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho);
-  return math::axial(t.n, t.rho, 0.0) + math::axial(cross(t.n, t.against), t.rho * turned_share(t), 0.0);
+    return math::axial(t.n, t.rho, t.of_point || t.dragged ? t.drag : t.rho_across);
+  return math::axial(t.n, t.rho, 0.0) +
+         math::axial(cross(t.n, t.against), t.rho_across * turned_share(t), 0.0);
 }
 
 V push_of(const RopeContactRow& t, double h) {
@@ -365,7 +374,7 @@ Unconverged update_contact_row(double h, bool let_go, const RopeNode& node, Rope
   if (t.active) {
     const double push = t.n0 - t.rho * opening_speed;
     const V sliding = across(t.n, node.u - t.surface);
-    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho / kRopeContactStiffness);
+    const bool pulls = push < 0 && is_work(-push * t.separation / h, t.rho_across / kRopeContactStiffness);
     const bool drags_on = drives_by_friction(t, sliding);
     t.normal = std::max(0.0, push);
     t.active = t.normal > 0;

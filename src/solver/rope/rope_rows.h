@@ -64,7 +64,7 @@ struct RopeContactRow {
   static constexpr std::uint32_t kTether = 0xFFFFFFFF;
 
   std::uint32_t row = 0, node = 0;
-  double rho = 0;  ///< Contact stiffness [kg].
+  double rho = 0, rho_across = 0;  ///< Stiffness along the normal and of friction [kg].
   DVec3 n, f0, f;
   DVec3 against;     ///< Direction of friction on a node that slides.
   double trial = 0;  ///< Size of the impulse that would have held a sliding node [N s].

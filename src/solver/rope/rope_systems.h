@@ -80,10 +80,10 @@ class RopeSystemScratch {
 /// what is left then is reported. Ropes of equally many nodes are solved together, one in each lane of a
 /// vector.
 ///
-/// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), where rho = 1000 m, u is relative to the
-/// surface, and N0 is carried over substeps. Friction holds likewise up to mu N, and beyond that it is mu N
-/// against the motion. An anchor holds its node by the hook's rows (solver/joint_rows/joint_rows.h), with a
-/// compliance of 1e-6 of the node's own.
+/// A contact holds its node with N = max(0, N0 - rho (n.u + s/h)), where rho is 1000 m or, against a body
+/// that gives way, 10 times its mass, u is relative to the surface, and N0 is carried over substeps. Friction
+/// holds likewise with 1000 m up to mu N, and beyond that it is mu N against the motion. An anchor holds its
+/// node by the hook's rows (solver/joint_rows/joint_rows.h), with a compliance of 1e-6 of the node's own.
 ///
 /// Sources: docs/decisions/0002-ropes.md; geometric stiffness after Tournier et al. 2015, "Stable
 /// constrained dynamics". A segment of no length is taken to point down. Sweeps are in double: the

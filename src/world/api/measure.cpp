@@ -4,6 +4,7 @@
 #include "elements/tetrahedron.h"
 #include "solver/rope/rope_repulsion.h"
 #include "solver/rope/rope_rows.h"
+#include "solver/rope/rope_tuning.h"
 #include "solver/rope/rope_twist.h"
 #include "solver/soft/shape_matching.h"
 #include "state/sleeping_pairs.h"
@@ -80,8 +81,9 @@ void measure_bodies(const Tables& t, Measurement& m) {
     const DVec3 inertia = vector_cast<double>(mass.inertia);
     m.energy.kinetic += 0.5 * kilograms * length_squared(v);
     m.energy.kinetic += 0.5 * (l.x * l.x / inertia.x + l.y * l.y / inertia.y + l.z * l.z / inertia.z);
-    m.energy.potential += potential_of(t, t.bodies.center[body], kilograms,
-                                       static_cast<double>(t.bodies.traits[body].gravity_scale));
+    const DVec3 middle = t.bodies.center[body] - 0.5 * t.body_substep * v;  // as middle_of a particle
+    m.energy.potential +=
+        potential_of(t, middle, kilograms, static_cast<double>(t.bodies.traits[body].gravity_scale));
     m.momentum += kilograms * v;
     m.angular_momentum += kilograms * cross(t.bodies.center[body], v) + momentum;
   }
@@ -128,6 +130,34 @@ double measure_springs(const Tables& t, Stretch& stretch) {
   return energy;
 }
 
+/// Largest extension of a rigid segment by its tension [m]: under heavy loads it gives way a little, and
+/// gives it back (solver/rope/rope_tuning.h). 0 if both ends are held.
+double compliant_extension(const Tables& t, double tension, std::uint32_t particle) {
+  const auto mass = [&](std::uint32_t p) { return static_cast<double>(t.particles.mass[p]); };
+  const auto inverse = [&](std::uint32_t p) {
+    return static_cast<double>(t.particles.velocity[p].inverse_mass);
+  };
+  if (!(inverse(particle) > 0 || inverse(particle + 1) > 0)) return 0;
+  const double lighter =
+      solver::lighter_end(mass(particle), inverse(particle), mass(particle + 1), inverse(particle + 1));
+  return tension * solver::kComplianceInContact * t.substep * t.substep / lighter;
+}
+
+/// Energy of the segment of a rope between a particle and the next. It follows from the tension, because the
+/// length of a very stiff segment is less exact.
+double stretch_energy(const Tables& t, std::size_t segment, std::uint32_t particle) {
+  const auto stiffness = static_cast<double>(t.segments.stiffness[segment]);
+  const auto tension = static_cast<double>(t.segments.tension[segment]);
+  if (!std::isinf(stiffness)) return 0.5 * tension * tension / stiffness;
+  const auto rest = static_cast<double>(t.segments.rest_length[segment]);
+  const double extension = distance(t, particle, particle + 1) - rest;
+  const double explained = std::min(extension, compliant_extension(t, tension, particle));
+  if (!(tension > 0 && explained > 0)) return 0;
+  const double in_the_middle = length(middle_of(t, particle) - middle_of(t, particle + 1)) - rest;
+  const double share = std::clamp(in_the_middle / extension, 0.0, 2.0);
+  return 0.5 * tension * explained * share * share;
+}
+
 double measure_segments(const Tables& t, Stretch& stretch) {
   double energy = 0;
   for (const state::Deformable& object : t.objects) {
@@ -136,9 +166,7 @@ double measure_segments(const Tables& t, Stretch& stretch) {
       const double l = distance(t, object.particles.first + i, object.particles.first + i + 1);
       const auto rest = static_cast<double>(t.segments.rest_length[s]);
       stretch.add(l, rest);
-      // The energy follows from the tension, because the length of a very stiff segment is less exact.
-      const auto tension = static_cast<double>(t.segments.tension[s]);
-      energy += 0.5 * tension * tension / static_cast<double>(t.segments.stiffness[s]);
+      energy += stretch_energy(t, s, object.particles.first + i);
     }
   }
   return energy;
