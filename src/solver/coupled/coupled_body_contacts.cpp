@@ -367,9 +367,10 @@ double CoupledGroupSolution::displaced_share() const {
   };
   for (const CoupledBody& m : b_.moving) allow(m.v, kDirectLargestPush);
   for (const RopeNode& node : b_.ropes.nodes) allow(node.u, kDirectLargestPush);
-  for (const RopeSegment& segment : b_.ropes.segments)
+  for (const RopeSegment& segment : b_.ropes.segments) {
     allow(b_.ropes.nodes[segment.a + 1].u - b_.ropes.nodes[segment.a].u,
           kMostSegmentPush * segment.traits.rest);
+  }
   return std::isfinite(most) ? 1 / most : 0;
 }
 
