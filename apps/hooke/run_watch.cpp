@@ -51,9 +51,11 @@ constexpr std::array kRefusedCounts = {
     RefusedCount{&StepReport::contacts_refused, "contacts_refused",
                  "contacts were too many to be solved with hooks and ropes, and may sink",
                  "fewer bodies on what hangs, masses that differ less, or more substeps"},
-    RefusedCount{&StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
-                 "groups of ropes and what they hold took too much work to be solved to the end",
-                 "fewer points, fewer ropes that touch each other, or fewer bodies on what hangs"},
+    RefusedCount{
+        &StepReport::coupled_groups_cut_short, "coupled_groups_cut_short",
+        "groups of ropes and what they hold took too much work to be solved to the end, or were solved "
+        "without taking gaps back",
+        "fewer points, fewer ropes that touch each other, fewer bodies on what hangs, or more substeps"},
 };
 
 double in_double(Real value) {

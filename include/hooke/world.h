@@ -136,7 +136,7 @@ struct StepReport {
   /// those of ropes that touch each other in more places than can be solved.
   std::uint32_t contacts_refused = 0;
   /// Coupled groups, of ropes and what hangs on them and touches them, that used up their budget of work, or
-  /// for whose contacts of bodies no solution was found.
+  /// for which no solution was found: they took one that takes no error back and can only lose energy.
   std::uint32_t coupled_groups_cut_short = 0;
   RouteCounts routes = {};  ///< How many contacts, hooks and ropes were solved in which way.
   double detect_ms = 0;     ///< Time to find who is near whom, and where they touch [ms].

@@ -38,7 +38,9 @@
 ///   direct    The contacts of its island sag, or would buckle, as soft rows: a high stack, a heavy body on light
 ///             ones. All contacts of the island are solved by one factorization in each substep
 ///             (solver/coupled/direct_islands.h). 256 bodies and 4e4 multiplications an island at most, 1e6 in
-///             all, the largest loads first: StepReport::islands_refused counts the others, which stay soft.
+///             all, the largest loads first: StepReport::islands_refused counts the others, which stay soft, and
+///             those that kDirectStepBudget gave up. An island is direct at once if something heavy arrives on
+///             something light (docs/decisions/0035-arrivals-and-calm-solutions.md).
 ///             docs/decisions/0007-hard-islands.md
 ///   soft      All others. Rows that yield a little are solved color after color, 16 side by side, once with and
 ///             once without bias in a substep (solver/contact/body_contacts.h). It is the cheapest way.
@@ -76,9 +78,10 @@
 ///   coupled           An end of the hook is a point of a rope, cloth, solid or group of particles, or its group,
 ///                     ragdolls too, has contacts or points that are solved with it. All of it is one coupled
 ///                     group with the ropes (solver/coupled/coupled_groups.h): Newton steps with a factorization
-///                     each. After four of them kCoupledGroupBudget of work ends it:
-///                     StepReport::coupled_groups_cut_short counts those that end so. Ball hooks that hold a rope
-///                     by what does not move are anchors of the rope alone, and count here too.
+///                     each. After four of them kCoupledGroupBudget of work ends it, and where none is found it
+///                     takes one that can only lose energy (docs/decisions/0035-arrivals-and-calm-solutions.md):
+///                     StepReport::coupled_groups_cut_short counts both. Ball hooks that hold a rope by what does
+///                     not move are anchors of the rope alone, and count here too.
 ///                     docs/decisions/0011-ties.md
 // clang-format on
 ///

@@ -6,6 +6,7 @@
 #include "math/symmetric.h"
 #include "state/objects.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -192,6 +193,11 @@ struct RowRange {
 inline RowRange colliders_of(const Bodies& bodies, std::uint32_t body) {
   const std::uint32_t first = bodies.first_collider[body];
   return {first, first + bodies.collider_count[body]};
+}
+
+/// The smaller inner radius of two bodies [m].
+inline Real thinner_radius(const Bodies& bodies, std::uint32_t a, std::uint32_t b) {
+  return std::min(bodies.traits[a].inner_radius, bodies.traits[b].inner_radius);
 }
 
 /// Velocity at the start of the step of the point at `anchor` from the center of mass [m/s].

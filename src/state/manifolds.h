@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "state/route.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -75,6 +76,14 @@ inline Real normal_impulse(const Manifold& m) {
   Real sum = Real(0);
   for (std::int32_t i = 0; i < m.point_count; ++i) sum += m.point[static_cast<std::size_t>(i)].normal_impulse;
   return sum;
+}
+
+/// Deepest overlap of its points; 0 if none overlaps [m].
+inline Real deepest_overlap(const Manifold& m) {
+  Real deepest = Real(0);
+  for (std::int32_t i = 0; i < m.point_count; ++i)
+    deepest = std::max(deepest, -m.point[static_cast<std::size_t>(i)].separation);
+  return deepest;
 }
 
 /// A manifold that is solved with the hooks and ropes of a coupled group (solver/coupled/coupled_groups.h).

@@ -8,7 +8,7 @@
 
 namespace hooke::state {
 
-/// How a contact of two bodies is solved.
+/// How a contact of two bodies is solved. Blocks of contacts are in this order.
 enum class ContactRoute : std::uint8_t {
   kNone,     ///< It has no rows in this step.
   kSoft,     ///< By soft rows, color after color.

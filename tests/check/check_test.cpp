@@ -104,7 +104,8 @@ TEST_SUITE("check/cases") {
     const CheckSetting slippery{.friction_scale = 0};
     CHECK(failed_rows("I10", slippery) == 3);  // the row without friction stays
     CHECK(failed_rows("V14", slippery) == 3);
-    CHECK(failed_rows("V48", slippery) >= 2);  // both stones spin on
+    // Both stones spin on. They slide off the ground and fall: rounding of 59 kJ is a third of their 4.8 J.
+    CHECK(failed_rows("V48", slippery) == 3);
   }
 
   TEST_CASE("a tenth more friction is found") {

@@ -115,12 +115,9 @@ void DensePiles::thin_out(const state::Bodies& bodies, state::Pairs& pairs) {
   deep_.clear();
   for (std::size_t i = 0; i < pairs.manifold.size(); ++i) {
     const state::Manifold& m = pairs.manifold[i];
-    Real overlap = Real(0);
-    for (std::int32_t k = 0; k < m.point_count; ++k)
-      overlap = std::max(overlap, -m.point[static_cast<std::size_t>(k)].separation);
+    const Real overlap = state::deepest_overlap(m);
     if (!(overlap > Real(0)) || m.is_refreshed()) continue;
-    const Real thin = std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
-    if (!(overlap > kDeepOverlap * thin)) continue;
+    if (!(overlap > kDeepOverlap * state::thinner_radius(bodies, m.body_a, m.body_b))) continue;
     note(bodies, {i, m.body_a, m.body_b, length_squared(bodies.center[m.body_b] - bodies.center[m.body_a])});
   }
   find_members(bodies.traits.size());

@@ -178,22 +178,18 @@ std::span<ContactBlock> blocks_of(BodyContacts& contacts, Range blocks) {
   return {contacts.blocks.data() + blocks.begin, static_cast<std::size_t>(blocks.count())};
 }
 
-/// The soft blocks of a range: they are the first of their color.
-std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
+/// The blocks of a range whose way is none behind `last`: in each color soft blocks come first, then direct
+/// ones, then coupled ones.
+std::span<ContactBlock> blocks_up_to(state::ContactRoute last, BodyContacts& contacts, Range blocks) {
   const std::span<ContactBlock> all = blocks_of(contacts, blocks);
-  const auto end =
-      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return !block.is_soft(); });
-  HOOKE_ASSERT(std::none_of(end, all.end(), [](const ContactBlock& block) { return block.is_soft(); }));
+  const auto is_behind = [last](const ContactBlock& block) { return block.route > last; };
+  const auto end = std::find_if(all.begin(), all.end(), is_behind);
+  HOOKE_ASSERT(std::all_of(end, all.end(), is_behind));
   return all.first(static_cast<std::size_t>(end - all.begin()));
 }
 
-/// The blocks of a range whose impulses accelerate_bodies repeats in each substep: coupled groups keep those
-/// of their contacts themselves, and their blocks are the last of their color.
-std::span<ContactBlock> repeated_blocks_of(BodyContacts& contacts, Range blocks) {
-  const std::span<ContactBlock> all = blocks_of(contacts, blocks);
-  const auto end =
-      std::find_if(all.begin(), all.end(), [](const ContactBlock& block) { return block.is_coupled(); });
-  return all.first(static_cast<std::size_t>(end - all.begin()));
+std::span<ContactBlock> soft_blocks_of(BodyContacts& contacts, Range blocks) {
+  return blocks_up_to(state::ContactRoute::kSoft, contacts, blocks);
 }
 
 /// Calls `change(body, v, omega_scaled)` with what a lane's impulses do to each body that they move.
@@ -318,7 +314,10 @@ void prepare_body_contacts(parallel::ThreadPool& pool, const std::vector<Manifol
     const int first = contacts.color_begin[color];
     for_ranges(pool, contacts.color_begin[color + 1] - first, kWarmGrain, [&](Range range) {
       const Range blocks = {first + range.begin, first + range.end};
-      wide::warm_start_contacts(repeated_blocks_of(contacts, blocks), bodies.free_motion.data());
+      // accelerate_bodies repeats these impulses. Coupled groups carry those of their contacts over
+      // themselves.
+      wide::warm_start_contacts(blocks_up_to(state::ContactRoute::kDirect, contacts, blocks),
+                                bodies.free_motion.data());
       for (const ContactBlock& block : blocks_of(contacts, blocks))
         warm_start_rolling(contacts, block, bodies);
     });

@@ -350,9 +350,8 @@ void CoupledGroupSolution::read_displacement() {
   }
   for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.body < 0 || !contact_row.active) continue;
-    const CoupledBody& m = b_.moving[contact_row.body];
     RopeNode& node = b_.ropes.nodes[contact_row.node];
-    const DVec3 surface = m.v + cross(m.body.scale * m.omega_scaled, contact_row.lever);
+    const DVec3 surface = b_.moving[contact_row.body].velocity_at(contact_row.lever);
     node.u += node.inverse * (contact_stiffness(contact_row) * surface);
   }
 }

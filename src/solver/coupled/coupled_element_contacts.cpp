@@ -203,8 +203,7 @@ DVec3 CoupledGroupSolution::velocity_at(std::size_t index, bool before) const {
   }
   const int body = b_.ends[b_.hooks.size() + index][0];
   if (body < 0) return v;
-  const CoupledBody& m = b_.moving[static_cast<std::size_t>(body)];
-  return v - (m.v + cross(m.body.scale * m.omega_scaled, coupled.lever));
+  return v - b_.moving[static_cast<std::size_t>(body)].velocity_at(coupled.lever);
 }
 
 DVec3 CoupledGroupSolution::sliding_of(std::size_t index, bool before) const {

@@ -164,8 +164,7 @@ void CoupledGroupSolution::move_nodes() {
   HOOKE_ASSERT(b_.first_incident.size() == b_.ropes.nodes.size() + 1);
   for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
     if (contact_row.body < 0) continue;
-    const CoupledBody& m = b_.moving[contact_row.body];
-    contact_row.surface = contact_row.belt + m.v + cross(m.body.scale * m.omega_scaled, contact_row.lever);
+    contact_row.surface = contact_row.belt + b_.moving[contact_row.body].velocity_at(contact_row.lever);
   }
   for (std::size_t n = 0; n < b_.ropes.nodes.size(); ++n) {
     RopeNode& node = b_.ropes.nodes[n];
@@ -360,11 +359,9 @@ bool CoupledGroupSolution::run(std::vector<RopeSystem>& rope_systems) {
 /// overlap back.
 void CoupledGroupSolution::calm_contacts() {
   for (RopeContactRow& contact_row : b_.ropes.contact_rows) {
-    DVec3 surface = contact_row.surface;
-    if (contact_row.body >= 0) {
-      const JointBody& body = b_.moving[contact_row.body].body;
-      surface = contact_row.belt + body.v + cross(body.scale * body.omega_scaled, contact_row.lever);
-    }
+    const DVec3 surface = contact_row.body < 0
+                              ? contact_row.surface
+                              : contact_row.belt + b_.moving[contact_row.body].velocity_at(contact_row.lever);
     const double opening = dot(contact_row.n, b_.ropes.nodes[contact_row.node].v_free - surface);
     contact_row.active = contact_row.separation <= 0 || h_ * opening + contact_row.separation < 0;
     contact_row.separation = std::max(contact_row.separation, 0.0);

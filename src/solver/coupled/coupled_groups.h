@@ -49,8 +49,11 @@ struct CoupledBody {
   math::Symmetric3<double> stiffness;  ///< h^2 S K S of the forces of hooks.
   math::Symmetric3<double> excess;     ///< Implicit part of the stiffness.
   math::Symmetric3<double> found;      ///< Stiffness of the forces found last.
-  DVec3 v = {};                        ///< Resulting velocity.
+  DVec3 v = {};                        ///< Resulting velocity; until it is solved for, that before.
   DVec3 omega_scaled = {};
+
+  /// Velocity v + omega x lever at an offset from the center [m/s].
+  [[nodiscard]] DVec3 velocity_at(DVec3 lever) const { return v + cross(body.scale * omega_scaled, lever); }
 };
 
 /// A contact during the solution: an element contact of a rope or a cloth, or a rope contact.

@@ -34,8 +34,9 @@ std::int8_t next_direct_state(std::int8_t most, Real excess) {
 
 /// Twice the radius of a sphere within the smaller body.
 Real size_of(const ContactBlock& block, int lane, const Bodies& bodies) {
-  const Real a = bodies.traits[block.record_a[lane] / 16].inner_radius;
-  return Real(2) * (block.anchored ? a : std::min(a, bodies.traits[block.record_b[lane] / 16].inner_radius));
+  const std::uint32_t a = block.record_a[lane] / 16;
+  const std::uint32_t b = block.anchored ? a : block.record_b[lane] / 16;
+  return Real(2) * state::thinner_radius(bodies, a, b);
 }
 
 /// Impulse in a substep that would let a soft contact sink by 1 m, over its effective mass [1/m].
@@ -187,8 +188,7 @@ void expect_arrivals(const std::vector<Manifold>& manifolds, const ContactStep& 
   for (const Manifold& m : manifolds) {
     if (!joins(m, members, bodies)) continue;
     if (bodies.direct_state[m.body_a] < 0 || bodies.direct_state[m.body_b] < 0) continue;  // refused
-    const Real size =
-        Real(2) * std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
+    const Real size = Real(2) * state::thinner_radius(bodies, m.body_a, m.body_b);
     if (!(sinking_of(m, omega, bodies) > kGrossExcess * kLargestSag * size)) continue;
     for (const std::uint32_t body : {m.body_a, m.body_b}) {
       std::int8_t& state = bodies.direct_state[body];

@@ -29,13 +29,6 @@ bool is_touching(const Manifold& m) {
   return false;
 }
 
-Real deepest_overlap(const Manifold& m) {
-  Real deepest = Real(0);
-  for (std::int32_t k = 0; k < m.point_count; ++k)
-    deepest = std::max(deepest, -m.point[static_cast<std::size_t>(k)].separation);
-  return deepest;
-}
-
 /// Lists which body lies on which.
 void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) {
   props.clear();
@@ -107,9 +100,8 @@ struct Candidates {
   [[nodiscard]] bool sinks(const Manifold& m) const {
     if (in_ragdoll[m.body_a] != 0 || in_ragdoll[m.body_b] != 0) return false;
     if (was_load_bearing(m)) return load_on(m) > Real(0);
-    const Real size =
-        Real(2) * std::min(bodies.traits[m.body_a].inner_radius, bodies.traits[m.body_b].inner_radius);
-    return deepest_overlap(m) > kSunkShare * size;
+    const Real size = Real(2) * state::thinner_radius(bodies, m.body_a, m.body_b);
+    return state::deepest_overlap(m) > kSunkShare * size;
   }
 
   /// Load on the upper body in the last step [N].

@@ -92,8 +92,7 @@ void measure_bodies(const Tables& t, Measurement& m) {
 double deepest_of_bodies(const Tables& t) {
   double deepest = 0;
   state::for_each_manifold(t.pairs, [&](const state::Manifold& manifold) {
-    for (int i = 0; i < manifold.point_count; ++i)
-      deepest = std::max(deepest, -static_cast<double>(manifold.point[i].separation));
+    deepest = std::max(deepest, static_cast<double>(state::deepest_overlap(manifold)));
   });
   return deepest;
 }
