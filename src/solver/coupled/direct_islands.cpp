@@ -165,31 +165,45 @@ bool joins(const Manifold& m, IslandMembers members, const Bodies& bodies) {
          members[m.body_b] != Footing::kHangs;
 }
 
-/// How deep a soft contact lets a body sink that arrives on a lighter one which something holds [m]: it gives
-/// way like a spring of the lighter mass, since rows know no more. 0 where the masses are alike.
-Real sinking_of(const Manifold& m, Real omega, const Bodies& bodies) {
-  const Real w_a = bodies.motion[m.body_a].inverse_mass;
-  const Real w_b = bodies.motion[m.body_b].inverse_mass;
-  const Real ratio = std::max(w_a, w_b) / std::min(w_a, w_b);
-  if (!(ratio >= kArrivingMassRatio)) return Real(0);
+/// How fast the bodies of a contact come together at one of its points [m/s]; 0 where they part.
+Real closing_speed(const Manifold& m, const Bodies& bodies) {
   Real closing = Real(0);
   for (std::int32_t k = 0; k < m.point_count; ++k) {
     const state::ContactPoint& p = m.point[static_cast<std::size_t>(k)];
     closing = std::max(closing, dot(m.normal, state::velocity_at(bodies, m.body_a, p.anchor_a) -
                                                   state::velocity_at(bodies, m.body_b, p.anchor_b)));
   }
-  return closing * std::sqrt(ratio) / omega;
+  return closing;
 }
 
-/// An island in which something heavy arrives on something light becomes direct before it has sunk in.
+/// Notes how fast each body arrives on what does not give way: what lies on it arrives on it in turn.
+void note_landings(const std::vector<Manifold>& manifolds, const Bodies& bodies, std::vector<Real>& landing) {
+  landing.assign(bodies.motion.size(), Real(0));
+  for (const Manifold& m : manifolds) {
+    const bool a_moves = is_moved(bodies, m.body_a);
+    if (a_moves == is_moved(bodies, m.body_b) || !has_contact_rows(m, bodies)) continue;
+    Real& of_body = landing[a_moves ? m.body_a : m.body_b];
+    of_body = std::max(of_body, closing_speed(m, bodies));
+  }
+}
+
+/// An island in which something heavy arrives on something light becomes direct before it has sunk in. A soft
+/// contact would give way like a spring of the lighter mass, since rows know no more.
 void expect_arrivals(const std::vector<Manifold>& manifolds, const ContactStep& step, IslandMembers members,
-                     Bodies& bodies) {
+                     DirectIslands& direct, Bodies& bodies) {
   const Real omega = std::sqrt(stiffness_of(step, false) / step.h);
+  note_landings(manifolds, bodies, direct.landing);
   for (const Manifold& m : manifolds) {
     if (!joins(m, members, bodies)) continue;
+    if (members[m.body_a] == Footing::kRagdoll || members[m.body_b] == Footing::kRagdoll) continue;
     if (bodies.direct_state[m.body_a] < 0 || bodies.direct_state[m.body_b] < 0) continue;  // refused
+    const Real w_a = bodies.motion[m.body_a].inverse_mass;
+    const Real w_b = bodies.motion[m.body_b].inverse_mass;
+    const Real ratio = std::max(w_a, w_b) / std::min(w_a, w_b);
+    if (!(ratio >= kArrivingMassRatio)) continue;
+    const Real closing = std::max(closing_speed(m, bodies), direct.landing[w_a > w_b ? m.body_a : m.body_b]);
     const Real size = Real(2) * state::thinner_radius(bodies, m.body_a, m.body_b);
-    if (!(sinking_of(m, omega, bodies) > kGrossExcess * kLargestSag * size)) continue;
+    if (!(closing * std::sqrt(ratio) > kGrossExcess * kLargestSag * size * omega)) continue;
     for (const std::uint32_t body : {m.body_a, m.body_b}) {
       std::int8_t& state = bodies.direct_state[body];
       if (state < kDirect) state = kDirect + kStaysDirectSteps;
@@ -378,18 +392,32 @@ void take_islands(Bodies& bodies, DirectIslands& direct) {
   direct.count = static_cast<int>(taken);
 }
 
-/// Refuses islands that cost too much in several steps on end.
-void refuse_costly_islands(DirectIslands& direct, Bodies& bodies) {
-  for (const DirectIsland& island : direct.live()) {
-    if (island.work <= kDirectStepBudget) continue;
-    // The steps that are left count down above kDirect, as in an island that asks for less.
-    constexpr std::int8_t kFresh = kDirect + kMostCostlySteps;
-    const std::int8_t before = direct.demands[direct.sets.root(island.graph.bodies.front())].most;
-    const bool was_costly = before > kDirect && before <= kFresh;
-    const std::int8_t left = was_costly ? static_cast<std::int8_t>(before - 1) : kFresh;
-    if (left == kDirect) ++direct.refused;
-    for (const std::uint32_t body : island.graph.bodies)
-      bodies.direct_state[body] = left == kDirect ? kNotEvaluatedSteps : left;
+/// Counts a costly step of an island, and refuses it after several of them on end.
+void note_costly_step(const DirectIsland& island, DirectIslands& direct, Bodies& bodies) {
+  // The steps that are left count down above kDirect, as in an island that asks for less.
+  constexpr std::int8_t kFresh = kDirect + kMostCostlySteps;
+  const std::int8_t before = direct.demands[direct.sets.root(island.graph.bodies.front())].most;
+  const bool was_costly = before > kDirect && before <= kFresh;
+  const std::int8_t left = was_costly ? static_cast<std::int8_t>(before - 1) : kFresh;
+  if (left == kDirect) ++direct.refused;
+  for (const std::uint32_t body : island.graph.bodies)
+    bodies.direct_state[body] = left == kDirect ? kNotEvaluatedSteps : left;
+}
+
+/// Islands share one budget of work. Those that cost least get it first, so that it serves most of them.
+void share_step_budget(DirectIslands& direct, Bodies& bodies) {
+  double sum = 0;
+  for (const DirectIsland& island : direct.live()) sum += island.work;
+  if (sum <= kDirectStepBudget) return;
+  direct.order.resize(static_cast<std::size_t>(direct.count));
+  std::iota(direct.order.begin(), direct.order.end(), 0);
+  std::sort(direct.order.begin(), direct.order.end(), [&](int a, int b) {
+    return std::pair(direct.islands[a].work, a) < std::pair(direct.islands[b].work, b);
+  });
+  double spent = 0;
+  for (const int i : direct.order) {
+    spent += direct.islands[i].work;
+    if (spent > kDirectStepBudget) note_costly_step(direct.islands[i], direct, bodies);
   }
 }
 
@@ -404,7 +432,7 @@ void find_direct_islands(std::span<const std::uint32_t> awake, const ContactStep
   direct.refused = 0;
   direct.coupled.clear();
   HOOKE_ASSERT(std::is_sorted(awake.begin(), awake.end()) && members.size() == bodies.motion.size());
-  expect_arrivals(manifolds, step, members, bodies);
+  expect_arrivals(manifolds, step, members, direct, bodies);
   const bool any = std::any_of(awake.begin(), awake.end(),
                                [&](std::uint32_t body) { return bodies.direct_state[body] >= kDirect; });
   if (!any) return;
@@ -490,7 +518,7 @@ void evaluate_direct_islands(std::span<const std::uint32_t> awake, const Contact
     if (root == body && is_too_large && excess_of(island) > Real(1)) ++direct.too_large;
     bodies.direct_state[body] = evaluate(island);
   }
-  refuse_costly_islands(direct, bodies);
+  share_step_budget(direct, bodies);
 }
 
 }  // namespace hooke::solver

@@ -87,6 +87,7 @@ struct DirectIslands {
   BlockGraph matrix;                  ///< Graph of one island's matrix.
   std::vector<int> sizes;             ///< Sizes of its blocks.
   std::vector<IslandDemand> demands;  ///< By body row.
+  std::vector<Real> landing;          ///< By body row [m/s].
 
   /// Whether the body is in an island of this step.
   [[nodiscard]] bool holds(std::uint32_t body) const { return count > 0 && island_of[body] != kNoIsland; }

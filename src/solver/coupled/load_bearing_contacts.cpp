@@ -334,6 +334,14 @@ void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const s
     if (inputs.supports.ground_load[body].driven) continue;
     scratch.weights[body] = before / bodies.motion[body].inverse_mass;
   }
+  // Soft rows do not hold what is much heavier than the body below it, and hooked bodies are in no direct
+  // island.
+  for (const Prop& prop : scratch.props) {
+    if (bodies.motion[prop.lower].inverse_mass >=
+            kLoadBearingMassRatio * bodies.motion[prop.upper].inverse_mass &&
+        bodies.motion[prop.upper].inverse_mass > Real(0))
+      scratch.weights[prop.lower] = kNeverStands;
+  }
   for (int pass = 0; pass < kMostStandingPasses; ++pass) {
     if (!find_more_standing(scratch.weights, scratch.props, scratch)) break;
   }
