@@ -330,7 +330,7 @@ void CoupledGroupSolution::store_coupled_contacts() {
     ElementContact& contact = t_.element_contacts[b_.element_contacts[i]];
     contact.normal_force = static_cast<Real>(coupled.normal / h_);
     contact.friction_force = vector_cast<Real>((1 / h_) * coupled.f);
-    if (!coupled.firm) push_out(contact, static_cast<Real>(h_), t_.particles);
+    if (!coupled.firm) push_out(contact, static_cast<Real>(h_), t_);
   }
 }
 

@@ -446,9 +446,10 @@ void CoupledGroupSolution::store(const std::vector<RopeSystem>& rope_systems) {
 
 /// As in solver/soft/particle_contact_solve.h, overlap of points is removed by displacement, not by speed.
 void CoupledGroupSolution::push_out_points() {
+  const auto h = static_cast<Real>(h_);
   for (const RopeContactRow& contact_row : b_.ropes.contact_rows) {
-    if (contact_row.of_point && contact_row.row != RopeContactRow::kTether)
-      push_out(contact_row.row, static_cast<Real>(h_), t_.contacts, t_.particles);
+    if (!contact_row.of_point || contact_row.row == RopeContactRow::kTether) continue;
+    push_out(contact_row.row, h, t_.bodies, t_.contacts, t_.particles);
   }
 }
 

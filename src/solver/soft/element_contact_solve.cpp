@@ -77,14 +77,15 @@ bool is_near(const ElementContact& contact) {
   return contact.separation < kFar;
 }
 
-void push_out(const ElementContact& contact, Real h, state::Particles& particles) {
+void push_out(const ElementContact& contact, Real h, state::Tables& t) {
   const Real overlap = -contact.separation;
-  const Real w = inverse_mass_of(contact, particles);
+  const Real w = inverse_mass_of(contact, t.particles);
   if (!(overlap > Real(0)) || !(w > Real(0))) return;
   const Vec3 displacement = (std::min(overlap, Real(kParticlePushOutSpeed) * h) / w) * contact.normal;
   for (std::uint32_t i = 0; i < contact.count; ++i) {
     const std::uint32_t p = contact.particle[i];
-    particles.position[p].x += (contact.weight[i] * particles.velocity[p].inverse_mass) * displacement;
+    displace(p, (contact.weight[i] * t.particles.velocity[p].inverse_mass) * displacement, t.bodies,
+             t.contacts, t.particles);
   }
 }
 
@@ -95,7 +96,7 @@ void solve_element_contacts(Real h, state::Tables& t) {
       if (sweep == 0) {
         contact.normal_force = Real(0);
         contact.friction_force = {};
-        push_out(contact, h, t.particles);
+        push_out(contact, h, t);
       }
       solve_row(h, contact, t);
     }

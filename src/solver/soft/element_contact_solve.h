@@ -19,6 +19,6 @@ namespace hooke::solver {
 void solve_element_contacts(Real h, state::Tables& tables);
 
 /// Moves the points of a contact out of the body that they overlap.
-void push_out(const state::ElementContact& contact, Real h, state::Particles& particles);
+void push_out(const state::ElementContact& contact, Real h, state::Tables& tables);
 
 }  // namespace hooke::solver

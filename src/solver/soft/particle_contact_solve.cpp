@@ -41,8 +41,8 @@ void for_particles(const std::vector<state::Deformable>& objects, parallel::Rang
 }
 
 /// Solves rows [first, end) of one particle.
-void solve_rows(std::size_t first, std::size_t end, Real h, state::Contacts& contacts,
-                state::Particles& particles) {
+void solve_rows(std::size_t first, std::size_t end, Real h, const state::Bodies& bodies,
+                state::Contacts& contacts, state::Particles& particles) {
   for (std::size_t i = first; i < end; ++i) {
     contacts.normal_force[i] = Real(0);
     contacts.friction_force[i] = {};
@@ -52,16 +52,49 @@ void solve_rows(std::size_t first, std::size_t end, Real h, state::Contacts& con
     for (std::size_t i = first; i < end; ++i)
       solve_row(i, h, contacts, particles.velocity[contacts.particle[first]]);
   }
-  for (std::size_t i = first; i < end; ++i) push_out(i, h, contacts, particles);
+  for (std::size_t i = first; i < end; ++i) push_out(i, h, bodies, contacts, particles);
+}
+
+/// Takes the speed with which a particle would pass what does not give way. Its coupled group has solved
+/// these contacts; element contacts that came after may have pressed it on.
+void stop_at_ground(std::size_t first, std::size_t end, Real h, const state::Bodies& bodies,
+                    const state::Contacts& contacts, state::VelocityRecord& particle) {
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    for (std::size_t row = first; row < end; ++row) {
+      if (gives_way(bodies, contacts.body[row])) continue;
+      const Real speed = dot(contacts.normal[row], particle.v - contacts.surface_velocity[row]);
+      const Real least = -std::max(contacts.separation[row], Real(0)) / h;
+      if (speed < least) particle.v += (least - speed) * contacts.normal[row];
+    }
+  }
 }
 
 }  // namespace
 
-void push_out(std::size_t row, Real h, const state::Contacts& contacts, state::Particles& particles) {
+void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, state::Contacts& contacts,
+              state::Particles& particles) {
+  const auto begin = std::lower_bound(contacts.particle.begin(), contacts.particle.end(), particle);
+  const auto first = static_cast<std::size_t>(begin - contacts.particle.begin());
+  const auto of_particle = [&](std::size_t row) {
+    return row < contacts.particle.size() && contacts.particle[row] == particle;
+  };
+  for (std::size_t row = first; of_particle(row); ++row) {
+    if (gives_way(bodies, contacts.body[row])) continue;
+    const Real before = contacts.separation[row];
+    const Real deeper = std::min(before, Real(0)) - (before + dot(contacts.normal[row], by));
+    if (deeper > Real(0)) by += deeper * contacts.normal[row];
+  }
+  for (std::size_t row = first; of_particle(row); ++row)
+    contacts.separation[row] += dot(contacts.normal[row], by);
+  particles.position[particle].x += by;
+}
+
+void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Contacts& contacts,
+              state::Particles& particles) {
   const Real overlap = -contacts.separation[row];
   if (!(overlap > Real(0))) return;
-  particles.position[contacts.particle[row]].x +=
-      std::min(overlap, Real(kParticlePushOutSpeed) * h) * contacts.normal[row];
+  displace(contacts.particle[row], std::min(overlap, Real(kParticlePushOutSpeed) * h) * contacts.normal[row],
+           bodies, contacts, particles);
 }
 
 bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,
@@ -74,7 +107,11 @@ bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& 
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
                     const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
   for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
-    if (!touches_what_gives_way(bodies, contacts, first, end)) solve_rows(first, end, h, contacts, particles);
+    if (touches_what_gives_way(bodies, contacts, first, end)) {
+      stop_at_ground(first, end, h, bodies, contacts, particles.velocity[contacts.particle[first]]);
+    } else {
+      solve_rows(first, end, h, bodies, contacts, particles);
+    }
   });
 }
 
