@@ -104,6 +104,12 @@ inline constexpr Real kPressedGroup = Real(25);
 inline constexpr Real kPressedLoad = Real(20);
 inline constexpr Real kPressedAgainShare = Real(0.25);
 
+/// Overlap over half the size of the thinner body beyond which a body is far inside another one [ratio].
+/// Larger: a ball that a hook holds 0.1 m inside the ground, with ten times its mass on it, reached 40 m/s.
+/// Smaller: a hooked body that has sunk in a blow holds no heavy load. No measurement of the value itself is
+/// recorded.
+inline constexpr Real kDeepShare = Real(1.4);
+
 /// Overlap of a body with one of an articulation that hangs on nothing, over the size of the smaller, from
 /// which on their contact bears load [ratio]. Larger: the load on a light table is seen to sink into it.
 /// Smaller: what only falls on such a body is coupled. Chosen by hand; no measurement is recorded.

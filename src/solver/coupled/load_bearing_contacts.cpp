@@ -30,15 +30,17 @@ bool is_touching(const Manifold& m) {
 }
 
 /// Lists which body lies on which.
-void find_props(const state::Pairs& pairs, Vec3 down, std::vector<Prop>& props) {
+void find_props(const state::Pairs& pairs, const Bodies& bodies, Vec3 down, std::vector<Prop>& props) {
   props.clear();
   for (const Manifold& m : pairs.manifold) {
     const Real slope = dot(m.normal, down);  // positive where a lies on b
     if (std::abs(slope) < kLiesOnCosine || !is_touching(m)) continue;
     const bool a_is_upper = slope > Real(0);
-    props.push_back({.upper = a_is_upper ? m.body_a : m.body_b,
-                     .lower = a_is_upper ? m.body_b : m.body_a,
-                     .impulse = normal_impulse(m) * std::abs(slope)});
+    props.push_back(
+        {.upper = a_is_upper ? m.body_a : m.body_b,
+         .lower = a_is_upper ? m.body_b : m.body_a,
+         .impulse = normal_impulse(m) * std::abs(slope),
+         .deep = state::deepest_overlap(m) > kDeepShare * state::thinner_radius(bodies, m.body_a, m.body_b)});
   }
 }
 
@@ -317,6 +319,25 @@ bool find_more_standing(const std::vector<Real>& weights, const std::vector<Prop
   return more;
 }
 
+/// A body does not stand where something much heavier lies on it, since soft rows do not hold that. It does
+/// if it lies on what moves, since a direct island can hold all of them. It also does if a hook holds it
+/// inside the ground: coupled rows of the hook and of the ground would contradict each other.
+void let_heavy_loads_hang(const Bodies& bodies, const std::vector<Prop>& props, std::vector<Real>& weights) {
+  const auto stands_anyway = [&](std::uint32_t body) {
+    return std::any_of(props.begin(), props.end(), [&](const Prop& prop) {
+      return prop.upper == body && (prop.deep || is_moved(bodies, prop.lower));
+    });
+  };
+  for (const Prop& prop : props) {
+    const Real w_upper = bodies.motion[prop.upper].inverse_mass;
+    const Real w_lower = bodies.motion[prop.lower].inverse_mass;
+    if (weights[prop.lower] == kNeverStands || !(w_upper > Real(0)) ||
+        w_lower < kLoadBearingMassRatio * w_upper)
+      continue;
+    if (!stands_anyway(prop.lower)) weights[prop.lower] = kNeverStands;
+  }
+}
+
 /// A hooked body stands if contacts with standing bodies under it bring most of its weight and of what lies
 /// on it, and no motor or spring moves it.
 void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const state::Pairs& pairs,
@@ -324,7 +345,7 @@ void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const s
   const ContactStep& step = inputs.step;
   HOOKE_ASSERT(inputs.hooked.size() == bodies.motion.size());
   HOOKE_ASSERT(inputs.joints.in_ragdoll.size() == bodies.motion.size());
-  find_props(pairs, normalize(step.gravity), scratch.props);
+  find_props(pairs, bodies, normalize(step.gravity), scratch.props);
   scratch.carried.resize(bodies.motion.size());
   scratch.weights.assign(bodies.motion.size(), kNeverStands);
   const Real before = step.h / step.impulse_scale * length(step.gravity);
@@ -334,14 +355,7 @@ void find_footing(const LoadBearingInputs& inputs, const Bodies& bodies, const s
     if (inputs.supports.ground_load[body].driven) continue;
     scratch.weights[body] = before / bodies.motion[body].inverse_mass;
   }
-  // Soft rows do not hold what is much heavier than the body below it, and hooked bodies are in no direct
-  // island.
-  for (const Prop& prop : scratch.props) {
-    if (bodies.motion[prop.lower].inverse_mass >=
-            kLoadBearingMassRatio * bodies.motion[prop.upper].inverse_mass &&
-        bodies.motion[prop.upper].inverse_mass > Real(0))
-      scratch.weights[prop.lower] = kNeverStands;
-  }
+  let_heavy_loads_hang(bodies, scratch.props, scratch.weights);
   for (int pass = 0; pass < kMostStandingPasses; ++pass) {
     if (!find_more_standing(scratch.weights, scratch.props, scratch)) break;
   }
@@ -374,6 +388,20 @@ void take_back_last_choice(state::Pairs& pairs, LoadBearingScratch& scratch) {
   base::sort_unique(scratch.load_bearing_before);
   base::sort_unique(scratch.bore_load);
   pairs.coupled.clear();
+}
+
+/// Contacts that no longer bear load start without impulses. Those of a blow that a coupled group took would
+/// push light bodies away, since soft rows need many passes to take them back.
+void forget_impulses(std::span<const std::pair<std::uint32_t, std::uint32_t>> before, state::Pairs& pairs) {
+  if (before.empty()) return;
+  for (Manifold& m : pairs.manifold) {
+    if (m.is_coupled() || !std::binary_search(before.begin(), before.end(), std::pair(m.body_a, m.body_b)))
+      continue;
+    for (state::ContactPoint& p : m.point) p.normal_impulse = Real(0);
+    m.friction_impulse = {};
+    m.twist_impulse = Real(0);
+    m.rolling_impulse = {};
+  }
 }
 
 /// Lists the manifolds that were chosen. What is light turns far within a step, and a plank would dig a
@@ -422,6 +450,7 @@ void find_load_bearing_contacts(const LoadBearingInputs& inputs, const Bodies& b
   if (chosen > 0) add_loads(inputs.joints, bodies, pairs, scratch.load, scratch.supports.ground_load);
   choose_pressed(candidates, chosen, pairs, scratch.refused_manifolds);
   base::sort_unique(scratch.refused_manifolds);  // One that is loaded may be pressed, too.
+  forget_impulses(scratch.load_bearing_before, pairs);
   list_chosen(pairs);
 }
 

@@ -73,6 +73,7 @@ struct Prop {
   std::uint32_t upper = 0;  ///< Body row.
   std::uint32_t lower = 0;
   Real impulse = Real(0);  ///< Along gravity, in the last substep [N s].
+  bool deep = false;       ///< The upper body is far inside the lower one.
 };
 
 /// Memory of find_load_bearing_contacts.

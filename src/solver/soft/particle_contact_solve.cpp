@@ -84,8 +84,9 @@ void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, stat
     const Real deeper = std::min(before, Real(0)) - (before + dot(contacts.normal[row], by));
     if (deeper > Real(0)) by += deeper * contacts.normal[row];
   }
-  for (std::size_t row = first; of_particle(row); ++row)
-    contacts.separation[row] += dot(contacts.normal[row], by);
+  for (std::size_t row = first; of_particle(row); ++row) {
+    if (!gives_way(bodies, contacts.body[row])) contacts.separation[row] += dot(contacts.normal[row], by);
+  }
   particles.position[particle].x += by;
 }
 
