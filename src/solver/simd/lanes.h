@@ -13,7 +13,8 @@ inline constexpr int kLanes = 16;
 
 namespace wide {
 
-/// Systems in double that are solved side by side, ropes and trees. They fill one vector of the widest set.
+/// Systems in double that are solved side by side, ropes and trees, and rows of tetrahedra. They fill one
+/// vector of the widest set.
 inline constexpr int kDoubleLanes = 8;
 
 /// Blocks that share no particle which is written; the last block holds `last_count` rows.
