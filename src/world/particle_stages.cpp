@@ -3,8 +3,11 @@
 #include "base/assert.h"
 #include "solver/check_routes.h"
 #include "solver/soft/particle_kernels.h"
+#include "solver/soft/pressed_points.h"
 #include "solver/soft/shape_matching.h"
+#include "solver/soft/soft_tuning.h"
 #include "solver/soft/spring_solve.h"
+#include "solver/solid/tetrahedron_solve.h"
 #include "state/check_tables.h"
 #include "world/force_stages.h"
 
@@ -21,7 +24,8 @@ using parallel::Range;
 
 constexpr int kMotionGrain = 2048;
 constexpr int kTriangleGrain = 512;
-constexpr int kTetrahedronGrain = 64;
+constexpr int kTetrahedronGrain = 8;
+constexpr int kYieldGrain = 64;
 constexpr int kBlockGrain = 16;
 constexpr std::size_t kFewRows = 4096;
 
@@ -82,12 +86,11 @@ void for_soft_groups(WorldData& world, Work work) {
 
 /// Calls `kernel` for the tetrahedra of a group, one color after the other. Tetrahedra of one color share no
 /// particle.
-template <class Kernel>
-void for_tetrahedra(const solver::TetrahedronRows& tetrahedra, Division division, state::Particles& particles,
-                    Kernel kernel) {
+template <class Rows, class Kernel>
+void for_tetrahedra(Rows& tetrahedra, Division division, state::Particles& particles, Kernel kernel) {
   for (const solver::TetrahedronPass& pass : tetrahedra.passes) {
     division.for_rows(pass.first, pass.end, kTetrahedronGrain,
-                      [&](Range rows) { kernel(tetrahedra, rows, particles); });
+                      [&](Range blocks) { kernel(tetrahedra, pass, blocks, particles); });
   }
 }
 
@@ -98,6 +101,13 @@ void solve_passes(const Rows& rows, Division division, state::Particles& particl
     division.for_rows(pass.first, pass.end, kBlockGrain,
                       [&](Range blocks) { solve(rows, pass, blocks, particles); });
   }
+}
+
+/// Whether flow has made a tetrahedron stiff since coefficients were prepared.
+bool has_become_stiff(const solver::SoftGroup& group) {
+  return std::any_of(
+      group.yields.tetrahedra.begin(), group.yields.tetrahedra.end(),
+      [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
 }
 
 /// Calls `kernel` for each solid that is solved by shape matching.
@@ -304,8 +314,19 @@ void rebase_origins(WorldData& world) {
 
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
-  for_soft_groups(world, [&tables](const solver::SoftGroup& group, Division division) {
-    for_tetrahedra(group.tetrahedra, division, tables.particles, solver::solve_tetrahedra);
+  std::vector<int>& pressing = world.frame.pressing_points;
+  solver::count_pressing_points(tables, pressing);
+  for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
+    solver::TetrahedronBlocks& tetrahedra = group.tetrahedra;
+    if (tetrahedra.blocks.empty()) return;
+    const bool any_stiff = tetrahedra.any_stiff || has_become_stiff(group);
+    if (any_stiff) solver::note_pressed_points(tables, pressing, tetrahedra);
+    for_tetrahedra(tetrahedra, division, tables.particles, solver::solve_tetrahedra);
+    for (int sweep = 1; any_stiff && sweep < solver::kStiffSolidSweeps; ++sweep) {
+      solver::renew_pressed_points(pressing, tetrahedra, tables);
+      for_tetrahedra(tetrahedra, division, tables.particles, solver::solve_stiff_tetrahedra);
+    }
+    solver::release_pressed_points(tetrahedra, tables.particles);
   });
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
@@ -321,9 +342,9 @@ void move_particles(WorldData& world, Real h) {
   for_ranges(*world.pool, world.tables.particles.count(), kMotionGrain,
              [&](Range rows) { solver::wide::move(h, rows, world.tables.particles); });
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
-    division.for_rows(
-        0, static_cast<int>(group.yields.tetrahedra.size()), kTetrahedronGrain,
-        [&](Range rows) { solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra); });
+    division.for_rows(0, static_cast<int>(group.yields.tetrahedra.size()), kYieldGrain, [&](Range rows) {
+      solver::flow_tetrahedra(group.yields, rows, h, world.tables, group.tetrahedra);
+    });
   });
 }
 

@@ -152,6 +152,7 @@ struct Frame {
   std::vector<solver::RopeSystemScratch> rope_system_scratch;  ///< One per part of a parallel loop.
   std::vector<ContactShare> contact_shares;                    ///< Valid for one substep.
   std::vector<solver::HookedPoint> hooked_points;              ///< Valid for one particle substep.
+  std::vector<int> pressing_points;          ///< By row of the body; valid while solids are solved.
   std::vector<solver::TwistRow> twist_rows;  ///< One for each twist span; valid for one particle substep.
 
   // These members belong to forces.

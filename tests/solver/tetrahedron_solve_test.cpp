@@ -1,9 +1,10 @@
-#include "solver/soft/tetrahedron_solve.h"
+#include "solver/solid/tetrahedron_solve.h"
 
 #include "elements/tetrahedron.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 #include "math/random.h"
 #include "solver/pass_rows.h"
+#include "solver/target_bits.h"
 
 #include <cmath>
 #include <doctest/doctest.h>
@@ -16,13 +17,15 @@ namespace {
 struct Jelly {
   state::Particles particles;
   state::Tetrahedra tetrahedra;
-  TetrahedronRows rows;
+  TetrahedronBlocks rows;
 
   /// One substep without other forces.
   void step(Real h) {
     prepare_tetrahedra(rows, h);
-    for (const TetrahedronPass& pass : rows.passes) damp_tetrahedra(rows, {pass.first, pass.end}, particles);
-    for (const TetrahedronPass& pass : rows.passes) solve_tetrahedra(rows, {pass.first, pass.end}, particles);
+    for (const TetrahedronPass& pass : rows.passes)
+      damp_tetrahedra(rows, pass, {pass.first, pass.end}, particles);
+    for (const TetrahedronPass& pass : rows.passes)
+      solve_tetrahedra(rows, pass, {pass.first, pass.end}, particles);
     for (std::size_t i = 0; i < particles.position.size(); ++i)
       particles.position[i].x += h * particles.velocity[i].v;
   }
@@ -110,11 +113,38 @@ TEST_SUITE("solver/tetrahedron_solve") {
     for (const TetrahedronPass& pass : j.rows.passes) {
       std::vector<int> used(j.particles.mass.size(), 0);
       for (int i = pass.first; i < pass.end; ++i) {
-        for (const std::uint32_t p : j.rows.rows[i].particle) CHECK(used[p]++ == 0);
+        const int count = i + 1 == pass.end ? pass.last_count : kTetrahedronLanes;
+        for (int lane = 0; lane < count; ++lane) {
+          for (const auto& record : j.rows.blocks[i].record) CHECK(used[record[lane] / 4]++ == 0);
+        }
+        rows += count;
       }
-      rows += pass.end - pass.first;
     }
     CHECK(rows == j.tetrahedra.corners.size());
+  }
+
+  TEST_CASE("tetrahedra get the same bits with all instructions, stiff, soft, pressed and damped") {
+    Jelly j = make_cube(4, {.damping = 0.002});
+    std::mt19937_64 random(5);
+    for (TetrahedronLaw& law : j.rows.laws) {
+      law.shear_modulus *= law.row % 3 == 0 ? Real(0.01) : Real(10);
+      if (law.row % 5 == 0) law.damping_time = Real(0);
+    }
+    for (auto& record : j.particles.position) record.x += Real(0.02) * random_vector(random);
+    for (auto& record : j.particles.velocity) record.v = random_vector(random);
+    j.particles.velocity[7].inverse_mass = Real(0);
+    for (std::uint32_t i = 0; i < j.particles.mass.size(); i += 10) {
+      const auto w = static_cast<double>(j.particles.velocity[i].inverse_mass);
+      j.rows.pressed.push_back(
+          {.particle = i, .answer = math::axial(DVec3{0.6, 0.0, 0.8}, 1e-3 * w, i % 4 == 0 ? w : 0.5 * w)});
+      j.rows.pressed_of[i] = static_cast<std::uint32_t>(j.rows.pressed.size());
+    }
+    check_bits_of_targets(j, [](Jelly& net) {
+      net.step(kSubstep);
+      CHECK(net.rows.any_stiff);
+      for (const TetrahedronPass& pass : net.rows.passes)
+        solve_stiff_tetrahedra(net.rows, pass, {pass.first, pass.end}, net.particles);
+    });
   }
 
   TEST_CASE("over a short substep the impulse on each corner is the stress times its face") {
@@ -222,7 +252,7 @@ TEST_SUITE("solver/tetrahedron_solve") {
       const double h = 1e-5;
       prepare_tetrahedra(j.rows, static_cast<Real>(h));
       for (const TetrahedronPass& pass : j.rows.passes)
-        damp_tetrahedra(j.rows, {pass.first, pass.end}, j.particles);
+        damp_tetrahedra(j.rows, pass, {pass.first, pass.end}, j.particles);
       // Power tau (2 mu E':E' + (lambda - mu) tr(E')^2) V, E' the symmetric part of A.
       const auto m = elements::neo_hookean(1e5, 0.3);
       const Matrix3<double> e = 0.5 * (a + transpose(a));
@@ -237,7 +267,7 @@ TEST_SUITE("solver/tetrahedron_solve") {
     const double before = spinning.fastest();
     prepare_tetrahedra(spinning.rows, kSubstep);
     for (const TetrahedronPass& pass : spinning.rows.passes)
-      damp_tetrahedra(spinning.rows, {pass.first, pass.end}, spinning.particles);
+      damp_tetrahedra(spinning.rows, pass, {pass.first, pass.end}, spinning.particles);
     CHECK(spinning.fastest() == doctest::Approx(before).epsilon(1e-5));
   }
 

@@ -20,8 +20,11 @@ void solve_row(std::size_t row, Real h, state::Contacts& contacts, state::Veloci
   particle.v += change * n;
   const Vec3 sliding = relative - speed * n;
   const Real rate = length(sliding);
-  if (rate > Real(0)) particle.v -= std::min(Real(1), contacts.friction[row] * change / rate) * sliding;
+  const Vec3 stopped =
+      rate > Real(0) ? std::min(Real(1), contacts.friction[row] * change / rate) * sliding : Vec3{};
+  particle.v -= stopped;
   contacts.normal_force[row] += change / (h * particle.inverse_mass);
+  contacts.friction_force[row] -= Real(1) / (h * particle.inverse_mass) * stopped;
 }
 
 /// Calls solve(first, end) with the rows of each free particle that belongs to the range and to no rope.

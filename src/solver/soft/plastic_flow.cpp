@@ -4,6 +4,7 @@
 #include "elements/dihedral.h"
 #include "elements/plasticity.h"
 #include "elements/tetrahedron.h"
+#include "solver/simd/lane_arrays.h"
 #include "solver/soft/soft_tuning.h"
 
 #include <algorithm>
@@ -39,15 +40,17 @@ void find_bends(const std::vector<const state::Deformable*>& cloths, const BendB
   }
 }
 
-void find_tetrahedra(const std::vector<const state::Deformable*>& solids, const TetrahedronRows& tetrahedra,
+void find_tetrahedra(const std::vector<const state::Deformable*>& solids, const TetrahedronBlocks& tetrahedra,
                      std::vector<TetrahedronYield>& yields) {
   if (solids.empty()) return;
-  for (std::uint32_t i = 0; i < tetrahedra.laws.size(); ++i) {
-    const std::uint32_t row = tetrahedra.first_row + tetrahedra.laws[i].row;
+  const std::vector<TetrahedronLaw>& laws = tetrahedra.laws;
+  for (std::uint32_t lane = 0, end = 0; lane < laws.size(); lane = end) {
+    for (end = lane + 1; end < laws.size() && laws[end].row == laws[lane].row; ++end) continue;
+    const std::uint32_t row = tetrahedra.first_row + laws[lane].row;
     const state::Deformable* solid = owner_of(solids, &state::Deformable::tetrahedra, row);
     if (solid == nullptr) continue;
     HOOKE_ASSERT(solid->rest_edges->size() == solid->tetrahedra.count);
-    yields.push_back({i, solid->yield_stress, (*solid->rest_edges)[row - solid->tetrahedra.first]});
+    yields.push_back({lane, end, solid->yield_stress, (*solid->rest_edges)[row - solid->tetrahedra.first]});
   }
 }
 
@@ -87,10 +90,20 @@ bool flow(const Mat3& f, double limit, const std::array<Vec3, 3>& edges, std::ar
   return true;
 }
 
+/// F of a lane, counted through all blocks.
+Mat3 gradient_of(const TetrahedronBlocks& tetrahedra, std::uint32_t lane, const state::Particles& particles) {
+  const TetrahedronBlock& block = tetrahedra.blocks[lane / kTetrahedronLanes];
+  const auto i = static_cast<int>(lane % kTetrahedronLanes);
+  std::array<Vec3, 4> x;
+  for (std::size_t k = 0; k < 4; ++k)
+    x[k] = particles.position[tetrahedra.first_particle + block.record[k][i] / 4].x;
+  return elements::gradient_of(x, {Vec3{}, get(block.b[0], i), get(block.b[1], i), get(block.b[2], i)});
+}
+
 }  // namespace
 
 void find_yields(std::span<const state::Deformable> objects, const BendBlocks& bends,
-                 const TetrahedronRows& tetrahedra, Yields& yields) {
+                 const TetrahedronBlocks& tetrahedra, Yields& yields) {
   yields = {};
   std::vector<const state::Deformable*> cloths, solids;
   for (const state::Deformable& object : objects) {
@@ -121,21 +134,19 @@ void flow_bends(const Yields& yields, parallel::Range rows, state::Tables& table
 }
 
 void flow_tetrahedra(const Yields& yields, parallel::Range rows, Real h, state::Tables& tables,
-                     TetrahedronRows& tetrahedra) {
+                     TetrahedronBlocks& tetrahedra) {
   for (int i = rows.begin; i < rows.end; ++i) {
     const TetrahedronYield& yield = yields.tetrahedra[i];
-    const TetrahedronLaw& law = tetrahedra.laws[yield.row];
-    TetrahedronRow& row = tetrahedra.rows[yield.row];
-    std::array<Vec3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k)
-      x[k] = tables.particles.position[tetrahedra.first_particle + row.particle[k]].x;
-    const Mat3 f = elements::gradient_of(x, {Vec3{}, row.b[0], row.b[1], row.b[2]});
-    const Real limit = elements::yield_limit(yield.stress, shear_modulus_of(law, h));
+    const TetrahedronLaw& law = tetrahedra.laws[yield.lane];
+    const Mat3 f = gradient_of(tetrahedra, yield.lane, tables.particles);
+    const Real limit = elements::yield_limit(yield.stress, law.shear_modulus);
     if (!(elements::deviator_squared(square_of(f)) > limit)) continue;
     std::array<Vec3, 3>& gradients = tables.tetrahedra.shape_gradient[tetrahedra.first_row + law.row];
     if (!flow(f, static_cast<double>(limit), yield.edges, gradients)) continue;
-    take_shape(tables.tetrahedra, tables.particles, yield.row, tetrahedra);
-    prepare_tetrahedron(law, h, row);
+    for (std::uint32_t lane = yield.lane; lane < yield.end_lane; ++lane) {
+      take_shape(tables.tetrahedra, tables.particles, lane, tetrahedra);
+      prepare_tetrahedron(tetrahedra, lane, h);
+    }
   }
 }
 

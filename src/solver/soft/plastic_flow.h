@@ -2,7 +2,7 @@
 
 #include "parallel/range.h"
 #include "solver/soft/bending.h"
-#include "solver/soft/tetrahedron_solve.h"
+#include "solver/solid/tetrahedron_blocks.h"
 #include "state/tables.h"
 
 #include <array>
@@ -27,7 +27,8 @@ struct BendYield {
 
 /// A tetrahedron that can yield.
 struct TetrahedronYield {
-  std::uint32_t row = 0;           ///< Row of the solver's copy.
+  std::uint32_t lane = 0;          ///< In the solver's copy, counted through all blocks.
+  std::uint32_t end_lane = 0;      ///< End of its lane and of the copies that fill the block behind it.
   Real stress = Real(0);           ///< sigma_y [Pa]
   std::array<Vec3, 3> edges = {};  ///< Edges of the tetrahedron as it was made, state::RestEdges.
 };
@@ -40,7 +41,7 @@ struct Yields {
 /// Lists all rows of objects that can yield, with their positions in the solver's copies, which are of these
 /// objects.
 void find_yields(std::span<const state::Deformable> objects, const BendBlocks& bends,
-                 const TetrahedronRows& tetrahedra, Yields& yields);
+                 const TetrahedronBlocks& tetrahedra, Yields& yields);
 
 /// Applies perfect plasticity: where |theta - theta_0| is above the limit, theta_0 follows until the
 /// difference is at the limit. Degenerate triangles keep their theta_0.
@@ -56,6 +57,6 @@ void flow_bends(const Yields& yields, parallel::Range rows, state::Tables& table
 /// rest. So do those whose F_p would come to tr F_p F_p^T or tr (F_p F_p^T)^-1 above 25: no plastic stretch
 /// leaves [1/5, 5].
 void flow_tetrahedra(const Yields& yields, parallel::Range rows, Real h, state::Tables& tables,
-                     TetrahedronRows& tetrahedra);
+                     TetrahedronBlocks& tetrahedra);
 
 }  // namespace hooke::solver

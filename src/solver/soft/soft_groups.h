@@ -5,7 +5,7 @@
 #include "solver/soft/isometric_bending.h"
 #include "solver/soft/plastic_flow.h"
 #include "solver/soft/spring_blocks.h"
-#include "solver/soft/tetrahedron_solve.h"
+#include "solver/solid/tetrahedron_blocks.h"
 #include "state/tables.h"
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct SoftGroup {
   SpringBlocks springs;
   BendBlocks bends;
   IsometricBendBlocks isometric_bends;
-  TetrahedronRows tetrahedra;
+  TetrahedronBlocks tetrahedra;
   Yields yields;  ///< Bends and tetrahedra that may yield.
   AirLoads air_loads;
 
