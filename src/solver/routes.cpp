@@ -77,25 +77,6 @@ void count_hooks(const state::Tables& tables, const Joints& joints, RouteCounts&
   counts.hooks_coupled += static_cast<std::uint32_t>(joints.at_points.size());
 }
 
-/// Contacts of particles of no rope that touch a body which gives way: all of such a particle's are solved
-/// with it.
-std::uint32_t count_points_with_bodies(const state::Tables& tables) {
-  const state::Contacts& contacts = tables.contacts;
-  const auto count = static_cast<std::size_t>(contacts.count());
-  std::uint32_t sum = 0;
-  std::size_t first = 0;
-  while (first < count) {
-    std::size_t end = first;
-    bool with_body = false;
-    for (; end < count && contacts.particle[end] == contacts.particle[first]; ++end)
-      with_body = with_body || joins_body(tables, end);
-    const bool of_rope = tables.objects[contacts.object[first]].kind == PointRef::Kind::kRope;
-    if (with_body && !of_rope) sum += static_cast<std::uint32_t>(end - first);
-    first = end;
-  }
-  return sum;
-}
-
 void count_points(const state::Tables& tables, std::span<const RopeSystem> rope_systems,
                   RouteCounts& counts) {
   counts.points_swept = static_cast<std::uint32_t>(tables.contacts.count());
@@ -105,7 +86,8 @@ void count_points(const state::Tables& tables, std::span<const RopeSystem> rope_
     (rope.in_coupled_group ? counts.points_coupled : counts.points_in_ropes) += count;
     counts.points_swept -= count;
   }
-  const std::uint32_t with_bodies = count_points_with_bodies(tables);
+  const auto with_bodies = static_cast<std::uint32_t>(
+      std::count(tables.contacts.coupled.begin(), tables.contacts.coupled.end(), std::uint8_t{1}));
   HOOKE_ASSERT(with_bodies <= counts.points_swept);
   counts.points_swept -= with_bodies;
   counts.points_coupled += with_bodies;

@@ -87,10 +87,10 @@
 ///
 /// Ropes alone are rope systems, solved several side by side (solver/rope/rope_systems.h,
 /// docs/decisions/0012-rope-lanes.md). Ropes that hold or touch something that gives way belong to a coupled
-/// group. Contacts of a rope belong to its rope system or coupled group. Contacts of other points with a body
-/// that gives way belong to its coupled group, those of edges and faces if the object has few of them. All
-/// others are swept once in a substep (solver/soft/particle_contact_solve.h,
-/// solver/soft/element_contact_solve.h).
+/// group. Contacts of a rope belong to its rope system or coupled group. All contacts of other points that
+/// touch a body which gives way, or hang on a hook, belong to its coupled group, those of edges and faces
+/// with such a body if the object has few of them. All others are swept once in a substep
+/// (solver/soft/particle_contact_solve.h, solver/soft/element_contact_solve.h).
 
 namespace hooke::solver {
 

@@ -28,6 +28,7 @@ struct Contacts {
                                        ///< written by update_contacts.
   std::vector<Real> normal_force;      ///< [N], 0 or more; carried from substep to substep.
   std::vector<Vec3> friction_force;    ///< [N]; carried for ropes.
+  std::vector<std::uint8_t> coupled;   ///< 1 for rows that a coupled group has solved in this substep.
 
   [[nodiscard]] int count() const { return static_cast<int>(particle.size()); }
 
@@ -46,6 +47,7 @@ struct Contacts {
     visit(self.surface_velocity);
     visit(self.normal_force);
     visit(self.friction_force);
+    visit(self.coupled);
   }
 };
 

@@ -359,6 +359,7 @@ void begin_coupled_groups(WorldData& world, Real h, bool first) {
   if (world.tables.objects.empty() && world.tables.pairs.coupled.empty() &&
       world.derived.coupled_groups.count == 0)
     return;
+  std::fill(world.tables.contacts.coupled.begin(), world.tables.contacts.coupled.end(), std::uint8_t{0});
   if (!first) solver::twist_bodies(static_cast<double>(h), world.tables, world.frame.twist_rows);
   solver::slide_hooks(world.tables);
   solver::build_coupled_groups(world.tables, world.derived.rope_systems, world.derived.coupled_groups);

@@ -20,19 +20,13 @@ inline constexpr const char* kThin =
     "a body that falls on a thin one of like mass sinks into it for a moment";
 inline constexpr const char* kLively =
     "a light body with restitution that a heavy one presses on a mesh turns within a step";
-inline constexpr const char* kJelly =
-    "a jelly under a plate of many times its mass is squeezed too far and throws it off";
-inline constexpr const char* kCloth =
-    "a cloth that a body falls on stretches too far, or the body presses it through what is under it";
+inline constexpr const char* kCloth = "a cloth that a body falls on stretches too far, or its hooks open";
 
 inline constexpr KnownRoom kKnownRooms[] = {
     {2, test::Figure::kOverlap, 0.34, kThin},          {5, test::Figure::kEnergy, 0.0187, kCloth},
-    {5, test::Figure::kPointOverlap, 0.1015, kCloth},  {5, test::Figure::kOutside, 1, kCloth},
-    {10, test::Figure::kOverlap, 0.662, kThin},        {13, test::Figure::kEnergy, 0.1581, kJelly},
-    {18, test::Figure::kEnergy, 0.0334, kLively},      {18, test::Figure::kRestOverlap, 0.2517, kLively},
-    {27, test::Figure::kEnergy, 0.0227, kCloth},       {28, test::Figure::kGap, 0.4197, kCloth},
-    {28, test::Figure::kPointOverlap, 0.1185, kCloth}, {28, test::Figure::kOutside, 3, kCloth},
-    {34, test::Figure::kEnergy, 0.3167, kJelly},
+    {10, test::Figure::kOverlap, 0.662, kThin},        {18, test::Figure::kEnergy, 0.0334, kLively},
+    {18, test::Figure::kRestOverlap, 0.2517, kLively}, {27, test::Figure::kEnergy, 0.0227, kCloth},
+    {28, test::Figure::kGap, 0.4197, kCloth},
 };
 
 }  // namespace hooke::fuzz

@@ -47,6 +47,7 @@ void append(state::Contacts& contacts, Key key, std::uint32_t object, std::uint3
   contacts.surface_velocity.push_back({});
   contacts.normal_force.push_back(Real(0));
   contacts.friction_force.push_back({});
+  contacts.coupled.push_back(0);
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
   stiffen();
 }
 
-/// Points that touch nothing which gives way are held by their contacts after all ropes
-/// (solver/soft/particle_contact_solve.h).
+/// All contacts of a group's points are its rows, also those with the ground: what a hook pulls on would otherwise
+/// be stopped afterwards, whatever the hook holds.
 void CoupledGroupSolution::load_points() {
   const std::vector<std::uint32_t>& particle = t_.contacts.particle;
   auto row = particle.begin();
@@ -73,9 +73,9 @@ void CoupledGroupSolution::load_points() {
     const auto first = static_cast<std::size_t>(row - particle.begin());
     row = std::upper_bound(row, particle.end(), p);
     const auto end = static_cast<std::size_t>(row - particle.begin());
-    const bool in_contact =
-        touches_what_gives_way(t_.bodies, t_.contacts, first, end) || has_coupled_contact(node);
-    if (!(b_.ropes.nodes.back().w > 0) || !in_contact) continue;
+    if (!(b_.ropes.nodes.back().w > 0) || (first == end && !has_coupled_contact(node))) continue;
+    std::fill(t_.contacts.coupled.begin() + static_cast<std::ptrdiff_t>(first),
+              t_.contacts.coupled.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1});
     const std::span<const std::uint32_t> tethers =
         std::span(b_.tethers).subspan(b_.first_tether[i], b_.first_tether[i + 1] - b_.first_tether[i]);
     load_point_contact_rows({.node = b_.ropes.nodes.back(),

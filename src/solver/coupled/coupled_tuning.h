@@ -35,7 +35,11 @@ inline constexpr Real kGrossExcess = Real(5);
 /// contact would let them sink into each other too far [ratio]. Larger: with 1000 times the mass of a cube, a
 /// body that fell on three of them sank in by 82 % of one; with 10 times, by 5 %. Smaller: like bodies that
 /// fall in a heap are dear. No measurement of the value itself is recorded.
-inline constexpr Real kArrivingMassRatio = Real(2);
+inline constexpr Real kArrivingMassRatio = Real(5);
+
+/// The same where the lighter one lands on what does not give way, with the other one on it [ratio]. Larger:
+/// 30 kg on a plank of 10 kg that fell sank by 22 mm. Smaller: like bodies that fall in a heap are dear.
+inline constexpr Real kLandingMassRatio = Real(2);
 
 /// An island with a faster body does not become direct [m/s]. Larger: a wave of falling dominoes becomes
 /// direct, 9.5 ms a step instead of 0.05 (docs/decisions/0007). Smaller: what is only being placed stays soft

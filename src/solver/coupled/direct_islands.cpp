@@ -200,8 +200,9 @@ void expect_arrivals(const std::vector<Manifold>& manifolds, const ContactStep& 
     const Real w_a = bodies.motion[m.body_a].inverse_mass;
     const Real w_b = bodies.motion[m.body_b].inverse_mass;
     const Real ratio = std::max(w_a, w_b) / std::min(w_a, w_b);
-    if (!(ratio >= kArrivingMassRatio)) continue;
-    const Real closing = std::max(closing_speed(m, bodies), direct.landing[w_a > w_b ? m.body_a : m.body_b]);
+    const Real closing =
+        std::max(ratio >= kArrivingMassRatio ? closing_speed(m, bodies) : Real(0),
+                 ratio >= kLandingMassRatio ? direct.landing[w_a > w_b ? m.body_a : m.body_b] : Real(0));
     const Real size = Real(2) * state::thinner_radius(bodies, m.body_a, m.body_b);
     if (!(closing * std::sqrt(ratio) > kGrossExcess * kLargestSag * size * omega)) continue;
     for (const std::uint32_t body : {m.body_a, m.body_b}) {

@@ -101,17 +101,10 @@ void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Conta
            bodies, contacts, particles);
 }
 
-bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts, std::size_t first,
-                            std::size_t end) {
-  return std::any_of(contacts.body.begin() + static_cast<std::ptrdiff_t>(first),
-                     contacts.body.begin() + static_cast<std::ptrdiff_t>(end),
-                     [&](std::uint32_t body) { return gives_way(bodies, body); });
-}
-
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
                     const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles) {
   for_particles(objects, range, contacts, particles, [&](std::size_t first, std::size_t end) {
-    if (touches_what_gives_way(bodies, contacts, first, end)) {
+    if (contacts.coupled[first] != 0) {
       stop_at_ground(first, end, h, bodies, contacts, particles.velocity[contacts.particle[first]]);
     } else {
       solve_rows(first, end, h, bodies, contacts, particles);

@@ -22,14 +22,10 @@ namespace hooke::solver {
 ///
 /// Rows of one particle are solved in order, twice when there are several. Ranges may begin anywhere: a
 /// particle's rows belong to the range that holds the first of them. Particles that touch a body which gives
-/// way are solved in a coupled group instead (solver/coupled/coupled_groups.h); here they are only stopped
-/// where they would pass what does not give way.
+/// way, or hang on a hook, are solved in a coupled group instead (solver/coupled/coupled_groups.h); here they
+/// are only stopped where they would pass what does not give way.
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,
                     const state::Bodies& bodies, state::Contacts& contacts, state::Particles& particles);
-
-/// Whether any of the rows [first, end) has a body that gives way.
-[[nodiscard]] bool touches_what_gives_way(const state::Bodies& bodies, const state::Contacts& contacts,
-                                          std::size_t first, std::size_t end);
 
 /// Moves a particle by `by` [m], but no deeper into what does not give way, and notes it in its contacts:
 /// where a body presses a cloth on the ground, points would be pushed through it.

@@ -78,6 +78,7 @@ void build_tetrahedra(std::span<const state::Deformable> objects, const state::T
   const std::span corners = std::span(t.corners).subspan(source.first, source.count);
   out.volume_at.assign(points.count, Real(0));
   out.pressed_of.assign(points.count, 0);
+  out.pressed.reserve(points.count);  // as many as there may be: a step allocates nothing
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (const std::uint32_t p : {corners[i].a, corners[i].b, corners[i].c, corners[i].d})
       out.volume_at[p - points.first] += t.volume[source.first + i];
