@@ -60,8 +60,8 @@ void CoupledGroupSolution::load(const std::vector<state::VelocityRecord>& before
   stiffen();
 }
 
-/// All contacts of a group's points are its rows, also those with the ground: what a hook pulls on would otherwise
-/// be stopped afterwards, whatever the hook holds.
+/// All contacts of a group's points are its rows, also those with the ground: what a hook pulls on would
+/// otherwise be stopped afterwards, whatever the hook holds.
 void CoupledGroupSolution::load_points() {
   const std::vector<std::uint32_t>& particle = t_.contacts.particle;
   auto row = particle.begin();
