@@ -27,7 +27,7 @@ struct Contacts {
   std::vector<Vec3> surface_velocity;  ///< Velocity of the body's surface there, conveyors included [m/s];
                                        ///< written by update_contacts.
   std::vector<Real> normal_force;      ///< [N], 0 or more; carried from substep to substep.
-  std::vector<Vec3> friction_force;    ///< [N]; carried for ropes.
+  std::vector<Vec3> friction_force;    ///< [N]; carried for ropes, and to tell which points of solids stick.
   std::vector<std::uint8_t> coupled;   ///< 1 for rows that a coupled group has solved in this substep.
 
   [[nodiscard]] int count() const { return static_cast<int>(particle.size()); }

@@ -84,21 +84,12 @@ void for_soft_groups(WorldData& world, Work work) {
   for (const std::uint32_t i : soft.divided) work(soft.groups[i], Division{world.pool.get()});
 }
 
-/// Calls `kernel` for the tetrahedra of a group, one color after the other. Tetrahedra of one color share no
-/// particle.
-template <class Rows, class Kernel>
-void for_tetrahedra(Rows& tetrahedra, Division division, state::Particles& particles, Kernel kernel) {
-  for (const solver::TetrahedronPass& pass : tetrahedra.passes) {
-    division.for_rows(pass.first, pass.end, kTetrahedronGrain,
-                      [&](Range blocks) { kernel(tetrahedra, pass, blocks, particles); });
-  }
-}
-
-/// Solves the passes of a group's bends one after the other.
+/// Solves the passes of a group's rows one after the other, in jobs of at least `grain` blocks. Rows of a
+/// pass share no particle.
 template <class Rows, class Solve>
-void solve_passes(const Rows& rows, Division division, state::Particles& particles, Solve solve) {
+void solve_passes(Rows& rows, Division division, int grain, state::Particles& particles, Solve solve) {
   for (const auto& pass : rows.passes) {
-    division.for_rows(pass.first, pass.end, kBlockGrain,
+    division.for_rows(pass.first, pass.end, grain,
                       [&](Range blocks) { solve(rows, pass, blocks, particles); });
   }
 }
@@ -253,7 +244,8 @@ void begin_step(WorldData& world, double dt) {
 void begin_particle_substep(WorldData& world, Real h) {
   for_soft_groups(world, [&world](const solver::SoftGroup& group, Division division) {
     if (!group.tetrahedra.any_damping) return;
-    for_tetrahedra(group.tetrahedra, division, world.tables.particles, solver::damp_tetrahedra);
+    solve_passes(group.tetrahedra, division, kTetrahedronGrain, world.tables.particles,
+                 solver::damp_tetrahedra);
   });
   for_matched(world, h, solver::damp_shape);
   for (const solver::RopeSystem& rope_system : world.derived.rope_systems) {
@@ -277,8 +269,8 @@ void solve_springs(WorldData& world, Real h, state::SpringClass first, state::Sp
 void solve_bends(WorldData& world) {
   state::Particles& particles = world.tables.particles;
   for_soft_groups(world, [&particles](const solver::SoftGroup& group, Division division) {
-    solve_passes(group.bends, division, particles, solver::solve_bends);
-    solve_passes(group.isometric_bends, division, particles, solver::solve_isometric_bends);
+    solve_passes(group.bends, division, kBlockGrain, particles, solver::solve_bends);
+    solve_passes(group.isometric_bends, division, kBlockGrain, particles, solver::solve_isometric_bends);
   });
 }
 
@@ -321,10 +313,10 @@ void solve_solids(WorldData& world, Real h) {
     if (tetrahedra.blocks.empty()) return;
     const bool any_stiff = tetrahedra.any_stiff || has_become_stiff(group);
     if (any_stiff) solver::note_pressed_points(tables, pressing, tetrahedra);
-    for_tetrahedra(tetrahedra, division, tables.particles, solver::solve_tetrahedra);
+    solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     for (int sweep = 1; any_stiff && sweep < solver::kStiffSolidSweeps; ++sweep) {
       solver::renew_pressed_points(pressing, tetrahedra, tables);
-      for_tetrahedra(tetrahedra, division, tables.particles, solver::solve_stiff_tetrahedra);
+      solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_stiff_tetrahedra);
     }
     solver::release_pressed_points(tetrahedra, tables.particles);
   });

@@ -72,12 +72,9 @@ void stop_at_ground(std::size_t first, std::size_t end, Real h, const state::Bod
   }
 }
 
-}  // namespace
-
-void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, state::Contacts& contacts,
-              state::Particles& particles) {
-  const auto begin = std::lower_bound(contacts.particle.begin(), contacts.particle.end(), particle);
-  const auto first = static_cast<std::size_t>(begin - contacts.particle.begin());
+/// As displace; `first` is the first row of the particle, if it has any.
+void displace_from(std::size_t first, std::uint32_t particle, Vec3 by, const state::Bodies& bodies,
+                   state::Contacts& contacts, state::Particles& particles) {
   const auto of_particle = [&](std::size_t row) {
     return row < contacts.particle.size() && contacts.particle[row] == particle;
   };
@@ -93,12 +90,24 @@ void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, stat
   particles.position[particle].x += by;
 }
 
+}  // namespace
+
+void displace(std::uint32_t particle, Vec3 by, const state::Bodies& bodies, state::Contacts& contacts,
+              state::Particles& particles) {
+  const auto first = std::lower_bound(contacts.particle.begin(), contacts.particle.end(), particle);
+  displace_from(static_cast<std::size_t>(first - contacts.particle.begin()), particle, by, bodies, contacts,
+                particles);
+}
+
 void push_out(std::size_t row, Real h, const state::Bodies& bodies, state::Contacts& contacts,
               state::Particles& particles) {
   const Real overlap = -contacts.separation[row];
   if (!(overlap > Real(0))) return;
-  displace(contacts.particle[row], std::min(overlap, Real(kParticlePushOutSpeed) * h) * contacts.normal[row],
-           bodies, contacts, particles);
+  const std::uint32_t particle = contacts.particle[row];
+  std::size_t first = row;
+  while (first > 0 && contacts.particle[first - 1] == particle) --first;
+  displace_from(first, particle, std::min(overlap, Real(kParticlePushOutSpeed) * h) * contacts.normal[row],
+                bodies, contacts, particles);
 }
 
 void solve_contacts(const std::vector<state::Deformable>& objects, parallel::Range range, Real h,

@@ -40,6 +40,19 @@ void copy_lane(const T (&from)[kRows][kCount], int lane, T (&to)[kRows][kCount],
   for (std::size_t i = 0; i < kRows; ++i) copy_lane(from[i], lane, to[i], to_lane);
 }
 
+/// Copies what solutions read of a row.
+void copy_row(const TetrahedronBlock& from, int lane, TetrahedronBlock& to, int to_lane) {
+  copy_lane(from.record, lane, to.record, to_lane);
+  copy_lane(from.b, lane, to.b, to_lane);
+  copy_lane(from.gamma_volume, lane, to.gamma_volume, to_lane);
+  copy_lane(from.gamma_shape, lane, to.gamma_shape, to_lane);
+  copy_lane(from.implicit, lane, to.implicit, to_lane);
+}
+void copy_row(const TetrahedronImpulses& from, int lane, TetrahedronImpulses& to, int to_lane) {
+  copy_lane(from.volume, lane, to.volume, to_lane);
+  copy_lane(from.shape, lane, to.shape, to_lane);
+}
+
 /// Collects the rows of one color where something presses on a corner, and solves them side by side.
 class PressedLot {
  public:
@@ -49,13 +62,8 @@ class PressedLot {
   void add(int block, int lane) {
     const int to = lot_.count++;
     const TetrahedronBlock& from = tetrahedra_.blocks[block];
-    copy_lane(from.record, lane, lot_.rows.record, to);
-    copy_lane(from.b, lane, lot_.rows.b, to);
-    copy_lane(from.gamma_volume, lane, lot_.rows.gamma_volume, to);
-    copy_lane(from.gamma_shape, lane, lot_.rows.gamma_shape, to);
-    copy_lane(from.implicit, lane, lot_.rows.implicit, to);
-    copy_lane(tetrahedra_.impulses[block].volume, lane, lot_.done.volume, to);
-    copy_lane(tetrahedra_.impulses[block].shape, lane, lot_.done.shape, to);
+    copy_row(from, lane, lot_.rows, to);
+    copy_row(tetrahedra_.impulses[block], lane, lot_.done, to);
     for (int i = 0; i < 4; ++i) put(answer_of(from.record[i][lane] / 4), lot_.answer[i], to);
     block_[to] = block;
     lane_[to] = lane;
@@ -70,11 +78,7 @@ class PressedLot {
     const std::uint32_t first = tetrahedra_.first_particle;
     wide::solve_pressed_tetrahedra(static_cast<double>(tetrahedra_.inverse_h), lot_,
                                    particles_.position.data() + first, particles_.velocity.data() + first);
-    for (int i = 0; i < count; ++i) {
-      TetrahedronImpulses& to = tetrahedra_.impulses[block_[i]];
-      copy_lane(lot_.done.volume, i, to.volume, lane_[i]);
-      copy_lane(lot_.done.shape, i, to.shape, lane_[i]);
-    }
+    for (int i = 0; i < count; ++i) copy_row(lot_.done, i, tetrahedra_.impulses[block_[i]], lane_[i]);
     lot_.count = 0;
   }
 
@@ -90,14 +94,8 @@ class PressedLot {
   void copy_last_row() {
     const int to = lot_.count++;
     const int from = to - 1;
-    TetrahedronBlock& rows = lot_.rows;
-    copy_lane(rows.record, from, rows.record, to);
-    copy_lane(rows.b, from, rows.b, to);
-    copy_lane(rows.gamma_volume, from, rows.gamma_volume, to);
-    copy_lane(rows.gamma_shape, from, rows.gamma_shape, to);
-    copy_lane(rows.implicit, from, rows.implicit, to);
-    copy_lane(lot_.done.volume, from, lot_.done.volume, to);
-    copy_lane(lot_.done.shape, from, lot_.done.shape, to);
+    copy_row(lot_.rows, from, lot_.rows, to);
+    copy_row(lot_.done, from, lot_.done, to);
     for (auto& answer : lot_.answer) copy_lane(answer, from, answer, to);
   }
 
