@@ -24,6 +24,9 @@ namespace {
 
 using state::Hook;
 
+/// Turn within the step up to which lanes find a body's rotation [rad]; see quaternion_of_small.
+constexpr double kSmallTurn = 0.25;
+
 /// Copies the first `kNumbers` numbers of a struct of lanes from one lane to another.
 template <std::size_t kNumbers, class Lanes>
 void copy_lane(const Lanes& from, int lane, int to_lane, Lanes& to) {
@@ -227,32 +230,43 @@ class Group {
   /// from `origin`.
   static void load_link(const state::Bodies& bodies, std::uint32_t row, DVec3 origin, LinkLanes& to,
                         int lane) {
-    const bool is_gyroscopic = is_dynamic(bodies, row) && is_gyroscopic_now(bodies, row);
-    to.is_gyroscopic[lane] = is_gyroscopic ? 1 : 0;
-    put(math::Symmetric3<double>{}, to.stiffness, lane);
-    put(math::Symmetric3<double>::diagonal(1), to.turning, lane);
-    if (!is_gyroscopic) {
-      const JointBody body = joint_body(bodies, row);
-      load_motion(body.inverse_mass, body.center - origin, body.v, body.omega_scaled, to, lane);
-      put(body.rotation, to.rotation, lane);
-      put(Quat{}, to.principal, lane);
-      put(body.scale, to.step_scale, lane);
-      put(DVec3{1, 1, 1}, to.inertia, lane);
+    to.is_gyroscopic[lane] = 0;
+    if (row == state::HookPlace::kWorld) {
+      load_motion(0, -origin, {}, {}, to, lane);
+      load_rotation(Quaternion<double>{}, math::Symmetric3<double>::diagonal(1), {}, to, lane);
       return;
     }
     const state::MotionRecord& m = bodies.motion[row];
-    const state::BodyMass& mass = bodies.mass[row];
+    const bool moves = m.inverse_mass > Real(0);
     load_motion(static_cast<double>(m.inverse_mass), bodies.center[row] + vector_cast<double>(m.dx) - origin,
                 m.v, m.omega_scaled, to, lane);
-    put(bodies.rotation[row], to.rotation, lane);
-    put(mass.principal, to.principal, lane);
-    put(bodies.scale[row], to.step_scale, lane);
-    put(mass.inertia, to.inertia, lane);
+    if (moves && is_gyroscopic_now(bodies, row)) {
+      const state::BodyMass& mass = bodies.mass[row];
+      to.is_gyroscopic[lane] = 1;
+      put(mass.principal, to.principal, lane);
+      put(mass.inertia, to.inertia, lane);
+      load_rotation(math::in_double(bodies.rotation[row]), math::in_double(bodies.scale[row]), {}, to, lane);
+      return;
+    }
+    if (moves) {
+      const auto scale = math::in_double(bodies.scale[row]);
+      const auto turned = vector_cast<double>(m.theta_scaled);
+      if (length_squared(scale * turned) < kSmallTurn * kSmallTurn)
+        return load_rotation(math::in_double(bodies.rotation[row]), scale, turned, to, lane);
+    }
+    const JointBody body = joint_body(bodies, row);
+    load_rotation(body.rotation, body.scale, {}, to, lane);
   }
 
-  template <class T>
-  static void load_motion(double inverse_mass, DVec3 center, Vector3<T> v, Vector3<T> omega_scaled,
-                          LinkLanes& to, int lane) {
+  static void load_rotation(const Quaternion<double>& rotation, const math::Symmetric3<double>& scale,
+                            DVec3 turned, LinkLanes& to, int lane) {
+    put(rotation, to.rotation, lane);
+    put(scale, to.step_scale, lane);
+    put(turned, to.turned, lane);
+  }
+
+  static void load_motion(double inverse_mass, DVec3 center, Vec3 v, Vec3 omega_scaled, LinkLanes& to,
+                          int lane) {
     to.inverse_mass[lane] = static_cast<Lane>(inverse_mass);
     to.mass[lane] = static_cast<Lane>(inverse_mass > 0 ? 1 / inverse_mass : 0);
     put(center, to.center, lane);
@@ -314,13 +328,9 @@ class Group {
     for (std::size_t i = 0; i < art.bodies.size(); ++i) {
       const LinkLanes& link = from.links[i];
       if (!(link.inverse_mass[lane] > 0)) continue;
-      const auto omega = get(link.omega_now, lane);
-      const auto change = get6(link.scale_inverse, lane) * (omega - get(link.omega_before, lane));
-      const auto of_step = link.is_gyroscopic[lane] > 0
-                               ? get6(link.step_scale_inverse, lane) * (get6(link.scale, lane) * omega)
-                               : omega;
-      set_joint_velocity(vector_cast<double>(get(link.v_now, lane)), vector_cast<double>(of_step),
-                         vector_cast<double>(change), art.bodies[i], tables.bodies);
+      set_joint_velocity(vector_cast<double>(get(link.v_now, lane)),
+                         vector_cast<double>(get(link.omega_of_step, lane)),
+                         vector_cast<double>(get(link.gained, lane)), art.bodies[i], tables.bodies);
     }
     if (!far) return reset_energy(art, tables.hooks);
     if constexpr (!Kind::kApproximate) {

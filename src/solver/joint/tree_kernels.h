@@ -89,7 +89,7 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLinkLanes {
   using Lane = typename Kind::Lane;
   static constexpr int kCount = Kind::kCount;
 
-  // As JointBody. If `is_gyroscopic` is 1, the last three are found from the columns below.
+  // As JointBody. The last three are found from the columns below.
   Lane center[3][kCount], v[3][kCount];
   Lane inverse_mass[kCount], mass[kCount];  ///< Both 0 where nothing moves it.
   Lane rotation[4][kCount], scale[6][kCount], omega_before[3][kCount];
@@ -99,9 +99,12 @@ struct alignas(sizeof(typename Kind::Lane) * Kind::kCount) TreeLinkLanes {
   Lane turning[6][kCount];    ///< 1 + 1.2 G: inertia in scaled coordinates.
   Lane omega[3][kCount];      ///< Scaled angular velocity without the joints.
 
-  Lane v_now[3][kCount], omega_now[3][kCount];     ///< Resulting velocities.
-  Lane principal[4][kCount], inertia[3][kCount];   ///< As BodyMass.
-  Lane step_scale[6][kCount];                      ///< S of the start of the step.
+  Lane v_now[3][kCount], omega_now[3][kCount];    ///< Resulting velocities.
+  Lane omega_of_step[3][kCount];                  ///< The second of them, scaled by `step_scale`.
+  Lane gained[3][kCount];                         ///< Angular momentum that the joints gave.
+  Lane principal[4][kCount], inertia[3][kCount];  ///< As BodyMass, if `is_gyroscopic` is 1.
+  Lane step_scale[6][kCount];                     ///< S of the start of the step.
+  Lane turned[3][kCount];  ///< Turn since the rotation that was loaded, scaled by S; a small one.
   Lane a[21][kCount], g[6][kCount], u[6][kCount];  ///< Elimination: solver/joint/tree_sweep.h.
 };
 

@@ -126,7 +126,9 @@ class TreeRows {
       put3(scaled(sign, p), trees_.joints[i].impulse, lane_);
       put3(scaled(sign, angular), trees_.joints[i].angular, lane_);
     }
-    put(TreeStiffness<Number, Kind>(h_, form_, trees_, lane_).stiffen(Number(1.0)), trees_.grew);
+    TreeStiffness<Number, Kind> stiffness(h_, form_, trees_, lane_);
+    put(stiffness.stiffen(Number(1.0)), trees_.grew);
+    stiffness.find_changes();
   }
 
  private:
@@ -152,11 +154,29 @@ class TreeRows {
     return {at(from[0]), at(from[1]), at(from[2]), at(from[3]), at(from[4]), at(from[5])};
   }
 
-  /// Finds S = I^(-1/2) in world axes. For a gyroscopic turn it is that of now; state::Bodies have that of
-  /// the step's start.
+  /// Finds the rotation, and S = I^(-1/2) in world axes. For a gyroscopic turn it is that of now;
+  /// state::Bodies have that of the step's start.
   HWY_INLINE void find_inertia(Link& link) const {
     const Number zero(0.0);
-    const Quad<Number> rotation = normalized(get4(link.rotation));
+    const Scale<Number> step = get6(link.step_scale);
+    const Quad<Number> turn = quaternion_of_small(step.times(get3<Number>(link.turned, lane_)));
+    const Quad<Number> rotation = normalized(product(turn, get4(link.rotation)));
+    put(rotation.x, link.rotation[0]);
+    put(rotation.y, link.rotation[1]);
+    put(rotation.z, link.rotation[2]);
+    put(rotation.w, link.rotation[3]);
+    put6({zero, zero, zero, zero, zero, zero}, link.stiffness);
+    put6(diagonal(Number(1.0)), link.turning);
+    const Scale<Number> step_inverse = inverse(step);
+    put6(step_inverse, link.step_scale_inverse);
+    const Triple<Number> given = get3<Number>(link.omega_before, lane_);
+    const auto is_gyroscopic = above(at(link.is_gyroscopic), zero);
+    if (!any(is_gyroscopic)) {
+      put6(step, link.scale);
+      put6(step_inverse, link.scale_inverse);
+      put3(given, link.omega, lane_);
+      return;
+    }
     const Axes<Number> r = axes_of(product(rotation, normalized(get4(link.principal))));
     const Triple<Number> inertia = get3<Number>(link.inertia, lane_);
     const Triple<Number> roots = {root(inertia.x), root(inertia.y), root(inertia.z)};
@@ -164,18 +184,9 @@ class TreeRows {
     const Scale<Number> now =
         in_axes(r, {quotient(one, roots.x), quotient(one, roots.y), quotient(one, roots.z)});
     const Scale<Number> now_inverse = in_axes(r, roots);
-    const Scale<Number> step = get6(link.step_scale);
-    const Scale<Number> step_inverse = inverse(step);
-    const auto is_gyroscopic = above(at(link.is_gyroscopic), zero);
-    const Triple<Number> given = get3<Number>(link.omega_before, lane_);
     const Triple<Number> turned = now_inverse.times(step.times(given));
-    put(rotation.x, link.rotation[0]);
-    put(rotation.y, link.rotation[1]);
-    put(rotation.z, link.rotation[2]);
-    put(rotation.w, link.rotation[3]);
     put6(chosen(is_gyroscopic, now, step), link.scale);
     put6(chosen(is_gyroscopic, now_inverse, step_inverse), link.scale_inverse);
-    put6(step_inverse, link.step_scale_inverse);
     const Triple<Number> omega = {choose(is_gyroscopic, turned.x, given.x),
                                   choose(is_gyroscopic, turned.y, given.y),
                                   choose(is_gyroscopic, turned.z, given.z)};

@@ -29,6 +29,23 @@ class TreeStiffness {
   HWY_INLINE TreeStiffness(double h, const TreeForm& form, TreeLanes<Kind>& trees, int lane)
       : form_(form), trees_(trees), lane_(lane), h_(h) {}
 
+  /// Finds what the links' velocities mean to state::Bodies.
+  HWY_INLINE void find_changes() {
+    for (Link& link : trees_.links) {
+      const Triple<Number> omega = get3<Number>(link.omega_now, lane_);
+      const Triple<Number> change = difference(omega, get3<Number>(link.omega_before, lane_));
+      put3(get6(link.scale_inverse).times(change), link.gained, lane_);
+      const auto is_gyroscopic = above(at(link.is_gyroscopic), Number(0.0));
+      Triple<Number> of_step = omega;
+      if (any(is_gyroscopic)) {
+        const Triple<Number> scaled = get6(link.step_scale_inverse).times(get6(link.scale).times(omega));
+        of_step = {choose(is_gyroscopic, scaled.x, omega.x), choose(is_gyroscopic, scaled.y, omega.y),
+                   choose(is_gyroscopic, scaled.z, omega.z)};
+      }
+      put3(of_step, link.omega_of_step, lane_);
+    }
+  }
+
   /// Where `only` is above 0, sets the stiffness under the impulses of the joints, if it is more than before.
   /// Returns 1 where it grew so much that a solution found without it is not to be trusted.
   HWY_INLINE Number stiffen(const Number& only) {

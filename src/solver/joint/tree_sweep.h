@@ -124,14 +124,17 @@ class TreeSweep {
   HWY_INLINE void run(TreeLanes<Kind>& trees) {
     for (int i = 0; i <= joint_count_; ++i) begin(links_[i]);
     for (int i = 0; i < joint_count_; ++i) eliminate(joints_[i], links_[i], links_[joints_[i].parent]);
-    solve_root(links_[joint_count_]);
-    for (int i = joint_count_ - 1; i >= 0; --i) go_back(joints_[i], links_[i], links_[joints_[i].parent]);
+    Link& root = links_[joint_count_];
+    solve_root(root);
     const Number release = get<Number>(trees.release + lane_);
     Number changed(0.0);
-    for (int i = 0; i < joint_count_; ++i) revise(joints_[i], links_[i], release, hooks_[i], changed);
+    Number fastest = turn_squared(root);
+    for (int i = joint_count_ - 1; i >= 0; --i) {
+      go_back(joints_[i], links_[i], links_[joints_[i].parent]);
+      revise(joints_[i], links_[i], release, hooks_[i], changed);
+      fastest = larger(fastest, turn_squared(links_[i]));
+    }
     write(changed, trees.changed + lane_);
-    Number fastest(0.0);
-    for (int i = 0; i < joint_count_ + 1; ++i) fastest = larger(fastest, turn_squared(links_[i]));
     write(fastest, trees.fast + lane_);
   }
 
@@ -515,7 +518,9 @@ HWY_INLINE void solve_tree_lanes(double h, const TreeForm& form, TreeLanes<Kind>
   for (int lane = 0; lane < Kind::kCount; lane += kLanesOf<Number>) {
     TreeSweep<Number, Kind>(form, trees, lane).run(trees);
     const Number converged = Number(1.0) - get<Number>(trees.changed + lane);
-    write(TreeStiffness<Number, Kind>(h, form, trees, lane).stiffen(converged), trees.grew + lane);
+    TreeStiffness<Number, Kind> stiffness(h, form, trees, lane);
+    write(stiffness.stiffen(converged), trees.grew + lane);
+    stiffness.find_changes();
   }
 }
 

@@ -137,6 +137,18 @@ HWY_INLINE Quad<Number> quaternion_of(const Triple<Number>& phi) {
   return normalized(q);
 }
 
+/// The rotation by |phi| about phi for up to a quarter of a radian, bit for bit as math::quaternion_of.
+template <class Number>
+HWY_INLINE Quad<Number> quaternion_of_small(const Triple<Number>& phi) {
+  const Number one(1.0);
+  const Triple<Number> half = scaled(Number(0.5), phi);
+  const Number x2 = dot(half, half);
+  const auto term = [&](double divisor) HWY_ATTR { return Number(1 / divisor) * x2; };
+  const Number sine = one - term(6) * (one - term(20) * (one - term(42) * (one - term(72))));
+  const Number cosine = one - term(2) * (one - term(12) * (one - term(30) * (one - term(56))));
+  return {sine * half.x, sine * half.y, sine * half.z, cosine};
+}
+
 /// The direction of v; zero for none.
 template <class Number>
 HWY_INLINE Triple<Number> unit_of(const Triple<Number>& v, const Number& length) {
