@@ -22,7 +22,6 @@ constexpr double kOpen = 0.01;        ///< Gap of a hook that is reported [m].
 /// Overlap of two bodies, over half of the thinnest side of the smaller one.
 constexpr double kPressed = 0.25;
 constexpr double kOverlapInterval = 0.05;  ///< Time between two checks of all contacts [s].
-constexpr double kTooSoft = 1.05;          ///< Factor by which jelly is softer than declared.
 constexpr double kTooFlexible = 0.25;      ///< Share by which cloth bends farther than declared.
 /// Cloth is reported if it is stiffer by this factor than what a substep carries,
 constexpr double kSlackFrom = 1.25;
@@ -56,6 +55,9 @@ constexpr std::array kRefusedCounts = {
         "groups of ropes and what they hold took too much work to be solved to the end, or were solved "
         "without taking gaps back",
         "fewer points, fewer ropes that touch each other, fewer bodies on what hangs, or more substeps"},
+    RefusedCount{&StepReport::solids_unconverged, "solids_unconverged",
+                 "stiff solids took too many passes to be solved to the end, and yield more than they should",
+                 "larger cells, less stiffness, or more particle_substeps"},
 };
 
 double in_double(Real value) {
@@ -124,26 +126,6 @@ double volume_of(const MeshDesc& mesh) {
     volume += dot(corner(0), cross(corner(1), corner(2))) / 6;
   }
   return volume;
-}
-
-/// A jelly whose shear is stiffer than a substep carries acts as one that is softer (SolidDesc).
-std::optional<RunWarning> softness(const Scene& scene, const SceneSolid& solid) {
-  const double cell = cell_of(solid);
-  if (!(cell > 0) || solid.desc.total_mass) return std::nullopt;
-  const double shear = in_double(solid.desc.young_modulus) / (2 * (1 + in_double(solid.desc.poisson_ratio)));
-  const double wave = cell / (4 * substep_of(scene));
-  const double carried = in_double(solid.desc.density) * wave * wave;
-  const double softer = shear / carried;
-  if (!(softer > kTooSoft)) return std::nullopt;
-  return RunWarning{
-      .what = text_of(
-          "acts as if young_modulus were about %.3g Pa, not %.3g: a substep of %.3g s carries no more",
-          in_double(solid.desc.young_modulus) / softer, in_double(solid.desc.young_modulus),
-          substep_of(scene)),
-      .worst = in_double(solid.desc.young_modulus) / softer,
-      .limit = in_double(solid.desc.young_modulus),
-      .unit = "Pa",
-      .cure = more_substeps(scene, std::sqrt(softer), "larger cells")};
 }
 
 /// Bends are solved one after the other, once in a substep, and undo in part what their neighbors did. Over n
@@ -326,7 +308,6 @@ void RunWatch::look_at_start(const Simulation& simulation, Watched& watched) {
     }
     case SceneObject::Kind::kSolid: {
       const SceneSolid& solid = declared(scene, object, &SceneObjects::solids);
-      add(kTooStiff, softness(scene, solid));
       add(kCells, thickness(cell_of(solid), solid.desc.thickness));
       add(kLostParts, lost_parts(world, object, solid));
       break;

@@ -461,7 +461,8 @@ struct ClothDesc {
 /// size it shrinks.
 ///
 /// A substep of h seconds carries a wave through one cell, not farther. Where mu is above about density (edge
-/// / (4 h))^2, edge that of a cell, it acts as that. More substeps or larger cells carry more.
+/// / (4 h))^2, edge that of a cell, the solid is solved as a whole, implicitly: it is as stiff as it says, at
+/// a higher cost, but swings that are too fast for the substep die away.
 struct SolidDesc {
   /// By what the solid resists deformation.
   enum class Elasticity : std::uint8_t {

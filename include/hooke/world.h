@@ -138,6 +138,8 @@ struct StepReport {
   /// Coupled groups, of ropes and what hangs on them and touches them, that used up their budget of work, or
   /// for which no solution was found: they took one that takes no error back and can only lose energy.
   std::uint32_t coupled_groups_cut_short = 0;
+  /// Groups of stiff solids that used up their passes in some substep: they yield more than they should.
+  std::uint32_t solids_unconverged = 0;
   RouteCounts routes = {};  ///< How many contacts, hooks and ropes were solved in which way.
   double detect_ms = 0;     ///< Time to find who is near whom, and where they touch [ms].
   double prepare_ms = 0;  ///< Time to choose how contacts and hooks are solved, and to make their rows [ms].

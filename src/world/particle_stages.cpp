@@ -7,6 +7,7 @@
 #include "solver/soft/shape_matching.h"
 #include "solver/soft/soft_tuning.h"
 #include "solver/soft/spring_solve.h"
+#include "solver/solid/stiff_solution.h"
 #include "solver/solid/tetrahedron_solve.h"
 #include "state/check_tables.h"
 #include "world/force_stages.h"
@@ -99,6 +100,24 @@ bool has_become_stiff(const solver::SoftGroup& group) {
   return std::any_of(
       group.yields.tetrahedra.begin(), group.yields.tetrahedra.end(),
       [&](const solver::TetrahedronYield& yield) { return group.tetrahedra.is_stiff(yield.lane); });
+}
+
+/// Solves the rows of a group at once, with the masses that press on its points. What does not stay where it
+/// touches is let go, and the solution goes on from there.
+void solve_stiff_solids(state::Tables& tables, const std::vector<int>& pressing, Real h, Division division,
+                        solver::TetrahedronBlocks& tetrahedra) {
+  const auto pass = [&](auto solve) {
+    solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solve);
+  };
+  solver::note_pressed_points(tables, pressing, h, tetrahedra);
+  solver::begin_stiff_solution(tetrahedra);
+  pass(solver::linearize_tetrahedra);
+  for (int round = 1; round <= solver::kMostPressedRounds; ++round) {
+    solver::solve_for_change(tetrahedra, tables.particles, pass);
+    solver::find_pressed_impulses(tetrahedra);
+    if (!solver::renew_pressed_points(pressing, tables, h, tetrahedra)) break;
+  }
+  solver::finish_stiff_solution(tetrahedra, tables.particles);
 }
 
 /// Calls `kernel` for each solid that is solved by shape matching.
@@ -307,19 +326,18 @@ void rebase_origins(WorldData& world) {
 void solve_solids(WorldData& world, Real h) {
   state::Tables& tables = world.tables;
   std::vector<int>& pressing = world.frame.pressing_points;
-  solver::count_pressing_points(tables, pressing);
+  solver::count_pressing_points(tables, h, pressing);
   for_soft_groups(world, [&](solver::SoftGroup& group, Division division) {
     solver::TetrahedronBlocks& tetrahedra = group.tetrahedra;
     if (tetrahedra.blocks.empty()) return;
-    const bool any_stiff = tetrahedra.any_stiff || has_become_stiff(group);
-    if (any_stiff) solver::note_pressed_points(tables, pressing, tetrahedra);
-    solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
-    for (int sweep = 1; any_stiff && sweep < solver::kStiffSolidSweeps; ++sweep) {
-      solver::renew_pressed_points(pressing, tetrahedra, tables);
-      solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_stiff_tetrahedra);
+    if (tetrahedra.any_stiff || has_become_stiff(group)) {
+      solve_stiff_solids(tables, pressing, h, division, tetrahedra);
+    } else {
+      solve_passes(tetrahedra, division, kTetrahedronGrain, tables.particles, solver::solve_tetrahedra);
     }
-    solver::release_pressed_points(tetrahedra, tables.particles);
   });
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    solver::release_pressed_points(h, group.tetrahedra, tables);
   for_matched(world, h, solver::match_shape);
   HOOKE_ASSERT(world.frame.gas_volumes.size() == world.derived.gas_objects.size());
   for_ranges(*world.pool, static_cast<int>(world.derived.gas_objects.size()), 1, [&](Range range) {

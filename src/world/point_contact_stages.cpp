@@ -8,6 +8,7 @@
 #include "parallel/thread_pool.h"
 #include "solver/soft/element_contact_solve.h"
 #include "solver/soft/particle_contact_solve.h"
+#include "solver/soft/pressed_points.h"
 #include "state/check_contacts.h"
 
 namespace hooke::world {
@@ -45,6 +46,8 @@ void solve_point_contacts(WorldData& world, Real h) {
   for_ranges(*world.pool, t.contacts.count(), kContactGrain, [&](Range rows) {
     solver::solve_contacts(t.objects, rows, h, t.bodies, t.contacts, t.particles);
   });
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    solver::settle_pressed_points(h, group.tetrahedra, t);
 }
 
 }  // namespace hooke::world

@@ -20,6 +20,8 @@ void count_refused(WorldData& world, StepReport& report) {
     report.contacts_refused += group.refused;
   for (solver::CoupledGroup& group : world.derived.coupled_groups.groups)
     report.coupled_groups_cut_short += std::exchange(group.cut_short, false) ? 1 : 0;
+  for (solver::SoftGroup& group : world.derived.soft.groups)
+    report.solids_unconverged += std::exchange(group.tetrahedra.stiff.unconverged, false) ? 1 : 0;
 }
 
 void count_rows(WorldData& world, StepReport& report) {

@@ -400,6 +400,32 @@ TEST_SUITE("world/mixed scenes") {
     check_each_way(scene);
   }
 
+  TEST_CASE("jelly as stiff as rubber or wood carries loads and gains no energy") {
+    for (const double young_modulus : {1e7, 1e8, 1e9}) {
+      for (const double load : {1e3, 1e4}) {
+        for (const double friction : {0.0, 0.5, 10.0}) {
+          CAPTURE(young_modulus);
+          CAPTURE(load);
+          CAPTURE(friction);
+          Scene scene = make_jelly(young_modulus, load);
+          scene.seconds = 1;
+          scene.objects.bodies.back().desc.position.y += 0.1;
+          for (SceneBody& body : scene.objects.bodies) body.tag.friction = static_cast<Real>(friction);
+          check_audit(run_audit(scene), {{Figure::kEnergy, 0.04}});  // goal: kGoal
+        }
+      }
+    }
+  }
+
+  TEST_CASE("jelly as stiff as rubber or wood falls and lies still") {
+    for (const double young_modulus : {1e7, 1e8, 1e9}) {
+      CAPTURE(young_modulus);
+      SceneBuilder builder = with_floor(1.5);
+      builder.jelly({0, 0.7, 0}, 0.4, 4).desc.young_modulus = static_cast<Real>(young_modulus);
+      check_each_way(builder.scene, {}, {{Figure::kEnergy, 0.003}});  // goal: kGoal
+    }
+  }
+
   TEST_CASE("jaws hold a heavy box in the air") {
     const Scene scene = make_gripper(0.1, 50);
     check_each_way(scene, {scene.objects.bodies[1].tag.name, 2e-4});
@@ -411,7 +437,7 @@ TEST_SUITE("world/mixed scenes") {
 
   TEST_CASE("an arm of eight motors holds a ton") {
     check_each_way(make_arm(8, 0.5, 1000), {},  // goal: kGoal, in both
-                   {{Figure::kEnergy, 0.78}, {Figure::kRestGap, 140}});
+                   {{Figure::kEnergy, 0.78}, {Figure::kRestGap, 150}});
   }
 
   TEST_CASE("an arm of four motors holds a ton") {

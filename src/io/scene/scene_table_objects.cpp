@@ -284,8 +284,9 @@ std::vector<Field> solid_rows() {
                                          "Of shape_matching: at which any deformation swings."),
       field<kDesc, &SolidDesc::match_damping_ratio>("match_damping_ratio", "", between(0, 100),
                                                     "The same: 1 is critical."),
-      field<kDesc, &SolidDesc::young_modulus>("young_modulus", "Pa", kPositive,
-                                              "Stiffness; more than a substep carries acts as what it does."),
+      field<kDesc, &SolidDesc::young_modulus>(
+          "young_modulus", "Pa", kPositive,
+          "Stiffness; what is stiffer than a substep carries takes more time."),
       field<kDesc, &SolidDesc::poisson_ratio>("poisson_ratio", "", between(0, 0.499),
                                               "How far it narrows when it is pulled; near 0.5 it keeps its "
                                               "volume."),

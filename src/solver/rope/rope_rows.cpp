@@ -84,11 +84,13 @@ void update_friction(RopeContactRow& t, V sliding) {
   t.f = most * t.against;
 }
 
-/// Friction of a point: it sticks with rho, or is dragged with mu N over its speed.
-double drag_of(const RopeContactRow& t, V u) {
+/// Friction of a point that slides at some speed: it sticks with rho, or is dragged with mu N over its speed.
+double drag_of(const RopeContactRow& t, double speed) {
   if (!(t.normal > 0)) return 0;
-  const double speed = length(across(t.n, u - t.surface));
   return speed * t.rho_across > t.friction * t.normal ? t.friction * t.normal / speed : t.rho_across;
+}
+double sliding_speed(const RopeContactRow& t, V u) {
+  return length(across(t.n, u - t.surface));
 }
 
 /// Returns whether the contact switched on or off, or its friction is not yet what its force allows.
@@ -98,7 +100,7 @@ bool update_point_contact_row(double h, bool let_go, V u, RopeContactRow& t) {
   const double opening_speed = opening_speed_of(t, u, h);
   t.normal = t.active ? std::max(0.0, -t.rho * opening_speed) : 0;
   t.active = t.active ? t.normal > 0 : opening_speed < 0 && !let_go;
-  t.drag = drag_of(t, u);
+  t.drag = drag_of(t, sliding_speed(t, u));
   t.f = -drag * across(t.n, u - t.surface);
   return was_active != t.active || (!let_go && std::abs(t.drag - drag) > kRopeConvergedDrag * drag);
 }
@@ -227,6 +229,14 @@ void load_contact_rows(const RopeSystem& rope_system, std::uint32_t first_node, 
   }
 }
 
+/// Speed that friction takes from a point of a solid: N is known there already
+/// (solver/soft/pressed_points.h).
+double stopped_by_friction(const RopeContactRow& t, double w, const state::Tables& tables) {
+  if (t.row == RopeContactRow::kTether) return 0;
+  const state::Deformable& object = tables.objects[tables.contacts.object[t.row]];
+  return object.tetrahedra.count > 0 ? t.friction * t.normal * w : 0;
+}
+
 void load_point_contact_rows(const PointInContact& point, double h, const state::Tables& tables,
                              std::vector<RopeContactRow>& contact_rows) {
   const double own = point.node.mass;
@@ -253,7 +263,7 @@ void load_point_contact_rows(const PointInContact& point, double h, const state:
   for (RopeContactRow& t : std::span(contact_rows).subspan(first_contact_row)) {
     t.of_point = true;
     t.rho = t.rho_across = std::min(kPointStiffnessOnBody * heaviest, kMostPointStiffness * own);
-    t.drag = drag_of(t, point.node.v_free);
+    t.drag = drag_of(t, sliding_speed(t, point.node.v_free) - stopped_by_friction(t, point.node.w, tables));
   }
 }
 

@@ -77,6 +77,7 @@ struct RopeContactRow {
   bool let_go = false;    ///< No contact for the rest of the substep: it pulled too often.
   bool dragged = false;   ///< Friction acts as drag for the rest of the substep: it drove.
   bool of_point = false;  ///< Whether the particle belongs to no rope.
+  double w = 0;           ///< Of a point: its inverse mass [1/kg].
   double drag = 0;  ///< Friction over speed of a point or dragged contact: rho, or mu N over speed [kg].
 };
 

@@ -34,6 +34,17 @@ HWY_INLINE void write_quad_narrowed(const Quad<double>& q, Real* base, const std
   to[3] = static_cast<Real>(q.w);
 }
 
+HWY_INLINE void read_triple(const double* base, const std::uint32_t* record, Triple<double>& v) {
+  const double* from = base + *record;
+  v = {from[0], from[1], from[2]};
+}
+HWY_INLINE void add_triple(const Triple<double>& v, double* base, const std::uint32_t* record) {
+  double* to = base + *record;
+  to[0] += v.x;
+  to[1] += v.y;
+  to[2] += v.z;
+}
+
 #if HWY_TARGET != HWY_SCALAR
 
 /// As many floats as a vector has doubles.
@@ -92,6 +103,31 @@ HWY_INLINE void read_quad_widened(const float* base, const std::uint32_t* record
 }
 HWY_INLINE void write_quad_narrowed(const Quad<WideDouble>& q, float* base, const std::uint32_t* record) {
   store_narrowed(kSingleTag, q, base, record);
+}
+
+/// As many indices of 64 bits as a vector has doubles.
+using IndexLanes = hn::RebindToSigned<DoubleLanes>;
+constexpr IndexLanes kIndexTag;
+
+HWY_INLINE hn::Vec<IndexLanes> indices_of(const std::uint32_t* record) {
+  constexpr hn::Rebind<std::uint32_t, IndexLanes> kRecordTag;
+  return hn::BitCast(kIndexTag,
+                     hn::PromoteTo(hn::RebindToUnsigned<IndexLanes>(), hn::LoadU(kRecordTag, record)));
+}
+HWY_INLINE void read_triple(const double* base, const std::uint32_t* record, Triple<WideDouble>& v) {
+  const auto at = indices_of(record);
+  v = {WideDouble(hn::GatherIndex(kDoubleTag, base, at)),
+       WideDouble(hn::GatherIndex(kDoubleTag, base + 1, at)),
+       WideDouble(hn::GatherIndex(kDoubleTag, base + 2, at))};
+}
+/// Records of lanes are different, or their vectors equal: such a vector is added once.
+HWY_INLINE void add_triple(const Triple<WideDouble>& v, double* base, const std::uint32_t* record) {
+  const auto at = indices_of(record);
+  const WideDouble parts[3] = {v.x, v.y, v.z};
+  for (int i = 0; i < 3; ++i) {
+    const auto before = hn::GatherIndex(kDoubleTag, base + i, at);
+    hn::ScatterIndex(hn::Add(before, parts[i].raw), kDoubleTag, base + i, at);
+  }
 }
 
 #endif

@@ -108,7 +108,6 @@ void build_tetrahedra(std::span<const state::Deformable> objects, const state::T
     pass.end = static_cast<int>(out.blocks.size());
     out.passes.push_back(pass);
   }
-  out.pressed_lanes.assign(out.blocks.size(), 0);
 }
 
 void take_shape(const state::Tetrahedra& t, const state::Particles& particles, std::size_t lane,
@@ -145,7 +144,6 @@ void prepare_tetrahedra(TetrahedronBlocks& tetrahedra, Real h) {
     tetrahedra.any_damping = tetrahedra.any_damping || tetrahedra.laws[i].damping_time > Real(0);
     tetrahedra.any_stiff = tetrahedra.any_stiff || tetrahedra.is_stiff(i);
   }
-  tetrahedra.impulses.resize(tetrahedra.blocks.size());
 }
 
 }  // namespace hooke::solver

@@ -34,15 +34,20 @@ struct TetrahedronBlock {
   Real gamma_rate[kTetrahedronLanes];    ///< 1 / (h tau mu V), for the rates of strain; infinite without
                                          ///< damping.
   Real implicit[kTetrahedronLanes];      ///< theta, from 0 where h^2 w^2 of its shear is at most 1, to 1 from
-                                         ///< 2 on. Rows above 0 are stiff and get several sweeps.
+                                         ///< 2 on. Rows above 0 are stiff: all of a group with such a row
+                                         ///< is solved as a whole.
 
   [[nodiscard]] bool is_stiff(int lane) const { return implicit[lane] > Real(0); }
 };
 
-/// What the stiff rows of a block have done in the sweeps of a substep.
-struct TetrahedronImpulses {
-  double volume[kTetrahedronLanes];       ///< L_H
-  double shape[3][3][kTetrahedronLanes];  ///< T_D, by columns.
+/// The stress of a block's rows as a linear law, found by linearize_tetrahedra: a change dF' of the rate of F
+/// adds the impulse -volume (G : dF') G - shape (dF' - [a] F), where a takes the torque out of it.
+struct StressBlock {
+  double f[3][3][kTetrahedronLanes];   ///< F, by columns.
+  double g[3][3][kTetrahedronLanes];   ///< G = cof F, by columns.
+  double turns[6][kTetrahedronLanes];  ///< a for a torque.
+  double volume[kTetrahedronLanes];    ///< 1 / gamma_H [N s^2 m].
+  double shape[kTetrahedronLanes];     ///< theta / gamma_D [N s^2 m].
 };
 
 /// The law from which prepare_tetrahedra makes the coefficients of a row.
@@ -66,12 +71,38 @@ struct TetrahedronPass {
 /// mass, because it is as hard to move: along the normal, and across it where it does not slide.
 struct PressedPoint {
   std::uint32_t particle = 0;
-  std::size_t contact = 0;  ///< Row of its first contact.
-  std::uint32_t held = 0;   ///< Bit i: contact i holds it along the normal.
-  std::uint32_t stuck = 0;  ///< Bit i: contact i holds it across the normal, too.
+  std::size_t contact = 0;   ///< Row of its first contact.
+  std::uint32_t held = 0;    ///< Bit i: contact i holds it along the normal.
+  std::uint32_t stuck = 0;   ///< Bit i: contact i holds it across the normal, too.
+  std::uint32_t let_go = 0;  ///< Bit i: contact i has let it go in this substep.
+  bool is_new_hold = true;   ///< Its change has not begun with `start` yet.
   Real inverse_mass = Real(0);
-  Vec3 velocity = {};                    ///< When it was noted.
+  DVec3 start = {};     ///< By how much its contacts change its velocity before stress does [m/s].
+  DVec3 change = {};    ///< By how much all does so far [m/s].
+  DVec3 impulse = {};   ///< What stress has given it [N s].
+  DVec3 friction = {};  ///< What friction gives it where it slides [N s].
+  double yielding = 1;  ///< Its own mass over that with which stress resists its motion, 1 at most [ratio].
   math::Symmetric3<double> answer = {};  ///< W: an impulse I changes its velocity by W I [1/kg].
+};
+
+/// A solution of all rows of a group at once, see solver/solid/stiff_solution.h. Vectors have four numbers
+/// for each particle, counted from TetrahedronBlocks::first_particle, of which the last is 0.
+struct StiffSolution {
+  std::vector<StressBlock> stress;  ///< One per block.
+  std::vector<double> force;        ///< Impulse of the stress at the velocities before [N s].
+  std::vector<double> change;       ///< Change of velocity found so far [m/s].
+  std::vector<double> residual;     ///< Impulse that is lacking for that change [N s].
+  std::vector<double> direction;    ///< In which the change is looked for [m/s].
+  std::vector<double> image;        ///< Impulse by which the stress resists `direction` [N s].
+  std::vector<double> diagonal;  ///< Two times four numbers: the stress's answer to a particle's own motion,
+                                 ///< the six of a symmetric matrix [kg].
+  std::vector<math::Symmetric3<double>> mass;          ///< W^-1 of each particle [kg].
+  std::vector<math::Symmetric3<double>> per_diagonal;  ///< Inverse of mass and diagonal [1/kg]; 0 for what
+                                                       ///< does not move.
+  double size = 0;                                     ///< Square of the residual, by per_diagonal [J].
+  double first_size = 0;                               ///< That of `force`.
+  int solutions = 0;                                   ///< Directions taken in this substep.
+  bool unconverged = false;  ///< Whether they were too few in some substep; read and cleared by end_step.
 };
 
 struct TetrahedronBlocks {
@@ -84,12 +115,10 @@ struct TetrahedronBlocks {
   Real inverse_h = Real(0);     ///< 1 / h [1/s]; written by prepare_tetrahedra.
   bool any_damping = false;     ///< Whether any row is damped.
   bool any_stiff = false;  ///< Whether any row was stiff when they were prepared; it may become so by flow.
-  std::vector<TetrahedronImpulses> impulses;  ///< One per block. Lives for one substep.
-  std::vector<PressedPoint> pressed;          ///< In the order of particles. Lives while solids are solved.
+  std::vector<PressedPoint> pressed;  ///< In the order of particles. Lives while solids are solved.
   /// 1 + the row in `pressed` of each particle, from the first one on; 0 for those that nothing presses on.
   std::vector<std::uint32_t> pressed_of;
-  /// Of each block, bit i: something presses on a corner of lane i. Written by solve_tetrahedra.
-  std::vector<std::uint8_t> pressed_lanes;
+  StiffSolution stiff;  ///< Empty until a row is stiff.
 
   /// Of a lane, counted through all blocks.
   [[nodiscard]] bool is_stiff(std::size_t lane) const {

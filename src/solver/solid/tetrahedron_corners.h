@@ -82,6 +82,35 @@ HWY_INLINE Matrix<Number> turned(const Triple<Number>& a, const Matrix<Number>& 
   return {cross(a, m.x), cross(a, m.y), cross(a, m.z)};
 }
 
+/// tr M - M for M = F F^T: it takes a turn a to the torque of [a] F.
+template <class Number>
+HWY_INLINE Scale<Number> torque_matrix(const Matrix<Number>& columns) {
+  const Matrix<Number> f = transposed(columns);
+  const Number xx = dot(f.x, f.x), yy = dot(f.y, f.y), zz = dot(f.z, f.z);
+  const Number xy = dot(f.x, f.y), xz = dot(f.x, f.z), yz = dot(f.y, f.z);
+  const Number zero(0.0);
+  return {yy + zz, zero - xy, zero - xz, zz + xx, zero - yz, xx + yy};
+}
+
+/// The gradients of the shape functions of a block's tetrahedra from `lane` on.
+template <class Number>
+HWY_INLINE void read_gradients(const TetrahedronBlock& block, int lane, Triple<Number> (&b)[4]) {
+  for (int i = 0; i < 3; ++i) {
+    read_widened(block.b[i][0] + lane, b[i + 1].x);
+    read_widened(block.b[i][1] + lane, b[i + 1].y);
+    read_widened(block.b[i][2] + lane, b[i + 1].z);
+  }
+  b[0] = scaled(Number(-1.0), sum(sum(b[1], b[2]), b[3]));
+}
+
+/// sum x_i b_i^T. Differences are used, because a common part of the four would cost digits.
+template <class Number>
+HWY_INLINE Matrix<Number> gradient_of(const Triple<Number> (&x)[4], const Triple<Number> (&b)[4]) {
+  const Matrix<Number> d = {difference(x[1], x[0]), difference(x[2], x[0]), difference(x[3], x[0])};
+  return {combined(d, b[1].x, b[2].x, b[3].x), combined(d, b[1].y, b[2].y, b[3].y),
+          combined(d, b[1].z, b[2].z, b[3].z)};
+}
+
 /// The corners of the tetrahedra of a block from `lane` on, and their form.
 template <class Number>
 struct TetrahedronLanes {
@@ -100,14 +129,9 @@ struct TetrahedronLanes {
       v[i] = {moving.x, moving.y, moving.z};
       w[i] = moving.w;
     }
-    for (int i = 0; i < 3; ++i) {
-      read_widened(block.b[i][0] + lane, b[i + 1].x);
-      read_widened(block.b[i][1] + lane, b[i + 1].y);
-      read_widened(block.b[i][2] + lane, b[i + 1].z);
-    }
-    b[0] = scaled(Number(-1.0), sum(sum(b[1], b[2]), b[3]));
-    f = gradient_of(x);
-    rate = gradient_of(v);
+    read_gradients(block, lane, b);
+    f = gradient_of(x, b);
+    rate = gradient_of(v, b);
   }
 
   /// B = sum w_i b_i b_i^T
@@ -134,41 +158,16 @@ struct TetrahedronLanes {
     const Triple<Number> t = scaled(s, a);
     return {t.x * a.x, t.x * a.y, t.x * a.z, t.y * a.y, t.y * a.z, t.z * a.z};
   }
-
- private:
-  /// sum x_i b_i^T. Differences are used, because a common part of the four would cost digits.
-  HWY_INLINE Matrix<Number> gradient_of(const Triple<Number> (&x)[4]) const {
-    const Matrix<Number> d = {difference(x[1], x[0]), difference(x[2], x[0]), difference(x[3], x[0])};
-    return {combined(d, b[1].x, b[2].x, b[3].x), combined(d, b[1].y, b[2].y, b[3].y),
-            combined(d, b[1].z, b[2].z, b[3].z)};
-  }
 };
 
-/// How the corners of a row answer a stress impulse T: F' changes by K(T). All of them move alike in all
-/// directions, so that K(T) = T B.
+/// How the corners of a row answer a stress impulse T: F' changes by K(T) = T B.
 template <class Number>
 class FreeCorners {
  public:
   HWY_INLINE explicit FreeCorners(const TetrahedronLanes<Number>& lanes)
       : lanes_(lanes), squares_(lanes.squares()) {}
 
-  /// Prepares S = (theta K + gamma)^-1.
-  HWY_INLINE void factorize(Number theta, Number gamma) {
-    s_ = inverse(sum(scaled(theta, squares_), diagonal(gamma)));
-    f_s_ = times(lanes_.f, s_);
-  }
   [[nodiscard]] HWY_INLINE Matrix<Number> k(const Matrix<Number>& m) const { return times(m, squares_); }
-  [[nodiscard]] HWY_INLINE Matrix<Number> s(const Matrix<Number>& m) const { return times(m, s_); }
-  /// S(a x F)
-  [[nodiscard]] HWY_INLINE Matrix<Number> s_of_turn(const Triple<Number>& a) const { return turned(a, f_s_); }
-  /// The matrix that takes a to the torque of S(a x F): tr M - M for M = F S F^T.
-  [[nodiscard]] HWY_INLINE Scale<Number> torque_matrix() const {
-    const Matrix<Number> f = transposed(lanes_.f), f_s = transposed(f_s_);
-    const Number xx = dot(f.x, f_s.x), yy = dot(f.y, f_s.y), zz = dot(f.z, f_s.z);
-    const Number xy = dot(f.x, f_s.y), xz = dot(f.x, f_s.z), yz = dot(f.y, f_s.z);
-    const Number zero(0.0);
-    return {yy + zz, zero - xy, zero - xz, zz + xx, zero - yz, xx + yy};
-  }
   /// What T does to the velocity of a corner.
   [[nodiscard]] HWY_INLINE Triple<Number> change(const Matrix<Number>& impulse, int corner) const {
     return scaled(lanes_.w[corner], times(impulse, lanes_.b[corner]));
@@ -177,118 +176,6 @@ class FreeCorners {
  private:
   const TetrahedronLanes<Number>& lanes_;
   Scale<Number> squares_;  ///< B
-  Scale<Number> s_;
-  Matrix<Number> f_s_;  ///< F S
-};
-
-/// The same where something presses on corners, which then move more easily in some directions than in
-/// others: K(T) = sum W_i T b_i b_i^T, a matrix of nine rows.
-template <class Number>
-class PressedCorners {
- public:
-  HWY_INLINE PressedCorners(const TetrahedronLanes<Number>& lanes,
-                            const double (&answer)[4][6][kTetrahedronLanes], int lane)
-      : lanes_(lanes) {
-    for (int i = 0; i < 4; ++i) {
-      w_[i] = {get<Number>(answer[i][0] + lane), get<Number>(answer[i][1] + lane),
-               get<Number>(answer[i][2] + lane), get<Number>(answer[i][3] + lane),
-               get<Number>(answer[i][4] + lane), get<Number>(answer[i][5] + lane)};
-    }
-  }
-
-  HWY_INLINE void factorize(Number theta, Number gamma) {
-    for (auto& row : factor_) {
-      for (Number& entry : row) entry = Number(0.0);
-    }
-    for (int i = 0; i < 4; ++i) add_corner(lanes_.square(theta, lanes_.b[i]), w_[i]);
-    for (int i = 0; i < 9; ++i) factor_[i][i] = factor_[i][i] + gamma;
-    for (int i = 0; i < 9; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        Number entry = factor_[i][j];
-        for (int k = 0; k < j; ++k) entry = entry - factor_[i][k] * factor_[j][k];
-        if (j < i) factor_[i][j] = entry * inverse_[j];
-        if (j == i) inverse_[i] = quotient(Number(1.0), root(entry));
-      }
-    }
-  }
-  [[nodiscard]] HWY_INLINE Matrix<Number> k(const Matrix<Number>& m) const {
-    const Number zero(0.0);
-    const Triple<Number> none = {zero, zero, zero};
-    Matrix<Number> sum = {none, none, none};
-    for (int i = 0; i < 4; ++i) {
-      const Triple<Number> moved = change(m, i);
-      add(lanes_.b[i].x, moved, sum.x);
-      add(lanes_.b[i].y, moved, sum.y);
-      add(lanes_.b[i].z, moved, sum.z);
-    }
-    return sum;
-  }
-  [[nodiscard]] HWY_INLINE Matrix<Number> s(const Matrix<Number>& m) const {
-    Nine x;
-    halfway(m, x);
-    for (int i = 8; i >= 0; --i) {
-      for (int k = i + 1; k < 9; ++k) x.of[i] = x.of[i] - factor_[k][i] * x.of[k];
-      x.of[i] = x.of[i] * inverse_[i];
-    }
-    return {{x.of[0], x.of[1], x.of[2]}, {x.of[3], x.of[4], x.of[5]}, {x.of[6], x.of[7], x.of[8]}};
-  }
-  [[nodiscard]] HWY_INLINE Matrix<Number> s_of_turn(const Triple<Number>& a) const {
-    return s(turned(a, lanes_.f));
-  }
-  [[nodiscard]] HWY_INLINE Scale<Number> torque_matrix() const {
-    const Number zero(0.0), one(1.0);
-    Nine x, y, z;
-    halfway(turned({one, zero, zero}, lanes_.f), x);
-    halfway(turned({zero, one, zero}, lanes_.f), y);
-    halfway(turned({zero, zero, one}, lanes_.f), z);
-    return {product(x, x), product(x, y), product(x, z), product(y, y), product(y, z), product(z, z)};
-  }
-  [[nodiscard]] HWY_INLINE Triple<Number> change(const Matrix<Number>& impulse, int corner) const {
-    return w_[corner].times(times(impulse, lanes_.b[corner]));
-  }
-
- private:
-  struct Nine {
-    Number of[9];
-  };
-
-  static HWY_INLINE Number product(const Nine& a, const Nine& b) {
-    Number sum = a.of[0] * b.of[0];
-    for (int i = 1; i < 9; ++i) sum = sum + a.of[i] * b.of[i];
-    return sum;
-  }
-
-  /// L^-1 m
-  HWY_INLINE void halfway(const Matrix<Number>& m, Nine& x) const {
-    x = {{m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z, m.z.x, m.z.y, m.z.z}};
-    for (int i = 0; i < 9; ++i) {
-      for (int k = 0; k < i; ++k) x.of[i] = x.of[i] - factor_[i][k] * x.of[k];
-      x.of[i] = x.of[i] * inverse_[i];
-    }
-  }
-
-  /// Adds b b^T times W, of which the upper triangles on the diagonal are not needed, but do no harm.
-  HWY_INLINE void add_corner(const Scale<Number>& b, const Scale<Number>& w) {
-    const Number of_b[3][3] = {{b.xx, b.xy, b.xz}, {b.xy, b.yy, b.yz}, {b.xz, b.yz, b.zz}};
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        const Scale<Number> part = scaled(of_b[i][j], w);
-        add_row(part.xx, part.xy, part.xz, factor_[3 * i] + 3 * j);
-        add_row(part.xy, part.yy, part.yz, factor_[3 * i + 1] + 3 * j);
-        add_row(part.xz, part.yz, part.zz, factor_[3 * i + 2] + 3 * j);
-      }
-    }
-  }
-  static HWY_INLINE void add_row(Number x, Number y, Number z, Number* to) {
-    to[0] = to[0] + x;
-    to[1] = to[1] + y;
-    to[2] = to[2] + z;
-  }
-
-  const TetrahedronLanes<Number>& lanes_;
-  Scale<Number> w_[4];
-  Number factor_[9][9];  ///< The lower triangle of Cholesky's factor, but for its diagonal.
-  Number inverse_[9];    ///< The inverse of its diagonal.
 };
 
 }  // namespace hooke::solver::wide::HWY_NAMESPACE

@@ -30,14 +30,18 @@ using TetrahedronNumber = double;
 using TetrahedronNumber = WideDouble;
 #endif
 
-void solve_free_here(const TetrahedronRun& run, const state::PositionRecord* position,
-                     state::VelocityRecord* velocity) {
-  solve_free_tetrahedron_blocks<TetrahedronNumber>(run, position, velocity);
+void solve_here(const TetrahedronRun& run, const state::PositionRecord* position,
+                state::VelocityRecord* velocity) {
+  solve_tetrahedron_blocks<TetrahedronNumber>(run, position, velocity);
 }
 
-void solve_pressed_here(double inverse_h, PressedTetrahedra& rows, const state::PositionRecord* position,
-                        state::VelocityRecord* velocity) {
-  solve_pressed_tetrahedron_rows<TetrahedronNumber>(inverse_h, rows, position, velocity);
+void linearize_here(const TetrahedronRun& run, const state::PositionRecord* position,
+                    const state::VelocityRecord* velocity) {
+  linearize_tetrahedron_blocks<TetrahedronNumber>(run, position, velocity);
+}
+
+void resist_here(const TetrahedronRun& run) {
+  resist_tetrahedron_blocks<TetrahedronNumber>(run);
 }
 
 void damp_here(const TetrahedronRun& run, const state::PositionRecord* position,
@@ -51,20 +55,26 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hooke::solver::wide {
 
-HWY_EXPORT(solve_free_here);
-HWY_EXPORT(solve_pressed_here);
+HWY_EXPORT(solve_here);
+HWY_EXPORT(linearize_here);
+HWY_EXPORT(resist_here);
 HWY_EXPORT(damp_here);
 
-void solve_free_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
-                           state::VelocityRecord* velocity) {
-  if (is_scalar()) return solve_free_tetrahedra_scalar(run, position, velocity);
-  HWY_DYNAMIC_DISPATCH(solve_free_here)(run, position, velocity);
+void solve_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
+                      state::VelocityRecord* velocity) {
+  if (is_scalar()) return solve_tetrahedra_scalar(run, position, velocity);
+  HWY_DYNAMIC_DISPATCH(solve_here)(run, position, velocity);
 }
 
-void solve_pressed_tetrahedra(double inverse_h, PressedTetrahedra& rows,
-                              const state::PositionRecord* position, state::VelocityRecord* velocity) {
-  if (is_scalar()) return solve_pressed_tetrahedra_scalar(inverse_h, rows, position, velocity);
-  HWY_DYNAMIC_DISPATCH(solve_pressed_here)(inverse_h, rows, position, velocity);
+void linearize_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
+                          const state::VelocityRecord* velocity) {
+  if (is_scalar()) return linearize_tetrahedra_scalar(run, position, velocity);
+  HWY_DYNAMIC_DISPATCH(linearize_here)(run, position, velocity);
+}
+
+void resist_tetrahedra(const TetrahedronRun& run) {
+  if (is_scalar()) return resist_tetrahedra_scalar(run);
+  HWY_DYNAMIC_DISPATCH(resist_here)(run);
 }
 
 void damp_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
@@ -80,14 +90,18 @@ void damp_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* pos
 
 namespace hooke::solver::wide {
 
-void solve_free_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
-                           state::VelocityRecord* velocity) {
-  solve_free_tetrahedra_scalar(run, position, velocity);
+void solve_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
+                      state::VelocityRecord* velocity) {
+  solve_tetrahedra_scalar(run, position, velocity);
 }
 
-void solve_pressed_tetrahedra(double inverse_h, PressedTetrahedra& rows,
-                              const state::PositionRecord* position, state::VelocityRecord* velocity) {
-  solve_pressed_tetrahedra_scalar(inverse_h, rows, position, velocity);
+void linearize_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,
+                          const state::VelocityRecord* velocity) {
+  linearize_tetrahedra_scalar(run, position, velocity);
+}
+
+void resist_tetrahedra(const TetrahedronRun& run) {
+  resist_tetrahedra_scalar(run);
 }
 
 void damp_tetrahedra(const TetrahedronRun& run, const state::PositionRecord* position,

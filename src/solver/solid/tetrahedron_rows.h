@@ -46,25 +46,6 @@ struct ElasticRows {
   }
 };
 
-/// What rows have done in a substep.
-template <class Number>
-struct ElasticImpulse {
-  Number volume;
-  Matrix<Number> shape;
-
-  HWY_INLINE ElasticImpulse(const TetrahedronImpulses& from, int lane)
-      : volume(get<Number>(from.volume + lane)),
-        shape{get3<Number>(from.shape[0], lane), get3<Number>(from.shape[1], lane),
-              get3<Number>(from.shape[2], lane)} {}
-
-  HWY_INLINE void write_to(TetrahedronImpulses& to, int lane) const {
-    write(volume, to.volume + lane);
-    put3(shape.x, to.shape[0], lane);
-    put3(shape.y, to.shape[1], lane);
-    put3(shape.z, to.shape[2], lane);
-  }
-};
-
 /// The stress impulse T of rows with theta = 0: there S = 1 / gamma_D, and D is the stress of the shape
 /// alone, which has no torque.
 template <class Number, class Corners>
@@ -77,119 +58,150 @@ HWY_INLINE Matrix<Number> soft_impulse(const ElasticRows<Number>& rows, const Ma
   return sum(scaled(l, rows.g), d);
 }
 
-/// The stress impulse T of rows for a rate F', beyond what they have done so far.
-template <class Number, class Corners>
-HWY_INLINE Matrix<Number> stiff_impulse(const ElasticRows<Number>& rows, Number theta,
-                                        const TetrahedronLanes<Number>& lanes, Corners& corners,
-                                        const ElasticImpulse<Number>& done, ElasticImpulse<Number>& more) {
-  const Matrix<Number>& g = rows.g;
-  const Matrix<Number>& rate = lanes.rate;
-  corners.factorize(theta, rows.gamma_shape);
-  const Scale<Number> torques = corners.torque_matrix();
-  const Number least = Number(kLeastSpinShare) * (torques.xx + torques.yy + torques.zz);
-  const Scale<Number> turns = inverse(sum(torques, diagonal(least)));
-  // K and S commute, and S is symmetric.
-  const Matrix<Number> g_s = corners.s(g);
-  const Matrix<Number> g_k_s = corners.k(g_s);
-  const Matrix<Number> lacks = sum(rows.shape_error, scaled(rows.gamma_shape, done.shape));  // besides F'
-  const Matrix<Number> r_s = corners.s(sum(scaled(theta, rate), lacks));
-  const Triple<Number> torque_g = torque_of(lanes.f, g_k_s);
-  const Triple<Number> a_g = scaled(theta, turns.times(torque_g));
-  const Triple<Number> a_r = turns.times(torque_of(lanes.f, r_s));
-  const Number w = rows.gamma_volume + rows.gamma_shape * contract(g, g_k_s) + dot(a_g, torque_g);
-  const Number right = contract(lacks, g_k_s) - rows.gamma_shape * contract(g_s, rate) - dot(a_r, torque_g) -
-                       rows.volume_error - rows.gamma_volume * done.volume;
-  const Number l = quotient(right, w);
-  const Matrix<Number> turn = corners.s_of_turn(sum(a_r, scaled(l, a_g)));
-  const Matrix<Number> shape = difference(turn, sum(r_s, scaled(theta * l, g_k_s)));
-  more.volume = done.volume + l;
-  more.shape = sum(done.shape, shape);
-  return sum(scaled(l, g), shape);
-}
-
-/// Where rows are: those of a block from `lane` on, one for each lane of a Number.
-struct TetrahedronPlace {
-  const TetrahedronBlock& block;
-  int lane;
-  double inverse_h;           ///< [1/s]
-  TetrahedronImpulses* done;  ///< Of the block.
-  Real* velocity;             ///< Of the particle from which corners count.
-};
-
-/// Solves rows where `wanted` is 1.
-template <class Number, class Corners>
-HWY_INLINE void solve_tetrahedron_lanes(const TetrahedronPlace& at, Number wanted,
-                                        const TetrahedronLanes<Number>& lanes, Corners& corners) {
-  const Number zero(0.0);
-  const Number square = contract(lanes.f, lanes.f);
-  const Number w = lanes.w[0] + lanes.w[1] + lanes.w[2] + lanes.w[3];
-  const auto moves = above(wanted * w * square, zero);
-  Number theta;
-  read_widened(at.block.implicit + at.lane, theta);
-  const auto is_stiff = above(theta, zero);
-  const ElasticRows<Number> rows(at.block, at.lane, at.inverse_h, lanes.f, square);
-  Matrix<Number> impulse = {};
-  if (any(above(choose(is_stiff, zero, wanted), zero))) impulse = soft_impulse(rows, lanes.rate, corners);
-  if (any(above(choose(is_stiff, wanted, zero), zero))) {
-    const ElasticImpulse<Number> before(*at.done, at.lane);
-    ElasticImpulse<Number> after = before;
-    const Matrix<Number> stiff = stiff_impulse(rows, theta, lanes, corners, before, after);
-    impulse = choose(is_stiff, stiff, impulse);
-    after.volume = choose(moves, after.volume, before.volume);
-    after.shape = choose(moves, after.shape, before.shape);
-    after.write_to(*at.done, at.lane);
-  }
-  const Triple<Number> changes[4] = {corners.change(impulse, 0), corners.change(impulse, 1),
-                                     corners.change(impulse, 2), corners.change(impulse, 3)};
-  lanes.write(at.block, at.lane, moves, changes, at.velocity);
-}
-
-/// 1 for lanes that are solved, 0 for others.
-struct WantedLanes {
-  double of[kTetrahedronLanes];
-  bool any = false;
-
-  HWY_INLINE WantedLanes(const TetrahedronBlock& block, unsigned skipped, bool stiff_alone) {
-    for (int i = 0; i < kTetrahedronLanes; ++i) {
-      const bool wanted = ((skipped >> i) & 1) == 0 && (!stiff_alone || block.implicit[i] > Real(0));
-      of[i] = wanted ? 1.0 : 0.0;
-      any = any || wanted;
-    }
-  }
-};
-
-/// All loads of a Number come before its stores, so that the copies which fill a block store what their
-/// original does.
+/// Solves the rows of a group where none is stiff, one after the other. All loads of a Number come before its
+/// stores, so that the copies which fill a block store what their original does.
 template <class Number>
-HWY_INLINE void solve_free_tetrahedron_blocks(const TetrahedronRun& run,
-                                              const state::PositionRecord* positions,
-                                              state::VelocityRecord* velocities) {
+HWY_INLINE void solve_tetrahedron_blocks(const TetrahedronRun& run, const state::PositionRecord* positions,
+                                         state::VelocityRecord* velocities) {
   const auto* position = reinterpret_cast<const Real*>(positions);
   auto* velocity = reinterpret_cast<Real*>(velocities);
+  for (const TetrahedronBlock& block : run.blocks) {
+    const int count = &block == &run.blocks.back() ? run.last_count : kTetrahedronLanes;
+    for (int lane = 0; lane < count; lane += kLanesOf<Number>) {
+      const TetrahedronLanes<Number> lanes(block, lane, position, velocity);
+      const FreeCorners<Number> corners(lanes);
+      const Number square = contract(lanes.f, lanes.f);
+      const ElasticRows<Number> rows(block, lane, run.inverse_h, lanes.f, square);
+      const Matrix<Number> impulse = soft_impulse(rows, lanes.rate, corners);
+      const Triple<Number> changes[4] = {corners.change(impulse, 0), corners.change(impulse, 1),
+                                         corners.change(impulse, 2), corners.change(impulse, 3)};
+      const auto moves = above((lanes.w[0] + lanes.w[1] + lanes.w[2] + lanes.w[3]) * square, Number(0.0));
+      lanes.write(block, lane, moves, changes, velocity);
+    }
+  }
+}
+
+/// The linear law of StressBlock.
+template <class Number>
+struct LinearStress {
+  Matrix<Number> f, g;
+  Scale<Number> turns;
+  Number volume, shape;
+
+  /// The rate without the turn that minimizes it.
+  [[nodiscard]] HWY_INLINE Matrix<Number> without_turn(const Matrix<Number>& rate) const {
+    return difference(rate, turned(turns.times(torque_of(f, rate)), f));
+  }
+  /// The impulse that resists a rate.
+  [[nodiscard]] HWY_INLINE Matrix<Number> resist(const Matrix<Number>& rate) const {
+    return sum(scaled(volume * contract(g, rate), g), scaled(shape, without_turn(rate)));
+  }
+  HWY_INLINE void write_to(StressBlock& to, int lane) const {
+    put_matrix(f, to.f, lane);
+    put_matrix(g, to.g, lane);
+    const Number entries[6] = {turns.xx, turns.xy, turns.xz, turns.yy, turns.yz, turns.zz};
+    for (int i = 0; i < 6; ++i) write(entries[i], to.turns[i] + lane);
+    write(volume, to.volume + lane);
+    write(shape, to.shape + lane);
+  }
+  static HWY_INLINE LinearStress read_from(const StressBlock& from, int lane) {
+    const auto at = [&](int i) HWY_ATTR { return get<Number>(from.turns[i] + lane); };
+    return {get_matrix(from.f, lane),
+            get_matrix(from.g, lane),
+            {at(0), at(1), at(2), at(3), at(4), at(5)},
+            get<Number>(from.volume + lane),
+            get<Number>(from.shape + lane)};
+  }
+
+ private:
+  static HWY_INLINE void put_matrix(const Matrix<Number>& m, double (&to)[3][3][kTetrahedronLanes],
+                                    int lane) {
+    put3(m.x, to[0], lane);
+    put3(m.y, to[1], lane);
+    put3(m.z, to[2], lane);
+  }
+  static HWY_INLINE Matrix<Number> get_matrix(const double (&from)[3][3][kTetrahedronLanes], int lane) {
+    return {get3<Number>(from[0], lane), get3<Number>(from[1], lane), get3<Number>(from[2], lane)};
+  }
+};
+
+/// Adds a corner's own part of the stress's answer, without the turn, to its two records of `diagonal`.
+template <class Number>
+HWY_INLINE void add_diagonal(const LinearStress<Number>& stress, const Triple<Number>& b,
+                             const std::uint32_t* record, double* diagonal) {
+  const Triple<Number> u = times(stress.g, b);
+  const Number size = stress.shape * dot(b, b);
+  const Number xy = stress.volume * (u.x * u.y), xz = stress.volume * (u.x * u.z);
+  const Number xx = stress.volume * (u.x * u.x) + size, yy = stress.volume * (u.y * u.y) + size;
+  const Number zz = stress.volume * (u.z * u.z) + size, yz = stress.volume * (u.y * u.z);
+  std::uint32_t first[kTetrahedronLanes], second[kTetrahedronLanes];
+  for (int i = 0; i < kLanesOf<Number>; ++i) {
+    first[i] = 2 * record[i];
+    second[i] = 2 * record[i] + 4;
+  }
+  add_triple({xx, xy, xz}, diagonal, first);
+  add_triple({yy, yz, zz}, diagonal, second);
+}
+
+/// Linearizes rows about the present velocities, and adds up the impulses that they give now.
+template <class Number>
+HWY_INLINE void linearize_tetrahedron_blocks(const TetrahedronRun& run,
+                                             const state::PositionRecord* positions,
+                                             const state::VelocityRecord* velocities) {
+  const Number zero(0.0), minus(-1.0);
+  const auto* position = reinterpret_cast<const Real*>(positions);
+  const auto* velocity = reinterpret_cast<const Real*>(velocities);
   for (std::size_t i = 0; i < run.blocks.size(); ++i) {
     const TetrahedronBlock& block = run.blocks[i];
-    const WantedLanes wanted(block, run.skipped[i], run.again);
-    if (!wanted.any) continue;
     const int count = i + 1 == run.blocks.size() ? run.last_count : kTetrahedronLanes;
     for (int lane = 0; lane < count; lane += kLanesOf<Number>) {
       const TetrahedronLanes<Number> lanes(block, lane, position, velocity);
-      FreeCorners<Number> corners(lanes);
-      solve_tetrahedron_lanes({block, lane, run.inverse_h, run.done + i, velocity},
-                              get<Number>(wanted.of + lane), lanes, corners);
+      const Number square = contract(lanes.f, lanes.f);
+      const ElasticRows<Number> rows(block, lane, run.inverse_h, lanes.f, square);
+      Number theta;
+      read_widened(block.implicit + lane, theta);
+      const Scale<Number> torques = torque_matrix(lanes.f);
+      const Number least = Number(kLeastSpinShare) * (torques.xx + torques.yy + torques.zz);
+      const Number one(1.0);
+      const auto moves = above((lanes.w[0] + lanes.w[1] + lanes.w[2] + lanes.w[3]) * square, zero);
+      const Number per_shape = choose(moves, quotient(one, rows.gamma_shape), zero);
+      const Number per_volume = choose(moves, quotient(one, rows.gamma_volume), zero);
+      const Scale<Number> none = diagonal(zero);
+      const Scale<Number> turns = inverse(sum(torques, diagonal(least)));
+      const LinearStress<Number> stress = {
+          lanes.f,
+          rows.g,
+          {choose(moves, turns.xx, none.xx), choose(moves, turns.xy, zero), choose(moves, turns.xz, zero),
+           choose(moves, turns.yy, zero), choose(moves, turns.yz, zero), choose(moves, turns.zz, zero)},
+          per_volume,
+          per_shape * theta};
+      stress.write_to(run.stress[i], lane);
+      const Matrix<Number> shape = sum(rows.shape_error, scaled(theta, stress.without_turn(lanes.rate)));
+      const Matrix<Number> impulse =
+          sum(scaled(per_volume * (rows.volume_error + contract(rows.g, lanes.rate)), rows.g),
+              scaled(per_shape, shape));
+      for (int k = 0; k < 4; ++k) {
+        add_triple(scaled(minus, times(impulse, lanes.b[k])), run.force, block.record[k] + lane);
+        add_diagonal(stress, lanes.b[k], block.record[k] + lane, run.diagonal);
+      }
     }
   }
 }
 
+/// Adds the impulses with which rows resist a motion of the corners.
 template <class Number>
-HWY_INLINE void solve_pressed_tetrahedron_rows(double inverse_h, PressedTetrahedra& rows,
-                                               const state::PositionRecord* positions,
-                                               state::VelocityRecord* velocities) {
-  const auto* position = reinterpret_cast<const Real*>(positions);
-  auto* velocity = reinterpret_cast<Real*>(velocities);
-  for (int lane = 0; lane < rows.count; lane += kLanesOf<Number>) {
-    const TetrahedronLanes<Number> lanes(rows.rows, lane, position, velocity);
-    PressedCorners<Number> corners(lanes, rows.answer, lane);
-    solve_tetrahedron_lanes({rows.rows, lane, inverse_h, &rows.done, velocity}, Number(1.0), lanes, corners);
+HWY_INLINE void resist_tetrahedron_blocks(const TetrahedronRun& run) {
+  for (std::size_t i = 0; i < run.blocks.size(); ++i) {
+    const TetrahedronBlock& block = run.blocks[i];
+    const int count = i + 1 == run.blocks.size() ? run.last_count : kTetrahedronLanes;
+    for (int lane = 0; lane < count; lane += kLanesOf<Number>) {
+      Triple<Number> b[4], v[4];
+      read_gradients(block, lane, b);
+      for (int k = 0; k < 4; ++k) read_triple(run.direction, block.record[k] + lane, v[k]);
+      const Matrix<Number> impulse =
+          LinearStress<Number>::read_from(run.stress[i], lane).resist(gradient_of(v, b));
+      for (int k = 0; k < 4; ++k) add_triple(times(impulse, b[k]), run.image, block.record[k] + lane);
+    }
   }
 }
 

@@ -4,14 +4,18 @@
 
 namespace hooke::solver::wide {
 
-void solve_free_tetrahedra_scalar(const TetrahedronRun& run, const state::PositionRecord* position,
-                                  state::VelocityRecord* velocity) {
-  HWY_NAMESPACE::solve_free_tetrahedron_blocks<double>(run, position, velocity);
+void solve_tetrahedra_scalar(const TetrahedronRun& run, const state::PositionRecord* position,
+                             state::VelocityRecord* velocity) {
+  HWY_NAMESPACE::solve_tetrahedron_blocks<double>(run, position, velocity);
 }
 
-void solve_pressed_tetrahedra_scalar(double inverse_h, PressedTetrahedra& rows,
-                                     const state::PositionRecord* position, state::VelocityRecord* velocity) {
-  HWY_NAMESPACE::solve_pressed_tetrahedron_rows<double>(inverse_h, rows, position, velocity);
+void linearize_tetrahedra_scalar(const TetrahedronRun& run, const state::PositionRecord* position,
+                                 const state::VelocityRecord* velocity) {
+  HWY_NAMESPACE::linearize_tetrahedron_blocks<double>(run, position, velocity);
+}
+
+void resist_tetrahedra_scalar(const TetrahedronRun& run) {
+  HWY_NAMESPACE::resist_tetrahedron_blocks<double>(run);
 }
 
 void damp_tetrahedra_scalar(const TetrahedronRun& run, const state::PositionRecord* position,

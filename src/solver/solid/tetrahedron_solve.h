@@ -6,7 +6,7 @@
 
 namespace hooke::solver {
 
-/// Corrects velocities by the stress of each tetrahedron, in one pass.
+/// Corrects velocities by the stress of each tetrahedron, in one pass, where no row of the group is stiff.
 ///
 /// Volume       C_H = det F - 1 - (1 - k) mu / lambda,  gradient G = cof F
 /// Shape        C_D = (F - k G) / (1 + k), nine rows whose gradients are one component of F each
@@ -16,34 +16,38 @@ namespace hooke::solver {
 /// to the other. k is 1 near the form at rest, where C_D then vanishes and nothing cancels, and 3 / |F|^2
 /// where the solid is drawn out, as explicit cofactors would make energy there.
 ///
-/// Impulse      of corner i: T b_i with T = L G + D, where with K(T) = sum W_i T b_i b_i^T
+/// Impulse      of corner i: T b_i with T = L G + D,
 ///
-///     G : K(L G + D) + gamma_H L                       = -(G : F' + C_H / h)
-///     theta (K(L G + D) + F' - [a] F) + gamma_D D       = -C_D / h,   torque of D = 0
+///     gamma_H L = -(G : F'' + C_H / h)
+///     gamma_D D = -(theta (F'' - [a] F) + C_D / h),   torque of D = 0
 ///
-/// F' = sum v_i b_i^T, W_i is how corner i answers an impulse, 1 / m or less where something presses on it
-/// (solver/soft/pressed_points.h), and gamma_D = 1 / ((1 + k) h^2 mu V). The rate of rotation a is minimized
-/// out, since a rotation is no change of shape. It is solved for L with S = (theta K + gamma_D)^-1 in a form
-/// that loses nothing where gamma_D is small: G : K(G - theta S K G) = gamma_D G : S K G.
+/// F'' = sum v_i b_i^T with the velocities after it, and gamma_D = 1 / ((1 + k) h^2 mu V). The rate of
+/// rotation a is minimized out, since a rotation is no change of shape. theta goes from 0 to 1 as h^2 w^2 of
+/// the shear goes from 1 to 2: soft rows are explicit and lose no energy, stiff ones are implicit and make
+/// none.
 ///
-/// theta goes from 0 to 1 as h^2 w^2 of the shear goes from 1 to 2: soft rows are explicit and lose no
-/// energy, stiff ones are implicit and make none. There is no decomposition of F: C_H turns a tetrahedron
-/// back that is inside out. There det F counts as no less than min(0, 4 - 2/3 tr F^T F). By the full law a
-/// solid folded through itself keeps some tetrahedra inside out, pressed by their neighbors; with the bound
-/// none is left of a mirrored solid, at any nu that is allowed. Impulses keep linear momentum to rounding.
-/// Directions are those at the start of the substep, as springs have (solver/soft/spring_solve.h): with
-/// directions at the places where the particles are about to be, a spinning solid would lose its spin.
+/// In this pass theta is 0 and D is known, so that L follows from F'' = F' + sum 1 / m_i T b_i b_i^T of the
+/// row alone. Groups with a stiff row are solved as a whole instead (solver/solid/stiff_solution.h).
 ///
-/// Where theta is 0, S = 1 / gamma_D, and D has no torque. The arithmetic is in double over lanes
-/// (solver/solid/tetrahedron_rows.h); rows with corners that something presses on are solved after the others
-/// of their color, with which they share no particle.
+/// There is no decomposition of F: C_H turns a tetrahedron back that is inside out. There det F counts as no
+/// less than min(0, 4 - 2/3 tr F^T F). By the full law a solid folded through itself keeps some tetrahedra
+/// inside out, pressed by their neighbors; with the bound none is left of a mirrored solid, at any nu that is
+/// allowed. Impulses keep linear momentum to rounding. Directions are those at the start of the substep, as
+/// springs have (solver/soft/spring_solve.h): with directions at the places where the particles are about to
+/// be, a spinning solid would lose its spin. The arithmetic is in double over lanes
+/// (solver/solid/tetrahedron_rows.h).
 void solve_tetrahedra(TetrahedronBlocks& tetrahedra, const TetrahedronPass& pass, parallel::Range blocks,
                       state::Particles& particles);
 
-/// Makes one more pass over the stiff rows, which take their impulses so far into account. With
-/// kStiffSolidSweeps passes in all a load of many times a solid's mass is felt through all of it.
-void solve_stiff_tetrahedra(TetrahedronBlocks& tetrahedra, const TetrahedronPass& pass,
-                            parallel::Range blocks, state::Particles& particles);
+/// Finds the linear law of each row about the present velocities, and adds up the impulses that rows give
+/// now: a pass of solver/solid/stiff_solution.h.
+void linearize_tetrahedra(TetrahedronBlocks& tetrahedra, const TetrahedronPass& pass, parallel::Range blocks,
+                          state::Particles& particles);
+
+/// Adds the impulses by which rows resist the direction of the solution: a pass of
+/// solver/solid/stiff_solution.h.
+void resist_tetrahedra(TetrahedronBlocks& tetrahedra, const TetrahedronPass& pass, parallel::Range blocks,
+                       state::Particles& particles);
 
 /// Damps rates of strain E' = (F^T F' + F'^T F) / 2 by the stress tau times the rate of the elastic stress
 /// at rest, 2 mu E' + (lambda - mu) tr(E') 1, in one pass.

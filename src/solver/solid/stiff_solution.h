@@ -1,0 +1,57 @@
+#pragma once
+
+#include "solver/solid/tetrahedron_blocks.h"
+#include "solver/solid/tetrahedron_solve.h"
+#include "state/particles.h"
+
+/// \file
+/// All rows of a group of tetrahedra solved at once, where some are stiff: the change dv of velocities with
+///
+///   W^-1 dv + sum K dv = f
+///
+/// f being the impulses of the rows at the velocities before, K how a row resists a motion of its corners
+/// (StressBlock), and W how a particle answers an impulse. It is found by conjugate gradients, which the
+/// blocks of three by three on the diagonal precondition (Hestenes and Stiefel 1952), so that a load of any
+/// mass is felt through all of the solid. Each direction is one pass over the rows.
+///
+/// Sums are made in the order of particles, and passes color after color, so that results have the same bits
+/// for any number of workers.
+
+namespace hooke::solver {
+
+/// Forgets the last solution.
+void begin_stiff_solution(TetrahedronBlocks& tetrahedra);
+
+/// Begins with the change so far, and with `start` for points that a contact has taken hold of. It becomes
+/// the direction.
+void look_back(TetrahedronBlocks& tetrahedra);
+
+/// Takes W of each particle, and finds the residual and the first direction. `image` is how rows resist the
+/// change so far.
+void aim(TetrahedronBlocks& tetrahedra, const state::Particles& particles);
+
+/// Whether the residual is too large still.
+[[nodiscard]] bool needs_direction(const TetrahedronBlocks& tetrahedra);
+
+/// Goes along the direction as far as its image says, and finds the next one.
+void advance(TetrahedronBlocks& tetrahedra);
+
+/// Finds the change for the present W. `pass` calls a function with all blocks of rows, color after color.
+template <class Pass>
+void solve_for_change(TetrahedronBlocks& tetrahedra, const state::Particles& particles, const Pass& pass) {
+  look_back(tetrahedra);
+  pass(resist_tetrahedra);
+  aim(tetrahedra, particles);
+  while (needs_direction(tetrahedra)) {
+    pass(resist_tetrahedra);
+    advance(tetrahedra);
+  }
+}
+
+/// Notes the impulses that pressed points have so far.
+void find_pressed_impulses(TetrahedronBlocks& tetrahedra);
+
+/// Changes the velocities of all particles but those that something presses on.
+void finish_stiff_solution(TetrahedronBlocks& tetrahedra, state::Particles& particles);
+
+}  // namespace hooke::solver
