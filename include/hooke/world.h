@@ -354,6 +354,9 @@ class World {
   [[nodiscard]] DVec3 center_of_mass(BodyId id) const;
   /// Mass of a body [kg]; 0 for one that is not dynamic.
   [[nodiscard]] Real mass(BodyId id) const;
+  /// Kinetic energy of a dynamic body, and its potential energy in gravity and in uniform and inverse square
+  /// fields, as measure() counts them for all; zeros for a body that is not dynamic.
+  [[nodiscard]] Energy energy(BodyId id) const;
   /// Whether a body sleeps: it rests, and steps skip it until something wakes it.
   [[nodiscard]] bool asleep(BodyId id) const;
   /// Lists where bodies touched each other in the last step.

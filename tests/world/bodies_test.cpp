@@ -320,6 +320,27 @@ TEST_SUITE("world/bodies") {
     CHECK(refused(body) == "body.shape.mesh");
   }
 
+  TEST_CASE("a body that flies and spins has the energy m v^2 / 2 + I w^2 / 2, and m g h") {
+    World world = make_world(without_sleep());
+    BodyDesc flying = cube({0, 3, 0});
+    flying.velocity = {2, 0, 0};
+    flying.angular_velocity = {0, 6, 0};
+    const BodyId id = take(world.add_body(flying));
+    const BodyId other = take(world.add_body(cube({5, 1, 0})));
+    // A cube of 1 m has 1000 kg, and the moment of inertia m a^2 / 6 about an axis through its center.
+    CHECK(world.energy(id).kinetic ==
+          doctest::Approx(0.5 * 1000 * 4 + 0.5 * (1000.0 / 6) * 36).epsilon(1e-5));
+    CHECK(world.energy(id).potential == doctest::Approx(1000 * kGravity * 3).epsilon(1e-6));
+    CHECK(world.energy(id).elastic == 0);
+    run(world, 30);
+    const Energy sum = world.measure().energy;
+    CHECK(world.energy(id).kinetic + world.energy(other).kinetic ==
+          doctest::Approx(sum.kinetic).epsilon(1e-12));
+    CHECK(world.energy(id).potential + world.energy(other).potential ==
+          doctest::Approx(sum.potential).epsilon(1e-12));
+    CHECK(world.energy(BodyId{}).total() == 0);
+  }
+
   TEST_CASE("a concave solid of triangles falls with the mass of its inside, and does not fill its hull") {
     // 3 m^2 by 1 m; by the areas of its two arms the center is at (2 1 + 1 0.5) / 3 = 5/6 along both.
     World world = make_world();

@@ -68,24 +68,32 @@ double potential_of_dipoles(const Tables& t) {
   return solver::dipole_energy(t.fields, dipoles);
 }
 
-/// Adds energies and momenta of bodies; the kinetic energy is p^2 / 2 m + L I^-1 L / 2.
+/// Adds the energy of a dynamic body; the kinetic energy is p^2 / 2 m + L I^-1 L / 2.
+void add_energy(const Tables& t, std::uint32_t body, Energy& energy) {
+  const state::BodyMass& mass = t.bodies.mass[body];
+  const auto kilograms = static_cast<double>(mass.mass);
+  const DVec3 v = vector_cast<double>(t.bodies.motion[body].v);
+  const Quat axes = t.bodies.rotation[body] * mass.principal;
+  const DVec3 l = vector_cast<double>(rotate(conjugate(axes), t.bodies.angular_momentum[body]));
+  const DVec3 inertia = vector_cast<double>(mass.inertia);
+  energy.kinetic += 0.5 * kilograms * length_squared(v);
+  energy.kinetic += 0.5 * (l.x * l.x / inertia.x + l.y * l.y / inertia.y + l.z * l.z / inertia.z);
+  const DVec3 middle = t.bodies.center[body] - 0.5 * t.body_substep * v;  // as middle_of a particle
+  energy.potential +=
+      potential_of(t, middle, kilograms, static_cast<double>(t.bodies.traits[body].gravity_scale));
+}
+
+/// Adds energies and momenta of bodies.
 void measure_bodies(const Tables& t, Measurement& m) {
   for (const std::uint32_t body : t.moving_bodies) {
     const state::BodyMass& mass = t.bodies.mass[body];
     if (!(mass.mass > Real(0))) continue;
+    add_energy(t, body, m.energy);
     const auto kilograms = static_cast<double>(mass.mass);
     const DVec3 v = vector_cast<double>(t.bodies.motion[body].v);
-    const DVec3 momentum = vector_cast<double>(t.bodies.angular_momentum[body]);
-    const Quat axes = t.bodies.rotation[body] * mass.principal;
-    const DVec3 l = vector_cast<double>(rotate(conjugate(axes), t.bodies.angular_momentum[body]));
-    const DVec3 inertia = vector_cast<double>(mass.inertia);
-    m.energy.kinetic += 0.5 * kilograms * length_squared(v);
-    m.energy.kinetic += 0.5 * (l.x * l.x / inertia.x + l.y * l.y / inertia.y + l.z * l.z / inertia.z);
-    const DVec3 middle = t.bodies.center[body] - 0.5 * t.body_substep * v;  // as middle_of a particle
-    m.energy.potential +=
-        potential_of(t, middle, kilograms, static_cast<double>(t.bodies.traits[body].gravity_scale));
     m.momentum += kilograms * v;
-    m.angular_momentum += kilograms * cross(t.bodies.center[body], v) + momentum;
+    m.angular_momentum +=
+        kilograms * cross(t.bodies.center[body], v) + vector_cast<double>(t.bodies.angular_momentum[body]);
   }
 }
 
@@ -260,6 +268,15 @@ double measure_matches(const Tables& t) {
 }
 
 }  // namespace
+
+Energy World::energy(BodyId id) const {
+  const world::Reading reading(data_);
+  const Tables& t = reading.tables();
+  const std::uint32_t row = t.body_slots.find(id);
+  Energy energy;
+  if (row != state::SlotTable<BodyId>::kNone && t.bodies.mass[row].mass > Real(0)) add_energy(t, row, energy);
+  return energy;
+}
 
 Measurement World::measure() const {
   const world::Reading reading(data_);
