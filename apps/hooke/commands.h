@@ -14,6 +14,7 @@ using Arguments = std::span<const std::string>;
 int command_run(Arguments arguments);
 int command_view(Arguments arguments);
 int command_render(Arguments arguments);
+int command_export(Arguments arguments);
 int command_convert(Arguments arguments);
 int command_validate(Arguments arguments);
 int command_new(Arguments arguments);

@@ -28,6 +28,7 @@ constexpr std::array kCommands = {
     Command{"run", "simulate a scene, measure it, check what it promises", command_run},
     Command{"view", "show a scene or a model in a window", command_view},
     Command{"render", "draw a scene to a film or to pictures, without a display", command_render},
+    Command{"export", "record a scene's motion as .glb .usda .obj .csv or point caches", command_export},
     Command{"check", "run cases with known answers", command_check},
     Command{"compare", "run a scene by several methods of integration, and plot them", command_compare},
     Command{"bench", "time scenes", command_bench},

@@ -1,0 +1,99 @@
+#include "hooke/export/motion_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdlib.h>
+#include <system_error>
+#include <utility>
+
+namespace hooke::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+float linear_of(float srgb) {
+  return srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
+}
+
+std::vector<std::byte> read_bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::vector<std::byte> bytes(content.size());
+  if (!content.empty()) std::memcpy(bytes.data(), content.data(), content.size());
+  return bytes;
+}
+
+/// Tells whether a file is PNG or JPEG, which formats of motion hold, by its first bytes.
+bool is_portable(const std::vector<std::byte>& bytes) {
+  const auto begins = [&](std::initializer_list<int> signature) {
+    return bytes.size() > signature.size() &&
+           std::equal(signature.begin(), signature.end(), bytes.begin(),
+                      [](int a, std::byte b) { return std::byte(a) == b; });
+  };
+  return begins({0x89, 'P', 'N', 'G'}) || begins({0xFF, 0xD8, 0xFF});
+}
+
+/// Returns the content of a PNG file of the image; empty if there is no place for temporary files.
+std::vector<std::byte> png_of(const render::Image& image) {
+  std::string folder = (fs::temp_directory_path() / "hooke_image_XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) return {};
+  const fs::path path = fs::path(folder) / "image.png";
+  std::vector<std::byte> bytes;
+  if (render::write_png(image, path.string())) bytes = read_bytes(path);
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+  return bytes;
+}
+
+}  // namespace
+
+std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path) {
+  const auto [entry, is_new] = images_.try_emplace(path);
+  if (!is_new) return entry->second;
+  auto image = render::load_image(path);
+  if (!image) {
+    warnings_.push_back(to_line(image.error()));
+    return nullptr;
+  }
+  entry->second = std::make_shared<const render::Image>(std::move(image).value());
+  auto file = std::make_shared<MotionImage>();
+  file->name = fs::path(path).filename().string();
+  file->bytes = read_bytes(path);
+  if (!is_portable(file->bytes)) {
+    file->name = fs::path(path).stem().string() + ".png";
+    file->bytes = png_of(*entry->second);
+  }
+  if (file->bytes.empty()) {
+    warnings_.push_back(path + ": is left out, as it could not be made a PNG file");
+  } else {
+    files_[entry->second.get()] = std::move(file);
+  }
+  return entry->second;
+}
+
+std::uint32_t MotionLooks::find(Motion& motion, const Finish& finish, const std::string& name,
+                                bool two_sided) {
+  const render::Color c = finish.color;
+  const Key key = {name, c.r, c.g, c.b, finish.opacity, finish.shininess, finish.texture.get(), two_sided};
+  const auto [entry, is_new] = numbers_.try_emplace(key);
+  if (!is_new) return entry->second;
+  MotionMaterial material;
+  material.name = name.empty() ? "look" : name;
+  material.color = {linear_of(c.r), linear_of(c.g), linear_of(c.b)};
+  material.opacity = finish.opacity;
+  material.shininess = finish.shininess;
+  material.two_sided = two_sided;
+  if (const auto file = files_.find(finish.texture.get()); file != files_.end()) {
+    material.image = file->second;
+    material.cutout = finish.texture->channels == 4;
+  }
+  entry->second = motion.add_material(std::move(material));
+  return entry->second;
+}
+
+}  // namespace hooke::app

@@ -1,0 +1,194 @@
+#pragma once
+
+#include "hooke/desc.h"
+#include "hooke/math.h"
+#include "hooke/model_io.h"
+#include "hooke/result.h"
+#include "hooke/world.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// \file
+/// Records how objects move, frame by frame, and writes the motion for other programs: .glb, .usda, .obj,
+/// .pc2 and .csv. Part of the library `hooke::io`. `hooke export` does so for scenes; docs/export.md says
+/// what each format holds.
+///
+/// Frames go to a temporary file beside the output, so that memory does not grow with their number.
+
+namespace hooke {
+
+struct MotionData;  // what a Motion holds; src/io/motion/motion_data.h
+
+/// An image as its file holds it.
+struct MotionImage {
+  std::string name = {};              ///< Name of the file without folders, such as "flag.png".
+  std::vector<std::byte> bytes = {};  ///< Content of a PNG or JPEG file.
+};
+
+/// How a surface looks.
+struct MotionMaterial {
+  std::string name = {};                            ///< Name; need not be unique.
+  std::array<float, 3> color = {0.8f, 0.8f, 0.8f};  ///< Linear red, green and blue, each in [0, 1].
+  float opacity = 1.0f;                             ///< Opacity; 1 hides what is behind. [0, 1]
+  float shininess = 16.0f;                          ///< Blinn-Phong exponent; formats with a roughness get
+                                                    ///< (2 / (shininess + 2))^(1/4).
+  std::shared_ptr<const MotionImage> image = {};    ///< Image that the color multiplies; null for none.
+  bool cutout = false;                              ///< Whether the image's alpha cuts holes.
+  bool two_sided = false;                           ///< Whether back faces are seen.
+};
+
+/// Triangles of a body's piece, or of a deformable object at its first frame. Each vertex belongs to one
+/// part, and vertices stand in the order of the parts, so that every program keeps their order.
+struct MotionMesh {
+  std::vector<ModelVertex> vertices = {};   ///< Vertices [m]; normals of deformable objects are computed.
+  std::vector<std::uint32_t> indices = {};  ///< Three per triangle, counter-clockwise seen from the front.
+  std::vector<ModelPart> parts = {};  ///< Parts, each with a material from Motion::add_material; they cover
+                                      ///< `indices` in order.
+  /// Group of each vertex of a deformable object; vertices of one group share a normal. Each has its own by
+  /// default.
+  std::vector<std::uint32_t> normal_groups = {};
+};
+
+/// One shape of a body.
+struct MotionPiece {
+  std::uint32_t mesh = 0;  ///< Mesh, from Motion::add_mesh.
+  Vec3 position = {};      ///< Origin of the mesh's frame in the body's frame [m].
+  Quat rotation = {};      ///< Rotation of the mesh's frame in the body's frame.
+  Shape shape = {};        ///< Shape that collides, in the mesh's frame; its MeshId is not read.
+};
+
+/// What is recorded: a rigid body, or an object whose points move.
+struct MotionObject {
+  /// What moves of the object.
+  enum class Kind : std::uint8_t {
+    kBody,    ///< The frame of a rigid body.
+    kPoints,  ///< Each vertex of one mesh.
+  };
+
+  std::string name = {};                   ///< Name in any characters; writers make names unique.
+  Kind kind = Kind::kBody;                 ///< What moves of the object.
+  std::vector<MotionPiece> pieces = {};    ///< Shapes of a body; it may have none.
+  std::uint32_t mesh = 0;                  ///< Mesh of an object of points, used by no other object.
+  BodyKind body_kind = BodyKind::kStatic;  ///< What moves a body. The first state of a static one counts.
+  Real mass = Real(0);                     ///< Mass of a dynamic body [kg].
+  Vec3 center_of_mass = {};                ///< Center of mass in the body's frame [m].
+  Real friction = Real(0.5);               ///< Coulomb coefficient while sliding.
+  Real restitution = Real(0);              ///< Speed after over speed before.
+  bool collides = true;                    ///< Whether the body touches others.
+};
+
+/// A hook of two bodies, or of a body and the world.
+struct MotionJoint {
+  std::string name = {};                    ///< Name in any characters.
+  HookKind kind = HookKind::kBall;          ///< Kind of the hook.
+  std::optional<std::uint32_t> a = {};      ///< Body on side a, from Motion::add_object; none for the world.
+  std::optional<std::uint32_t> b = {};      ///< Body on side b, likewise.
+  std::array<DVec3, 2> anchors = {};        ///< Places on a and on b at the first frame, in the world [m].
+  Vec3 axis = {Real(0), Real(1), Real(0)};  ///< Axis at the first frame, in the world; not zero.
+  HookLimits limits = {};                   ///< Bounds of the main freedom [m] or [rad].
+  std::optional<Real> cone = {};            ///< Cone of a ball [rad].
+  Real break_force = kRigid;                ///< Force that breaks it [N].
+  Real break_torque = kRigid;               ///< Torque that breaks it [N m].
+};
+
+/// The state of an object in one frame.
+struct MotionState {
+  DVec3 position = {};         ///< Origin of a body's frame, or mean of an object's points [m].
+  Quat rotation = {};          ///< Rotation of a body's frame, of unit length.
+  Vec3 velocity = {};          ///< Velocity of a body's center of mass, or mean of the points [m/s].
+  Vec3 angular_velocity = {};  ///< Angular velocity of a body in the world's axes [rad/s].
+  Energy energy = {};          ///< Energy of a body [J].
+};
+
+/// A recorded motion. Add what there is, then for each frame the states of all that is present, and
+/// finish_frame(). An object that has no state in a frame after its first one is gone from then on.
+class Motion {
+ public:
+  /// Begins a recording that write_motion will write to `path`: its ending is that of a format, or a slash
+  /// for a folder. That folder, or the one of an .obj sequence, is created. `frames_per_second` is (0, 1e6].
+  ///
+  /// Errors: kOutOfRange for another ending or rate, kFileNotWritable where the output cannot be written.
+  [[nodiscard]] static Result<Motion> create(const std::string& path, double frames_per_second);
+  ///@{
+  /// Takes everything over. The Motion moved from may only be destroyed or assigned to.
+  Motion(Motion&&) noexcept;
+  Motion& operator=(Motion&&) noexcept;
+  ///@}
+  /// Removes the temporary file.
+  ~Motion();
+
+  /// Sets the gravity that a .usda file tells [m/s^2]; (0, -9.81, 0) by default.
+  void set_gravity(Vec3 gravity);
+  /// Adds a material and returns its number.
+  std::uint32_t add_material(MotionMaterial material);
+  /// Adds a mesh and returns its number. Errors: an index, a part or a material out of range,
+  /// vertices that are not in the order of the parts, a coordinate that is not finite. A mesh may have points
+  /// alone, which only .csv files hold.
+  Result<std::uint32_t> add_mesh(MotionMesh mesh);
+  /// Adds an object, which may appear between two frames, and returns its number. Errors: a mesh that there
+  /// is not.
+  Result<std::uint32_t> add_object(MotionObject object);
+  /// Adds a joint. Errors: an object that there is not, or that is no body.
+  Result<void> add_joint(MotionJoint joint);
+
+  /// Sets the state of an object in this frame. One with a number that is not finite repeats the frame
+  /// before, and is counted in MotionSummary::notes. It does nothing for a number that no object has.
+  void set_state(std::uint32_t object, const MotionState& state);
+  /// Sets the state of an object of points and its vertices in this frame, in the world [m]. It does nothing
+  /// unless there are as many as the mesh has.
+  void set_points(std::uint32_t object, const MotionState& state, std::span<const Vec3> vertices);
+  /// Stores the frame. Errors: kFileNotWritable where the disk is full.
+  Result<void> finish_frame();
+
+  /// Number of frames that are stored.
+  [[nodiscard]] std::size_t frame_count() const;
+  /// What the recording holds, for the writers.
+  [[nodiscard]] const MotionData& data() const { return *data_; }
+
+ private:
+  explicit Motion(std::unique_ptr<MotionData> data);
+  std::unique_ptr<MotionData> data_;
+};
+
+/// How a motion is written.
+struct MotionOptions {
+  /// Distance by which a vertex may be off where frames are left out because straight motion between their
+  /// neighbors is near enough [m]. [0, 1e6] Of .glb and .usda.
+  double tolerance = 1e-4;
+  /// Number of morph targets that an object of a .glb file has at most; beyond it the tolerance is doubled
+  /// until they suffice. [1, 4096] WebGL 2 promises 256 layers of a texture, in which viewers keep them.
+  std::size_t most_targets = 256;
+  /// Whether a .csv file also has a row for each vertex of the objects of points.
+  bool with_points = false;
+  /// Receives the part of the work that is done, in [0, 1]; empty for none.
+  std::function<void(double)> progress = {};
+};
+
+/// What was written.
+struct MotionSummary {
+  std::vector<std::string> files = {};  ///< Paths; of a sequence, the first and the last.
+  std::uint64_t bytes = 0;              ///< Size of all files together.
+  std::size_t objects = 0;              ///< Number of objects.
+  std::size_t frames = 0;               ///< Number of frames.
+  /// What was left out or changed and what to do about it, one line each.
+  std::vector<std::string> notes = {};
+};
+
+/// Writes a recorded motion to `path`, in the format of its ending: .glb, .usda, .csv, a sequence of .obj
+/// with "%04d" in the name or numbers appended to it, or a folder with a slash at the end, with point caches
+/// (.pc2), a .glb file and a script for Blender. Every file appears under its name when it is complete.
+///
+/// Errors: another ending, a motion without frames or objects, a file that cannot be written or is beyond
+/// what the format holds.
+[[nodiscard]] Result<MotionSummary> write_motion(const Motion& motion, const std::string& path,
+                                                 const MotionOptions& options = {});
+
+}  // namespace hooke

@@ -1,0 +1,342 @@
+#include "io/motion/motion_glb_document.h"
+#include "io/motion/motion_names.h"
+#include "io/motion/motion_reduce.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace hooke::io {
+
+namespace {
+
+constexpr float kCutoff = 0.5f;  ///< Alpha of an image below which there is a hole.
+
+void add_vector(std::vector<float>& numbers, Vec3 v) {
+  numbers.insert(numbers.end(), {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+}
+
+std::vector<float> flat(std::span<const Vec3> vectors) {
+  std::vector<float> numbers;
+  numbers.reserve(3 * vectors.size());
+  for (const Vec3& v : vectors) add_vector(numbers, v);
+  return numbers;
+}
+
+std::array<float, 3> in_float(DVec3 v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+std::array<float, 4> in_float(Quat rotation) {
+  const Quat q = normalize(rotation);
+  return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
+}
+
+/// A GlbWriter makes the nodes, meshes and channels of one file.
+class GlbWriter {
+ public:
+  GlbWriter(const MotionJob& job, GlbContent content, const std::vector<std::string>& caches,
+            const std::string& path)
+      : job_(job), data_(job.data), content_(content), caches_(caches), path_(path), document_(path) {}
+
+  Result<void> write();
+
+ private:
+  void add_materials();
+  Json primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals);
+  std::size_t mesh_number(std::uint32_t mesh);
+  void add_body(std::size_t object, Json node);
+  void add_points(std::size_t object, Json node);
+  void add_targets(std::size_t object, Json& mesh, std::span<const std::size_t> keys);
+  std::vector<std::size_t> choose_keys(std::size_t object);
+  void add_presence(std::size_t object, std::size_t node);
+  void add_channel(std::size_t node, const char* path, std::size_t times, std::size_t values,
+                   const char* interpolation);
+  std::size_t times_of(const std::vector<std::size_t>& keys);
+  std::size_t weights_of(std::size_t keys);
+  void note_left_out();
+
+  const MotionJob& job_;
+  const MotionData& data_;
+  GlbContent content_;
+  const std::vector<std::string>& caches_;
+  const std::string& path_;
+  GlbDocument document_;
+  NameBook names_{NameStyle::kText};
+  std::map<std::uint32_t, std::size_t> meshes_;            ///< Number in the file of each body's mesh.
+  std::map<std::vector<std::size_t>, std::size_t> times_;  ///< Accessor of the times of each set of keys.
+  std::map<std::size_t, std::size_t> weights_;             ///< Accessor of weights by number of keys.
+  Json samplers_ = Json::array();
+  Json channels_ = Json::array();
+  std::size_t frames_left_out_ = 0;
+  std::size_t frames_of_points_ = 0;
+};
+
+void GlbWriter::add_materials() {
+  std::map<const MotionImage*, std::size_t> textures;
+  for (const MotionMaterial& material : data_.materials) {
+    const auto& c = material.color;
+    Json surface = {{"baseColorFactor", {c[0], c[1], c[2], material.opacity}},
+                    {"metallicFactor", 0.0f},
+                    {"roughnessFactor", roughness_of(material.shininess)}};
+    if (const MotionImage* image = material.image.get(); image != nullptr) {
+      const auto [entry, is_new] = textures.try_emplace(image);
+      if (is_new) {
+        const bool is_png = !image->bytes.empty() && image->bytes[0] == std::byte{0x89};
+        const std::size_t source =
+            document_.append("images", {{"name", image->name},
+                                        {"mimeType", is_png ? "image/png" : "image/jpeg"},
+                                        {"bufferView", document_.add_bytes(image->bytes)}});
+        entry->second = document_.append("textures", {{"source", source}});
+      }
+      surface["baseColorTexture"] = {{"index", entry->second}};
+    }
+    Json entry = {{"name", material.name}, {"pbrMetallicRoughness", surface}};
+    if (material.opacity < 1.0f) {
+      entry["alphaMode"] = "BLEND";
+    } else if (material.cutout) {
+      entry["alphaMode"] = "MASK";
+      entry["alphaCutoff"] = kCutoff;
+    }
+    if (material.two_sided) entry["doubleSided"] = true;
+    document_.append("materials", std::move(entry));
+  }
+}
+
+Json GlbWriter::primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions,
+                              std::span<const Vec3> normals) {
+  Json attributes = {{"POSITION", document_.add_floats(flat(positions), "VEC3", GlbTarget::kVertices, true)},
+                     {"NORMAL", document_.add_floats(flat(normals), "VEC3", GlbTarget::kVertices, false)}};
+  if (has_uvs(mesh)) {
+    std::vector<float> uvs;
+    // glTF counts rows of an image from the top.
+    for (const ModelVertex& vertex : mesh.vertices) uvs.insert(uvs.end(), {vertex.uv[0], 1 - vertex.uv[1]});
+    attributes["TEXCOORD_0"] = document_.add_floats(uvs, "VEC2", GlbTarget::kVertices, false);
+  }
+  Json primitives = Json::array();
+  for (const ModelPart& part : mesh.parts) {
+    primitives.push_back(
+        {{"attributes", attributes},
+         {"indices", document_.add_indices(std::span(mesh.indices).subspan(part.first, part.count))},
+         {"material", part.material}});
+  }
+  return primitives;
+}
+
+std::size_t GlbWriter::mesh_number(std::uint32_t number) {
+  const auto [entry, is_new] = meshes_.try_emplace(number);
+  if (is_new) {
+    const MotionMesh& mesh = data_.meshes[number];
+    std::vector<Vec3> normals;
+    for (const ModelVertex& vertex : mesh.vertices) {
+      const Vec3 normal = normalize(Vec3{vertex.normal[0], vertex.normal[1], vertex.normal[2]});
+      normals.push_back(normal == Vec3{} ? Vec3{0, 1, 0} : normal);
+    }
+    entry->second =
+        document_.append("meshes", {{"primitives", primitives_of(mesh, positions_of(mesh), normals)}});
+  }
+  return entry->second;
+}
+
+std::size_t GlbWriter::times_of(const std::vector<std::size_t>& keys) {
+  const auto [entry, is_new] = times_.try_emplace(keys);
+  if (is_new) {
+    std::vector<float> times;
+    for (const std::size_t key : keys) times.push_back(static_cast<float>(data_.time(key)));
+    entry->second = document_.add_floats(times, "SCALAR", GlbTarget::kNone, true);
+  }
+  return entry->second;
+}
+
+void GlbWriter::add_channel(std::size_t node, const char* path, std::size_t times, std::size_t values,
+                            const char* interpolation) {
+  channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
+  samplers_.push_back({{"input", times}, {"interpolation", interpolation}, {"output", values}});
+}
+
+/// An object that comes later or goes earlier has no size outside of its time.
+void GlbWriter::add_presence(std::size_t object, std::size_t node) {
+  const MotionTrack& track = data_.tracks[object];
+  std::vector<std::size_t> keys;
+  std::vector<float> scales;
+  const auto add = [&](std::size_t frame, float scale) {
+    keys.push_back(frame);
+    scales.insert(scales.end(), {scale, scale, scale});
+  };
+  if (track.first > 0) add(0, 0);
+  if (track.first > 0 || track.end < data_.frames.size()) add(track.first, 1);
+  if (track.end < data_.frames.size()) add(track.end, 0);
+  if (keys.empty()) return;
+  add_channel(node, "scale", times_of(keys), document_.add_floats(scales, "VEC3", GlbTarget::kNone, false),
+              "STEP");
+}
+
+void GlbWriter::add_body(std::size_t object, Json node) {
+  const MotionTrack& track = data_.tracks[object];
+  std::vector<DVec3> places;
+  std::vector<Quat> rotations;
+  const std::size_t count = track.size == 0 ? 1 : track.end - track.first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const MotionState state = data_.state(object, track.first + i);
+    places.push_back(state.position);
+    rotations.push_back(state.rotation);
+  }
+  align_signs(rotations);
+  node["translation"] = in_float(places[0]);
+  node["rotation"] = in_float(rotations[0]);
+  const MotionObject& body = data_.objects[object];
+  const bool is_plain =
+      body.pieces.size() == 1 && body.pieces[0].position == Vec3{} && body.pieces[0].rotation == Quat{};
+  if (is_plain) node["mesh"] = mesh_number(body.pieces[0].mesh);
+  for (const MotionPiece& piece : body.pieces) {
+    if (is_plain) continue;
+    node["children"].push_back(
+        document_.append("nodes", {{"mesh", mesh_number(piece.mesh)},
+                                   {"translation", in_float(vector_cast<double>(piece.position))},
+                                   {"rotation", in_float(piece.rotation)}}));
+  }
+  const std::size_t number = document_.append("nodes", std::move(node));
+  document_.json()["scenes"][0]["nodes"].push_back(number);
+  add_presence(object, number);
+  // Translation and rotation share the tolerance; the farthest vertex moves by angle times radius.
+  std::vector<std::size_t> keys = reduce_places(places, job_.options.tolerance / 2);
+  if (keys.size() > 1) {
+    std::vector<float> values;
+    for (std::size_t& key : keys) {
+      const auto place = in_float(places[key]);
+      values.insert(values.end(), place.begin(), place.end());
+      key += track.first;
+    }
+    add_channel(number, "translation", times_of(keys),
+                document_.add_floats(values, "VEC3", GlbTarget::kNone, false), "LINEAR");
+  }
+  const double angle = job_.options.tolerance / 2 / std::max(track.radius, 1e-9);
+  keys = reduce_rotations(rotations, std::min(angle, 1.0));
+  if (keys.size() > 1) {
+    std::vector<float> values;
+    for (std::size_t& key : keys) {
+      const auto turn = in_float(rotations[key]);
+      values.insert(values.end(), turn.begin(), turn.end());
+      key += track.first;
+    }
+    add_channel(number, "rotation", times_of(keys),
+                document_.add_floats(values, "VEC4", GlbTarget::kNone, false), "LINEAR");
+  }
+}
+
+/// Doubles the tolerance until the object has no more targets than are allowed. The first key is the mesh
+/// itself, and needs none.
+std::vector<std::size_t> GlbWriter::choose_keys(std::size_t object) {
+  double tolerance = job_.options.tolerance;
+  std::vector<std::size_t> keys = reduce_points(data_, object, tolerance);
+  while (keys.size() > job_.options.most_targets + 1) {
+    tolerance = tolerance > 0 ? 2 * tolerance : 1e-6;
+    keys = reduce_points(data_, object, tolerance);
+  }
+  if (tolerance > job_.options.tolerance) {
+    job_.summary.notes.push_back("'" + data_.objects[object].name + "' would need more than " +
+                                 std::to_string(job_.options.most_targets) + " morph targets; it keeps " +
+                                 std::to_string(keys.size() - 1) + ", and is off by up to " +
+                                 length_text(tolerance) + " between them");
+  }
+  const MotionTrack& track = data_.tracks[object];
+  frames_of_points_ += track.end - track.first;
+  if (keys.size() > 1) frames_left_out_ += track.end - track.first - keys.size();
+  return keys;
+}
+
+/// At key i target i - 1 has the weight 1 and all others have 0, so that blending is along a straight line.
+/// Objects with as many keys share the table.
+std::size_t GlbWriter::weights_of(std::size_t keys) {
+  const auto [entry, is_new] = weights_.try_emplace(keys);
+  if (is_new) {
+    const std::size_t targets = keys - 1;
+    std::vector<float> table(keys * targets, 0.0f);
+    for (std::size_t i = 1; i < keys; ++i) table[i * targets + i - 1] = 1.0f;
+    entry->second = document_.add_floats(table, "SCALAR", GlbTarget::kNone, false);
+  }
+  return entry->second;
+}
+
+void GlbWriter::add_targets(std::size_t object, Json& mesh, std::span<const std::size_t> keys) {
+  const MotionMesh& source = data_.mesh_of(object);
+  const std::vector<Vec3> base = data_.points(object, keys[0]);
+  const std::vector<Vec3> base_normals = normals_of(source, base);
+  Json targets = Json::array();
+  Json names = Json::array();
+  for (const std::size_t key : keys.subspan(1)) {
+    std::vector<Vec3> points = data_.points(object, key);
+    std::vector<Vec3> normals = normals_of(source, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = points[i] - base[i];
+      normals[i] = normals[i] - base_normals[i];
+    }
+    targets.push_back({{"POSITION", document_.add_floats(flat(points), "VEC3", GlbTarget::kVertices, true)},
+                       {"NORMAL", document_.add_floats(flat(normals), "VEC3", GlbTarget::kVertices, false)}});
+    names.push_back("frame_" + std::to_string(key));
+  }
+  for (Json& primitive : mesh["primitives"]) primitive["targets"] = targets;
+  mesh["weights"] = std::vector<float>(keys.size() - 1, 0.0f);
+  mesh["extras"] = {{"targetNames", names}};
+}
+
+void GlbWriter::add_points(std::size_t object, Json node) {
+  const MotionMesh& source = data_.mesh_of(object);
+  const MotionTrack& track = data_.tracks[object];
+  const bool is_still = content_ == GlbContent::kBodiesMove;
+  const std::vector<std::size_t> keys = is_still ? std::vector{track.first} : choose_keys(object);
+  const std::vector<Vec3> base = data_.points(object, keys[0]);
+  Json mesh = {{"primitives", primitives_of(source, base, normals_of(source, base))}};
+  if (keys.size() > 1) add_targets(object, mesh, keys);
+  if (is_still) node["extras"] = {{"point_cache", caches_[object]}};
+  node["mesh"] = document_.append("meshes", std::move(mesh));
+  const std::size_t number = document_.append("nodes", std::move(node));
+  document_.json()["scenes"][0]["nodes"].push_back(number);
+  add_presence(object, number);
+  if (keys.size() > 1) {
+    add_channel(number, "weights", times_of(keys), weights_of(keys.size()), "LINEAR");
+  }
+}
+
+void GlbWriter::note_left_out() {
+  if (frames_left_out_ == 0) return;
+  job_.summary.notes.push_back(
+      std::to_string(frames_left_out_) + " of " + std::to_string(frames_of_points_) +
+      " shapes of ropes, cloths and solids are left out, as those around them blend to within " +
+      length_text(job_.options.tolerance) +
+      (job_.summary.notes.empty() ? "" : " where nothing else is said"));
+}
+
+Result<void> GlbWriter::write() {
+  document_.json()["scene"] = 0;
+  document_.json()["scenes"] = {{{"nodes", Json::array()}}};
+  add_materials();
+  const std::size_t count = data_.objects.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!data_.is_seen(i)) continue;
+    const MotionObject& object = data_.objects[i];
+    Json node = {{"name", names_.take(object.name, "object")}};
+    if (object.kind == MotionObject::Kind::kBody) {
+      add_body(i, std::move(node));
+    } else {
+      add_points(i, std::move(node));
+    }
+    job_.show(static_cast<double>(i + 1) / static_cast<double>(count));
+  }
+  if (!channels_.empty()) {
+    document_.append("animations", {{"name", "motion"}, {"samplers", samplers_}, {"channels", channels_}});
+  }
+  note_left_out();
+  return document_.write(job_, path_);
+}
+
+}  // namespace
+
+Result<void> write_glb_motion(const MotionJob& job, GlbContent content,
+                              const std::vector<std::string>& caches) {
+  return GlbWriter(job, content, caches, job.path).write();
+}
+
+}  // namespace hooke::io
