@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Number of vertices that copies of one mesh may have together: some 5 MB of text.
+constexpr std::size_t kMostCopied = 100'000;
 constexpr int kNormalDigits = 4;
 constexpr int kPlaceDigits = 7;
 constexpr const char* kPerVertex = " (\n    interpolation = \"vertex\"\n)";  ///< Metadata of an attribute.
@@ -31,7 +33,9 @@ class UsdaWriter {
   void put_header();
   void put_materials(const std::vector<std::string>& images);
   void put_shaders(std::size_t material, const std::string& image);
-  void put_meshes();
+  void choose_shared();
+  void put_still_mesh(const MotionMesh& mesh);
+  void put_shared_meshes();
   void put_topology(const MotionMesh& mesh);
   void put_bindings(const MotionMesh& mesh);
   void put_body(std::size_t object);
@@ -53,6 +57,7 @@ class UsdaWriter {
   UsdaText text_;
   std::vector<std::string> materials_;  ///< Prim of each material.
   std::vector<std::string> prims_;      ///< Name of each object's prim.
+  std::vector<bool> shared_;            ///< Whether a mesh stands in the class of meshes.
   std::map<std::pair<Real, Real>, std::size_t>
       surfaces_;  ///< Physical materials by friction and restitution.
   std::size_t left_out_ = 0;
@@ -236,33 +241,44 @@ void UsdaWriter::put_bindings(const MotionMesh& mesh) {
   }
 }
 
-/// Meshes of bodies stand once in a class, which is not drawn, and bodies refer to them.
-void UsdaWriter::put_meshes() {
-  std::vector<bool> used(data_.meshes.size());
+/// Counts the pieces of each mesh. Meshes of few pieces stand in each of them, where every program finds
+/// them; those of many stand once in a class, which is not drawn, and bodies refer to them.
+void UsdaWriter::choose_shared() {
+  std::vector<std::size_t> users(data_.meshes.size());
   for (const MotionObject& object : data_.objects) {
-    for (const MotionPiece& piece : object.pieces) used[piece.mesh] = true;
+    for (const MotionPiece& piece : object.pieces) ++users[piece.mesh];
   }
+  for (std::size_t i = 0; i < users.size(); ++i) {
+    shared_.push_back(users[i] > 1 && users[i] * data_.meshes[i].vertices.size() > kMostCopied);
+  }
+}
+
+void UsdaWriter::put_still_mesh(const MotionMesh& mesh) {
+  const std::vector<Vec3> points = positions_of(mesh);
+  std::vector<Vec3> normals;
+  for (const ModelVertex& v : mesh.vertices) normals.push_back({v.normal[0], v.normal[1], v.normal[2]});
+  put_topology(mesh);
+  text_.begin_value("point3f[] points");
+  text_.put_vectors(points, kPlaceDigits);
+  text_.end_value();
+  text_.begin_value("normal3f[] normals");
+  text_.put_vectors(normals, kNormalDigits);
+  text_.put(kPerVertex);
+  text_.end_value();
+  text_.begin_value("float3[] extent");
+  put_extent(points);
+  text_.end_value();
+  put_bindings(mesh);
+}
+
+void UsdaWriter::put_shared_meshes() {
+  if (std::find(shared_.begin(), shared_.end(), true) == shared_.end()) return;
   text_.begin("class Scope \"Meshes\"");
   for (std::size_t i = 0; i < data_.meshes.size(); ++i) {
-    if (!used[i]) continue;
-    const MotionMesh& mesh = data_.meshes[i];
+    if (!shared_[i]) continue;
     const std::array<std::string, 1> schemas = {"prepend apiSchemas = [\"MaterialBindingAPI\"]"};
     text_.begin("def Mesh \"mesh_" + std::to_string(i) + "\"", schemas);
-    const std::vector<Vec3> points = positions_of(mesh);
-    std::vector<Vec3> normals;
-    for (const ModelVertex& v : mesh.vertices) normals.push_back({v.normal[0], v.normal[1], v.normal[2]});
-    put_topology(mesh);
-    text_.begin_value("point3f[] points");
-    text_.put_vectors(points, kPlaceDigits);
-    text_.end_value();
-    text_.begin_value("normal3f[] normals");
-    text_.put_vectors(normals, kNormalDigits);
-    text_.put(kPerVertex);
-    text_.end_value();
-    text_.begin_value("float3[] extent");
-    put_extent(points);
-    text_.end_value();
-    put_bindings(mesh);
+    put_still_mesh(data_.meshes[i]);
     text_.end();
   }
   text_.end();
@@ -313,11 +329,16 @@ void UsdaWriter::put_pieces(const MotionObject& body) {
   for (std::size_t i = 0; i < body.pieces.size(); ++i) {
     const MotionPiece& piece = body.pieces[i];
     const std::string number = std::to_string(i);
-    std::vector<std::string> metadata = {"prepend references = </World/Meshes/mesh_" +
-                                         std::to_string(piece.mesh) + ">"};
     const bool by_triangles = collides_by_triangles(body, piece);
+    std::string schemas = shared_[piece.mesh] ? "" : "\"MaterialBindingAPI\"";
     if (by_triangles) {
-      metadata.emplace_back("prepend apiSchemas = [\"PhysicsCollisionAPI\", \"PhysicsMeshCollisionAPI\"]");
+      schemas +=
+          std::string(schemas.empty() ? "" : ", ") + "\"PhysicsCollisionAPI\", \"PhysicsMeshCollisionAPI\"";
+    }
+    std::vector<std::string> metadata;
+    if (!schemas.empty()) metadata.push_back("prepend apiSchemas = [" + schemas + "]");
+    if (shared_[piece.mesh]) {
+      metadata.push_back("prepend references = </World/Meshes/mesh_" + std::to_string(piece.mesh) + ">");
     }
     text_.begin("def Mesh \"piece_" + number + "\"", metadata);
     if (by_triangles) {
@@ -330,6 +351,7 @@ void UsdaWriter::put_pieces(const MotionObject& body) {
                  "\"");
     }
     put_piece_place(text_, piece, {1, 1, 1});
+    if (!shared_[piece.mesh]) put_still_mesh(data_.meshes[piece.mesh]);
     text_.end();
     if (body.collides && !by_triangles) put_collider(text_, piece, "collider_" + number);
   }
@@ -416,7 +438,8 @@ Result<void> UsdaWriter::write() {
   text_.line("float physics:gravityMagnitude = " + usda_number(length(gravity)));
   text_.end();
   put_materials(images.value());
-  put_meshes();
+  choose_shared();
+  put_shared_meshes();
   for (std::size_t i = 0; i < data_.objects.size() && !sink_.error(); ++i) {
     if (!data_.is_seen(i)) continue;
     data_.objects[i].kind == MotionObject::Kind::kBody ? put_body(i) : put_points(i);
