@@ -5,8 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 namespace hooke::app {
@@ -111,7 +114,11 @@ void print(const MotionSummary& summary) {
 }
 
 bool is_table(const std::string& output) {
-  return output.size() > 4 && output.compare(output.size() - 4, 4, ".csv") == 0;
+  constexpr std::string_view kEnding = ".csv";
+  return output.size() > kEnding.size() &&
+         std::equal(kEnding.begin(), kEnding.end(),
+                    output.end() - static_cast<std::ptrdiff_t>(kEnding.size()),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
 }  // namespace
@@ -121,6 +128,10 @@ int command_export(Arguments arguments) {
   ExportOptions options;
   describe(app, options);
   if (const auto code = parse(app, arguments)) return *code;
+  if (options.with_points && !is_table(options.output)) {
+    return report(
+        {ErrorCode::kOutOfRange, "--points", "is for X.csv; all other formats have every point anyway"});
+  }
   const double frames_per_second = options.frames_per_second.value_or(30);
   auto scene = read_scene(options.scene);
   if (!scene) return kBadInput;

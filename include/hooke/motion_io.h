@@ -163,9 +163,10 @@ struct MotionOptions {
   /// Distance by which a vertex may be off where frames are left out because straight motion between their
   /// neighbors is near enough [m]. [0, 1e6] Of .glb and .usda.
   double tolerance = 1e-4;
-  /// Number of morph targets that an object of a .glb file has at most; beyond it the tolerance is doubled
-  /// until they suffice. [1, 4096] WebGL 2 promises 256 layers of a texture, in which viewers keep them.
-  std::size_t most_targets = 256;
+  /// Number of morph targets that an object of a .glb file has at most; where they do not suffice, its
+  /// tolerance is raised until they do. [1, 4096] Viewers keep targets in layers of a texture: WebGL 2
+  /// promises 256 of them, and graphics cards have 2048.
+  std::size_t most_targets = 1024;
   /// Whether a .csv file also has a row for each vertex of the objects of points.
   bool with_points = false;
   /// Receives the part of the work that is done, in [0, 1]; empty for none.

@@ -312,9 +312,9 @@ class Files(Export):
     def test_an_obj_sequence_names_its_materials_and_frames(self):
         self.export("seq/frame_%04d.obj", "--seconds", 0.1)
         names = sorted(path.name for path in (self.folder / "seq").iterdir())
-        self.assertEqual(names, ["flag.png", "frame.mtl", *[f"frame_000{i}.obj" for i in range(1, 5)]])
+        self.assertEqual(names, ["frame.mtl", *[f"frame_000{i}.obj" for i in range(1, 5)], "frame_flag.png"])
         library = (self.folder / "seq/frame.mtl").read_text()
-        self.assertIn("map_Kd flag.png", library)
+        self.assertIn("map_Kd frame_flag.png", library)
         for path in (self.folder / "seq").glob("*.obj"):
             text = path.read_text()
             self.assertIn("mtllib frame.mtl\n", text)
@@ -343,6 +343,7 @@ class Refusals(Export):
         for output in ("x.fbx", "x", "x.mp4"):
             self.refuse(output, pattern=r"not one of X\.glb")
         self.refuse("x_%s.obj", pattern="like %04d")
+        self.refuse("x.glb", "--points", pattern="--points: is for X.csv")
 
     def test_outputs_that_cannot_be_written(self):
         self.refuse("nowhere/x.glb", code=3, pattern="nowhere/x.glb: cannot be written")

@@ -70,6 +70,9 @@ enum class MotionFormat : std::uint8_t { kNone, kGlb, kUsda, kCsv, kObj, kPointC
 /// point caches.
 [[nodiscard]] MotionFormat motion_format(const std::string& path);
 
+/// Tells whether the name of a sequence of .obj files has at most one place for a number, like %04d.
+[[nodiscard]] Result<void> check_sequence(const std::string& path);
+
 }  // namespace io
 
 }  // namespace hooke

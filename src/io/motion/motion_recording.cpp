@@ -158,7 +158,10 @@ Result<Motion> Motion::create(const std::string& path, double frames_per_second)
     folder = path;
     place = (fs::path(path) / "frames").string();
   }
-  if (format == io::MotionFormat::kObj) folder = fs::path(path).parent_path().string();
+  if (format == io::MotionFormat::kObj) {
+    if (const auto sound = io::check_sequence(path); !sound) return sound.error();
+    folder = fs::path(path).parent_path().string();
+  }
   if (!folder.empty()) {
     std::error_code code;
     fs::create_directories(folder, code);

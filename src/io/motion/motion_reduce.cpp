@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace hooke::io {
 
@@ -141,6 +142,30 @@ void align_signs(std::vector<Quat>& rotations) {
   }
 }
 
+BodyWay read_way(const MotionData& data, std::size_t object, double tolerance) {
+  const MotionTrack& track = data.tracks[object];
+  BodyWay way;
+  const std::size_t count = track.size == 0 ? 1 : track.end - track.first;
+  way.places.reserve(count);
+  way.rotations.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MotionState state = data.state(object, track.first + i);
+    way.places.push_back(state.position);
+    way.rotations.push_back(state.rotation);
+  }
+  align_signs(way.rotations);
+  way.place_keys = reduce_places(way.places, tolerance / 2);
+  // The farthest vertex moves by the angle times its distance.
+  way.rotation_keys =
+      reduce_rotations(way.rotations, std::min(tolerance / 2 / std::max(track.radius, 1e-9), 1.0));
+  return way;
+}
+
+std::vector<std::size_t> from_frame(std::size_t first, std::vector<std::size_t> keys) {
+  for (std::size_t& key : keys) key += first;
+  return keys;
+}
+
 std::vector<std::size_t> reduce_points(const MotionData& data, std::size_t object, double tolerance) {
   const MotionTrack& track = data.tracks[object];
   std::vector<std::size_t> keys = reduce(
@@ -154,8 +179,7 @@ std::vector<std::size_t> reduce_points(const MotionData& data, std::size_t objec
         }
         return numbers;
       });
-  for (std::size_t& key : keys) key += track.first;
-  return keys;
+  return from_frame(track.first, std::move(keys));
 }
 
 }  // namespace hooke::io

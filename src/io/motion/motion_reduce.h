@@ -24,6 +24,21 @@ namespace hooke::io {
 /// blending takes the short way between equal signs only.
 void align_signs(std::vector<Quat>& rotations);
 
+/// A BodyWay is the way of a body and the keys that suffice for it, from the first frame with the body on.
+struct BodyWay {
+  std::vector<DVec3> places;  ///< [m]
+  std::vector<Quat> rotations;
+  std::vector<std::size_t> place_keys;     ///< Indices into `places`.
+  std::vector<std::size_t> rotation_keys;  ///< Indices into `rotations`.
+};
+
+/// Reads the way of a body. Places and rotations have half of the tolerance each, so that no vertex of the
+/// body is off by more than all of it [m].
+[[nodiscard]] BodyWay read_way(const MotionData& data, std::size_t object, double tolerance);
+
+/// Returns keys as numbers of frames of the recording.
+[[nodiscard]] std::vector<std::size_t> from_frame(std::size_t first, std::vector<std::size_t> keys);
+
 /// Returns the keys of the vertices of an object of points, as numbers of frames in which it is present,
 /// likewise. It reads the frames once.
 [[nodiscard]] std::vector<std::size_t> reduce_points(const MotionData& data, std::size_t object,

@@ -127,10 +127,11 @@ std::string length_text(double meters) {
   return text.data();
 }
 
-Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& folder) {
+Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path) {
   std::vector<std::string> names;
   std::map<const MotionImage*, std::string> known;
   NameBook book(NameStyle::kFile);
+  const std::filesystem::path place(path);
   for (const MotionMaterial& material : job.data.materials) {
     if (material.image == nullptr) {
       names.emplace_back();
@@ -138,9 +139,9 @@ Result<std::vector<std::string>> write_images(const MotionJob& job, const std::s
     }
     const auto [entry, is_new] = known.try_emplace(material.image.get());
     if (is_new) {
-      const std::string name = book.take(material.image->name, "image.png");
+      const std::string name = book.take(place.stem().string() + "_" + material.image->name, "image.png");
       entry->second = name;
-      OutputSink sink((std::filesystem::path(folder) / name).string());
+      OutputSink sink((place.parent_path() / name).string());
       sink.put(material.image->bytes);
       if (auto done = sink.finish(job.summary); !done) return done.error();
     }

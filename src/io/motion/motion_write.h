@@ -86,9 +86,9 @@ struct MotionJob {
 /// Writes a length with a unit that suits it, such as "0.1 mm".
 [[nodiscard]] std::string length_text(double meters);
 
-/// Writes images that materials share into `folder`, each under a name of its own. Returns the name of the
-/// image of each material; empty for none.
-[[nodiscard]] Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& folder);
+/// Writes the images of materials beside the file at `path`, as "FILE_IMAGE", so that those of two scenes do
+/// not overwrite each other. Returns the name of the image of each material; empty for none.
+[[nodiscard]] Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path);
 
 /// Which halves of a motion a .glb file holds.
 enum class GlbContent : std::uint8_t {

@@ -12,7 +12,9 @@ namespace hooke::io {
 
 namespace {
 
-constexpr float kCutoff = 0.5f;  ///< Alpha of an image below which there is a hole.
+constexpr double kLeastTolerance = 1e-6;  ///< What a tolerance of 0 is raised to [m].
+constexpr int kHalvings = 5;              ///< Steps by which the tolerance that suffices is narrowed down.
+constexpr float kCutoff = 0.5f;           ///< Alpha of an image below which there is a hole.
 
 void add_vector(std::vector<float>& numbers, Vec3 v) {
   numbers.insert(numbers.end(), {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
@@ -48,6 +50,7 @@ class GlbWriter {
   Json primitives_of(const MotionMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> normals);
   std::size_t mesh_number(std::uint32_t mesh);
   void add_body(std::size_t object, Json node);
+  void add_way(std::size_t object, std::size_t node, const BodyWay& way);
   void add_points(std::size_t object, Json node);
   void add_targets(std::size_t object, Json& mesh, std::span<const std::size_t> keys);
   std::vector<std::size_t> choose_keys(std::size_t object);
@@ -144,6 +147,7 @@ std::size_t GlbWriter::times_of(const std::vector<std::size_t>& keys) {
   const auto [entry, is_new] = times_.try_emplace(keys);
   if (is_new) {
     std::vector<float> times;
+    times.reserve(keys.size());
     for (const std::size_t key : keys) times.push_back(static_cast<float>(data_.time(key)));
     entry->second = document_.add_floats(times, "SCALAR", GlbTarget::kNone, true);
   }
@@ -174,23 +178,13 @@ void GlbWriter::add_presence(std::size_t object, std::size_t node) {
 }
 
 void GlbWriter::add_body(std::size_t object, Json node) {
-  const MotionTrack& track = data_.tracks[object];
-  std::vector<DVec3> places;
-  std::vector<Quat> rotations;
-  const std::size_t count = track.size == 0 ? 1 : track.end - track.first;
-  for (std::size_t i = 0; i < count; ++i) {
-    const MotionState state = data_.state(object, track.first + i);
-    places.push_back(state.position);
-    rotations.push_back(state.rotation);
-  }
-  align_signs(rotations);
-  node["translation"] = in_float(places[0]);
-  node["rotation"] = in_float(rotations[0]);
-  const MotionObject& body = data_.objects[object];
-  const bool is_plain =
-      body.pieces.size() == 1 && body.pieces[0].position == Vec3{} && body.pieces[0].rotation == Quat{};
-  if (is_plain) node["mesh"] = mesh_number(body.pieces[0].mesh);
-  for (const MotionPiece& piece : body.pieces) {
+  const BodyWay way = read_way(data_, object, job_.options.tolerance);
+  node["translation"] = in_float(way.places[0]);
+  node["rotation"] = in_float(way.rotations[0]);
+  const std::vector<MotionPiece>& pieces = data_.objects[object].pieces;
+  const bool is_plain = pieces.size() == 1 && pieces[0].position == Vec3{} && pieces[0].rotation == Quat{};
+  if (is_plain) node["mesh"] = mesh_number(pieces[0].mesh);
+  for (const MotionPiece& piece : pieces) {
     if (is_plain) continue;
     node["children"].push_back(
         document_.append("nodes", {{"mesh", mesh_number(piece.mesh)},
@@ -200,42 +194,54 @@ void GlbWriter::add_body(std::size_t object, Json node) {
   const std::size_t number = document_.append("nodes", std::move(node));
   document_.json()["scenes"][0]["nodes"].push_back(number);
   add_presence(object, number);
-  // Translation and rotation share the tolerance; the farthest vertex moves by angle times radius.
-  std::vector<std::size_t> keys = reduce_places(places, job_.options.tolerance / 2);
-  if (keys.size() > 1) {
-    std::vector<float> values;
-    for (std::size_t& key : keys) {
-      const auto place = in_float(places[key]);
+  add_way(object, number, way);
+}
+
+/// What rests needs no channel: the node has its place.
+void GlbWriter::add_way(std::size_t object, std::size_t node, const BodyWay& way) {
+  const std::size_t first = data_.tracks[object].first;
+  std::vector<float> values;
+  if (way.place_keys.size() > 1) {
+    for (const std::size_t key : way.place_keys) {
+      const auto place = in_float(way.places[key]);
       values.insert(values.end(), place.begin(), place.end());
-      key += track.first;
     }
-    add_channel(number, "translation", times_of(keys),
-                document_.add_floats(values, "VEC3", GlbTarget::kNone, false), "LINEAR");
+    const std::size_t output = document_.add_floats(values, "VEC3", GlbTarget::kNone, false);
+    add_channel(node, "translation", times_of(from_frame(first, way.place_keys)), output, "LINEAR");
   }
-  const double angle = job_.options.tolerance / 2 / std::max(track.radius, 1e-9);
-  keys = reduce_rotations(rotations, std::min(angle, 1.0));
-  if (keys.size() > 1) {
-    std::vector<float> values;
-    for (std::size_t& key : keys) {
-      const auto turn = in_float(rotations[key]);
+  values.clear();
+  if (way.rotation_keys.size() > 1) {
+    for (const std::size_t key : way.rotation_keys) {
+      const auto turn = in_float(way.rotations[key]);
       values.insert(values.end(), turn.begin(), turn.end());
-      key += track.first;
     }
-    add_channel(number, "rotation", times_of(keys),
-                document_.add_floats(values, "VEC4", GlbTarget::kNone, false), "LINEAR");
+    const std::size_t output = document_.add_floats(values, "VEC4", GlbTarget::kNone, false);
+    add_channel(node, "rotation", times_of(from_frame(first, way.rotation_keys)), output, "LINEAR");
   }
 }
 
-/// Doubles the tolerance until the object has no more targets than are allowed. The first key is the mesh
-/// itself, and needs none.
+/// Raises the tolerance until the object has no more targets than are allowed, by as little as makes them do.
+/// The first key is the mesh itself, and needs none.
 std::vector<std::size_t> GlbWriter::choose_keys(std::size_t object) {
   double tolerance = job_.options.tolerance;
   std::vector<std::size_t> keys = reduce_points(data_, object, tolerance);
-  while (keys.size() > job_.options.most_targets + 1) {
-    tolerance = tolerance > 0 ? 2 * tolerance : 1e-6;
+  const auto suffices = [&](const std::vector<std::size_t>& some) {
+    return some.size() <= job_.options.most_targets + 1;
+  };
+  const bool is_raised = !suffices(keys);
+  double too_small = tolerance;
+  while (!suffices(keys)) {
+    too_small = tolerance;
+    tolerance = tolerance > 0 ? 2 * tolerance : kLeastTolerance;
     keys = reduce_points(data_, object, tolerance);
   }
-  if (tolerance > job_.options.tolerance) {
+  for (int i = 0; i < kHalvings && is_raised; ++i) {
+    const double middle = (too_small + tolerance) / 2;
+    std::vector<std::size_t> more = reduce_points(data_, object, middle);
+    (suffices(more) ? tolerance : too_small) = middle;
+    if (suffices(more)) keys = std::move(more);
+  }
+  if (is_raised) {
     job_.summary.notes.push_back("'" + data_.objects[object].name + "' would need more than " +
                                  std::to_string(job_.options.most_targets) + " morph targets; it keeps " +
                                  std::to_string(keys.size() - 1) + ", and is off by up to " +

@@ -78,7 +78,7 @@ void put_vector(OutputSink& sink, const char* keyword, DVec3 v, int digits) {
 }
 
 Result<void> write_library(ObjWriter& writer, const std::string& path) {
-  auto images = write_images(writer.job, fs::path(path).parent_path().string());
+  auto images = write_images(writer.job, path);
   if (!images) return images.error();
   NameBook book(NameStyle::kFile);
   OutputSink sink(path);
@@ -157,6 +157,7 @@ Result<void> write_frame(ObjWriter& writer, const std::string& path, std::size_t
     }
     const std::vector<Vec3> points = data.points(i, frame);
     std::vector<DVec3> places;
+    places.reserve(points.size());
     for (const Vec3& p : points) places.push_back(vector_cast<double>(p));
     put_mesh(writer, sink, data.mesh_of(i), places, normals_of(data.mesh_of(i), points));
   }
@@ -165,9 +166,14 @@ Result<void> write_frame(ObjWriter& writer, const std::string& path, std::size_t
 
 }  // namespace
 
+Result<void> check_sequence(const std::string& path) {
+  const Sequence sequence(path);
+  return sequence.fault.empty() ? Result<void>() : Error{ErrorCode::kOutOfRange, path, sequence.fault};
+}
+
 Result<void> write_obj_motion(const MotionJob& job) {
+  if (auto sound = check_sequence(job.path); !sound) return sound;
   const Sequence sequence(job.path);
-  if (!sequence.fault.empty()) return Error{ErrorCode::kOutOfRange, job.path, sequence.fault};
   ObjWriter writer = {.job = job, .library = fs::path(sequence.library()).filename().string()};
   NameBook names(NameStyle::kFile);
   for (const MotionObject& object : job.data.objects)

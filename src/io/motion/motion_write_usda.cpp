@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -14,12 +13,11 @@ namespace hooke::io {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Number of vertices that copies of one mesh may have together: some 5 MB of text.
 constexpr std::size_t kMostCopied = 100'000;
 constexpr int kNormalDigits = 4;
 constexpr int kPlaceDigits = 7;
+constexpr int kBodyDigits = 10;
 constexpr const char* kPerVertex = " (\n    interpolation = \"vertex\"\n)";  ///< Metadata of an attribute.
 
 /// A UsdaWriter makes the prims of one file.
@@ -46,7 +44,7 @@ class UsdaWriter {
   void put_joints();
   void put_extent(std::span<const Vec3> points);
   [[nodiscard]] std::vector<std::string> metadata_of(const MotionObject& object,
-                                                     std::vector<std::string> schemas) const;
+                                                     const std::vector<std::string>& schemas) const;
   /// Writes an attribute with a value for each key, or with one value where there is one key.
   template <class Put>
   void put_sampled(const char* attribute, const std::vector<std::size_t>& keys, const Put& put_one);
@@ -99,7 +97,7 @@ void UsdaWriter::put_header() {
 }
 
 std::vector<std::string> UsdaWriter::metadata_of(const MotionObject& object,
-                                                 std::vector<std::string> schemas) const {
+                                                 const std::vector<std::string>& schemas) const {
   std::string list;
   for (const std::string& schema : schemas) list += (list.empty() ? "\"" : ", \"") + schema + "\"";
   std::vector<std::string> lines;
@@ -302,26 +300,12 @@ void UsdaWriter::put_presence(std::size_t object) {
 }
 
 void UsdaWriter::put_way(std::size_t object) {
-  const MotionTrack& track = data_.tracks[object];
-  std::vector<DVec3> places;
-  std::vector<Quat> rotations;
-  const std::size_t count = track.size == 0 ? 1 : track.end - track.first;
-  for (std::size_t i = 0; i < count; ++i) {
-    const MotionState state = data_.state(object, track.first + i);
-    places.push_back(state.position);
-    rotations.push_back(state.rotation);
-  }
-  align_signs(rotations);
-  const auto shifted = [&](std::vector<std::size_t> keys) {
-    for (std::size_t& key : keys) key += track.first;
-    return keys;
-  };
-  const double tolerance = job_.options.tolerance / 2;
-  const double angle = std::min(tolerance / std::max(track.radius, 1e-9), 1.0);
-  put_sampled("double3 xformOp:translate", shifted(reduce_places(places, tolerance)),
-              [&](std::size_t key) { text_.put_vector(places[key - track.first], 10); });
-  put_sampled("quatf xformOp:orient", shifted(reduce_rotations(rotations, angle)),
-              [&](std::size_t key) { text_.put_rotation(rotations[key - track.first]); });
+  const std::size_t first = data_.tracks[object].first;
+  const BodyWay way = read_way(data_, object, job_.options.tolerance);
+  put_sampled("double3 xformOp:translate", from_frame(first, way.place_keys),
+              [&](std::size_t key) { text_.put_vector(way.places[key - first], kBodyDigits); });
+  put_sampled("quatf xformOp:orient", from_frame(first, way.rotation_keys),
+              [&](std::size_t key) { text_.put_rotation(way.rotations[key - first]); });
   text_.line("uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]");
 }
 
@@ -361,7 +345,7 @@ void UsdaWriter::put_body(std::size_t object) {
   const MotionObject& body = data_.objects[object];
   std::vector<std::string> schemas = physics_schemas(body);
   if (body.collides) schemas.emplace_back("MaterialBindingAPI");
-  text_.begin("def Xform \"" + prims_[object] + "\"", metadata_of(body, std::move(schemas)));
+  text_.begin("def Xform \"" + prims_[object] + "\"", metadata_of(body, schemas));
   put_body_physics(text_, body, data_.state(object, data_.tracks[object].first));
   if (body.collides) {
     text_.line("rel material:binding:physics = </World/Surfaces/surface_" +
@@ -424,7 +408,7 @@ void UsdaWriter::put_joints() {
 }
 
 Result<void> UsdaWriter::write() {
-  auto images = write_images(job_, fs::path(job_.path).parent_path().string());
+  auto images = write_images(job_, job_.path);
   if (!images) return images.error();
   NameBook book(NameStyle::kIdentifier);
   for (const char* own : {"Looks", "Surfaces", "Meshes", "Joints", "physics_scene"})
