@@ -139,7 +139,7 @@ int command_export(Arguments arguments) {
   const auto frames = count_frames(options.seconds.value_or(scene->seconds), frames_per_second);
   if (!frames) return report(frames.error());
   // A file that cannot be written is better said before the simulation than after it.
-  auto motion = Motion::create(options.output, frames_per_second);
+  auto motion = MotionRecording::create(options.output, frames_per_second);
   if (!motion) return report(motion.error());
   auto simulation = build_simulation(std::move(*scene));
   if (!simulation) return kBadInput;

@@ -25,7 +25,7 @@
 
 namespace hooke {
 
-struct MotionData;  // what a Motion holds; src/io/motion/motion_data.h
+struct MotionData;  // what a MotionRecording holds; src/io/motion/motion_data.h
 
 /// An image as its file holds it.
 struct MotionImage {
@@ -50,8 +50,8 @@ struct MotionMaterial {
 struct MotionMesh {
   std::vector<ModelVertex> vertices = {};   ///< Vertices [m]; normals of deformable objects are computed.
   std::vector<std::uint32_t> indices = {};  ///< Three per triangle, counter-clockwise seen from the front.
-  std::vector<ModelPart> parts = {};  ///< Parts, each with a material from Motion::add_material; they cover
-                                      ///< `indices` in order.
+  std::vector<ModelPart> parts = {};  ///< Parts, each with a material from MotionRecording::add_material;
+                                      ///< they cover `indices` in order.
   /// Group of each vertex of a deformable object; vertices of one group share a normal. Each has its own by
   /// default.
   std::vector<std::uint32_t> normal_groups = {};
@@ -59,7 +59,7 @@ struct MotionMesh {
 
 /// One shape of a body.
 struct MotionPiece {
-  std::uint32_t mesh = 0;  ///< Mesh, from Motion::add_mesh.
+  std::uint32_t mesh = 0;  ///< Mesh, from MotionRecording::add_mesh.
   Vec3 position = {};      ///< Origin of the mesh's frame in the body's frame [m].
   Quat rotation = {};      ///< Rotation of the mesh's frame in the body's frame.
   Shape shape = {};        ///< Shape that collides, in the mesh's frame; its MeshId is not read.
@@ -87,9 +87,10 @@ struct MotionObject {
 
 /// A hook of two bodies, or of a body and the world.
 struct MotionJoint {
-  std::string name = {};                    ///< Name in any characters.
-  HookKind kind = HookKind::kBall;          ///< Kind of the hook.
-  std::optional<std::uint32_t> a = {};      ///< Body on side a, from Motion::add_object; none for the world.
+  std::string name = {};            ///< Name in any characters.
+  HookKind kind = HookKind::kBall;  ///< Kind of the hook.
+  /// Body on side a, from MotionRecording::add_object; none for the world.
+  std::optional<std::uint32_t> a = {};
   std::optional<std::uint32_t> b = {};      ///< Body on side b, likewise.
   std::array<DVec3, 2> anchors = {};        ///< Places on a and on b at the first frame, in the world [m].
   Vec3 axis = {Real(0), Real(1), Real(0)};  ///< Axis at the first frame, in the world; not zero.
@@ -110,20 +111,20 @@ struct MotionState {
 
 /// A recorded motion. Add what there is, then for each frame the states of all that is present, and
 /// finish_frame(). An object that has no state in a frame after its first one is gone from then on.
-class Motion {
+class MotionRecording {
  public:
   /// Begins a recording that write_motion will write to `path`: its ending is that of a format, or a slash
   /// for a folder. That folder, or the one of an .obj sequence, is created. `frames_per_second` is (0, 1e6].
   ///
   /// Errors: kOutOfRange for another ending or rate, kFileNotWritable where the output cannot be written.
-  [[nodiscard]] static Result<Motion> create(const std::string& path, double frames_per_second);
+  [[nodiscard]] static Result<MotionRecording> create(const std::string& path, double frames_per_second);
   ///@{
-  /// Takes everything over. The Motion moved from may only be destroyed or assigned to.
-  Motion(Motion&&) noexcept;
-  Motion& operator=(Motion&&) noexcept;
+  /// Takes everything over. The MotionRecording moved from may only be destroyed or assigned to.
+  MotionRecording(MotionRecording&&) noexcept;
+  MotionRecording& operator=(MotionRecording&&) noexcept;
   ///@}
   /// Removes the temporary file.
-  ~Motion();
+  ~MotionRecording();
 
   /// Sets the gravity that a .usda file tells [m/s^2]; (0, -9.81, 0) by default.
   void set_gravity(Vec3 gravity);
@@ -154,7 +155,7 @@ class Motion {
   [[nodiscard]] const MotionData& data() const { return *data_; }
 
  private:
-  explicit Motion(std::unique_ptr<MotionData> data);
+  explicit MotionRecording(std::unique_ptr<MotionData> data);
   std::unique_ptr<MotionData> data_;
 };
 
@@ -189,7 +190,7 @@ struct MotionSummary {
 ///
 /// Errors: another ending, a motion without frames or objects, a file that cannot be written or is beyond
 /// what the format holds.
-[[nodiscard]] Result<MotionSummary> write_motion(const Motion& motion, const std::string& path,
+[[nodiscard]] Result<MotionSummary> write_motion(const MotionRecording& motion, const std::string& path,
                                                  const MotionOptions& options = {});
 
 }  // namespace hooke

@@ -237,6 +237,30 @@ class Files(Export):
         self.assertEqual(usda.prims["/World/goes"]["visibility"], {0: '"inherited"', FRAME_OF_GOING: '"invisible"'})
         self.assertIn("x.usda", out)
 
+    def test_a_hook_without_a_joint_of_its_kind_is_counted(self):
+        cube = {"kind": "dynamic", "shape": {"box": {}}}
+        scene = FALL | {"bodies": [cube | {"name": "car", "position": [0, 2, 0]}, cube | {"name": "rim"}],
+                        "hooks": [{"name": "axle", "kind": "wheel", "a": "car", "b": "rim", "anchor": [0, 0, 0],
+                                   "axis": [0, 1, 0], "second_axis": [0, 0, 1]},
+                                  {"name": "weld", "kind": "fixed", "b": "car", "anchor": [0, 2, 0]}]}
+        out, _ = self.export("x.usda", scene=scene)
+        self.assertIn("1 hook is left out, as UsdPhysics has no joint of that kind", out)
+        usda = Usda(self.folder / "x.usda")
+        self.assertNotIn("/World/Joints/axle", usda.prims)
+        weld = usda.prims["/World/Joints/weld"]
+        self.assertEqual(usda.types["/World/Joints/weld"], "PhysicsFixedJoint")
+        self.assertEqual((weld["physics:body1"], weld.get("physics:body0")), ("</World/car>", None))
+        self.assertEqual(Usda.numbers(weld["physics:localPos0"]), [0, 2, 0])
+
+    def test_meshes_of_many_bodies_stand_once_in_a_usda(self):
+        cube = {"name": "ball", "kind": "dynamic", "shape": {"sphere": {"radius": 0.1}},
+                "array": {"grid": [10, 10, 10], "spacing": [1, 1, 1]}}
+        self.export("x.usda", "--seconds", 0.1, scene=FALL | {"bodies": [cube]})
+        usda = Usda(self.folder / "x.usda")
+        mesh, = (path for path in usda.prims if path.startswith("/World/Meshes/"))
+        self.assertEqual(usda.prims["/World/ball_7_/piece_0"]["references"], f"<{mesh}>")
+        self.assertLess((self.folder / "x.usda").stat().st_size, 3e6)
+
     def test_a_table_has_the_figures_of_free_fall(self):
         scene = FALL | {"bodies": [{"name": "cube", "kind": "dynamic", "position": [0, 20, 0], "velocity": [2, 0, 0],
                                     "angular_velocity": [0, 3, 0], "shape": {"box": {}}}],
@@ -461,22 +485,22 @@ class UsdReader(NodeReader):
 class Blender(Export):
     """Debian's blender, if it is installed."""
 
-    def test_blender_agrees_at_five_frames(self):
+    def compare(self, *scripts):
+        """Runs scripts that load a motion, and compares five frames with the .obj files."""
         blender = shutil.which("blender")
         if blender is None:
             self.skipTest("no blender: ./dev setup formats installs it")
         self.export("seq/frame_%04d.obj")
-        self.export("caches/")
         # Blender takes the libraries of the first python3 in PATH, and needs those of the system.
         plain = {**os.environ, "PATH": "/usr/local/bin:/usr/bin:/bin"}
-        done = subprocess.run([blender, "--background", "--factory-startup", "--python-exit-code", "1",
-                               "--python", self.folder / "caches/import_in_blender.py",
-                               "--python", cli_test.PROJECT / "tests/formats/list_vertices.py", "--", self.folder / "x.blend"],
-                              cwd=self.folder, env=plain, capture_output=True, text=True, check=False, timeout=cli_test.LIMIT)
+        done = subprocess.run([blender, "--background", "--factory-startup", "--python-exit-code", "1", *scripts,
+                               "--python", cli_test.PROJECT / "tests/formats/list_vertices.py", "--",
+                               self.folder / "x.blend"],
+                              cwd=self.folder, env=plain, capture_output=True, text=True, check=False,
+                              timeout=cli_test.LIMIT)
         if "No module named 'numpy'" in done.stderr + done.stdout:
             self.skipTest("blender without python3-numpy: ./dev setup formats installs it")
         self.assertEqual(done.returncode, 0, (done.stdout + done.stderr)[-3000:])
-        self.assertTrue((self.folder / "x.blend").exists())
         frames = json.loads((self.folder / "x.blend.json").read_text())
         self.assertEqual(len(frames), 5)
         for frame, objects in frames.items():
@@ -484,6 +508,17 @@ class Blender(Export):
             for name, wanted in self.frame(int(frame)).items():
                 self.assert_near([[x, z, -y] for x, y, z in got[name]], wanted, TOLERANCE + ROUNDING,
                                  f"{name} in frame {frame}")
+
+    def test_blender_plays_point_caches(self):
+        self.export("caches/")
+        self.compare("--python", self.folder / "caches/import_in_blender.py")
+        self.assertTrue((self.folder / "x.blend").exists())
+
+    def test_blender_plays_tracks_and_morph_targets(self):
+        self.export("x.glb")
+        self.compare("--python-expr",
+                     "import bpy, numpy; numpy.bool = bool; scene = bpy.context.scene; scene.render.fps = 30; "
+                     f"bpy.ops.import_scene.gltf(filepath={str(self.folder / 'x.glb')!r}); scene.frame_end = {FRAMES - 1}")
 
 
 if __name__ == "__main__":

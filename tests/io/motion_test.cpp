@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <doctest/doctest.h>
@@ -16,6 +17,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 namespace hooke {
@@ -35,6 +37,26 @@ MotionMesh triangle(std::uint32_t material) {
   return mesh;
 }
 
+/// Lets files grow to a size and no further, as a full disk does.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit now = {bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &now);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_ = {};
+  void (*handler_)(int);
+};
+
 std::string content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -50,8 +72,8 @@ DVec3 on_line(const std::vector<DVec3>& places, const std::vector<std::size_t>& 
 }
 
 /// A triangle that goes up by 1 m a frame and a body that turns, for some frames.
-Motion make_motion(const std::string& path, std::size_t frames) {
-  Motion motion = Motion::create(path, 10).value();
+MotionRecording make_motion(const std::string& path, std::size_t frames) {
+  MotionRecording motion = MotionRecording::create(path, 10).value();
   const std::uint32_t material = motion.add_material({.name = "red", .color = {1, 0, 0}});
   const std::uint32_t mesh = motion.add_mesh(triangle(material)).value();
   const std::uint32_t body_mesh = motion.add_mesh(triangle(material)).value();
@@ -180,7 +202,7 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("a recording refuses meshes and objects that fit nothing") {
     const test::TemporaryFolder folder;
-    Motion motion = Motion::create(folder / "x.glb", 30).value();
+    MotionRecording motion = MotionRecording::create(folder / "x.glb", 30).value();
     CHECK_FALSE(motion.add_mesh(triangle(0)));  // There is no material yet.
     const std::uint32_t material = motion.add_material({});
     MotionMesh mesh = triangle(material);
@@ -203,12 +225,12 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("what cannot be begun is an error that says why, and leaves no file") {
     const test::TemporaryFolder folder;
-    CHECK(Motion::create(folder / "x.fbx", 30).error().code == ErrorCode::kOutOfRange);
-    CHECK(Motion::create(folder / "x.glb", 0).error().code == ErrorCode::kOutOfRange);
-    CHECK(Motion::create(folder / "x.glb", std::numeric_limits<double>::quiet_NaN()).error().code ==
+    CHECK(MotionRecording::create(folder / "x.fbx", 30).error().code == ErrorCode::kOutOfRange);
+    CHECK(MotionRecording::create(folder / "x.glb", 0).error().code == ErrorCode::kOutOfRange);
+    CHECK(MotionRecording::create(folder / "x.glb", std::numeric_limits<double>::quiet_NaN()).error().code ==
           ErrorCode::kOutOfRange);
-    CHECK(Motion::create(folder / "nowhere/x.glb", 30).error().code == ErrorCode::kFileNotWritable);
-    const Motion empty = Motion::create(folder / "x.glb", 30).value();
+    CHECK(MotionRecording::create(folder / "nowhere/x.glb", 30).error().code == ErrorCode::kFileNotWritable);
+    const MotionRecording empty = MotionRecording::create(folder / "x.glb", 30).value();
     CHECK(write_motion(empty, folder / "x.glb").error().code == ErrorCode::kOutOfRange);
     CHECK(folder.entries() == 0);
   }
@@ -216,7 +238,7 @@ TEST_SUITE("io/motion") {
   TEST_CASE("a recording is gone with its object, and the output is the one file") {
     const test::TemporaryFolder folder;
     {
-      const Motion motion = make_motion(folder / "x.glb", 5);
+      const MotionRecording motion = make_motion(folder / "x.glb", 5);
       CHECK(motion.frame_count() == 5);
       const auto summary = write_motion(motion, folder / "x.glb");
       REQUIRE(summary);
@@ -229,7 +251,7 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("a sheet that rises evenly needs one morph target, and all its frames are counted") {
     const test::TemporaryFolder folder;
-    const Motion motion = make_motion(folder / "x.glb", 21);
+    const MotionRecording motion = make_motion(folder / "x.glb", 21);
     const auto summary = write_motion(motion, folder / "x.glb");
     REQUIRE(summary);
     REQUIRE(summary->notes.size() == 1);
@@ -239,7 +261,7 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("a state that is no number repeats the one before, and is said to") {
     const test::TemporaryFolder folder;
-    Motion motion = make_motion(folder / "x.csv", 2);
+    MotionRecording motion = make_motion(folder / "x.csv", 2);
     motion.set_state(1, {.position = {0, std::numeric_limits<double>::infinity(), 0}});
     const std::vector<Vec3> bad = {{0, 2, 0}, {1, kNaN, 0}, {0, 3, 0}};
     motion.set_points(0, {.position = {0, 2, 0}}, bad);
@@ -257,7 +279,7 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("an object that is never a number is not there") {
     const test::TemporaryFolder folder;
-    Motion motion = Motion::create(folder / "x.glb", 30).value();
+    MotionRecording motion = MotionRecording::create(folder / "x.glb", 30).value();
     const std::uint32_t body =
         motion.add_object({.name = "lost", .body_kind = BodyKind::kDynamic, .mass = 1}).value();
     motion.set_state(body, {.position = {std::numeric_limits<double>::quiet_NaN(), 0, 0}});
@@ -267,7 +289,7 @@ TEST_SUITE("io/motion") {
 
   TEST_CASE("a point cache is as long as the recording, also for what comes late") {
     const test::TemporaryFolder folder;
-    Motion motion = make_motion(folder / "caches/", 3);
+    MotionRecording motion = make_motion(folder / "caches/", 3);
     const std::uint32_t mesh = motion.add_mesh(triangle(0)).value();
     const std::uint32_t late =
         motion.add_object({.name = "late", .kind = MotionObject::Kind::kPoints, .mesh = mesh}).value();
@@ -291,21 +313,31 @@ TEST_SUITE("io/motion") {
     CHECK(sheet.substr(32 + 2 * 36, 36) == sheet.substr(32 + 4 * 36, 36));
   }
 
-  TEST_CASE("a disk that is full is an error, and the old file stays") {
+  TEST_CASE("a disk that is full ends a recording with advice, and leaves the old file") {
     const test::TemporaryFolder folder;
     const std::string path = folder.file("x.csv", "old");
-    const Motion motion = make_motion(path, 3);
-    std::filesystem::permissions(folder.path(),
-                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-    const auto summary = write_motion(motion, "/dev/full");
-    CHECK_FALSE(summary);
-    std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+    const MotionRecording whole = make_motion(path, 3);
+    MotionRecording motion = make_motion(path, 1);
+    const FileSizeLimit limit(4096);
+    Result<void> stored;
+    for (int frame = 0; frame < 1000 && stored; ++frame) {
+      motion.set_state(1, {});
+      stored = motion.finish_frame();
+    }
+    REQUIRE_FALSE(stored);
+    CHECK(stored.error().code == ErrorCode::kFileNotWritable);
+    CHECK(stored.error().message.find("record fewer frames a second") != std::string::npos);
+    const FileSizeLimit smaller(16);
+    const auto summary = write_motion(whole, path);
+    REQUIRE_FALSE(summary);
+    CHECK(summary.error().code == ErrorCode::kFileNotWritable);
     CHECK(content_of(path) == "old");
+    CHECK(folder.entries() == 1);
   }
 
   TEST_CASE("points without triangles are for tables alone") {
     const test::TemporaryFolder folder;
-    Motion motion = Motion::create(folder / "x.csv", 30).value();
+    MotionRecording motion = MotionRecording::create(folder / "x.csv", 30).value();
     MotionMesh mesh;
     mesh.vertices.resize(1);
     const std::uint32_t number = motion.add_mesh(mesh).value();

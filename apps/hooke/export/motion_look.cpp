@@ -76,7 +76,7 @@ std::shared_ptr<const render::Image> MotionLooks::load(const std::string& path) 
   return entry->second;
 }
 
-std::uint32_t MotionLooks::find(Motion& motion, const Finish& finish, const std::string& name,
+std::uint32_t MotionLooks::find(MotionRecording& motion, const Finish& finish, const std::string& name,
                                 bool two_sided) {
   const render::Color c = finish.color;
   const Key key = {name, c.r, c.g, c.b, finish.opacity, finish.shininess, finish.texture.get(), two_sided};

@@ -22,7 +22,7 @@ class MotionLooks {
 
   /// Returns the number in `motion` of a material that looks like the finish. `name` is that of the scene;
   /// empty for none.
-  std::uint32_t find(Motion& motion, const Finish& finish, const std::string& name, bool two_sided);
+  std::uint32_t find(MotionRecording& motion, const Finish& finish, const std::string& name, bool two_sided);
 
   /// Returns the images that could not be read, one line each.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }

@@ -25,16 +25,17 @@ class MotionRecorder {
     kPoints,  ///< The points that are simulated.
   };
 
-  MotionRecorder(Motion motion, Detail detail) : motion_(std::move(motion)), detail_(detail) {}
+  MotionRecorder(MotionRecording motion, Detail detail) : motion_(std::move(motion)), detail_(detail) {}
 
   /// Copies the present state with its time [s]; the copy before it stays for interpolation.
   void take(const Simulation& simulation, double time);
 
-  /// Stores the frame at a time between the last two states, or at the last one. Errors: those of Motion.
+  /// Stores the frame at a time between the last two states, or at the last one. Errors: those of
+  /// MotionRecording.
   Result<void> record(const Simulation& simulation, double time);
 
   /// Returns the motion recorded so far.
-  [[nodiscard]] const Motion& motion() const { return motion_; }
+  [[nodiscard]] const MotionRecording& motion() const { return motion_; }
   /// Returns what could not be recorded as it is, one line each.
   [[nodiscard]] std::vector<std::string> warnings() const;
   /// Tells whether some object was recorded.
@@ -69,7 +70,7 @@ class MotionRecorder {
   Result<std::uint32_t> add_plane(std::uint32_t material);
   Result<void> add_joints(const Simulation& simulation);
 
-  Motion motion_;
+  MotionRecording motion_;
   Detail detail_;
   MotionLooks looks_;
   BodyGeometries geometries_;

@@ -56,7 +56,7 @@ MotionSkin::MotionSkin(const Figure& figure, std::span<const DVec3> points,
     for (std::uint32_t i = 0; i < count; ++i) add_ball(i, figure.radii[i], 0);
   }
   if (!figure.surface) end_part(materials.front());
-  add_balls(figure);
+  add_balls(figure, points.size());
   end_part(iron);
   const std::vector<Vec3> first = vertices(points);
   mesh_.vertices.resize(first.size());
@@ -146,13 +146,14 @@ void MotionSkin::add_ball(std::uint32_t point, float radius, std::uint32_t shape
   balls_.push_back({point, radius, shape});
 }
 
-void MotionSkin::add_balls(const Figure& figure) {
+void MotionSkin::add_balls(const Figure& figure, std::size_t points) {
   if (figure.loads.empty()) return;
   const render::MeshGeometry ball = render::make_sphere(2);
   shapes_.emplace_back();
   triangles_.push_back(ball.indices);
   for (const render::Vertex& vertex : ball.vertices) shapes_.back().push_back(vertex.position);
   for (const FigureLoad& load : figure.loads) {
+    if (load.point >= points) continue;
     add_ball(static_cast<std::uint32_t>(load.point), load.radius,
              static_cast<std::uint32_t>(shapes_.size() - 1));
   }

@@ -43,7 +43,7 @@ class MotionSkin {
 
   void add_surface(const Figure& figure, std::span<const std::uint32_t> materials);
   void add_tubes(const Figure& figure, std::size_t points);
-  void add_balls(const Figure& figure);
+  void add_balls(const Figure& figure, std::size_t points);
   void add_tube_triangles(const Tube& tube);
   void add_ball(std::uint32_t point, float radius, std::uint32_t shape);
   void end_part(std::uint32_t material);

@@ -31,7 +31,7 @@ struct MotionTrack {
   std::vector<std::byte> last = {};  ///< Last record, for a frame that is not finite.
 };
 
-/// MotionData is what a Motion holds.
+/// MotionData is what a MotionRecording holds.
 struct MotionData {
   std::string path = {};
   double frames_per_second = 0;

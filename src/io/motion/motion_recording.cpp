@@ -135,12 +135,12 @@ std::vector<Vec3> MotionData::points(std::size_t object, std::size_t frame_numbe
   return points;
 }
 
-Motion::Motion(std::unique_ptr<MotionData> data) : data_(std::move(data)) {}
-Motion::Motion(Motion&&) noexcept = default;
-Motion& Motion::operator=(Motion&&) noexcept = default;
-Motion::~Motion() = default;
+MotionRecording::MotionRecording(std::unique_ptr<MotionData> data) : data_(std::move(data)) {}
+MotionRecording::MotionRecording(MotionRecording&&) noexcept = default;
+MotionRecording& MotionRecording::operator=(MotionRecording&&) noexcept = default;
+MotionRecording::~MotionRecording() = default;
 
-Result<Motion> Motion::create(const std::string& path, double frames_per_second) {
+Result<MotionRecording> MotionRecording::create(const std::string& path, double frames_per_second) {
   if (!(frames_per_second > 0 && frames_per_second <= 1e6)) {
     return Error{ErrorCode::kOutOfRange, "frames_per_second", "must be over 0, at most 1e6"};
   }
@@ -170,19 +170,19 @@ Result<Motion> Motion::create(const std::string& path, double frames_per_second)
   auto file = process::NewFile::create(place);
   if (!file) return file.error();
   data->file.emplace(std::move(file).value());
-  return Motion(std::move(data));
+  return MotionRecording(std::move(data));
 }
 
-void Motion::set_gravity(Vec3 gravity) {
+void MotionRecording::set_gravity(Vec3 gravity) {
   data_->gravity = gravity;
 }
 
-std::uint32_t Motion::add_material(MotionMaterial material) {
+std::uint32_t MotionRecording::add_material(MotionMaterial material) {
   data_->materials.push_back(std::move(material));
   return static_cast<std::uint32_t>(data_->materials.size() - 1);
 }
 
-Result<std::uint32_t> Motion::add_mesh(MotionMesh mesh) {
+Result<std::uint32_t> MotionRecording::add_mesh(MotionMesh mesh) {
   if (const std::string fault = fault_of(mesh, data_->materials.size()); !fault.empty()) {
     return Error{ErrorCode::kOutOfRange, "mesh", fault};
   }
@@ -190,7 +190,7 @@ Result<std::uint32_t> Motion::add_mesh(MotionMesh mesh) {
   return static_cast<std::uint32_t>(data_->meshes.size() - 1);
 }
 
-Result<std::uint32_t> Motion::add_object(MotionObject object) {
+Result<std::uint32_t> MotionRecording::add_object(MotionObject object) {
   const bool is_body = object.kind == MotionObject::Kind::kBody;
   const auto is_missing = [&](std::uint32_t mesh) { return mesh >= data_->meshes.size(); };
   if ((!is_body && is_missing(object.mesh)) ||
@@ -214,7 +214,7 @@ Result<std::uint32_t> Motion::add_object(MotionObject object) {
   return static_cast<std::uint32_t>(data_->objects.size() - 1);
 }
 
-Result<void> Motion::add_joint(MotionJoint joint) {
+Result<void> MotionRecording::add_joint(MotionJoint joint) {
   for (const auto& end : {joint.a, joint.b}) {
     if (end && (*end >= data_->objects.size() || data_->objects[*end].kind != MotionObject::Kind::kBody)) {
       return Error{ErrorCode::kOutOfRange, joint.name, "holds an object that is no body"};
@@ -224,7 +224,7 @@ Result<void> Motion::add_joint(MotionJoint joint) {
   return {};
 }
 
-void Motion::set_state(std::uint32_t object, const MotionState& state) {
+void MotionRecording::set_state(std::uint32_t object, const MotionState& state) {
   if (object >= data_->objects.size()) return;
   MotionTrack& track = data_->tracks[object];
   if (track.size == 0) {
@@ -243,7 +243,8 @@ void Motion::set_state(std::uint32_t object, const MotionState& state) {
   }
 }
 
-void Motion::set_points(std::uint32_t object, const MotionState& state, std::span<const Vec3> vertices) {
+void MotionRecording::set_points(std::uint32_t object, const MotionState& state,
+                                 std::span<const Vec3> vertices) {
   if (object >= data_->objects.size() || data_->objects[object].kind != MotionObject::Kind::kPoints) return;
   MotionTrack& track = data_->tracks[object];
   if (vertices.size() != data_->mesh_of(object).vertices.size()) return;
@@ -256,7 +257,7 @@ void Motion::set_points(std::uint32_t object, const MotionState& state, std::spa
   track.is_set = keep_last(track, finite, record);
 }
 
-Result<void> Motion::finish_frame() {
+Result<void> MotionRecording::finish_frame() {
   const std::size_t number = data_->frames.size();
   for (MotionTrack& track : data_->tracks) {
     // What is gone does not come back: its frames are in one piece.
@@ -275,7 +276,7 @@ Result<void> Motion::finish_frame() {
                    "); record fewer frames a second or a shorter time"};
 }
 
-std::size_t Motion::frame_count() const {
+std::size_t MotionRecording::frame_count() const {
   return data_->frames.size();
 }
 

@@ -219,7 +219,7 @@ Result<void> check(const MotionData& data, const std::string& path, const Motion
 
 }  // namespace io
 
-Result<MotionSummary> write_motion(const Motion& motion, const std::string& path,
+Result<MotionSummary> write_motion(const MotionRecording& motion, const std::string& path,
                                    const MotionOptions& options) {
   const base::FloatEnvironment environment;
   const MotionData& data = motion.data();

@@ -402,9 +402,8 @@ void UsdaWriter::put_joints() {
   text_.end();
   if (without_schema == 0) return;
   job_.summary.notes.push_back(
-      std::to_string(without_schema) +
-      " hooks are left out, as UsdPhysics has no joint of their kind; what they hold "
-      "moves as recorded");
+      std::to_string(without_schema) + (without_schema == 1 ? " hook is" : " hooks are") +
+      " left out, as UsdPhysics has no joint of that kind; what is held moves as recorded");
 }
 
 Result<void> UsdaWriter::write() {
