@@ -81,7 +81,8 @@ Result<void> record_frames(Simulation& simulation, MotionRecorder& recorder, std
                            double frames_per_second) {
   const auto dt = static_cast<double>(simulation.scene().dt);
   recorder.take(simulation, 0);
-  Progress progress("recording", frames);
+  std::optional<Progress> progress;
+  progress.emplace("recording", frames);
   std::uint64_t steps = 0;
   std::size_t unhealthy = 0;
   for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -96,8 +97,9 @@ Result<void> record_frames(Simulation& simulation, MotionRecorder& recorder, std
       if (last - steps <= 1) recorder.take(simulation, static_cast<double>(steps) * dt);
     }
     if (auto recorded = recorder.record(simulation, time); !recorded) return recorded;
-    progress.show(frame + 1);
+    progress->show(frame + 1);
   }
+  progress.reset();  // Its line goes before others come.
   if (unhealthy > 0) {
     std::fprintf(stderr,
                  "warning: in %zu steps something was put back that was no number; hooke run says what\n",
@@ -119,6 +121,22 @@ bool is_table(const std::string& output) {
          std::equal(kEnding.begin(), kEnding.end(),
                     output.end() - static_cast<std::ptrdiff_t>(kEnding.size()),
                     [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+int write_recorded(const MotionRecorder& recorder, const ExportOptions& options) {
+  constexpr std::uint64_t kParts = 1000;
+  std::optional<Progress> progress;
+  progress.emplace("writing", kParts);
+  MotionOptions writing;
+  writing.tolerance = options.tolerance.value_or(writing.tolerance);
+  writing.most_targets = options.most_targets;
+  writing.with_points = options.with_points;
+  writing.progress = [&](double part) { progress->show(static_cast<std::uint64_t>(part * kParts)); };
+  const auto summary = write_motion(recorder.motion(), options.output, writing);
+  progress.reset();  // Its line goes before others come.
+  if (!summary) return report(summary.error());
+  print(summary.value());
+  return kGood;
 }
 
 }  // namespace
@@ -155,18 +173,7 @@ int command_export(Arguments arguments) {
     return report({ErrorCode::kOutOfRange, options.scene,
                    "holds nothing that moves or stands: add bodies, ropes, cloths, solids or particles"});
   }
-
-  constexpr std::uint64_t kParts = 1000;
-  Progress progress("writing", kParts);
-  MotionOptions writing;
-  writing.tolerance = options.tolerance.value_or(writing.tolerance);
-  writing.most_targets = options.most_targets;
-  writing.with_points = options.with_points;
-  writing.progress = [&](double part) { progress.show(static_cast<std::uint64_t>(part * kParts)); };
-  const auto summary = write_motion(recorder.motion(), options.output, writing);
-  if (!summary) return report(summary.error());
-  print(summary.value());
-  return kGood;
+  return write_recorded(recorder, options);
 }
 
 }  // namespace hooke::app

@@ -212,7 +212,7 @@ Result<std::uint32_t> MotionRecorder::add_plane(std::uint32_t material) {
   }
   mesh.indices = {0, 1, 2, 2, 1, 3};
   mesh.parts = {{0, 6, material}};
-  const auto added = motion_.add_mesh(std::move(mesh));
+  auto added = motion_.add_mesh(std::move(mesh));
   if (added) entry->second = added.value();
   return added;
 }
@@ -243,7 +243,7 @@ Result<std::uint32_t> MotionRecorder::add_piece_mesh(const FigureSolid& solid,
     for (std::size_t i = range.first; i < end; ++i) mesh.indices.push_back(number_of[geometry.indices[i]]);
     mesh.parts.push_back({begin, static_cast<std::uint32_t>(end - range.first), materials[r]});
   }
-  const auto added = motion_.add_mesh(std::move(mesh));
+  auto added = motion_.add_mesh(std::move(mesh));
   if (added) entry->second = added.value();
   return added;
 }

@@ -245,7 +245,8 @@ std::vector<std::size_t> GlbWriter::choose_keys(std::size_t object) {
     job_.summary.notes.push_back("'" + data_.objects[object].name + "' would need more than " +
                                  std::to_string(job_.options.most_targets) + " morph targets; it keeps " +
                                  std::to_string(keys.size() - 1) + ", and is off by up to " +
-                                 length_text(tolerance) + " between them");
+                                 length_text(tolerance) +
+                                 " between them: more targets or a folder of point caches show it better");
   }
   const MotionTrack& track = data_.tracks[object];
   frames_of_points_ += track.end - track.first;
