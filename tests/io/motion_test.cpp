@@ -335,6 +335,15 @@ TEST_SUITE("io/motion") {
     CHECK(folder.entries() == 1);
   }
 
+  TEST_CASE("what does not fit on the disk is known before it is full") {
+    const test::TemporaryFolder folder;
+    CHECK(io::check_space(folder / "x.obj", 1000));
+    const auto space = io::check_space(folder / "x.obj", 1e18);
+    REQUIRE_FALSE(space);
+    CHECK(space.error().message.find("would take about 931322575 GiB") == 0);
+    CHECK(io::check_space("nowhere/at/all/x.obj", 1e18));
+  }
+
   TEST_CASE("points without triangles are for tables alone") {
     const test::TemporaryFolder folder;
     MotionRecording motion = MotionRecording::create(folder / "x.csv", 30).value();

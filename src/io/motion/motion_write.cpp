@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <system_error>
 #include <unistd.h>
 
 namespace hooke {
@@ -125,6 +126,18 @@ std::string length_text(double meters) {
   std::snprintf(text.data(), text.size(), "%.3g %s", is_small ? 1000 * meters : meters,
                 is_small ? "mm" : "m");
   return text.data();
+}
+
+Result<void> check_space(const std::string& path, double bytes) {
+  std::error_code code;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, code);
+  if (code || bytes <= static_cast<double>(space.available)) return {};
+  const auto gibibytes = [](double size) { return std::to_string(std::llround(size / (1 << 30))) + " GiB"; };
+  return Error{ErrorCode::kFileNotWritable, path,
+               "would take about " + gibibytes(bytes) + ", and " +
+                   gibibytes(static_cast<double>(space.available)) +
+                   " are free: record a shorter time or fewer frames a second, or write .glb"};
 }
 
 Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path) {

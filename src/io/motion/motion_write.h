@@ -90,6 +90,10 @@ struct MotionJob {
 /// not overwrite each other. Returns the name of the image of each material; empty for none.
 [[nodiscard]] Result<std::vector<std::string>> write_images(const MotionJob& job, const std::string& path);
 
+/// Returns an Error if the disk of a file has no room for so many bytes. Where that cannot be told there is
+/// none.
+[[nodiscard]] Result<void> check_space(const std::string& path, double bytes);
+
 /// Which halves of a motion a .glb file holds.
 enum class GlbContent : std::uint8_t {
   kAll,

@@ -183,6 +183,15 @@ Result<void> write_obj_motion(const MotionJob& job) {
   std::vector<std::string> shown = job.summary.files;
   for (std::size_t frame = 0; frame < job.data.frames.size(); ++frame) {
     if (auto done = write_frame(writer, sequence.name(frame + 1), frame); !done) return done;
+    if (frame == 0) {
+      // Every frame has the bodies that stand, too, so that large scenes fill a disk before they end.
+      const auto left = static_cast<double>(job.data.frames.size() - 1);
+      const double size = static_cast<double>(fs::file_size(sequence.name(1)));
+      if (auto fits = check_space(sequence.name(1), left * size); !fits) {
+        fs::remove(sequence.name(1));
+        return fits;
+      }
+    }
     job.show(static_cast<double>(frame + 1) / static_cast<double>(job.data.frames.size()));
   }
   shown.push_back(sequence.name(1));
