@@ -36,6 +36,35 @@ struct SolidRepair {
 /// triangles take half a second.
 [[nodiscard]] Result<SolidRepair> repair_solid(const MeshDesc& mesh);
 
+/// A closed surface made around a mesh, and how far it lies from the mesh.
+struct SolidRemesh {
+  MeshDesc mesh = {};         ///< The new surface: closed, each edge with two triangles, its outside outside.
+  Real voxel = Real(0);       ///< Length of a voxel's side [m].
+  Real moved_mean = Real(0);  ///< Mean distance of the given surface from the new one, by area [m].
+  Real moved_max = Real(0);   ///< Largest distance of a point of the given surface from the new one [m].
+  Real bridged = Real(0);     ///< Largest distance of the new surface from the given one: over holes [m].
+};
+
+/// Closes a mesh that repair_solid cannot mend: open, with branching edges, with sides that cross or
+/// disagree, or a mere soup of triangles. It is made anew from voxels, by generalized winding numbers and a
+/// surface net.
+///
+/// - What the mesh winds about at least half a time is inside, so that a hole is closed as by a soap film.
+///   Triangles that face the wrong way take from this, and enough of them open the mesh again.
+/// - Where the mesh is thinner than a voxel, as a sheet without a back is, it gets a thickness of 1.7 voxels.
+/// - Holes inside that nothing from outside reaches are filled, unless the given mesh is closed.
+/// - Surface that lies deeper than a voxel inside the new one does not count as moved.
+///
+/// The result is the same on every machine. 100,000 triangles in 64 voxels along the longest side take about
+/// two seconds.
+///
+/// Errors: a mesh that is not usable (indices, numbers, no triangles), a voxel that is not positive and
+/// finite, or so small that the grid has more than 2^24 nodes.
+[[nodiscard]] Result<SolidRemesh> remesh_solid(const MeshDesc& mesh, Real voxel);
+
+/// The voxel [m] that is taken where none is given: a 64th of the longest side of the mesh's bounding box.
+[[nodiscard]] Real default_voxel(const MeshDesc& mesh);
+
 /// The plane A x + B y + C z + D = 0, with (A, B, C) the normal, of length one, and D = -offset.
 struct Plane {
   DVec3 normal = {0, 1, 0};  ///< Normal of unit length.
@@ -124,8 +153,9 @@ struct Polygon {
 /// deeper than `concavity_max` [m] below its part's hull, or there are `parts_max` parts.
 ///
 /// Where the solid is concave the parts are larger than it, and they may overlap a little. Only what is
-/// thinner than 1e-4 of the solid's extent is left out. It takes about a second for 2,000 triangles: call it
-/// when you load, not between steps.
+/// thinner than 1e-4 of the solid's extent is left out. A mesh of more than 4,096 triangles is first
+/// simplified to 3,000, from which the parts keep some thousandths of the extent. It takes about a second for
+/// 2,000 triangles, three for 100,000: call it when you load, not between steps.
 ///
 /// Errors: a mesh that is not closed or faces inward, a solid thinner than 1e-4 of its extent, a concavity
 /// that is not positive and finite, parts outside [1, 256].

@@ -4,6 +4,7 @@
 #include "geometry/box.h"
 #include "geometry/convex/convex_hull.h"
 #include "geometry/convex/mass_properties.h"
+#include "geometry/mesh/simplify.h"
 #include "geometry/solid/solid_cut.h"
 #include "geometry/triangle_mesh.h"
 
@@ -41,6 +42,10 @@ constexpr int kTrialVertices = 48;  // of hulls by which cuts are compared
 constexpr double kCostOfLength = 0.01;
 constexpr double kCostOfUnevenness = 0.01;
 constexpr double kGrowthMax = 0.05;  // largest growth of the volume, by joining two parts
+// A mesh of more triangles is cut in place of it after it was simplified to so many: the time of all cuts
+// grows with the triangles, and the cuts lie nearly in the same places.
+constexpr std::size_t kTrianglesMax = 4096;
+constexpr std::size_t kTrianglesSimplified = 3000;
 
 /// The solid that all parts belong to.
 struct Solid {
@@ -245,6 +250,28 @@ void join_parts(const JoinLimits& limits, double on_plane, std::vector<Part>& pa
   }
 }
 
+/// Cuts the solid until its parts are good, and joins those that were cut in vain.
+Result<std::vector<Part>> find_parts(const MeshDesc& mesh, double concavity_max, std::size_t parts_max) {
+  Solid solid;
+  for (const auto& t : mesh.triangles) {
+    solid.surface.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+  }
+  Result<Part> whole = make_part({.surface = solid.surface, .planes = {}, .corners = {}});
+  if (!whole) return whole.error();
+  solid.on_plane = kOnPlane * static_cast<double>(whole.value().hull.outer_radius);
+  solid.notch_planes = find_notch_planes(mesh, solid.on_plane);
+  std::vector<Part> parts = {std::move(whole).value()};
+  while (parts.size() < parts_max) {
+    const std::size_t deepest = find_deepest(parts, concavity_max);
+    if (deepest == parts.size()) break;
+    cut_part(deepest, solid, parts);
+  }
+  // Some cuts may have turned out needless; those that leave no trace are undone first.
+  for (const double share : {0.01, 1.0})
+    join_parts({share * concavity_max, share * kGrowthMax}, solid.on_plane, parts);
+  return parts;
+}
+
 }  // namespace
 
 Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concavity_max, int parts_max) {
@@ -256,26 +283,13 @@ Result<std::vector<MeshDesc>> decompose_convex(const MeshDesc& mesh, Real concav
     return Error{.where = "parts_max", .message = std::to_string(parts_max) + " is outside [1, 256]"};
   }
   if (const Result<void> solid = geometry::validate_solid(mesh); !solid) return solid.error();
-  Solid solid;
-  for (const auto& t : mesh.triangles) {
-    solid.surface.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-  }
-  Result<Part> whole = make_part({.surface = solid.surface, .planes = {}, .corners = {}});
-  if (!whole) return whole.error();
-  solid.on_plane = kOnPlane * static_cast<double>(whole.value().hull.outer_radius);
-  solid.notch_planes = find_notch_planes(mesh, solid.on_plane);
-  std::vector<Part> parts = {std::move(whole).value()};
-  while (parts.size() < static_cast<std::size_t>(parts_max)) {
-    const std::size_t deepest = find_deepest(parts, static_cast<double>(concavity_max));
-    if (deepest == parts.size()) break;
-    cut_part(deepest, solid, parts);
-  }
-  // Some cuts may have turned out needless; those that leave no trace are undone first.
-  for (const double share : {0.01, 1.0}) {
-    join_parts({share * static_cast<double>(concavity_max), share * kGrowthMax}, solid.on_plane, parts);
-  }
+  const bool is_fine = mesh.triangles.size() > kTrianglesMax;
+  Result<std::vector<Part>> parts =
+      find_parts(is_fine ? geometry::simplify(mesh, kTrianglesSimplified) : mesh,
+                 static_cast<double>(concavity_max), static_cast<std::size_t>(parts_max));
+  if (!parts) return parts.error();
   std::vector<MeshDesc> meshes;
-  std::transform(parts.begin(), parts.end(), std::back_inserter(meshes),
+  std::transform(parts.value().begin(), parts.value().end(), std::back_inserter(meshes),
                  [](const Part& part) { return geometry::mesh_of(part.hull); });
   return meshes;
 }
