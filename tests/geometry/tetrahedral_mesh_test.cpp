@@ -6,6 +6,8 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
+#include <map>
+#include <numeric>
 
 namespace hooke::geometry {
 
@@ -40,9 +42,79 @@ TetrahedralMesh filled(const MeshDesc& mesh, double cell) {
   return std::move(result).value();
 }
 
+/// Appends a box with these corners to a mesh.
+void add_box(MeshDesc& mesh, Vec3 lower, Vec3 upper) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  const MeshDesc box = test::make_box(Real(0.5) * (upper - lower));
+  for (const Vec3 p : box.positions) mesh.positions.push_back(Real(0.5) * (lower + upper) + p);
+  for (const auto& [a, b, c] : box.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+}
+
+/// Number of pieces of tetrahedra that hang together by whole faces.
+std::size_t count_pieces(const TetrahedralMesh& mesh) {
+  constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  std::map<Triangle, std::size_t> seen;
+  std::vector<std::size_t> parent(mesh.tetrahedra.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::size_t pieces = parent.size();
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    for (const auto& f : kFaces) {
+      Triangle face = {mesh.tetrahedra[i][f[0]], mesh.tetrahedra[i][f[1]], mesh.tetrahedra[i][f[2]]};
+      std::sort(face.begin(), face.end());
+      const auto [other, is_new] = seen.try_emplace(face, i);
+      if (is_new || root(i) == root(other->second)) continue;
+      parent[root(i)] = root(other->second);
+      --pieces;
+    }
+  }
+  return pieces;
+}
+
 }  // namespace
 
 TEST_SUITE("geometry/tetrahedral_mesh") {
+  TEST_CASE("a table with legs far thinner than a cell becomes one piece that reaches the ground") {
+    MeshDesc table;
+    add_box(table, {-1, Real(0.8), -1}, {1, 1, 1});
+    for (const Real x : {Real(-0.9), Real(0.87)}) {
+      for (const Real z : {Real(-0.9), Real(0.87)})
+        add_box(table, {x, Real(-0.8), z}, {x + Real(0.03), Real(0.81), z + Real(0.03)});
+    }
+    const TetrahedralMesh mesh = filled(table, 0.2);
+    CHECK(count_pieces(mesh) == 1);
+    double lowest = 1;
+    for (const DVec3& p : mesh.points) lowest = std::min(lowest, p.y);
+    CHECK(lowest < -0.7);
+    const auto additions = measure_additions(table, 0.2);
+    REQUIRE(additions.has_value());
+    CHECK(additions.value().thin >= 4 * 6);
+    CHECK(additions.value().pieces == 5);
+    CHECK(additions.value().bridges >= 4);
+  }
+
+  TEST_CASE("parts of a model that do not touch are joined by as few cells as there is room for") {
+    MeshDesc apart;
+    add_box(apart, {0, 0, 0}, {1, 1, 1});
+    add_box(apart, {Real(1.5), 0, 0}, {Real(2.5), 1, 1});
+    const auto additions = measure_additions(apart, 0.25);
+    REQUIRE(additions.has_value());
+    CHECK(additions.value().pieces == 2);
+    CHECK(additions.value().thin == 0);
+    CHECK(additions.value().bridges == 2);
+    CHECK(count_pieces(filled(apart, 0.25)) == 1);
+  }
+
+  TEST_CASE("nothing is added to a solid without thin parts") {
+    const auto additions = measure_additions(test::make_sphere(3), 0.25);
+    REQUIRE(additions.has_value());
+    CHECK(additions.value().thin + additions.value().bridges == 0);
+    CHECK(additions.value().pieces == 1);
+  }
+
   TEST_CASE("a box of cells has the tetrahedra it should, none of them inside out, and its own volume") {
     CellGrid grid = {.counts = {2, 3, 4}, .cell = {0.5, 1, 2}};
     grid.filled.assign(24, 1);

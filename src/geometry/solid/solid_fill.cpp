@@ -3,6 +3,7 @@
 
 #include "geometry/box.h"
 #include "geometry/mesh/bvh.h"
+#include "geometry/solid/cell_joining.h"
 #include "geometry/solid/tetrahedral_mesh.h"
 
 #include <algorithm>
@@ -174,9 +175,13 @@ Result<CellGrid> grid_around(const MeshDesc& mesh, double cell) {
   return grid;
 }
 
-}  // namespace
+/// Cells of a solid, and which of them were added.
+struct FilledCells {
+  CellGrid grid;
+  CellAdditions additions;
+};
 
-Result<TetrahedralMesh> fill_solid(const MeshDesc& mesh, double cell) {
+Result<FilledCells> find_cells(const MeshDesc& mesh, double cell) {
   const Result<void> solid = validate_solid(mesh);
   if (!solid) return solid.error();
   if (!(cell > 0) || !std::isfinite(cell)) {
@@ -184,13 +189,29 @@ Result<TetrahedralMesh> fill_solid(const MeshDesc& mesh, double cell) {
   }
   Result<CellGrid> grid = grid_around(mesh, cell);
   if (!grid) return grid.error();
-  Filler(mesh, grid.value()).fill();
-  TetrahedralMesh filled = fill_cells(grid.value());
+  FilledCells cells = {.grid = std::move(grid).value(), .additions = {}};
+  Filler(mesh, cells.grid).fill();
+  cells.additions = join_cells(mesh, cells.grid);
+  return cells;
+}
+
+}  // namespace
+
+Result<TetrahedralMesh> fill_solid(const MeshDesc& mesh, double cell) {
+  const Result<FilledCells> cells = find_cells(mesh, cell);
+  if (!cells) return cells.error();
+  TetrahedralMesh filled = fill_cells(cells.value().grid);
   if (filled.tetrahedra.empty()) {
     return Error{ErrorCode::kOutOfRange, "cell", "is too large: no cell lies inside the mesh"};
   }
   fit_surface(mesh, filled);
   return filled;
+}
+
+Result<CellAdditions> measure_additions(const MeshDesc& mesh, double cell) {
+  const Result<FilledCells> cells = find_cells(mesh, cell);
+  if (!cells) return cells.error();
+  return cells.value().additions;
 }
 
 namespace {
